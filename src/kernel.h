@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Kernels: W(r,h) = C_d h^-d w(q), q = r/h, with h the support radius (w = 0 for q >= 1).
+ * A kernel is one file in kernel/ (its mathematics and one KERNEL line) and one line in
+ * kernels.def. */
+#ifndef SPHPROOF_KERNEL_H
+#define SPHPROOF_KERNEL_H
+
+#include "family.h"
+#include "status.h"
+
+enum { KERNEL_KNOTS_MAX = 64, KERNEL_DIM_MAX = 3 };
+
+struct kernel;
+
+/* A kernel's shape function of q >= 0; must be exactly 0 for q >= 1. dim = 1, 2, 3. */
+typedef double kernel_shape(const struct kernel *kernel, double q, int dim);
+
+struct kernel {
+    struct member member;
+    kernel_shape *w;                     /* w(q) */
+    kernel_shape *dw;                    /* dw/dq */
+    double constant[KERNEL_DIM_MAX + 1]; /* C_d at index d; 0: computed by kernel_select */
+    int knot_count;                      /* interior knots of w, ascending, 0 < q < 1 */
+    double knots[KERNEL_KNOTS_MAX];
+    int smoothness[KERNEL_DIM_MAX + 1];  /* class C^k: least over origin, knots and edge */
+    double unity_width;                  /* smallest eta in 1D whose lattice sums are exact; 0: none */
+    double default_eta;                  /* eta where the user gives none, in 1D */
+    int order;                           /* n of sinc_n; 0 for the others */
+    /* A plug-in's own functions (see verify/plugin.h); NULL for the built-in kernels. */
+    double (*plugin_w)(double q, int dim);
+    double (*plugin_dw)(double q, int dim);
+    double (*plugin_dw_dh)(double r, double h, int dim);
+};
+
+extern const struct family kernel_family;
+
+/* Copies the built-in kernel called name into *kernel and completes it: sinc_order (3..12) is used
+ * by sinc only; constants without a closed form are computed by a fixed Gauss-Legendre rule.
+ * STATUS_BAD_INPUT: no such kernel, or sinc_order out of range. */
+enum status kernel_select(struct kernel *kernel, const char *name, int sinc_order,
+                          struct error *error);
+
+/* W(r,h), dW/dr and dW/dh in dim dimensions; r >= 0, h > 0. */
+double kernel_value(const struct kernel *kernel, double r, double h, int dim);
+double kernel_dr(const struct kernel *kernel, double r, double h, int dim);
+double kernel_dh(const struct kernel *kernel, double r, double h, int dim);
+
+/* The least eta for which h = eta (m/rho)^(1/d) has a root: eta^d > C_d w(0). */
+double kernel_least_eta(const struct kernel *kernel, int dim);
+
+#endif

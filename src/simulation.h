@@ -1,0 +1,75 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The solver as its users see it: a scene in, particles and costs out. Code units throughout. */
+#ifndef SPHPROOF_SIMULATION_H
+#define SPHPROOF_SIMULATION_H
+
+#include <stdbool.h>
+#include <stdint.h>
+#include <stddef.h>
+
+#include "scheme.h"
+#include "status.h"
+
+/* What is to be computed. Arrays belong to the caller and are copied by simulation_create. */
+struct scene {
+    int dim;                /* 1 (2 and 3: not yet) */
+    double lo[3], hi[3];    /* periodic box */
+    double gamma;           /* ideal gas, > 1 */
+    double t_end;
+    size_t n;               /* particles */
+    const double *x[3];     /* n each: positions, in the box, any order */
+    const double *v[3];     /* n each: velocities */
+    const double *m;        /* n: masses, > 0 */
+    const double *u;        /* n: specific internal energies, > 0 */
+    const double *rho;      /* n: first guess of the density, or NULL */
+    struct scheme scheme;
+    bool skip;              /* leave out work that cannot change the result */
+    int threads;            /* >= 1 */
+};
+
+/* One line of the plan: a pass, whether it runs, and why (or why not). */
+struct plan_line {
+    const char *pass;
+    bool runs;
+    char why[160];
+};
+
+struct simulation_cost {
+    double wall_s, cpu_s; /* set-up of the particles to t_end; cpu_s: all threads */
+    uint64_t steps, particle_updates, pair_interactions, skipped_particle_updates;
+};
+
+/* The state, for reading: n values each, sorted by position where dim = 1; positions wrapped into
+ * the box by snapshot_*; valid until the simulation moves on or is destroyed. */
+struct snapshot {
+    size_t n;
+    const double *x[3], *v[3];
+    const double *m, *rho, *u, *P, *h, *volume;
+    double time;
+};
+
+struct conservation { /* sums over all particles; extensive, code units */
+    double mass, momentum[3], momentum_scale /* sum |p| */, sound_scale /* sum m c */,
+        angular_momentum[3], energy;
+};
+
+/* Builds the plan for a scene into lines (at most max), returns their number; runs nothing.
+ * warnings (may be NULL): one text, "" if none, e.g. eta off a partition-of-unity width. */
+size_t plan_explain(const struct scene *scene, struct plan_line *lines, size_t max, char *warnings,
+                    size_t warnings_size);
+
+enum status simulation_create(const struct scene *scene, struct simulation **simulation,
+                              struct error *error);
+/* Called now and then with the current time; return false to stop (STATUS_OK, time < t_end). */
+typedef bool simulation_progress(void *context, double time, uint64_t steps);
+
+/* Steps to t_end exactly. STATUS_BROKE_DOWN: the message names particle, time and quantity; the
+ * state is then the last sound one. progress may be NULL. */
+enum status simulation_run(struct simulation *simulation, double t_end,
+                           simulation_progress *progress, void *context, struct error *error);
+void simulation_snapshot(const struct simulation *simulation, struct snapshot *snapshot);
+void simulation_conservation(const struct simulation *simulation, struct conservation *sums);
+void simulation_cost(const struct simulation *simulation, struct simulation_cost *cost);
+void simulation_destroy(struct simulation *simulation);
+
+#endif

@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * A check: a property, measured on subjects (kernels, operators, solvers, norms ...), each figure
+ * against a bound with the noise floor beside it; and the mutants, wrong subjects that the same
+ * code must reject. Adding a check: one file in check/ and one line in checks.def. */
+#ifndef SPHPROOF_CHECK_H
+#define SPHPROOF_CHECK_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+struct check_run; /* collects the figures of one check on one subject; see check.c */
+
+/* One figure. subject: where (kernel, dimension, h, point ...), printf-like; passes if value <= bound
+ * (a NaN fails). floor: the noise below which the figure means nothing (0: exact). */
+void check_measure(struct check_run *run, double value, double bound, double floor,
+                   const char *subject, ...) __attribute__((format(printf, 5, 6)));
+
+/* The figure could not be measured here, and why; neither passes nor fails. */
+void check_skip(struct check_run *run, const char *why, ...) __attribute__((format(printf, 2, 3)));
+
+struct check_mutant {
+    const char *name;    /* distinct over the program */
+    const char *fault;   /* one line: what is wrong with it */
+    const void *subject; /* what the check gets instead of a right one */
+};
+
+struct check {
+    const char *group;    /* kernels gradients conservation riemann exact hydro norms ... */
+    const char *name;
+    const char *property; /* one line, a formula where it helps */
+    bool slow;            /* not in the quick suite */
+    /* The right subjects, index 0..subject_count-1; called with NULL as self-contained check. */
+    size_t (*subject_count)(void);
+    const void *(*subject)(size_t i);
+    void (*measure)(struct check_run *run, const void *subject);
+    const struct check_mutant *mutants; /* ends with a NULL name; must not be empty */
+};
+
+#endif

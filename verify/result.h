@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Result documents: one JSON schema (verify/schema/sphproof-1.schema.json) for all commands. */
+#ifndef SPHPROOF_RESULT_H
+#define SPHPROOF_RESULT_H
+
+#include <jansson.h>
+
+#include "status.h"
+
+/* A new document with schema, command, version, git, compiler, flags, machine and date; the caller
+ * owns the reference. */
+json_t *result_new(const char *command);
+
+/* A number, or the string "nan", "inf" or "-inf" where it is not finite. New reference. */
+json_t *result_number(double value);
+
+/* Writes the document to path ("-": standard output), 17 significant digits; a file appears whole
+ * or not at all. STATUS_ENVIRONMENT: path cannot be written. */
+enum status result_write(const json_t *document, const char *path, struct error *error);
+
+#endif
