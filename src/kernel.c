@@ -2,6 +2,7 @@
 #include "kernel.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 /* One pass over the list defines the descriptors, a second one lists them. */
@@ -19,21 +20,73 @@ static const struct member *const members[] = {
 const struct family kernel_family = {"kernels", "kernels W(r,h), h = support radius", members,
                                      sizeof members / sizeof *members};
 
-enum status kernel_select(struct kernel *kernel, const char *name, int sinc_order,
-                          struct error *error)
-{
-    (void)sinc_order;
-    const struct member *member = family_find(&kernel_family, name);
-    if (!member) return error_set(error, STATUS_BAD_INPUT, "no kernel '%s'", name);
-    *kernel = *(const struct kernel *)member;
-    return STATUS_OK;
-}
-
 static double power(double x, int n)
 {
     double y = 1;
     for (int i = 0; i < n; i++) y *= x;
     return y;
+}
+
+/* Integral over a < q < b of q^(dim-1) w(q): 16-point Gauss-Legendre on four panels. */
+static double integral(const struct kernel *kernel, double a, double b, int dim)
+{
+    static const double node[8] = {0.095012509837637440185, 0.28160355077925891323,
+                                   0.45801677765722738634,  0.61787624440264374845,
+                                   0.7554044083550030339,   0.86563120238783174388,
+                                   0.94457502307323257608,  0.9894009349916499326};
+    static const double weight[8] = {0.18945061045506849629,  0.18260341504492358887,
+                                     0.16915651939500253819,  0.14959598881657673208,
+                                     0.12462897125553387205,  0.09515851168249278481,
+                                     0.062253523938647892863, 0.027152459411754094852};
+    enum { PANELS = 4 };
+    const double half = (b - a) / (2 * PANELS);
+    double sum = 0;
+    for (int panel = 0; panel < PANELS; panel++)
+        for (int i = 0; i < 16; i++) {
+            const double x = i < 8 ? -node[i] : node[i - 8];
+            const double q = a + half * (2 * panel + 1 + x);
+            sum += weight[i % 8] * power(q, dim - 1) * kernel->w(kernel, q, dim);
+        }
+    return half * sum;
+}
+
+static void normalise(struct kernel *kernel, int dim)
+{
+    const double sphere[KERNEL_DIM_MAX + 1] = {0, 2, 2 * M_PI, 4 * M_PI};
+    double sum = 0;
+    for (int i = 0; i <= kernel->knot_count; i++)
+        sum += integral(kernel, i ? kernel->knots[i - 1] : 0,
+                        i < kernel->knot_count ? kernel->knots[i] : 1, dim);
+    kernel->constant[dim] = 1 / (sphere[dim] * sum);
+}
+
+static enum status unknown(const char *name, struct error *error)
+{
+    char allowed[256] = "";
+    for (size_t i = 0, n = 0; i < kernel_family.n && n < sizeof allowed; i++)
+        n += (size_t)snprintf(allowed + n, sizeof allowed - n, "%s%s", i ? ", " : "",
+                              kernel_family.members[i]->name);
+    return error_set(error, STATUS_BAD_INPUT, "no kernel '%.64s'; there are %s", name, allowed);
+}
+
+enum status kernel_select(struct kernel *kernel, const char *name, int sinc_order,
+                          struct error *error)
+{
+    const struct member *member = family_find(&kernel_family, name);
+    if (!member) return unknown(name, error);
+    *kernel = *(const struct kernel *)member;
+    if (kernel->order) {
+        if (sinc_order < SINC_ORDER_MIN || sinc_order > SINC_ORDER_MAX)
+            return error_set(error, STATUS_BAD_INPUT, "sinc_n = %d: allowed are %d to %d",
+                             sinc_order, SINC_ORDER_MIN, SINC_ORDER_MAX);
+        kernel->order = sinc_order;
+        /* below n = 5 the cut at q = 1 spoils the lattice sums at n/2 */
+        kernel->default_eta = sinc_order < 5 ? 2.5 : 0.5 * sinc_order;
+        for (int dim = 1; dim <= KERNEL_DIM_MAX; dim++) kernel->smoothness[dim] = sinc_order - 1;
+    }
+    for (int dim = 1; dim <= KERNEL_DIM_MAX; dim++)
+        if (kernel->constant[dim] == 0) normalise(kernel, dim);
+    return STATUS_OK;
 }
 
 double kernel_value(const struct kernel *kernel, double r, double h, int dim)

@@ -1,0 +1,184 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The kernels against data/kernels.csv (W, dW/dq, dW/dh at h = 1, 20 digits, computed with exact
+ * rational arithmetic from the definitions, independently of this code), scaled to several h; and
+ * kernel_select. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "kernel.h"
+
+static const char *table_path;
+
+struct line {
+    char name[24];
+    int dim;
+    double q, value[3]; /* W, dW/dq, dW/dh at h = 1 */
+};
+
+static const char *const table_names[][2] = {
+    {"cubic", "cubic_spline"},     {"quartic", "quartic_spline"}, {"quintic", "quintic_spline"},
+    {"wendlandC2", "wendland_c2"}, {"wendlandC4", "wendland_c4"}, {"wendlandC6", "wendland_c6"},
+};
+
+static const char *our_name(const char *name)
+{
+    for (size_t i = 0; i < sizeof table_names / sizeof *table_names; i++)
+        if (strcmp(name, table_names[i][0]) == 0) return table_names[i][1];
+    return "";
+}
+
+/* "1/10" or "0.1" */
+static double parse_fraction(const char *text)
+{
+    char *end;
+    const double p = strtod(text, &end);
+    return *end == '/' ? p / strtod(end + 1, NULL) : p;
+}
+
+static int read_line(FILE *file, struct line *line)
+{
+    char text[256], q[16];
+    if (!fgets(text, sizeof text, file)) return 0;
+    return 6 == sscanf(text, "%23[^,],%d,%15[^,],%lf,%lf,%lf", line->name, &line->dim, q,
+                       &line->value[0], &line->value[1], &line->value[2]) &&
+           (line->q = parse_fraction(q), 1);
+}
+
+static void compare(const struct kernel *kernel, const struct line *line, double h)
+{
+    const int dim = line->dim;
+    const double scale = pow(h, -dim), r = line->q * h;
+    const double got[3] = {kernel_value(kernel, r, h, dim) / scale,
+                           kernel_dr(kernel, r, h, dim) / (scale / h),
+                           kernel_dh(kernel, r, h, dim) / (scale / h)};
+    /* near a zero the error is that of the terms that cancel: of the order of C_d */
+    for (int i = 0; i < 3; i++) {
+        const double bound = 1e-14 * fabs(line->value[i]) + 4e-15 * kernel->constant[dim];
+        if (!(fabs(got[i] - line->value[i]) <= bound))
+            fail_msg("%s, dim %d, q %g, h %g, column %d: got %.17g, table %.17g, bound %.1e",
+                     line->name, dim, line->q, h, i, got[i], line->value[i], bound);
+    }
+}
+
+static void test_table(void **state)
+{
+    (void)state;
+    FILE *file = fopen(table_path, "r");
+    assert_non_null(file);
+    char header[128];
+    assert_non_null(fgets(header, sizeof header, file));
+    struct line line;
+    int lines = 0;
+    for (; read_line(file, &line); lines++) {
+        struct kernel kernel;
+        struct error error = {0};
+        assert_int_equal(kernel_select(&kernel, our_name(line.name), 5, &error), STATUS_OK);
+        compare(&kernel, &line, 1);
+        compare(&kernel, &line, 0.0371);
+        compare(&kernel, &line, 2.385);
+    }
+    fclose(file);
+    assert_int_equal(lines, 207);
+}
+
+/* Constants of the sinc family to 20 digits: C_d = 1/(S_d int_0^1 q^(d-1) w dq), computed with
+ * 30-digit quadrature. */
+static void test_sinc_constants(void **state)
+{
+    (void)state;
+    static const struct {
+        int n;
+        double constant[3];
+    } table[] = {
+        {3, {1.3204067615855146693, 1.8029329635616995998, 2.543024706287487317}},
+        {4, {1.5044300259623629285, 2.3212487016668555283, 3.671340133501082779}},
+        {5, {1.6687074276752006088, 2.8415178549547171299, 4.9361012337810751454}},
+        {6, {1.8184096022997400329, 3.3628399669940504812, 6.3235967154584231789}},
+        {7, {1.9568044270299950325, 3.8847886978208098677, 7.8235947824926762916}},
+        {8, {2.0861046973310268071, 4.4071386471917403853, 9.4280859270685373975}},
+        {9, {2.2078880220587636682, 4.9297602451322068161, 11.130577191374307679}},
+        {10, {2.3233247811635474574, 5.4525739966229006091, 12.925664474484781264}},
+        {11, {2.433311055118789453, 5.9755285325568498336, 14.80875688094801237}},
+        {12, {2.5385506833486641004, 6.49858922914027316, 16.775890095780287262}},
+    };
+    for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
+        struct kernel kernel;
+        assert_int_equal(kernel_select(&kernel, "sinc", table[i].n, NULL), STATUS_OK);
+        assert_int_equal(kernel.order, table[i].n);
+        assert_int_equal(kernel.smoothness[2], table[i].n - 1);
+        for (int dim = 1; dim <= 3; dim++) {
+            const double want = table[i].constant[dim - 1];
+            assert_true(fabs(kernel.constant[dim] - want) <= 1e-14 * want);
+        }
+    }
+}
+
+/* s^n and its derivative at small and large q against the series and the expansion at the edge. */
+static void test_sinc_limits(void **state)
+{
+    (void)state;
+    struct kernel kernel;
+    assert_int_equal(kernel_select(&kernel, "sinc", 5, NULL), STATUS_OK);
+    assert_true(kernel.w(&kernel, 0, 1) == 1 && kernel.dw(&kernel, 0, 1) == 0);
+    for (double q = 1e-300; q < 1e-2; q *= 10) {
+        const double x = (M_PI * q) * (M_PI * q), n = 5;
+        const double s = 1 - x / 6 * (1 - x / 20 * (1 - x / 42));
+        const double ds = -M_PI * M_PI * q / 3 * (1 - x / 10 * (1 - x / 28 * (1 - x / 54)));
+        assert_true(fabs(kernel.w(&kernel, q, 3) - pow(s, n)) <= 8 * DBL_EPSILON);
+        const double want = n * pow(s, n - 1) * ds;
+        assert_true(fabs(kernel.dw(&kernel, q, 3) - want) <= 8 * DBL_EPSILON * fabs(want));
+    }
+    for (double a = 0x1p-10; a > 0x1p-52; a /= 2) { /* q = 1 - a exactly */
+        const double want = pow(a * (1 - (M_PI * a) * (M_PI * a) / 6) / (1 - a), 5);
+        assert_true(fabs(kernel.w(&kernel, 1 - a, 3) - want) <= 1e-11 * want);
+    }
+    assert_true(kernel.w(&kernel, 1, 3) == 0 && kernel.dw(&kernel, 1, 3) == 0);
+    assert_true(kernel.w(&kernel, 7, 3) == 0 && kernel.dw(&kernel, INFINITY, 3) == 0);
+}
+
+static void test_select(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < kernel_family.n; i++) {
+        struct kernel kernel;
+        assert_int_equal(kernel_select(&kernel, kernel_family.members[i]->name, 5, NULL), 0);
+        for (int dim = 1; dim <= KERNEL_DIM_MAX; dim++) {
+            assert_true(kernel.constant[dim] > 0);
+            assert_true(kernel.smoothness[dim] >= 0);
+            assert_true(kernel_least_eta(&kernel, dim) > 1);
+        }
+        assert_true(kernel.default_eta > kernel_least_eta(&kernel, 1));
+    }
+    struct kernel kernel;
+    struct error error = {0};
+    assert_int_equal(kernel_select(&kernel, "cubic", 5, &error), STATUS_BAD_INPUT);
+    assert_non_null(strstr(error.message, "'cubic'"));
+    assert_non_null(strstr(error.message, "cubic_spline"));
+    assert_non_null(strstr(error.message, "sinc"));
+    for (int n = -1; n < 20; n++)
+        assert_int_equal(kernel_select(&kernel, "sinc", n, &error),
+                         n >= 3 && n <= 12 ? STATUS_OK : STATUS_BAD_INPUT);
+    assert_non_null(strstr(error.message, "3 to 12"));
+}
+
+int main(int argc, char **argv)
+{
+    if (argc != 2) return 2;
+    table_path = argv[1];
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_table),
+        cmocka_unit_test(test_sinc_constants),
+        cmocka_unit_test(test_sinc_limits),
+        cmocka_unit_test(test_select),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
