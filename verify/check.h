@@ -10,8 +10,8 @@
 
 struct check_run; /* collects the figures of one check on one subject; see check.c */
 
-/* One figure. subject: where (kernel, dimension, h, point ...), printf-like; passes if value <= bound
- * (a NaN fails). floor: the noise below which the figure means nothing (0: exact). */
+/* One figure. subject: where (kernel, dimension, h, point ...), printf-like; passes if value <=
+ * bound (a NaN fails). floor: the noise below which the figure means nothing (0: exact). */
 void check_measure(struct check_run *run, double value, double bound, double floor,
                    const char *subject, ...) __attribute__((format(printf, 5, 6)));
 
@@ -25,7 +25,7 @@ struct check_mutant {
 };
 
 struct check {
-    const char *group;    /* kernels gradients conservation riemann exact hydro norms ... */
+    const char *group; /* kernels gradients conservation riemann exact hydro norms ... */
     const char *name;
     const char *property; /* one line, a formula where it helps */
     bool slow;            /* not in the quick suite */

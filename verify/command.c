@@ -1,8 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "command.h"
 
+#include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
+
+#include "output.h"
+#include "text.h"
+#include "version.h"
 
 #define COMMAND(name) extern const struct command command_##name;
 #include "commands.def"
@@ -13,17 +20,256 @@ static const struct command *const commands[] = {
 #include "commands.def"
 #undef COMMAND
 };
+enum { COMMANDS = sizeof commands / sizeof *commands, THREADS_MAX = 1024 };
+
+static const struct command_option common[] = {
+    {"json", "FILE|-", "write the result document (with - nothing else goes to standard output)"},
+    {"threads", "T", "threads, 1 to 1024 (default 1); results do not depend on it"},
+    {"quiet", NULL, "print neither tables nor progress"},
+    {"color", "auto|always|never", "colours in tables (default auto; NO_COLOR is respected)"},
+    {"help", NULL, "this help; after a command, that command's"},
+    {"version", NULL, "version, git revision and compiler"},
+    {NULL, NULL, NULL},
+};
+
+/* What the command line said. */
+struct line {
+    struct options options;
+    const char *color;
+    int help, version;
+    int n; /* arguments, command's name not counted */
+    char **arguments;
+};
+
+static size_t count(const struct command_option *list)
+{
+    size_t n = 0;
+    while (list && list[n].name) n++;
+    return n;
+}
+
+static const struct command_option *find(const struct command_option *list, const char *name,
+                                         size_t length)
+{
+    for (; list && list->name; list++)
+        if (strlen(list->name) == length && strncmp(list->name, name, length) == 0) return list;
+    return NULL;
+}
+
+static enum status unknown_option(const struct options *options, const char *word,
+                                  struct error *error)
+{
+    char names[COMMAND_OPTIONS_MAX + 8][40];
+    const char *list[COMMAND_OPTIONS_MAX + 8];
+    size_t n = 0;
+    const struct command_option *const lists[] = {
+        options->command ? options->command->options : NULL, common};
+    for (size_t l = 0; l < 2; l++)
+        for (size_t i = 0; i < count(lists[l]); i++, n++) {
+            snprintf(names[n], sizeof names[n], "--%s", lists[l][i].name);
+            list[n] = names[n];
+        }
+    return text_unknown(error, options->command ? options->command->name : NULL, "option", word,
+                        list, n);
+}
+
+static enum status apply_common(struct line *line, const char *name, const char *value,
+                                struct error *error)
+{
+    double number;
+    switch (name[0]) {
+    case 'j':
+        line->options.json = value;
+        break;
+    case 'q':
+        line->options.quiet = 1;
+        break;
+    case 'h':
+        line->help = 1;
+        break;
+    case 'v':
+        line->version = 1;
+        break;
+    case 'c':
+        if (strcmp(value, "auto") && strcmp(value, "always") && strcmp(value, "never"))
+            return error_set(error, STATUS_BAD_INPUT, "--color '%.40s': allowed: auto always never",
+                             value);
+        line->color = value;
+        break;
+    case 't':
+        if (!text_integer(value, &number) || !(number >= 1 && number <= THREADS_MAX))
+            return error_set(error, STATUS_BAD_INPUT,
+                             "--threads '%.40s': allowed: an integer from 1 to %d", value,
+                             THREADS_MAX);
+        line->options.threads = (int)number;
+        break;
+    default:
+        break;
+    }
+    return STATUS_OK;
+}
+
+/* One option at argv[*i]; moves *i to its last word. */
+static enum status take_option(struct line *line, int argc, char **argv, int *i,
+                               struct error *error)
+{
+    const char *word = strcmp(argv[*i], "-h") == 0 ? "--help" : argv[*i];
+    if (word[1] != '-') return unknown_option(&line->options, word, error);
+    const size_t length = strcspn(word + 2, "=");
+    const struct command *command = line->options.command;
+    const struct command_option *own = command ? find(command->options, word + 2, length) : NULL;
+    const struct command_option *option = own ? own : find(common, word + 2, length);
+    if (!option) return unknown_option(&line->options, word, error);
+    const char *value = word[2 + length] == '=' ? word + 3 + length : NULL;
+    if (!option->argument) {
+        if (value)
+            return error_set(error, STATUS_BAD_INPUT, "--%s takes no argument", option->name);
+        value = "";
+    } else if (!value) {
+        if (*i + 1 >= argc || strncmp(argv[*i + 1], "--", 2) == 0)
+            return error_set(error, STATUS_BAD_INPUT, "--%s needs an argument: --%s %s",
+                             option->name, option->name, option->argument);
+        value = argv[++*i];
+    }
+    if (!own) return apply_common(line, option->name, value, error);
+    const char **slot = &line->options.values[own - command->options];
+    if (*slot) return error_set(error, STATUS_BAD_INPUT, "--%s is given twice", option->name);
+    *slot = value;
+    return STATUS_OK;
+}
+
+static enum status find_command(const char *word, const struct command **command,
+                                struct error *error)
+{
+    const char *names[COMMANDS];
+    for (size_t i = 0; i < COMMANDS; i++) {
+        names[i] = commands[i]->name;
+        if (strcmp(word, names[i]) == 0) {
+            *command = commands[i];
+            return STATUS_OK;
+        }
+    }
+    return text_unknown(error, NULL, "command", word, names, COMMANDS);
+}
+
+static enum status parse(struct line *line, int argc, char **argv, struct error *error)
+{
+    enum status status = STATUS_OK;
+    int options_end = 0;
+    for (int i = 1; i < argc && !status; i++) {
+        char *word = argv[i];
+        double number;
+        if (!options_end && strcmp(word, "--") == 0)
+            options_end = 1;
+        else if (!options_end && word[0] == '-' && word[1] && !text_real(word, &number))
+            status = take_option(line, argc, argv, &i, error);
+        else if (!line->options.command)
+            status = find_command(word, &line->options.command, error);
+        else
+            line->arguments[line->n++] = word;
+    }
+    return status;
+}
+
+static void print_options(const struct command_option *list)
+{
+    for (; list && list->name; list++) {
+        char left[64];
+        snprintf(left, sizeof left, "--%s%s%s", list->name, list->argument ? " " : "",
+                 list->argument ? list->argument : "");
+        printf("  %-26s %s\n", left, list->help);
+    }
+}
+
+static void print_help(const struct command *command)
+{
+    if (command) {
+        printf("usage: sphproof %s %s\n\n%s\n", command->name, command->synopsis, command->help);
+        if (command->options) printf("\noptions:\n");
+        print_options(command->options);
+    } else {
+        printf("sphproof: verification and convergence of SPH\n\nusage: sphproof COMMAND "
+               "[ARGUMENT ...] [OPTION ...]\n\ncommands:\n");
+        for (size_t i = 0; i < COMMANDS; i++)
+            printf("  %-10s %.*s\n", commands[i]->name, (int)strcspn(commands[i]->help, "\n"),
+                   commands[i]->help);
+    }
+    printf("\noptions of every command:\n");
+    print_options(common);
+    printf("\nexit status:\n");
+#define STATUS(name, code, text) printf("  %d  %s\n", code, text);
+    STATUS_LIST(STATUS)
+#undef STATUS
+    const char *examples = command ? command->examples
+                                   : "sphproof list\nsphproof run sod\nsphproof run sod n=800 "
+                                     "kernel=cubic_spline gradient=ia\nsphproof run --help";
+    if (examples) printf("\nexamples:\n");
+    for (const char *e = examples; e && *e; e += strcspn(e, "\n"), e += *e == '\n')
+        printf("  %.*s\n", (int)strcspn(e, "\n"), e);
+}
+
+static void resolve_streams(struct line *line)
+{
+    struct options *options = &line->options;
+    const char *no_color = getenv("NO_COLOR"), *terminal = getenv("TERM");
+    options->speak = !options->quiet && !(options->json && strcmp(options->json, "-") == 0);
+    options->color = strcmp(line->color, "always") == 0 ||
+                     (strcmp(line->color, "auto") == 0 && isatty(STDOUT_FILENO) &&
+                      !(no_color && *no_color) && terminal && strcmp(terminal, "dumb") != 0);
+}
+
+static enum status execute(struct line *line, int argc, char **argv, struct error *error)
+{
+    enum status status = parse(line, argc, argv, error);
+    const struct options *options = &line->options;
+    if (status) return status;
+    if (line->version) {
+        printf("sphproof %s (%s), %s\n", VERSION, VERSION_GIT, VERSION_COMPILER);
+        return STATUS_OK;
+    }
+    if (line->help) {
+        print_help(options->command);
+        return STATUS_OK;
+    }
+    if (!options->command)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "no command given; `sphproof --help` lists the commands");
+    resolve_streams(line);
+    if (options->json && (status = output_probe(options->json, error))) return status;
+    return options->command->run(options, line->n, line->arguments, error);
+}
+
+const char *options_value(const struct options *options, const char *name)
+{
+    const struct command_option *list = options->command->options;
+    const struct command_option *option = find(list, name, strlen(name));
+    return option ? options->values[option - list] : NULL;
+}
+
+enum status command_usage(const struct options *options, struct error *error, const char *format,
+                          ...)
+{
+    char what[300];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(what, sizeof what, format, arguments);
+    va_end(arguments);
+    return error_set(error, STATUS_BAD_INPUT, "%s: %s (usage: sphproof %s %s)",
+                     options->command->name, what, options->command->name,
+                     options->command->synopsis);
+}
 
 int command_main(int argc, char **argv)
 {
-    struct options options = {.threads = 1};
     struct error error = {0};
-    for (size_t i = 0; argc > 1 && i < sizeof commands / sizeof *commands; i++)
-        if (strcmp(argv[1], commands[i]->name) == 0) {
-            const enum status status = commands[i]->run(&options, argc - 2, argv + 2, &error);
-            if (error.message[0]) fprintf(stderr, "sphproof: %s\n", error.message);
-            return (int)status;
-        }
-    fprintf(stderr, "sphproof: no such command\n");
-    return STATUS_BAD_INPUT;
+    output_prepare_process();
+    struct line line = {.options = {.threads = 1}, .color = "auto"};
+    line.arguments = calloc((size_t)argc + 1, sizeof *line.arguments);
+    enum status status = line.arguments ? execute(&line, argc, argv, &error)
+                                        : error_set(&error, STATUS_ENVIRONMENT, "no memory");
+    const enum status flushed = output_finish_process(&error);
+    if (flushed) status = flushed;
+    if (error.message[0] && status) fprintf(stderr, "sphproof: %s\n", error.message);
+    free(line.arguments);
+    return (int)status;
 }

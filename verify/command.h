@@ -5,23 +5,44 @@
 
 #include "status.h"
 
-/* Options common to all commands, taken out of the arguments before a command sees them. */
+enum { COMMAND_OPTIONS_MAX = 24 };
+
+/* An option of one command; a list of them ends with a NULL name. */
+struct command_option {
+    const char *name;     /* without the dashes */
+    const char *argument; /* what stands for its argument in the help; NULL: a flag */
+    const char *help;     /* one line */
+};
+
+/* Options, taken out of the arguments before a command sees them. */
 struct options {
-    const char *json; /* file, "-" for standard output, NULL for none */
+    const char *json; /* file (known to be writable), "-" for standard output, NULL for none */
     int threads;      /* >= 1 */
-    int quiet;
-    int color; /* resolved: 1 where stdout may be coloured */
+    int quiet;        /* no progress, no remarks */
+    int speak;        /* 1 where tables for a person go to standard output */
+    int color;        /* resolved: 1 where stdout may be coloured */
+    const struct command *command;
+    const char *values[COMMAND_OPTIONS_MAX]; /* of the command's own options, see options_value */
 };
 
 struct command {
     const char *name;
     const char *synopsis; /* the arguments, one line */
-    const char *help;     /* what it does, its options, examples */
-    /* arguments[0..n-1]: those after the command's name, without the common options.
-     * Returns the exit status; on anything but STATUS_OK and STATUS_CHECK_FAILED error is set and
-     * nothing has been written. */
+    const char *help;     /* first line: what it does; then, where needed, more */
+    /* arguments[0..n-1]: those after the command's name, without any option ("-1" and "-" are
+     * arguments, all after "--" too). Returns the exit status; on anything but STATUS_OK and
+     * STATUS_CHECK_FAILED error is set. Where it is STATUS_BAD_INPUT nothing has been written. */
     enum status (*run)(const struct options *options, int n, char **arguments, struct error *error);
+    const struct command_option *options; /* NULL: none but the common ones */
+    const char *examples;                 /* complete command lines, one a line */
 };
+
+/* The argument of the command's option called name ("" for a flag), NULL where it was not given. */
+const char *options_value(const struct options *options, const char *name);
+
+/* Bad usage of this command: STATUS_BAD_INPUT with the message and the synopsis. */
+enum status command_usage(const struct options *options, struct error *error, const char *format,
+                          ...) __attribute__((format(printf, 3, 4)));
 
 /* The whole program: finds the command, runs it, prints the error, returns the exit status. */
 int command_main(int argc, char **argv);

@@ -1,0 +1,164 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "output.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* Names of the temporaries in being, where a signal handler can reach them. */
+enum { SLOTS = 16 };
+static struct {
+    volatile sig_atomic_t used;
+    char name[PATH_MAX];
+} slots[SLOTS];
+
+static void interrupted(int number)
+{
+    for (int i = 0; i < SLOTS; i++)
+        if (slots[i].used) unlink(slots[i].name);
+    signal(number, SIG_DFL);
+    raise(number);
+}
+
+static int slot_take(const char *name)
+{
+    for (int i = 0; i < SLOTS; i++)
+        if (!slots[i].used && strlen(name) < sizeof slots[i].name) {
+            strcpy(slots[i].name, name);
+            slots[i].used = 1;
+            return i;
+        }
+    return -1;
+}
+
+static void output_forget(struct output *output)
+{
+    if (output->slot >= 0) slots[output->slot].used = 0;
+    free(output->path);
+    free(output->temporary);
+    *output = (struct output){.slot = -1};
+}
+
+static enum status cannot_write(const char *path, int reason, struct error *error)
+{
+    return error_set(error, STATUS_ENVIRONMENT, "cannot write '%s': %s", path, strerror(reason));
+}
+
+/* The file behind path, following links; a copy of path where it does not exist yet. */
+static char *resolve(const char *path)
+{
+    char *real = realpath(path, NULL);
+    return real ? real : strdup(path);
+}
+
+static char *temporary_beside(const char *path)
+{
+    static unsigned count;
+    const char *slash = strrchr(path, '/');
+    const int folder = slash ? (int)(slash - path + 1) : 0;
+    const size_t size = strlen(path) + 48;
+    char *name = malloc(size);
+    if (name)
+        snprintf(name, size, "%.*s.%s.%ld.%u.part", folder, path, path + folder, (long)getpid(),
+                 count++);
+    return name;
+}
+
+enum status output_open(struct output *output, const char *path, struct error *error)
+{
+    *output = (struct output){.slot = -1};
+    if (strcmp(path, "-") == 0) {
+        output->stream = stdout;
+        return STATUS_OK;
+    }
+    struct stat info;
+    const int exists = stat(path, &info) == 0;
+    if (!*path) return cannot_write(path, ENOENT, error);
+    if (exists && S_ISDIR(info.st_mode)) return cannot_write(path, EISDIR, error);
+    if (exists && access(path, W_OK) != 0) return cannot_write(path, errno, error);
+    if (!(output->path = resolve(path))) return cannot_write(path, ENOMEM, error);
+    if (exists && !S_ISREG(info.st_mode)) {
+        output->stream = fopen(path, "w");
+    } else if ((output->temporary = temporary_beside(output->path))) {
+        output->slot = slot_take(output->temporary);
+        const int file = open(output->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (file >= 0) output->stream = fdopen(file, "w");
+    }
+    if (!output->stream) {
+        const int reason = errno;
+        output_forget(output);
+        return cannot_write(path, reason, error);
+    }
+    return STATUS_OK;
+}
+
+enum status output_close(struct output *output, struct error *error)
+{
+    if (!output->stream) return STATUS_OK;
+    int reason = 0;
+    errno = 0;
+    if (fflush(output->stream) || ferror(output->stream)) reason = errno ? errno : EIO;
+    if (output->stream == stdout) {
+        output->stream = NULL;
+        /* a reader that left is none of our errors; see output_finish_process */
+        return reason && reason != EPIPE ? cannot_write("standard output", reason, error)
+                                         : STATUS_OK;
+    }
+    if (fclose(output->stream) && !reason) reason = errno;
+    if (!reason && output->temporary && rename(output->temporary, output->path)) reason = errno;
+    if (reason && output->temporary) unlink(output->temporary);
+    const enum status status = reason ? cannot_write(output->path, reason, error) : STATUS_OK;
+    output_forget(output);
+    return status;
+}
+
+void output_discard(struct output *output)
+{
+    if (!output->stream) return;
+    if (output->stream != stdout) {
+        fclose(output->stream);
+        if (output->temporary) unlink(output->temporary);
+    }
+    output_forget(output);
+}
+
+enum status output_probe(const char *path, struct error *error)
+{
+    struct stat info;
+    /* opening a pipe would wait for its reader */
+    if (stat(path, &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode))
+        return access(path, W_OK) == 0 ? STATUS_OK : cannot_write(path, errno, error);
+    struct output output;
+    const enum status status = output_open(&output, path, error);
+    output_discard(&output);
+    return status;
+}
+
+void output_prepare_process(void)
+{
+    /* A closed standard stream is replaced by one that fails, so that no data file gets its
+     * number. */
+    const int modes[3] = {O_WRONLY, O_RDONLY, O_WRONLY};
+    for (int i = 0; i < 3; i++)
+        if (fcntl(i, F_GETFD) < 0 && open("/dev/null", modes[i]) != i) return;
+    signal(SIGPIPE, SIG_IGN);
+#ifdef SIGXFSZ
+    signal(SIGXFSZ, SIG_IGN);
+#endif
+    const int numbers[] = {SIGINT, SIGTERM, SIGHUP};
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+        if (signal(numbers[i], interrupted) == SIG_IGN) signal(numbers[i], SIG_IGN);
+}
+
+enum status output_finish_process(struct error *error)
+{
+    errno = 0;
+    const int failed = fflush(stdout) || ferror(stdout);
+    if (!failed || errno == EPIPE) return STATUS_OK;
+    return cannot_write("standard output", errno ? errno : EIO, error);
+}

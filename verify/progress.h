@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * A progress line on standard error for anything over a second: what, done of total, time left. On
+ * a terminal one line is rewritten; in a log a plain line is added now and then. */
+#ifndef SPHPROOF_PROGRESS_H
+#define SPHPROOF_PROGRESS_H
+
+#include "command.h"
+
+struct progress {
+    const char *what; /* one or two words; belongs to the caller */
+    double began, spoke;
+    int silent, terminal;
+};
+
+void progress_begin(struct progress *progress, const char *what, const struct options *options);
+/* done of total, in any unit; cheap enough to be called every step. */
+void progress_update(struct progress *progress, double done, double total);
+/* Clears the line. */
+void progress_end(struct progress *progress);
+
+#endif

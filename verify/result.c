@@ -1,0 +1,68 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "result.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/utsname.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "output.h"
+#include "version.h"
+
+/* The processor's name where the system tells it (Linux), else "". */
+static void processor_name(char *name, size_t size)
+{
+    char line[256];
+    FILE *file = fopen("/proc/cpuinfo", "r");
+    *name = '\0';
+    while (file && !*name && fgets(line, sizeof line, file)) {
+        const char *colon = strchr(line, ':');
+        if (strncmp(line, "model name", 10) == 0 && colon)
+            snprintf(name, size, "%.*s", (int)strcspn(colon + 2, "\n"), colon + 2);
+    }
+    if (file) fclose(file);
+}
+
+static json_t *machine(void)
+{
+    struct utsname names = {0};
+    char processor[256];
+    uname(&names);
+    processor_name(processor, sizeof processor);
+    return json_pack("{s:s, s:s, s:s, s:I}", "system", names.sysname, "architecture", names.machine,
+                     "processor", processor, "cores", (json_int_t)sysconf(_SC_NPROCESSORS_ONLN));
+}
+
+json_t *result_new(const char *command)
+{
+    char date[32];
+    const time_t now = time(NULL);
+    struct tm utc;
+    strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
+    return json_pack("{s:s, s:s, s:s, s:s, s:s, s:s, s:o, s:s}", "schema", "sphproof/1", "command",
+                     command, "version", VERSION, "git", VERSION_GIT, "compiler", VERSION_COMPILER,
+                     "flags", VERSION_FLAGS, "machine", machine(), "date", date);
+}
+
+json_t *result_number(double value)
+{
+    if (isnan(value)) return json_string("nan");
+    if (isinf(value)) return json_string(value > 0 ? "inf" : "-inf");
+    return json_real(value);
+}
+
+enum status result_write(const json_t *document, const char *path, struct error *error)
+{
+    struct output output;
+    enum status status = output_open(&output, path, error);
+    if (status) return status;
+    if (json_dumpf(document, output.stream, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) ||
+        fputc('\n', output.stream) == EOF) {
+        if (output.stream == stdout) return output_close(&output, error);
+        output_discard(&output);
+        return error_set(error, STATUS_ENVIRONMENT, "cannot write '%s': no space?", path);
+    }
+    return output_close(&output, error);
+}

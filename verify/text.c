@@ -1,0 +1,130 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "text.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { WORD_MAX = 64, NAMES_MAX = 256 };
+
+bool text_real(const char *text, double *value)
+{
+    /* strtod also takes blanks, hex, inf and nan: the alphabet is checked first. */
+    if (!*text || text[strspn(text, "0123456789.eE+-")]) return false;
+    char *end;
+    const double number = strtod(text, &end);
+    if (*end || end == text || !isfinite(number)) return false;
+    *value = number;
+    return true;
+}
+
+bool text_integer(const char *text, double *value)
+{
+    double number;
+    if (!text_real(text, &number) || number != nearbyint(number) || strchr(text, '.')) return false;
+    *value = number;
+    return true;
+}
+
+bool text_reals(const char *text, const char *separators, size_t n, double *values)
+{
+    for (size_t i = 0;; i++) {
+        char word[WORD_MAX];
+        text += strspn(text, " \t");
+        const size_t length = strcspn(text, separators);
+        if (i == n) return *text == '\0';
+        if (length == 0 || length >= sizeof word) return false;
+        memcpy(word, text, length);
+        word[length] = '\0';
+        if (!text_real(word, &values[i])) return false;
+        text += length;
+        text += strspn(text, " \t");
+        if (*text && strchr(separators, *text)) {
+            text++;
+            if (i + 1 == n) return false;
+        }
+    }
+}
+
+static size_t least(size_t a, size_t b)
+{
+    return a < b ? a : b;
+}
+
+size_t text_distance(const char *a, const char *b)
+{
+    const size_t na = strlen(a), nb = strlen(b);
+    if (na > WORD_MAX || nb > WORD_MAX) return na > nb ? na : nb;
+    size_t cost[3][WORD_MAX + 1];
+    size_t *before = cost[0], *last = cost[1], *row = cost[2];
+    for (size_t j = 0; j <= nb; j++) last[j] = j;
+    for (size_t i = 1; i <= na; i++) {
+        const int c = tolower((unsigned char)a[i - 1]);
+        row[0] = i;
+        for (size_t j = 1; j <= nb; j++) {
+            const int d = tolower((unsigned char)b[j - 1]);
+            row[j] = least(least(last[j] + 1, row[j - 1] + 1), last[j - 1] + (c != d));
+            if (i > 1 && j > 1 && c == tolower((unsigned char)b[j - 2]) &&
+                d == tolower((unsigned char)a[i - 2]))
+                row[j] = least(row[j], before[j - 2] + 1);
+        }
+        size_t *const spare = before;
+        before = last, last = row, row = spare;
+    }
+    return last[nb];
+}
+
+const char *text_nearest(const char *word, const char *const *names, size_t n)
+{
+    const size_t length = strlen(word);
+    const char *nearest = NULL;
+    size_t best = 1 + (length < 3 ? 0 : length < 6 ? 1 : length / 3);
+    for (size_t i = 0; i < n; i++) {
+        const size_t distance = text_distance(word, names[i]);
+        if (distance < best) best = distance, nearest = names[i];
+    }
+    /* A part of a name says more than letters in common: cubic -> cubic_spline. */
+    for (size_t i = 0; !nearest && length >= 2 && i < n; i++)
+        if (strncmp(names[i], word, length) == 0) nearest = names[i];
+    for (size_t i = 0; !nearest && length >= 3 && i < n; i++)
+        if (strstr(names[i], word)) nearest = names[i];
+    return nearest;
+}
+
+/* word for a message: cut, and with '?' for what a terminal would not show. */
+static void printable(const char *word, char *copy, size_t size)
+{
+    size_t i = 0;
+    for (; word[i] && i + 1 < size; i++) copy[i] = word[i] < ' ' || word[i] > '~' ? '?' : word[i];
+    copy[i] = '\0';
+}
+
+enum status text_unknown(struct error *error, const char *where, const char *kind, const char *word,
+                         const char *const *names, size_t n)
+{
+    char list[360] = "", near[WORD_MAX + 24] = "", shown[WORD_MAX];
+    const char *nearest = text_nearest(word, names, n);
+    if (nearest) snprintf(near, sizeof near, "; did you mean '%s'?", nearest);
+    for (size_t i = 0, used = 0; i < n; i++) {
+        const int wrote = snprintf(list + used, sizeof list - used, " %s", names[i]);
+        if (wrote < 0 || used + (size_t)wrote + 5 > sizeof list) {
+            snprintf(list + used, sizeof list - used, " ...");
+            break;
+        }
+        used += (size_t)wrote;
+    }
+    printable(word, shown, sizeof shown);
+    return error_set(error, STATUS_BAD_INPUT, "%s%sno %s '%s'%s allowed:%s", where ? where : "",
+                     where ? ": " : "", kind, shown, nearest ? near : ";", list);
+}
+
+enum status text_unknown_member(struct error *error, const char *where, const char *kind,
+                                const char *word, const struct family *family)
+{
+    const char *names[NAMES_MAX];
+    const size_t n = least(family->n, NAMES_MAX);
+    for (size_t i = 0; i < n; i++) names[i] = family->members[i]->name;
+    return text_unknown(error, where, kind, word, names, n);
+}
