@@ -1,0 +1,201 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Error norms on hand-made data; orders, gates, Richardson extrapolation on known sequences. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "near.h"
+#include "norm.h"
+#include "order.h"
+
+static void test_norms_by_hand(void **state)
+{
+    (void)state;
+    const double x[] = {-0.75, -0.5, 0.125, 0.5, 0.625}, volume[] = {9, 0.5, 2, 1.5, 9};
+    const double value[] = {7, 1, 2, 4, 7}, exact[] = {0, 2, 2, 1, 0}, window[] = {-0.5, 0.5};
+    const struct norms norms = norm_errors(5, x, window, volume, value, exact);
+    assert_int_equal(norms.n, 3);
+    near_relative(norms.l1, (0.5 * 1 + 1.5 * 3) / 4, 1e-15);
+    near_relative(norms.l2, sqrt((0.5 * 1 + 1.5 * 9) / 4), 1e-15);
+    near_relative(norms.linf, 3, 1e-15);
+    near_relative(norms.particle_mean, 4. / 3, 1e-15);
+}
+
+static void test_norms_of_nothing_and_nan(void **state)
+{
+    (void)state;
+    const double x[] = {0, 0.25}, volume[] = {1, 1}, exact[] = {0, 0}, window[] = {-1, 1};
+    const double value[] = {NAN, 0.5};
+    struct norms norms = norm_errors(2, x, window, volume, value, exact);
+    assert_true(isnan(norms.l1) && isnan(norms.l2) && isnan(norms.linf));
+    assert_true(isnan(norms.particle_mean));
+    norms = norm_errors(2, x, (double[]){2, 3}, volume, exact, exact);
+    assert_true(isnan(norms.l1) && isnan(norms.linf) && isnan(norms.particle_mean));
+    norms = norm_errors(2, value, window, volume, exact, exact);
+    assert_true(isnan(norms.l1) && isnan(norms.linf));
+}
+
+static double step(const void *at, double x)
+{
+    return x < *(const double *)at ? 1 : 3;
+}
+
+static void test_bins(void **state)
+{
+    (void)state;
+    const double window[] = {-0.5, 0.5}, at = 0.0371;
+    double means[NORM_BINS];
+    norm_bin_means(step, &at, window, NORM_BINS, means);
+    near_relative(means[9], 1, 1e-12);
+    near_relative(means[10], 3 - 2 * at / 0.05, 1e-9);
+    near_relative(means[11], 3, 1e-12);
+
+    const double x[] = {-0.5, -0.46, 0.5, 0.6}, volume[] = {1, 3, 1, 1}, value[] = {2, 4, 3.5, 9};
+    near_relative(norm_binned_l1(4, x, window, volume, value, NORM_BINS, means),
+                  ((2. + 12) / 4 - 1 + 0.5) / 2, 1e-14);
+    assert_true(isnan(norm_binned_l1(0, x, window, volume, value, NORM_BINS, means)));
+}
+
+/* The 97.5 % point of Student's t for two degrees of freedom, in closed form. */
+static double t_975_2(void)
+{
+    return 0.95 * sqrt(2 / (1 - 0.95 * 0.95));
+}
+
+/* y = 2 + x with residuals +-e in a pattern orthogonal to the line: slope, interval by hand. */
+static void test_order_interval(void **state)
+{
+    (void)state;
+    const double e = 0.02;
+    const double spacing[] = {exp(3), exp(2), exp(1), 1};
+    const double error[] = {exp(5 + e), exp(4 - e), exp(3 - e), exp(2 + e)};
+    struct order_fit fit;
+    assert_int_equal(order_fit(4, spacing, error, NULL, &fit, NULL), STATUS_OK);
+    near_relative(fit.order, 1, 1e-14);
+    /* s^2 = 4 e^2/2, Sxx = 5, t(0.975, 2) in closed form */
+    near_relative((fit.high - fit.low) / 2, t_975_2() * sqrt(2 * e * e / 5), 1e-12);
+    near_relative(fit.pairwise[0], 1 + 2 * e, 1e-12);
+    near_relative(fit.finest, exp(2 + e), 1e-15);
+    assert_int_equal(fit.class, ORDER_ASYMPTOTIC);
+
+    /* Replicates noisier than the scatter widen the interval, quieter ones do not shrink it. */
+    const double noisy[] = {0.01, 0.01, 0.01, 0.01}, quiet[] = {1e-9, 1e-9, 1e-9, 1e-9};
+    struct order_fit replicated;
+    assert_int_equal(order_fit(4, spacing, error, noisy, &replicated, NULL), STATUS_OK);
+    near_relative((replicated.high - replicated.low) / 2, t_975_2() * sqrt(0.01 / 5), 1e-12);
+    assert_int_equal(order_fit(4, spacing, error, quiet, &replicated, NULL), STATUS_OK);
+    near_relative(replicated.high - replicated.low, fit.high - fit.low, 1e-9);
+}
+
+static void test_order_bad_levels(void **state)
+{
+    (void)state;
+    struct order_fit fit;
+    struct error failure;
+    const double spacing[] = {4, 2, 2, 1}, error[] = {4, 2, 2, 1};
+    assert_int_equal(order_fit(3, spacing, error, NULL, &fit, &failure), STATUS_BAD_INPUT);
+    assert_non_null(strstr(failure.message, "4"));
+    assert_int_equal(order_fit(4, spacing, error, NULL, &fit, &failure), STATUS_BAD_INPUT);
+    assert_non_null(strstr(failure.message, "distinct"));
+}
+
+static void test_gate(void **state)
+{
+    (void)state;
+    char why[ORDER_GATE_TEXT];
+    const struct order_gate gate = {0.9, 1.1, 1e-3};
+    struct order_fit fit = {.order = 1, .low = 0.9, .high = 1.1, .n = 4, .finest = 1e-3};
+    assert_true(order_passes(&fit, &gate, why) && !why[0]);
+    fit.finest = 1.01e-3;
+    assert_true(!order_passes(&fit, &gate, why) && strstr(why, "finest"));
+    fit.finest = NAN;
+    assert_false(order_passes(&fit, &gate, why));
+    fit.finest = 1e-4, fit.low = 0.8, fit.high = 1.2;
+    assert_true(!order_passes(&fit, &gate, why) && strstr(why, "0.2"));
+    fit.low = fit.high = NAN;
+    assert_false(order_passes(&fit, &gate, why));
+    fit.low = fit.high = fit.order = 1.11;
+    assert_true(!order_passes(&fit, &gate, why) && strstr(why, "outside"));
+    fit.low = fit.high = fit.order = NAN;
+    assert_false(order_passes(&fit, &gate, NULL));
+}
+
+static enum order_class class_of(const double *error)
+{
+    const double spacing[] = {1, 0.5, 0.25, 0.125, 0.0625};
+    struct order_fit fit;
+    assert_int_equal(order_fit(5, spacing, error, NULL, &fit, NULL), STATUS_OK);
+    return fit.class;
+}
+
+static void test_classes(void **state)
+{
+    (void)state;
+    assert_int_equal(class_of((double[]){16, 8, 4, 2, 1}), ORDER_ASYMPTOTIC);
+    assert_int_equal(class_of((double[]){16, 8, 4, 3.6, 3.5}), ORDER_FLOOR_LIMITED);
+    assert_int_equal(class_of((double[]){16, 8, 4, 3.6, 3.7}), ORDER_FLOOR_LIMITED);
+    assert_int_equal(class_of((double[]){16, 4, 8, 1, 2}), ORDER_OSCILLATING);
+    assert_int_equal(class_of((double[]){1, 2, 4, 8, 16}), ORDER_DIVERGING);
+    assert_int_equal(class_of((double[]){1, 1, 1, 1, 1}), ORDER_DIVERGING);
+    assert_int_equal(class_of((double[]){4, 2, 1, 0.5, NAN}), ORDER_DIVERGING);
+    assert_int_equal(class_of((double[]){4, 2, 1, 0.5, 0}), ORDER_DIVERGING);
+}
+
+/* NASA Glenn's worked example (Examining Spatial (Grid) Convergence, NPARC Alliance). */
+static void test_richardson_nasa(void **state)
+{
+    (void)state;
+    const struct order_extrapolation e =
+        order_extrapolate((double[]){4, 2, 1}, (double[]){0.96178, 0.96854, 0.97050});
+    assert_int_equal(e.class, ORDER_ASYMPTOTIC);
+    near_absolute(e.order, 1.786170, 5e-7);
+    near_absolute(e.value, 0.9713003, 5e-8);
+    near_absolute(100 * e.gci_fine, 0.103083, 5e-7);
+    near_absolute(100 * e.gci_coarse, 0.356249, 5e-7);
+}
+
+static void test_richardson_unequal_ratios(void **state)
+{
+    (void)state;
+    const double spacing[] = {0.1, 0.06, 0.025}, p = 1.37;
+    double value[3];
+    for (int i = 0; i < 3; i++) value[i] = 2.385 - 0.7 * pow(spacing[i], p);
+    const struct order_extrapolation e = order_extrapolate(spacing, value);
+    near_relative(e.order, p, 1e-11);
+    near_relative(e.value, 2.385, 1e-13);
+}
+
+static void test_richardson_classes(void **state)
+{
+    (void)state;
+    const double spacing[] = {4, 2, 1};
+    struct order_extrapolation e = order_extrapolate(spacing, (double[]){1, 2, 1.5});
+    assert_true(e.class == ORDER_OSCILLATING && isnan(e.value));
+    e = order_extrapolate(spacing, (double[]){1, 2, 4});
+    assert_true(e.class == ORDER_DIVERGING && isnan(e.value));
+    e = order_extrapolate(spacing, (double[]){1, 1, 1});
+    assert_true(e.class == ORDER_DIVERGING && isnan(e.value));
+    e = order_extrapolate(spacing, (double[]){1, 2, NAN});
+    assert_true(e.class == ORDER_DIVERGING && isnan(e.value));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_norms_by_hand),
+        cmocka_unit_test(test_norms_of_nothing_and_nan),
+        cmocka_unit_test(test_bins),
+        cmocka_unit_test(test_order_interval),
+        cmocka_unit_test(test_order_bad_levels),
+        cmocka_unit_test(test_gate),
+        cmocka_unit_test(test_classes),
+        cmocka_unit_test(test_richardson_nasa),
+        cmocka_unit_test(test_richardson_unequal_ratios),
+        cmocka_unit_test(test_richardson_classes),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
