@@ -1,0 +1,341 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "settings.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "integrator.h"
+#include "text.h"
+
+#define MEMBERS(...)                                                                               \
+    (const struct member *const[])                                                                 \
+    {                                                                                              \
+        __VA_ARGS__                                                                                \
+    }
+#define MEMBER(name, label, paper)                                                                 \
+    &(const struct member)                                                                         \
+    {                                                                                              \
+        name, label, paper                                                                         \
+    }
+
+const struct family kind_family = {
+    "kinds", "initial states",
+    MEMBERS(MEMBER("riemann", "two uniform gases that meet in the middle of the box", "Toro 2009"),
+            MEMBER("sound_wave", "a simple wave that runs to the right", "Landau & Lifshitz 1987")),
+    2};
+const struct family lattice_family = {
+    "lattices", "where particles start",
+    MEMBERS(MEMBER("uniform", "the centre of each particle's share of the gas", "")), 1};
+const struct family skip_family = {
+    "skips", "work left out",
+    MEMBERS(MEMBER("auto", "what no signal has reached, where the result allows it", ""),
+            MEMBER("none", "every particle at every step", "")),
+    2};
+
+#define INTEGER    SETTING_INTEGER, 1
+#define REAL       SETTING_REAL, 1
+#define CHOICE     SETTING_CHOICE, 1
+#define REALS(n)   SETTING_REALS, n
+#define FROM(...)  false, __VA_ARGS__
+#define ABOVE(...) true, __VA_ARGS__
+const struct setting_key setting_keys[SETTINGS] = {
+#define KEY(name, section, ...) {#name, section, __VA_ARGS__},
+#include "settings.def"
+#undef KEY
+};
+
+int setting_find(const char *name)
+{
+    for (int i = 0; i < SETTINGS; i++)
+        if (strcmp(setting_keys[i].name, name) == 0) return i;
+    return -1;
+}
+
+static bool may_be_auto(const struct setting_key *key)
+{
+    return strcmp(key->fallback, "auto") == 0 && key->family != &skip_family;
+}
+
+void setting_allowed(const struct setting_key *key, char *text, size_t size)
+{
+    char what[24] = "a number";
+    if (key->type == SETTING_INTEGER) snprintf(what, sizeof what, "an integer");
+    if (key->type == SETTING_REALS) snprintf(what, sizeof what, "%d numbers", key->count);
+    if (key->type == SETTING_CHOICE) {
+        size_t used = (size_t)snprintf(text, size, "one of%s", may_be_auto(key) ? " auto" : "");
+        for (size_t i = 0; i < key->family->n && used < size; i++)
+            used +=
+                (size_t)snprintf(text + used, size - used, " %s", key->family->members[i]->name);
+        return;
+    }
+    snprintf(text, size, "%s%s%s%s%s %s %.10g %s %.10g%s", what, key->count > 1 ? " (" : "",
+             key->count > 1 ? key->unit : "", key->count > 1 ? ")" : "", "",
+             key->above ? "above" : "from", key->lo, key->above ? "up to" : "to", key->hi,
+             may_be_auto(key) ? ", or auto" : "");
+}
+
+void settings_init(struct settings *settings)
+{
+    struct error error;
+    *settings = (struct settings){0};
+    for (int i = 0; i < SETTINGS; i++)
+        settings_set(settings, (enum setting)i, setting_keys[i].fallback, SOURCE_FALLBACK, NULL,
+                     &error);
+}
+
+static enum status refuse(struct error *error, const char *where, const struct setting_key *key,
+                          const char *text)
+{
+    char allowed[300], shown[64];
+    size_t i = 0;
+    for (; text[i] && i + 1 < sizeof shown; i++)
+        shown[i] = text[i] < ' ' || text[i] > '~' ? '?' : text[i];
+    shown[i] = '\0';
+    setting_allowed(key, allowed, sizeof allowed);
+    return error_set(error, STATUS_BAD_INPUT, "%s%s%s=%s: allowed: %s", where ? where : "",
+                     where ? ": " : "", key->name, shown, allowed);
+}
+
+static bool in_range(const struct setting_key *key, double value)
+{
+    return (key->above ? value > key->lo : value >= key->lo) && value <= key->hi;
+}
+
+enum status settings_set(struct settings *settings, enum setting which, const char *text,
+                         enum setting_source source, const char *where, struct error *error)
+{
+    const struct setting_key *key = &setting_keys[which];
+    struct setting_value value = {.source = source};
+    bool good;
+    if (may_be_auto(key) && strcmp(text, "auto") == 0) {
+        value.automatic = true;
+        settings->value[which] = value;
+        return STATUS_OK;
+    }
+    switch (key->type) {
+    case SETTING_CHOICE:
+        value.choice = family_index(key->family, text);
+        if (value.choice < 0)
+            return text_unknown_member(error, where, key->name, text, key->family);
+        good = true;
+        break;
+    case SETTING_INTEGER:
+        good = text_integer(text, &value.real[0]);
+        break;
+    case SETTING_REAL:
+        good = text_real(text, &value.real[0]);
+        break;
+    case SETTING_REALS:
+        good = text_reals(text, " \t,", (size_t)key->count, value.real);
+        break;
+    default:
+        good = false;
+    }
+    for (int i = 0; i < key->count && good && key->type != SETTING_CHOICE; i++)
+        good = in_range(key, value.real[i]);
+    if (!good) return refuse(error, where, key, text);
+    settings->value[which] = value;
+    return STATUS_OK;
+}
+
+static enum status unknown_key(struct error *error, const char *word)
+{
+    const char *names[SETTINGS];
+    for (int i = 0; i < SETTINGS; i++) names[i] = setting_keys[i].name;
+    return text_unknown(error, NULL, "key", word, names, SETTINGS);
+}
+
+enum status settings_apply(struct settings *settings, int n, char *const *arguments,
+                           struct error *error)
+{
+    bool given[SETTINGS] = {false};
+    for (int i = 0; i < n; i++) {
+        char name[64];
+        const char *equals = strchr(arguments[i], '=');
+        if (!equals)
+            return error_set(error, STATUS_BAD_INPUT,
+                             "'%.60s': KEY=VALUE expected (`sphproof list keys` shows the keys)",
+                             arguments[i]);
+        snprintf(name, sizeof name, "%.*s", (int)(equals - arguments[i]), arguments[i]);
+        const int key = setting_find(name);
+        if (key < 0) return unknown_key(error, name);
+        if (given[key]) return error_set(error, STATUS_BAD_INPUT, "key %s is given twice", name);
+        given[key] = true;
+        if (settings_set(settings, (enum setting)key, equals + 1, SOURCE_USER, NULL, error))
+            return error->status;
+    }
+    return STATUS_OK;
+}
+
+double settings_real(const struct settings *settings, enum setting key)
+{
+    return settings->value[key].real[0];
+}
+
+int settings_choice(const struct settings *settings, enum setting key)
+{
+    return settings->value[key].choice;
+}
+
+bool settings_foreign(const struct settings *settings, enum setting key)
+{
+    const bool wave = settings_choice(settings, SETTING_kind) == KIND_SOUND_WAVE;
+    switch (key) {
+    case SETTING_left:
+    case SETTING_right:
+    case SETTING_grade:
+    case SETTING_grade_ratio:
+        return wave;
+    case SETTING_background:
+    case SETTING_amplitude:
+    case SETTING_waves:
+        return !wave;
+    default:
+        return false;
+    }
+}
+
+/* rho and P of a state that particles can have. */
+static enum status check_state(const struct settings *settings, enum setting key,
+                               struct error *error)
+{
+    const double *state = settings->value[key].real;
+    if (settings_foreign(settings, key) || (state[0] > 0 && state[2] > 0)) return STATUS_OK;
+    return error_set(error, STATUS_BAD_INPUT,
+                     "%s=\"%g %g %g\": rho v P with rho > 0 and P > 0 is needed%s",
+                     setting_keys[key].name, state[0], state[1], state[2],
+                     state[0] == 0 ? " (particles cannot fill a vacuum)" : "");
+}
+
+static enum status check_together(const struct settings *settings, struct error *error)
+{
+    const double lo = settings_real(settings, SETTING_lo), hi = settings_real(settings, SETTING_hi);
+    const double *window = settings->value[SETTING_window].real;
+    if (!(lo < hi))
+        return error_set(error, STATUS_BAD_INPUT, "lo=%g hi=%g: lo < hi is needed", lo, hi);
+    if (!(lo <= window[0] && window[0] < window[1] && window[1] <= hi))
+        return error_set(error, STATUS_BAD_INPUT,
+                         "window=\"%g %g\": two rising numbers in the box [%g, %g] are needed",
+                         window[0], window[1], lo, hi);
+    for (int i = 0; i < SETTINGS; i++)
+        if (settings->value[i].source == SOURCE_USER && settings_foreign(settings, (enum setting)i))
+            return error_set(error, STATUS_BAD_INPUT,
+                             "key %s and an initial state of kind %s exclude each other: it has "
+                             "no such thing",
+                             setting_keys[i].name,
+                             kind_family.members[settings_choice(settings, SETTING_kind)]->name);
+    if (check_state(settings, SETTING_left, error) || check_state(settings, SETTING_right, error) ||
+        check_state(settings, SETTING_background, error))
+        return error->status;
+    return STATUS_OK;
+}
+
+static void fill(struct settings *settings, enum setting key, double real, int choice)
+{
+    struct setting_value *value = &settings->value[key];
+    if (!value->automatic) return;
+    value->real[0] = real;
+    value->choice = choice;
+}
+
+enum status settings_resolve(struct settings *settings, int dim, struct scheme *scheme,
+                             struct error *error)
+{
+#define REAL_OF(key)   settings_real(settings, SETTING_##key)
+#define CHOICE_OF(key) settings_choice(settings, SETTING_##key)
+    if (check_together(settings, error)) return error->status;
+    const struct integrator *integrator =
+        (const struct integrator *)integrator_family.members[CHOICE_OF(integrator)];
+    struct kernel kernel;
+    const char *kernel_name = kernel_family.members[CHOICE_OF(kernel)]->name;
+    if (kernel_select(&kernel, kernel_name, (int)REAL_OF(sinc_n), error)) return error->status;
+
+    const bool predicted = strcmp(integrator->member.name, "predicted_midpoint") == 0;
+    const bool quadratic = strcmp(kernel_name, "quadratic_spline") == 0;
+    const bool vanilla = CHOICE_OF(formulation) == FORMULATION_VANILLA_ICE;
+    const bool standard = CHOICE_OF(gradient) == GRADIENT_STANDARD;
+    const bool reconstructed = CHOICE_OF(viscosity) == VISCOSITY_RECONSTRUCTED;
+    fill(settings, SETTING_eta, kernel.default_eta, 0);
+    fill(settings, SETTING_cfl, predicted ? 0.8 / REAL_OF(eta) : integrator->cfl, 0);
+    fill(settings, SETTING_energy, 0, predicted ? ENERGY_TOTAL : ENERGY_INTERNAL);
+    fill(settings, SETTING_alpha, quadratic && predicted ? 0.75 : 1, 0);
+    fill(settings, SETTING_beta, 2 * REAL_OF(alpha), 0);
+    fill(settings, SETTING_h_method, 0, predicted ? H_PREDICTED : H_NEWTON);
+    fill(settings, SETTING_pair_width, 0,
+         !vanilla || !predicted  ? PAIR_MEAN
+         : reconstructed         ? PAIR_HARMONIC
+         : quadratic && standard ? PAIR_MAX
+                                 : PAIR_MEAN);
+    *scheme = (struct scheme){
+        .kernel = kernel,
+        .gradient = (enum gradient)CHOICE_OF(gradient),
+        .formulation = (enum formulation)CHOICE_OF(formulation),
+        .volume_element = (enum volume_element)CHOICE_OF(volume_element),
+        .viscosity = (enum viscosity)CHOICE_OF(viscosity),
+        .energy = (enum energy)CHOICE_OF(energy),
+        .pair_width = (enum pair_width)CHOICE_OF(pair_width),
+        .h_method = (enum h_method)CHOICE_OF(h_method),
+        .integrator = integrator,
+        .alpha = REAL_OF(alpha),
+        .beta = REAL_OF(beta),
+        .alpha_min = REAL_OF(alpha_min),
+        .alpha_max = REAL_OF(alpha_max),
+        .eta = REAL_OF(eta),
+        .cfl = REAL_OF(cfl),
+        .h_tolerance = REAL_OF(h_tolerance),
+    };
+    return scheme_check(scheme, dim, error);
+#undef REAL_OF
+#undef CHOICE_OF
+}
+
+void settings_text(const struct settings *settings, enum setting which, char text[SETTING_TEXT_MAX])
+{
+    const struct setting_key *key = &setting_keys[which];
+    const struct setting_value *value = &settings->value[which];
+    if (key->type == SETTING_CHOICE) {
+        snprintf(text, SETTING_TEXT_MAX, "%s", key->family->members[value->choice]->name);
+        return;
+    }
+    int used = 0;
+    for (int i = 0; i < key->count; i++) {
+        char number[32];
+        /* the shortest text that reads back as the same number */
+        for (int digits = 6; digits <= 17; digits++) {
+            double back = NAN;
+            snprintf(number, sizeof number, "%.*g", digits, value->real[i]);
+            if (text_real(number, &back) && back == value->real[i]) break;
+        }
+        used +=
+            snprintf(text + used, (size_t)(SETTING_TEXT_MAX - used), "%s%s", i ? " " : "", number);
+    }
+}
+
+json_t *settings_json(const struct settings *settings)
+{
+    json_t *object = json_object();
+    for (int i = 0; i < SETTINGS; i++) {
+        const struct setting_key *key = &setting_keys[i];
+        const struct setting_value *value = &settings->value[i];
+        json_t *item;
+        if (settings_foreign(settings, (enum setting)i)) continue;
+        switch (key->type) {
+        case SETTING_CHOICE:
+            item = json_string(key->family->members[value->choice]->name);
+            break;
+        case SETTING_INTEGER:
+            item = json_integer((json_int_t)value->real[0]);
+            break;
+        case SETTING_REAL:
+            item = json_real(value->real[0]);
+            break;
+        default:
+            item = json_array();
+            for (int j = 0; j < key->count; j++)
+                json_array_append_new(item, json_real(value->real[j]));
+        }
+        json_object_set_new(object, key->name, item);
+    }
+    return object;
+}

@@ -1,0 +1,90 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Settings of a run: one typed table of keys (settings.def), the values a case or a user gave, and
+ * what `auto` stands for. */
+#ifndef SPHPROOF_SETTINGS_H
+#define SPHPROOF_SETTINGS_H
+
+#include <jansson.h>
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "scheme.h"
+#include "status.h"
+
+enum setting {
+#define KEY(name, ...) SETTING_##name,
+#include "settings.def"
+#undef KEY
+    SETTINGS
+};
+
+enum setting_type { SETTING_INTEGER, SETTING_REAL, SETTING_CHOICE, SETTING_REALS };
+enum { SETTING_REALS_MAX = 3, SETTING_TEXT_MAX = 96 };
+
+struct setting_key {
+    const char *name, *section; /* section of a case file */
+    enum setting_type type;
+    int count;  /* numbers of a SETTING_REALS, else 1 */
+    bool above; /* lo itself is not allowed */
+    double lo, hi;
+    const char *fallback;
+    const struct family *family; /* of a SETTING_CHOICE */
+    const char *unit, *meaning;
+};
+
+extern const struct setting_key setting_keys[SETTINGS];
+
+enum setting_source { SOURCE_FALLBACK, SOURCE_CASE, SOURCE_USER };
+
+struct setting_value {
+    enum setting_source source;
+    bool automatic;                 /* the user, the case or the fallback says auto */
+    double real[SETTING_REALS_MAX]; /* INTEGER, REAL: real[0] */
+    int choice;                     /* position in the family */
+};
+
+struct settings {
+    struct setting_value value[SETTINGS];
+};
+
+enum kind { KIND_RIEMANN, KIND_SOUND_WAVE };
+enum lattice { LATTICE_UNIFORM };
+enum skip { SKIP_AUTO, SKIP_NONE };
+extern const struct family kind_family, lattice_family, skip_family;
+
+/* Position of the key called name, or -1. */
+int setting_find(const char *name);
+
+/* "an integer from 3 to 12", "one of a b c" ...: what a value of this key may be. */
+void setting_allowed(const struct setting_key *key, char *text, size_t size);
+
+/* Everything at its fallback. */
+void settings_init(struct settings *settings);
+
+/* Reads text as the value of key. where (may be NULL) opens the message: "file:line". */
+enum status settings_set(struct settings *settings, enum setting key, const char *text,
+                         enum setting_source source, const char *where, struct error *error);
+
+/* Applies KEY=VALUE arguments; a key given twice is an error. */
+enum status settings_apply(struct settings *settings, int n, char *const *arguments,
+                           struct error *error);
+
+/* Replaces every `auto` by what it stands for and makes the scheme, checked in dim dimensions.
+ * Ranges that concern two keys are checked here too. */
+enum status settings_resolve(struct settings *settings, int dim, struct scheme *scheme,
+                             struct error *error);
+
+double settings_real(const struct settings *settings, enum setting key);
+int settings_choice(const struct settings *settings, enum setting key);
+
+/* The value as one would type it, full precision. */
+void settings_text(const struct settings *settings, enum setting key, char text[SETTING_TEXT_MAX]);
+
+/* All keys as used: numbers, names, "rho v P" as an array. Keys of another kind of initial state
+ * are left out. New reference. */
+json_t *settings_json(const struct settings *settings);
+
+/* Is the key without meaning for this kind of initial state (left for a sound wave)? */
+bool settings_foreign(const struct settings *settings, enum setting key);
+
+#endif
