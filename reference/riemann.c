@@ -237,8 +237,8 @@ const char *riemann_solve(double gamma, const struct riemann_state *left,
     s.rho_star_right = (double)wave[1].rho;
     s.left_head = (double)wave[0].head;
     s.left_tail = (double)wave[0].tail;
-    s.right_tail = (double)-wave[1].tail;
-    s.right_head = (double)-wave[1].head;
+    s.right_tail = (double)(0 - wave[1].tail);
+    s.right_head = (double)(0 - wave[1].head);
     if (!representable(&s)) return "the solution leaves the range of double precision";
     *solution = s;
     return NULL;

@@ -1,0 +1,205 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * sphproof riemann: the exact solution of a Riemann problem, as a table and as JSON. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "command.h"
+#include "result.h"
+#include "riemann.h"
+#include "text.h"
+
+enum { NUMBERS = 6, SAMPLES_MAX = 1000000 };
+
+static const char *const number_names[NUMBERS] = {"RHOL", "VL", "PL", "RHOR", "VR", "PR"};
+
+struct sampling {
+    double from, to, time, x0;
+    int n; /* 0: no samples wanted */
+};
+
+/* ---- input ---- */
+
+static enum status take_real(const struct options *options, const char *name, double *value,
+                             struct error *error)
+{
+    const char *text = options_value(options, name);
+    if (text && !text_real(text, value))
+        return error_set(error, STATUS_BAD_INPUT,
+                         "riemann: --%s '%.40s' is not a number; allowed: a finite decimal number",
+                         name, text);
+    return STATUS_OK;
+}
+
+static enum status take_sampling(const struct options *options, struct sampling *s,
+                                 struct error *error)
+{
+    if (take_real(options, "time", &s->time, error)) return error->status;
+    if (take_real(options, "x0", &s->x0, error)) return error->status;
+    if (s->time < 0)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "riemann: --time %g: allowed: 0 (the initial states) or later", s->time);
+    const char *text = options_value(options, "sample");
+    if (!text) return STATUS_OK;
+    double v[3];
+    if (!text_reals(text, ":", 3, v))
+        return error_set(error, STATUS_BAD_INPUT,
+                         "riemann: --sample '%.60s': allowed: X0:X1:N, three numbers", text);
+    if (!(v[2] >= 1 && v[2] <= SAMPLES_MAX) || v[2] != floor(v[2]))
+        return error_set(error, STATUS_BAD_INPUT,
+                         "riemann: --sample '%.60s': N = %g, allowed: an integer from 1 to %d",
+                         text, v[2], SAMPLES_MAX);
+    if (!(v[0] <= v[1]) || (v[2] < 2 && v[0] < v[1]))
+        return error_set(error, STATUS_BAD_INPUT,
+                         "riemann: --sample '%.60s': allowed: X0 < X1 with N >= 2 (both ends are "
+                         "sampled), or X0 = X1",
+                         text);
+    s->from = v[0], s->to = v[1], s->n = (int)v[2];
+    return STATUS_OK;
+}
+
+static double sample_x(const struct sampling *s, int i)
+{
+    if (i == s->n - 1) return s->to;
+    const long double from = (long double)s->from, to = (long double)s->to;
+    return (double)(from + (to - from) * i / (s->n - 1));
+}
+
+/* ---- output ---- */
+
+/* A number, null where the quantity does not exist. */
+static json_t *number(double value)
+{
+    return isnan(value) ? json_null() : result_number(value);
+}
+
+static json_t *samples_json(const struct riemann_solution *s, const struct sampling *sampling)
+{
+    json_t *samples = json_array();
+    for (int i = 0; i < sampling->n; i++) {
+        const double x = sample_x(sampling, i);
+        const struct riemann_state state = riemann_sample(s, x, sampling->x0, sampling->time);
+        json_array_append_new(samples, json_pack("{s:o, s:o, s:o, s:o}", "x", number(x), "density",
+                                                 number(state.rho), "velocity", number(state.v),
+                                                 "pressure", number(state.P)));
+    }
+    return samples;
+}
+
+static json_t *document_make(const struct riemann_solution *s, const struct sampling *sampling)
+{
+    json_t *document = result_new("riemann");
+    json_t *content = json_pack(
+        "{s:o, s:[o,o,o], s:[o,o,o], s:o, s:o, s:o, s:o, s:s, s:s, s:{s:o, s:o, s:o, s:o, s:o}, "
+        "s:o, s:o, s:o}",
+        "gamma", number(s->gamma), "left", number(s->left.rho), number(s->left.v),
+        number(s->left.P), "right", number(s->right.rho), number(s->right.v), number(s->right.P),
+        "p_star", number(s->p_star), "v_star", number(s->v_star), "rho_star_left",
+        number(s->rho_star_left), "rho_star_right", number(s->rho_star_right), "left_wave",
+        riemann_wave_name(s->left_wave), "right_wave", riemann_wave_name(s->right_wave), "speeds",
+        "left_head", number(s->left_head), "left_tail", number(s->left_tail), "contact",
+        number(s->contact), "right_tail", number(s->right_tail), "right_head",
+        number(s->right_head), "time", number(sampling->time), "x0", number(sampling->x0),
+        "samples", samples_json(s, sampling));
+    if (!document || !content || json_object_update(document, content)) {
+        json_decref(document);
+        document = NULL;
+    }
+    json_decref(content);
+    return document;
+}
+
+static void print_state(const char *name, double rho, double v, double P)
+{
+    printf("%-12s %18.11g %18.11g %18.11g\n", name, rho, v, P);
+}
+
+static void print_wave(const char *side, enum riemann_wave wave, double head, double tail)
+{
+    if (wave == RIEMANN_NONE) printf("%-5s no wave\n", side);
+    if (wave == RIEMANN_SHOCK) printf("%-5s %-12s speed %.11g\n", side, "shock", head);
+    if (wave == RIEMANN_RAREFACTION)
+        printf("%-5s %-12s head %.11g, tail %.11g\n", side, "rarefaction", head, tail);
+}
+
+static void print_solution(const struct riemann_solution *s, const struct sampling *sampling)
+{
+    printf("Riemann problem of an ideal gas, gamma = %.11g (any consistent units)\n\n", s->gamma);
+    printf("%-12s %18s %18s %18s\n", "", "density", "velocity", "pressure");
+    print_state("left", s->left.rho, s->left.v, s->left.P);
+    if (s->vacuum) {
+        printf("%-12s %18d %18s %18d\n", "vacuum", 0, "-", 0);
+    } else {
+        print_state("left star", s->rho_star_left, s->v_star, s->p_star);
+        print_state("right star", s->rho_star_right, s->v_star, s->p_star);
+    }
+    print_state("right", s->right.rho, s->right.v, s->right.P);
+    printf("\n");
+    print_wave("left", s->left_wave, s->left_head, s->left_tail);
+    if (!s->vacuum) printf("%-18s speed %.11g\n", "contact", s->contact);
+    print_wave("right", s->right_wave, s->right_head, s->right_tail);
+    if (!sampling->n) return;
+    printf("\nat time %g, diaphragm at x = %g\n%-12s %18s %18s %18s\n", sampling->time,
+           sampling->x0, "x", "density", "velocity", "pressure");
+    for (int i = 0; i < sampling->n; i++) {
+        const double x = sample_x(sampling, i);
+        const struct riemann_state state = riemann_sample(s, x, sampling->x0, sampling->time);
+        char name[24];
+        snprintf(name, sizeof name, "%.9g", x);
+        print_state(name, state.rho, state.v, state.P);
+    }
+}
+
+/* ---- the command ---- */
+
+static enum status run(const struct options *options, int n, char **arguments, struct error *error)
+{
+    double values[NUMBERS], gamma = 1.4;
+    struct sampling sampling = {.time = 1};
+    struct riemann_solution solution;
+    if (n != NUMBERS) return command_usage(options, error, "six numbers are needed, %d given", n);
+    for (int i = 0; i < NUMBERS; i++)
+        if (!text_real(arguments[i], &values[i]))
+            return error_set(
+                error, STATUS_BAD_INPUT,
+                "riemann: %s '%.40s' is not a number; allowed: a finite decimal number",
+                number_names[i], arguments[i]);
+    if (take_real(options, "gamma", &gamma, error)) return error->status;
+    if (take_sampling(options, &sampling, error)) return error->status;
+
+    const struct riemann_state left = {values[0], values[1], values[2]};
+    const struct riemann_state right = {values[3], values[4], values[5]};
+    const char *why = riemann_solve(gamma, &left, &right, &solution);
+    if (why)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "riemann: %s; got gamma %g, left (rho v P) %g %g %g, right %g %g %g", why,
+                         gamma, left.rho, left.v, left.P, right.rho, right.v, right.P);
+    if (options->speak) print_solution(&solution, &sampling);
+    if (!options->json) return STATUS_OK;
+    json_t *document = document_make(&solution, &sampling);
+    const enum status status = document ? result_write(document, options->json, error)
+                                        : error_set(error, STATUS_ENVIRONMENT, "no memory");
+    json_decref(document);
+    return status;
+}
+
+static const struct command_option own_options[] = {
+    {"gamma", "G", "ratio of specific heats, above 1 (default 1.4)"},
+    {"sample", "X0:X1:N", "also the solution at N equidistant places, both ends included"},
+    {"time", "T", "of the samples; 0: the initial states (default 1)"},
+    {"x0", "X", "place of the diaphragm (default 0)"},
+    {NULL, NULL, NULL},
+};
+
+const struct command command_riemann = {
+    .name = "riemann",
+    .synopsis = "RHOL VL PL RHOR VR PR",
+    .help = "the exact solution of a Riemann problem of an ideal gas\n"
+            "Density, velocity and pressure left and right of a diaphragm that vanishes at t = 0.\n"
+            "A side with density 0 and pressure 0 is vacuum. In vacuum there is no velocity.",
+    .run = run,
+    .options = own_options,
+    .examples = "sphproof riemann 1 0 1 0.125 0 0.1\n"
+                "sphproof riemann 1 -2 0.4 1 2 0.4 --sample -0.5:0.5:11 --time 0.15\n"
+                "sphproof riemann 1 0 1 0 0 0 --gamma 1.6667 --json -",
+};
