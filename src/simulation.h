@@ -58,6 +58,8 @@ struct conservation { /* sums over all particles; extensive, code units */
 size_t plan_explain(const struct scene *scene, struct plan_line *lines, size_t max, char *warnings,
                     size_t warnings_size);
 
+struct simulation;
+
 enum status simulation_create(const struct scene *scene, struct simulation **simulation,
                               struct error *error);
 /* Called now and then with the current time; return false to stop (STATUS_OK, time < t_end). */

@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Cases: what is to be computed, from a built-in text or a file of the user's, both in the same INI
+ * format (cases/sod.ini shows it). Every key is checked; a message names file and line. */
+#ifndef SPHPROOF_CASES_H
+#define SPHPROOF_CASES_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "order.h"
+#include "settings.h"
+#include "status.h"
+
+enum field { FIELD_DENSITY, FIELD_VELOCITY, FIELD_PRESSURE, FIELD_INTERNAL_ENERGY, FIELDS };
+enum norm { NORM_L1, NORM_L2, NORM_LINF, NORM_PARTICLE_MEAN, NORMS };
+extern const struct family field_family, norm_family;
+
+enum { CASE_LADDER_MAX = ORDER_LEVELS_MAX, CASE_GATES_MAX = FIELDS * NORMS };
+
+/* A gate of [converge]: `density_l1 = LOW HIGH BOUND`. */
+struct case_gate {
+    enum field field;
+    enum norm norm;
+    struct order_gate gate;
+};
+
+struct case_file {
+    char name[64]; /* "sod", also for .../sod.ini */
+    char title[128];
+    int dimension;
+    struct settings settings; /* fallbacks and what the file says */
+    bool fields[FIELDS];      /* those that a person wants to see */
+    size_t ladder[CASE_LADDER_MAX], ladder_count;
+    struct case_gate gates[CASE_GATES_MAX];
+    size_t gate_count;
+};
+
+/* The built-in cases, in alphabetical order; ends with a NULL name. */
+struct case_builtin {
+    const char *name, *text;
+};
+extern const struct case_builtin case_builtins[];
+
+/* Reads a case: a path where name contains a slash or ends in .ini, else a built-in one.
+ * STATUS_BAD_INPUT: no such case, or what is wrong with the file. */
+enum status case_load(struct case_file *file, const char *name, struct error *error);
+
+/* The same from a text of length bytes; path is used in messages and for the name. */
+enum status case_parse(struct case_file *file, const char *path, const char *text, size_t length,
+                       struct error *error);
+
+#endif

@@ -1,0 +1,268 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "run.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+
+#include "initial.h"
+
+enum status run_prepare(struct run_settings *settings, const char *case_name, int n,
+                        char *const *arguments, struct error *error)
+{
+    *settings = (struct run_settings){.threads = 1};
+    if (case_load(&settings->file, case_name, error)) return error->status;
+    settings->settings = settings->file.settings;
+    return settings_apply(&settings->settings, n, arguments, error);
+}
+
+static double peak_rss(void)
+{
+    struct rusage usage;
+    getrusage(RUSAGE_SELF, &usage);
+#ifdef __APPLE__
+    return (double)usage.ru_maxrss;
+#else
+    return 1024. * (double)usage.ru_maxrss;
+#endif
+}
+
+static struct scene scene_of(const struct run_settings *settings, const struct run_result *result,
+                             const struct initial *initial)
+{
+    return (struct scene){
+        .dim = settings->file.dimension,
+        .lo = {result->exact.lo},
+        .hi = {result->exact.hi},
+        .gamma = settings_real(&result->settings, SETTING_gamma),
+        .t_end = settings_real(&result->settings, SETTING_t_end),
+        .n = initial->n,
+        .x = {initial->x},
+        .v = {initial->v},
+        .m = initial->m,
+        .u = initial->u,
+        .rho = initial->rho,
+        .scheme = result->scheme,
+        .skip = settings_choice(&result->settings, SETTING_skip) == SKIP_AUTO,
+        .threads = settings->threads,
+    };
+}
+
+/* Everything before the first step. On an error nothing is left to free. */
+static enum status begin(const struct run_settings *settings, struct run_result *result,
+                         struct initial *initial, struct error *error)
+{
+    *result = (struct run_result){.settings = settings->settings};
+    *initial = (struct initial){0};
+    struct settings *resolved = &result->settings;
+    enum status status =
+        settings_resolve(resolved, settings->file.dimension, &result->scheme, error);
+    if (status || (status = exact_prepare(&result->exact, resolved, error))) return status;
+    memcpy(result->window, resolved->value[SETTING_window].real, sizeof result->window);
+    if (!settings->any_window &&
+        (status = exact_check_window(&result->exact, result->window,
+                                     settings_real(resolved, SETTING_t_end), error)))
+        return status;
+    if ((status = initial_create(initial, resolved, &result->exact, error))) return status;
+    const struct scene scene = scene_of(settings, result, initial);
+    result->n = initial->n;
+    result->plan_count =
+        plan_explain(&scene, result->plan, RUN_PLAN_MAX, result->warnings, sizeof result->warnings);
+    return STATUS_OK;
+}
+
+enum status run_explain(const struct run_settings *settings, struct run_result *result,
+                        struct error *error)
+{
+    struct initial initial;
+    const enum status status = begin(settings, result, &initial, error);
+    initial_free(&initial);
+    return status;
+}
+
+static enum status keep_snapshot(struct run_result *result, const struct simulation *simulation,
+                                 struct error *error)
+{
+    struct snapshot seen;
+    simulation_snapshot(simulation, &seen);
+    const double *const from[] = {seen.x[0], seen.v[0], seen.m, seen.rho,
+                                  seen.u,    seen.P,    seen.h, seen.volume};
+    const double **const to[] = {&result->snapshot.x[0], &result->snapshot.v[0],
+                                 &result->snapshot.m,    &result->snapshot.rho,
+                                 &result->snapshot.u,    &result->snapshot.P,
+                                 &result->snapshot.h,    &result->snapshot.volume};
+    enum { ARRAYS = sizeof from / sizeof *from };
+    result->storage = malloc(ARRAYS * seen.n * sizeof(double));
+    if (!result->storage) return error_set(error, STATUS_ENVIRONMENT, "no memory for a snapshot");
+    for (size_t i = 0; i < ARRAYS; i++) {
+        double *copy = result->storage + i * seen.n;
+        memcpy(copy, from[i], seen.n * sizeof(double));
+        *to[i] = copy;
+    }
+    result->snapshot.n = seen.n;
+    result->snapshot.time = result->time = seen.time;
+    return STATUS_OK;
+}
+
+struct density_at {
+    const struct exact *exact;
+    double time;
+};
+
+static double exact_density(const void *context, double x)
+{
+    const struct density_at *at = context;
+    double values[FIELDS];
+    exact_sample(at->exact, x, at->time, values);
+    return values[FIELD_DENSITY];
+}
+
+static enum status measure_errors(struct run_result *result, struct error *error)
+{
+    const struct snapshot *s = &result->snapshot;
+    const double *const measured[FIELDS] = {s->rho, s->v[0], s->P, s->u};
+    double means[NORM_BINS], values[FIELDS];
+    double *exact = malloc(FIELDS * s->n * sizeof *exact);
+    if (!exact) return error_set(error, STATUS_ENVIRONMENT, "no memory for the errors");
+    for (size_t i = 0; i < s->n; i++) {
+        exact_sample(&result->exact, s->x[0][i], result->time, values);
+        for (int field = 0; field < FIELDS; field++)
+            exact[(size_t)field * s->n + i] = values[field];
+    }
+    for (int field = 0; field < FIELDS; field++)
+        result->errors[field] = norm_errors(s->n, s->x[0], result->window, s->volume,
+                                            measured[field], exact + (size_t)field * s->n);
+    free(exact);
+    const struct density_at at = {&result->exact, result->time};
+    norm_bin_means(exact_density, &at, result->window, NORM_BINS, means);
+    result->binned_density_l1 =
+        norm_binned_l1(s->n, s->x[0], result->window, s->volume, s->rho, NORM_BINS, means);
+    return STATUS_OK;
+}
+
+/* Mean of a field over the window, weighted with volume. */
+static double window_mean(const struct run_result *result, const double *field)
+{
+    const struct snapshot *s = &result->snapshot;
+    double sum = 0, volume = 0;
+    for (size_t i = 0; i < s->n; i++)
+        if (s->x[0][i] >= result->window[0] && s->x[0][i] <= result->window[1]) {
+            sum += s->volume[i] * field[i];
+            volume += s->volume[i];
+        }
+    return sum / volume;
+}
+
+/* Where the pressure, seen from the right, first passes the mean of both sides of the shock. */
+static double shock_position(const struct run_result *result)
+{
+    const struct snapshot *s = &result->snapshot;
+    const struct riemann_solution *tube = &result->exact.tube;
+    const double level = 0.5 * (tube->p_star + tube->right.P);
+    for (size_t i = s->n; i-- > 1;) {
+        const double x0 = s->x[0][i - 1], x1 = s->x[0][i], p0 = s->P[i - 1], p1 = s->P[i];
+        if (x1 <= result->window[1] && p0 >= level && p1 < level)
+            return x0 + (x1 - x0) * (p0 - level) / (p0 - p1);
+    }
+    return NAN;
+}
+
+/* Amplitude of the density's first Fourier mode, relative to the background. */
+static double mode_amplitude(const struct run_result *result)
+{
+    const struct snapshot *s = &result->snapshot;
+    const struct simple_wave *wave = &result->exact.wave;
+    double a = 0, b = 0, volume = 0;
+    for (size_t i = 0; i < s->n; i++) {
+        const double phase = 2 * M_PI * (s->x[0][i] - result->exact.lo) / wave->length;
+        a += s->volume[i] * (s->rho[i] - wave->rho0) * cos(phase);
+        b += s->volume[i] * (s->rho[i] - wave->rho0) * sin(phase);
+        volume += s->volume[i];
+    }
+    return 2 * hypot(a, b) / volume / wave->rho0;
+}
+
+static void measure_functionals(struct run_result *result)
+{
+    struct run_functional *f = result->functionals;
+    *f++ = (struct run_functional){"mean_internal_energy", window_mean(result, result->snapshot.u)};
+    *f++ = (struct run_functional){"mean_pressure", window_mean(result, result->snapshot.P)};
+    if (result->exact.kind == KIND_SOUND_WAVE)
+        *f++ = (struct run_functional){"mode_amplitude", mode_amplitude(result)};
+    else if (result->exact.tube.right_wave == RIEMANN_SHOCK)
+        *f++ = (struct run_functional){"shock_position", shock_position(result)};
+    result->functional_count = (size_t)(f - result->functionals);
+}
+
+/* Sums at the end against t = 0; momentum in units of sum |p|, where that vanishes of mass times
+ * sound speed. */
+static void measure_conservation(struct run_result *result, const struct conservation *start,
+                                 const struct conservation *end)
+{
+    const double tiny = 1e-12 * end->sound_scale;
+    const double scale = end->momentum_scale > tiny ? end->momentum_scale : end->sound_scale;
+    result->mass = fabs(end->mass - start->mass) / start->mass;
+    result->momentum = fabs(end->momentum[0] - start->momentum[0]) / scale;
+    result->energy = fabs(end->energy - start->energy) / fabs(start->energy);
+}
+
+static enum status simulate(const struct run_settings *settings, struct run_result *result,
+                            const struct initial *initial, struct error *error)
+{
+    struct simulation *simulation = NULL;
+    struct conservation start, end;
+    struct error reason = {0};
+    const struct scene scene = scene_of(settings, result, initial);
+    enum status status = simulation_create(&scene, &simulation, error);
+    if (status) return status;
+    simulation_conservation(simulation, &start);
+    result->status = simulation_run(simulation, scene.t_end, settings->progress,
+                                    settings->progress_context, &reason);
+    if (result->status != STATUS_OK && result->status != STATUS_BROKE_DOWN) {
+        *error = reason;
+        status = result->status;
+    } else {
+        snprintf(result->message, sizeof result->message, "%s", reason.message);
+        simulation_cost(simulation, &result->cost);
+        simulation_conservation(simulation, &end);
+        measure_conservation(result, &start, &end);
+        if (!(status = keep_snapshot(result, simulation, error)))
+            status = measure_errors(result, error);
+    }
+    simulation_destroy(simulation);
+    return status;
+}
+
+enum status run_execute(const struct run_settings *settings, struct run_result *result,
+                        struct error *error)
+{
+    struct initial initial;
+    enum status status = begin(settings, result, &initial, error);
+    if (!status) status = simulate(settings, result, &initial, error);
+    initial_free(&initial);
+    if (status) {
+        run_free(result);
+        return status;
+    }
+    measure_functionals(result);
+    result->peak_rss = peak_rss();
+    if (result->status == STATUS_BROKE_DOWN)
+        error_set(error, STATUS_BROKE_DOWN, "%s", result->message);
+    return result->status;
+}
+
+void run_free(struct run_result *result)
+{
+    free(result->storage);
+    result->storage = NULL;
+    result->snapshot = (struct snapshot){0};
+}
+
+double run_error(const struct run_result *result, enum field field, enum norm norm)
+{
+    const struct norms *errors = &result->errors[field];
+    const double values[NORMS] = {errors->l1, errors->l2, errors->linf, errors->particle_mean};
+    return values[norm];
+}

@@ -1,0 +1,80 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * One run: settings -> particles -> simulation -> errors, conservation, cost. The one way in which
+ * the commands run, converge, bench, report and stress compute anything. */
+#ifndef SPHPROOF_RUN_H
+#define SPHPROOF_RUN_H
+
+#include <jansson.h>
+
+#include "cases.h"
+#include "exact.h"
+#include "norm.h"
+#include "settings.h"
+#include "simulation.h"
+
+enum { RUN_PLAN_MAX = 32, RUN_FUNCTIONALS_MAX = 4 };
+
+struct run_settings {
+    struct case_file file;
+    struct settings settings;      /* the case's with the user's on top; `auto` still in it */
+    int threads;                   /* >= 1 */
+    bool any_window;               /* run also where the mirrored tube reaches the window */
+    simulation_progress *progress; /* may be NULL */
+    void *progress_context;
+};
+
+/* A scalar of the final state, for extrapolation where no exact value is at hand. */
+struct run_functional {
+    const char *name;
+    double value;
+};
+
+struct run_result {
+    enum status status;       /* STATUS_OK or STATUS_BROKE_DOWN */
+    char message[512];        /* how it broke down */
+    struct settings settings; /* as used, resolved */
+    struct scheme scheme;
+    struct exact exact;
+    size_t n;
+    double time, window[2];
+    struct norms errors[FIELDS]; /* at time; NaN where no particle is in the window */
+    double binned_density_l1;
+    double mass, momentum, energy; /* conservation: relative, >= 0; see CONSERVATION in run.c */
+    struct simulation_cost cost;
+    double peak_rss; /* bytes, of the process so far */
+    struct plan_line plan[RUN_PLAN_MAX];
+    size_t plan_count;
+    char warnings[512];
+    struct run_functional functionals[RUN_FUNCTIONALS_MAX];
+    size_t functional_count;
+    struct snapshot snapshot; /* owned by the result: see run_free */
+    double *storage;
+};
+
+/* Loads a case and applies KEY=VALUE arguments. */
+enum status run_prepare(struct run_settings *settings, const char *case_name, int n,
+                        char *const *arguments, struct error *error);
+
+/* Runs. STATUS_OK and STATUS_BROKE_DOWN leave a result (run_free it), anything else none. */
+enum status run_execute(const struct run_settings *settings, struct run_result *result,
+                        struct error *error);
+
+/* All but the simulation: settings resolved, plan and warnings filled; n is what it would be. */
+enum status run_explain(const struct run_settings *settings, struct run_result *result,
+                        struct error *error);
+void run_free(struct run_result *result);
+
+/* "errors" of a result document: {"density": {"l1", ...}, ..., "binned_density_l1"}. */
+json_t *run_errors_json(const struct run_result *result);
+
+/* Adds everything that a result of kind `run` has to a document (see result_new). */
+void run_add_json(const struct run_settings *settings, const struct run_result *result,
+                  json_t *document);
+
+double run_error(const struct run_result *result, enum field field, enum norm norm);
+
+/* Header and one line a particle: x,vx,m,rho,u,P,h. */
+enum status run_write_snapshot(const struct run_result *result, const char *path,
+                               struct error *error);
+
+#endif

@@ -1,0 +1,93 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * A run's result as JSON and as a snapshot file. */
+#include "run.h"
+
+#include "output.h"
+#include "result.h"
+
+static void set_number(json_t *object, const char *name, double value)
+{
+    json_object_set_new(object, name, result_number(value));
+}
+
+json_t *run_errors_json(const struct run_result *result)
+{
+    json_t *errors = json_object();
+    for (int field = 0; field < FIELDS; field++) {
+        json_t *norms = json_object();
+        for (int norm = 0; norm < NORMS; norm++)
+            set_number(norms, norm_family.members[norm]->name,
+                       run_error(result, (enum field)field, (enum norm)norm));
+        json_object_set_new(errors, field_family.members[field]->name, norms);
+    }
+    set_number(errors, "binned_density_l1", result->binned_density_l1);
+    return errors;
+}
+
+static json_t *conservation_json(const struct run_result *result)
+{
+    json_t *object = json_object();
+    set_number(object, "mass", result->mass);
+    set_number(object, "momentum", result->momentum);
+    json_object_set_new(object, "angular_momentum", json_null());
+    set_number(object, "energy", result->energy);
+    return object;
+}
+
+static json_t *cost_json(const struct run_result *result)
+{
+    const struct simulation_cost *cost = &result->cost;
+    return json_pack("{s:o, s:o, s:I, s:I, s:I, s:I, s:I}", "wall_s", result_number(cost->wall_s),
+                     "cpu_s", result_number(cost->cpu_s), "steps", (json_int_t)cost->steps,
+                     "particle_updates", (json_int_t)cost->particle_updates, "pair_interactions",
+                     (json_int_t)cost->pair_interactions, "skipped_particle_updates",
+                     (json_int_t)cost->skipped_particle_updates, "peak_rss_bytes",
+                     (json_int_t)result->peak_rss);
+}
+
+static json_t *plan_json(const struct run_result *result)
+{
+    json_t *lines = json_array();
+    for (size_t i = 0; i < result->plan_count; i++)
+        json_array_append_new(lines,
+                              json_pack("{s:s, s:b, s:s}", "pass", result->plan[i].pass, "runs",
+                                        result->plan[i].runs, "why", result->plan[i].why));
+    return lines;
+}
+
+void run_add_json(const struct run_settings *settings, const struct run_result *result,
+                  json_t *document)
+{
+    const bool broke_down = result->status == STATUS_BROKE_DOWN;
+    json_object_set_new(document, "case", json_string(settings->file.name));
+    json_object_set_new(document, "title", json_string(settings->file.title));
+    json_object_set_new(document, "settings", settings_json(&result->settings));
+    json_object_set_new(document, "n", json_integer((json_int_t)result->n));
+    set_number(document, "time", result->time);
+    json_object_set_new(document, "window",
+                        json_pack("[f, f]", result->window[0], result->window[1]));
+    json_object_set_new(document, "status", json_string(broke_down ? "broke_down" : "ok"));
+    if (broke_down) json_object_set_new(document, "message", json_string(result->message));
+    json_object_set_new(document, "errors", run_errors_json(result));
+    json_object_set_new(document, "conservation", conservation_json(result));
+    json_object_set_new(document, "cost", cost_json(result));
+    json_object_set_new(document, "plan", plan_json(result));
+    json_object_set_new(document, "warnings", json_string(result->warnings));
+    json_t *functionals = json_object();
+    for (size_t i = 0; i < result->functional_count; i++)
+        set_number(functionals, result->functionals[i].name, result->functionals[i].value);
+    json_object_set_new(document, "functionals", functionals);
+}
+
+enum status run_write_snapshot(const struct run_result *result, const char *path,
+                               struct error *error)
+{
+    const struct snapshot *s = &result->snapshot;
+    struct output output;
+    if (output_open(&output, path, error)) return error->status;
+    fprintf(output.stream, "x,vx,m,rho,u,P,h\n");
+    for (size_t i = 0; i < s->n; i++)
+        fprintf(output.stream, "%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g\n", s->x[0][i],
+                s->v[0][i], s->m[i], s->rho[i], s->u[i], s->P[i], s->h[i]);
+    return output_close(&output, error);
+}
