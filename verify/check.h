@@ -18,6 +18,13 @@ void check_measure(struct check_run *run, double value, double bound, double flo
 /* The figure could not be measured here, and why; neither passes nor fails. */
 void check_skip(struct check_run *run, const char *why, ...) __attribute__((format(printf, 2, 3)));
 
+/* Data behind the figures (n points), kept with a failure and plotted there: y over x. */
+void check_series(struct check_run *run, const char *label, size_t n, const double *x,
+                  const double *y);
+
+/* Shared object of `verify --kernel-plugin`, or NULL: kernel checks add it to their subjects. */
+extern const char *check_kernel_plugin;
+
 struct check_mutant {
     const char *name;    /* distinct over the program */
     const char *fault;   /* one line: what is wrong with it */
@@ -29,11 +36,16 @@ struct check {
     const char *name;
     const char *property; /* one line, a formula where it helps */
     bool slow;            /* not in the quick suite */
-    /* The right subjects, index 0..subject_count-1; called with NULL as self-contained check. */
+    /* The right subjects, index 0..subject_count-1. Without these two, measure is called once with
+     * NULL as the right subject. */
     size_t (*subject_count)(void);
     const void *(*subject)(size_t i);
     void (*measure)(struct check_run *run, const void *subject);
     const struct check_mutant *mutants; /* ends with a NULL name; must not be empty */
 };
+
+/* All checks, in the order of checks.def. */
+extern const struct check *const check_registry[];
+extern const size_t check_registry_count;
 
 #endif

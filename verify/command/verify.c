@@ -1,0 +1,126 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * sphproof verify: runs the checks, and with --mutants shows what they are able to reject. */
+#include <gsl/gsl_errno.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "check.h"
+#include "command.h"
+#include "output.h"
+#include "progress.h"
+#include "result.h"
+#include "suite.h"
+#include "suite_output.h"
+#include "text.h"
+
+enum { GROUPS_MAX = 64, FOLDER_LENGTH = 1000 };
+
+static const struct command_option verify_options[] = {
+    {"mutants", NULL, "also run the mutants: wrong variants that the checks must reject"},
+    {"slow", NULL, "also run the checks that take more than a few seconds"},
+    {"kernel-plugin", "F.so", "check a kernel of your own as well (see `sphproof kernel --help`)"},
+    {"junit", "FILE", "write a JUnit file"},
+    {"failures", "DIR", "where failing checks leave data (default: failures/ beside the program)"},
+    {NULL, NULL, NULL},
+};
+
+/* Beside the program, so that neither a clone nor the working directory gets littered. */
+static void default_folder(char *folder, size_t size)
+{
+    const char *const name = "failures";
+    const ssize_t length = readlink("/proc/self/exe", folder, size - sizeof "/failures");
+    if (length > 0) folder[length] = '\0';
+    char *slash = length > 0 ? strrchr(folder, '/') : NULL;
+    if (slash) slash[1] = '\0';
+    if (!slash || access(folder, W_OK)) folder[0] = '\0';
+    strcat(folder, name);
+}
+
+static enum status choose_groups(int n, char **arguments, struct error *error)
+{
+    const char *names[GROUPS_MAX];
+    const size_t count = suite_groups(check_registry, check_registry_count, names);
+    for (int i = 0; i < n; i++) {
+        bool known = false;
+        for (size_t j = 0; j < count; j++) known = known || strcmp(names[j], arguments[i]) == 0;
+        if (!known) return text_unknown(error, "verify", "group", arguments[i], names, count);
+    }
+    return STATUS_OK;
+}
+
+static void show_progress(void *progress, const struct check *check, size_t done, size_t total)
+{
+    struct progress *p = progress;
+    p->what = check->name;
+    progress_update(p, (double)done, (double)total);
+}
+
+static enum status write_results(const struct suite *suite, const struct options *options,
+                                 struct error *error)
+{
+    const char *junit = options_value(options, "junit");
+    enum status status = junit ? suite_output_junit(suite, junit, error) : STATUS_OK;
+    if (options->json && !status) {
+        json_t *document = result_new("verify");
+        suite_output_json(suite, document);
+        status = result_write(document, options->json, error);
+        json_decref(document);
+    }
+    return status;
+}
+
+static void keep_failures(const struct suite *suite, const struct options *options)
+{
+    char folder[FOLDER_LENGTH];
+    struct error error = {0};
+    const char *given = options_value(options, "failures");
+    if (!given) default_folder(folder, sizeof folder);
+    if (suite_output_failures(suite, given ? given : folder, options->quiet ? NULL : stderr,
+                              &error))
+        fprintf(stderr, "sphproof: %s\n", error.message);
+}
+
+static enum status run(const struct options *options, int n, char **arguments, struct error *error)
+{
+    const char *junit = options_value(options, "junit");
+    enum status status = choose_groups(n, arguments, error);
+    if (!status && junit) status = output_probe(junit, error);
+    if (status) return status;
+
+    struct progress progress;
+    struct suite suite;
+    const struct suite_choice choice = {
+        .groups = (const char *const *)arguments,
+        .group_count = (size_t)n,
+        .slow = options_value(options, "slow"),
+        .mutants = options_value(options, "mutants"),
+        .progress = show_progress,
+        .context = &progress,
+    };
+    gsl_set_error_handler_off();
+    check_kernel_plugin = options_value(options, "kernel-plugin");
+    progress_begin(&progress, "checks", options);
+    status = suite_run(&suite, check_registry, check_registry_count, &choice, error);
+    progress_end(&progress);
+    if (status != STATUS_OK && status != STATUS_CHECK_FAILED) return status;
+
+    if (options->speak) suite_output_table(&suite, stdout, options->color);
+    if (suite.failed) keep_failures(&suite, options);
+    const enum status written = write_results(&suite, options, error);
+    suite_free(&suite);
+    return written ? written : status;
+}
+
+const struct command command_verify = {
+    .name = "verify",
+    .synopsis = "[GROUP ...] [--mutants] [--slow]",
+    .help = "check kernels, gradients, solver, exact solutions and norms\n\n"
+            "Every check states a property, the measured value, its bound and the noise floor.\n"
+            "Without a GROUP all groups run. Exit status 1 if a figure is beyond its bound or,\n"
+            "with --mutants, if a deliberately wrong variant is not rejected.",
+    .run = run,
+    .options = verify_options,
+    .examples = "sphproof verify\nsphproof verify kernels gradients\n"
+                "sphproof verify --mutants --json verify.json --junit verify.xml",
+};

@@ -1,0 +1,278 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "suite.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+const char *check_kernel_plugin;
+
+#define CHECK(name) extern const struct check check_##name;
+#include "checks.def"
+#undef CHECK
+
+const struct check *const check_registry[] = {
+#define CHECK(name) &check_##name,
+#include "checks.def"
+#undef CHECK
+};
+const size_t check_registry_count = sizeof check_registry / sizeof *check_registry;
+
+struct check_run {
+    const struct check *check;
+    struct figure *figures;
+    struct series *series;
+    size_t figure_count, series_count;
+    double began; /* of the figure being measured */
+    bool no_memory;
+};
+
+static double clock_now(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+double suite_ratio(double value, double bound)
+{
+    if (value <= bound) return value <= 0 ? 0 : value / bound;
+    return bound > 0 && value > 0 ? value / bound : (double)INFINITY;
+}
+
+/* Room for one more item at *list (its address is the list's own), by doubling. */
+static bool grow(void *list, size_t count, size_t size)
+{
+    void *old, *grown;
+    if (count & (count - 1)) return true;
+    memcpy(&old, list, sizeof old);
+    grown = realloc(old, (count ? 2 * count : 1) * size);
+    if (grown) memcpy(list, &grown, sizeof grown);
+    return grown;
+}
+
+static void add_figure(struct check_run *run, struct figure figure)
+{
+    const double now = clock_now();
+    figure.check = run->check;
+    figure.seconds = now - run->began;
+    run->began = now;
+    if (!figure.subject || !grow(&run->figures, run->figure_count, sizeof figure)) {
+        run->no_memory = true;
+        free(figure.subject);
+        return;
+    }
+    run->figures[run->figure_count++] = figure;
+}
+
+static char *format_text(const char *format, va_list arguments)
+{
+    char text[400];
+    vsnprintf(text, sizeof text, format, arguments);
+    return strdup(text);
+}
+
+void check_measure(struct check_run *run, double value, double bound, double floor,
+                   const char *subject, ...)
+{
+    va_list arguments;
+    va_start(arguments, subject);
+    char *text = format_text(subject, arguments);
+    va_end(arguments);
+    const bool pass = value <= bound && floor <= bound;
+    add_figure(run, (struct figure){.subject = text,
+                                    .value = value,
+                                    .bound = bound,
+                                    .floor = floor,
+                                    .status = pass ? FIGURE_PASS : FIGURE_FAIL});
+}
+
+void check_skip(struct check_run *run, const char *why, ...)
+{
+    const double nan = (double)NAN;
+    va_list arguments;
+    va_start(arguments, why);
+    char *text = format_text(why, arguments);
+    va_end(arguments);
+    add_figure(
+        run, (struct figure){
+                 .subject = text, .value = nan, .bound = nan, .floor = nan, .status = FIGURE_SKIP});
+}
+
+void check_series(struct check_run *run, const char *label, size_t n, const double *x,
+                  const double *y)
+{
+    struct series series = {.check = run->check, .n = n, .label = strdup(label)};
+    series.x = malloc(n * sizeof *x + 1);
+    series.y = malloc(n * sizeof *y + 1);
+    if (!series.label || !series.x || !series.y ||
+        !grow(&run->series, run->series_count, sizeof series)) {
+        free(series.label), free(series.x), free(series.y);
+        run->no_memory = true;
+        return;
+    }
+    memcpy(series.x, x, n * sizeof *x);
+    memcpy(series.y, y, n * sizeof *y);
+    run->series[run->series_count++] = series;
+}
+
+static void free_figures(struct figure *figures, size_t n)
+{
+    for (size_t i = 0; i < n; i++) free(figures[i].subject);
+    free(figures);
+}
+
+static void free_series(struct series *series, size_t n)
+{
+    for (size_t i = 0; i < n; i++) free(series[i].label), free(series[i].x), free(series[i].y);
+    free(series);
+}
+
+void suite_free(struct suite *suite)
+{
+    free_figures(suite->figures, suite->figure_count);
+    free_series(suite->series, suite->series_count);
+    free(suite->outcomes);
+    *suite = (struct suite){0};
+}
+
+/* Moves the run's figures into the suite, and its series where one failed. */
+static bool take_figures(struct suite *suite, struct check_run *run)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < run->figure_count; i++) {
+        if (!grow(&suite->figures, suite->figure_count, sizeof *suite->figures)) return false;
+        suite->figures[suite->figure_count++] = run->figures[i];
+        suite->passed += run->figures[i].status == FIGURE_PASS;
+        suite->skipped += run->figures[i].status == FIGURE_SKIP;
+        failed += run->figures[i].status == FIGURE_FAIL;
+        run->figures[i].subject = NULL;
+    }
+    suite->failed += failed;
+    for (size_t i = 0; failed && i < run->series_count; i++) {
+        if (!grow(&suite->series, suite->series_count, sizeof *suite->series)) return false;
+        suite->series[suite->series_count++] = run->series[i];
+        run->series[i] = (struct series){0};
+    }
+    return true;
+}
+
+static void free_run(struct check_run *run)
+{
+    free_figures(run->figures, run->figure_count);
+    free_series(run->series, run->series_count);
+}
+
+static bool run_subjects(struct suite *suite, const struct check *check)
+{
+    struct check_run run = {.check = check, .began = clock_now()};
+    const size_t subjects = check->subject_count ? check->subject_count() : 1;
+    for (size_t i = 0; i < subjects; i++) {
+        run.began = clock_now();
+        check->measure(&run, check->subject_count ? check->subject(i) : NULL);
+    }
+    if (run.figure_count == 0)
+        check_measure(&run, 1, 0, 0, "harness: the check measured nothing at all");
+    const bool sound = !run.no_memory && take_figures(suite, &run);
+    free_run(&run);
+    return sound;
+}
+
+static struct mutant_outcome judge_mutant(const struct check_run *run,
+                                          const struct check_mutant *mutant)
+{
+    struct mutant_outcome outcome = {run->check, mutant, (double)NAN, (double)NAN, false};
+    double worst = -1;
+    for (size_t i = 0; i < run->figure_count; i++) {
+        const struct figure *figure = &run->figures[i];
+        const double ratio = suite_ratio(figure->value, figure->bound);
+        outcome.detected = outcome.detected || figure->status == FIGURE_FAIL;
+        if (figure->status == FIGURE_SKIP || !(ratio > worst)) continue;
+        worst = ratio;
+        outcome.value = figure->value;
+        outcome.bound = figure->bound;
+    }
+    return outcome;
+}
+
+static bool run_mutants(struct suite *suite, const struct check *check)
+{
+    bool any = false, sound = true;
+    for (const struct check_mutant *mutant = check->mutants; sound && mutant && mutant->name;
+         mutant++) {
+        struct check_run run = {.check = check, .began = clock_now()};
+        check->measure(&run, mutant->subject);
+        const struct mutant_outcome outcome = judge_mutant(&run, mutant);
+        any = any || outcome.detected;
+        sound = !run.no_memory && grow(&suite->outcomes, suite->outcome_count, sizeof outcome);
+        if (sound) suite->outcomes[suite->outcome_count++] = outcome;
+        free_run(&run);
+    }
+    if (sound && !any) {
+        struct check_run run = {.check = check, .began = clock_now()};
+        check_measure(&run, 1, 0, 0, "harness: the check is vacuous, it rejects no mutant");
+        sound = !run.no_memory && take_figures(suite, &run);
+        free_run(&run);
+    }
+    return sound;
+}
+
+/* Distinct mutants; one that is listed by several checks must be rejected by each of them. */
+static void count_mutants(struct suite *suite)
+{
+    for (size_t i = 0; i < suite->outcome_count; i++) {
+        const char *name = suite->outcomes[i].mutant->name;
+        bool first = true, detected = true;
+        for (size_t j = 0; j < suite->outcome_count; j++)
+            if (strcmp(suite->outcomes[j].mutant->name, name) == 0) {
+                first = first && j >= i;
+                detected = detected && suite->outcomes[j].detected;
+            }
+        suite->mutants += first;
+        suite->mutants_detected += first && detected;
+    }
+}
+
+static bool chosen(const struct check *check, const struct suite_choice *choice)
+{
+    if (check->slow && !choice->slow) return false;
+    for (size_t i = 0; i < choice->group_count; i++)
+        if (strcmp(check->group, choice->groups[i]) == 0) return true;
+    return choice->group_count == 0;
+}
+
+enum status suite_run(struct suite *suite, const struct check *const *checks, size_t count,
+                      const struct suite_choice *choice, struct error *error)
+{
+    const double began = clock_now();
+    bool sound = true;
+    *suite = (struct suite){0};
+    for (size_t i = 0; i < count && sound; i++) {
+        if (!chosen(checks[i], choice)) continue;
+        if (choice->progress) choice->progress(choice->context, checks[i], i, count);
+        sound =
+            run_subjects(suite, checks[i]) && (!choice->mutants || run_mutants(suite, checks[i]));
+    }
+    if (!sound) {
+        suite_free(suite);
+        return error_set(error, STATUS_ENVIRONMENT, "verify: no memory");
+    }
+    count_mutants(suite);
+    suite->seconds = clock_now() - began;
+    return suite->failed || suite->mutants_detected < suite->mutants ? STATUS_CHECK_FAILED
+                                                                     : STATUS_OK;
+}
+
+size_t suite_groups(const struct check *const *checks, size_t count, const char **names)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < count; i++) {
+        bool known = false;
+        for (size_t j = 0; j < n; j++) known = known || strcmp(names[j], checks[i]->group) == 0;
+        if (!known) names[n++] = checks[i]->group;
+    }
+    return n;
+}

@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Running checks: every check on all its right subjects, and on its mutants where asked. A check
+ * that rejects none of its mutants is vacuous: a failure of the harness, reported as a figure. */
+#ifndef SPHPROOF_SUITE_H
+#define SPHPROOF_SUITE_H
+
+#include "check.h"
+#include "status.h"
+
+enum figure_status { FIGURE_PASS, FIGURE_FAIL, FIGURE_SKIP };
+
+struct figure {
+    const struct check *check;
+    char *subject; /* of a skipped figure: why */
+    double value, bound, floor, seconds;
+    enum figure_status status;
+};
+
+struct series {
+    const struct check *check;
+    char *label;
+    size_t n;
+    double *x, *y;
+};
+
+struct mutant_outcome {
+    const struct check *check;
+    const struct check_mutant *mutant;
+    double value, bound; /* of the figure that fails most clearly, else of the largest; NaN: none */
+    bool detected;
+};
+
+struct suite {
+    struct figure *figures;
+    struct mutant_outcome *outcomes; /* one for each check and mutant of it */
+    struct series *series;           /* of failing checks only */
+    size_t figure_count, outcome_count, series_count;
+    size_t passed, failed, skipped;   /* figures */
+    size_t mutants, mutants_detected; /* distinct names; detected wherever it is listed */
+    double seconds;
+};
+
+struct suite_choice {
+    const char *const *groups; /* NULL: all */
+    size_t group_count;
+    bool slow, mutants;
+    void (*progress)(void *context, const struct check *check, size_t done, size_t total);
+    void *context;
+};
+
+/* Runs the chosen ones of checks[0..count-1]. STATUS_CHECK_FAILED if a figure failed or a mutant
+ * slipped through (suite is complete); STATUS_ENVIRONMENT: no memory (suite is empty). Free a suite
+ * with suite_free. */
+enum status suite_run(struct suite *suite, const struct check *const *checks, size_t count,
+                      const struct suite_choice *choice, struct error *error);
+void suite_free(struct suite *suite);
+
+/* value/bound of a figure, the measure of how near it is to failing; infinite for a NaN. */
+double suite_ratio(double value, double bound);
+
+/* The distinct groups of checks[0..count-1], in order, into names (at least count); their number.
+ */
+size_t suite_groups(const struct check *const *checks, size_t count, const char **names);
+
+#endif

@@ -1,0 +1,282 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "suite_output.h"
+
+#include <errno.h>
+#include <math.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "output.h"
+#include "result.h"
+
+enum { FAILURES_SHOWN = 12, PATH_LENGTH = 1024 };
+
+static const char *const status_names[] = {"pass", "fail", "skip"};
+
+/* The figures of one check stand together, in suite->figures[begin..end-1]. */
+struct tally {
+    const struct check *check;
+    size_t begin, end, failed, skipped;
+    const struct figure *worst;
+    double seconds;
+};
+
+static struct tally tally_next(const struct suite *suite, size_t begin)
+{
+    struct tally t = {.check = suite->figures[begin].check, .begin = begin, .end = begin};
+    double worst = -1;
+    for (; t.end < suite->figure_count && suite->figures[t.end].check == t.check; t.end++) {
+        const struct figure *figure = &suite->figures[t.end];
+        const double ratio = suite_ratio(figure->value, figure->bound);
+        t.seconds += figure->seconds;
+        t.failed += figure->status == FIGURE_FAIL;
+        t.skipped += figure->status == FIGURE_SKIP;
+        if (figure->status == FIGURE_SKIP || !(ratio > worst)) continue;
+        worst = ratio;
+        t.worst = figure;
+    }
+    return t;
+}
+
+static const char *paint(bool color, const char *code)
+{
+    return color ? code : "";
+}
+
+/* How far within the bound, as people say it. */
+static void print_margin(const struct figure *figure, FILE *stream)
+{
+    const double ratio = suite_ratio(figure->value, figure->bound);
+    if (ratio == 0)
+        fprintf(stream, "%10s", "exact");
+    else
+        fprintf(stream, "%9.3gx", 1 / ratio);
+}
+
+static void print_failures(const struct suite *suite, const struct tally *t, FILE *stream)
+{
+    size_t shown = 0;
+    for (size_t i = t->begin; i < t->end; i++) {
+        const struct figure *figure = &suite->figures[i];
+        if (figure->status != FIGURE_FAIL || shown++ >= FAILURES_SHOWN) continue;
+        fprintf(stream, "        %s: got %.6g, bound %.3g, floor %.2g\n", figure->subject,
+                figure->value, figure->bound, figure->floor);
+    }
+    if (shown > FAILURES_SHOWN)
+        fprintf(stream, "        ... and %zu more\n", shown - FAILURES_SHOWN);
+    fprintf(stream, "        property: %s\n", t->check->property);
+}
+
+static void print_check(const struct suite *suite, const struct tally *t, FILE *stream, bool color)
+{
+    const char *end = paint(color, "\033[0m");
+    if (!t->worst)
+        fprintf(stream, "  %sskip%s  %-28s %s\n", paint(color, "\033[33m"), end, t->check->name,
+                suite->figures[t->begin].subject);
+    else {
+        fprintf(stream, "  %s%s%s  %-28s %11.3g %9.2g ",
+                paint(color, t->failed ? "\033[1;31m" : "\033[32m"), t->failed ? "FAIL" : "ok  ",
+                end, t->check->name, t->worst->value, t->worst->bound);
+        print_margin(t->worst, stream);
+        fprintf(stream, " %9.2g %7zu %7.2f\n", t->worst->floor, t->end - t->begin - t->skipped,
+                t->seconds);
+    }
+    if (t->failed) print_failures(suite, t, stream);
+}
+
+static void print_mutants(const struct suite *suite, FILE *stream, bool color)
+{
+    const char *end = paint(color, "\033[0m");
+    const struct check *last = NULL;
+    fprintf(stream, "\nmutants: faults that the checks must reject\n");
+    for (size_t i = 0; i < suite->outcome_count; i++) {
+        const struct mutant_outcome *o = &suite->outcomes[i];
+        if (o->check != last) fprintf(stream, "  %s %s\n", o->check->group, o->check->name);
+        last = o->check;
+        fprintf(stream, "    %s%s%s  %-30s %11.3g %9.2g  %s\n",
+                paint(color, o->detected ? "\033[32m" : "\033[1;31m"),
+                o->detected ? "caught" : "MISSED", end, o->mutant->name, o->value, o->bound,
+                o->mutant->fault);
+    }
+}
+
+void suite_output_table(const struct suite *suite, FILE *stream, bool color)
+{
+    const char *group = "";
+    for (size_t i = 0; i < suite->figure_count;) {
+        const struct tally t = tally_next(suite, i);
+        if (strcmp(group, t.check->group) != 0)
+            fprintf(stream, "%s%s%-34s%s %11s %9s %10s %9s %7s %7s\n", *group ? "\n" : "",
+                    paint(color, "\033[1m"), t.check->group, paint(color, "\033[0m"), "value",
+                    "bound", "margin", "floor", "figures", "s");
+        group = t.check->group;
+        print_check(suite, &t, stream, color);
+        i = t.end;
+    }
+    if (suite->outcome_count) print_mutants(suite, stream, color);
+    const bool sound = !suite->failed && suite->mutants_detected == suite->mutants;
+    fprintf(stream, "\n%s%s%s: %zu figures passed, %zu failed, %zu skipped",
+            paint(color, sound ? "\033[1;32m" : "\033[1;31m"), sound ? "all well" : "FAILED",
+            paint(color, "\033[0m"), suite->passed, suite->failed, suite->skipped);
+    if (suite->outcome_count)
+        fprintf(stream, "; %zu of %zu mutants caught", suite->mutants_detected, suite->mutants);
+    fprintf(stream,
+            "; %.1f s\nvalue: the figure nearest to its bound; margin: bound/value; floor: "
+            "round-off below which it means nothing\n",
+            suite->seconds);
+}
+
+static json_t *figure_json(const struct figure *figure)
+{
+    return json_pack("{s:s, s:s, s:s, s:s, s:o, s:o, s:o, s:s, s:o}", "group", figure->check->group,
+                     "name", figure->check->name, "subject", figure->subject, "property",
+                     figure->check->property, "value", result_number(figure->value), "bound",
+                     result_number(figure->bound), "floor", result_number(figure->floor), "status",
+                     status_names[figure->status], "seconds", result_number(figure->seconds));
+}
+
+void suite_output_json(const struct suite *suite, json_t *document)
+{
+    json_t *checks = json_array(), *mutants = json_array();
+    for (size_t i = 0; i < suite->figure_count; i++)
+        json_array_append_new(checks, figure_json(&suite->figures[i]));
+    for (size_t i = 0; i < suite->outcome_count; i++) {
+        const struct mutant_outcome *o = &suite->outcomes[i];
+        json_array_append_new(mutants, json_pack("{s:s, s:s, s:s, s:s, s:o, s:o, s:b}", "group",
+                                                 o->check->group, "check", o->check->name, "mutant",
+                                                 o->mutant->name, "fault", o->mutant->fault,
+                                                 "value", result_number(o->value), "bound",
+                                                 result_number(o->bound), "detected", o->detected));
+    }
+    json_object_set_new(document, "checks", checks);
+    json_object_set_new(document, "mutants", mutants);
+    json_object_set_new(document, "summary",
+                        json_pack("{s:I, s:I, s:I, s:I, s:I}", "passed", (json_int_t)suite->passed,
+                                  "failed", (json_int_t)suite->failed, "skipped",
+                                  (json_int_t)suite->skipped, "mutants", (json_int_t)suite->mutants,
+                                  "detected", (json_int_t)suite->mutants_detected));
+}
+
+static void put_xml(FILE *stream, const char *text)
+{
+    for (; *text; text++) {
+        const char *special = strchr("&<>\"'", *text);
+        static const char *const entities[] = {"&amp;", "&lt;", "&gt;", "&quot;", "&apos;"};
+        if (special)
+            fputs(entities[special - "&<>\"'"], stream);
+        else
+            fputc((unsigned char)*text < ' ' ? ' ' : *text, stream);
+    }
+}
+
+static void junit_case(FILE *stream, const struct check *check, const char *subject, double seconds)
+{
+    fprintf(stream, "    <testcase classname=\"%s.%s\" name=\"", check->group, check->name);
+    put_xml(stream, subject);
+    fprintf(stream, "\" time=\"%.6f\">", seconds);
+}
+
+static void junit_group(const struct suite *suite, const char *group, FILE *stream)
+{
+    size_t tests = 0, failed = 0, skipped = 0;
+    for (size_t i = 0; i < suite->figure_count; i++) {
+        if (strcmp(suite->figures[i].check->group, group) != 0) continue;
+        tests++;
+        failed += suite->figures[i].status == FIGURE_FAIL;
+        skipped += suite->figures[i].status == FIGURE_SKIP;
+    }
+    for (size_t i = 0; i < suite->outcome_count; i++)
+        if (strcmp(suite->outcomes[i].check->group, group) == 0) {
+            tests++;
+            failed += !suite->outcomes[i].detected;
+        }
+    fprintf(stream,
+            "  <testsuite name=\"%s\" tests=\"%zu\" failures=\"%zu\" skipped=\"%zu\" "
+            "errors=\"0\">\n",
+            group, tests, failed, skipped);
+    for (size_t i = 0; i < suite->figure_count; i++) {
+        const struct figure *figure = &suite->figures[i];
+        if (strcmp(figure->check->group, group) != 0) continue;
+        junit_case(stream, figure->check, figure->subject, figure->seconds);
+        if (figure->status == FIGURE_FAIL)
+            fprintf(stream, "<failure message=\"got %.6g, bound %.3g, floor %.2g\"/>",
+                    figure->value, figure->bound, figure->floor);
+        if (figure->status == FIGURE_SKIP) fputs("<skipped/>", stream);
+        fputs("</testcase>\n", stream);
+    }
+    for (size_t i = 0; i < suite->outcome_count; i++) {
+        const struct mutant_outcome *o = &suite->outcomes[i];
+        if (strcmp(o->check->group, group) != 0) continue;
+        junit_case(stream, o->check, o->mutant->name, 0);
+        if (!o->detected) {
+            fputs("<failure message=\"the mutant slipped through: ", stream);
+            put_xml(stream, o->mutant->fault);
+            fputs("\"/>", stream);
+        }
+        fputs("</testcase>\n", stream);
+    }
+    fputs("  </testsuite>\n", stream);
+}
+
+enum status suite_output_junit(const struct suite *suite, const char *path, struct error *error)
+{
+    struct output output;
+    const enum status status = output_open(&output, path, error);
+    if (status) return status;
+    fputs("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"sphproof verify\">\n",
+          output.stream);
+    for (size_t i = 0; i < suite->figure_count; i++) {
+        const char *group = suite->figures[i].check->group;
+        bool first = true;
+        for (size_t j = 0; j < i; j++)
+            first = first && strcmp(suite->figures[j].check->group, group) != 0;
+        if (first) junit_group(suite, group, output.stream);
+    }
+    fputs("</testsuites>\n", output.stream);
+    return output_close(&output, error);
+}
+
+static json_t *numbers_json(size_t n, const double *values)
+{
+    json_t *array = json_array();
+    for (size_t i = 0; i < n; i++) json_array_append_new(array, result_number(values[i]));
+    return array;
+}
+
+static json_t *failure_json(const struct suite *suite, const struct tally *t)
+{
+    json_t *document = result_new("verify"), *checks = json_array(), *series = json_array();
+    for (size_t i = t->begin; i < t->end; i++)
+        json_array_append_new(checks, figure_json(&suite->figures[i]));
+    for (size_t i = 0; i < suite->series_count; i++) {
+        const struct series *s = &suite->series[i];
+        if (s->check == t->check)
+            json_array_append_new(series, json_pack("{s:s, s:o, s:o}", "label", s->label, "x",
+                                                    numbers_json(s->n, s->x), "y",
+                                                    numbers_json(s->n, s->y)));
+    }
+    json_object_set_new(document, "checks", checks);
+    json_object_set_new(document, "series", series);
+    return document;
+}
+
+enum status suite_output_failures(const struct suite *suite, const char *folder, FILE *stream,
+                                  struct error *error)
+{
+    enum status status = STATUS_OK;
+    for (size_t i = 0; i < suite->figure_count && !status;) {
+        const struct tally t = tally_next(suite, i);
+        i = t.end;
+        if (!t.failed) continue;
+        if (mkdir(folder, 0777) && errno != EEXIST)
+            return error_set(error, STATUS_ENVIRONMENT, "verify: cannot make the folder '%s': %s",
+                             folder, strerror(errno));
+        char path[PATH_LENGTH];
+        snprintf(path, sizeof path, "%s/%s-%s.json", folder, t.check->group, t.check->name);
+        json_t *document = failure_json(suite, &t);
+        status = result_write(document, path, error);
+        json_decref(document);
+        if (stream && !status) fprintf(stream, "figures and data: %s\n", path);
+    }
+    return status;
+}

@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What a run of checks tells: a table for people, the JSON document, a JUnit file, and for each
+ * failing check a folder entry with its figures and data. */
+#ifndef SPHPROOF_SUITE_OUTPUT_H
+#define SPHPROOF_SUITE_OUTPUT_H
+
+#include <jansson.h>
+#include <stdio.h>
+
+#include "suite.h"
+
+/* One line a check (its figure nearest to its bound), failures figure by figure, then mutants. */
+void suite_output_table(const struct suite *suite, FILE *stream, bool color);
+
+/* Adds checks, mutants and summary to document. */
+void suite_output_json(const struct suite *suite, json_t *document);
+
+/* JUnit XML: a test suite for each group, a test case for each figure and each mutant. */
+enum status suite_output_junit(const struct suite *suite, const char *path, struct error *error);
+
+/* Writes folder/GROUP-NAME.json for each failing check (figures, series) and names it on stream if
+ * that is not NULL. The folder is made if needed. */
+enum status suite_output_failures(const struct suite *suite, const char *folder, FILE *stream,
+                                  struct error *error);
+
+#endif

@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Results that are too good, or good for the wrong reason: faults of a study or of the harness
+ * itself, reported as failures. Each function returns true where it is suspicious and then writes
+ * a sentence to why (SUSPICION_TEXT bytes; may be NULL). */
+#ifndef SPHPROOF_SUSPICION_H
+#define SPHPROOF_SUSPICION_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+enum { SUSPICION_TEXT = 200 };
+
+/* An error of exactly 0 at one of n levels: the solution was compared with itself. Do not ask where
+ * a case is known to be exact. */
+bool suspicion_zero(size_t n, const double *error, char *why);
+
+/* The same error at two of n resolutions, to a relative 1e-12: a level was not run. */
+bool suspicion_repeated(size_t n, const double *error, char *why);
+
+/* Two runs with a different setting gave the same errors, all n of them bit for bit. */
+bool suspicion_idle_setting(const char *setting, size_t n, const double *before,
+                            const double *after, char *why);
+
+/* A field that is nearer another field's exact solution than its own, by the volume-weighted L1
+ * over the n particles of the window. value[f], exact[f]: n numbers of field f. Fields whose exact
+ * solutions are the same cannot be told apart and are not suspected. */
+bool suspicion_swapped(size_t fields, const char *const *names, size_t n, const double *volume,
+                       const double *const *value, const double *const *exact, char *why);
+
+#endif

@@ -1,0 +1,247 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The harness that runs checks: what fails, what is vacuous, what counts; and that the registry is
+ * in order. Arguments: the groups that meson runs, one test each. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+#include "suite.h"
+#include "suite_output.h"
+
+static int group_argument_count;
+static char **group_arguments;
+
+static const double values[] = {0.5, 1, 2, (double)NAN};
+
+/* The figure is the subject's number; bound 1. */
+static void measure(struct check_run *run, const void *subject)
+{
+    const double *value = subject ? subject : &values[0];
+    const double x[] = {1, 2}, y[] = {3, *value};
+    if (*value == 0.25) return;
+    check_measure(run, *value, 1, 0, "value <%g>", *value);
+    check_series(run, "data", 2, x, y);
+}
+
+static const struct check_mutant caught[] = {{"two", "", &values[2]}, {"nan", "", &values[3]}, {0}};
+static const struct check_mutant slipped[] = {
+    {"one", "", &values[1]}, {"two", "", &values[2]}, {0}};
+static const struct check_mutant idle[] = {{"one", "", &values[1]}, {0}};
+
+static size_t failing_count(void)
+{
+    return 3;
+}
+
+static const void *failing_subject(size_t i)
+{
+    return &values[i + 1];
+}
+
+static const struct check good = {
+    .group = "a", .name = "good", .property = "p", .measure = measure, .mutants = caught};
+static const struct check leaky = {
+    .group = "b", .name = "leaky", .property = "p", .measure = measure, .mutants = slipped};
+static const struct check vacuous = {
+    .group = "b", .name = "vacuous", .property = "p", .measure = measure, .mutants = idle};
+static const struct check bare = {
+    .group = "b", .name = "bare", .property = "p", .measure = measure};
+static const struct check failing = {.group = "a",
+                                     .name = "failing",
+                                     .property = "p",
+                                     .subject_count = failing_count,
+                                     .subject = failing_subject,
+                                     .measure = measure,
+                                     .mutants = caught};
+
+static struct suite run(const struct check *check, bool mutants, enum status expected)
+{
+    struct suite suite;
+    const struct suite_choice choice = {.mutants = mutants};
+    assert_int_equal(suite_run(&suite, &check, 1, &choice, NULL), expected);
+    return suite;
+}
+
+static void test_good(void **state)
+{
+    (void)state;
+    struct suite suite = run(&good, true, STATUS_OK);
+    assert_int_equal(suite.passed, 1);
+    assert_int_equal(suite.failed, 0);
+    assert_int_equal(suite.mutants, 2);
+    assert_int_equal(suite.mutants_detected, 2);
+    assert_int_equal(suite.series_count, 0);
+    suite_free(&suite);
+}
+
+static void test_failing(void **state)
+{
+    (void)state;
+    struct suite suite = run(&failing, false, STATUS_CHECK_FAILED);
+    assert_int_equal(suite.passed, 1);
+    assert_int_equal(suite.failed, 2);
+    assert_int_equal(suite.series_count, 3);
+    suite_free(&suite);
+}
+
+static void test_undetected_mutant(void **state)
+{
+    (void)state;
+    struct suite suite = run(&leaky, true, STATUS_CHECK_FAILED);
+    assert_int_equal(suite.failed, 0);
+    assert_int_equal(suite.mutants, 2);
+    assert_int_equal(suite.mutants_detected, 1);
+    suite_free(&suite);
+}
+
+static void test_vacuous(void **state)
+{
+    (void)state;
+    struct suite suite = run(&vacuous, true, STATUS_CHECK_FAILED);
+    assert_int_equal(suite.failed, 1);
+    assert_non_null(strstr(suite.figures[1].subject, "vacuous"));
+    suite_free(&suite);
+    suite = run(&bare, true, STATUS_CHECK_FAILED);
+    assert_int_equal(suite.failed, 1);
+    suite_free(&suite);
+    suite = run(&bare, false, STATUS_OK);
+    suite_free(&suite);
+}
+
+static const double nothing = 0.25;
+
+static const void *nothing_subject(size_t i)
+{
+    (void)i;
+    return &nothing;
+}
+
+static void test_measures_nothing(void **state)
+{
+    (void)state;
+    struct check silent = failing;
+    silent.subject = nothing_subject;
+    struct suite suite = run(&silent, false, STATUS_CHECK_FAILED);
+    assert_int_equal(suite.failed, 1);
+    suite_free(&suite);
+}
+
+static void below_floor(struct check_run *run, const void *subject)
+{
+    (void)subject;
+    check_measure(run, 0, 1e-16, 1e-15, "bound below its floor");
+    check_skip(run, "not %s", "here");
+}
+
+static void test_floor_and_skip(void **state)
+{
+    (void)state;
+    struct check check = good;
+    check.measure = below_floor;
+    struct suite suite = run(&check, false, STATUS_CHECK_FAILED);
+    assert_int_equal(suite.failed, 1);
+    assert_int_equal(suite.skipped, 1);
+    suite_free(&suite);
+}
+
+static void test_groups_are_chosen(void **state)
+{
+    (void)state;
+    const struct check *const checks[] = {&good, &bare};
+    const char *const groups[] = {"b"};
+    const struct suite_choice choice = {.groups = groups, .group_count = 1};
+    struct suite suite;
+    assert_int_equal(suite_run(&suite, checks, 2, &choice, NULL), STATUS_OK);
+    assert_int_equal(suite.figure_count, 1);
+    assert_ptr_equal(suite.figures[0].check, &bare);
+    suite_free(&suite);
+}
+
+static void test_results(void **state)
+{
+    (void)state;
+    struct suite suite = run(&failing, true, STATUS_CHECK_FAILED);
+    json_t *document = json_object();
+    suite_output_json(&suite, document);
+    json_int_t failed, mutants;
+    const char *status, *value;
+    assert_int_equal(json_unpack(document, "{s:[*], s:{s:I, s:I}}", "checks", "summary", "failed",
+                                 &failed, "mutants", &mutants),
+                     0);
+    assert_true(failed == 2 && mutants == 2);
+    const json_t *last = json_array_get(json_object_get(document, "checks"), 2);
+    assert_int_equal(json_unpack((json_t *)last, "{s:s, s:s}", "status", &status, "value", &value),
+                     0);
+    assert_string_equal(status, "fail");
+    assert_string_equal(value, "nan");
+    json_decref(document);
+
+    char folder[] = "/tmp/sphproof-suite-XXXXXX", path[64], text[4096];
+    assert_non_null(mkdtemp(folder));
+    assert_int_equal(suite_output_failures(&suite, folder, NULL, NULL), STATUS_OK);
+    snprintf(path, sizeof path, "%s/a-failing.json", folder);
+    document = json_load_file(path, 0, NULL);
+    assert_non_null(document);
+    assert_int_equal(json_array_size(json_object_get(document, "series")), 3);
+    json_decref(document);
+    unlink(path);
+
+    snprintf(path, sizeof path, "%s/junit.xml", folder);
+    assert_int_equal(suite_output_junit(&suite, path, NULL), STATUS_OK);
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    text[fread(text, 1, sizeof text - 1, file)] = '\0';
+    fclose(file);
+    assert_non_null(strstr(text, "tests=\"5\" failures=\"2\""));
+    assert_non_null(strstr(text, "value &lt;2&gt;"));
+    unlink(path);
+    snprintf(path, sizeof path, "%s/a-failing.svg", folder);
+    unlink(path);
+    assert_int_equal(rmdir(folder), 0);
+    suite_free(&suite);
+}
+
+static void test_registry(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < check_registry_count; i++) {
+        const struct check *c = check_registry[i];
+        assert_true(c->mutants && c->mutants[0].name && c->property[0]);
+        for (size_t j = 0; j < i; j++)
+            assert_false(strcmp(c->group, check_registry[j]->group) == 0 &&
+                         strcmp(c->name, check_registry[j]->name) == 0);
+    }
+    const char *names[64];
+    const size_t n = suite_groups(check_registry, check_registry_count, names);
+    assert_int_equal(n, group_argument_count);
+    for (size_t i = 0; i < n; i++) {
+        bool known = false;
+        for (int j = 0; j < group_argument_count; j++)
+            known = known || strcmp(names[i], group_arguments[j]) == 0;
+        assert_true(known);
+    }
+}
+
+int main(int argc, char **argv)
+{
+    group_argument_count = argc - 1;
+    group_arguments = argv + 1;
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_good),
+        cmocka_unit_test(test_failing),
+        cmocka_unit_test(test_undetected_mutant),
+        cmocka_unit_test(test_vacuous),
+        cmocka_unit_test(test_measures_nothing),
+        cmocka_unit_test(test_floor_and_skip),
+        cmocka_unit_test(test_groups_are_chosen),
+        cmocka_unit_test(test_results),
+        cmocka_unit_test(test_registry),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
