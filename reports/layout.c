@@ -1,0 +1,196 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "layout.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { LINE = 19, KEY_SAMPLE = 64 };
+static const double LETTER = 7.7; /* mean width of a letter of 14 px */
+
+/* Characters, not bytes, of a UTF-8 string. */
+static size_t letters(const char *string)
+{
+    size_t n = 0;
+    for (; string && *string; string++) n += ((unsigned char)*string & 0xc0) != 0x80;
+    return n;
+}
+
+static void include(struct layout_axis *axis, double value)
+{
+    if (!isfinite(value) || (axis->log && value <= 0)) return;
+    if (value < axis->min) axis->min = value;
+    if (value > axis->max) axis->max = value;
+}
+
+static void include_all(struct layout_axis *axis, const double *values, size_t n)
+{
+    for (size_t i = 0; values && i < n; i++) include(axis, values[i]);
+}
+
+/* Half a cell beyond the first and last centre of a heat map. */
+static void include_cells(struct layout_axis *axis, const double *centres, size_t n)
+{
+    if (!n) return;
+    double first = n > 1 ? centres[0] : 0.9 * centres[0];
+    double second = n > 1 ? centres[1] : 1.1 * centres[0];
+    double before = n > 1 ? centres[n - 2] : first, last = n > 1 ? centres[n - 1] : second;
+    if (axis->log) {
+        include(axis, first * sqrt(first / second));
+        include(axis, last * sqrt(last / before));
+    } else {
+        include(axis, first - (second - first) / 2);
+        include(axis, last + (last - before) / 2);
+    }
+}
+
+/* A little air; something sensible where there is no data or no extent. */
+static void finish(struct layout_axis *axis, double min, double max, double air)
+{
+    if (min < max) {
+        axis->min = min;
+        axis->max = max;
+        return;
+    }
+    if (!(axis->min <= axis->max)) {
+        axis->min = axis->log ? 0.1 : 0;
+        axis->max = axis->log ? 10 : 1;
+    }
+    if (axis->log) {
+        double span = log(axis->max / axis->min);
+        double by = exp(span > 0 ? air * span : 0.5);
+        axis->min /= by;
+        axis->max *= by;
+    } else {
+        double span = axis->max - axis->min;
+        double by = span > 0 ? air * span : 0.5 * fmax(fabs(axis->max), 1e-300);
+        axis->min -= by;
+        axis->max += by;
+    }
+}
+
+static void ranges(struct layout_panel *at, const struct plot_panel *panel)
+{
+    at->x = (struct layout_axis){panel->x_log, INFINITY, -INFINITY};
+    at->y = (struct layout_axis){panel->y_log, INFINITY, -INFINITY};
+    for (size_t k = 0; k < panel->series_count; k++) {
+        const struct plot_series *series = &panel->series[k];
+        include_all(&at->x, series->x, series->n);
+        if (series->kind != PLOT_BAND) include_all(&at->y, series->y, series->n);
+        if (series->kind == PLOT_BAND || series->kind == PLOT_ERROR_BARS) {
+            include_all(&at->y, series->low, series->n);
+            include_all(&at->y, series->high, series->n);
+        }
+    }
+    for (size_t k = 0; k < panel->slope_count; k++) {
+        const struct plot_slope *slope = &panel->slopes[k];
+        include(&at->y, slope->y0);
+        include(&at->y, slope->y0 * pow(slope->x1 / slope->x0, slope->order));
+    }
+    for (size_t k = 0; k < panel->mark_count; k++)
+        include(panel->marks[k].horizontal ? &at->y : &at->x, panel->marks[k].at);
+    if (panel->heat) {
+        include_cells(&at->x, panel->heat->x, panel->heat->nx);
+        include_cells(&at->y, panel->heat->y, panel->heat->ny);
+    }
+    double air = panel->heat ? 0 : 0.04;
+    finish(&at->x, panel->x_min, panel->x_max, panel->x_log ? air : 0);
+    finish(&at->y, panel->y_min, panel->y_max, air);
+}
+
+/* Room at the right for the names at the ends of curves. */
+static double end_width(const struct plot_panel *panel)
+{
+    size_t longest = 0;
+    for (size_t k = 0; panel->key == PLOT_KEY_END && k < panel->series_count; k++) {
+        size_t n = letters(panel->series[k].label);
+        if (n > longest) longest = n;
+    }
+    return longest ? 12 + LETTER * (double)longest : 0;
+}
+
+static void key(struct layout *layout, const struct plot_panel *panel)
+{
+    size_t count = 0, longest = 0;
+    for (size_t k = 0; k < panel->series_count; k++) {
+        size_t n = letters(panel->series[k].label);
+        count += n > 0;
+        if (n > longest) longest = n;
+    }
+    for (size_t k = 0; panel->heat && k < panel->heat->category_count; k++) {
+        size_t n = letters(panel->heat->categories[k]);
+        count++;
+        if (n > longest) longest = n;
+    }
+    if (panel->key != PLOT_KEY_TOP || !count) return;
+    double column = KEY_SAMPLE + LETTER * (double)longest;
+    layout->key_columns = (int)fmax(1, floor((layout->right - layout->left) / column));
+    layout->key_rows = ((int)count + layout->key_columns - 1) / layout->key_columns;
+}
+
+void layout_make(struct layout *layout, const struct plot *plot)
+{
+    size_t n = plot->panel_count;
+    layout->width = plot->width ? plot->width : 560;
+    layout->height = plot->height ? plot->height : n == 1 ? 350 : 90 + 165 * (int)n;
+    layout->left = 82;
+    double room = 18;
+    for (size_t k = 0; k < n; k++) {
+        const struct plot_panel *panel = &plot->panels[k];
+        room = fmax(room, end_width(panel));
+        if (panel->heat && !panel->heat->category_count) room = fmax(room, 96);
+    }
+    layout->right = layout->width - room;
+    layout->key_columns = layout->key_rows = 0;
+    key(layout, &plot->panels[0]);
+
+    double top = 12 + LINE * layout->key_rows + (plot->show_title ? LINE + 8 : 0);
+    double bottom = layout->height - 50;
+    double gap = 14;
+    double each = (bottom - top - gap * ((double)n - 1)) / (double)n;
+    for (size_t k = 0; k < n; k++) {
+        struct layout_panel *at = &layout->panels[k];
+        at->top = top + (double)k * (each + gap) + (plot->panels[k].title ? LINE : 0);
+        at->bottom = top + (double)k * (each + gap) + each;
+        ranges(at, &plot->panels[k]);
+    }
+    for (size_t k = 1; k < n; k++) { /* a stack shares the widest x axis */
+        layout->panels[0].x.min = fmin(layout->panels[0].x.min, layout->panels[k].x.min);
+        layout->panels[0].x.max = fmax(layout->panels[0].x.max, layout->panels[k].x.max);
+    }
+    for (size_t k = 1; k < n; k++) layout->panels[k].x = layout->panels[0].x;
+}
+
+double layout_y(const struct layout_panel *panel, double value)
+{
+    const struct layout_axis *y = &panel->y;
+    double part = y->log ? log(fmax(value, 1e-300) / y->min) / log(y->max / y->min)
+                         : (value - y->min) / (y->max - y->min);
+    return panel->bottom - fmin(1, fmax(0, part)) * (panel->bottom - panel->top);
+}
+
+void layout_ends(const struct layout_panel *at, const struct plot_panel *panel, double *pixels)
+{
+    size_t n = panel->series_count;
+    for (size_t k = 0; k < n; k++) {
+        const struct plot_series *series = &panel->series[k];
+        pixels[k] = NAN;
+        for (size_t i = 0; series->label && series->kind != PLOT_BAND && i < series->n; i++)
+            if (isfinite(series->y[i]) && series->x[i] <= at->x.max)
+                pixels[k] = layout_y(at, series->y[i]);
+    }
+    /* Neighbours in height push each other apart; few labels, so many gentle rounds are cheap. */
+    for (int round = 0; round < 200; round++) {
+        bool moved = false;
+        for (size_t a = 0; a < n; a++) {
+            for (size_t b = a + 1; b < n; b++) {
+                double apart = pixels[b] - pixels[a];
+                if (!(fabs(apart) < LINE - 2)) continue; /* far enough, or NaN */
+                double push = 0.51 * (LINE - 2 - fabs(apart));
+                pixels[a] += apart >= 0 ? -push : push;
+                pixels[b] += apart >= 0 ? push : -push;
+                moved = true;
+            }
+        }
+        if (!moved) break;
+    }
+}

@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Where things stand in a plot: sizes in pixels, ranges of the data, ticks. Internal to plots. */
+#ifndef SPHPROOF_LAYOUT_H
+#define SPHPROOF_LAYOUT_H
+
+#include "plot.h"
+
+struct layout_axis {
+    bool log;
+    double min, max;
+};
+
+struct layout_panel {
+    struct layout_axis x, y;
+    double top, bottom; /* pixels from the top of the picture */
+};
+
+enum { LAYOUT_PANELS = 8, LAYOUT_FONT = 14 };
+
+struct layout {
+    int width, height;
+    double left, right; /* pixels: the panels' edges */
+    int key_columns, key_rows;
+    struct layout_panel panels[LAYOUT_PANELS];
+};
+
+/* At most LAYOUT_PANELS panels. */
+void layout_make(struct layout *layout, const struct plot *plot);
+
+/* Pixel of a value; clipped to the panel. */
+double layout_y(const struct layout_panel *panel, double value);
+
+/* Position of the labels at the ends of a panel's curves: pixels[k] for series k, moved apart where
+ * they would overlap; NaN for a series without one. */
+void layout_ends(const struct layout_panel *at, const struct plot_panel *panel, double *pixels);
+
+#endif

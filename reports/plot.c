@@ -1,0 +1,131 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "plot.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "layout.h"
+#include "process.h"
+#include "script.h"
+#include "svg.h"
+
+enum { PATIENCE = 60 }; /* seconds for one plot */
+
+static bool usable_name(const char *name)
+{
+    if (!name || !isalpha((unsigned char)*name)) return false;
+    for (; *name; name++)
+        if (!isalnum((unsigned char)*name) && *name != '_' && *name != '-') return false;
+    return true;
+}
+
+static enum plot_status draw(const struct plot *plot, enum script_terminal terminal,
+                             struct buffer *picture, char *message, size_t n)
+{
+    if (!usable_name(plot->name) || !plot->panel_count || plot->panel_count > LAYOUT_PANELS) {
+        snprintf(message, n, "a plot needs a name of letters, digits, _ and - and 1 to %d panels",
+                 LAYOUT_PANELS);
+        return PLOT_FAILED;
+    }
+    char gnuplot[] = "gnuplot", defaults[] = "-d", dash[] = "-";
+    char *const arguments[] = {gnuplot, defaults, dash, NULL};
+    struct buffer script = {0};
+    script_make(&script, plot, terminal, NULL, NULL);
+    char *bytes = buffer_take(&script);
+    if (!bytes) {
+        snprintf(message, n, "no memory for the plot %s", plot->name);
+        return PLOT_FAILED;
+    }
+    char words[400] = "";
+    enum process_status status =
+        process_filter(arguments, bytes, strlen(bytes), PATIENCE, picture, words, sizeof words);
+    free(bytes);
+    if (status == PROCESS_NOT_FOUND) {
+        snprintf(message, n, "no plot: %s (Debian, Ubuntu: package gnuplot-nox)", words);
+        return PLOT_NO_GNUPLOT;
+    }
+    if (status != PROCESS_OK || !picture->size) {
+        snprintf(message, n, "plot %s: %s", plot->name, *words ? words : "gnuplot drew nothing");
+        return PLOT_FAILED;
+    }
+    return PLOT_OK;
+}
+
+bool plot_source(const struct plot *plot, char **script, char **data)
+{
+    struct buffer output = {0}, file = {0}, to = {0};
+    buffer_format(&output, "%s.svg", plot->name);
+    buffer_format(&file, "'%s.dat'", plot->name);
+    if (output.failed || file.failed)
+        to.failed = true;
+    else
+        script_make(&to, plot, SCRIPT_SVG, output.data, file.data);
+    *script = buffer_take(&to);
+    script_data(&to, plot);
+    *data = buffer_take(&to);
+    buffer_free(&output);
+    buffer_free(&file);
+    if (*script && *data) return true;
+    free(*script);
+    free(*data);
+    *script = *data = NULL;
+    return false;
+}
+
+enum plot_status plot_svg(const struct plot *plot, char **svg, char *message, size_t n)
+{
+    *svg = NULL;
+    struct buffer raw = {0}, clean = {0};
+    enum plot_status status = draw(plot, SCRIPT_SVG, &raw, message, n);
+    if (status == PLOT_OK) {
+        if (svg_adapt(&clean, raw.data, plot->name, plot->title ? plot->title : plot->name))
+            *svg = buffer_take(&clean);
+        if (!*svg) {
+            snprintf(message, n, "plot %s: gnuplot's SVG is not understood", plot->name);
+            status = PLOT_FAILED;
+        }
+    }
+    buffer_free(&raw);
+    buffer_free(&clean);
+    return status;
+}
+
+/* A picture of its own: prolog, and the style sheet inside. */
+static enum plot_status svg_document(const struct plot *plot, struct buffer *picture, char *message,
+                                     size_t n)
+{
+    char *svg;
+    enum plot_status status = plot_svg(plot, &svg, message, n);
+    if (status != PLOT_OK) return status;
+    const char *body = strchr(svg, '\n');
+    buffer_add(picture, "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n");
+    buffer_add_bytes(picture, svg, (size_t)(body - svg));
+    buffer_format(picture, "\n<style>%s</style>", plot_css());
+    buffer_add(picture, body);
+    buffer_add(picture, "\n");
+    free(svg);
+    if (!picture->failed) return PLOT_OK;
+    snprintf(message, n, "no memory for the plot %s", plot->name);
+    return PLOT_FAILED;
+}
+
+bool plot_format_of(const char *path, enum plot_format *format)
+{
+    const char *dot = strrchr(path, '.');
+    *format = dot && !strcmp(dot, ".png") ? PLOT_PNG : PLOT_SVG;
+    return dot && (!strcmp(dot, ".svg") || !strcmp(dot, ".png"));
+}
+
+enum plot_status plot_draw(const struct plot *plot, enum plot_format format, char **bytes,
+                           size_t *size, char *message, size_t n)
+{
+    struct buffer picture = {0};
+    enum plot_status status = format == PLOT_SVG ? svg_document(plot, &picture, message, n)
+                                                 : draw(plot, SCRIPT_PNG, &picture, message, n);
+    if (status != PLOT_OK) buffer_free(&picture);
+    *size = picture.size;
+    *bytes = picture.data;
+    return status;
+}

@@ -1,0 +1,116 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Plots by gnuplot through a pipe, one style for all: colour-blind-safe, light and dark. Plain
+ * arrays in, a picture in memory out (the caller writes the file). Arrays stay the caller's. */
+#ifndef SPHPROOF_PLOT_H
+#define SPHPROOF_PLOT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+enum plot_status {
+    PLOT_OK,
+    PLOT_NO_GNUPLOT, /* gnuplot is not installed */
+    PLOT_FAILED,     /* gnuplot failed, or no memory */
+};
+
+enum plot_kind {
+    PLOT_LINES,
+    PLOT_POINTS,
+    PLOT_LINES_POINTS,
+    PLOT_ERROR_BARS, /* points with low..high */
+    PLOT_BAND        /* filled between low and high; y unused */
+};
+
+enum { PLOT_AUTO = 0, PLOT_NEUTRAL = -1 }; /* colours: automatic, text colour, or 1..PLOT_COLORS */
+enum { PLOT_COLORS = 7 };
+
+struct plot_series {
+    const char *label; /* NULL: not named */
+    enum plot_kind kind;
+    size_t n;
+    const double *x, *y;      /* a non-finite value interrupts a line */
+    const double *low, *high; /* bands and error bars only */
+    int color;                /* PLOT_AUTO: the next of the palette */
+    bool dashed;
+    double size; /* of points, 0: the usual 1; profiles of many particles use less */
+};
+
+/* Reference slope: y = y0 (x/x0)^order from x0 to x1, dashed, labelled (log-log panels). */
+struct plot_slope {
+    double x0, x1, y0, order;
+    const char *label;
+};
+
+/* A line across the panel at x = at, or at y = at if horizontal. */
+struct plot_mark {
+    double at;
+    bool horizontal;
+    const char *label; /* or NULL */
+};
+
+/* Heat map: cell (i, j) is centred on x[i], y[j] and has the value z[j * nx + i]; NaN is left
+ * empty. With categories, z is an index into them: coloured by palette and named in the key. */
+struct plot_heat {
+    size_t nx, ny;
+    const double *x, *y, *z;
+    const char *label; /* of the colour scale, with unit */
+    bool log;          /* logarithmic colour scale */
+    const char *const *categories;
+    size_t category_count;
+};
+
+enum plot_key {
+    PLOT_KEY_TOP, /* one key above the first panel */
+    PLOT_KEY_END, /* each curve is named at its right end */
+    PLOT_KEY_NONE
+};
+
+struct plot_panel {
+    const char *title;             /* or NULL */
+    const char *x_label, *y_label; /* with units; x_label of a stack is taken from the last panel */
+    bool x_log, y_log;
+    double x_min, x_max, y_min, y_max; /* min == max: from the data */
+    const double *x_ticks;             /* where log axes should have labels; NULL: automatic */
+    size_t x_tick_count;
+    enum plot_key key;
+    const struct plot_series *series;
+    size_t series_count;
+    const struct plot_slope *slopes;
+    size_t slope_count;
+    const struct plot_mark *marks;
+    size_t mark_count;
+    const struct plot_heat *heat; /* or NULL */
+};
+
+struct plot {
+    const char *name;  /* letters, digits, '_' and '-': prefixes ids, names the saved files */
+    const char *title; /* one line for people who cannot see it; also drawn if `show_title` */
+    bool show_title;
+    int width, height; /* pixels; 0: 560 and by the number of panels */
+    const struct plot_panel
+        *panels; /* stacked from top to bottom; two or more share their x axis */
+    size_t panel_count;
+};
+
+/* An <svg> element for inlining in HTML (no prolog, ids prefixed with the plot's name, colours by
+ * the classes of plot_css). *svg is malloced; on failure NULL, and message (of n bytes) says why.
+ */
+enum plot_status plot_svg(const struct plot *plot, char **svg, char *message, size_t n);
+
+enum plot_format { PLOT_SVG, PLOT_PNG };
+
+/* The format that a path's ending (.svg, .png) asks for; false: neither. */
+bool plot_format_of(const char *path, enum plot_format *format);
+
+/* A picture that stands alone: size bytes, malloced. On failure *bytes is NULL. */
+enum plot_status plot_draw(const struct plot *plot, enum plot_format format, char **bytes,
+                           size_t *size, char *message, size_t n);
+
+/* What draws the plot again: `gnuplot NAME.gp` beside NAME.dat makes NAME.svg. Both malloced;
+ * false: no memory. */
+bool plot_source(const struct plot *plot, char **script, char **data);
+
+/* The style sheet that gives inlined plots their colours in light and dark. */
+const char *plot_css(void);
+
+#endif

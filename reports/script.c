@@ -1,0 +1,393 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "script.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "layout.h"
+#include "style.h"
+
+/* In single quotes gnuplot interprets nothing; a quote is doubled. */
+static void quote(struct buffer *to, const char *string)
+{
+    buffer_add(to, "'");
+    for (const char *c = string ? string : ""; *c; c++) {
+        if (*c == '\'') buffer_add(to, "'");
+        buffer_add_bytes(to, (unsigned char)*c < ' ' ? " " : c, 1);
+    }
+    buffer_add(to, "'");
+}
+
+static void number(struct buffer *to, double value)
+{
+    if (isfinite(value))
+        buffer_format(to, " %.10g", value);
+    else
+        buffer_add(to, " NaN");
+}
+
+static double edge(const double *centres, size_t n, size_t i, int side, bool log)
+{
+    size_t j = side < 0 ? (i ? i - 1 : i + 1) : (i + 1 < n ? i + 1 : i - 1);
+    if (n < 2) return centres[0] * (1 + 0.1 * side);
+    bool inside = side < 0 ? i > 0 : i + 1 < n;
+    double half = log ? sqrt(centres[j] / centres[i]) : (centres[j] - centres[i]) / 2;
+    if (log) return inside ? centres[i] * half : centres[i] / half;
+    return inside ? centres[i] + half : centres[i] - half;
+}
+
+static void heat_data(struct buffer *to, const struct plot_panel *panel)
+{
+    const struct plot_heat *heat = panel->heat;
+    buffer_add(to, "# x y x_low x_high y_low y_high value\n");
+    for (size_t j = 0; j < heat->ny; j++) {
+        for (size_t i = 0; i < heat->nx; i++) {
+            double z = heat->z[j * heat->nx + i];
+            if (!isfinite(z)) continue;
+            const double row[] = {heat->x[i],
+                                  heat->y[j],
+                                  edge(heat->x, heat->nx, i, -1, panel->x_log),
+                                  edge(heat->x, heat->nx, i, +1, panel->x_log),
+                                  edge(heat->y, heat->ny, j, -1, panel->y_log),
+                                  edge(heat->y, heat->ny, j, +1, panel->y_log),
+                                  z};
+            for (size_t k = 0; k < sizeof row / sizeof *row; k++) number(to, row[k]);
+            buffer_add(to, "\n");
+        }
+    }
+    buffer_add(to, "\n\n");
+}
+
+void script_data(struct buffer *to, const struct plot *plot)
+{
+    for (size_t p = 0; p < plot->panel_count; p++) {
+        const struct plot_panel *panel = &plot->panels[p];
+        if (panel->heat) heat_data(to, panel);
+        for (size_t k = 0; k < panel->series_count; k++) {
+            const struct plot_series *series = &panel->series[k];
+            bool band = series->kind == PLOT_BAND, bars = series->kind == PLOT_ERROR_BARS;
+            buffer_format(to, "# x y%s: ", band || bars ? " low high" : "");
+            for (const char *c = series->label ? series->label : ""; *c; c++)
+                buffer_add_bytes(to, (unsigned char)*c < ' ' ? " " : c, 1);
+            buffer_add(to, "\n");
+            for (size_t i = 0; i < series->n; i++) {
+                number(to, series->x[i]);
+                number(to, series->y ? series->y[i] : (double)NAN);
+                if (band || bars) {
+                    number(to, series->low[i]);
+                    number(to, series->high[i]);
+                }
+                buffer_add(to, "\n");
+            }
+            if (!series->n) buffer_add(to, " NaN NaN NaN NaN\n");
+            buffer_add(to, "\n\n");
+        }
+    }
+}
+
+static const char *superscript(char *buffer, int exponent)
+{
+    static const char *const digit[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+    char *end = buffer;
+    int size = exponent < 0 ? -exponent : exponent, power = 1;
+    if (exponent < 0) end = stpcpy(end, "⁻");
+    while (size / power >= 10) power *= 10;
+    for (; power; power /= 10) end = stpcpy(end, digit[size / power % 10]);
+    return buffer;
+}
+
+/* Labels at decades; at 1, 2, 5 where there are few decades; powers where numbers get long. */
+static void log_ticks(struct buffer *to, const struct layout_axis *axis, const double *ticks,
+                      size_t n)
+{
+    double decades = log10(axis->max / axis->min);
+    const char *comma = "";
+    buffer_add(to, " (");
+    for (size_t k = 0; ticks && k < n; k++, comma = ", ")
+        buffer_format(to, "%s'%.6g' %.10g", comma, ticks[k], ticks[k]);
+    bool plain = axis->min >= 0.009 && axis->max <= 2e5;
+    int first = (int)floor(log10(axis->min)), last = (int)ceil(log10(axis->max));
+    int step = (int)fmax(1, ceil(decades / 7));
+    for (int e = first; !ticks && e <= last; e++) {
+        for (int m = 1; m < 10; m++) {
+            double value = m * pow(10, e);
+            if (value < 0.999 * axis->min || value > 1.001 * axis->max) continue;
+            bool few = decades < 1.6 && (m == 2 || m == 5 || (decades < 0.5 && m < 10));
+            char power[64];
+            if (m > 1 && !few && decades > 5) continue;
+            buffer_format(to, "%s'", comma);
+            comma = ", ";
+            if (m == 1 ? e % step == 0 : few) {
+                if (plain)
+                    buffer_format(to, "%.6g", value);
+                else if (m == 1)
+                    buffer_format(to, "10%s", superscript(power, e));
+                else
+                    buffer_format(to, "%d·10%s", m, superscript(power, e));
+            }
+            buffer_format(to, "' %.10g %d", value, m == 1 || few ? 0 : 1);
+        }
+    }
+    buffer_add(to, ")");
+}
+
+/* 1, 2 or 5 times a power of ten, so that a linear axis gets at most `most` steps. */
+static double tick_step(const struct layout_axis *range, double most)
+{
+    double rough = (range->max - range->min) / most, power = pow(10, floor(log10(rough)));
+    double mantissa = rough / power;
+    return power * (mantissa <= 1 ? 1 : mantissa <= 2 ? 2 : mantissa <= 5 ? 5 : 10);
+}
+
+/* pixels: length of the axis. */
+static void axis(struct buffer *to, char which, const struct layout_axis *range, double pixels,
+                 bool labelled, const double *ticks, size_t n)
+{
+    buffer_format(to, "%s logscale %c\n", range->log ? "set" : "unset", which);
+    buffer_format(to, "set %crange [%.10g:%.10g]\n", which, range->min, range->max);
+    buffer_format(to, "unset %ctics\nset %ctics out nomirror scale 0.6,0.3 textcolor rgb '%s'",
+                  which, which, style_colors[STYLE_plot_ink].light);
+    if (range->log)
+        log_ticks(to, range, ticks, n);
+    else
+        buffer_format(to, " %.10g", tick_step(range, fmax(2, pixels / (which == 'x' ? 75 : 30))));
+    buffer_format(to, "%s\nset format %c '%s'\n", which == 'x' ? " offset 0,0.4" : " offset 0.6,0",
+                  which, labelled ? "%g" : "");
+}
+
+/* The names of the axes stand at fixed places, whatever the length of the numbers. */
+static void axis_names(struct buffer *to, const struct layout *layout, size_t p,
+                       const struct plot_panel *panel, bool last)
+{
+    const struct layout_panel *at = &layout->panels[p];
+    const char *ink = style_colors[STYLE_plot_ink].light;
+    if (panel->y_label) {
+        buffer_add(to, "set label ");
+        quote(to, panel->y_label);
+        buffer_format(to, " at screen %.5f, screen %.5f center rotate textcolor rgb '%s'\n",
+                      12.0 / layout->width, 1 - (at->top + at->bottom) / 2 / layout->height, ink);
+    }
+    if (panel->x_label && last) {
+        buffer_add(to, "set label ");
+        quote(to, panel->x_label);
+        buffer_format(to, " at screen %.5f, screen %.5f center textcolor rgb '%s'\n",
+                      (layout->left + layout->right) / 2 / layout->width, 12.0 / layout->height,
+                      ink);
+    }
+}
+
+static void marks(struct buffer *to, const struct plot_panel *panel)
+{
+    const char *color = style_colors[STYLE_plot_axis].light;
+    for (size_t k = 0; k < panel->mark_count; k++) {
+        const struct plot_mark *mark = &panel->marks[k];
+        if (mark->horizontal)
+            buffer_format(to, "set arrow from graph 0, first %.10g to graph 1, first %.10g",
+                          mark->at, mark->at);
+        else
+            buffer_format(to, "set arrow from first %.10g, graph 0 to first %.10g, graph 1",
+                          mark->at, mark->at);
+        buffer_format(to, " nohead dashtype (4,4) linewidth 1.2 linecolor rgb '%s'\n", color);
+        if (!mark->label) continue;
+        buffer_add(to, "set label ");
+        quote(to, mark->label);
+        if (mark->horizontal)
+            buffer_format(to, " at graph 0.99, first %.10g right offset 0,0.5", mark->at);
+        else
+            buffer_format(to, " at first %.10g, graph 0.94 left offset 0.5,0", mark->at);
+        buffer_format(to, " textcolor rgb '%s'\n", color);
+    }
+    for (size_t k = 0; k < panel->slope_count; k++) {
+        const struct plot_slope *slope = &panel->slopes[k];
+        double y1 = slope->y0 * pow(slope->x1 / slope->x0, slope->order);
+        buffer_format(to,
+                      "set arrow from %.10g, %.10g to %.10g, %.10g nohead dashtype (6,4) linewidth "
+                      "1.2 linecolor rgb '%s'\n",
+                      slope->x0, slope->y0, slope->x1, y1, color);
+        if (!slope->label) continue;
+        buffer_add(to, "set label ");
+        quote(to, slope->label);
+        buffer_format(to, " at %.10g, %.10g right offset -0.6,-0.1 textcolor rgb '%s'\n", slope->x1,
+                      y1, color);
+    }
+}
+
+static void end_labels(struct buffer *to, const struct layout *layout, size_t p,
+                       const struct plot_panel *panel)
+{
+    double pixels[panel->series_count ? panel->series_count : 1];
+    layout_ends(&layout->panels[p], panel, pixels);
+    int next = 0;
+    for (size_t k = 0; k < panel->series_count; k++) {
+        const struct plot_series *series = &panel->series[k];
+        if (series->color == PLOT_AUTO) next++;
+        if (isnan(pixels[k])) continue;
+        buffer_add(to, "set label ");
+        quote(to, series->label);
+        buffer_format(to, " at screen %.5f, screen %.5f left textcolor rgb '%s'\n",
+                      (layout->right + 9) / layout->width, 1 - pixels[k] / layout->height,
+                      style_series(series->color, next));
+    }
+}
+
+/* viridis, five stops: even in lightness, so it reads in grey too. */
+static const char *const viridis =
+    "set palette defined (0 '#440154', 1 '#3b528b', 2 '#21918c', 3 '#5ec962', 4 '#fde725')\n";
+
+static const char *const next_curve = ", \\\n  ";
+
+static void heat(struct buffer *to, const struct plot_heat *heat, const char *data, size_t index)
+{
+    if (!heat->category_count)
+        buffer_format(to,
+                      "%s index %zu using 1:2:3:4:5:6:7 with boxxyerror notitle fillstyle solid "
+                      "noborder linecolor palette",
+                      data, index);
+    for (size_t c = 0; c < heat->category_count; c++) {
+        buffer_format(to,
+                      "%s%s index %zu using 1:2:3:4:5:($7 == %zu ? $6 : NaN) with boxxyerror "
+                      "fillstyle solid noborder linecolor rgb '%s' title ",
+                      c ? next_curve : "", data, index, c, style_series((int)c + 1, 0));
+        quote(to, heat->categories[c]);
+    }
+}
+
+static void curve(struct buffer *to, const struct plot_series *series, const char *data,
+                  size_t index, int next, bool named)
+{
+    static const int shapes[] = {7, 9, 5, 13, 11, 6, 8};
+    const char *color = style_series(series->color, next);
+    int shape = shapes[(series->color > 0 ? series->color - 1 : next > 0 ? next - 1 : 0) % 7];
+    double size = series->size > 0 ? series->size : 1;
+    double width = series->color == PLOT_NEUTRAL ? 1.4 : 2;
+    const char *dash = series->dashed ? "(8,5)" : "solid";
+    buffer_format(to, "%s index %zu ", data, index);
+    switch (series->kind) {
+    case PLOT_LINES:
+        buffer_format(to, "using 1:2 with lines linewidth %g dashtype %s", width, dash);
+        break;
+    case PLOT_POINTS:
+        buffer_format(to, "using 1:2 with points pointtype %d pointsize %g", shape, 0.7 * size);
+        break;
+    case PLOT_LINES_POINTS:
+        buffer_format(to,
+                      "using 1:2 with linespoints linewidth %g dashtype %s pointtype %d "
+                      "pointsize %g",
+                      width, dash, shape, 0.7 * size);
+        break;
+    case PLOT_ERROR_BARS:
+        buffer_format(to, "using 1:2:3:4 with yerrorbars linewidth 1.5 pointtype %d pointsize %g",
+                      shape, 0.7 * size);
+        break;
+    case PLOT_BAND:
+        buffer_add(to, "using 1:3:4 with filledcurves fillstyle transparent solid 0.22 noborder");
+        break;
+    }
+    buffer_format(to, " linecolor rgb '%s' ", color);
+    if (named && series->label) {
+        buffer_add(to, "title ");
+        quote(to, series->label);
+    } else {
+        buffer_add(to, "notitle");
+    }
+}
+
+static void panel_script(struct buffer *to, const struct plot *plot, const struct layout *layout,
+                         size_t p, const char *data, size_t *index)
+{
+    const struct plot_panel *panel = &plot->panels[p];
+    const struct layout_panel *at = &layout->panels[p];
+    bool last = p + 1 == plot->panel_count;
+    const char *ink = style_colors[STYLE_plot_ink].light;
+    buffer_add(to, "\nunset arrow\nunset label\n");
+    buffer_format(to, "set tmargin at screen %.5f\nset bmargin at screen %.5f\n",
+                  1 - at->top / layout->height, 1 - at->bottom / layout->height);
+    axis(to, 'x', &at->x, layout->right - layout->left, last, panel->x_ticks, panel->x_tick_count);
+    axis(to, 'y', &at->y, at->bottom - at->top, true, NULL, 0);
+    axis_names(to, layout, p, panel, last);
+    marks(to, panel);
+    if (panel->title) {
+        buffer_add(to, "set label ");
+        quote(to, panel->title);
+        buffer_format(to, " at graph 0, graph 1 left offset 0,0.7 textcolor rgb '%s'\n", ink);
+    }
+    if (p == 0 && plot->show_title && plot->title) {
+        buffer_add(to, "set label ");
+        quote(to, plot->title);
+        buffer_format(to, " at screen %.5f, screen %.5f left textcolor rgb '%s'\n",
+                      layout->left / layout->width, 1 - 16.0 / layout->height, ink);
+    }
+    if (p == 0 && layout->key_rows)
+        buffer_format(
+            to,
+            "set key at screen %.5f, screen %.5f left top horizontal Left reverse samplen "
+            "1.6 maxcols %d textcolor rgb '%s' noenhanced\n",
+            (layout->left - 14) / layout->width,
+            1 - (plot->show_title ? 28.0 : 4.0) / layout->height, layout->key_columns, ink);
+    else
+        buffer_add(to, "unset key\n");
+    if (panel->key == PLOT_KEY_END) end_labels(to, layout, p, panel);
+    if (panel->heat && !panel->heat->category_count) {
+        buffer_add(to, viridis);
+        buffer_format(to, "%s logscale cb\nset cblabel ", panel->heat->log ? "set" : "unset");
+        quote(to, panel->heat->label);
+        buffer_format(to,
+                      " textcolor rgb '%s'\nset colorbox user origin screen %.5f, screen %.5f size "
+                      "screen 0.025, screen %.5f noborder\nset cbtics textcolor rgb '%s'\n",
+                      ink, (layout->right + 12) / layout->width, 1 - at->bottom / layout->height,
+                      (at->bottom - at->top) / layout->height, ink);
+    }
+    buffer_add(to, "plot ");
+    if (panel->heat) heat(to, panel->heat, data, (*index)++);
+    int next = 0;
+    for (size_t k = 0; k < panel->series_count; k++) {
+        if (panel->series[k].color == PLOT_AUTO) next++;
+        if (k || panel->heat) buffer_add(to, next_curve);
+        curve(to, &panel->series[k], data, (*index)++, next, panel->key == PLOT_KEY_TOP);
+    }
+    if (!panel->heat && !panel->series_count) buffer_add(to, "NaN notitle");
+    buffer_add(to, "\n");
+}
+
+void script_make(struct buffer *to, const struct plot *plot, enum script_terminal terminal,
+                 const char *output, const char *data)
+{
+    struct layout layout;
+    layout_make(&layout, plot);
+    if (terminal == SCRIPT_SVG)
+        buffer_format(to,
+                      "set terminal svg size %d,%d dynamic noenhanced font 'sans-serif,%d' name ",
+                      layout.width, layout.height, LAYOUT_FONT);
+    else
+        buffer_format(to,
+                      "set terminal pngcairo size %d,%d noenhanced font 'sans,%g' linewidth 2 "
+                      "pointscale 2 background '#ffffff'\n",
+                      2 * layout.width, 2 * layout.height, 1.5 * LAYOUT_FONT);
+    if (terminal == SCRIPT_SVG) {
+        quote(to, plot->name);
+        buffer_add(to, "\n");
+    }
+    if (output) {
+        buffer_add(to, "set output ");
+        quote(to, output);
+        buffer_add(to, "\n");
+    }
+    buffer_add(to, "set encoding utf8\nset datafile missing 'NaN'\n");
+    if (!data) {
+        data = "$data";
+        buffer_add(to, "$data << END_OF_DATA\n");
+        script_data(to, plot);
+        buffer_add(to, "END_OF_DATA\n");
+    }
+    buffer_format(to,
+                  "set border 3 linecolor rgb '%s'\n"
+                  "set grid ytics linetype 1 dashtype solid linewidth 0.7 linecolor rgb '%s'\n"
+                  "set errorbars small\n"
+                  "set lmargin at screen %.5f\nset rmargin at screen %.5f\n",
+                  style_colors[STYLE_plot_axis].light, style_colors[STYLE_plot_grid].light,
+                  layout.left / layout.width, layout.right / layout.width);
+    if (plot->panel_count > 1) buffer_add(to, "set multiplot\n");
+    size_t index = 0;
+    for (size_t p = 0; p < plot->panel_count; p++) panel_script(to, plot, &layout, p, data, &index);
+    if (plot->panel_count > 1) buffer_add(to, "unset multiplot\n");
+}

@@ -1,0 +1,212 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "svg.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "style.h"
+
+struct slice {
+    const char *at;
+    size_t n;
+};
+
+struct attribute {
+    struct slice name, value;
+};
+
+enum { ATTRIBUTES = 24 };
+
+struct tag {
+    struct slice name;
+    struct attribute attributes[ATTRIBUTES];
+    size_t count;
+    bool end, empty; /* </g>, <path .../> */
+};
+
+static bool is(struct slice slice, const char *string)
+{
+    return slice.n == strlen(string) && !memcmp(slice.at, string, slice.n);
+}
+
+static const char *skip_space(const char *c)
+{
+    while (isspace((unsigned char)*c)) c++;
+    return c;
+}
+
+/* Parses the tag that starts at c ('<'); returns what follows it, NULL if it is malformed. */
+static const char *parse(const char *c, struct tag *tag)
+{
+    *tag = (struct tag){0};
+    c++;
+    if (*c == '/') tag->end = true, c++;
+    tag->name.at = c;
+    while (isalnum((unsigned char)*c) || *c == ':') c++;
+    tag->name.n = (size_t)(c - tag->name.at);
+    for (c = skip_space(c); *c && *c != '>' && *c != '/'; c = skip_space(c)) {
+        if (tag->count == ATTRIBUTES) return NULL;
+        struct attribute *attribute = &tag->attributes[tag->count++];
+        attribute->name.at = c;
+        while (*c && *c != '=' && !isspace((unsigned char)*c)) c++;
+        attribute->name.n = (size_t)(c - attribute->name.at);
+        c = skip_space(c);
+        if (*c != '=') return NULL;
+        c = skip_space(c + 1);
+        char mark = *c++;
+        if (mark != '"' && mark != '\'') return NULL;
+        attribute->value.at = c;
+        c = strchr(c, mark);
+        if (!c) return NULL;
+        attribute->value.n = (size_t)(c - attribute->value.at);
+        c++;
+    }
+    if (*c == '/') tag->empty = true, c++;
+    return *c == '>' ? c + 1 : NULL;
+}
+
+/* The style of a paint: "black", "rgb(0,114,178)", "#0072b2"; STYLE_COUNT if it is none. */
+static int style_of(struct slice paint)
+{
+    if (is(paint, "black")) return STYLE_plot_ink;
+    int r, g, b;
+    char copy[32] = "";
+    if (paint.n >= sizeof copy) return STYLE_COUNT;
+    memcpy(copy, paint.at, paint.n);
+    if (sscanf(copy, "rgb(%d,%d,%d)", &r, &g, &b) != 3) return STYLE_COUNT;
+    char hex[32];
+    snprintf(hex, sizeof hex, "#%02x%02x%02x", (unsigned)r & 255, (unsigned)g & 255,
+             (unsigned)b & 255);
+    int style = 0;
+    while (style < STYLE_COUNT && strcmp(style_colors[style].light, hex)) style++;
+    return style;
+}
+
+static void put(struct buffer *to, const char *name, struct slice value)
+{
+    buffer_format(to, " %s=\"", name);
+    buffer_add_bytes(to, value.at, value.n);
+    buffer_add(to, "\"");
+}
+
+/* One attribute; a paint of the style becomes currentColor and leaves its style in *color. */
+static void put_attribute(struct buffer *to, const struct attribute *attribute, const char *prefix,
+                          int *color)
+{
+    struct slice name = attribute->name, value = attribute->value;
+    bool paint = is(name, "fill") || is(name, "stroke");
+    int style = paint || is(name, "color") ? style_of(value) : STYLE_COUNT;
+    if (is(name, "color")) {
+        if (style < STYLE_COUNT && style != STYLE_plot_ink) *color = style;
+        return; /* the ink is inherited from the page; white is only ever a halo */
+    }
+    if (is(name, "font-family") || is(name, "class")) return;
+    if (paint && style < STYLE_COUNT) {
+        if (style != STYLE_plot_ink) *color = style;
+        value = (struct slice){"currentColor", 12};
+    }
+    if (is(name, "id")) {
+        buffer_format(to, " id=\"%s-%.*s\"", prefix, (int)value.n, value.at);
+    } else if (is(name, "xlink:href") && value.n && value.at[0] == '#') {
+        buffer_format(to, " href=\"#%s-%.*s\"", prefix, (int)value.n - 1, value.at + 1);
+    } else {
+        char copy[64];
+        snprintf(copy, sizeof copy, "%.*s", (int)name.n, name.at);
+        put(to, copy, value);
+    }
+}
+
+static void put_tag(struct buffer *to, const struct tag *tag, const char *prefix)
+{
+    int color = STYLE_COUNT;
+    buffer_format(to, "<%s%.*s", tag->end ? "/" : "", (int)tag->name.n, tag->name.at);
+    for (size_t k = 0; k < tag->count; k++) put_attribute(to, &tag->attributes[k], prefix, &color);
+    if (color < STYLE_COUNT)
+        buffer_format(to, " class=\"%s\" color=\"%s\"", style_colors[color].css,
+                      style_colors[color].light);
+    buffer_add(to, tag->empty ? "/>" : ">");
+}
+
+static void put_root(struct buffer *to, const struct tag *tag, const char *prefix,
+                     const char *title)
+{
+    buffer_add(to, "<svg class=\"plot\" role=\"img\" xmlns=\"http://www.w3.org/2000/svg\" "
+                   "font-family=\"sans-serif\" color=\"");
+    buffer_format(to, "%s\" aria-labelledby=\"%s-title\"", style_colors[STYLE_plot_ink].light,
+                  prefix);
+    for (size_t k = 0; k < tag->count; k++)
+        if (is(tag->attributes[k].name, "viewBox")) put(to, "viewBox", tag->attributes[k].value);
+    buffer_format(to, ">\n<title id=\"%s-title\">", prefix);
+    buffer_escape(to, title);
+    buffer_add(to, "</title>\n");
+}
+
+/* Groups: those without content are not written; where each started is kept to take it back. */
+enum { DEPTH = 32 };
+
+struct groups {
+    size_t start[DEPTH];   /* of the tag in the text */
+    size_t content[DEPTH]; /* just behind it */
+    size_t depth;
+};
+
+static bool is_white_use(const struct tag *tag)
+{
+    for (size_t k = 0; k < tag->count; k++)
+        if (is(tag->attributes[k].name, "color") && is(tag->attributes[k].value, "white"))
+            return is(tag->name, "use");
+    return false;
+}
+
+static bool drop_element(const struct tag *tag)
+{
+    return is(tag->name, "desc") || is(tag->name, "title") || is(tag->name, "filter");
+}
+
+bool svg_adapt(struct buffer *to, const char *raw, const char *prefix, const char *title)
+{
+    const char *c = strstr(raw, "<svg");
+    if (!c) return false;
+    struct groups groups = {0};
+    struct tag tag;
+    while (*c) {
+        if (*c != '<') { /* text content matters only in <text>, where tags have put it */
+            const char *end = strchr(c, '<');
+            size_t n = end ? (size_t)(end - c) : strlen(c);
+            if (skip_space(c) < c + n) buffer_add_bytes(to, c, n);
+            c += n;
+            continue;
+        }
+        const char *after = parse(c, &tag);
+        if (!after) return false;
+        c = after;
+        if (!tag.end && drop_element(&tag)) {
+            char end[32];
+            snprintf(end, sizeof end, "</%.*s>", (int)tag.name.n, tag.name.at);
+            c = strstr(c, end);
+            if (!c) return false;
+            c += strlen(end);
+        } else if (is(tag.name, "svg") && !tag.end) {
+            put_root(to, &tag, prefix, title);
+        } else if (is(tag.name, "g") && !tag.end) {
+            if (groups.depth == DEPTH) return false;
+            groups.start[groups.depth] = to->size;
+            put_tag(to, &tag, prefix);
+            groups.content[groups.depth++] = to->size;
+        } else if (is(tag.name, "g")) {
+            if (!groups.depth) return false;
+            groups.depth--;
+            if (to->failed) return false;
+            if (to->size == groups.content[groups.depth])
+                to->data[to->size = groups.start[groups.depth]] = '\0';
+            else
+                buffer_add(to, "</g>\n");
+        } else if (!is_white_use(&tag)) {
+            put_tag(to, &tag, prefix);
+            if (tag.end && is(tag.name, "svg")) return !to->failed;
+        }
+    }
+    return false;
+}

@@ -1,0 +1,225 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Plots: what goes into a page is well-formed, prefixed and self-contained; what can go wrong with
+ * gnuplot ends in a status. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <math.h>
+#include <signal.h>
+#include <time.h>
+
+#include "markup.h"
+#include "plot.h"
+#include "process.h"
+
+static const double x[] = {100, 200, 400, 800}, y[] = {1e-2, 5.1e-3, NAN, 1.3e-3},
+                    low[] = {9e-3, 4e-3, 2e-3, 1e-3}, high[] = {2e-2, 6e-3, 3e-3, 2e-3};
+
+static const struct plot_series series[] = {
+    {.label = "a & <b> 'c'", .kind = PLOT_LINES_POINTS, .n = 4, .x = x, .y = y},
+    {.label = "band", .kind = PLOT_BAND, .n = 4, .x = x, .low = low, .high = high},
+    {.label = "bars", .kind = PLOT_ERROR_BARS, .n = 4, .x = x, .y = low, .low = low, .high = high},
+    {.label = "nothing", .kind = PLOT_LINES, .n = 0, .x = x, .y = y},
+};
+static const struct plot_slope slope = {100, 800, 1e-2, -1, "first order"};
+static const struct plot_mark mark = {300, false, "here"};
+static const struct plot_heat heat = {4, 1, x, low, high, "rate", true, NULL, 0};
+static const struct plot_panel panels[] = {
+    {.y_label = "L1",
+     .x_log = true,
+     .y_log = true,
+     .key = PLOT_KEY_END,
+     .series = series,
+     .series_count = 4,
+     .slopes = &slope,
+     .slope_count = 1,
+     .marks = &mark,
+     .mark_count = 1},
+    {.x_label = "particles n",
+     .y_label = "y",
+     .x_log = true,
+     .key = PLOT_KEY_TOP,
+     .series = series,
+     .series_count = 4},
+};
+static const struct plot_panel map = {.x_label = "x", .y_label = "y", .heat = &heat};
+
+static const struct plot stack = {"stack", "two & panels", true, 0, 0, panels, 2};
+static const struct plot heated = {"heated", "a map", false, 0, 0, &map, 1};
+
+static bool have_gnuplot(void)
+{
+    struct buffer output = {0};
+    char message[256], program[] = "gnuplot", version[] = "--version";
+    char *const arguments[] = {program, version, NULL};
+    enum process_status status =
+        process_filter(arguments, "", 0, 20, &output, message, sizeof message);
+    buffer_free(&output);
+    return status == PROCESS_OK;
+}
+
+static size_t occurrences(const char *text, const char *what)
+{
+    size_t n = 0;
+    for (; (text = strstr(text, what)); text += strlen(what)) n++;
+    return n;
+}
+
+static void inline_svg(void **state)
+{
+    (void)state;
+    if (!have_gnuplot()) skip();
+    const struct plot *const plots[] = {&stack, &heated};
+    for (size_t k = 0; k < 2; k++) {
+        char *svg, message[512] = "", fault[256] = "", prefix[64];
+        enum plot_status status = plot_svg(plots[k], &svg, message, sizeof message);
+        if (status) fail_msg("%s", message);
+        assert_int_equal(strncmp(svg, "<svg ", 5), 0);
+        if (!markup_well_formed(svg, fault, sizeof fault)) fail_msg("%s", fault);
+        assert_null(markup_network(svg));
+        snprintf(prefix, sizeof prefix, " id=\"%s-", plots[k]->name);
+        assert_true(occurrences(svg, " id=\"") > 3);
+        assert_int_equal(occurrences(svg, " id=\""), occurrences(svg, prefix));
+        snprintf(prefix, sizeof prefix, " href=\"#%s-", plots[k]->name);
+        assert_int_equal(occurrences(svg, "href="), occurrences(svg, prefix));
+        /* text and axes take the page's colours */
+        assert_null(strstr(svg, "\"black\""));
+        assert_non_null(strstr(svg, "fill=\"currentColor\""));
+        free(svg);
+    }
+}
+
+static void documents(void **state)
+{
+    (void)state;
+    if (!have_gnuplot()) skip();
+    char *bytes, message[512] = "", fault[256] = "";
+    size_t size;
+    if (plot_draw(&stack, PLOT_SVG, &bytes, &size, message, sizeof message))
+        fail_msg("%s", message);
+    assert_int_equal(size, strlen(bytes));
+    if (!markup_well_formed(bytes, fault, sizeof fault)) fail_msg("%s", fault);
+    assert_non_null(strstr(bytes, "a &amp; &lt;b"));
+    assert_non_null(strstr(bytes, "prefers-color-scheme"));
+    free(bytes);
+    if (plot_draw(&heated, PLOT_PNG, &bytes, &size, message, sizeof message))
+        fail_msg("%s", message);
+    assert_true(size > 1000 && !memcmp(bytes, "\x89PNG", 4));
+    free(bytes);
+}
+
+/* The saved script draws the same picture from the saved data. */
+static void source(void **state)
+{
+    (void)state;
+    char *script, *data;
+    assert_true(plot_source(&stack, &script, &data));
+    assert_non_null(strstr(script, "'stack.dat' index 7"));
+    assert_non_null(strstr(script, "set output 'stack.svg'"));
+    assert_non_null(strstr(data, "800 0.0013"));
+    assert_non_null(strstr(data, "400 NaN"));
+    free(script);
+    free(data);
+}
+
+static void formats(void **state)
+{
+    (void)state;
+    enum plot_format format;
+    assert_true(plot_format_of("a/b.svg", &format) && format == PLOT_SVG);
+    assert_true(plot_format_of("b.c.png", &format) && format == PLOT_PNG);
+    assert_false(plot_format_of("svg", &format));
+    assert_false(plot_format_of("a.pdf", &format));
+}
+
+static enum process_status shell(const char *command, const char *input, size_t size, int seconds,
+                                 struct buffer *output, char *message, size_t n)
+{
+    char sh[] = "sh", c[] = "-c";
+    char *copy = strdup(command);
+    char *const arguments[] = {sh, c, copy, NULL};
+    enum process_status status =
+        process_filter(arguments, input, size, seconds, output, message, n);
+    free(copy);
+    return status;
+}
+
+/* A filter that answers before it has read, that reads nothing, that fails, dies, hangs. */
+static void processes(void **state)
+{
+    (void)state;
+    const size_t size = 1 << 20;
+    char *input = malloc(size), message[512];
+    assert_non_null(input);
+    memset(input, 'a', size);
+    struct buffer output = {0};
+    assert_int_equal(shell("cat", input, size, 60, &output, message, sizeof message), PROCESS_OK);
+    assert_int_equal(output.size, size);
+    buffer_free(&output);
+    assert_int_equal(shell("exit 0", input, size, 60, &output, message, sizeof message),
+                     PROCESS_OK);
+    assert_int_equal(
+        shell("echo no 1>&2; exit 3", input, size, 60, &output, message, sizeof message),
+        PROCESS_FAILED);
+    assert_non_null(strstr(message, "status 3"));
+    assert_non_null(strstr(message, "no"));
+    assert_int_equal(shell("kill -9 $$", input, size, 60, &output, message, sizeof message),
+                     PROCESS_FAILED);
+    assert_non_null(strstr(message, "signal 9"));
+    time_t before = time(NULL);
+    assert_int_equal(shell("exec sleep 50", input, size, 1, &output, message, sizeof message),
+                     PROCESS_FAILED);
+    assert_true(time(NULL) - before < 20);
+    assert_non_null(strstr(message, "no answer"));
+    char missing[] = "no-such-program-anywhere";
+    char *const arguments[] = {missing, NULL};
+    assert_int_equal(process_filter(arguments, "", 0, 5, &output, message, sizeof message),
+                     PROCESS_NOT_FOUND);
+    buffer_free(&output);
+    free(input);
+    /* nothing of this has changed what this process does with a broken pipe */
+    sigset_t mask;
+    sigprocmask(SIG_BLOCK, NULL, &mask);
+    assert_false(sigismember(&mask, SIGPIPE));
+}
+
+static void missing_gnuplot(void **state)
+{
+    (void)state;
+    char *path = strdup(getenv("PATH") ? getenv("PATH") : ""), *svg, message[512];
+    setenv("PATH", "/nowhere", 1);
+    enum plot_status status = plot_svg(&stack, &svg, message, sizeof message);
+    setenv("PATH", path, 1);
+    free(path);
+    assert_int_equal(status, PLOT_NO_GNUPLOT);
+    assert_null(svg);
+    assert_non_null(strstr(message, "gnuplot-nox"));
+}
+
+/* The judge of the other tests must itself be able to say no. */
+static void markup(void **state)
+{
+    (void)state;
+    char fault[256];
+    assert_true(markup_well_formed("<!doctype html><a b='c'>&amp;<d/></a>", fault, sizeof fault));
+    static const char *const bad[] = {
+        "<a>",  "<a></b>",     "<a b=c></a>",    "<a b='1' b='2'/>",          "<a>&</a>",
+        "</a>", "<a b='></a>", "<a><b></a></b>", "<a id='x'><b id='x'/></a>", "<a b></a>"};
+    for (size_t k = 0; k < sizeof bad / sizeof *bad; k++)
+        if (markup_well_formed(bad[k], fault, sizeof fault)) fail_msg("accepted: %s", bad[k]);
+    assert_non_null(markup_network("<img src=\"https://example.org/\"/>"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(inline_svg), cmocka_unit_test(documents),
+        cmocka_unit_test(source),     cmocka_unit_test(formats),
+        cmocka_unit_test(processes),  cmocka_unit_test(missing_gnuplot),
+        cmocka_unit_test(markup),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
