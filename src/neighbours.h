@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Who is near whom, in 1, 2 or 3 dimensions, in an open or a periodic domain. Points are sorted
+ * along a Hilbert curve and cut into blocks of NEIGHBOURS_BLOCK; bounding boxes of blocks, of eight
+ * blocks, and so on make a tree. Unlike a grid of cells it has no cell width to choose: clustered
+ * clouds, coincident points, any support radius and coordinates far from the origin need no special
+ * case. */
+#ifndef SPHPROOF_NEIGHBOURS_H
+#define SPHPROOF_NEIGHBOURS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "status.h"
+
+enum { NEIGHBOURS_BLOCK = 8, NEIGHBOURS_LEVELS = 12 };
+
+struct points { /* arrays belong to the caller */
+    int dim;    /* 1, 2, 3 */
+    size_t n;
+    const double *x[3]; /* n each */
+    bool periodic;      /* in all dim directions, lo <= x < hi; points outside are wrapped */
+    double lo[3], hi[3];
+};
+
+struct neighbours {
+    int dim;
+    size_t n, blocks;
+    double *x[3];    /* blocks * NEIGHBOURS_BLOCK each: sorted positions, the last one repeated */
+    uint32_t *order; /* n: sorted position -> the caller's index */
+    int levels;      /* level 0: the blocks; the last level has one box */
+    size_t count[NEIGHBOURS_LEVELS];
+    double *lo[NEIGHBOURS_LEVELS], *hi[NEIGHBOURS_LEVELS]; /* count * dim: corners of the boxes */
+    bool periodic;
+    double length[3]; /* of the periodic box */
+};
+
+/* Points that may lie within a radius of some block; grows as needed. Zero-initialise. */
+struct candidates {
+    size_t n, capacity;
+    double *x[3]; /* periodic images already shifted: differences need no further thought */
+    uint32_t *j;  /* sorted positions */
+};
+
+/* STATUS_BAD_INPUT: a coordinate is not finite (the message names the point), the box is empty or
+ * there are more than 2^31 points; STATUS_ENVIRONMENT: no memory. *neighbours is NULL then. */
+enum status neighbours_create(const struct points *points, struct neighbours **neighbours,
+                              struct error *error);
+void neighbours_destroy(struct neighbours *neighbours);
+
+/* Replaces the candidates by all points (periodic: all their images) within radius of the bounding
+ * box of a block, and others; in an order that depends on the points alone.
+ * STATUS_BAD_INPUT: the radius exceeds eight periodic boxes. */
+enum status neighbours_gather(const struct neighbours *neighbours, size_t block, double radius,
+                              struct candidates *candidates, struct error *error);
+void neighbours_candidates_free(struct candidates *candidates);
+
+#endif

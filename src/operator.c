@@ -1,0 +1,374 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "operator.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "kernel_loop.h"
+#include "clones.h"
+#include "matrix.h"
+
+#define OPERATOR(name, vectors, difference, corrected, label, paper)                               \
+    static const struct operator operator_##name = {                                               \
+        {#name, label, paper}, vectors, difference, corrected};
+#include "operators.def"
+#undef OPERATOR
+
+static const struct member *const members[] = {
+#define OPERATOR(name, ...) &operator_##name.member,
+#include "operators.def"
+#undef OPERATOR
+};
+
+const struct family operator_family = {"operators", "gradient operators on a cloud of points",
+                                       members, sizeof members / sizeof *members};
+
+const char *operator_state_name(enum operator_state state)
+{
+    static const char *const names[] = {"ok", "too_few_neighbours", "ill_conditioned", "singular"};
+    return names[state];
+}
+
+/* Sums run in LANES partial sums whatever the instruction set, so that bits do not depend on it. */
+enum { LANES = 8 };
+typedef double lanes __attribute__((vector_size(LANES * sizeof(double)), aligned(8), may_alias));
+
+#define LANES_SUM(s) (((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7])))
+
+/* One thread's arrays for the neighbours of one point, filled up to a multiple of LANES with
+ * neighbours of no weight. Lengths are in units of h. */
+struct work {
+    struct candidates candidates;
+    size_t capacity;
+    double *memory;
+    double *distance2, *x[3], *q, *v, *w, *dw, *p[3], *f;
+    uint32_t *list, *j;
+};
+enum { WORK_ARRAYS = 12 };
+
+struct task {
+    const struct operator_settings *settings;
+    const struct neighbours *neighbours;
+    struct kernel_loops loops;
+    size_t fields;
+    double *sorted;           /* (2 + fields) * n: volume, h, fields, in sorted order */
+    const double *volume, *h; /* into sorted */
+    double *const *gradient;
+    struct operator_point *point;
+};
+
+static bool work_reserve(struct work *work)
+{
+    const size_t need = work->candidates.n + LANES;
+    if (need <= work->capacity) return true;
+    const size_t n = work->candidates.capacity + LANES;
+    free(work->memory), free(work->list), free(work->j);
+    work->memory = malloc(WORK_ARRAYS * n * sizeof(double));
+    work->list = malloc(n * sizeof *work->list);
+    work->j = malloc(n * sizeof *work->j);
+    work->capacity = 0;
+    if (!work->memory || !work->list || !work->j) return false;
+    double **const arrays[WORK_ARRAYS] = {&work->distance2, &work->x[0], &work->x[1], &work->x[2],
+                                          &work->q,         &work->v,    &work->w,    &work->dw,
+                                          &work->p[0],      &work->p[1], &work->p[2], &work->f};
+    for (size_t a = 0; a < WORK_ARRAYS; a++) *arrays[a] = work->memory + a * n;
+    work->capacity = n;
+    return true;
+}
+
+static void work_free(struct work *work)
+{
+    neighbours_candidates_free(&work->candidates);
+    free(work->memory), free(work->list), free(work->j);
+}
+
+/* Fills list, j, x, q, v with the neighbours of a point; returns their number with the filling.
+ * *inside: those with r < h. */
+ALWAYS_INLINE size_t select_neighbours(int dim, const struct task *task, struct work *work,
+                                       const double *at, double h, uint32_t self, uint32_t *inside)
+{
+    const struct candidates *c = &work->candidates;
+    const double *restrict cx = c->x[0], *restrict cy = c->x[1], *restrict cz = c->x[2];
+    double *restrict distance2 = work->distance2;
+#pragma omp simd
+    for (size_t k = 0; k < c->n; k++) {
+        const double x = cx[k] - at[0], y = dim > 1 ? cy[k] - at[1] : 0,
+                     z = dim > 2 ? cz[k] - at[2] : 0;
+        distance2[k] = dim == 1 ? x * x : dim == 2 ? x * x + y * y : x * x + y * y + z * z;
+    }
+    const double limit = h * h * (1 + 1e-12);
+    uint32_t *restrict list = work->list;
+    size_t n = 0;
+    for (size_t k = 0; k < c->n; k++) { /* no branch: the append costs the same, in or out */
+        list[n] = (uint32_t)k;
+        n += distance2[k] > limit ? 0u : 1u;
+    }
+    const double inverse = 1 / h;
+    const double *restrict volume = task->volume;
+    double *restrict wx = work->x[0], *restrict wy = work->x[1], *restrict wz = work->x[2],
+                     *restrict q = work->q, *restrict v = work->v;
+    uint32_t *restrict j = work->j, count = 0;
+    for (size_t m = 0; m < n; m++) {
+        const uint32_t k = list[m];
+        const double r = sqrt(distance2[k]);
+        wx[m] = (cx[k] - at[0]) * inverse;
+        if (dim > 1) wy[m] = (cy[k] - at[1]) * inverse;
+        if (dim > 2) wz[m] = (cz[k] - at[2]) * inverse;
+        q[m] = r * inverse;
+        count += r < h;
+        j[m] = c->j[k];
+        v[m] = volume[j[m]];
+    }
+    *inside = count;
+    for (; n % (size_t)LANES; n++) {
+        for (int a = 0; a < dim; a++) work->x[a][n] = 0;
+        q[n] = 1, v[n] = 0, j[n] = self;
+    }
+    return n;
+}
+
+/* sum a_m b_m */
+ALWAYS_INLINE double sum_products(size_t n, const double *a, const double *b)
+{
+    lanes s = {0};
+    for (size_t m = 0; m < n; m += LANES) s += *(const lanes *)(a + m) * *(const lanes *)(b + m);
+    return LANES_SUM(s);
+}
+
+ALWAYS_INLINE void sum_vector(int dim, size_t n, double *const *p, const double *f, double *sum)
+{
+    lanes s[3] = {{0}};
+    for (size_t m = 0; m < n; m += LANES)
+        for (int a = 0; a < dim; a++) s[a] += *(const lanes *)(p[a] + m) * *(const lanes *)(f + m);
+    for (int a = 0; a < dim; a++) sum[a] = LANES_SUM(s[a]);
+}
+
+/* sum p (x) x: row p, column x */
+ALWAYS_INLINE void sum_matrix(int dim, size_t n, double *const *p, double *const *x, double *sum)
+{
+    lanes s[9] = {{0}};
+    for (size_t m = 0; m < n; m += LANES)
+        for (int a = 0; a < dim; a++)
+            for (int b = 0; b < dim; b++)
+                s[a * dim + b] += *(const lanes *)(p[a] + m) * *(const lanes *)(x[b] + m);
+    for (int a = 0; a < dim * dim; a++) sum[a] = LANES_SUM(s[a]);
+}
+
+/* p = V x w */
+ALWAYS_INLINE void position_vectors(int dim, size_t n, struct work *work)
+{
+    for (int a = 0; a < dim; a++) {
+        double *restrict p = work->p[a];
+        const double *restrict x = work->x[a], *restrict v = work->v, *restrict w = work->w;
+#pragma omp simd
+        for (size_t m = 0; m < n; m++) p[m] = v[m] * w[m] * x[m];
+    }
+}
+
+/* p = -V (x/q) dw/dq */
+ALWAYS_INLINE void gradient_vectors(int dim, size_t n, struct work *work)
+{
+    for (int a = 0; a < dim; a++) {
+        double *restrict p = work->p[a];
+        const double *restrict x = work->x[a], *restrict v = work->v, *restrict dw = work->dw,
+                               *restrict q = work->q;
+#pragma omp simd
+        for (size_t m = 0; m < n; m++) p[m] = q[m] > 0 ? -v[m] * dw[m] * (x[m] / q[m]) : 0;
+    }
+}
+
+/* From V grad w to V grad (w/S) = (V grad w - (V w/S) sum V grad w)/S. */
+ALWAYS_INLINE void normalise_vectors(int dim, size_t n, struct work *work)
+{
+    const double *restrict v = work->v, *restrict w = work->w;
+    double S = sum_products(n, v, w);
+    for (int a = 0; a < dim; a++) {
+        double *restrict p = work->p[a];
+        lanes s = {0};
+        for (size_t m = 0; m < n; m += LANES) s += *(const lanes *)(p + m);
+        const double mean = LANES_SUM(s) / S;
+#pragma omp simd
+        for (size_t m = 0; m < n; m++) p[m] = (p[m] - v[m] * w[m] * mean) / S;
+    }
+}
+
+ALWAYS_INLINE void field_values(size_t n, const struct work *work, const double *restrict f,
+                                double origin)
+{
+    const uint32_t *restrict j = work->j;
+    double *restrict values = work->f;
+    for (size_t m = 0; m < n; m++) values[m] = f[j[m]] - origin;
+}
+
+/* One point; s: its sorted position. Returns the number of its neighbours. */
+ALWAYS_INLINE uint32_t point_gradient(int dim, const struct task *task, struct work *work, size_t s)
+{
+    const struct neighbours *nb = task->neighbours;
+    const struct operator* operator= task->settings->operator;
+    const struct kernel *kernel = task->settings->kernel;
+    const double h = task->h[s],
+                 at[3] = {nb->x[0][s], dim > 1 ? nb->x[1][s] : 0, dim > 2 ? nb->x[2][s] : 0};
+    const bool diagnosed = task->point != NULL;
+    uint32_t inside;
+    const size_t n = select_neighbours(dim, task, work, at, h, (uint32_t)s, &inside);
+    double matrix[9], inverse[9] = {0};
+
+    if (operator->pair_vector != PAIR_GRADIENT || diagnosed)
+        task->loops.w(kernel, n, work->q, work->w);
+    if (diagnosed && !operator->corrected) {
+        position_vectors(dim, n, work);
+        sum_matrix(dim, n, work->p, work->x, matrix);
+    }
+    if (operator->pair_vector == PAIR_POSITION) {
+        position_vectors(dim, n, work);
+    } else {
+        task->loops.dw(kernel, n, work->q, work->dw);
+        gradient_vectors(dim, n, work);
+        if (operator->pair_vector == PAIR_NORMALISED) normalise_vectors(dim, n, work);
+    }
+    double factor = 1 / h;
+    bool invertible = true;
+    if (operator->corrected) {
+        sum_matrix(dim, n, work->p, work->x, matrix);
+        invertible = matrix_invert(dim, matrix, inverse);
+    } else if (operator->pair_vector != PAIR_NORMALISED) { /* W = C h^-d w; x is in units of h */
+        factor *= kernel->constant[dim];
+        for (int a = 0; a < dim; a++) factor /= h;
+        if (operator->pair_vector == PAIR_POSITION) factor *= h * h;
+    }
+
+    const size_t i = nb->order[s];
+    for (size_t k = 0; k < task->fields; k++) {
+        const double *f = task->sorted + (2 + k) * nb->n;
+        double sum[3];
+        field_values(n, work, f, operator->difference ? f[s] : 0);
+        sum_vector(dim, n, work->p, work->f, sum);
+        for (int a = 0; a < dim; a++) {
+            double g = operator->corrected ? 0 : sum[a];
+            for (int b = 0; operator->corrected && b<dim; b++) g += inverse[a * dim + b] * sum[b];
+            task->gradient[k * (size_t)dim + (size_t)a][i] = invertible ? g * factor : nan("");
+        }
+    }
+    if (diagnosed) {
+        struct operator_point *point = &task->point[i];
+        point->neighbours = inside;
+        point->condition = matrix_condition(dim, matrix);
+        if (!operator->corrected) invertible = matrix_invert(dim, matrix, inverse);
+        point->state = inside < (uint32_t)dim + 1                      ? OPERATOR_TOO_FEW_NEIGHBOURS
+                       : !invertible                                   ? OPERATOR_SINGULAR
+                       : !(point->condition <= OPERATOR_CONDITION_MAX) ? OPERATOR_ILL_CONDITIONED
+                                                                       : OPERATOR_OK;
+    }
+    return inside;
+}
+
+ALWAYS_INLINE uint64_t block_gradients(int dim, const struct task *task, struct work *work,
+                                       size_t first, size_t end)
+{
+    uint64_t pairs = 0;
+    for (size_t s = first; s < end; s++) pairs += point_gradient(dim, task, work, s);
+    return pairs;
+}
+
+#define BLOCK(dim)                                                                                 \
+    CLONES static uint64_t block_##dim(const struct task *task, struct work *work, size_t first,   \
+                                       size_t end)                                                 \
+    {                                                                                              \
+        return block_gradients(dim, task, work, first, end);                                       \
+    }
+BLOCK(1)
+BLOCK(2)
+BLOCK(3)
+
+static enum status gradients_of_block(const struct task *task, struct work *work, size_t block,
+                                      uint64_t *pairs, struct error *error)
+{
+    static uint64_t (*const stamps[])(const struct task *, struct work *, size_t,
+                                      size_t) = {block_1, block_2, block_3};
+    const struct neighbours *nb = task->neighbours;
+    const size_t first = block * NEIGHBOURS_BLOCK;
+    const size_t end = first + NEIGHBOURS_BLOCK < nb->n ? first + NEIGHBOURS_BLOCK : nb->n;
+    double radius = 0;
+    for (size_t s = first; s < end; s++)
+        if (task->h[s] > radius) radius = task->h[s];
+    const enum status status = neighbours_gather(nb, block, radius, &work->candidates, error);
+    if (status) return status;
+    if (!work_reserve(work))
+        return error_set(error, STATUS_ENVIRONMENT, "no memory for neighbours");
+    *pairs += stamps[nb->dim - 1](task, work, first, end);
+    return STATUS_OK;
+}
+
+static enum status run(const struct task *task, uint64_t *pairs, struct error *error)
+{
+    enum status status = STATUS_OK;
+    uint64_t total = 0;
+    const ptrdiff_t blocks = (ptrdiff_t)task->neighbours->blocks;
+#pragma omp parallel num_threads(task->settings->threads) reduction(+ : total)
+    {
+        struct work work = {0};
+#pragma omp for schedule(dynamic, 16)
+        for (ptrdiff_t b = 0; b < blocks; b++) {
+            struct error here;
+            const enum status outcome = gradients_of_block(task, &work, (size_t)b, &total, &here);
+            if (outcome) {
+#pragma omp critical
+                {
+                    status = outcome;
+                    if (error) *error = here;
+                }
+            }
+        }
+        work_free(&work);
+    }
+    if (pairs) *pairs = total;
+    return status;
+}
+
+static enum status check(const struct cloud *cloud, struct error *error)
+{
+    for (size_t i = 0; i < cloud->points.n; i++) {
+        if (!(cloud->h[i] > 0 && isfinite(cloud->h[i])))
+            return error_set(error, STATUS_BAD_INPUT,
+                             "point %zu: support radius h = %g; it must be positive", i,
+                             cloud->h[i]);
+        if (!(cloud->volume[i] > 0 && isfinite(cloud->volume[i])))
+            return error_set(error, STATUS_BAD_INPUT, "point %zu: volume = %g; it must be positive",
+                             i, cloud->volume[i]);
+    }
+    return STATUS_OK;
+}
+
+enum status operator_apply(const struct operator_settings *settings, const struct cloud *cloud,
+                           size_t fields, const double *const *f, double *const *gradient,
+                           struct operator_point *point, uint64_t *pairs, struct error *error)
+{
+    struct neighbours *nb;
+    enum status status = check(cloud, error);
+    if (pairs) *pairs = 0;
+    if (status) return status;
+    if ((status = neighbours_create(&cloud->points, &nb, error))) return status;
+    const size_t n = nb->n;
+    struct task task = {.settings = settings,
+                        .neighbours = nb,
+                        .loops = kernel_loop_find(settings->kernel, nb->dim, !settings->unstamped),
+                        .fields = fields,
+                        .sorted = malloc((2 + fields) * (n + 1) * sizeof(double)),
+                        .gradient = gradient,
+                        .point = point};
+    if (task.sorted) {
+        task.volume = task.sorted;
+        task.h = task.sorted + n;
+        for (size_t k = 0; k < 2 + fields; k++) {
+            const double *from = k == 0 ? cloud->volume : k == 1 ? cloud->h : f[k - 2];
+            for (size_t s = 0; s < n; s++) task.sorted[k * n + s] = from[nb->order[s]];
+        }
+        status = run(&task, pairs, error);
+    } else {
+        status = error_set(error, STATUS_ENVIRONMENT, "no memory for %zu fields of %zu points",
+                           fields, n);
+    }
+    free(task.sorted);
+    neighbours_destroy(nb);
+    return status;
+}

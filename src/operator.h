@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Gradient operators on a cloud of points: an estimate of grad f at r_i from f_j and V_j of the
+ * points with |r_j - r_i| < h_i, in 1, 2 and 3 dimensions. With x = r_j - r_i, W = W(|x|, h_i):
+ *
+ *   grad f = A sum_j V_j (f_j - [f_i]) p_j,   A = 1 or (sum_j V_j p_j (x) x)^-1,
+ *
+ * where the pair vector p_j is grad_i W, x W, or the gradient of the kernel normalised by
+ * S = sum V W; all sums include j = i. The five operators are five such choices (operators.def);
+ * the factor of W cancels where A is an inverse. For f linear with slope a, sum V (f_j - f_i) p =
+ * (sum V p (x) x) a, which places the indices of A: the row belongs to x, the column to p. */
+#ifndef SPHPROOF_OPERATOR_H
+#define SPHPROOF_OPERATOR_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "family.h"
+#include "kernel.h"
+#include "neighbours.h"
+
+enum pair_vector {
+    PAIR_GRADIENT,   /* grad_i W = -(x/|x|) dW/dr */
+    PAIR_POSITION,   /* x W */
+    PAIR_NORMALISED, /* (grad_i W - (W/S) sum_k V_k grad_i W_k)/S */
+};
+
+struct operator
+{
+    struct member member;
+    enum pair_vector pair_vector;
+    bool difference; /* f_j - f_i; normalised vectors sum to 0, there it only saves digits */
+    bool corrected;  /* A is the inverse matrix */
+};
+
+extern const struct family operator_family;
+
+enum operator_state {
+    OPERATOR_OK,
+    OPERATOR_TOO_FEW_NEIGHBOURS, /* fewer than dim + 1, the point itself included */
+    OPERATOR_ILL_CONDITIONED,    /* condition above OPERATOR_CONDITION_MAX */
+    OPERATOR_SINGULAR,           /* no inverse in double precision */
+};
+#define OPERATOR_CONDITION_MAX 1e6 /* beyond, a gradient keeps fewer than ten digits */
+
+struct operator_point {
+    uint32_t neighbours; /* points with |x| < h, itself (and periodic images) included */
+    enum operator_state state;
+    double condition; /* 2-norm, of sum V p (x) x; uncorrected operators: of T = sum V W x (x) x */
+};
+
+struct cloud { /* arrays of n, the caller's */
+    struct points points;
+    const double *volume; /* > 0 */
+    const double *h;      /* support radius, > 0 */
+};
+
+struct operator_settings {
+    const struct operator* operator;
+    const struct kernel *kernel;
+    bool unstamped; /* kernel through its function pointers: the oracle of the stamped loops */
+    int threads;    /* >= 1; the result does not depend on it */
+};
+
+/* Gradients of `fields` fields at once: f[k][i] at point i, component a goes to
+ * gradient[k * dim + a][i]. A point whose matrix has no inverse gets NaN if the operator needs one.
+ * point: n, or NULL where nobody asks (that is cheaper); pairs: number of pairs summed, or NULL.
+ * STATUS_BAD_INPUT: h, volume or a coordinate out of range (the message names the point);
+ * STATUS_ENVIRONMENT: no memory. */
+enum status operator_apply(const struct operator_settings *settings, const struct cloud *cloud,
+                           size_t fields, const double *const *f, double *const *gradient,
+                           struct operator_point *point, uint64_t *pairs, struct error *error);
+
+/* "ok", "too_few_neighbours", "ill_conditioned", "singular" */
+const char *operator_state_name(enum operator_state state);
+
+#endif

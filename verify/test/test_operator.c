@@ -1,0 +1,237 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Gradient operators against brute force in long double; stamped against unstamped, threads, and
+ * clouds that invite trouble. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "clouds.h"
+#include "naive.h"
+#include "near.h"
+
+enum { FIELDS = 2 };
+
+struct computed {
+    double *gradient[FIELDS * 3], *f[FIELDS];
+    struct operator_point *point;
+    uint64_t pairs;
+};
+
+static double *numbers(size_t n)
+{
+    double *x = calloc(n + 1, sizeof *x);
+    assert_non_null(x);
+    return x;
+}
+
+static void compute(const struct operator_settings *settings, const struct cloud *cloud,
+                    struct computed *out)
+{
+    const size_t n = cloud->points.n, dim = (size_t)cloud->points.dim;
+    struct error error = {0};
+    for (size_t k = 0; k < FIELDS; k++) out->f[k] = numbers(n);
+    for (size_t k = 0; k < FIELDS * 3; k++) out->gradient[k] = numbers(n);
+    for (size_t i = 0; i < n; i++) {
+        double phase = 0.37;
+        for (size_t a = 0; a < dim; a++)
+            phase += (2.385 - 0.71 * (double)a) * cloud->points.x[a][i];
+        out->f[0][i] = sin(phase) + 3.1415;
+        out->f[1][i] = phase * phase - 0.21 * phase;
+    }
+    assert_non_null(out->point = calloc(n + 1, sizeof *out->point));
+    const enum status status =
+        operator_apply(settings, cloud, FIELDS, (const double *const *)out->f, out->gradient,
+                       out->point, &out->pairs, &error);
+    if (status) fail_msg("%s", error.message);
+}
+
+static void release(struct computed *c)
+{
+    for (size_t k = 0; k < FIELDS; k++) free(c->f[k]);
+    for (size_t k = 0; k < FIELDS * 3; k++) free(c->gradient[k]);
+    free(c->point);
+}
+
+static const struct operator* operator_at(size_t o)
+{
+    return (const struct operator*)operator_family.members[o];
+}
+
+static struct kernel kernel_named(const char *name)
+{
+    struct kernel kernel;
+    assert_int_equal(kernel_select(&kernel, name, 5, NULL), STATUS_OK);
+    return kernel;
+}
+
+/* Largest difference of the gradients, in units of |f|/h. */
+static double departure(const struct operator_settings *settings, const struct cloud *cloud,
+                        const struct computed *c)
+{
+    double worst = 0;
+    const int dim = cloud->points.dim;
+    for (size_t k = 0; k < FIELDS; k++) {
+        double scale = 0;
+        for (size_t i = 0; i < cloud->points.n; i++) scale = fmax(scale, fabs(c->f[k][i]));
+        for (size_t i = 0; i < cloud->points.n; i++) {
+            double exact[3];
+            naive_gradient(settings->operator, settings->kernel, NAIVE_NONE, cloud, c->f[k], i,
+                           exact);
+            if (!(c->point[i].condition < 1e8)) continue;
+            for (int a = 0; a < dim; a++) {
+                const double error =
+                    fabs(c->gradient[k * (size_t)dim + (size_t)a][i] - exact[a]) * cloud->h[i];
+                if (!(error / scale <= worst)) worst = error / scale;
+            }
+        }
+    }
+    return worst;
+}
+
+static void test_brute_force(void **state)
+{
+    (void)state;
+    const size_t sides[] = {0, 97, 13, 6};
+    for (int dim = 1; dim <= 3; dim++)
+        for (size_t o = 0; o < operator_family.n; o++)
+            for (size_t k = 0; k < kernel_family.n; k++) {
+                const struct kernel kernel = kernel_named(kernel_family.members[k]->name);
+                const struct clouds_settings how = {
+                    (enum clouds_kind)((o + k) % CLOUDS_KINDS), dim, sides[dim], 0.3, 2.7, 11 + k};
+                struct clouds_cloud cloud;
+                struct computed c;
+                assert_int_equal(clouds_make(&how, &cloud, NULL), STATUS_OK);
+                const struct operator_settings settings = {operator_at(o), &kernel, false, 1};
+                compute(&settings, &cloud.cloud, &c);
+                near_below(departure(&settings, &cloud.cloud, &c), 1e-11);
+                assert_true(c.pairs > cloud.cloud.points.n);
+                release(&c);
+                clouds_free(&cloud);
+            }
+}
+
+/* The same bits, whatever the number of threads; the unstamped loop agrees to round-off. */
+static void test_same_result(void **state)
+{
+    (void)state;
+    for (int dim = 1; dim <= 3; dim++)
+        for (size_t o = 0; o < operator_family.n; o++) {
+            const struct kernel kernel = kernel_named(kernel_family.members[o + 1]->name);
+            const struct clouds_settings how = {
+                CLOUDS_JITTERED, dim, dim == 1 ? 301 : dim == 2 ? 19 : 7, 0.4, 2.2, 5};
+            struct clouds_cloud cloud;
+            struct computed one, three, slow;
+            assert_int_equal(clouds_make(&how, &cloud, NULL), STATUS_OK);
+            struct operator_settings settings = {operator_at(o), &kernel, false, 1};
+            compute(&settings, &cloud.cloud, &one);
+            settings.threads = 3;
+            compute(&settings, &cloud.cloud, &three);
+            settings.unstamped = true;
+            compute(&settings, &cloud.cloud, &slow);
+            const size_t n = cloud.cloud.points.n;
+            for (size_t g = 0; g < FIELDS * (size_t)dim; g++) {
+                assert_memory_equal(one.gradient[g], three.gradient[g], n * sizeof(double));
+                for (size_t i = 0; i < n; i++)
+                    near_below(fabs(one.gradient[g][i] - slow.gradient[g][i]) * cloud.h[i], 1e-12);
+            }
+            release(&one), release(&three), release(&slow);
+            clouds_free(&cloud);
+        }
+}
+
+/* A periodic lattice looks the same from every point, also where h exceeds the box. */
+static void test_periodic(void **state)
+{
+    (void)state;
+    const struct kernel kernel = kernel_named("cubic_spline");
+    double x[16], y[16], V[16], h[16];
+    for (size_t i = 0; i < 16; i++) {
+        x[i] = (double)(i % 4) * 0.25, y[i] = (double)(i / 4) * 0.5 - 3;
+        V[i] = 0.125, h[i] = 1.3;
+    }
+    const struct cloud cloud = {{2, 16, {x, y}, true, {0, 0}, {1, 2}}, V, h};
+    const struct operator_settings settings = {operator_at(3), &kernel, false, 1};
+    struct computed c;
+    compute(&settings, &cloud, &c);
+    uint32_t expected = 0; /* lattice points of spacing 1/4 x 1/2 within 1.3 */
+    for (int i = -9; i <= 9; i++)
+        for (int j = -9; j <= 9; j++) expected += hypot(0.25 * i, 0.5 * j) < 1.3;
+    for (size_t i = 0; i < 16; i++) {
+        assert_int_equal(c.point[i].neighbours, expected);
+        near_relative(c.point[i].condition, c.point[0].condition, 1e-12);
+    }
+    release(&c);
+    h[7] = 9;
+    struct error error;
+    double *none[1] = {NULL};
+    assert_int_equal(operator_apply(&settings, &cloud, 0, NULL, none, NULL, NULL, &error),
+                     STATUS_BAD_INPUT);
+}
+
+static void test_odd_clouds(void **state)
+{
+    (void)state;
+    const struct kernel kernel = kernel_named("wendland_c2");
+    double zero[40] = {0}, line[40], V[40], h[40], far[40], flat[40];
+    for (size_t i = 0; i < 40; i++) {
+        line[i] = 0.1 * (double)i, V[i] = 0.1, h[i] = 0.35;
+        far[i] = 1e8 + 0.125 * (double)(i * i % 41), flat[i] = 1e-9 * (double)(i * 7 % 40);
+    }
+    for (size_t o = 0; o < operator_family.n; o++)
+        for (int dim = 1; dim <= 3; dim++) {
+            const struct operator_settings settings = {operator_at(o), &kernel, false, 1};
+            struct computed c;
+            struct cloud cloud = {{.dim = dim, .n = 40, .x = {zero, zero, zero}}, V, h};
+            compute(&settings, &cloud, &c); /* all at one place */
+            assert_int_equal(c.point[3].state, OPERATOR_SINGULAR);
+            assert_int_equal(c.point[3].neighbours, 40);
+            assert_true(isnan(c.gradient[0][3]) == settings.operator->corrected);
+            release(&c);
+            cloud.points.n = 1;
+            compute(&settings, &cloud, &c);
+            assert_int_equal(c.point[0].state, OPERATOR_TOO_FEW_NEIGHBOURS);
+            release(&c);
+            cloud.points.n = 0;
+            compute(&settings, &cloud, &c);
+            release(&c);
+            if (dim == 1) continue;
+            cloud = (struct cloud){{.dim = dim, .n = 40, .x = {line, line, line}}, V, h};
+            compute(&settings, &cloud, &c); /* on a diagonal */
+            assert_int_equal(c.point[20].state, OPERATOR_SINGULAR);
+            release(&c);
+            cloud = (struct cloud){{.dim = 2, .n = 40, .x = {line, flat}}, V, h};
+            compute(&settings, &cloud, &c); /* thin, along an axis: invertible all the same */
+            assert_int_equal(c.point[20].state, OPERATOR_ILL_CONDITIONED);
+            assert_true(isfinite(c.gradient[1][20]));
+            release(&c);
+            for (size_t i = 0; i < 40; i++) h[i] = 30;
+            cloud = (struct cloud){{.dim = 2, .n = 40, .x = {far, line}}, V, h};
+            compute(&settings, &cloud, &c); /* far from the origin, every pair a neighbour */
+            assert_int_equal(c.point[20].neighbours, 40);
+            near_below(departure(&settings, &cloud, &c), 1e-9);
+            release(&c);
+            for (size_t i = 0; i < 40; i++) h[i] = 0.35;
+        }
+    h[17] = 0;
+    struct error error;
+    const struct operator_settings settings = {operator_at(0), &kernel, false, 1};
+    const struct cloud cloud = {{.dim = 1, .n = 40, .x = {line}}, V, h};
+    assert_int_equal(operator_apply(&settings, &cloud, 0, NULL, NULL, NULL, NULL, &error),
+                     STATUS_BAD_INPUT);
+    assert_non_null(strstr(error.message, "point 17"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_brute_force),
+        cmocka_unit_test(test_same_result),
+        cmocka_unit_test(test_periodic),
+        cmocka_unit_test(test_odd_clouds),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
