@@ -1,0 +1,352 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The exact Riemann solver against a table (data/riemann_reference.csv: star states and wave speeds
+ * to 17 digits from a multiple-precision solver, the project's shared reference data) and against
+ * its own laws on random problems. Argument: the table.
+ * Its columns: kind = std, or vacuum at the left, right or in the middle (vacL, vacR, vacM); waves
+ * rar, shock or none; an empty field is a quantity that does not exist. */
+#include <float.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "near.h"
+#include "riemann.h"
+#include "riemann_property.h"
+
+static const char *table_path;
+static const struct riemann_subject reference = {"reference", riemann_solve, riemann_sample};
+
+/* ---- the table ---- */
+
+enum column {
+    CASE,
+    GAMMA,
+    RHO_L,
+    V_L,
+    P_L,
+    RHO_R,
+    V_R,
+    P_R,
+    KIND,
+    LEFT_WAVE,
+    RIGHT_WAVE,
+    P_STAR,
+    V_STAR,
+    RHO_STAR_L,
+    RHO_STAR_R,
+    LEFT_HEAD,
+    LEFT_TAIL,
+    CONTACT,
+    RIGHT_TAIL,
+    RIGHT_HEAD,
+    COLUMNS
+};
+
+static size_t split(char *line, char **fields)
+{
+    size_t n = 0;
+    line[strcspn(line, "\r\n")] = '\0';
+    for (char *at = line; n < COLUMNS; n++) {
+        fields[n] = at;
+        at += strcspn(at, ",");
+        if (!*at) return n + 1;
+        *at++ = '\0';
+    }
+    return n + 1;
+}
+
+static void compare(const char *name, const char *expected, double value, double zero_scale)
+{
+    if (!*expected) {
+        if (!isnan(value)) print_message("%s: should not exist\n", name);
+        assert_true(isnan(value));
+        return;
+    }
+    const double want = strtod(expected, NULL);
+    if (want == 0)
+        near_absolute(value, 0, 1e-12 * zero_scale);
+    else
+        near_relative_at(value, want, 1e-12, name, __FILE__, __LINE__);
+}
+
+static void compare_row(char **f)
+{
+    const double gamma = strtod(f[GAMMA], NULL);
+    const struct riemann_state left = {strtod(f[RHO_L], NULL), strtod(f[V_L], NULL),
+                                       strtod(f[P_L], NULL)};
+    const struct riemann_state right = {strtod(f[RHO_R], NULL), strtod(f[V_R], NULL),
+                                        strtod(f[P_R], NULL)};
+    const struct riemann_problem problem = {gamma, left, right};
+    const double speed = riemann_speed_scale(&problem);
+    struct riemann_solution s;
+    assert_null(riemann_solve(gamma, &left, &right, &s));
+    assert_string_equal(riemann_wave_name(s.left_wave),
+                        strcmp(f[LEFT_WAVE], "rar") ? f[LEFT_WAVE] : "rarefaction");
+    assert_string_equal(riemann_wave_name(s.right_wave),
+                        strcmp(f[RIGHT_WAVE], "rar") ? f[RIGHT_WAVE] : "rarefaction");
+    assert_int_equal(s.vacuum, strcmp(f[KIND], "std") != 0);
+    if (strcmp(f[KIND], "vacL") == 0) assert_true(left.rho == 0);
+    if (strcmp(f[KIND], "vacR") == 0) assert_true(right.rho == 0);
+    if (strcmp(f[KIND], "vacM") == 0) assert_true(left.rho > 0 && right.rho > 0);
+    compare(f[CASE], f[P_STAR], s.p_star, 0);
+    compare(f[CASE], f[V_STAR], s.v_star, speed);
+    compare(f[CASE], f[RHO_STAR_L], s.rho_star_left, 0);
+    compare(f[CASE], f[RHO_STAR_R], s.rho_star_right, 0);
+    compare(f[CASE], f[LEFT_HEAD], s.left_head, speed);
+    compare(f[CASE], f[LEFT_TAIL], s.left_tail, speed);
+    compare(f[CASE], f[CONTACT], s.contact, speed);
+    compare(f[CASE], f[RIGHT_TAIL], s.right_tail, speed);
+    compare(f[CASE], f[RIGHT_HEAD], s.right_head, speed);
+}
+
+static void test_table(void **state)
+{
+    (void)state;
+    char line[1024], *fields[COLUMNS + 1];
+    FILE *file = fopen(table_path, "r");
+    assert_non_null(file);
+    assert_non_null(fgets(line, sizeof line, file));
+    int rows = 0;
+    for (; fgets(line, sizeof line, file); rows++) {
+        assert_int_equal(split(line, fields), COLUMNS);
+        compare_row(fields);
+    }
+    fclose(file);
+    assert_int_equal(rows, 25);
+}
+
+/* ---- laws on random problems ---- */
+
+static void test_random(void **state)
+{
+    (void)state;
+    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
+    int shocks = 0, fans = 0, vacuums = 0;
+    for (int i = 0; i < 100000; i++) {
+        const struct riemann_problem p = riemann_random(random, i % 2 ? 10 : 3);
+        struct riemann_solution s;
+        assert_null(riemann_solve(p.gamma, &p.left, &p.right, &s));
+        const struct riemann_defects d = riemann_defects_of(&s);
+        near_below(d.mass, 1e-14);
+        near_below(d.momentum, 1e-14);
+        near_below(d.energy, 1e-14);
+        near_below(d.isentrope, 1e-14);
+        near_below(d.invariant, 1e-14);
+        near_below(d.speeds, 1e-14);
+        near_below(d.order, 1e-14);
+        near_below(riemann_vacuum_defect(&s), 0);
+        near_below(riemann_fan_defect(&reference, &s, 0.375, 0.2), 1e-13);
+        shocks += s.left_wave == RIEMANN_SHOCK || s.right_wave == RIEMANN_SHOCK;
+        fans += s.left_wave == RIEMANN_RAREFACTION || s.right_wave == RIEMANN_RAREFACTION;
+        vacuums += s.vacuum;
+    }
+    gsl_rng_free(random);
+    assert_true(shocks > 20000 && fans > 20000 && vacuums > 10000);
+}
+
+static void test_symmetries(void **state)
+{
+    (void)state;
+    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
+    for (int i = 0; i < 20000; i++) {
+        const struct riemann_problem p = riemann_random(random, 6);
+        const double speed = riemann_speed_scale(&p);
+        struct riemann_solution s, other;
+        assert_null(riemann_solve(p.gamma, &p.left, &p.right, &s));
+
+        /* mirror: the same bits */
+        const struct riemann_problem m = riemann_mirrored(&p);
+        assert_null(riemann_solve(m.gamma, &m.left, &m.right, &other));
+        const struct riemann_solution back = {.p_star = other.p_star,
+                                              .v_star = -other.v_star,
+                                              .vacuum = other.vacuum,
+                                              .rho_star_left = other.rho_star_right,
+                                              .rho_star_right = other.rho_star_left,
+                                              .left_wave = other.right_wave,
+                                              .right_wave = other.left_wave,
+                                              .left_head = -other.right_head,
+                                              .left_tail = -other.right_tail,
+                                              .contact = -other.contact,
+                                              .right_tail = -other.left_tail,
+                                              .right_head = -other.left_head};
+        near_below(riemann_difference(&s, &back, speed), 0);
+
+        /* scaling by powers of two: the same digits */
+        struct riemann_problem big = p;
+        big.left.rho *= 8, big.right.rho *= 8;
+        big.left.P *= 32, big.right.P *= 32; /* speeds double */
+        big.left.v *= 2, big.right.v *= 2;
+        assert_null(riemann_solve(p.gamma, &big.left, &big.right, &other));
+        const struct riemann_solution small = {.p_star = other.p_star / 32,
+                                               .v_star = other.v_star / 2,
+                                               .vacuum = other.vacuum,
+                                               .rho_star_left = other.rho_star_left / 8,
+                                               .rho_star_right = other.rho_star_right / 8,
+                                               .left_wave = other.left_wave,
+                                               .right_wave = other.right_wave,
+                                               .left_head = other.left_head / 2,
+                                               .left_tail = other.left_tail / 2,
+                                               .contact = other.contact / 2,
+                                               .right_tail = other.right_tail / 2,
+                                               .right_head = other.right_head / 2};
+        near_below(riemann_difference(&s, &small, speed), 1e-15);
+    }
+    gsl_rng_free(random);
+}
+
+static void test_galilean(void **state)
+{
+    (void)state;
+    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
+    for (int i = 0; i < 20000; i++) {
+        struct riemann_problem p = riemann_random(random, 2);
+        /* velocities on a grid, so that the shift is exact */
+        const double dv = 1024;
+        p.left.v = nearbyint(p.left.v * 0x1p20) * 0x1p-20;
+        p.right.v = nearbyint(p.right.v * 0x1p20) * 0x1p-20;
+        const struct riemann_problem b = riemann_boosted(&p, dv);
+        if (b.left.v - dv != p.left.v || b.right.v - dv != p.right.v) continue;
+        struct riemann_solution s, other;
+        assert_null(riemann_solve(p.gamma, &p.left, &p.right, &s));
+        assert_null(riemann_solve(p.gamma, &b.left, &b.right, &other));
+        struct riemann_solution back = other;
+        back.v_star -= dv, back.contact -= dv;
+        back.left_head -= dv, back.left_tail -= dv, back.right_head -= dv, back.right_tail -= dv;
+        near_below(riemann_difference(&s, &back, riemann_speed_scale(&p) + dv), 1e-15);
+    }
+    gsl_rng_free(random);
+}
+
+/* ---- single points ---- */
+
+static struct riemann_solution solved(double gamma, struct riemann_state left,
+                                      struct riemann_state right)
+{
+    struct riemann_solution s;
+    assert_null(riemann_solve(gamma, &left, &right, &s));
+    return s;
+}
+
+static void test_equal_states(void **state)
+{
+    (void)state;
+    const struct riemann_state gas = {0.7, -1.3, 2.1};
+    const struct riemann_solution s = solved(1.4, gas, gas);
+    assert_int_equal(s.left_wave, RIEMANN_NONE);
+    assert_int_equal(s.right_wave, RIEMANN_NONE);
+    assert_true(s.p_star == 2.1 && s.v_star == -1.3 && s.rho_star_left == 0.7);
+    assert_true(isnan(s.left_head) && isnan(s.right_tail) && s.contact == -1.3);
+    for (int i = -5; i <= 5; i++) {
+        const struct riemann_state at = riemann_sample(&s, i, 0.1, 0.3);
+        assert_true(at.rho == 0.7 && at.v == -1.3 && at.P == 2.1);
+    }
+}
+
+static void test_cold_gas(void **state)
+{
+    (void)state;
+    /* Noh's problem: P = (gamma+1)/2 rho v^2, rho* = (gamma+1)/(gamma-1), shocks at (gamma-1)/2 */
+    const struct riemann_state in = {1, 1, 0}, out = {1, -1, 0};
+    const struct riemann_solution s = solved(5. / 3, in, out);
+    near_relative(s.p_star, 4. / 3, 1e-15);
+    near_relative(s.rho_star_left, 4, 1e-14);
+    near_relative(s.right_head, 1. / 3, 1e-14);
+    assert_true(s.v_star == 0);
+    /* parting cold gases leave vacuum at once; cold gas at rest stays */
+    assert_true(solved(1.4, out, in).vacuum);
+    const struct riemann_solution still = solved(1.4, in, in);
+    assert_true(!still.vacuum && still.p_star == 0 && still.v_star == 1);
+    /* hot gas runs into cold gas: an infinitely strong shock */
+    const struct riemann_solution mixed =
+        solved(1.4, (struct riemann_state){1, 0, 1}, (struct riemann_state){1, 0, 0});
+    assert_int_equal(mixed.right_wave, RIEMANN_SHOCK);
+    near_relative(mixed.rho_star_right, 6, 1e-14);
+    near_below(riemann_defects_of(&mixed).energy, 1e-14);
+}
+
+static void test_sample_regions(void **state)
+{
+    (void)state;
+    const struct riemann_state left = {1, 0, 1}, right = {0.125, 0, 0.1};
+    const struct riemann_solution s = solved(1.4, left, right);
+    struct riemann_state at = riemann_sample(&s, 0.25, 0.25, 0);
+    assert_true(at.rho == 1);
+    at = riemann_sample(&s, nextafter(0.25, 1), 0.25, 0);
+    assert_true(at.rho == 0.125 && at.P == 0.1);
+    at = riemann_sample(&s, 0.25 + 0.5 * 0.92, 0.25, 0.5);
+    near_relative(at.rho, 0.42631942817849519, 1e-14);
+    at = riemann_sample(&s, 0.25 + 0.5 * 0.93, 0.25, 0.5);
+    near_relative(at.rho, 0.26557371170530706, 1e-14);
+    near_relative(at.v, 0.92745262004894995, 1e-14);
+    at = riemann_sample(&s, 0.25 + 0.5 * 1.7521, 0.25, 0.5);
+    near_relative(at.P, 0.30313017805064682, 1e-14);
+    at = riemann_sample(&s, 0.25 + 0.5 * 1.7522, 0.25, 0.5);
+    assert_true(at.P == 0.1);
+    /* at the sonic point x = x0 of the fan in Toro's modified Sod problem, c = v */
+    const struct riemann_solution toro =
+        solved(1.4, (struct riemann_state){1, 0.75, 1}, (struct riemann_state){0.125, 0, 0.1});
+    at = riemann_sample(&toro, 3, 3, 0.2);
+    near_relative(sqrt(1.4 * at.P / at.rho), at.v, 1e-14);
+}
+
+static void test_vacuum_samples(void **state)
+{
+    (void)state;
+    const struct riemann_state gas = {1, 0, 1}, none = {0, 7, 0};
+    struct riemann_solution s = solved(1.4, gas, none);
+    struct riemann_state at = riemann_sample(&s, 6, 0, 1);
+    assert_true(at.rho == 0 && at.P == 0 && isnan(at.v));
+    at = riemann_sample(&s, 6, 0, 0);
+    assert_true(at.rho == 0 && at.v == 7);
+    at = riemann_sample(&s, s.left_tail - 1e-3, 0, 1);
+    assert_true(at.rho > 0 && at.rho < 1e-15 && at.P > 0);
+    s = solved(1.4, none, none);
+    at = riemann_sample(&s, 0, 0, 1);
+    assert_true(s.vacuum && s.left_wave == RIEMANN_NONE && at.rho == 0);
+    /* opened in the middle: gas, fan, nothing, fan, gas */
+    s = solved(1.4, (struct riemann_state){1, -5, 0.4}, (struct riemann_state){1, 5, 0.4});
+    assert_true(riemann_sample(&s, -6, 0, 1).rho == 1);
+    assert_true(riemann_sample(&s, -2, 0, 1).rho > 0);
+    assert_true(riemann_sample(&s, 1.25, 0, 1).rho == 0);
+    assert_true(riemann_sample(&s, 1.27, 0, 1).rho > 0);
+    assert_true(riemann_sample(&s, 6, 0, 1).v == 5);
+}
+
+static void test_bad_input(void **state)
+{
+    (void)state;
+    const struct riemann_state good = {1, 0, 1};
+    const struct riemann_state bad[] = {{-1, 0, 1},          {1, 0, -1},          {0, 0, 1},
+                                        {(double)NAN, 0, 1}, {1, (double)NAN, 1}, {1, 0, HUGE_VAL},
+                                        {1, -HUGE_VAL, 1}};
+    const double gammas[] = {1, 0.9, -2, (double)NAN, HUGE_VAL};
+    struct riemann_solution s = {.gamma = 42};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        assert_non_null(riemann_solve(1.4, &bad[i], &good, &s));
+        assert_non_null(riemann_solve(1.4, &good, &bad[i], &s));
+    }
+    for (size_t i = 0; i < sizeof gammas / sizeof *gammas; i++)
+        assert_non_null(riemann_solve(gammas[i], &good, &good, &s));
+    assert_non_null(riemann_solve(1.4, &(struct riemann_state){1e308, 1e308, 1e308}, &good, &s));
+    assert_true(s.gamma == 42);
+}
+
+int main(int argc, char **argv)
+{
+    if (argc < 2) return 1;
+    table_path = argv[1];
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_table),          cmocka_unit_test(test_random),
+        cmocka_unit_test(test_symmetries),     cmocka_unit_test(test_galilean),
+        cmocka_unit_test(test_equal_states),   cmocka_unit_test(test_cold_gas),
+        cmocka_unit_test(test_sample_regions), cmocka_unit_test(test_vacuum_samples),
+        cmocka_unit_test(test_bad_input),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
