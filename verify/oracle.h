@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The oracle: the equations of density, smoothing length, force, energy and time stepping written
+ * down once more, in 1D, straight from the text, in long double, with loops over all pairs and
+ * images. Slow and plain on purpose; shares types with src, but no code. */
+#ifndef SPHPROOF_ORACLE_H
+#define SPHPROOF_ORACLE_H
+
+#include "oracle_kernel.h"
+#include "simulation.h"
+
+struct oracle_particle {
+    /* state: position (unwrapped), mass, momentum, energy (U or E as the scheme says), viscosity */
+    long double x, m, p, e, alpha;
+    /* of the state */
+    long double v, U, h, rho_sum, y, V, rho, P, c;
+    long double grad_h_rho, grad_h_y; /* h/rho_sum times d rho_sum/dh, dy/dh */
+    long double C;                    /* 1/sum V x^2 W */
+    long double slope;                /* linear_exact gradient of v */
+    /* rates dp/dt, dU/dt, d(e)/dt, dalpha/dt; divergence of v; signal speed */
+    long double F, dU, de, dalpha, div_v, signal;
+};
+
+struct oracle {
+    struct scheme scheme;
+    struct oracle_kernel kernel;
+    long double lo, period, gamma, time;
+    size_t n, steps;
+    struct oracle_particle *particles; /* in the scene's order */
+    struct oracle_particle *start;     /* n, workspace of the integrators */
+};
+
+/* Takes a 1D scene. STATUS_BAD_INPUT: a kernel that the oracle does not know, an integrator
+ * likewise. Free with oracle_free. */
+enum status oracle_create(struct oracle *oracle, const struct scene *scene, struct error *error);
+void oracle_free(struct oracle *oracle);
+
+/* Density, h, pressure, rates of the present state. STATUS_BROKE_DOWN: no sound state. */
+enum status oracle_evaluate(struct oracle *oracle, struct error *error);
+
+/* The time step of the present state (after oracle_evaluate). */
+long double oracle_time_step(const struct oracle *oracle);
+
+/* Advances by dt; rates must be there, and are when it returns. */
+enum status oracle_step(struct oracle *oracle, long double dt, struct error *error);
+
+/* Steps to t_end; oracle_evaluate is called first. */
+enum status oracle_run(struct oracle *oracle, long double t_end, struct error *error);
+
+#endif

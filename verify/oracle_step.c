@@ -1,0 +1,201 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Time stepping of the oracle: each integrator in its textbook form. y stands for the state
+ * (x, p, e, alpha), L(y) for its rates (p/m, F, de, dalpha). */
+#include "oracle.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "integrator.h"
+
+/* result = a + rates * dt, rates being those now in the particles; a, result may be them. */
+static void advance(struct oracle *oracle, const struct oracle_particle *a, long double dt)
+{
+    for (size_t i = 0; i < oracle->n; i++) {
+        struct oracle_particle *b = &oracle->particles[i];
+        b->x = a[i].x + b->p / b->m * dt;
+        b->p = a[i].p + b->F * dt;
+        b->e = a[i].e + b->de * dt;
+        b->alpha = a[i].alpha + b->dalpha * dt;
+    }
+}
+
+static void remember(struct oracle *oracle)
+{
+    memcpy(oracle->start, oracle->particles, oracle->n * sizeof *oracle->particles);
+}
+
+/* y = (weight) start + (1 - weight) y */
+static void mix(struct oracle *oracle, long double weight)
+{
+    for (size_t i = 0; i < oracle->n; i++) {
+        struct oracle_particle *b = &oracle->particles[i];
+        const struct oracle_particle *a = &oracle->start[i];
+        b->x = weight * a->x + (1 - weight) * b->x;
+        b->p = weight * a->p + (1 - weight) * b->p;
+        b->e = weight * a->e + (1 - weight) * b->e;
+        b->alpha = weight * a->alpha + (1 - weight) * b->alpha;
+    }
+}
+
+/* Kick half a step, drift a step with the kicked velocity, evaluate with everything else predicted
+ * to the end of the step, kick the half-kicked values half a step. */
+static enum status leapfrog(struct oracle *oracle, long double dt, struct error *error)
+{
+    struct oracle_particle *half = oracle->start;
+    remember(oracle);
+    for (size_t i = 0; i < oracle->n; i++) {
+        struct oracle_particle *a = &oracle->particles[i];
+        half[i].p += a->F * dt / 2;
+        half[i].e += a->de * dt / 2;
+        half[i].alpha += a->dalpha * dt / 2;
+        a->x += half[i].p / a->m * dt;
+        a->p += a->F * dt;
+        a->e += a->de * dt;
+        a->alpha += a->dalpha * dt;
+    }
+    const enum status status = oracle_evaluate(oracle, error);
+    for (size_t i = 0; i < oracle->n; i++) {
+        struct oracle_particle *a = &oracle->particles[i];
+        a->p = half[i].p + a->F * dt / 2;
+        a->e = half[i].e + a->de * dt / 2;
+        a->alpha = half[i].alpha + a->dalpha * dt / 2;
+    }
+    return status;
+}
+
+/* The rates stay those of the predicted end; only the state moves on. */
+static enum status modified_leapfrog(struct oracle *oracle, long double dt, struct error *error)
+{
+    const enum status status = leapfrog(oracle, dt, error);
+    return status ? status : oracle_evaluate(oracle, error);
+}
+
+static enum status symplectic_euler(struct oracle *oracle, long double dt, struct error *error)
+{
+    for (size_t i = 0; i < oracle->n; i++) {
+        struct oracle_particle *a = &oracle->particles[i];
+        a->p += a->F * dt;
+        a->e += a->de * dt;
+        a->alpha += a->dalpha * dt;
+        a->x += a->p / a->m * dt;
+    }
+    return oracle_evaluate(oracle, error);
+}
+
+/* Heun: y1 = y + dt L(y); y = (y + y1 + dt L(y1))/2 */
+static enum status rk2(struct oracle *oracle, long double dt, struct error *error)
+{
+    remember(oracle);
+    advance(oracle, oracle->start, dt);
+    enum status status = oracle_evaluate(oracle, error);
+    if (status) return status;
+    advance(oracle, oracle->particles, dt);
+    mix(oracle, 0.5L);
+    return oracle_evaluate(oracle, error);
+}
+
+/* y1 = y + dt/2 L(y); y = y + dt L(y1) */
+static enum status vl2(struct oracle *oracle, long double dt, struct error *error)
+{
+    remember(oracle);
+    advance(oracle, oracle->start, dt / 2);
+    const enum status status = oracle_evaluate(oracle, error);
+    if (status) return status;
+    advance(oracle, oracle->start, dt);
+    return oracle_evaluate(oracle, error);
+}
+
+/* Shu & Osher 1988: y1 = y + dt L(y); y2 = 3/4 y + 1/4 (y1 + dt L(y1));
+ * y = 1/3 y + 2/3 (y2 + dt L(y2)) */
+static enum status rk3(struct oracle *oracle, long double dt, struct error *error)
+{
+    static const long double weights[] = {0, 0.75L, 1 / 3.0L};
+    remember(oracle);
+    for (int stage = 0; stage < 3; stage++) {
+        advance(oracle, oracle->particles, dt);
+        mix(oracle, weights[stage]);
+        const enum status status = oracle_evaluate(oracle, error);
+        if (status) return status;
+    }
+    return STATUS_OK;
+}
+
+/* One evaluation at the midpoint, predicted with the rates of the last midpoint; the predicted
+ * internal energy not below half of that at the start. */
+static enum status predicted_midpoint(struct oracle *oracle, long double dt, struct error *error)
+{
+    const bool total = oracle->scheme.energy == ENERGY_TOTAL;
+    remember(oracle);
+    advance(oracle, oracle->start, dt / 2);
+    for (size_t i = 0; i < oracle->n; i++) {
+        struct oracle_particle *b = &oracle->particles[i];
+        const struct oracle_particle *a = &oracle->start[i];
+        const long double before = total ? a->p * a->p / (2 * a->m) : 0;
+        const long double now = total ? b->p * b->p / (2 * b->m) : 0;
+        if (b->e - now < (a->e - before) / 2) b->e = (a->e - before) / 2 + now;
+    }
+    const enum status status = oracle_evaluate(oracle, error);
+    for (size_t i = 0; i < oracle->n; i++) {
+        struct oracle_particle *b = &oracle->particles[i];
+        const struct oracle_particle *a = &oracle->start[i];
+        b->p = a->p + b->F * dt;
+        b->e = a->e + b->de * dt;
+        b->alpha = a->alpha + b->dalpha * dt;
+        b->x = a->x + (a->p + b->p) / (2 * b->m) * dt;
+    }
+    return status;
+}
+
+enum status oracle_step(struct oracle *oracle, long double dt, struct error *error)
+{
+    static const struct {
+        const char *name;
+        enum status (*step)(struct oracle *oracle, long double dt, struct error *error);
+    } table[] = {
+        {"leapfrog", leapfrog},
+        {"modified_leapfrog", modified_leapfrog},
+        {"symplectic_euler", symplectic_euler},
+        {"rk2", rk2},
+        {"vl2", vl2},
+        {"rk3", rk3},
+        {"predicted_midpoint", predicted_midpoint},
+    };
+    const char *name = oracle->scheme.integrator->member.name;
+    for (size_t i = 0; i < sizeof table / sizeof *table; i++)
+        if (strcmp(name, table[i].name) == 0) {
+            const enum status status = table[i].step(oracle, dt, error);
+            oracle->time += dt;
+            oracle->steps++;
+            return status;
+        }
+    return error_set(error, STATUS_BAD_INPUT, "oracle: no integrator %s", name);
+}
+
+/* The signal speed belongs to the present velocities and sound speeds: integrators that leave the
+ * state behind the last evaluation have only their velocities taken anew. */
+long double oracle_time_step(const struct oracle *oracle)
+{
+    long double least = INFINITY;
+    for (size_t i = 0; i < oracle->n; i++) {
+        const struct oracle_particle *a = &oracle->particles[i];
+        least = fminl(least, a->h / a->signal);
+    }
+    return oracle->scheme.cfl * least;
+}
+
+enum status oracle_run(struct oracle *oracle, long double t_end, struct error *error)
+{
+    enum status status = oracle_evaluate(oracle, error);
+    while (!status && oracle->time < t_end) {
+        const long double left = t_end - oracle->time;
+        long double dt = oracle_time_step(oracle);
+        if (dt >= left)
+            dt = left;
+        else if (2 * dt >= left)
+            dt = left / 2;
+        status = oracle_step(oracle, dt, error);
+        if (dt == left) oracle->time = t_end;
+    }
+    return status;
+}
