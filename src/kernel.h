@@ -8,7 +8,7 @@
 #include "family.h"
 #include "status.h"
 
-enum { KERNEL_KNOTS_MAX = 64, KERNEL_DIM_MAX = 3 };
+enum { KERNEL_DIM_MAX = 3 };
 
 struct kernel;
 
@@ -20,12 +20,12 @@ struct kernel {
     kernel_shape *w;                     /* w(q) */
     kernel_shape *dw;                    /* dw/dq */
     double constant[KERNEL_DIM_MAX + 1]; /* C_d at index d; 0: computed by kernel_select */
-    int knot_count;                      /* interior knots of w, ascending, 0 < q < 1 */
-    double knots[KERNEL_KNOTS_MAX];
+    int knot_count;                      /* interior knots of w, ascending; -1: not declared */
+    const double *knots;                 /* not owned; constant for the built-in kernels */
     int smoothness[KERNEL_DIM_MAX + 1];  /* class C^k: least over origin, knots and edge */
-    double unity_width;                  /* smallest eta in 1D whose lattice sums are exact; 0: none */
-    double default_eta;                  /* eta where the user gives none, in 1D */
-    int order;                           /* n of sinc_n; 0 for the others */
+    double unity_width; /* smallest eta in 1D whose lattice sums are exact; 0: none */
+    double default_eta; /* eta where the user gives none, in 1D */
+    int order;          /* n of sinc_n; 0 for the others */
     /* A plug-in's own functions (see verify/plugin.h); NULL for the built-in kernels. */
     double (*plugin_w)(double q, int dim);
     double (*plugin_dw)(double q, int dim);

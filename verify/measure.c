@@ -1,0 +1,130 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "measure.h"
+
+#include <float.h>
+#include <math.h>
+
+#include <gsl/gsl_integration.h>
+
+/* Orders whose nodes GSL tabulates to full precision. */
+enum { FINE = 32, COARSE = 20 };
+
+double measure_sphere(int dim)
+{
+    return dim == 1 ? 2 : 2 * M_PI * (dim - 1);
+}
+
+static double power(double x, int n)
+{
+    double y = 1;
+    for (int i = 0; i < n; i++) y *= x;
+    return y;
+}
+
+static double gauss(const struct pieces *pieces, measure_function *f, int exponent, double h,
+                    double a, double b, size_t order)
+{
+    gsl_integration_glfixed_table *table = gsl_integration_glfixed_table_alloc(order);
+    double sum = 0;
+    for (size_t i = 0; table && i < order; i++) {
+        double q, weight;
+        gsl_integration_glfixed_point(a, b, i, &q, &weight, table);
+        sum += weight * power(q, exponent) * f(pieces->kernel, q * h, h, pieces->dim);
+    }
+    if (table) gsl_integration_glfixed_table_free(table);
+    return table ? sum * power(h, exponent + 1) : (double)NAN;
+}
+
+double measure_between(const struct pieces *pieces, measure_function *f, int exponent, double h,
+                       double a, double b, double *floor)
+{
+    double sum = 0;
+    for (int i = 0; i < pieces->n; i++) {
+        const double lo = fmax(a, pieces->edge[i]), hi = fmin(b, pieces->edge[i + 1]);
+        if (!(lo < hi)) continue;
+        const double fine = gauss(pieces, f, exponent, h, lo, hi, FINE);
+        *floor +=
+            fabs(fine - gauss(pieces, f, exponent, h, lo, hi, COARSE)) + DBL_EPSILON * fabs(fine);
+        sum += fine;
+    }
+    return sum;
+}
+
+double measure_support(const struct pieces *pieces, measure_function *f, int exponent, double h,
+                       double *floor)
+{
+    return measure_between(pieces, f, exponent, h, 0, 1, floor);
+}
+
+double measure_constant(const struct pieces *pieces, double *floor)
+{
+    struct kernel unit = *pieces->kernel;
+    struct pieces copy = *pieces;
+    copy.kernel = &unit;
+    unit.constant[copy.dim] = 1;
+    const double sum =
+        measure_sphere(copy.dim) * measure_support(&copy, kernel_value, copy.dim - 1, 1, floor);
+    *floor /= fabs(sum);
+    return 1 / sum;
+}
+
+void measure_moments(const struct pieces *pieces, struct measure_moments *moments)
+{
+    const int dim = pieces->dim;
+    const double sphere = measure_sphere(dim);
+    double floor = 0;
+    moments->volume = sphere * measure_support(pieces, kernel_value, dim - 1, 1, &floor);
+    moments->second = sphere / dim * measure_support(pieces, kernel_value, dim + 1, 1, &floor);
+    moments->fourth =
+        3 * sphere / (dim * (dim + 2)) * measure_support(pieces, kernel_value, dim + 3, 1, &floor);
+}
+
+const double measure_significant = 30;
+
+/* The jump of derivative k at break point i: even extension at the origin, zero beyond the edge. */
+static struct measure_jump jump_at(const struct pieces *pieces, int i, int k)
+{
+    const double *edge = pieces->edge;
+    double left = 0, right = 0, left_floor = 0, right_floor = 0;
+    if (i > 0) left = pieces_derivative(pieces, edge[i], edge[i - 1], k, &left_floor);
+    if (i < pieces->n) right = pieces_derivative(pieces, edge[i], edge[i + 1], k, &right_floor);
+    if (i == 0) {
+        left = k % 2 ? -right : right;
+        left_floor = right_floor;
+    }
+    return (struct measure_jump){edge[i], fabs(right - left), left_floor + right_floor};
+}
+
+void measure_class(const struct pieces *pieces, struct measure_class *result)
+{
+    *result = (struct measure_class){.class = MEASURE_CLASS_MAX, .at = (double)NAN};
+    for (int i = 0; i <= pieces->n; i++)
+        for (int k = 0; k <= MEASURE_CLASS_MAX + 1; k++) {
+            const struct measure_jump jump = jump_at(pieces, i, k);
+            struct measure_jump *worst = &result->jump[k];
+            if (i == 0 || !(jump.jump * worst->floor <= worst->jump * jump.floor)) *worst = jump;
+            if (jump.jump <= measure_significant * jump.floor) continue;
+            if (!pieces->declared[i] && result->extra++ == 0) result->extra_at = jump.at;
+            if (k - 1 < result->class) {
+                result->class = k - 1;
+                result->at = jump.at;
+            }
+            break; /* derivatives above the first that jumps say nothing more */
+        }
+}
+
+void measure_lattice(const struct kernel *kernel, int dim, double eta, double *density,
+                     double *gradient)
+{
+    const int reach = (int)ceil(eta), last[3] = {reach, dim > 1 ? reach : 0, dim > 2 ? reach : 0};
+    double rho = 0, slope = 0; /* spacing 1, h = eta */
+    for (int i = -last[0]; i <= last[0]; i++)
+        for (int j = -last[1]; j <= last[1]; j++)
+            for (int k = -last[2]; k <= last[2]; k++) {
+                const double r = sqrt(i * i + j * j + k * k);
+                rho += kernel_value(kernel, r, eta, dim);
+                slope += r * kernel_dr(kernel, r, eta, dim);
+            }
+    *density = rho - 1;
+    *gradient = -slope / dim - 1; /* the mean over the axes, which are alike */
+}

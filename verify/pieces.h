@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * A kernel's shape as a piecewise smooth function: break points between which w and dw are resolved
+ * by Chebyshev series to round-off. Declared knots are taken; others (a plug-in need not declare
+ * any) are found by bisection, so that quadrature and differentiation never straddle one. */
+#ifndef SPHPROOF_PIECES_H
+#define SPHPROOF_PIECES_H
+
+#include <stdbool.h>
+
+#include "kernel.h"
+
+enum { PIECES_NODES = 32 }; /* of a series */
+
+struct pieces {
+    const struct kernel *kernel; /* not owned */
+    int dim;
+    int n;                    /* pieces */
+    double *edge;             /* n + 1 break points: 0, ..., 1 */
+    bool *declared;           /* n + 1: a declared knot, the origin or the edge */
+    bool resolved;            /* false: noise or a singularity somewhere; error estimates show it */
+    double max_w, max_dw;     /* largest |w|, |dw| met in [0, 1] */
+    double noise_w, noise_dw; /* plateau of the series, the evaluation's round-off */
+    double cosine[4 * PIECES_NODES];
+};
+
+/* Chebyshev series of a smooth function on an interval, chopped where it meets the noise. */
+struct series_fit {
+    double c[PIECES_NODES];
+    int n;        /* terms kept */
+    double noise; /* of a coefficient */
+};
+
+/* Finds the pieces of a kernel in dim dimensions. STATUS_ENVIRONMENT: no memory. Release with
+ * pieces_free; kernel must outlive it. */
+enum status pieces_find(struct pieces *pieces, const struct kernel *kernel, int dim,
+                        struct error *error);
+void pieces_free(struct pieces *pieces);
+
+/* Node j of a series on x in [-1, 1] (never an end point). */
+double pieces_node(const struct pieces *pieces, int j);
+
+/* The series through values[j] at the nodes. */
+void pieces_fit(const struct pieces *pieces, const double values[PIECES_NODES],
+                struct series_fit *fit);
+
+/* d/dx of the series at x, and the error that its noise makes there. */
+double series_slope(const struct series_fit *fit, double x, double *floor);
+
+/* k-th derivative of w at q = at from one side: the one of `to`, the far end of the piece. k = 0
+ * takes w, the others the (k-1)-th derivative of dw. floor: estimate of the error (not a bound). */
+double pieces_derivative(const struct pieces *pieces, double at, double to, int k, double *floor);
+
+#endif

@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "property.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+
+const struct property property_list[] = {
+#define PROPERTY(name, formula) {#name, formula, property_##name},
+#include "properties.def"
+#undef PROPERTY
+};
+const size_t property_count = sizeof property_list / sizeof *property_list;
+
+/* Powers of h are exact at 1 only: a wrong power hides there. */
+const double property_width[PROPERTY_WIDTHS] = {1, 0.0371, 2.385, 41.7};
+
+void property_take(struct property_sink *sink, double value, double bound, double floor,
+                   const char *where, ...)
+{
+    char text[128];
+    va_list arguments;
+    va_start(arguments, where);
+    vsnprintf(text, sizeof text, where, arguments);
+    va_end(arguments);
+    sink->take(sink, value, bound, floor, text, false);
+}
+
+void property_skip(struct property_sink *sink, const char *why, ...)
+{
+    char text[128];
+    va_list arguments;
+    va_start(arguments, why);
+    vsnprintf(text, sizeof text, why, arguments);
+    va_end(arguments);
+    sink->take(sink, (double)NAN, (double)NAN, (double)NAN, text, true);
+}
+
+/* How near to failing; infinite if it does and the bound is 0. */
+static double property_ratio(double value, double bound)
+{
+    if (bound > 0) return value / bound;
+    return value <= bound ? 0 : (double)INFINITY;
+}
+
+void property_keep(struct property_worst *worst, double value, double bound, double floor,
+                   const char *where, ...)
+{
+    const double ratio = property_ratio(value, bound);
+    const double largest = property_ratio(worst->value, worst->bound);
+    const bool larger = ratio > largest || (ratio == largest && value > worst->value);
+    if (worst->where[0] && !isnan(value) && !larger) return;
+    if (isnan(worst->value)) return;
+    *worst = (struct property_worst){.value = value, .bound = bound, .floor = floor};
+    va_list arguments;
+    va_start(arguments, where);
+    vsnprintf(worst->where, sizeof worst->where, where, arguments);
+    va_end(arguments);
+}
+
+void property_take_worst(struct property_sink *sink, const struct property_worst *worst)
+{
+    sink->take(sink, worst->value, worst->bound, worst->floor, worst->where, false);
+}
+
+double property_bound(double base, double floor)
+{
+    return fmax(base, fmin(20 * floor, PROPERTY_BOUND_MAX));
+}

@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The properties that every kernel must have (PHYSICS: kernels), each measured by one function in
+ * property/. The certificate of a kernel and the checks of group `kernels` read the same list,
+ * properties.def. */
+#ifndef SPHPROOF_PROPERTY_H
+#define SPHPROOF_PROPERTY_H
+
+#include <stddef.h>
+
+#include "pieces.h"
+
+/* Receives the figures of a property: its bound and floor as in check.h; or why there is none
+ * (value NaN, skipped true). */
+struct property_sink {
+    void (*take)(struct property_sink *sink, double value, double bound, double floor,
+                 const char *where, bool skipped);
+};
+
+struct property {
+    const char *name;
+    const char *formula; /* one line */
+    void (*measure)(const struct pieces *pieces, struct property_sink *sink);
+};
+
+#define PROPERTY(name, formula)                                                                    \
+    void property_##name(const struct pieces *pieces, struct property_sink *sink);
+#include "properties.def"
+#undef PROPERTY
+
+extern const struct property property_list[];
+extern const size_t property_count;
+
+/* Passes a figure on; where is printf-like. */
+void property_take(struct property_sink *sink, double value, double bound, double floor,
+                   const char *where, ...) __attribute__((format(printf, 5, 6)));
+void property_skip(struct property_sink *sink, const char *why, ...)
+    __attribute__((format(printf, 2, 3)));
+
+/* The worst of many figures: the one with the largest value/bound (a NaN is worst of all). */
+struct property_worst {
+    double value, bound, floor;
+    char where[96];
+};
+
+void property_keep(struct property_worst *worst, double value, double bound, double floor,
+                   const char *where, ...) __attribute__((format(printf, 5, 6)));
+void property_take_worst(struct property_sink *sink, const struct property_worst *worst);
+
+/* Smoothing lengths at which all properties are measured. */
+enum { PROPERTY_WIDTHS = 4 };
+extern const double property_width[PROPERTY_WIDTHS];
+
+/* Bound of a figure that should vanish up to quadrature and rounding: base where that is possible
+ * (floor far below it), else 20 floors, at most `PROPERTY_BOUND_MAX`. */
+#define PROPERTY_BOUND_MAX 1e-9
+double property_bound(double base, double floor);
+
+#endif

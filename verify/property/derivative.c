@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * dW/dr and dW/dh against derivatives that use nothing but W: slopes of Chebyshev series through W
+ * in r at fixed h, and in h at fixed r, within one piece. */
+#include <float.h>
+#include <math.h>
+
+#include "property.h"
+
+/* The series' own error estimate is a typical, not a largest error. */
+static const double margin = 30;
+
+static void radial_piece(const struct pieces *pieces, double a, double b, double h,
+                         struct property_worst *worst)
+{
+    const struct kernel *kernel = pieces->kernel;
+    const int dim = pieces->dim;
+    const double half = (b - a) / 2, unit = kernel->constant[dim] * pow(h, -dim - 1);
+    double values[PIECES_NODES];
+    struct series_fit fit;
+    for (int j = 0; j < PIECES_NODES; j++)
+        values[j] = kernel_value(kernel, (a + half * (1 + pieces_node(pieces, j))) * h, h, dim);
+    pieces_fit(pieces, values, &fit);
+    for (int j = 0; j < PIECES_NODES; j += 3) {
+        double floor;
+        const double x = pieces_node(pieces, j), q = a + half * (1 + x);
+        const double slope = series_slope(&fit, x, &floor) / (half * h);
+        const double error = fabs(slope - kernel_dr(kernel, q * h, h, dim));
+        const double scale = fabs(unit) * pieces->max_dw;
+        floor = floor / (half * h) / scale + 8 * DBL_EPSILON;
+        property_keep(worst, error / scale, fmin(margin * floor, 1e-6), floor, "h %g, q %.6g", h,
+                      q);
+    }
+}
+
+void property_radial_derivative(const struct pieces *pieces, struct property_sink *sink)
+{
+    for (int i = 0; i < PROPERTY_WIDTHS; i++) {
+        struct property_worst worst = {0};
+        for (int p = 0; p < pieces->n; p++)
+            radial_piece(pieces, pieces->edge[p], pieces->edge[p + 1], property_width[i], &worst);
+        property_take_worst(sink, &worst);
+    }
+}
+
+/* At r = q h: the widths that keep r/h inside the piece ]a, b[, at most 10 % off h. */
+static void width_point(const struct pieces *pieces, double a, double b, double q, double h,
+                        struct property_worst *worst)
+{
+    const struct kernel *kernel = pieces->kernel;
+    const int dim = pieces->dim;
+    const double r = q * h;
+    const double lo = fmax(0.9 * h, r / b), hi = a > 0 ? fmin(1.1 * h, r / a) : 1.1 * h;
+    const double half = (hi - lo) / 2, middle = lo + half;
+    const double unit = fabs(kernel->constant[dim]) * pow(h, -dim - 1);
+    const double scale = unit * (dim * pieces->max_w + pieces->max_dw);
+    double values[PIECES_NODES], floor;
+    struct series_fit fit;
+    for (int j = 0; j < PIECES_NODES; j++)
+        values[j] = kernel_value(kernel, r, middle + half * pieces_node(pieces, j), dim);
+    pieces_fit(pieces, values, &fit);
+    const double slope = series_slope(&fit, (h - middle) / half, &floor) / half;
+    const double error = fabs(slope - kernel_dh(kernel, r, h, dim));
+    floor = floor / half / scale + 8 * DBL_EPSILON;
+    property_keep(worst, error / scale, fmin(margin * floor, 1e-6), floor, "h %g, q %.6g", h, q);
+}
+
+void property_width_derivative(const struct pieces *pieces, struct property_sink *sink)
+{
+    enum { POINTS = 7 };
+    for (int i = 0; i < PROPERTY_WIDTHS; i++) {
+        const double h = property_width[i];
+        struct property_worst worst = {0};
+        for (int p = 0; p < pieces->n; p++) {
+            const double a = pieces->edge[p], b = pieces->edge[p + 1];
+            if (p == 0) width_point(pieces, a, b, 0, h, &worst);
+            for (int j = 0; j < POINTS; j++)
+                width_point(pieces, a, b, a + (b - a) * (j + 0.5) / POINTS, h, &worst);
+        }
+        property_take_worst(sink, &worst);
+    }
+}

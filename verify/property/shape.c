@@ -1,0 +1,102 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Support, signs, self-term and continuity. */
+#include <float.h>
+#include <math.h>
+
+#include "measure.h"
+#include "property.h"
+
+/* Where the support is probed. 0.9992 is inside: even exp(-1/(1-q^2)) is not yet rounded to 0. */
+static const double inside = 0.9992;
+
+/* At and beyond the edge; a kernel of class C0 may return its one-sided slope at q = 1 itself. */
+void property_support(const struct pieces *pieces, struct property_sink *sink)
+{
+    const struct kernel *kernel = pieces->kernel;
+    const int dim = pieces->dim;
+    for (int i = 0; i < PROPERTY_WIDTHS; i++) {
+        const double h = property_width[i], unit = pow(h, dim);
+        const double r[] = {h, nextafter(h, (double)INFINITY), 1.0001 * h, 1.5 * h, 10 * h};
+        struct property_worst worst = {0};
+        for (size_t j = 0; j < sizeof r / sizeof *r; j++) {
+            property_keep(&worst, fabs(kernel_value(kernel, r[j], h, dim)) * unit, 0, 0,
+                          "h %g, W at q = %.17g", h, r[j] / h);
+            if (kernel->smoothness[dim] == 0 && r[j] / h == 1) continue;
+            property_keep(&worst, fabs(kernel_dr(kernel, r[j], h, dim)) * unit * h, 0, 0,
+                          "h %g, h dW/dr at q = %.17g", h, r[j] / h);
+            property_keep(&worst, fabs(kernel_dh(kernel, r[j], h, dim)) * unit * h, 0, 0,
+                          "h %g, h dW/dh at q = %.17g", h, r[j] / h);
+        }
+        property_take_worst(sink, &worst);
+    }
+    const bool reaches = kernel->w(kernel, inside, dim) != 0;
+    property_take(sink, reaches ? 0 : 1, 0, 0, "w(%g) = 0: the support ends before q = 1", inside);
+}
+
+/* Between its points a table's interpolation may ripple: by (1/n)^4 in w, (1/n)^3 in dw. */
+static double ripple(const struct pieces *pieces, double factor, int exponent)
+{
+    enum { FEW = 8 };
+    return pieces->n > FEW ? factor * pow(pieces->n, -exponent) : 0;
+}
+
+void property_sign(const struct pieces *pieces, struct property_sink *sink)
+{
+    enum { SAMPLES = 64 };
+    const struct kernel *kernel = pieces->kernel;
+    struct property_worst value = {0}, slope = {0};
+    for (int p = 0; p < pieces->n; p++)
+        for (int i = 0; i < SAMPLES; i++) {
+            const double a = pieces->edge[p], b = pieces->edge[p + 1];
+            const double q = a + (b - a) * i / SAMPLES;
+            const double w = kernel->w(kernel, q, pieces->dim) / pieces->max_w;
+            const double dw = kernel->dw(kernel, q, pieces->dim) / pieces->max_dw;
+            const double floor = 2 * DBL_EPSILON;
+            property_keep(&value, isnan(w) ? w : fmax(0, -w), 8 * floor + ripple(pieces, 2, 4),
+                          floor, "W/W(0) < 0 at q = %.6g", q);
+            property_keep(&slope, isnan(dw) ? dw : fmax(0, dw), 8 * floor + ripple(pieces, 10, 3),
+                          floor, "dW/dr > 0 at q = %.6g", q);
+        }
+    property_take_worst(sink, &value);
+    property_take_worst(sink, &slope);
+}
+
+void property_self_term(const struct pieces *pieces, struct property_sink *sink)
+{
+    const struct kernel *kernel = pieces->kernel;
+    const int dim = pieces->dim;
+    const double w0 = kernel->constant[dim] * kernel->w(kernel, 0, dim), floor = DBL_EPSILON;
+    const double slope = fabs(kernel->dw(kernel, 0, dim)) / pieces->max_dw;
+    struct property_worst worst = {0};
+    for (int i = 0; i < PROPERTY_WIDTHS; i++) {
+        const double h = property_width[i], value = kernel_value(kernel, 0, h, dim);
+        property_keep(&worst, fabs(value * pow(h, dim) / w0 - 1), 16 * floor, floor,
+                      "h %g, W(0) h^d against C_d w(0)", h);
+        property_keep(&worst, fabs(kernel_dh(kernel, 0, h, dim) * h / (dim * value) + 1),
+                      16 * floor, floor, "h %g, dW/dh(0) against -d W(0)/h", h);
+    }
+    property_take_worst(sink, &worst);
+    if (kernel->smoothness[dim] == 0)
+        property_skip(sink, "class C0: the slope at the origin may be one-sided");
+    else
+        property_take(sink, slope, 16 * floor, floor, "dw(0)/max|dw|");
+    property_take(sink, w0 > 0 && w0 <= DBL_MAX ? 0 : 1, 0, 0, "W(0) = %g must be positive", w0);
+}
+
+void property_continuity(const struct pieces *pieces, struct property_sink *sink)
+{
+    const int declared = pieces->kernel->smoothness[pieces->dim];
+    struct measure_class class;
+    measure_class(pieces, &class);
+    for (int k = 0; k <= declared && k <= MEASURE_CLASS_MAX; k++) {
+        const struct measure_jump *jump = &class.jump[k];
+        property_take(sink, jump->jump, measure_significant * jump->floor, jump->floor,
+                      "jump of w^(%d) at q = %.6g", k, jump->at);
+    }
+    property_take(sink, fmax(0, fmin(declared, MEASURE_CLASS_MAX) - class.class), 0, 0,
+                  "declared C%d, measured C%d%s", declared, class.class,
+                  class.class == MEASURE_CLASS_MAX ? " or higher" : "");
+    if (pieces->kernel->knot_count >= 0)
+        property_take(sink, class.extra, 0, 0, "knots not declared%s",
+                      class.extra ? "" : ": none found");
+}
