@@ -8,6 +8,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+struct kernel;
 struct check_run; /* collects the figures of one check on one subject; see check.c */
 
 /* One figure. subject: where (kernel, dimension, h, point ...), printf-like; passes if value <=
@@ -22,8 +23,8 @@ void check_skip(struct check_run *run, const char *why, ...) __attribute__((form
 void check_series(struct check_run *run, const char *label, size_t n, const double *x,
                   const double *y);
 
-/* Shared object of `verify --kernel-plugin`, or NULL: kernel checks add it to their subjects. */
-extern const char *check_kernel_plugin;
+/* The kernel of `verify --kernel-plugin`, or NULL: kernel checks add it to their subjects. */
+extern const struct kernel *check_kernel_plugin;
 
 struct check_mutant {
     const char *name;    /* distinct over the program */

@@ -8,7 +8,7 @@
 #include <string.h>
 #include <time.h>
 
-const char *check_kernel_plugin;
+const struct kernel *check_kernel_plugin;
 
 #define CHECK(name) extern const struct check check_##name;
 #include "checks.def"

@@ -39,7 +39,7 @@ void property_round_off(const struct pieces *pieces, struct property_sink *sink)
 {
     kernel_long_shape *w, *dw;
     kernel_long_find(pieces->kernel->member.name, &w, &dw);
-    if (w) {
+    if (w && !pieces->kernel->plugin_w) {
         against_long_double(pieces, w, dw, sink);
         return;
     }

@@ -1,0 +1,12 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Wrong kernels, and for each property those that it must reject: kernel_mutants_NAME. */
+#ifndef SPHPROOF_KERNEL_MUTANTS_H
+#define SPHPROOF_KERNEL_MUTANTS_H
+
+#include "check.h"
+
+#define PROPERTY(name, formula) extern const struct check_mutant kernel_mutants_##name[];
+#include "properties.def"
+#undef PROPERTY
+
+#endif

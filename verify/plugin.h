@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * A kernel of your own, checked by sphproof. Write one C file with the functions below, then
+ *
+ *     cc -O2 -shared -fPIC -I DIR_OF_THIS_HEADER my_kernel.c -o my_kernel.so -lm
+ *     sphproof kernel ./my_kernel.so --dim 3          its certificate, exit status 1 if it is wrong
+ *     sphproof verify kernels --kernel-plugin ./my_kernel.so
+ *
+ * The kernel is W(r,h) = C_d h^-d w(q), q = r/h, where h is the support radius and d = dim = 1, 2
+ * or 3. A dimension that is not asked for is not called. What you supply is checked; what you leave
+ * out is derived, and the certificate says so. The functions must be pure: same arguments, same
+ * value. */
+#ifndef SPHPROOF_PLUGIN_H
+#define SPHPROOF_PLUGIN_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum { SPHPROOF_KERNEL_KNOTS_MAX = 4096 };
+
+/* Required: the shape w(q) and its derivative dw/dq for q >= 0. Both must be exactly 0 for q >= 1
+ * (dw of a kernel declared C0 may have its one-sided value at q = 1 itself). */
+double sphproof_kernel_w(double q, int dim);
+double sphproof_kernel_dw(double q, int dim);
+
+/* Optional: the constant C_d to full precision; else found by quadrature. */
+double sphproof_kernel_constant(int dim);
+
+/* Optional: the whole dW/dh; else -C_d h^-(d+1) (d w + q dw). */
+double sphproof_kernel_dw_dh(double r, double h, int dim);
+
+/* Optional: the points 0 < q < 1 where some derivative of w jumps, ascending, written to knots;
+ * their number is returned. Else they are found by bisection. */
+int sphproof_kernel_knots(int dim, double *knots);
+
+/* Optional: the class k of C^k, the least over the origin (w continued as an even function), the
+ * knots and the edge q = 1; else it is measured. */
+int sphproof_kernel_class(int dim);
+
+/* Optional: a name for the results; else that of the file. */
+const char *sphproof_kernel_name(void);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
