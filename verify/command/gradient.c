@@ -1,0 +1,371 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * sphproof gradient: an operator applied to the columns of a user's points, and the judgement of
+ * gradients that another code computed on them. */
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "command.h"
+#include "point_cloud.h"
+#include "result.h"
+#include "text.h"
+
+enum { DIM_MAX = 3, ROWS_SHOWN = 20, SINC_ORDER = 5 };
+
+struct request {
+    const char *path;
+    int dim;
+    double eta, h, tolerance;
+    const char *check; /* COLUMN=dx[,dy,dz] or NULL */
+    struct kernel kernel;
+    struct operator_settings settings;
+};
+
+struct answer {
+    double *memory, *gradient[CSV_COLUMNS_MAX * DIM_MAX];
+    struct operator_point *point;
+};
+
+struct judgement {
+    size_t field;                 /* whose gradient is judged */
+    const double *given[DIM_MAX]; /* columns of the file */
+    size_t judged, failed, worst; /* points; the worst one's row */
+    double departure, bound;      /* relative, at the worst point */
+};
+
+/* ---- input ---- */
+
+static enum status take_positive(const struct options *options, const char *name, double *value,
+                                 struct error *error)
+{
+    const char *text = options_value(options, name);
+    if (text && !(text_real(text, value) && *value > 0))
+        return error_set(error, STATUS_BAD_INPUT,
+                         "gradient: --%s '%.40s': allowed: a number above 0", name, text);
+    return STATUS_OK;
+}
+
+static enum status take_request(const struct options *options, int n, char **arguments,
+                                struct request *r, struct error *error)
+{
+    const char *operator= options_value(options, "operator");
+    const char *kernel = options_value(options, "kernel"), *dim = options_value(options, "dim");
+    double number = 0;
+    if (n != 1) return command_usage(options, error, "one cloud is needed, %d given", n);
+    if (!operator|| !kernel || !dim)
+        return command_usage(options, error, "--operator, --kernel and --dim are needed");
+    r->path = arguments[0];
+    r->settings = (struct operator_settings){.operator=(const struct operator*)
+                                                 family_find(&operator_family, operator),
+                                             .kernel = &r->kernel,
+                                             .threads = options->threads};
+    if (!r->settings.operator)
+        return text_unknown_member(error, "gradient", "operator", operator, & operator_family);
+    if (!family_find(&kernel_family, kernel))
+        return text_unknown_member(error, "gradient", "kernel", kernel, &kernel_family);
+    if (kernel_select(&r->kernel, kernel, SINC_ORDER, error)) return error->status;
+    if (!text_integer(dim, &number) || !(number >= 1 && number <= DIM_MAX))
+        return error_set(error, STATUS_BAD_INPUT, "gradient: --dim '%.40s': allowed: 1, 2, 3", dim);
+    r->dim = (int)number;
+    r->tolerance = 1e-9;
+    if (take_positive(options, "eta", &r->eta, error) ||
+        take_positive(options, "h", &r->h, error) ||
+        take_positive(options, "tolerance", &r->tolerance, error))
+        return error->status;
+    if (r->eta > 0 && r->h > 0)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "gradient: --eta and --h exclude each other: both set the support radius");
+    r->check = options_value(options, "check");
+    if (!r->check && options_value(options, "tolerance"))
+        return error_set(error, STATUS_BAD_INPUT, "gradient: --tolerance belongs to --check");
+    return STATUS_OK;
+}
+
+static int field_index(const struct point_cloud *pc, const char *name)
+{
+    for (size_t k = 0; k < pc->fields; k++)
+        if (strcmp(pc->name[k], name) == 0) return (int)k;
+    return -1;
+}
+
+/* Reads COLUMN=dx[,dy,dz] and takes the judged columns out of the fields to differentiate. */
+static enum status take_check(const struct request *r, struct point_cloud *pc, struct judgement *j,
+                              struct error *error)
+{
+    char text[1024];
+    if (strlen(r->check) >= sizeof text)
+        return error_set(error, STATUS_BAD_INPUT, "gradient: --check is too long");
+    strcpy(text, r->check);
+    char *rest = strchr(text, '=');
+    if (!rest)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "gradient: --check '%.60s': allowed: COLUMN=dx[,dy,dz]", r->check);
+    *rest++ = '\0';
+    int count = 0;
+    bool distinct = true;
+    for (char *name = rest; name && count < r->dim; name = rest) {
+        char *comma = strchr(name, ',');
+        rest = comma ? comma + 1 : NULL;
+        if (comma) *comma = '\0';
+        const int k = field_index(pc, name);
+        if (k < 0)
+            return text_unknown(error, "gradient: --check", "column", name, pc->name, pc->fields);
+        for (int a = 0; a < count; a++) distinct = distinct && j->given[a] != pc->field[k];
+        j->given[count++] = pc->field[k];
+    }
+    if (count != r->dim || rest || !distinct)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "gradient: --check '%.60s': allowed with --dim %d: %d distinct columns "
+                         "after the '='",
+                         r->check, r->dim, r->dim);
+    const int k = field_index(pc, text);
+    if (k < 0)
+        return text_unknown(error, "gradient: --check", "column", text, pc->name, pc->fields);
+    const double *judged = pc->field[k];
+    size_t kept = 0;
+    for (size_t l = 0; l < pc->fields; l++) {
+        bool given = false;
+        for (int a = 0; a < r->dim; a++) given = given || j->given[a] == pc->field[l];
+        if (given && pc->field[l] == judged)
+            return error_set(error, STATUS_BAD_INPUT,
+                             "gradient: --check '%.60s': '%.40s' cannot be its own gradient",
+                             r->check, text);
+        if (given) continue;
+        if (pc->field[l] == judged) j->field = kept;
+        pc->field[kept] = pc->field[l], pc->name[kept++] = pc->name[l];
+    }
+    pc->fields = kept;
+    return STATUS_OK;
+}
+
+/* ---- work ---- */
+
+static enum status compute(const struct request *r, const struct point_cloud *pc,
+                           struct answer *answer, struct error *error)
+{
+    const size_t n = pc->cloud.points.n, columns = pc->fields * (size_t)r->dim;
+    answer->memory = malloc((columns * n + 1) * sizeof(double));
+    answer->point = calloc(n, sizeof *answer->point);
+    if (!answer->memory || !answer->point)
+        return error_set(error, STATUS_ENVIRONMENT, "no memory for gradients of %zu points", n);
+    for (size_t c = 0; c < columns; c++) answer->gradient[c] = answer->memory + c * n;
+    return operator_apply(&r->settings, &pc->cloud, pc->fields, pc->field, answer->gradient,
+                          answer->point, NULL, error);
+}
+
+/* |given - ours| <= bound max(|ours|, 1e-4 max|f|/h), bound = tolerance + 1e-15 condition: two
+ * right codes differ by round-off, which is relative to f/h and grows with the condition number. */
+static void judge(const struct request *r, const struct point_cloud *pc,
+                  const struct answer *answer, struct judgement *j)
+{
+    const size_t dim = (size_t)r->dim;
+    double largest = 0, worst = -1;
+    for (size_t i = 0; i < pc->cloud.points.n; i++)
+        largest = fmax(largest, fabs(pc->field[j->field][i]));
+    for (size_t i = 0; i < pc->cloud.points.n; i++) {
+        double difference = 0, ours = 0;
+        for (size_t a = 0; a < dim; a++) {
+            const double g = answer->gradient[j->field * dim + a][i];
+            difference = hypot(difference, j->given[a][i] - g);
+            ours = hypot(ours, g);
+        }
+        if (isnan(ours)) continue; /* no gradient to compare with */
+        const double condition = answer->point[i].condition;
+        const double bound =
+            r->tolerance + (r->settings.operator->corrected ? 1e-15 * condition : 0);
+        const double scale = fmax(ours, 1e-4 * largest / pc->h[i]);
+        const double departure = scale > 0 ? difference / scale : difference > 0 ? HUGE_VAL : 0;
+        j->judged++;
+        j->failed += !(departure <= bound) ? 1u : 0u;
+        if (departure / bound > worst) {
+            worst = departure / bound;
+            j->worst = i, j->departure = departure, j->bound = bound;
+        }
+    }
+}
+
+/* ---- output ---- */
+
+static const char *state_text(enum operator_state state)
+{
+    static const char *const texts[] = {"ok", "too few neighbours", "ill-conditioned matrix",
+                                        "singular matrix"};
+    return texts[state];
+}
+
+static void print_row(const struct request *r, const struct point_cloud *pc,
+                      const struct answer *answer, size_t i)
+{
+    printf("%7zu", i + 1);
+    for (int a = 0; a < r->dim; a++) printf(" %13.6g", pc->cloud.points.x[a][i]);
+    printf(" %6u %10.3g", answer->point[i].neighbours, answer->point[i].condition);
+    for (size_t c = 0; c < pc->fields * (size_t)r->dim; c++)
+        printf(" %16.9g", answer->gradient[c][i]);
+    printf("%s%s\n", answer->point[i].state ? "  " : "",
+           answer->point[i].state ? state_text(answer->point[i].state) : "");
+}
+
+static void print_flagged(const struct request *r, const struct point_cloud *pc,
+                          const struct answer *answer)
+{
+    size_t flagged = 0;
+    for (size_t i = 0; i < pc->cloud.points.n; i++) {
+        const struct operator_point *point = &answer->point[i];
+        if (!point->state || flagged++ >= ROWS_SHOWN) continue;
+        printf("flagged: row %zu (%s:%zu) at (", i + 1, r->path, pc->csv.line[i]);
+        for (int a = 0; a < r->dim; a++) printf("%s%.9g", a ? ", " : "", pc->cloud.points.x[a][i]);
+        printf("): %s: %u within h = %.6g, itself included; condition %.3g\n",
+               state_text(point->state), point->neighbours, pc->h[i], point->condition);
+    }
+    if (flagged > ROWS_SHOWN) printf("flagged: %zu more\n", flagged - ROWS_SHOWN);
+    printf("%zu of %zu points flagged\n", flagged, pc->cloud.points.n);
+}
+
+static void print_answer(const struct request *r, const struct point_cloud *pc,
+                         const struct answer *answer)
+{
+    const size_t n = pc->cloud.points.n;
+    printf("%s, %s, %dD, %zu points\n", r->settings.operator->member.name, r->kernel.member.name,
+           r->dim, n);
+    printf("neighbours: points within h, itself included; condition: of the operator's matrix\n\n");
+    printf("%7s", "row");
+    for (int a = 0; a < r->dim; a++) printf(" %13c", "xyz"[a]);
+    printf(" %6s %10s", "neighb", "condition");
+    for (size_t k = 0; k < pc->fields; k++)
+        for (int a = 0; a < r->dim; a++) {
+            char name[24];
+            snprintf(name, sizeof name, "d%.9s/d%c", pc->name[k], "xyz"[a]);
+            printf(" %16s", name);
+        }
+    printf("\n");
+    for (size_t i = 0; i < n && i < ROWS_SHOWN; i++) print_row(r, pc, answer, i);
+    if (n > ROWS_SHOWN) printf("    ... %zu more; all of them with --json FILE\n", n - ROWS_SHOWN);
+    printf("\n");
+    print_flagged(r, pc, answer);
+}
+
+static void print_judgement(const struct point_cloud *pc, const struct judgement *j)
+{
+    printf("\ngiven gradient of %s: %s: %zu of %zu points depart by more than their bound\n",
+           pc->name[j->field], j->failed ? "FAIL" : "pass", j->failed, j->judged);
+    if (j->judged)
+        printf("worst: row %zu, |given - ours| = %.3g max(|ours|, 1e-4 max|f|/h), bound %.3g\n",
+               j->worst + 1, j->departure, j->bound);
+}
+
+/* null where there is no gradient */
+static json_t *number(double value)
+{
+    return isnan(value) ? json_null() : result_number(value);
+}
+
+static json_t *vector(int dim, double *const *values, size_t i)
+{
+    json_t *array = json_array();
+    for (int a = 0; a < dim; a++) json_array_append_new(array, number(values[a][i]));
+    return array;
+}
+
+static json_t *points_json(const struct request *r, const struct point_cloud *pc,
+                           const struct answer *answer)
+{
+    json_t *points = json_array();
+    for (size_t i = 0; i < pc->cloud.points.n; i++) {
+        const struct operator_point *point = &answer->point[i];
+        json_t *gradients = json_object();
+        for (size_t k = 0; k < pc->fields; k++)
+            json_object_set_new(gradients, pc->name[k],
+                                vector(r->dim, answer->gradient + k * (size_t)r->dim, i));
+        json_array_append_new(points, json_pack("{s:o, s:f, s:o, s:i, s:o, s:s}", "x",
+                                                vector(r->dim, (double *const *)pc->csv.values, i),
+                                                "h", pc->h[i], "gradients", gradients, "neighbours",
+                                                (int)point->neighbours, "condition",
+                                                result_number(point->condition), "state",
+                                                operator_state_name(point->state)));
+    }
+    return points;
+}
+
+static enum status write_answer(const struct options *options, const struct request *r,
+                                const struct point_cloud *pc, const struct answer *answer,
+                                const struct judgement *j, struct error *error)
+{
+    json_t *document = result_new("gradient");
+    json_t *content =
+        json_pack("{s:s, s:s, s:i, s:o}", "operator", r->settings.operator->member.name, "kernel",
+                  r->kernel.member.name, "dim", r->dim, "points", points_json(r, pc, answer));
+    if (r->check)
+        json_object_set_new(
+            content, "judgement",
+            json_pack("{s:s, s:s, s:i, s:i, s:i, s:o, s:o}", "column", pc->name[j->field], "status",
+                      j->failed ? "fail" : "pass", "judged", (int)j->judged, "failed",
+                      (int)j->failed, "worst_row", (int)j->worst + 1, "departure",
+                      result_number(j->departure), "bound", result_number(j->bound)));
+    enum status status;
+    if (!document || !content || json_object_update(document, content))
+        status = error_set(error, STATUS_ENVIRONMENT, "no memory for the result");
+    else
+        status = result_write(document, options->json, error);
+    json_decref(document);
+    json_decref(content);
+    return status;
+}
+
+/* ---- the command ---- */
+
+static enum status run(const struct options *options, int n, char **arguments, struct error *error)
+{
+    struct request request = {0};
+    struct point_cloud pc = {0};
+    struct answer answer = {0};
+    struct judgement judgement = {0};
+    enum status status = take_request(options, n, arguments, &request, error);
+    if (!status)
+        status = point_cloud_read(request.path, request.dim, request.eta, request.h, &pc, error);
+    if (!status && request.check) status = take_check(&request, &pc, &judgement, error);
+    if (!status) status = compute(&request, &pc, &answer, error);
+    if (!status) {
+        if (request.check) judge(&request, &pc, &answer, &judgement);
+        if (options->speak) {
+            print_answer(&request, &pc, &answer);
+            if (request.check) print_judgement(&pc, &judgement);
+        }
+        if (options->json)
+            status = write_answer(options, &request, &pc, &answer, &judgement, error);
+        if (!status && judgement.failed) status = STATUS_CHECK_FAILED;
+    }
+    free(answer.memory), free(answer.point);
+    point_cloud_free(&pc);
+    return status;
+}
+
+static const struct command_option own_options[] = {
+    {"operator", "OP", "standard, standard_difference, ia, linear_exact or normalised_corrected"},
+    {"kernel", "K", "kernel; see `sphproof list kernels`"},
+    {"dim", "D", "1, 2 or 3"},
+    {"eta", "E", "support radius h = eta volume^(1/dim) at each point"},
+    {"h", "H", "the same support radius h for all points"},
+    {"check", "COLUMN=dx[,dy,dz]", "judge the gradient of COLUMN that these columns hold"},
+    {"tolerance", "T", "of --check, relative to max(|gradient|, 1e-4 max|f|/h) (default 1e-9)"},
+    {NULL, NULL, NULL},
+};
+
+const struct command command_gradient = {
+    .name = "gradient",
+    .synopsis = "CLOUD.csv --operator OP --kernel K --dim D (--eta E | --h H)",
+    .help =
+        "gradients of the columns of a point cloud\n"
+        "The file holds columns x[,y,z],volume, then one column a field, and optionally h\n"
+        "(support radius), which wins over --eta and --h. Points with too few neighbours or an\n"
+        "ill-conditioned matrix are named; where no inverse exists the gradient is nan (JSON:\n"
+        "null). With --check the exit status is 1 if a given gradient departs from ours.",
+    .run = run,
+    .options = own_options,
+    .examples =
+        "sphproof gradient cloud.csv --operator linear_exact --kernel wendland_c2 --dim 2 --eta 3\n"
+        "sphproof gradient cloud.csv --operator ia --kernel cubic_spline --dim 1 --h 0.1 --json -\n"
+        "sphproof gradient cloud.csv --operator standard --kernel cubic_spline --dim 2 --eta 2.4 "
+        "--check f=fx,fy",
+};

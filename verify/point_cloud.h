@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * A point cloud from a CSV file: columns x[,y,z],volume first, then one column a field, in any
+ * place among these optionally h, the support radius. */
+#ifndef SPHPROOF_POINT_CLOUD_H
+#define SPHPROOF_POINT_CLOUD_H
+
+#include "csv.h"
+#include "operator.h"
+
+struct point_cloud {
+    struct csv csv;
+    struct cloud cloud; /* points into csv and h */
+    double *h;
+    size_t fields;
+    const double *field[CSV_COLUMNS_MAX]; /* into csv */
+    const char *name[CSV_COLUMNS_MAX];
+};
+
+/* eta, h: what the user gave, 0 for neither; a column h wins, else h for all, else h =
+ * eta volume^(1/dim). STATUS_BAD_INPUT: the message names file, line and column. Free with
+ * point_cloud_free, also after a failure. */
+enum status point_cloud_read(const char *path, int dim, double eta, double h,
+                             struct point_cloud *cloud, struct error *error);
+void point_cloud_free(struct point_cloud *cloud);
+
+#endif
