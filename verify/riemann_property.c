@@ -5,6 +5,8 @@
 #include <math.h>
 #include <stddef.h>
 
+const struct riemann_subject riemann_reference = {"reference", riemann_solve, riemann_sample};
+
 static double sound_speed(double gamma, double rho, double P)
 {
     return rho > 0 ? sqrt(gamma * (P / rho)) : 0;
@@ -223,6 +225,25 @@ struct riemann_problem riemann_boosted(const struct riemann_problem *p, double d
     boosted.left.v += dv;
     boosted.right.v += dv;
     return boosted;
+}
+
+struct riemann_solution riemann_solution_mirrored(const struct riemann_solution *s)
+{
+    struct riemann_solution m = *s;
+    m.v_star = -s->v_star, m.contact = -s->contact;
+    m.rho_star_left = s->rho_star_right, m.rho_star_right = s->rho_star_left;
+    m.left_wave = s->right_wave, m.right_wave = s->left_wave;
+    m.left_head = -s->right_head, m.right_head = -s->left_head;
+    m.left_tail = -s->right_tail, m.right_tail = -s->left_tail;
+    return m;
+}
+
+struct riemann_solution riemann_solution_boosted(const struct riemann_solution *s, double dv)
+{
+    struct riemann_solution b = *s;
+    b.v_star += dv, b.contact += dv;
+    b.left_head += dv, b.left_tail += dv, b.right_tail += dv, b.right_head += dv;
+    return b;
 }
 
 static double relative(double a, double b)

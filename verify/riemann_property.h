@@ -18,6 +18,8 @@ struct riemann_subject {
                                    double t);
 };
 
+extern const struct riemann_subject riemann_reference; /* reference/riemann.h */
+
 struct riemann_problem {
     double gamma;
     struct riemann_state left, right;
@@ -48,6 +50,11 @@ double riemann_fan_defect(const struct riemann_subject *subject,
 /* The mirror image (x -> -x), and the same problem seen from a frame that moves with -dv. */
 struct riemann_problem riemann_mirrored(const struct riemann_problem *problem);
 struct riemann_problem riemann_boosted(const struct riemann_problem *problem, double dv);
+
+/* The same done to a solution (star values, waves and speeds; the states stay). */
+struct riemann_solution riemann_solution_mirrored(const struct riemann_solution *solution);
+struct riemann_solution riemann_solution_boosted(const struct riemann_solution *solution,
+                                                 double dv);
 
 /* Largest relative difference of star values and speeds; 1 where kinds of waves differ.
  * Differences of speeds are relative to `speed`. */

@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Does an exact solution of one-dimensional gas dynamics satisfy the conservation laws? In integral
+ * form over rectangles of x and t (shocks and contacts included), by Gauss-Legendre quadrature
+ * between given paths of kinks, and in differential form where it is smooth. */
+#ifndef SPHPROOF_BALANCE_H
+#define SPHPROOF_BALANCE_H
+
+#include <stddef.h>
+
+#include "riemann.h"
+
+/* The flow under test. A state with rho = 0 is vacuum and carries nothing, whatever its v. */
+struct flow {
+    struct riemann_state (*at)(const void *context, double x, double t);
+    const void *context;
+    double gamma;
+};
+
+/* Where the flow is not smooth: on the lines x = x0 + speeds[i] t. NaN and infinite speeds are
+ * ignored. At most BALANCE_PATHS. */
+struct flow_paths {
+    double x0;
+    const double *speeds;
+    size_t n;
+};
+enum { BALANCE_PATHS = 16 };
+
+/* |change of content + net outflow| of mass, momentum and energy over [x[0], x[1]] x [t[0], t[1]],
+ * the worst of the three, each relative to the sum of the magnitudes that went into it. NaN: no
+ * memory, or the flow has a NaN. */
+double balance_defect(const struct flow *flow, const double x[2], const double t[2],
+                      const struct flow_paths *paths);
+
+/* |dU/dt + dF/dx| at a smooth point, the worst of the three relative to its two terms. dx, dt:
+ * steps of the numerical derivatives, well inside the smooth region. Round-off: some 1e-10. */
+double balance_residual(const struct flow *flow, double x, double t, double dx, double dt);
+
+#endif
