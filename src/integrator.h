@@ -13,10 +13,12 @@ struct simulation;
 struct integrator {
     struct member member;
     int order;
-    int evaluations;      /* of the right-hand side, a step */
-    double cfl;           /* default of the key cfl, in support radii; see descriptor's comment */
-    bool ends_evaluated;  /* the rates at the end of a step belong to its final state */
-    /* Advances the state by dt. */
+    int evaluations;    /* of the rates, a step */
+    double cfl;         /* default of the key cfl, in support radii; see the member's comment */
+    bool cfl_per_width; /* the default is cfl / eta: in particle spacings */
+    bool signal_pass;   /* velocities change after the last rates: time step by a pass of its own */
+    bool ends_evaluated; /* the derived fields at the end of a step belong to its state */
+    /* Advances the state (x, p, e, alpha) by dt; rates of the state are there when it begins. */
     enum status (*step)(struct simulation *simulation, double dt, struct error *error);
 };
 

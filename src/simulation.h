@@ -12,19 +12,20 @@
 
 /* What is to be computed. Arrays belong to the caller and are copied by simulation_create. */
 struct scene {
-    int dim;                /* 1 (2 and 3: not yet) */
-    double lo[3], hi[3];    /* periodic box */
-    double gamma;           /* ideal gas, > 1 */
+    int dim;             /* 1 (2 and 3: not yet) */
+    double lo[3], hi[3]; /* periodic box */
+    double gamma;        /* ideal gas, > 1 */
     double t_end;
-    size_t n;               /* particles */
-    const double *x[3];     /* n each: positions, in the box, any order */
-    const double *v[3];     /* n each: velocities */
-    const double *m;        /* n: masses, > 0 */
-    const double *u;        /* n: specific internal energies, > 0 */
-    const double *rho;      /* n: first guess of the density, or NULL */
+    size_t n;           /* particles */
+    const double *x[3]; /* n each: positions, in the box, any order */
+    const double *v[3]; /* n each: velocities */
+    const double *m;    /* n: masses, > 0 */
+    const double *u;    /* n: specific internal energies, > 0 */
+    const double *rho;  /* n: first guess of the density, or NULL */
     struct scheme scheme;
-    bool skip;              /* leave out work that cannot change the result */
-    int threads;            /* >= 1 */
+    bool skip;      /* leave out work that cannot change the result */
+    bool unstamped; /* the oracle: loops with every choice looked up at run time */
+    int threads;    /* >= 1 */
 };
 
 /* One line of the plan: a pass, whether it runs, and why (or why not). */
@@ -45,7 +46,16 @@ struct snapshot {
     size_t n;
     const double *x[3], *v[3];
     const double *m, *rho, *u, *P, *h, *volume;
+    const size_t *id; /* index in the scene */
     double time;
+};
+
+/* The rates that the next step begins with: dp/dt, de/dt (of U or E, as the scheme integrates),
+ * dalpha/dt (NULL where alpha does not evolve), in the order of the snapshot. Right after
+ * simulation_create they belong to the initial state. */
+struct rates {
+    const double *force[3], *energy, *alpha;
+    double time_step;
 };
 
 struct conservation { /* sums over all particles; extensive, code units */
@@ -70,6 +80,7 @@ typedef bool simulation_progress(void *context, double time, uint64_t steps);
 enum status simulation_run(struct simulation *simulation, double t_end,
                            simulation_progress *progress, void *context, struct error *error);
 void simulation_snapshot(const struct simulation *simulation, struct snapshot *snapshot);
+void simulation_rates(const struct simulation *simulation, struct rates *rates);
 void simulation_conservation(const struct simulation *simulation, struct conservation *sums);
 void simulation_cost(const struct simulation *simulation, struct simulation_cost *cost);
 void simulation_destroy(struct simulation *simulation);

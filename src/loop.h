@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What the stamped loops share. */
+#ifndef SPHPROOF_LOOP_H
+#define SPHPROOF_LOOP_H
+
+#include "config.h"
+#include "loops.h"
+
+#define ALWAYS_INLINE static inline __attribute__((always_inline))
+
+/* Feature names: names of architectures would silently run the default here. */
+#if SPHPROOF_CLONES
+#define CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
+#else
+#define CLONES
+#endif
+
+/* The tables of the four files of sums; kernel: position in kernels.def, -1: unstamped. */
+density_loop *loop_density(int kernel, enum density_terms terms);
+matrix_loop *loop_matrix(int kernel, enum matrix_terms terms);
+gradient_loop *loop_gradient(int kernel, enum gradient gradient, enum pair_gradient form);
+force_loop *loop_force(bool stamped, enum formulation formulation, enum pair_viscosity viscosity,
+                       enum energy energy);
+
+ALWAYS_INLINE double largest(double a, double b)
+{
+    return a > b ? a : b;
+}
+
+ALWAYS_INLINE double least(double a, double b)
+{
+    return a < b ? a : b;
+}
+
+#endif

@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Kernel sums of density, smoothing length and grad-h (PHYSICS: y_i = sum_j Z_j W(r_ij, h_i)). */
+#include <math.h>
+
+#include "loop.h"
+
+ALWAYS_INLINE void sum_pairs(const struct kernel *kernel, kernel_shape *w, kernel_shape *dw,
+                             enum density_terms terms, const struct particles *particles,
+                             ptrdiff_t first, int len, ptrdiff_t D,
+                             const double *restrict h_inverse, struct density_sums *restrict sums)
+{
+    const double *restrict x = particles->x + first, *restrict m = particles->m + first,
+                           *restrict U = particles->U + first;
+    const double w0 = w(kernel, 0, 1);
+    for (int i = 0; i < len; i++) {
+        sums->m[i] = m[i] * w0;
+        if (terms >= DENSITY_DERIVATIVE) sums->m_dh[i] = m[i] * w0;
+        if (terms >= DENSITY_ENERGY) sums->Z[i] = sums->Z_dh[i] = U[i] * w0;
+    }
+    for (ptrdiff_t d = 1; d <= D; d++) {
+#pragma omp simd
+        for (int i = 0; i < len; i++) {
+            const double q_right = (x[i + d] - x[i]) * h_inverse[i];
+            const double q_left = (x[i] - x[i - d]) * h_inverse[i];
+            const double w_right = w(kernel, q_right, 1), w_left = w(kernel, q_left, 1);
+            sums->m[i] += m[i + d] * w_right + m[i - d] * w_left;
+            if (terms >= DENSITY_DERIVATIVE) {
+                const double dh_right = w_right + q_right * dw(kernel, q_right, 1);
+                const double dh_left = w_left + q_left * dw(kernel, q_left, 1);
+                sums->m_dh[i] += m[i + d] * dh_right + m[i - d] * dh_left;
+                if (terms >= DENSITY_ENERGY) {
+                    sums->Z[i] += U[i + d] * w_right + U[i - d] * w_left;
+                    sums->Z_dh[i] += U[i + d] * dh_right + U[i - d] * dh_left;
+                }
+            }
+        }
+    }
+}
+
+#define BODY(function, w, dw, terms, attributes)                                                   \
+    attributes static void function(                                                               \
+        const struct kernel *kernel, const struct particles *particles, ptrdiff_t first, int len,  \
+        ptrdiff_t D, const double *h_inverse, struct density_sums *sums)                           \
+    {                                                                                              \
+        sum_pairs(kernel, w, dw, terms, particles, first, len, D, h_inverse, sums);                \
+    }
+
+#define KERNEL(name, ...)                                                                          \
+    BODY(name##_value, name##_w, name##_dw, DENSITY_VALUE, CLONES)                                 \
+    BODY(name##_derivative, name##_w, name##_dw, DENSITY_DERIVATIVE, CLONES)                       \
+    BODY(name##_energy, name##_w, name##_dw, DENSITY_ENERGY, CLONES)
+#include "kernels.def"
+#undef KERNEL
+
+BODY(any_value, kernel->w, kernel->dw, DENSITY_VALUE, )
+BODY(any_derivative, kernel->w, kernel->dw, DENSITY_DERIVATIVE, )
+BODY(any_energy, kernel->w, kernel->dw, DENSITY_ENERGY, )
+
+static density_loop *const stamped[][3] = {
+#define KERNEL(name, ...) {name##_value, name##_derivative, name##_energy},
+#include "kernels.def"
+#undef KERNEL
+};
+static density_loop *const unstamped[3] = {any_value, any_derivative, any_energy};
+
+density_loop *loop_density(int kernel, enum density_terms terms)
+{
+    return kernel < 0 ? unstamped[terms] : stamped[kernel][terms];
+}

@@ -1,0 +1,165 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Pair forces in 1D (PHYSICS: equations of motion). A half loop: for each offset d the fluxes of
+ * the pairs (i, i+d) go into strips, then every particle collects its right and its left pair:
+ * the order of summation is fixed, and momentum is conserved to round-off. The kernel stands in
+ * loop_gradient.c alone. With j right of i: r = x_j - x_i >= 0, G = grad_i W > 0. */
+#include <math.h>
+#include <string.h>
+
+#include "loop.h"
+
+/* exp(-z) for 0 <= z <= 7, to 1e-9 relative: (exp(-z/16))^16 by the series. Vectorises. */
+ALWAYS_INLINE double damping(double z)
+{
+    const double t = -z / 16;
+    double s = 1 + t / 7;
+    s = 1 + t / 6 * s;
+    s = 1 + t / 5 * s;
+    s = 1 + t / 4 * s;
+    s = 1 + t / 3 * s;
+    s = 1 + t / 2 * s;
+    s = 1 + t * s;
+    s *= s;
+    s *= s;
+    s *= s;
+    return s * s;
+}
+
+/* Closing speed of a pair extrapolated to its midpoint with a limited slope (Rosswog 2020, MAGMA2
+ * eqs. 18-22): v~_ij = v_ij + phi/2 (v'_i + v'_j) r; pairs closer than q = near are damped. */
+ALWAYS_INLINE double closing_at_midpoint(double v_ij, double slope_i, double slope_j, double r,
+                                         double q, double near)
+{
+    const double sum = slope_i + slope_j;
+    const double ratio = 4 * slope_i * slope_j / (sum * sum);
+    const double phi = ratio > 0 ? least(ratio, 1) : 0; /* a vanishing sum: NaN > 0 is false */
+    const double z = q < near ? least((near - q) * 5, 2.6) : 0;
+    const double closing = v_ij + 0.5 * phi * damping(z * z) * r * sum;
+    /* the heating uses v_ij itself: viscosity never cools */
+    return v_ij > 0 ? largest(closing, 0) : 0;
+}
+
+ALWAYS_INLINE void force_body(enum formulation formulation, enum pair_viscosity viscosity,
+                              enum energy energy, const struct loops *loops,
+                              const struct pair_numbers *numbers, const struct particles *particles,
+                              ptrdiff_t first, int len, ptrdiff_t D, double *scratch)
+{
+    const double beta = numbers->beta, beta_ratio = numbers->beta_ratio, near = numbers->near;
+    const ptrdiff_t strip = RANGE_MAX + D;
+    double *restrict f = scratch, *restrict e_i = scratch + strip,
+                     *restrict e_j = scratch + 2 * strip, *restrict s = scratch + 3 * strip,
+                     *restrict G = scratch + 4 * strip, *restrict G_j = scratch + 5 * strip;
+    double F[RANGE_MAX], de[RANGE_MAX], signal[RANGE_MAX], div_v[RANGE_MAX];
+    for (int i = 0; i < len; i++) {
+        F[i] = de[i] = div_v[i] = 0;
+        signal[i] = 2 * particles->c[first + i];
+    }
+    for (ptrdiff_t d = 1; d <= D; d++) {
+        const ptrdiff_t o = first - d;
+        const int pairs = len + (int)d;
+        loops->gradient(numbers->kernel, particles, o, pairs, d, G, G_j);
+
+        const double *restrict x = particles->x + o, *restrict v = particles->v + o,
+                               *restrict m = particles->m + o, *restrict h = particles->h + o,
+                               *restrict P = particles->P + o, *restrict c = particles->c + o,
+                               *restrict rho = particles->rho + o,
+                               *restrict alpha = particles->alpha + o,
+                               *restrict V = particles->V + o, *restrict b = particles->b + o,
+                               *restrict grad_h = particles->grad_h + o,
+                               *restrict dv = particles->dv + o,
+                               *restrict h_inverse = particles->h_inverse + o;
+        const double *restrict Z = (numbers->energy_element ? particles->U : particles->m) + o;
+#pragma omp simd
+        for (int i = 0; i < pairs; i++) {
+            const ptrdiff_t j = i + d;
+            const double r = x[j] - x[i], v_ij = v[i] - v[j];
+            double a_i, a_j; /* pressure */
+            double K = 0;    /* viscosity, m_i m_j PI G */
+            if (formulation == FORMULATION_VANILLA_ICE) {
+                const double A = V[i] * V[j] * G[i];
+                a_i = A * P[i];
+                a_j = A * P[j];
+            } else {
+                a_i = b[i] * (Z[j] - m[j] * grad_h[i]) * G[i];
+                a_j = b[j] * (Z[i] - m[i] * grad_h[j]) * G_j[i];
+            }
+            if (viscosity != PAIR_INVISCID) {
+                const double closing =
+                    viscosity == PAIR_RECONSTRUCTED
+                        ? closing_at_midpoint(v_ij, dv[i], dv[j], r,
+                                              r * least(h_inverse[i], h_inverse[j]), near)
+                        : largest(v_ij, 0);
+                const double G_bar =
+                    formulation == FORMULATION_VANILLA_ICE ? G[i] : 0.5 * (G[i] + G_j[i]);
+                /* mu = -t/D2, PI = (-alpha c mu + beta mu^2)/rho, with one division */
+                const double h_bar = 0.25 * (h[i] + h[j]);
+                const double t = h_bar * r * closing, D2 = r * r + 0.01 * (h_bar * h_bar);
+                const double alpha_bar = 0.5 * (alpha[i] + alpha[j]);
+                const double c_bar = 0.5 * (c[i] + c[j]), rho_bar = 0.5 * (rho[i] + rho[j]);
+                const double beta_bar = beta + beta_ratio * alpha_bar;
+                K = m[i] * m[j] * G_bar * t * (alpha_bar * c_bar * D2 + beta_bar * t) /
+                    (D2 * D2 * rho_bar);
+            }
+            f[i] = -(a_i + a_j) - K;
+            if (energy == ENERGY_TOTAL) {
+                e_i[i] = -(a_j * v[i] + a_i * v[j]) - 0.5 * K * (v[i] + v[j]);
+            } else {
+                e_i[i] = (a_i + 0.5 * K) * v_ij;
+                e_j[i] = (a_j + 0.5 * K) * v_ij;
+            }
+            const double speed = c[i] + c[j] + 3 * largest(v_ij, 0);
+            s[i] = r < largest(h[i], h[j]) ? speed : 0;
+        }
+#pragma omp simd
+        for (int i = 0; i < len; i++) {
+            F[i] += f[i + d] - f[i];
+            de[i] += energy == ENERGY_TOTAL ? e_i[i + d] - e_i[i] : e_i[i + d] + e_j[i];
+            signal[i] = largest(signal[i], largest(s[i], s[i + d]));
+        }
+        if (numbers->want_div_v) {
+            const double *both = formulation == FORMULATION_VANILLA_ICE ? G : G_j;
+            for (int i = 0; i < pairs; i++) f[i] = 0.5 * (G[i] + both[i]) * (v[i] - v[i + d]);
+            for (int i = 0; i < len; i++) div_v[i] -= V[i + 2 * d] * f[i + d] + V[i] * f[i];
+        }
+    }
+    const size_t bytes = (size_t)len * sizeof(double);
+    memcpy(particles->F + first, F, bytes);
+    memcpy(particles->de + first, de, bytes);
+    memcpy(particles->signal + first, signal, bytes);
+    if (numbers->want_div_v) memcpy(particles->div_v + first, div_v, bytes);
+}
+
+#define ENERGIES(X, f, v) X(f, v, ENERGY_INTERNAL) X(f, v, ENERGY_TOTAL)
+#define VISCOSITIES(X, f)                                                                          \
+    ENERGIES(X, f, PAIR_INVISCID)                                                                  \
+    ENERGIES(X, f, PAIR_VISCOUS) ENERGIES(X, f, PAIR_RECONSTRUCTED)
+#define ALL(X) VISCOSITIES(X, FORMULATION_VANILLA_ICE) VISCOSITIES(X, FORMULATION_LAGRANGIAN)
+
+#define BODY(function, formulation, viscosity, energy, attributes)                                 \
+    attributes static void function(const struct loops *loops, const struct pair_numbers *numbers, \
+                                    const struct particles *particles, ptrdiff_t first, int len,   \
+                                    ptrdiff_t D, double *scratch)                                  \
+    {                                                                                              \
+        force_body(formulation, viscosity, energy, loops, numbers, particles, first, len, D,       \
+                   scratch);                                                                       \
+    }
+#define STAMP(f, v, e) BODY(force_##f##_##v##_##e, f, v, e, CLONES)
+ALL(STAMP)
+
+#define ENTRY(f, v, e) [f][v][e] = force_##f##_##v##_##e,
+static force_loop *const stamped[2][3][2] = {ALL(ENTRY)};
+
+/* The unstamped body: every choice is looked up at run time. */
+static void unstamped(const struct loops *loops, const struct pair_numbers *numbers,
+                      const struct particles *particles, ptrdiff_t first, int len, ptrdiff_t D,
+                      double *scratch)
+{
+    force_body(numbers->formulation, numbers->viscosity, numbers->energy, loops, numbers, particles,
+               first, len, D, scratch);
+}
+
+force_loop *loop_force(bool want_stamped, enum formulation formulation,
+                       enum pair_viscosity viscosity, enum energy energy)
+{
+    return want_stamped ? stamped[formulation][viscosity][energy] : unstamped;
+}

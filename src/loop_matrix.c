@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The moment matrix of the Integral Approach, in 1D the number T_i = sum_j V_j x^2 W, and with it
+ * the linear_exact velocity gradient (Garcia-Senz et al. 2012; Price 2004). C/h cancels between
+ * matrix and gradient: g = 1/sum V x^2 w, G = g x w. */
+#include <math.h>
+
+#include "loop.h"
+
+ALWAYS_INLINE void sum_moments(const struct kernel *kernel, kernel_shape *w,
+                               enum matrix_terms terms, const struct particles *particles,
+                               ptrdiff_t first, int len, ptrdiff_t D)
+{
+    const bool reconstruct = terms != MATRIX_MOMENT;
+    const double *restrict x = particles->x + first, *restrict V = particles->V + first,
+                           *restrict v = particles->v + first,
+                           *restrict h_inverse = particles->h_inverse + first;
+    double second[RANGE_MAX] = {0}, slope[RANGE_MAX] = {0};
+    for (ptrdiff_t d = 1; d <= D; d++) {
+#pragma omp simd
+        for (int i = 0; i < len; i++) {
+            const double right = x[i + d] - x[i], left = x[i] - x[i - d];
+            const double right_w = V[i + d] * right * w(kernel, right * h_inverse[i], 1);
+            const double left_w = V[i - d] * left * w(kernel, left * h_inverse[i], 1);
+            second[i] += right_w * right + left_w * left;
+            if (reconstruct) slope[i] += right_w * (v[i + d] - v[i]) + left_w * (v[i] - v[i - d]);
+        }
+    }
+    double *restrict g = particles->g + first, *restrict dv = particles->dv + first;
+    for (int i = 0; i < len; i++) {
+        const double inverse = second[i] > 0 ? 1 / second[i] : 0; /* no neighbour: no gradient */
+        if (terms != MATRIX_SLOPE) g[i] = inverse;
+        if (reconstruct) dv[i] = inverse * slope[i];
+    }
+}
+
+#define BODY(function, w, terms, attributes)                                                       \
+    attributes static void function(const struct kernel *kernel,                                   \
+                                    const struct particles *particles, ptrdiff_t first, int len,   \
+                                    ptrdiff_t D)                                                   \
+    {                                                                                              \
+        sum_moments(kernel, w, terms, particles, first, len, D);                                   \
+    }
+
+#define KERNEL(name, ...)                                                                          \
+    BODY(name##_moment, name##_w, MATRIX_MOMENT, CLONES)                                           \
+    BODY(name##_both, name##_w, MATRIX_BOTH, CLONES)                                               \
+    BODY(name##_slope, name##_w, MATRIX_SLOPE, CLONES)
+#include "kernels.def"
+#undef KERNEL
+
+BODY(any_moment, kernel->w, MATRIX_MOMENT, )
+BODY(any_both, kernel->w, MATRIX_BOTH, )
+BODY(any_slope, kernel->w, MATRIX_SLOPE, )
+
+static matrix_loop *const stamped[][3] = {
+#define KERNEL(name, ...) {name##_moment, name##_both, name##_slope},
+#include "kernels.def"
+#undef KERNEL
+};
+static matrix_loop *const unstamped[3] = {any_moment, any_both, any_slope};
+
+matrix_loop *loop_matrix(int kernel, enum matrix_terms terms)
+{
+    return kernel < 0 ? unstamped[terms] : stamped[kernel][terms];
+}

@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "loops.h"
+
+#include "loop.h"
+
+void loops_choose(const struct scheme *scheme, bool stamped, struct loops *loops,
+                  struct pair_numbers *numbers)
+{
+    const int kernel = stamped && !scheme->kernel.plugin_w
+                           ? family_index(&kernel_family, scheme->kernel.member.name)
+                           : -1;
+    const bool grad_h = scheme->formulation == FORMULATION_LAGRANGIAN;
+    const bool energy_element = scheme->volume_element == VOLUME_ENERGY;
+    const bool reconstruct = scheme->viscosity == VISCOSITY_RECONSTRUCTED;
+    const bool varies = scheme->viscosity == VISCOSITY_TIME_DEPENDENT;
+    static const enum pair_gradient form_of_width[] = {PAIR_GRADIENT_MEAN, PAIR_GRADIENT_MAX,
+                                                       PAIR_GRADIENT_HARMONIC};
+    *numbers = (struct pair_numbers){
+        .kernel = &scheme->kernel,
+        .formulation = scheme->formulation,
+        .viscosity = scheme->viscosity == VISCOSITY_NONE ? PAIR_INVISCID
+                     : reconstruct                       ? PAIR_RECONSTRUCTED
+                                                         : PAIR_VISCOUS,
+        .energy = scheme->energy,
+        .energy_element = energy_element,
+        .want_div_v = varies,
+        .beta = varies ? 0 : scheme->beta,
+        .beta_ratio = !varies             ? 0
+                      : scheme->alpha > 0 ? scheme->beta / scheme->alpha
+                                          : 2,
+        .near = 1 / scheme->eta,
+    };
+    *loops = (struct loops){0};
+    loops->density_newton =
+        loop_density(kernel, energy_element ? DENSITY_ENERGY : DENSITY_DERIVATIVE);
+    loops->density =
+        energy_element || grad_h ? loops->density_newton : loop_density(kernel, DENSITY_VALUE);
+    if (scheme->gradient == GRADIENT_IA)
+        loops->matrix = loop_matrix(kernel, reconstruct ? MATRIX_BOTH : MATRIX_MOMENT);
+    else if (reconstruct)
+        loops->matrix = loop_matrix(kernel, MATRIX_SLOPE);
+    loops->gradient = loop_gradient(
+        kernel, scheme->gradient, grad_h ? PAIR_GRADIENT_BOTH : form_of_width[scheme->pair_width]);
+    loops->force = loop_force(kernel >= 0, scheme->formulation, numbers->viscosity, scheme->energy);
+}
+
+size_t force_scratch(ptrdiff_t D)
+{
+    return 6 * (size_t)(RANGE_MAX + D);
+}
+
+void loops_signal(const struct particles *particles, ptrdiff_t first, int len, ptrdiff_t D)
+{
+    const double *x = particles->x + first, *v = particles->v + first, *c = particles->c + first,
+                 *h = particles->h + first;
+    double *signal = particles->signal + first;
+    for (int i = 0; i < len; i++) signal[i] = 2 * c[i];
+    for (ptrdiff_t d = 1; d <= D; d++)
+        for (int i = 0; i < len; i++) {
+            const double right = c[i] + c[i + d] + 3 * largest(v[i] - v[i + d], 0);
+            const double left = c[i] + c[i - d] + 3 * largest(v[i - d] - v[i], 0);
+            if (x[i + d] - x[i] < largest(h[i], h[i + d])) signal[i] = largest(signal[i], right);
+            if (x[i] - x[i - d] < largest(h[i], h[i - d])) signal[i] = largest(signal[i], left);
+        }
+}

@@ -1,0 +1,102 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The particle sums in 1D, over sorted particles: a loop over neighbour offsets d = 1..D, inside it
+ * a loop over the particles of a range, which vectorises. Kernels are exactly 0 beyond their
+ * support, so D only has to be sufficient and the result depends neither on D nor on the range.
+ * Every sum exists stamped per kernel (run-time dispatch over instruction sets) and unstamped, with
+ * the kernel behind a pointer: the oracle, and the path of a user's plug-in. */
+#ifndef SPHPROOF_LOOPS_H
+#define SPHPROOF_LOOPS_H
+
+#include <stdbool.h>
+
+#include "particles.h"
+#include "scheme.h"
+
+enum { RANGE_MAX = 64 }; /* particles of one range at most */
+
+/* --- kernel sums of one range, at width 1/h_inverse[i] -------------------------------------- */
+
+enum density_terms {
+    DENSITY_VALUE,      /* sum m w */
+    DENSITY_DERIVATIVE, /* and sum m (w + q w') */
+    DENSITY_ENERGY      /* and the same two with Z = U */
+};
+
+/* Sums of a range, RANGE_MAX each, without the factor C/h. */
+struct density_sums {
+    double m[RANGE_MAX], m_dh[RANGE_MAX], Z[RANGE_MAX], Z_dh[RANGE_MAX];
+};
+
+/* h_inverse: of the len particles of the range. */
+typedef void density_loop(const struct kernel *kernel, const struct particles *particles,
+                          ptrdiff_t first, int len, ptrdiff_t D, const double *h_inverse,
+                          struct density_sums *sums);
+
+/* --- g = 1/sum V x^2 w and, for reconstruction, dv = g sum V (v_j - v_i) x w ------------------ */
+
+enum matrix_terms {
+    MATRIX_MOMENT, /* g */
+    MATRIX_BOTH,   /* g and dv */
+    MATRIX_SLOPE   /* dv alone: g belongs to the standard gradient */
+};
+
+typedef void matrix_loop(const struct kernel *kernel, const struct particles *particles,
+                         ptrdiff_t first, int len, ptrdiff_t D);
+
+/* --- gradients of the pairs (i, i+d), i = first .. first+pairs-1 ------------------------------ */
+
+enum pair_gradient {
+    PAIR_GRADIENT_MEAN,     /* mean of the gradients at h_i and h_j */
+    PAIR_GRADIENT_MAX,      /* one gradient at max(h_i, h_j) */
+    PAIR_GRADIENT_HARMONIC, /* one gradient at the harmonic mean of h_i and h_j */
+    PAIR_GRADIENT_BOTH      /* the gradients at h_i, in G, and at h_j, in G_j */
+};
+
+typedef void gradient_loop(const struct kernel *kernel, const struct particles *particles,
+                           ptrdiff_t first, int pairs, ptrdiff_t d, double *G, double *G_j);
+
+/* --- dp/dt, de/dt, signal speed, div v ------------------------------------------------------- */
+
+/* Kinds of viscosity that stand inside the pair expression. */
+enum pair_viscosity { PAIR_INVISCID, PAIR_VISCOUS, PAIR_RECONSTRUCTED };
+
+struct pair_numbers {
+    const struct kernel *kernel;
+    enum formulation formulation;
+    enum pair_viscosity viscosity;
+    enum energy energy;
+    bool energy_element; /* Z = U, else Z = m */
+    bool want_div_v;     /* time-dependent viscosity */
+    double beta;         /* beta of a pair = beta + beta_ratio * mean alpha */
+    double beta_ratio;
+    double near; /* reconstruction: 1/eta, pairs closer than near * h are damped */
+};
+
+struct loops;
+
+/* scratch: force_scratch(D) doubles of the thread. */
+typedef void force_loop(const struct loops *loops, const struct pair_numbers *numbers,
+                        const struct particles *particles, ptrdiff_t first, int len, ptrdiff_t D,
+                        double *scratch);
+size_t force_scratch(ptrdiff_t D);
+
+/* --- choosing ------------------------------------------------------------------------------- */
+
+struct loops {
+    density_loop *density;        /* the terms that the scheme needs at every evaluation */
+    density_loop *density_newton; /* with at least the derivative in h */
+    matrix_loop *matrix;          /* NULL where nothing needs it */
+    gradient_loop *gradient;
+    force_loop *force;
+};
+
+/* Chooses through the tables, once per simulation; stamped = false asks for the unstamped bodies
+ * (always so for a plug-in kernel). numbers is filled for the force loop; it keeps a pointer to
+ * the scheme's kernel. */
+void loops_choose(const struct scheme *scheme, bool stamped, struct loops *loops,
+                  struct pair_numbers *numbers);
+
+/* The signal speed alone, for integrators that change velocities after the last force. */
+void loops_signal(const struct particles *particles, ptrdiff_t first, int len, ptrdiff_t D);
+
+#endif

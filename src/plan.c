@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "plan.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "integrator.h"
+#include "simulation.h"
+
+struct plan plan_make(const struct scheme *scheme, bool skip)
+{
+    (void)skip;
+    return (struct plan){
+        .newton = scheme->h_method == H_NEWTON,
+        .energy_sum = scheme->volume_element == VOLUME_ENERGY,
+        .grad_h = scheme->formulation == FORMULATION_LAGRANGIAN,
+        .matrix = scheme->gradient == GRADIENT_IA,
+        .slope = scheme->viscosity == VISCOSITY_RECONSTRUCTED,
+        .viscosity = scheme->viscosity != VISCOSITY_NONE,
+        .alpha = scheme->viscosity == VISCOSITY_TIME_DEPENDENT,
+        .signal_pass = scheme->integrator->signal_pass,
+    };
+}
+
+struct writer {
+    struct plan_line *lines;
+    size_t count, max;
+};
+
+static void line(struct writer *writer, const char *pass, bool runs, const char *why_runs,
+                 const char *why_not)
+{
+    if (writer->count == writer->max) return;
+    struct plan_line *next = &writer->lines[writer->count++];
+    next->pass = pass;
+    next->runs = runs;
+    snprintf(next->why, sizeof next->why, "%s", runs ? why_runs : why_not);
+}
+
+/* Where eta lies against the widths at which lattice sums are exact (M_n: multiples of n/2). */
+static void warn(const struct scheme *scheme, char *text, size_t size)
+{
+    const double unity = scheme->kernel.unity_width;
+    const double off = unity > 0 ? fabs(scheme->eta / unity - round(scheme->eta / unity)) : 0;
+    text[0] = '\0';
+    if (unity > 0 && (off * unity > 0.03 * scheme->eta || scheme->eta < 0.97 * unity))
+        snprintf(text, size,
+                 "eta = %g is off the partition-of-unity widths of %s (multiples of %g): errors "
+                 "will level off at the lattice-sum floor",
+                 scheme->eta, scheme->kernel.member.name, unity);
+    else if (scheme->energy == ENERGY_TOTAL && scheme->viscosity == VISCOSITY_NONE)
+        snprintf(text, size, "energy=total in cold flow (u << v^2): U = E - p^2/2m loses digits");
+}
+
+size_t plan_explain(const struct scene *scene, struct plan_line *lines, size_t max, char *warnings,
+                    size_t warnings_size)
+{
+    const struct scheme *scheme = &scene->scheme;
+    const struct plan plan = plan_make(scheme, scene->skip);
+    struct writer writer = {lines, 0, max};
+    line(&writer, "order", true,
+         "neighbours are a contiguous range; sorted anew only if particles "
+         "cross",
+         "");
+    line(&writer, "ghost copies", true, "periodic images, so that no loop knows of a boundary", "");
+    line(&writer, "smoothing length by Newton", plan.newton,
+         "h = eta m/rho to h_tolerance at every evaluation",
+         "h_method=predicted: 1/h extrapolated from the last two density sums");
+    line(&writer, "density sum", true, plan.newton ? "inside the Newton iteration" : "one a step",
+         "");
+    line(&writer, "energy sum", plan.energy_sum, "volume_element=energy: P from the sum of U",
+         "volume_element=mass: pressure from density");
+    line(&writer, "grad-h factors", plan.grad_h, "formulation=lagrangian",
+         "formulation=vanilla_ice has none");
+    line(&writer, "moment matrix", plan.matrix, "gradient=ia: sum V x^2 W",
+         "gradient=standard needs none");
+    line(&writer, "velocity gradient", plan.slope, "viscosity=reconstructed", "no reconstruction");
+    line(&writer, "pair forces", true, "half loop, antisymmetric fluxes", "");
+    line(&writer, "artificial viscosity", plan.viscosity, "inside the pair loop", "viscosity=none");
+    line(&writer, "evolution of alpha", plan.alpha, "viscosity=time_dependent, with div v",
+         "alpha is constant");
+    line(&writer, "signal speed", plan.signal_pass,
+         "the integrator changes velocities after the last force", "comes with the pair forces");
+    line(&writer, "final state", !scheme->integrator->ends_evaluated,
+         "density and equation of state once more at t_end", "the last evaluation was at t_end");
+    if (warnings && warnings_size) warn(scheme, warnings, warnings_size);
+    return writer.count;
+}

@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The plan: derived once from a scene, it says which passes the scene needs. A pass that it leaves
+ * out is work whose result is unused or exactly zero. */
+#ifndef SPHPROOF_PLAN_H
+#define SPHPROOF_PLAN_H
+
+#include <stdbool.h>
+
+#include "scheme.h"
+
+struct plan {
+    bool newton;      /* h by Newton at every evaluation; else predicted */
+    bool energy_sum;  /* second kernel sum, of U */
+    bool grad_h;      /* grad-h factors */
+    bool matrix;      /* moment matrix of the Integral Approach */
+    bool slope;       /* linear_exact velocity gradient, for reconstruction */
+    bool viscosity;   /* artificial viscosity in the pair expression */
+    bool alpha;       /* evolution of alpha, with div v */
+    bool signal_pass; /* a pass of its own for the time step */
+    bool sleep;       /* leave out particles that no signal has reached */
+};
+
+struct plan plan_make(const struct scheme *scheme, bool skip);
+
+#endif

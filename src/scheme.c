@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "scheme.h"
+
+#include <math.h>
+
+#include "integrator.h"
+
+#define FAMILY(name, key, title)                                                                   \
+    static const char name##_key[] = key, name##_title[] = title;                                  \
+    static const struct member *const name##_members[] = {
+#define CHOICE(key, label, paper) &(const struct member){key, label, paper},
+#define FAMILY_END(name)                                                                           \
+    }                                                                                              \
+    ;                                                                                              \
+    const struct family name##_family = {name##_key, name##_title, name##_members,                 \
+                                         sizeof name##_members / sizeof *name##_members};
+#include "families.def"
+
+/* Reports a value that is not in (least, most]. */
+static enum status out_of_range(struct error *error, const char *key, double value,
+                                const char *allowed)
+{
+    return error_set(error, STATUS_BAD_INPUT, "%s = %g: %s must be %s", key, value, key, allowed);
+}
+
+enum status scheme_check(const struct scheme *scheme, int dim, struct error *error)
+{
+    const double least_eta = kernel_least_eta(&scheme->kernel, dim);
+    if (!(scheme->eta > least_eta) || !isfinite(scheme->eta))
+        return error_set(error, STATUS_BAD_INPUT,
+                         "eta = %g: h = eta (m/rho)^(1/%d) has no root with the kernel %s unless "
+                         "eta > %.6g",
+                         scheme->eta, dim, scheme->kernel.member.name, least_eta);
+    if (!(scheme->cfl > 0) || !isfinite(scheme->cfl))
+        return out_of_range(error, "cfl", scheme->cfl, "positive and finite");
+    if (!(scheme->h_tolerance >= 1e-15 && scheme->h_tolerance <= 1e-2))
+        return out_of_range(error, "h_tolerance", scheme->h_tolerance, "in [1e-15, 1e-2]");
+    if (!(scheme->alpha >= 0) || !isfinite(scheme->alpha))
+        return out_of_range(error, "alpha", scheme->alpha, ">= 0 and finite");
+    if (!(scheme->beta >= 0) || !isfinite(scheme->beta))
+        return out_of_range(error, "beta", scheme->beta, ">= 0 and finite");
+    if (scheme->viscosity == VISCOSITY_TIME_DEPENDENT &&
+        !(scheme->alpha_min >= 0 && scheme->alpha_max >= scheme->alpha_min &&
+          isfinite(scheme->alpha_max)))
+        return error_set(error, STATUS_BAD_INPUT,
+                         "alpha_min = %g, alpha_max = %g: 0 <= alpha_min <= alpha_max is needed",
+                         scheme->alpha_min, scheme->alpha_max);
+    if (scheme->pair_width != PAIR_MEAN && scheme->formulation == FORMULATION_LAGRANGIAN)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "pair_width=%s and formulation=lagrangian exclude each other: the "
+                         "lagrangian form needs both particles' own gradients",
+                         pair_width_family.members[scheme->pair_width]->name);
+    return STATUS_OK;
+}

@@ -1,0 +1,250 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "simulation.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "solver.h"
+
+enum { GHOSTS_AT_START = 64 };
+
+static double seconds(clockid_t clock)
+{
+    struct timespec now;
+    clock_gettime(clock, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static enum status check_scene(const struct scene *scene, struct error *error)
+{
+    if (scene->dim != 1)
+        return error_set(error, STATUS_BAD_INPUT, "dimension = %d: the solver is for dimension 1",
+                         scene->dim);
+    if (scene->n < 2)
+        return error_set(error, STATUS_BAD_INPUT, "n = %zu: at least 2 particles", scene->n);
+    if (!(scene->gamma > 1) || !isfinite(scene->gamma))
+        return error_set(error, STATUS_BAD_INPUT, "gamma = %g: must be > 1", scene->gamma);
+    const double period = scene->hi[0] - scene->lo[0];
+    if (!(period > 0) || !isfinite(period))
+        return error_set(error, STATUS_BAD_INPUT, "box [%g, %g]: must have a positive length",
+                         scene->lo[0], scene->hi[0]);
+    for (size_t i = 0; i < scene->n; i++) {
+        if (!(scene->x[0][i] >= scene->lo[0] && scene->x[0][i] <= scene->hi[0]))
+            return error_set(error, STATUS_BAD_INPUT, "particle %zu: x = %g is outside the box", i,
+                             scene->x[0][i]);
+        if (!isfinite(scene->v[0][i]))
+            return error_set(error, STATUS_BAD_INPUT, "particle %zu: velocity %g", i,
+                             scene->v[0][i]);
+        if (!(scene->m[i] > 0) || !isfinite(scene->m[i]))
+            return error_set(error, STATUS_BAD_INPUT, "particle %zu: mass %g must be > 0", i,
+                             scene->m[i]);
+        if (!(scene->u[i] > 0) || !isfinite(scene->u[i]))
+            return error_set(error, STATUS_BAD_INPUT,
+                             "particle %zu: specific internal energy %g must be > 0", i,
+                             scene->u[i]);
+    }
+    return scheme_check(&scene->scheme, scene->dim, error);
+}
+
+/* The state of the scene, sorted by position, with a first guess of h. */
+static void set_particles(struct simulation *simulation, const struct scene *scene)
+{
+    struct particles *a = &simulation->particles;
+    const struct scheme *scheme = &simulation->scheme;
+    double mass = 0;
+    for (ptrdiff_t i = 0; i < a->n; i++) mass += scene->m[i];
+    for (ptrdiff_t i = 0; i < a->n; i++) {
+        const double m = scene->m[i], v = scene->v[0][i], u = scene->u[i];
+        const double rho = scene->rho && scene->rho[i] > 0 ? scene->rho[i] : mass / a->period;
+        a->id[i] = (size_t)i;
+        a->x[i] = a->x_old[i] = scene->x[0][i];
+        a->m[i] = m;
+        a->m_inverse[i] = 1 / m;
+        a->p[i] = m * v;
+        a->e[i] = m * u + (scheme->energy == ENERGY_TOTAL ? 0.5 * m * v * v : 0);
+        a->alpha[i] =
+            scheme->viscosity == VISCOSITY_TIME_DEPENDENT ? scheme->alpha_min : scheme->alpha;
+        a->h[i] = scheme->eta * m / rho;
+    }
+    particles_sort(a);
+}
+
+static enum status allocate(struct simulation *simulation, struct error *error)
+{
+    const ptrdiff_t n = simulation->particles.n;
+    simulation->range_count = (n + RANGE_MAX - 1) / RANGE_MAX;
+    simulation->ranges = calloc((size_t)simulation->range_count, sizeof *simulation->ranges);
+    simulation->wrapped = malloc((size_t)n * sizeof(double));
+    simulation->specific_energy = malloc((size_t)n * sizeof(double));
+    if (!simulation->ranges || !simulation->wrapped || !simulation->specific_energy)
+        return error_set(error, STATUS_ENVIRONMENT, "no memory for %td particles", n);
+    for (ptrdiff_t b = 0; b < simulation->range_count; b++) {
+        struct range *range = &simulation->ranges[b];
+        range->first = b * RANGE_MAX;
+        range->len = (int)(n - range->first < RANGE_MAX ? n - range->first : RANGE_MAX);
+        range->reach = 1;
+    }
+    return STATUS_OK;
+}
+
+enum status simulation_create(const struct scene *scene, struct simulation **result,
+                              struct error *error)
+{
+    *result = NULL;
+    enum status status = check_scene(scene, error);
+    if (status) return status;
+    struct simulation *simulation = calloc(1, sizeof *simulation);
+    if (!simulation) return error_set(error, STATUS_ENVIRONMENT, "no memory");
+    simulation->wall_start = seconds(CLOCK_MONOTONIC);
+    simulation->cpu_start = seconds(CLOCK_PROCESS_CPUTIME_ID);
+    simulation->scheme = scene->scheme;
+    simulation->plan = plan_make(&scene->scheme, scene->skip);
+    loops_choose(&simulation->scheme, !scene->unstamped, &simulation->loops, &simulation->numbers);
+    simulation->lo = scene->lo[0];
+    simulation->period = scene->hi[0] - scene->lo[0];
+    simulation->gamma = scene->gamma;
+    simulation->threads = scene->threads > 1 ? scene->threads : 1;
+    status = particles_create(&simulation->particles, (ptrdiff_t)scene->n, GHOSTS_AT_START, error);
+    if (status) goto failed;
+    simulation->particles.period = simulation->period;
+    status = allocate(simulation, error);
+    if (status) goto failed;
+    set_particles(simulation, scene);
+    status = evaluate_rates(simulation, error);
+    if (status) goto failed;
+    simulation->cost.particle_updates = 0;
+    *result = simulation;
+    return STATUS_OK;
+failed:
+    simulation_destroy(simulation);
+    return status;
+}
+
+void simulation_destroy(struct simulation *simulation)
+{
+    if (!simulation) return;
+    particles_destroy(&simulation->particles);
+    free(simulation->ranges);
+    free(simulation->scratch);
+    free(simulation->wrapped);
+    free(simulation->specific_energy);
+    free(simulation);
+}
+
+static void stop_clocks(struct simulation *simulation)
+{
+    simulation->cost.wall_s = seconds(CLOCK_MONOTONIC) - simulation->wall_start;
+    simulation->cost.cpu_s = seconds(CLOCK_PROCESS_CPUTIME_ID) - simulation->cpu_start;
+}
+
+/* The particle that limits the time step. */
+static ptrdiff_t limiting_particle(const struct simulation *simulation)
+{
+    const struct particles *a = &simulation->particles;
+    ptrdiff_t limiting = 0;
+    for (ptrdiff_t i = 1; i < a->n; i++)
+        if (a->h[i] * a->signal[limiting] < a->h[limiting] * a->signal[i]) limiting = i;
+    return limiting;
+}
+
+enum status simulation_run(struct simulation *simulation, double t_end,
+                           simulation_progress *progress, void *context, struct error *error)
+{
+    enum status status = STATUS_OK;
+    bool stopped = false;
+    while (simulation->time < t_end && !stopped) {
+        /* t_end is met exactly: the last step is cut, and the last two are made equal */
+        const double left = t_end - simulation->time;
+        double dt = simulation->time_step;
+        const bool last = dt >= left;
+        if (last)
+            dt = left;
+        else if (2 * dt > left)
+            dt = 0.5 * left;
+        if (!(simulation->time + dt > simulation->time)) {
+            const ptrdiff_t i = limiting_particle(simulation);
+            status = broke_down(simulation, i, "signal speed (no time step is left)",
+                                simulation->particles.signal[i], error);
+            break;
+        }
+        /* the interval to the next density sum, against the last one: half a step each side */
+        simulation->predict_ratio =
+            simulation->last_dt > 0 ? 0.5 * (simulation->last_dt + dt) / simulation->last_dt : 0;
+        simulation->last_dt = dt;
+        status = simulation->scheme.integrator->step(simulation, dt, error);
+        if (status) break;
+        simulation->time = last ? t_end : simulation->time + dt;
+        simulation->cost.steps++;
+        if (simulation->plan.signal_pass && simulation->time < t_end) evaluate_signal(simulation);
+        if (progress && simulation->cost.steps % 32 == 0)
+            stopped = !progress(context, simulation->time, simulation->cost.steps);
+    }
+    if (!status && !simulation->scheme.integrator->ends_evaluated)
+        status = evaluate_state(simulation, error);
+    stop_clocks(simulation);
+    return status;
+}
+
+void simulation_snapshot(const struct simulation *simulation, struct snapshot *snapshot)
+{
+    const struct particles *a = &simulation->particles;
+    for (ptrdiff_t i = 0; i < a->n; i++) {
+        const double x = a->x[i] - simulation->lo;
+        const double wrapped = x - simulation->period * floor(x / simulation->period);
+        simulation->wrapped[i] = simulation->lo + (wrapped < simulation->period ? wrapped : 0);
+        simulation->specific_energy[i] = a->U[i] * a->m_inverse[i];
+    }
+    *snapshot = (struct snapshot){
+        .n = (size_t)a->n,
+        .x = {simulation->wrapped},
+        .v = {a->v},
+        .m = a->m,
+        .rho = a->rho,
+        .u = simulation->specific_energy,
+        .P = a->P,
+        .h = a->h,
+        .volume = a->V,
+        .id = a->id,
+        .time = simulation->time,
+    };
+}
+
+void simulation_rates(const struct simulation *simulation, struct rates *rates)
+{
+    const struct particles *a = &simulation->particles;
+    *rates = (struct rates){.force = {a->F},
+                            .energy = a->de,
+                            .alpha = simulation->plan.alpha ? a->dalpha : NULL,
+                            .time_step = simulation->time_step};
+}
+
+void simulation_conservation(const struct simulation *simulation, struct conservation *sums)
+{
+    const struct particles *a = &simulation->particles;
+    const bool total = simulation->scheme.energy == ENERGY_TOTAL;
+    /* long double: the sums themselves shall not be what is measured */
+    long double mass = 0, momentum = 0, momentum_scale = 0, sound = 0, energy = 0;
+    for (ptrdiff_t i = 0; i < a->n; i++) {
+        const long double p = a->p[i];
+        mass += a->m[i];
+        momentum += p;
+        momentum_scale += fabsl(p);
+        sound += (long double)a->m[i] * a->c[i];
+        energy += a->e[i];
+        if (!total) energy += 0.5L * p * p / a->m[i];
+    }
+    *sums = (struct conservation){
+        .mass = (double)mass,
+        .momentum = {(double)momentum},
+        .momentum_scale = (double)momentum_scale,
+        .sound_scale = (double)sound,
+        .energy = (double)energy,
+    };
+}
+
+void simulation_cost(const struct simulation *simulation, struct simulation_cost *cost)
+{
+    *cost = simulation->cost;
+}

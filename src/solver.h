@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Inside of a simulation: shared by its passes and the integrators, for nobody else. */
+#ifndef SPHPROOF_SOLVER_H
+#define SPHPROOF_SOLVER_H
+
+#include <stdbool.h>
+
+#include "integrator.h"
+#include "loops.h"
+#include "particles.h"
+#include "plan.h"
+#include "simulation.h"
+
+/* Up to RANGE_MAX neighbouring particles that are worked on together. */
+struct range {
+    ptrdiff_t first;
+    int len;
+    ptrdiff_t reach;       /* neighbour offsets that suffice for the particles' own h */
+    ptrdiff_t force_reach; /* and for pairs within max(h_i, h_j) */
+    bool pending;          /* density still to be found in this evaluation */
+};
+
+struct simulation {
+    struct scheme scheme;
+    struct plan plan;
+    struct loops loops;
+    struct pair_numbers numbers;
+    struct particles particles;
+    double lo, period, gamma, time, t_end;
+    double time_step;     /* limit found by the last signal speeds */
+    double last_dt;       /* of the last step, 0 before the first */
+    double predict_ratio; /* of the prediction of h: this interval / the last one */
+    int threads;
+    struct range *ranges;
+    ptrdiff_t range_count;
+    ptrdiff_t ghosts_filled;
+    double *scratch; /* threads * scratch_size */
+    size_t scratch_size;
+    struct simulation_cost cost;
+    double wall_start, cpu_start;
+    double *wrapped, *specific_energy; /* of the snapshot, n each */
+};
+
+/* --- passes (evaluate.c) ---------------------------------------------------------------------- */
+
+/* Order, density and smoothing length, equation of state: everything that a state implies. */
+enum status evaluate_state(struct simulation *simulation, struct error *error);
+/* And the rates dp/dt, de/dt, dalpha/dt with the time-step limit. */
+enum status evaluate_rates(struct simulation *simulation, struct error *error);
+/* The time-step limit alone, where velocities have changed since the last rates. */
+void evaluate_signal(struct simulation *simulation);
+
+/* A breakdown at particle i: quantity = value, at the current time. Returns STATUS_BROKE_DOWN. */
+enum status broke_down(const struct simulation *simulation, ptrdiff_t i, const char *quantity,
+                       double value, struct error *error);
+
+#endif
