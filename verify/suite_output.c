@@ -2,14 +2,15 @@
 #include "suite_output.h"
 
 #include <errno.h>
-#include <math.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
 #include "output.h"
+#include "plot.h"
 #include "result.h"
 
-enum { FAILURES_SHOWN = 12, PATH_LENGTH = 1024 };
+enum { FAILURES_SHOWN = 12, SERIES_SHOWN = 8, PATH_LENGTH = 1024 };
 
 static const char *const status_names[] = {"pass", "fail", "skip"};
 
@@ -260,6 +261,38 @@ static json_t *failure_json(const struct suite *suite, const struct tally *t)
     return document;
 }
 
+/* True if there was something to plot and it was plotted. */
+static bool plot_failure(const struct suite *suite, const struct check *check, const char *path)
+{
+    struct plot_series curves[SERIES_SHOWN];
+    size_t n = 0;
+    for (size_t i = 0; i < suite->series_count && n < SERIES_SHOWN; i++) {
+        const struct series *s = &suite->series[i];
+        if (s->check == check)
+            curves[n++] = (struct plot_series){
+                .label = s->label, .kind = PLOT_LINES_POINTS, .n = s->n, .x = s->x, .y = s->y};
+    }
+    char message[256];
+    const struct plot_panel panel = {
+        .x_label = "x", .y_label = check->name, .series = curves, .series_count = n};
+    const struct plot plot = {.name = check->name,
+                              .title = check->property,
+                              .show_title = true,
+                              .panels = &panel,
+                              .panel_count = 1};
+    char *bytes = NULL;
+    size_t size;
+    struct output output;
+    if (n == 0 || plot_draw(&plot, PLOT_SVG, &bytes, &size, message, sizeof message) != PLOT_OK ||
+        output_open(&output, path, NULL)) {
+        free(bytes);
+        return false;
+    }
+    fwrite(bytes, 1, size, output.stream);
+    free(bytes);
+    return output_close(&output, NULL) == STATUS_OK;
+}
+
 enum status suite_output_failures(const struct suite *suite, const char *folder, FILE *stream,
                                   struct error *error)
 {
@@ -277,6 +310,9 @@ enum status suite_output_failures(const struct suite *suite, const char *folder,
         status = result_write(document, path, error);
         json_decref(document);
         if (stream && !status) fprintf(stream, "figures and data: %s\n", path);
+        snprintf(path, sizeof path, "%s/%s-%s.svg", folder, t.check->group, t.check->name);
+        if (!status && plot_failure(suite, t.check, path) && stream)
+            fprintf(stream, "plot:             %s\n", path);
     }
     return status;
 }

@@ -18,8 +18,9 @@ void suite_output_json(const struct suite *suite, json_t *document);
 /* JUnit XML: a test suite for each group, a test case for each figure and each mutant. */
 enum status suite_output_junit(const struct suite *suite, const char *path, struct error *error);
 
-/* Writes folder/GROUP-NAME.json for each failing check (figures, series) and names it on stream if
- * that is not NULL. The folder is made if needed. */
+/* Writes folder/GROUP-NAME.json for each failing check (figures, series) and, where the check
+ * offers series and gnuplot is there, folder/GROUP-NAME.svg; names them on stream if that is not
+ * NULL. The folder is made if needed. */
 enum status suite_output_failures(const struct suite *suite, const char *folder, FILE *stream,
                                   struct error *error);
 
