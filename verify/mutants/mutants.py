@@ -1,0 +1,203 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Source mutants: one-line faults that the checks must catch.
+
+  mutants.py check SOURCE WORK               does each one still apply exactly once?
+  mutants.py run SOURCE WORK [NAME ...]      (names or groups) build each fault into a copy of the tree and expect
+                                             `sphproof verify GROUP` to fail (two at a time)
+  mutants.py build SOURCE WORK NAME PROGRAM  the whole program with one fault (meson -Dmutant=NAME)
+
+The list is mutants.txt beside this script; its head says how an entry looks. Nothing is ever
+changed in SOURCE. Exit status 1: a fault was not noticed, or does not apply any more."""
+import json
+import os
+import queue
+import re
+import shutil
+import subprocess
+import sys
+import threading
+import time
+
+LIST = os.path.join(os.path.dirname(os.path.abspath(__file__)), "mutants.txt")
+OPTIONS = ["-Dclones=false", "-Doptimization=1", "-Dwerror=false", "-Dslow=false"]
+WORKERS = 2
+PATIENCE = 120  # seconds that one verification may take
+
+
+class Mutant:
+    def __init__(self, name):
+        self.name, self.fault, self.group, self.file = name, "", "", ""
+        self.old, self.new = [], []
+
+    def apply(self, tree):
+        """Puts the fault into tree; returns the original text."""
+        path = os.path.join(tree, self.file)
+        with open(path) as f:
+            text = f.read()
+        old, new = "\n".join(self.old), "\n".join(self.new)
+        if text.count(old) != 1:
+            raise ValueError("mutant %s: its text stands %d times in %s, not once:\n%s"
+                             % (self.name, text.count(old), self.file, old))
+        with open(path, "w") as f:
+            f.write(text.replace(old, new))
+        return text
+
+
+def read_list():
+    mutants = []
+    with open(LIST) as f:
+        for number, line in enumerate(f, 1):
+            line = line.rstrip("\n")
+            if re.match(r"\[\w+\]$", line):
+                mutants.append(Mutant(line[1:-1]))
+            elif line.startswith("- "):
+                mutants[-1].old.append(line[2:])
+            elif line.startswith("+ "):
+                mutants[-1].new.append(line[2:])
+            elif ": " in line and not line.startswith("#"):
+                key, value = line.split(": ", 1)
+                if key not in ("fault", "group", "file"):
+                    sys.exit("%s:%d: unknown key '%s'" % (LIST, number, key))
+                setattr(mutants[-1], key, value)
+            elif line and not line.startswith("#"):
+                sys.exit("%s:%d: what is this?" % (LIST, number))
+    names = [m.name for m in mutants]
+    for m in mutants:
+        if names.count(m.name) > 1 or not (m.fault and m.group and m.file and m.old):
+            sys.exit("%s: mutant %s is incomplete or listed twice" % (LIST, m.name))
+    return mutants
+
+
+def copy_tree(source, tree):
+    shutil.rmtree(tree, ignore_errors=True)
+    shutil.copytree(source, tree, ignore=shutil.ignore_patterns("build*", ".git", "out"))
+
+
+def quietly(command, **more):
+    return subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                          **more)
+
+
+def demand(command):
+    result = quietly(command)
+    if result.returncode:
+        sys.exit("%s\n%s" % (result.stdout[-3000:], "failed: " + " ".join(command)))
+
+
+class Worker:
+    """A copy of the tree with its build, into which one fault after the other is put."""
+
+    def __init__(self, source, folder):
+        self.tree, self.build = os.path.join(folder, "tree"), os.path.join(folder, "build")
+        self.program = os.path.join(self.build, "sphproof")
+        copy_tree(source, self.tree)
+        shutil.rmtree(self.build, ignore_errors=True)
+        demand(["meson", "setup", self.build, self.tree] + OPTIONS)
+        demand(["ninja", "-C", self.build, "sphproof"])
+
+    def verify(self, group):
+        command = [self.program, "verify", group, "--quiet", "--failures",
+                   os.path.join(self.build, "failures")]
+        try:
+            return quietly(command, timeout=PATIENCE).returncode
+        except subprocess.TimeoutExpired:
+            return "hangs"
+
+    def judge(self, mutant):
+        """'caught', or why it was not."""
+        path = os.path.join(self.tree, mutant.file)
+        try:
+            original = mutant.apply(self.tree)
+        except (ValueError, OSError) as error:
+            return str(error)
+        try:
+            built = quietly(["ninja", "-C", self.build, "sphproof"])
+            if built.returncode:
+                return "does not compile:\n" + built.stdout[-2000:]
+            code = self.verify(mutant.group)
+            return "caught" if code not in (0, 2, 4) else "NOT CAUGHT (exit status %s)" % code
+        finally:
+            with open(path, "w") as f:
+                f.write(original)
+
+
+def run(source, work, names):
+    mutants = [m for m in read_list() if not names or m.name in names or m.group in names]
+    began, outcomes, waiting = time.time(), {}, queue.Queue()
+    for m in mutants:
+        waiting.put(m)
+    workers = [Worker(source, os.path.join(work, "worker%d" % i))
+               for i in range(min(WORKERS, len(mutants)))]
+    groups = sorted({m.group for m in mutants})
+    failing = [g for g in groups if workers[0].verify(g) != 0]
+    if failing:
+        sys.exit("without any fault these groups fail already: " + " ".join(failing))
+
+    def work_off(worker):
+        while True:
+            try:
+                mutant = waiting.get_nowait()
+            except queue.Empty:
+                return
+            outcomes[mutant.name] = worker.judge(mutant)
+            print("%3d/%d  %-34s %-14s %s" % (len(outcomes), len(mutants), mutant.name,
+                                              mutant.group, outcomes[mutant.name]), flush=True)
+
+    threads = [threading.Thread(target=work_off, args=(w,)) for w in workers]
+    for t in threads:
+        t.start()
+    for t in threads:
+        t.join()
+    missed = [m for m in mutants if outcomes[m.name] != "caught"]
+    with open(os.path.join(work, "mutants.json"), "w") as f:
+        json.dump([{"mutant": m.name, "group": m.group, "file": m.file, "fault": m.fault,
+                    "outcome": outcomes[m.name]} for m in mutants], f, indent=1)
+    print("\n%d source mutants, %d caught, %d not; %.0f s"
+          % (len(mutants), len(mutants) - len(missed), len(missed), time.time() - began))
+    for m in missed:
+        print("  %s (%s): %s\n      %s" % (m.name, m.file, m.fault, outcomes[m.name]))
+    return 1 if missed else 0
+
+
+def check(source, work):
+    bad = 0
+    for m in read_list():
+        folder = os.path.join(work, os.path.dirname(m.file))
+        os.makedirs(folder, exist_ok=True)
+        try:
+            shutil.copy(os.path.join(source, m.file), folder)
+            m.apply(work)
+        except (ValueError, OSError) as error:
+            print(error)
+            bad += 1
+    print("%d source mutants, %d do not apply" % (len(read_list()), bad))
+    return 1 if bad else 0
+
+
+def build(source, work, name, program):
+    chosen = [m for m in read_list() if m.name == name]
+    if not chosen:
+        sys.exit("no mutant '%s'; there are: %s" % (name, " ".join(m.name for m in read_list())))
+    tree, folder = os.path.join(work, "tree"), os.path.join(work, "build")
+    copy_tree(source, tree)
+    chosen[0].apply(tree)
+    if not os.path.exists(os.path.join(folder, "build.ninja")):
+        demand(["meson", "setup", folder, tree, "-Dwerror=false", "-Dslow=false"])
+    demand(["ninja", "-C", folder, "sphproof"])
+    shutil.copy(os.path.join(folder, "sphproof"), program)
+    return 0
+
+
+def main(arguments):
+    if len(arguments) == 3 and arguments[0] == "check":
+        return check(arguments[1], arguments[2])
+    if len(arguments) >= 3 and arguments[0] == "run":
+        return run(arguments[1], arguments[2], arguments[3:])
+    if len(arguments) == 5 and arguments[0] == "build":
+        return build(*arguments[1:])
+    sys.exit(__doc__)
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
