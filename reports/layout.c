@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { LINE = 19, KEY_SAMPLE = 64 };
+enum { LINE = 19, KEY_SAMPLE = 64, STACK_GAP = 36 };
 static const double LETTER = 7.7; /* mean width of a letter of 14 px */
 
 /* Characters, not bytes, of a UTF-8 string. */
@@ -146,18 +146,27 @@ void layout_make(struct layout *layout, const struct plot *plot)
     double top = 12 + LINE * layout->key_rows + (plot->show_title ? LINE + 8 : 0);
     double bottom = layout->height - 50;
     double gap = 14;
-    double each = (bottom - top - gap * ((double)n - 1)) / (double)n;
+    double stacks = 0;
+    for (size_t k = 1; k < n; k++) stacks += plot->panels[k].own_x;
+    double each = (bottom - top - gap * ((double)n - 1) - STACK_GAP * stacks) / (double)n;
     for (size_t k = 0; k < n; k++) {
         struct layout_panel *at = &layout->panels[k];
-        at->top = top + (double)k * (each + gap) + (plot->panels[k].title ? LINE : 0);
-        at->bottom = top + (double)k * (each + gap) + each;
+        if (k > 0) top += each + gap + (plot->panels[k].own_x ? STACK_GAP : 0);
+        at->top = top + (plot->panels[k].title ? LINE : 0);
+        at->bottom = top + each;
         ranges(at, &plot->panels[k]);
     }
-    for (size_t k = 1; k < n; k++) { /* a stack shares the widest x axis */
-        layout->panels[0].x.min = fmin(layout->panels[0].x.min, layout->panels[k].x.min);
-        layout->panels[0].x.max = fmax(layout->panels[0].x.max, layout->panels[k].x.max);
+    for (size_t first = 0, k = 1; k <= n; k++) { /* a stack shares the widest x axis */
+        if (k < n && !plot->panels[k].own_x) {
+            layout->panels[first].x.min =
+                fmin(layout->panels[first].x.min, layout->panels[k].x.min);
+            layout->panels[first].x.max =
+                fmax(layout->panels[first].x.max, layout->panels[k].x.max);
+            continue;
+        }
+        for (; first < k; first++)
+            if (first + 1 < k) layout->panels[first + 1].x = layout->panels[first].x;
     }
-    for (size_t k = 1; k < n; k++) layout->panels[k].x = layout->panels[0].x;
 }
 
 double layout_y(const struct layout_panel *panel, double value)

@@ -68,6 +68,7 @@ enum plot_key {
 struct plot_panel {
     const char *title;             /* or NULL */
     const char *x_label, *y_label; /* with units; x_label of a stack is taken from the last panel */
+    bool own_x;                    /* begins a new stack with an x axis of its own */
     bool x_log, y_log;
     double x_min, x_max, y_min, y_max; /* min == max: from the data */
     const double *x_ticks;             /* where log axes should have labels; NULL: automatic */
@@ -88,7 +89,7 @@ struct plot {
     bool show_title;
     int width, height; /* pixels; 0: 560 and by the number of panels */
     const struct plot_panel
-        *panels; /* stacked from top to bottom; two or more share their x axis */
+        *panels; /* stacked from top to bottom; two or more share their x axis (see own_x) */
     size_t panel_count;
 };
 

@@ -171,8 +171,8 @@ static void axis_names(struct buffer *to, const struct layout *layout, size_t p,
         buffer_add(to, "set label ");
         quote(to, panel->x_label);
         buffer_format(to, " at screen %.5f, screen %.5f center textcolor rgb '%s'\n",
-                      (layout->left + layout->right) / 2 / layout->width, 12.0 / layout->height,
-                      ink);
+                      (layout->left + layout->right) / 2 / layout->width,
+                      1 - (at->bottom + 38) / layout->height, ink);
     }
 }
 
@@ -297,7 +297,7 @@ static void panel_script(struct buffer *to, const struct plot *plot, const struc
 {
     const struct plot_panel *panel = &plot->panels[p];
     const struct layout_panel *at = &layout->panels[p];
-    bool last = p + 1 == plot->panel_count;
+    bool last = p + 1 == plot->panel_count || panel[1].own_x; /* of its stack */
     const char *ink = style_colors[STYLE_plot_ink].light;
     buffer_add(to, "\nunset arrow\nunset label\n");
     buffer_format(to, "set tmargin at screen %.5f\nset bmargin at screen %.5f\n",

@@ -1,0 +1,70 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "certificate.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <gsl/gsl_errno.h>
+
+struct certificate_sink {
+    struct property_sink sink;
+    struct certificate *certificate;
+    const struct property *property;
+};
+
+static void take(struct property_sink *sink, double value, double bound, double floor,
+                 const char *where, bool skipped)
+{
+    const struct certificate_sink *context = (const struct certificate_sink *)sink;
+    struct certificate *certificate = context->certificate;
+    if (certificate->figure_count == CERTIFICATE_FIGURES_MAX) return;
+    struct certificate_figure *figure = &certificate->figures[certificate->figure_count++];
+    *figure = (struct certificate_figure){.property = context->property,
+                                          .value = value,
+                                          .bound = bound,
+                                          .floor = floor,
+                                          .skipped = skipped,
+                                          .passed = skipped || (value <= bound && floor <= bound)};
+    snprintf(figure->where, sizeof figure->where, "%s", where);
+    certificate->failed += !figure->passed;
+}
+
+/* The widths people use: the kernel's own, the seed program's, and what lies between. */
+static void measure_lattices(struct certificate *certificate)
+{
+    static const double usual[] = {1.5, 2, 2.4, 2.5, 3, 4, 4.8, 6};
+    for (int i = 0; i < CERTIFICATE_WIDTHS; i++) {
+        certificate->lattice[i].eta = usual[i];
+        measure_lattice(certificate->kernel, certificate->dim, usual[i],
+                        &certificate->lattice[i].density, &certificate->lattice[i].gradient);
+    }
+}
+
+enum status certificate_measure(struct certificate *certificate, const struct kernel *kernel,
+                                int dim, struct error *error)
+{
+    *certificate = (struct certificate){.kernel = kernel, .dim = dim};
+    if (pieces_find(&certificate->pieces, kernel, dim, error) ||
+        measure_spectrum_make(&certificate->spectrum, &certificate->pieces, error)) {
+        certificate_free(certificate);
+        return STATUS_ENVIRONMENT;
+    }
+    gsl_error_handler_t *handler = gsl_set_error_handler_off();
+    measure_moments(&certificate->pieces, &certificate->moments);
+    measure_class(&certificate->pieces, &certificate->class);
+    measure_fourier(&certificate->spectrum, &certificate->fourier);
+    measure_lattices(certificate);
+    for (size_t i = 0; i < property_count; i++) {
+        struct certificate_sink context = {{take}, certificate, &property_list[i]};
+        property_list[i].measure(&certificate->pieces, &context.sink);
+    }
+    gsl_set_error_handler(handler);
+    return STATUS_OK;
+}
+
+void certificate_free(struct certificate *certificate)
+{
+    pieces_free(&certificate->pieces);
+    measure_spectrum_free(&certificate->spectrum);
+}

@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The certificate of a kernel in one dimension: what was measured on it, and whether every property
+ * holds. */
+#ifndef SPHPROOF_CERTIFICATE_H
+#define SPHPROOF_CERTIFICATE_H
+
+#include <jansson.h>
+#include <stdbool.h>
+#include <stdio.h>
+
+#include "measure.h"
+#include "property.h"
+
+enum { CERTIFICATE_FIGURES_MAX = 128, CERTIFICATE_WIDTHS = 8 };
+
+struct certificate_figure {
+    const struct property *property;
+    double value, bound, floor;
+    bool skipped, passed;
+    char where[128]; /* of a skipped figure: why */
+};
+
+struct certificate {
+    const struct kernel *kernel; /* not owned */
+    int dim;
+    struct pieces pieces;
+    struct measure_spectrum spectrum;
+    struct measure_moments moments;
+    struct measure_class class;
+    struct measure_fourier fourier;
+    struct { /* lattice sums against width: multiples of the mean spacing */
+        double eta, density, gradient;
+    } lattice[CERTIFICATE_WIDTHS];
+    int figure_count, failed;
+    struct certificate_figure figures[CERTIFICATE_FIGURES_MAX];
+};
+
+/* Measures everything on a kernel in dim dimensions. STATUS_ENVIRONMENT: no memory. A property that
+ * does not hold is no error, see failed. Release with certificate_free; kernel must outlive it. */
+enum status certificate_measure(struct certificate *certificate, const struct kernel *kernel,
+                                int dim, struct error *error);
+void certificate_free(struct certificate *certificate);
+
+/* For a person; h: support radius in which lengths are given. */
+void certificate_print(const struct certificate *certificate, double h, FILE *stream, bool color);
+
+/* Adds "normalisation", "moments", "class", "fourier" ... and "checks" to document. */
+void certificate_json(const struct certificate *certificate, double h, json_t *document);
+
+/* Plots W, W', W'' and the transform to path (.svg or .png). */
+enum status certificate_plot(const struct certificate *certificate, const char *path,
+                             struct error *error);
+
+#endif

@@ -1,0 +1,255 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * A certificate as text, as JSON and as a plot. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "certificate.h"
+#include "picture.h"
+#include "result.h"
+
+/* ---- text ---- */
+
+static void print_measured(const struct certificate *c, double h, FILE *stream)
+{
+    const struct kernel *kernel = c->kernel;
+    const int dim = c->dim;
+    const double sigma = sqrt(c->moments.second);
+    fprintf(stream, "  %-28s %.17g\n", "constant C_d", kernel->constant[dim]);
+    fprintf(stream, "  %-28s 1 %+.2g\n", "integral of W dV", c->moments.volume - 1);
+    fprintf(stream, "  %-28s sigma^2 = %.10g h^2, sigma = %.10g\n", "second moment (per axis)",
+            c->moments.second, sigma * h);
+    fprintf(stream, "  %-28s %.10g h^4\n", "fourth moment (per axis)", c->moments.fourth);
+    fprintf(stream, "  %-28s W(0) = %.10g, so eta must exceed %.6g\n", "self-term",
+            kernel_value(kernel, 0, h, dim), kernel_least_eta(kernel, dim));
+    fprintf(stream, "  %-28s C%d%s (declared C%d)", "class", c->class.class,
+            c->class.class == MEASURE_CLASS_MAX ? " or higher" : "", kernel->smoothness[dim]);
+    if (c->class.at == 0 || c->class.at == 1)
+        fprintf(stream, ", limited by the %s", c->class.at == 0 ? "origin" : "edge");
+    else if (c->class.at > 0)
+        fprintf(stream, ", limited by the knot at q = %.6g", c->class.at);
+    fprintf(stream, "\n  %-28s least %.3g at k h = %.4g\n", "Fourier transform", c->fourier.least,
+            c->fourier.least_at);
+    if (isnan(c->fourier.first_negative))
+        fprintf(stream, "  %-28s none up to k h = %d: no pairing from the kernel\n",
+                "first negative wavenumber", MEASURE_KAPPA_MAX);
+    else
+        fprintf(stream, "  %-28s k h = %.6g, k = %.6g\n", "first negative wavenumber",
+                c->fourier.first_negative, c->fourier.first_negative / h);
+}
+
+static void print_lattice(const struct certificate *c, FILE *stream)
+{
+    fprintf(stream, "\nlattice sums (h = eta spacings), bias of the density and of a gradient:\n");
+    fprintf(stream, "  %-10s", "eta");
+    for (int i = 0; i < CERTIFICATE_WIDTHS; i++) fprintf(stream, " %9g", c->lattice[i].eta);
+    fprintf(stream, "\n  %-10s", "density");
+    for (int i = 0; i < CERTIFICATE_WIDTHS; i++) fprintf(stream, " %9.1e", c->lattice[i].density);
+    fprintf(stream, "\n  %-10s", "gradient");
+    for (int i = 0; i < CERTIFICATE_WIDTHS; i++) fprintf(stream, " %9.1e", c->lattice[i].gradient);
+    fprintf(stream, "\n");
+}
+
+static double nearness(const struct certificate_figure *figure)
+{
+    if (figure->skipped) return -1;
+    if (!(figure->value <= figure->bound)) return (double)INFINITY;
+    return figure->bound > 0 ? figure->value / figure->bound : 0;
+}
+
+static void print_figure(const struct certificate_figure *figure, FILE *stream, bool color)
+{
+    const bool failed = !figure->passed;
+    fprintf(stream, "  %s%-4s%s %-18s", color ? failed ? "\033[31m" : "\033[32m" : "",
+            failed            ? "FAIL"
+            : figure->skipped ? "-"
+                              : "ok",
+            color ? "\033[0m" : "", figure->property->name);
+    if (figure->skipped)
+        fprintf(stream, " %9s %9s %9s  %s\n", "", "", "", figure->where);
+    else
+        fprintf(stream, " %9.2e %9.1e %9.1e  %s\n", figure->value, figure->bound, figure->floor,
+                figure->where);
+}
+
+/* One line a property (the figure nearest to its bound), and every figure that fails. */
+static void print_properties(const struct certificate *c, FILE *stream, bool color)
+{
+    fprintf(stream, "\n  %-4s %-18s %9s %9s %9s\n", "", "property", "value", "bound", "floor");
+    for (size_t p = 0; p < property_count; p++) {
+        const struct certificate_figure *nearest = NULL;
+        for (int i = 0; i < c->figure_count; i++) {
+            const struct certificate_figure *figure = &c->figures[i];
+            if (figure->property != &property_list[p]) continue;
+            if (!figure->passed) print_figure(figure, stream, color);
+            if (!nearest || nearness(figure) > nearness(nearest)) nearest = figure;
+        }
+        if (nearest && nearest->passed) print_figure(nearest, stream, color);
+    }
+}
+
+void certificate_print(const struct certificate *c, double h, FILE *stream, bool color)
+{
+    fprintf(stream, "%s (%s), %d dimension%s, support radius h = %g\n\n", c->kernel->member.name,
+            c->kernel->member.label, c->dim, c->dim > 1 ? "s" : "", h);
+    print_measured(c, h, stream);
+    print_lattice(c, stream);
+    print_properties(c, stream, color);
+    fprintf(stream, "\n%s: ", c->failed ? "REJECTED" : "accepted");
+    if (c->failed)
+        fprintf(stream, "%d of %d figures beyond their bound\n", c->failed, c->figure_count);
+    else
+        fprintf(stream, "%d figures within their bounds\n", c->figure_count);
+}
+
+/* ---- JSON ---- */
+
+static json_t *figures_json(const struct certificate *c)
+{
+    json_t *list = json_array();
+    char subject[256];
+    for (int i = 0; i < c->figure_count; i++) {
+        const struct certificate_figure *figure = &c->figures[i];
+        snprintf(subject, sizeof subject, "%s, dim %d, %s", c->kernel->member.name, c->dim,
+                 figure->where);
+        json_array_append_new(list, json_pack("{s:s, s:s, s:s, s:s, s:o, s:o, s:o, s:s}", "group",
+                                              "kernels", "name", figure->property->name, "subject",
+                                              subject, "property", figure->property->formula,
+                                              "value", result_number(figure->value), "bound",
+                                              result_number(figure->bound), "floor",
+                                              result_number(figure->floor), "status",
+                                              figure->skipped  ? "skip"
+                                              : figure->passed ? "pass"
+                                                               : "fail"));
+    }
+    return list;
+}
+
+static json_t *lattice_json(const struct certificate *c)
+{
+    json_t *list = json_array();
+    for (int i = 0; i < CERTIFICATE_WIDTHS; i++)
+        json_array_append_new(list,
+                              json_pack("{s:o, s:o, s:o}", "eta", result_number(c->lattice[i].eta),
+                                        "density", result_number(c->lattice[i].density), "gradient",
+                                        result_number(c->lattice[i].gradient)));
+    return list;
+}
+
+static json_t *knots_json(const struct certificate *c)
+{
+    json_t *list = json_array();
+    for (int i = 0; i < c->kernel->knot_count; i++)
+        json_array_append_new(list, result_number(c->kernel->knots[i]));
+    return list;
+}
+
+void certificate_json(const struct certificate *c, double h, json_t *document)
+{
+    const struct kernel *kernel = c->kernel;
+    const struct measure_moments *m = &c->moments;
+    const double first = c->fourier.first_negative;
+    json_object_set_new(document, "constant", result_number(kernel->constant[c->dim]));
+    json_object_set_new(document, "normalisation", result_number(m->volume));
+    json_object_set_new(
+        document, "moments",
+        json_pack("{s:o, s:o, s:o, s:o, s:o}", "second", result_number(m->second * h * h), "fourth",
+                  result_number(m->fourth * pow(h, 4)), "sigma", result_number(sqrt(m->second) * h),
+                  "second_over_h2", result_number(m->second), "fourth_over_h4",
+                  result_number(m->fourth)));
+    json_object_set_new(document, "class", json_integer(c->class.class));
+    json_object_set_new(document, "class_declared", json_integer(kernel->smoothness[c->dim]));
+    json_object_set_new(document, "knots", knots_json(c));
+    json_object_set_new(document, "fourier",
+                        json_pack("{s:o, s:o, s:o, s:o}", "min", result_number(c->fourier.least),
+                                  "min_kh", result_number(c->fourier.least_at), "first_negative_k",
+                                  isnan(first) ? json_null() : result_number(first / h),
+                                  "first_negative_kh",
+                                  isnan(first) ? json_null() : result_number(first)));
+    json_object_set_new(document, "self_term", result_number(kernel_value(kernel, 0, h, c->dim)));
+    json_object_set_new(document, "least_eta", result_number(kernel_least_eta(kernel, c->dim)));
+    json_object_set_new(document, "lattice", lattice_json(c));
+    json_object_set_new(document, "checks", figures_json(c));
+}
+
+/* ---- plot ---- */
+
+enum { CURVE_MAX = 4096, WAVES = 600 };
+
+struct curves {
+    double q[CURVE_MAX], w[CURVE_MAX], dw[CURVE_MAX], ddw[CURVE_MAX];
+    double kappa[WAVES], transform[WAVES];
+    size_t n;
+};
+
+/* At the nodes of each piece, so that the jumps of w'' at the knots are drawn as jumps. */
+static void fill(struct curves *curves, const struct certificate *c)
+{
+    const struct pieces *pieces = &c->pieces;
+    const double unit = c->kernel->constant[c->dim];
+    const int stride = 1 + pieces->n * PIECES_NODES / (CURVE_MAX - 2 * PIECES_NODES);
+    for (int p = 0; p < pieces->n; p++) {
+        const double a = pieces->edge[p], half = (pieces->edge[p + 1] - a) / 2;
+        double values[PIECES_NODES];
+        struct series_fit fit;
+        for (int j = 0; j < PIECES_NODES; j++)
+            values[j] = c->kernel->dw(c->kernel, a + half * (1 + pieces_node(pieces, j)), c->dim);
+        pieces_fit(pieces, values, &fit);
+        for (int j = PIECES_NODES - 1; j >= 0 && curves->n < CURVE_MAX; j -= stride) {
+            double floor;
+            const double x = pieces_node(pieces, j), q = a + half * (1 + x);
+            curves->q[curves->n] = q;
+            curves->w[curves->n] = unit * c->kernel->w(c->kernel, q, c->dim);
+            curves->dw[curves->n] = unit * values[j];
+            curves->ddw[curves->n++] = unit * series_slope(&fit, x, &floor) / half;
+        }
+    }
+    for (int i = 0; i < WAVES; i++) {
+        curves->kappa[i] = 0.1 * i;
+        curves->transform[i] = fabs(measure_transform(&c->spectrum, curves->kappa[i]));
+    }
+}
+
+enum status certificate_plot(const struct certificate *c, const char *path, struct error *error)
+{
+    struct curves *curves = calloc(1, sizeof *curves);
+    if (!curves) return error_set(error, STATUS_ENVIRONMENT, "no memory for a plot");
+    fill(curves, c);
+    const struct plot_series w = {
+        .kind = PLOT_LINES, .n = curves->n, .x = curves->q, .y = curves->w};
+    const struct plot_series dw = {
+        .kind = PLOT_LINES, .n = curves->n, .x = curves->q, .y = curves->dw};
+    const struct plot_series ddw = {
+        .kind = PLOT_LINES, .n = curves->n, .x = curves->q, .y = curves->ddw};
+    const struct plot_series transform = {
+        .kind = PLOT_LINES, .n = WAVES, .x = curves->kappa, .y = curves->transform};
+    const struct plot_mark negative = {c->fourier.first_negative, false, "negative from here"};
+    const struct plot_panel panels[] = {
+        {.y_label = "W", .key = PLOT_KEY_NONE, .series = &w, .series_count = 1},
+        {.y_label = "W′", .key = PLOT_KEY_NONE, .series = &dw, .series_count = 1},
+        {.y_label = "W″",
+         .x_label = "q = r/h",
+         .key = PLOT_KEY_NONE,
+         .series = &ddw,
+         .series_count = 1},
+        {.y_label = "|transform|",
+         .x_label = "k h",
+         .y_log = true,
+         .own_x = true,
+         .key = PLOT_KEY_NONE,
+         .series = &transform,
+         .series_count = 1,
+         .marks = &negative,
+         .mark_count = c->fourier.first_negative < 0.1 * WAVES}};
+    char title[160];
+    snprintf(title, sizeof title, "%s in %d dimension%s, h = 1", c->kernel->member.name, c->dim,
+             c->dim > 1 ? "s" : "");
+    const struct plot plot = {.name = "kernel",
+                              .title = title,
+                              .show_title = true,
+                              .panels = panels,
+                              .panel_count = sizeof panels / sizeof *panels};
+    const enum status status = picture_write(&plot, path, error);
+    free(curves);
+    return status;
+}
