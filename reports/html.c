@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "html.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+const char *html_string(const json_t *object, const char *name)
+{
+    const char *string = json_string_value(json_object_get(object, name));
+    return string ? string : "";
+}
+
+double html_real(const json_t *value)
+{
+    if (json_is_number(value)) return json_number_value(value);
+    const char *string = json_string_value(value);
+    if (string && !strcmp(string, "inf")) return (double)INFINITY;
+    if (string && !strcmp(string, "-inf")) return -(double)INFINITY;
+    return (double)NAN;
+}
+
+double html_member(const json_t *object, const char *name)
+{
+    return html_real(json_object_get(object, name));
+}
+
+double html_member2(const json_t *object, const char *outer, const char *name)
+{
+    return html_member(json_object_get(object, outer), name);
+}
+
+void html_number(struct buffer *to, double value)
+{
+    if (isnan(value)) {
+        buffer_add(to, "nan");
+    } else if (isinf(value)) {
+        buffer_add(to, value > 0 ? "∞" : "−∞");
+    } else if (value == 0) {
+        buffer_add(to, "0");
+    } else if (fabs(value) >= 0.01 && fabs(value) < 1e5) {
+        if (value == floor(value))
+            buffer_format(to, "%.0f", value);
+        else
+            buffer_format(to, "%.*f",
+                          fabs(value) >= 100  ? 1
+                          : fabs(value) >= 10 ? 2
+                          : fabs(value) >= 1  ? 3
+                                              : 4,
+                          value);
+    } else {
+        char digits[64];
+        snprintf(digits, sizeof digits, "%.2e", value);
+        char *e = strchr(digits, 'e');
+        buffer_add_bytes(to, digits, (size_t)(e - digits));
+        buffer_format(to, "e%d", atoi(e + 1));
+    }
+}
+
+void html_table(struct buffer *to, const char *class, const char *columns)
+{
+    buffer_format(to, "<div class=\"scroll\"><table class=\"%s\"><thead><tr>", class);
+    while (*columns) {
+        size_t n = strcspn(columns, "|");
+        bool number = *columns == '#';
+        buffer_add(to, number ? "<th class=\"n\">" : "<th>");
+        buffer_add_bytes(to, columns + number, n - number);
+        buffer_add(to, "</th>");
+        columns += n + (columns[n] == '|');
+    }
+    buffer_add(to, "</tr></thead><tbody>\n");
+}
+
+void html_table_end(struct buffer *to)
+{
+    buffer_add(to, "</tbody></table></div>\n");
+}
+
+void html_cell(struct buffer *to, const char *string)
+{
+    buffer_add(to, "<td>");
+    buffer_escape(to, string);
+    buffer_add(to, "</td>");
+}
+
+void html_cell_number(struct buffer *to, double value)
+{
+    buffer_add(to, "<td class=\"n\">");
+    html_number(to, value);
+    buffer_add(to, "</td>");
+}
+
+void html_cell_code(struct buffer *to, const char *string)
+{
+    buffer_add(to, "<td><code>");
+    buffer_escape(to, string);
+    buffer_add(to, "</code></td>");
+}
+
+void html_command(struct buffer *to, const char *what, const char *command)
+{
+    if (!*command) return;
+    buffer_add(to, "<p class=\"command\"><span>");
+    buffer_escape(to, what);
+    buffer_add(to, "</span> <code>");
+    buffer_escape(to, command);
+    buffer_add(to, "</code></p>\n");
+}
+
+void html_status(struct buffer *to, const char *status)
+{
+    bool good = !strcmp(status, "pass") || !strcmp(status, "ok");
+    buffer_format(to, "<b class=\"%s\">",
+                  good                      ? "pass"
+                  : !strcmp(status, "skip") ? "skip"
+                                            : "fail");
+    html_words(to, status);
+    buffer_add(to, "</b>");
+}
+
+void html_words(struct buffer *to, const char *name)
+{
+    char copy[2] = "";
+    for (; *name; name++) {
+        copy[0] = *name == '_' ? ' ' : *name;
+        buffer_escape(to, copy);
+    }
+}

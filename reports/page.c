@@ -1,0 +1,194 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "page.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "html.h"
+#include "page_part.h"
+
+static void keep(struct page *page, struct buffer *failed, const char *name, const char *ending,
+                 char *bytes)
+{
+    struct buffer file = {0};
+    buffer_format(&file, "%s.%s", name, ending);
+    struct page_file *files = realloc(page->files, (page->file_count + 1) * sizeof *page->files);
+    if (files) page->files = files;
+    if (!files || file.failed || !bytes) {
+        failed->failed = true;
+        buffer_free(&file);
+        free(bytes);
+        return;
+    }
+    page->files[page->file_count++] = (struct page_file){buffer_take(&file), bytes};
+}
+
+void page_plot(struct page_writer *writer, const struct plot *plot, const char *caption)
+{
+    struct buffer *to = &writer->to;
+    char *svg, message[512] = "", *script, *data;
+    buffer_add(to, "<figure>");
+    if (plot_svg(plot, &svg, message, sizeof message) == PLOT_OK) {
+        buffer_add(to, svg);
+    } else {
+        if (!writer->page->plots_missing++)
+            snprintf(writer->page->message, sizeof writer->page->message, "%s", message);
+        buffer_add(to, "<p class=\"missing\">");
+        buffer_escape(to, message);
+        buffer_add(to, "</p>");
+    }
+    free(svg);
+    buffer_add(to, "<figcaption>");
+    buffer_escape(to, caption);
+    buffer_format(to,
+                  " <span class=\"files\"><a href=\"plots/%s.dat\">data</a>, "
+                  "<a href=\"plots/%s.gp\">script</a></span></figcaption></figure>\n",
+                  plot->name, plot->name);
+    if (!plot_source(plot, &script, &data)) {
+        to->failed = true;
+        return;
+    }
+    keep(writer->page, to, plot->name, "gp", script);
+    keep(writer->page, to, plot->name, "dat", data);
+}
+
+static void tile(struct buffer *to, const char *label, double good, double all, const char *anchor)
+{
+    if (!(all > 0)) return;
+    buffer_format(to,
+                  "<a class=\"tile %s\" href=\"#%s\"><b>%.0f</b><span> of %.0f</span><br/>%s</a>\n",
+                  good < all ? "bad" : "good", anchor, good, all, label);
+}
+
+static void head(struct buffer *to, const json_t *results, const json_t *verdict)
+{
+    bool well = !strcmp(html_string(verdict, "status"), "pass");
+    buffer_add(to, "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"/>"
+                   "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>"
+                   "<meta name=\"color-scheme\" content=\"light dark\"/><title>sphproof: ");
+    buffer_escape(to, html_string(verdict, "headline"));
+    buffer_format(to, "</title><style>%s%s</style></head><body>\n", page_style, plot_css());
+    buffer_format(to, "<header class=\"%s\"><p class=\"kind\">sphproof %s report</p><h1>",
+                  well ? "well" : "unwell", html_string(results, "mode"));
+    buffer_escape(to, html_string(verdict, "headline"));
+    buffer_add(to, "</h1>\n<p class=\"facts\">");
+    buffer_escape(to, html_string(results, "date"));
+    buffer_add(to, " · git ");
+    buffer_escape(to, html_string(results, "git"));
+    double seconds = html_member(results, "seconds");
+    if (seconds > 0) buffer_format(to, " · computed in %.0f s", seconds);
+    buffer_add(to, "</p>\n<p class=\"tiles\">");
+    double passed = html_member(verdict, "figures_passed");
+    double gates = html_member(verdict, "gates_passed");
+    double runs = html_member(verdict, "runs");
+    tile(to, "figures within their bounds", passed, passed + html_member(verdict, "figures_failed"),
+         "checks");
+    tile(to, "orders of convergence as expected", gates,
+         gates + html_member(verdict, "gates_failed"), "cases");
+    tile(to, "runs sound", runs - html_member(verdict, "broke_down"), runs, "cases");
+    tile(to, "deliberate faults caught", html_member(verdict, "mutants_detected"),
+         html_member(verdict, "mutants"), "detection");
+    buffer_add(to, "</p></header>\n");
+}
+
+static void failures(struct buffer *to, const json_t *verdict)
+{
+    const json_t *list = json_object_get(verdict, "failures"), *entry;
+    if (!json_array_size(list)) return;
+    enum { SHOWN = 60 };
+    buffer_add(to, "<section id=\"failures\"><h2>What is wrong</h2><ol class=\"failures\">\n");
+    size_t i;
+    json_array_foreach(list, i, entry)
+    {
+        if (i == SHOWN) break;
+        buffer_add(to, "<li><p><span class=\"area\">");
+        buffer_escape(to, html_string(entry, "area"));
+        buffer_add(to, "</span> <b>");
+        buffer_escape(to, html_string(entry, "name"));
+        buffer_add(to, "</b><br/>");
+        buffer_escape(to, html_string(entry, "detail"));
+        buffer_add(to, "</p>");
+        html_command(to, "see it again:", html_string(entry, "command"));
+        buffer_add(to, "</li>\n");
+    }
+    buffer_add(to, "</ol>");
+    if (json_array_size(list) > SHOWN)
+        buffer_format(to, "<p>… and %zu more, all in results.json.</p>",
+                      json_array_size(list) - SHOWN);
+    buffer_add(to, "</section>\n");
+}
+
+static void row(struct buffer *to, const char *name, const char *value)
+{
+    if (!*value) return;
+    buffer_format(to, "<tr><th>%s</th>", name);
+    html_cell(to, value);
+    buffer_add(to, "</tr>\n");
+}
+
+static void environment(struct buffer *to, const json_t *results)
+{
+    const json_t *machine = json_object_get(results, "machine");
+    buffer_add(to, "<section id=\"environment\"><h2>Environment and definitions</h2>"
+                   "<div class=\"scroll\"><table class=\"facts\"><tbody>\n");
+    row(to, "program", html_string(results, "version"));
+    row(to, "git", html_string(results, "git"));
+    row(to, "compiler", html_string(results, "compiler"));
+    row(to, "flags", html_string(results, "flags"));
+    row(to, "system", html_string(machine, "system"));
+    row(to, "architecture", html_string(machine, "architecture"));
+    row(to, "processor", html_string(machine, "processor"));
+    buffer_format(to, "<tr><th>cores</th><td>%.0f</td></tr></tbody></table></div>\n",
+                  html_member(machine, "cores"));
+    buffer_add(
+        to, "<p>Norms over the particles i of a case's measure window, with volumes V: "
+            "L1 = Σ V |q − q_exact| / Σ V, L2 = (Σ V (q − q_exact)² / Σ V)^½, "
+            "L∞ = max |q − q_exact|; the particle mean is L1 with equal weights. An order is the "
+            "least-squares slope of log(error) against log(1/n), with its 95 % interval. "
+            "Conservation compares t_end with t = 0. All quantities are in code units.</p>\n"
+            "<p>Everything on this page is in <a href=\"results.json\">results.json</a>; each "
+            "plot's data and gnuplot script are in the folder <code>plots</code>.</p></section>\n");
+}
+
+int page_make(struct page *page, const json_t *results)
+{
+    *page = (struct page){0};
+    struct page_writer writer = {.page = page};
+    struct buffer *to = &writer.to;
+    const json_t *verdict = json_object_get(results, "verdict");
+    const json_t *verify = json_object_get(results, "verify");
+    const json_t *kernels = json_object_get(results, "kernels");
+    const json_t *gradients = json_object_get(results, "gradients");
+    head(to, results, verdict);
+    buffer_add(to, "<nav><a href=\"#cases\">Cases</a>");
+    if (gradients) buffer_add(to, " <a href=\"#gradients\">Gradients</a>");
+    if (kernels) buffer_add(to, " <a href=\"#kernels\">Kernels</a>");
+    if (verify)
+        buffer_add(to, " <a href=\"#checks\">Checks</a>"
+                       " <a href=\"#detection\">Detection</a>");
+    buffer_add(to, " <a href=\"#environment\">Environment</a></nav>\n<main>\n");
+    failures(to, verdict);
+    page_cases(&writer, results);
+    if (gradients) page_gradients(&writer, gradients);
+    if (kernels) page_kernels(&writer, kernels);
+    if (verify) page_checks(&writer, verify);
+    if (verify) page_detection(&writer, verify);
+    environment(to, results);
+    buffer_add(to, "</main></body></html>\n");
+    page->html = buffer_take(to);
+    if (page->html) return 1;
+    page_free(page);
+    return 0;
+}
+
+void page_free(struct page *page)
+{
+    for (size_t k = 0; k < page->file_count; k++) {
+        free(page->files[k].name);
+        free(page->files[k].bytes);
+    }
+    free(page->files);
+    free(page->html);
+    *page = (struct page){0};
+}

@@ -1,0 +1,194 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Checks: per group a table, one line a check (its figure nearest to the bound), all figures of
+ * failing ones; and the detection power: which deliberate faults each check catches. */
+#include <math.h>
+#include <string.h>
+
+#include "html.h"
+#include "page_part.h"
+
+/* Figures [first, end) of one check. */
+struct span {
+    size_t first, end, failed, skipped, worst;
+    double seconds;
+};
+
+/* How much of its bound a figure uses; a figure that is not finite uses more than any other. */
+static double used(const json_t *figure)
+{
+    double value = html_member(figure, "value"), bound = html_member(figure, "bound");
+    if (isnan(value) || isnan(bound)) return (double)INFINITY;
+    if (bound > 0) return fmax(0, value / bound);
+    return value <= bound ? 0 : (double)INFINITY;
+}
+
+static bool same(const json_t *a, const json_t *b, const char *member)
+{
+    return !strcmp(html_string(a, member), html_string(b, member));
+}
+
+static struct span next_check(const json_t *figures, size_t first)
+{
+    struct span span = {.first = first, .end = first, .worst = first};
+    const json_t *leader = json_array_get(figures, first);
+    double most = -1;
+    for (size_t n = json_array_size(figures); span.end < n; span.end++) {
+        const json_t *figure = json_array_get(figures, span.end);
+        if (!same(figure, leader, "group") || !same(figure, leader, "name")) break;
+        const char *status = html_string(figure, "status");
+        bool skipped = !strcmp(status, "skip");
+        span.failed += !strcmp(status, "fail");
+        span.skipped += skipped;
+        double seconds = html_member(figure, "seconds");
+        if (seconds > 0) span.seconds += seconds;
+        if (!skipped && used(figure) > most) {
+            most = used(figure);
+            span.worst = span.end;
+        }
+    }
+    return span;
+}
+
+static void bar(struct buffer *to, double part)
+{
+    buffer_add(to, "<td class=\"n\">");
+    if (!isfinite(part))
+        buffer_add(to, "—");
+    else if (part > 0 && part < 0.01)
+        buffer_add(to, "&lt; 1 %");
+    else if (part < 1000)
+        buffer_format(to, "%.0f %%", 100 * part);
+    else
+        buffer_add(to, "> 1000 times");
+    buffer_format(to,
+                  "<span class=\"margin\"><i class=\"%s\" style=\"width:%.0f%%\"></i></span></td>",
+                  part <= 0.5 ? ""
+                  : part <= 1 ? "close"
+                              : "over",
+                  fmin(100, 100 * part));
+}
+
+static void figure_cells(struct buffer *to, const json_t *figure)
+{
+    html_cell(to, html_string(figure, "subject"));
+    html_cell_number(to, html_member(figure, "value"));
+    html_cell_number(to, html_member(figure, "bound"));
+    html_cell_number(to, html_member(figure, "floor"));
+    bar(to, used(figure));
+}
+
+static void check_row(struct buffer *to, const json_t *figures, const struct span *span)
+{
+    const json_t *leader = json_array_get(figures, span->first);
+    size_t all = span->end - span->first, judged = all - span->skipped;
+    buffer_add(to, "<tr><td>");
+    html_status(to, span->failed ? "fail" : judged ? "pass" : "skip");
+    buffer_add(to, " <code>");
+    buffer_escape(to, html_string(leader, "name"));
+    buffer_add(to, "</code><br/><span class=\"note\">");
+    buffer_escape(to, html_string(leader, "property"));
+    buffer_format(to, "</span></td><td class=\"n\">%zu of %zu</td>", judged - span->failed, judged);
+    if (judged)
+        figure_cells(to, json_array_get(figures, span->worst));
+    else
+        buffer_add(to, "<td>not measured here</td><td></td><td></td><td></td><td></td>");
+    buffer_add(to, "</tr>\n");
+}
+
+static void failing_figures(struct buffer *to, const json_t *figures, const struct span *span)
+{
+    enum { SHOWN = 20 };
+    size_t shown = 0;
+    for (size_t i = span->first; i < span->end && shown < SHOWN; i++) {
+        const json_t *figure = json_array_get(figures, i);
+        if (strcmp(html_string(figure, "status"), "fail") || i == span->worst) continue;
+        buffer_add(to, "<tr><td class=\"note\">… and</td><td></td>");
+        figure_cells(to, figure);
+        buffer_add(to, "</tr>\n");
+        shown++;
+    }
+    if (span->failed > shown + 1)
+        buffer_format(
+            to, "<tr><td colspan=\"7\" class=\"note\">… and %zu more failing figures</td></tr>\n",
+            span->failed - shown - 1);
+}
+
+void page_checks(struct page_writer *writer, const json_t *verify)
+{
+    struct buffer *to = &writer->to;
+    const json_t *figures = json_object_get(verify, "checks");
+    size_t n = json_array_size(figures);
+    if (!n) return;
+    buffer_add(to, "<section id=\"checks\"><h2>Checks</h2>\n<p>One line a check: how many figures "
+                   "hold, and of these the one nearest to its bound. The floor is the noise below "
+                   "which the figure means nothing.</p>\n");
+    for (size_t i = 0; i < n;) {
+        const json_t *leader = json_array_get(figures, i);
+        const char *group = html_string(leader, "group");
+        struct buffer command = {0};
+        buffer_add(to, "<h3>");
+        html_words(to, group);
+        buffer_add(to, "</h3>\n");
+        html_table(to, "checks", "check|#hold|nearest to its bound|#value|#bound|#floor|#of bound");
+        while (i < n && same(json_array_get(figures, i), leader, "group")) {
+            const struct span span = next_check(figures, i);
+            check_row(to, figures, &span);
+            if (span.failed > 1) failing_figures(to, figures, &span);
+            i = span.end;
+        }
+        html_table_end(to);
+        buffer_format(&command, "sphproof verify %s", group);
+        if (command.data) html_command(to, "see it again:", command.data);
+        buffer_free(&command);
+    }
+    buffer_add(to, "</section>\n");
+}
+
+/* ---- detection power ---- */
+
+void page_detection(struct page_writer *writer, const json_t *verify)
+{
+    struct buffer *to = &writer->to;
+    const json_t *mutants = json_object_get(verify, "mutants"), *entry;
+    size_t n = json_array_size(mutants), caught = 0, i;
+    buffer_add(to, "<section id=\"detection\"><h2>Detection power</h2>\n");
+    if (!n) {
+        buffer_add(to, "<p>Not measured in this report.</p>");
+        html_command(to, "measure it:", "sphproof verify --mutants");
+        buffer_add(to, "</section>\n");
+        return;
+    }
+    json_array_foreach(mutants, i, entry) caught +=
+        json_is_true(json_object_get(entry, "detected"));
+    buffer_format(to,
+                  "<p>A check is worth what it rejects. %zu deliberate faults were put before the "
+                  "checks, %zu were caught.</p>\n<details%s><summary>Every fault, and the figure "
+                  "that gave it away</summary>\n",
+                  n, caught, caught < n ? " open=\"open\"" : "");
+    html_table(to, "mutants", "fault|check|#value|#bound|caught");
+    for (int round = 0; round < 2; round++) { /* those that slipped through come first */
+        json_array_foreach(mutants, i, entry)
+        {
+            bool detected = json_is_true(json_object_get(entry, "detected"));
+            if (detected != (round == 1)) continue;
+            buffer_add(to, "<tr><td>");
+            const char *fault = html_string(entry, "fault");
+            html_words(to, html_string(entry, "mutant"));
+            if (*fault) {
+                buffer_add(to, "<br/><span class=\"note\">");
+                buffer_escape(to, fault);
+                buffer_add(to, "</span>");
+            }
+            buffer_add(to, "</td>");
+            html_cell_code(to, html_string(entry, "check"));
+            html_cell_number(to, html_member(entry, "value"));
+            html_cell_number(to, html_member(entry, "bound"));
+            buffer_format(to, "<td><b class=\"%s\">%s</b></td></tr>\n", detected ? "pass" : "fail",
+                          detected ? "caught" : "missed");
+        }
+    }
+    html_table_end(to);
+    buffer_add(to, "</details>");
+    html_command(to, "see it again:", "sphproof verify --mutants");
+    buffer_add(to, "</section>\n");
+}

@@ -1,0 +1,143 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "verdict.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "buffer.h"
+#include "html.h"
+
+struct tally {
+    json_t *failures;
+    int figures_passed, figures_failed, figures_skipped;
+    int mutants, detected;
+    int gates_passed, gates_failed;
+    int runs, broke_down;
+};
+
+/* Takes detail. */
+static void fail(struct tally *tally, const char *area, const char *name, struct buffer *detail,
+                 const char *command)
+{
+    char *text = buffer_take(detail);
+    json_array_append_new(tally->failures,
+                          json_pack("{s:s, s:s, s:s, s:s}", "area", area, "name", name, "detail",
+                                    text ? text : "", "command", command));
+    free(text);
+}
+
+static void judge_figure(struct tally *tally, const json_t *figure)
+{
+    const char *status = html_string(figure, "status");
+    if (!strcmp(status, "pass")) tally->figures_passed++;
+    if (!strcmp(status, "skip")) tally->figures_skipped++;
+    if (strcmp(status, "fail")) return;
+    tally->figures_failed++;
+    struct buffer detail = {0}, name = {0}, command = {0};
+    double value = html_member(figure, "value"), bound = html_member(figure, "bound");
+    buffer_format(&detail, "%s: ", html_string(figure, "subject"));
+    html_number(&detail, value);
+    buffer_add(&detail, " is not <= ");
+    html_number(&detail, bound);
+    if (bound > 0 && isfinite(value)) {
+        buffer_add(&detail, " (");
+        html_number(&detail, value / bound);
+        buffer_add(&detail, " times the bound)");
+    }
+    buffer_format(&name, "%s: %s", html_string(figure, "group"), html_string(figure, "name"));
+    buffer_format(&command, "sphproof verify %s", html_string(figure, "group"));
+    if (!name.failed && !command.failed) fail(tally, "check", name.data, &detail, command.data);
+    buffer_free(&name);
+    buffer_free(&command);
+}
+
+static void judge_verify(struct tally *tally, const json_t *verify)
+{
+    const json_t *summary = json_object_get(verify, "summary");
+    tally->mutants = (int)json_integer_value(json_object_get(summary, "mutants"));
+    tally->detected = (int)json_integer_value(json_object_get(summary, "detected"));
+    size_t i;
+    const json_t *entry;
+    json_array_foreach(json_object_get(verify, "checks"), i, entry) judge_figure(tally, entry);
+    json_array_foreach(json_object_get(verify, "mutants"), i, entry)
+    {
+        if (json_is_true(json_object_get(entry, "detected"))) continue;
+        struct buffer detail = {0};
+        buffer_format(&detail, "the wrong variant '%s' passes: value ",
+                      html_string(entry, "mutant"));
+        html_number(&detail, html_member(entry, "value"));
+        buffer_add(&detail, ", bound ");
+        html_number(&detail, html_member(entry, "bound"));
+        fail(tally, "detection", html_string(entry, "check"), &detail, "sphproof verify --mutants");
+    }
+}
+
+static void judge_run(struct tally *tally, const json_t *run)
+{
+    tally->runs++;
+    if (strcmp(html_string(run, "status"), "broke_down")) return;
+    tally->broke_down++;
+    struct buffer detail = {0};
+    buffer_format(&detail, "broke down: %s", html_string(run, "message"));
+    fail(tally, "run", html_string(run, "case"), &detail, html_string(run, "reproduce"));
+}
+
+static void judge_study(struct tally *tally, const json_t *study)
+{
+    size_t i;
+    const json_t *order;
+    json_array_foreach(json_object_get(study, "orders"), i, order)
+    {
+        const char *status = html_string(order, "status");
+        if (!strcmp(status, "pass")) tally->gates_passed++;
+        if (strcmp(status, "fail")) continue;
+        tally->gates_failed++;
+        struct buffer detail = {0}, name = {0};
+        buffer_format(&name, "%s, %s: order of %s(%s)", html_string(study, "case"),
+                      html_string(study, "label"), html_string(order, "norm"),
+                      html_string(order, "field"));
+        html_number(&detail, html_member(order, "order"));
+        buffer_add(&detail, " (95 % interval ");
+        html_number(&detail, html_member(order, "low"));
+        buffer_add(&detail, " to ");
+        html_number(&detail, html_member(order, "high"));
+        buffer_format(&detail, ") %s", html_string(order, "why"));
+        if (!name.failed)
+            fail(tally, "convergence", name.data, &detail, html_string(study, "reproduce"));
+        buffer_free(&name);
+    }
+}
+
+static void headline(struct buffer *to, size_t failures)
+{
+    if (!failures)
+        buffer_add(to, "All is well");
+    else
+        buffer_format(to, "%zu %s", failures, failures == 1 ? "failure" : "failures");
+}
+
+json_t *verdict_make(const json_t *results)
+{
+    struct tally tally = {.failures = json_array()};
+    if (!tally.failures) return NULL;
+    size_t i;
+    const json_t *entry;
+    json_array_foreach(json_object_get(results, "runs"), i, entry) judge_run(&tally, entry);
+    json_array_foreach(json_object_get(results, "studies"), i, entry) judge_study(&tally, entry);
+    judge_verify(&tally, json_object_get(results, "verify"));
+
+    struct buffer words = {0};
+    size_t count = json_array_size(tally.failures);
+    headline(&words, count);
+    char *line = buffer_take(&words);
+    json_t *verdict = json_pack(
+        "{s:s, s:s, s:i, s:i, s:i, s:i, s:i, s:i, s:i, s:i, s:i, s:o}", "status",
+        count ? "fail" : "pass", "headline", line ? line : "", "figures_passed",
+        tally.figures_passed, "figures_failed", tally.figures_failed, "figures_skipped",
+        tally.figures_skipped, "mutants", tally.mutants, "mutants_detected", tally.detected,
+        "gates_passed", tally.gates_passed, "gates_failed", tally.gates_failed, "runs", tally.runs,
+        "broke_down", tally.broke_down, "failures", tally.failures);
+    free(line);
+    return verdict;
+}

@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The verdict over a report's results: is it well, and if not, what, by how much, and how to see it
+ * again. The one place where it is decided; page, summary and JUnit show it.
+ *
+ * results.json, a document of command "report" (each entry below is also what its own command
+ * writes, see verify/schema; what a report has not is left out):
+ *   mode            "quick" or "nightly"
+ *   runs            [run documents, and "label", "reproduce", "profile": {"x", "density",
+ *                   "velocity", "pressure", "exact_density", ... at the particles of the window,
+ *                   "exact": {"x", "density", "velocity", "pressure"}}]
+ *   studies         [converge documents, and "label", "reproduce"]
+ *   verify          verify document
+ *   kernels         [kernel documents, and "reproduce"]
+ *   gradients       {"rows": [{flat: operator, ...}], "reproduce"}
+ *   verdict         what verdict_make returned */
+#ifndef SPHPROOF_VERDICT_H
+#define SPHPROOF_VERDICT_H
+
+#include <jansson.h>
+
+/* {"status": "pass" or "fail", "headline", "figures_passed", "figures_failed", "mutants",
+ * "mutants_detected", "gates_passed", "gates_failed", "runs", "broke_down",
+ * "failures": [{"area", "name", "detail", "command"}]}. New reference, NULL: no memory. */
+json_t *verdict_make(const json_t *results);
+
+#endif
