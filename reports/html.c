@@ -43,12 +43,7 @@ void html_number(struct buffer *to, double value)
         if (value == floor(value))
             buffer_format(to, "%.0f", value);
         else
-            buffer_format(to, "%.*f",
-                          fabs(value) >= 100  ? 1
-                          : fabs(value) >= 10 ? 2
-                          : fabs(value) >= 1  ? 3
-                                              : 4,
-                          value);
+            buffer_format(to, "%.4g", value);
     } else {
         char digits[64];
         snprintf(digits, sizeof digits, "%.2e", value);
@@ -61,13 +56,14 @@ void html_number(struct buffer *to, double value)
 void html_table(struct buffer *to, const char *class, const char *columns)
 {
     buffer_format(to, "<div class=\"scroll\"><table class=\"%s\"><thead><tr>", class);
-    while (*columns) {
+    for (bool more = true; more;) {
         size_t n = strcspn(columns, "|");
         bool number = *columns == '#';
         buffer_add(to, number ? "<th class=\"n\">" : "<th>");
         buffer_add_bytes(to, columns + number, n - number);
         buffer_add(to, "</th>");
-        columns += n + (columns[n] == '|');
+        more = columns[n] == '|';
+        columns += n + more;
     }
     buffer_add(to, "</tr></thead><tbody>\n");
 }

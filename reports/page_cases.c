@@ -92,14 +92,6 @@ static void plot_profiles(struct page_writer *writer, const char *case_name,
     struct plot_panel panels[QUANTITIES] = {0};
     for (int q = 0; q < QUANTITIES; q++) {
         size_t n = 0;
-        for (size_t k = 0; k < curves->runs; k++)
-            series[q][n++] = (struct plot_series){.label = curves->label[k],
-                                                  .kind = PLOT_POINTS,
-                                                  .n = curves->n[k],
-                                                  .x = curves->x[k],
-                                                  .y = curves->value[k][q],
-                                                  .color = (int)k + 1,
-                                                  .size = 0.62};
         if (curves->exact_x)
             series[q][n++] = (struct plot_series){.label = "exact",
                                                   .kind = PLOT_LINES,
@@ -107,6 +99,14 @@ static void plot_profiles(struct page_writer *writer, const char *case_name,
                                                   .x = curves->exact_x,
                                                   .y = curves->exact[q],
                                                   .color = PLOT_NEUTRAL};
+        for (size_t k = 0; k < curves->runs; k++)
+            series[q][n++] = (struct plot_series){.label = curves->label[k],
+                                                  .kind = PLOT_POINTS,
+                                                  .n = curves->n[k],
+                                                  .x = curves->x[k],
+                                                  .y = curves->value[k][q],
+                                                  .color = (int)k + 1,
+                                                  .size = 0.5};
         panels[q] = (struct plot_panel){.x_label = "position x",
                                         .y_label = labels[q],
                                         .key = q ? PLOT_KEY_NONE : PLOT_KEY_TOP,

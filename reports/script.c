@@ -259,6 +259,7 @@ static void curve(struct buffer *to, const struct plot_series *series, const cha
     const char *color = style_series(series->color, next);
     int shape = shapes[(series->color > 0 ? series->color - 1 : next > 0 ? next - 1 : 0) % 7];
     double size = series->size > 0 ? series->size : 1;
+    if (size < 1) shape = shapes[0]; /* particles: dots, which svg.c packs */
     double width = series->color == PLOT_NEUTRAL ? 1.4 : 2;
     const char *dash = series->dashed ? "(8,5)" : "solid";
     buffer_format(to, "%s index %zu ", data, index);
@@ -284,6 +285,10 @@ static void curve(struct buffer *to, const struct plot_series *series, const cha
         break;
     }
     buffer_format(to, " linecolor rgb '%s' ", color);
+    bool dots = series->kind == PLOT_POINTS && size < 1; /* too small for the key */
+    if (dots && named && series->label)
+        buffer_format(to, "notitle%sNaN with points pointtype %d pointsize 0.8 linecolor rgb '%s' ",
+                      next_curve, shape, color);
     if (named && series->label) {
         buffer_add(to, "title ");
         quote(to, series->label);
@@ -355,18 +360,13 @@ void script_make(struct buffer *to, const struct plot *plot, enum script_termina
     struct layout layout;
     layout_make(&layout, plot);
     if (terminal == SCRIPT_SVG)
-        buffer_format(to,
-                      "set terminal svg size %d,%d dynamic noenhanced font 'sans-serif,%d' name ",
+        buffer_format(to, "set terminal svg size %d,%d dynamic noenhanced font 'sans-serif,%d'\n",
                       layout.width, layout.height, LAYOUT_FONT);
     else
         buffer_format(to,
                       "set terminal pngcairo size %d,%d noenhanced font 'sans,%g' linewidth 2 "
                       "pointscale 2 background '#ffffff'\n",
                       2 * layout.width, 2 * layout.height, 1.5 * LAYOUT_FONT);
-    if (terminal == SCRIPT_SVG) {
-        quote(to, plot->name);
-        buffer_add(to, "\n");
-    }
     if (output) {
         buffer_add(to, "set output ");
         quote(to, output);

@@ -143,6 +143,53 @@ static void put_root(struct buffer *to, const struct tag *tag, const char *prefi
     buffer_add(to, "</title>\n");
 }
 
+/* Particles: gnuplot writes a filled circle as a <use> of some hundred bytes. A run of them in one
+ * size and colour becomes one path of dots, zero-length segments with round caps, of a tenth. */
+struct dots {
+    bool open;
+    double scale;
+    int style;
+};
+
+static bool is_dot(const struct tag *tag, double *x, double *y, struct dots *dots)
+{
+    bool circle = false, placed = false;
+    dots->style = STYLE_COUNT;
+    for (size_t k = 0; k < tag->count; k++) {
+        struct slice name = tag->attributes[k].name, value = tag->attributes[k].value;
+        if (is(name, "xlink:href")) circle = is(value, "#gpPt6");
+        if (is(name, "color")) dots->style = style_of(value);
+        if (is(name, "transform"))
+            placed = sscanf(value.at, "translate(%lf,%lf) scale(%lf)", x, y, &dots->scale) == 3;
+    }
+    return is(tag->name, "use") && circle && placed && dots->style < STYLE_COUNT;
+}
+
+static void end_dots(struct buffer *to, struct dots *dots)
+{
+    if (dots->open) buffer_add(to, "\"/>\n");
+    dots->open = false;
+}
+
+/* True: the tag was a dot and has been written. */
+static bool put_dot(struct buffer *to, const struct tag *tag, struct dots *dots)
+{
+    struct dots now = {.open = true};
+    double x, y;
+    if (!is_dot(tag, &x, &y, &now)) return false;
+    if (dots->open &&
+        (now.style != dots->style || now.scale < dots->scale || now.scale > dots->scale))
+        end_dots(to, dots);
+    if (!dots->open)
+        buffer_format(to,
+                      "<path fill=\"none\" stroke=\"currentColor\" stroke-linecap=\"round\" "
+                      "stroke-width=\"%.2f\" class=\"%s\" color=\"%s\" d=\"",
+                      2 * now.scale, style_colors[now.style].css, style_colors[now.style].light);
+    buffer_format(to, "M%.1f %.1fh0", x, y);
+    *dots = now;
+    return true;
+}
+
 /* Groups: those without content are not written; where each started is kept to take it back. */
 enum { DEPTH = 32 };
 
@@ -171,6 +218,7 @@ bool svg_adapt(struct buffer *to, const char *raw, const char *prefix, const cha
     if (!c) return false;
     struct groups groups = {0};
     struct tag tag;
+    struct dots dots = {0};
     while (*c) {
         if (*c != '<') { /* text content matters only in <text>, where tags have put it */
             const char *end = strchr(c, '<');
@@ -182,6 +230,8 @@ bool svg_adapt(struct buffer *to, const char *raw, const char *prefix, const cha
         const char *after = parse(c, &tag);
         if (!after) return false;
         c = after;
+        if (put_dot(to, &tag, &dots)) continue;
+        end_dots(to, &dots);
         if (!tag.end && drop_element(&tag)) {
             char end[32];
             snprintf(end, sizeof end, "</%.*s>", (int)tag.name.n, tag.name.at);

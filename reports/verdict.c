@@ -109,12 +109,14 @@ static void judge_study(struct tally *tally, const json_t *study)
     }
 }
 
-static void headline(struct buffer *to, size_t failures)
+static void headline(struct buffer *to, bool checked, size_t failures)
 {
-    if (!failures)
+    if (failures)
+        buffer_format(to, "%zu %s", failures, failures == 1 ? "failure" : "failures");
+    else if (checked)
         buffer_add(to, "All is well");
     else
-        buffer_format(to, "%zu %s", failures, failures == 1 ? "failure" : "failures");
+        buffer_add(to, "Nothing was checked");
 }
 
 json_t *verdict_make(const json_t *results)
@@ -128,12 +130,13 @@ json_t *verdict_make(const json_t *results)
     judge_verify(&tally, json_object_get(results, "verify"));
 
     struct buffer words = {0};
+    bool checked = tally.figures_passed + tally.gates_passed + tally.runs > 0;
     size_t count = json_array_size(tally.failures);
-    headline(&words, count);
+    headline(&words, checked, count);
     char *line = buffer_take(&words);
     json_t *verdict = json_pack(
         "{s:s, s:s, s:i, s:i, s:i, s:i, s:i, s:i, s:i, s:i, s:i, s:o}", "status",
-        count ? "fail" : "pass", "headline", line ? line : "", "figures_passed",
+        count || !checked ? "fail" : "pass", "headline", line ? line : "", "figures_passed",
         tally.figures_passed, "figures_failed", tally.figures_failed, "figures_skipped",
         tally.figures_skipped, "mutants", tally.mutants, "mutants_detected", tally.detected,
         "gates_passed", tally.gates_passed, "gates_failed", tally.gates_failed, "runs", tally.runs,

@@ -47,7 +47,7 @@ static const struct plot_panel panels[] = {
 };
 static const struct plot_panel map = {.x_label = "x", .y_label = "y", .heat = &heat};
 
-static const struct plot stack = {"stack", "two & panels", true, 0, 0, panels, 2};
+static const struct plot stack = {"stack-of_2", "two & panels", true, 0, 0, panels, 2};
 static const struct plot heated = {"heated", "a map", false, 0, 0, &map, 1};
 
 static bool have_gnuplot(void)
@@ -117,8 +117,8 @@ static void source(void **state)
     (void)state;
     char *script, *data;
     assert_true(plot_source(&stack, &script, &data));
-    assert_non_null(strstr(script, "'stack.dat' index 7"));
-    assert_non_null(strstr(script, "set output 'stack.svg'"));
+    assert_non_null(strstr(script, "'stack-of_2.dat' index 7"));
+    assert_non_null(strstr(script, "set output 'stack-of_2.svg'"));
     assert_non_null(strstr(data, "800 0.0013"));
     assert_non_null(strstr(data, "400 NaN"));
     free(script);

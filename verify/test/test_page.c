@@ -1,0 +1,183 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The report's page, JUnit file and summary: well-formed, self-contained, and the verdict in them
+ * is that of the results, also where results are missing, odd or not finite. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "markup.h"
+#include "page.h"
+#include "verdict.h"
+
+static const char *const results_text =
+    "{'schema': 'sphproof/1', 'command': 'report', 'mode': 'quick', 'version': '1', 'git': 'abc',"
+    "'compiler': 'gcc', 'flags': '-O3', 'date': '2001-02-03', 'machine': {'cores': 2},"
+    "'runs': [{'case': 'sod', 'title': 'a <b> & c', 'label': 'ia', 'reproduce': 'sphproof run sod',"
+    " 'n': 4, 'status': 'ok', 'errors': {'density': {'l1': 0.00461}}, 'profile': {'x': [0, 1, 2],"
+    " 'density': [1, 1, 2], 'velocity': [0, 0, 'nan'], 'pressure': [1, 1, 1], 'exact_density':"
+    " [1, 1, 1], 'exact_velocity': [0, 0, 0], 'exact_pressure': [1, 1, 1], 'exact': {'x': [0, 2],"
+    " 'density': [1, 1], 'velocity': [0, 0], 'pressure': [1, 1]}}}],"
+    "'studies': [{'case': 'sod', 'label': 'ia', 'reproduce': 'sphproof converge sod',"
+    " 'levels': [{'n': 100, 'errors': {'density': {'l1': 0.01}}}, {'n': 200, 'errors': {'density':"
+    " {'l1': 0.005}}}], 'orders': [{'field': 'density', 'norm': 'l1', 'order': 1.0, 'low': 0.9,"
+    " 'high': 1.1, 'pairwise': [1.0], 'gate': {'low': 0.9, 'high': 1.1, 'bound': 0.02},"
+    " 'status': 'pass'}]}],"
+    "'kernels': [{'kernel': 'cubic_spline', 'dim': 1, 'class': 2, 'normalisation': 1e-16,"
+    " 'fourier': {'min': 0, 'first_negative_k': null}, 'checks': [], 'reproduce': 'x'}],"
+    "'gradients': {'rows': [{'operator': 'ia', 'exact': true, 'defect': 1e-16, 'none': null}],"
+    " 'reproduce': 'sphproof verify gradients'},"
+    "'verify': {'checks': [{'group': 'kernels', 'name': 'sign', 'subject': 'q < 1 & more',"
+    " 'property': 'W >= 0', 'value': 1e-16, 'bound': 1e-15, 'floor': 0, 'status': 'pass',"
+    " 'seconds': 0.1}], 'mutants': [{'group': 'kernels', 'check': 'sign', 'mutant': 'minus',"
+    " 'value': 1, 'bound': 1e-15, 'detected': true}], 'summary': {'mutants': 1, 'detected': 1}}}";
+
+/* With its verdict. */
+static json_t *judged(json_t *results)
+{
+    json_t *verdict = verdict_make(results);
+    assert_non_null(verdict);
+    json_object_set_new(results, "verdict", verdict);
+    return results;
+}
+
+static json_t *sound(void)
+{
+    char *text = strdup(results_text);
+    for (char *c = text; *c; c++)
+        if (*c == '\'') *c = '"';
+    json_error_t error;
+    json_t *results = json_loads(text, 0, &error);
+    free(text);
+    if (!results) fail_msg("%s at %d", error.text, error.position);
+    return judged(results);
+}
+
+static json_t *first(const json_t *results, const char *list)
+{
+    return json_array_get(json_object_get(results, list), 0);
+}
+
+/* One fault of every kind. */
+static json_t *unsound(void)
+{
+    json_t *results = sound(), *run = first(results, "runs"), *study = first(results, "studies");
+    json_t *verify = json_object_get(results, "verify");
+    json_object_set_new(run, "status", json_string("broke_down"));
+    json_object_set_new(run, "message", json_string("particle 7 <negative u>"));
+    json_object_set_new(first(study, "orders"), "status", json_string("fail"));
+    json_object_set_new(first(study, "orders"), "why", json_string("is too low"));
+    json_object_set_new(first(verify, "checks"), "status", json_string("fail"));
+    json_object_set_new(first(verify, "checks"), "value", json_string("nan"));
+    json_object_set_new(first(verify, "mutants"), "detected", json_false());
+    return judged(results);
+}
+
+static void judge_page(json_t *results, const char *const *contents, size_t n)
+{
+    struct page page;
+    char fault[256] = "";
+    assert_true(page_make(&page, results));
+    if (!markup_well_formed(page.html, fault, sizeof fault)) fail_msg("%s", fault);
+    assert_null(markup_network(page.html));
+    for (size_t k = 0; k < n; k++)
+        if (!strstr(page.html, contents[k])) fail_msg("the page lacks: %s", contents[k]);
+    assert_int_equal(page.file_count, json_array_size(json_object_get(results, "runs")) ? 6 : 0);
+    page_free(&page);
+    json_decref(results);
+}
+
+static void good_page(void **state)
+{
+    (void)state;
+    const char *const contents[] = {"<h1>All is well</h1>",  "a &lt;b&gt; &amp; c",
+                                    "q &lt; 1 &amp; more",   "sphproof run sod",
+                                    "sphproof converge sod", "4.61e-3"};
+    judge_page(sound(), contents, sizeof contents / sizeof *contents);
+}
+
+static void bad_page(void **state)
+{
+    (void)state;
+    const char *const contents[] = {"<h1>4 failures</h1>", "particle 7 &lt;negative u&gt;",
+                                    "is too low",          "nan is not &lt;= 1.00e-15",
+                                    "&#39;minus&#39;",     "sphproof verify --mutants"};
+    judge_page(unsound(), contents, sizeof contents / sizeof *contents);
+}
+
+/* Results with nothing in them still make a page, and no verdict out of nothing. */
+static void empty_page(void **state)
+{
+    (void)state;
+    const char *const contents[] = {"<h1>Nothing was checked</h1>"};
+    judge_page(judged(json_object()), contents, 1);
+}
+
+static void page_without_gnuplot(void **state)
+{
+    (void)state;
+    char *path = strdup(getenv("PATH") ? getenv("PATH") : "");
+    json_t *results = sound();
+    struct page page;
+    setenv("PATH", "/nowhere", 1);
+    int made = page_make(&page, results);
+    setenv("PATH", path, 1);
+    free(path);
+    assert_true(made);
+    assert_int_equal(page.plots_missing, 3);
+    assert_non_null(strstr(page.message, "gnuplot"));
+    assert_null(strstr(page.html, "<svg"));
+    assert_non_null(strstr(page.html, "4.61e-3"));
+    page_free(&page);
+    json_decref(results);
+}
+
+static size_t occurrences(const char *text, const char *what)
+{
+    size_t n = 0;
+    for (; (text = strstr(text, what)); text += strlen(what)) n++;
+    return n;
+}
+
+static void junit(void **state)
+{
+    (void)state;
+    char fault[256];
+    json_t *good = sound(), *bad = unsound();
+    char *passes = page_junit(good), *fails = page_junit(bad);
+    if (!markup_well_formed(passes, fault, sizeof fault)) fail_msg("%s", fault);
+    if (!markup_well_formed(fails, fault, sizeof fault)) fail_msg("%s", fault);
+    assert_int_equal(occurrences(passes, "<testcase "), 4);
+    assert_int_equal(occurrences(passes, "<failure "), 0);
+    assert_int_equal(occurrences(fails, "<failure "), 4);
+    free(passes);
+    free(fails);
+    json_decref(good);
+    json_decref(bad);
+}
+
+static void summary(void **state)
+{
+    (void)state;
+    json_t *good = sound(), *bad = unsound();
+    char *passes = page_summary(good), *fails = page_summary(bad);
+    assert_non_null(strstr(passes, "All is well"));
+    assert_non_null(strstr(passes, "| sod | ia | 1.00 | 0.90 to 1.10 |"));
+    assert_non_null(strstr(fails, "4 failures"));
+    assert_int_equal(occurrences(fails, "\n- **"), 4);
+    free(passes);
+    free(fails);
+    json_decref(good);
+    json_decref(bad);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(good_page),  cmocka_unit_test(bad_page),
+        cmocka_unit_test(empty_page), cmocka_unit_test(page_without_gnuplot),
+        cmocka_unit_test(junit),      cmocka_unit_test(summary),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
