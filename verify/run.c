@@ -123,6 +123,7 @@ static enum status measure_errors(struct run_result *result, struct error *error
 {
     const struct snapshot *s = &result->snapshot;
     const double *const measured[FIELDS] = {s->rho, s->v[0], s->P, s->u};
+    const double *inside[2][FIELDS], *volume;
     double means[NORM_BINS], values[FIELDS];
     double *exact = malloc(FIELDS * s->n * sizeof *exact);
     if (!exact) return error_set(error, STATUS_ENVIRONMENT, "no memory for the errors");
@@ -134,6 +135,16 @@ static enum status measure_errors(struct run_result *result, struct error *error
     for (int field = 0; field < FIELDS; field++)
         result->errors[field] = norm_errors(s->n, s->x[0], result->window, s->volume,
                                             measured[field], exact + (size_t)field * s->n);
+    size_t first = 0, end = s->n; /* the window's particles; positions rise */
+    while (first < end && s->x[0][first] < result->window[0]) first++;
+    while (end > first && s->x[0][end - 1] > result->window[1]) end--;
+    volume = s->volume + first;
+    for (size_t field = 0; field < FIELDS; field++) {
+        inside[0][field] = measured[field] + first;
+        inside[1][field] = exact + field * s->n + first;
+    }
+    suspicion_swapped(FIELDS, (const char *[]){"density", "velocity", "pressure", "energy"},
+                      end - first, volume, inside[0], inside[1], result->suspicion);
     free(exact);
     const struct density_at at = {&result->exact, result->time};
     norm_bin_means(exact_density, &at, result->window, NORM_BINS, means);

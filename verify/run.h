@@ -11,6 +11,7 @@
 #include "norm.h"
 #include "settings.h"
 #include "simulation.h"
+#include "suspicion.h"
 
 enum { RUN_PLAN_MAX = 32, RUN_FUNCTIONALS_MAX = 4 };
 
@@ -45,6 +46,7 @@ struct run_result {
     struct plan_line plan[RUN_PLAN_MAX];
     size_t plan_count;
     char warnings[512];
+    char suspicion[SUSPICION_TEXT]; /* "" unless the errors look wrong in themselves */
     struct run_functional functionals[RUN_FUNCTIONALS_MAX];
     size_t functional_count;
     struct snapshot snapshot; /* owned by the result: see run_free */
@@ -69,6 +71,10 @@ json_t *run_errors_json(const struct run_result *result);
 
 /* Adds everything that a result of kind `run` has to a document (see result_new). */
 void run_add_json(const struct run_settings *settings, const struct run_result *result,
+                  json_t *document);
+
+/* What is known before a run: case, settings, n, plan and warnings. */
+void run_add_plan(const struct run_settings *settings, const struct run_result *result,
                   json_t *document);
 
 double run_error(const struct run_result *result, enum field field, enum norm norm);

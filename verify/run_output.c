@@ -55,25 +55,31 @@ static json_t *plan_json(const struct run_result *result)
     return lines;
 }
 
-void run_add_json(const struct run_settings *settings, const struct run_result *result,
+void run_add_plan(const struct run_settings *settings, const struct run_result *result,
                   json_t *document)
 {
-    const bool broke_down = result->status == STATUS_BROKE_DOWN;
     json_object_set_new(document, "case", json_string(settings->file.name));
     json_object_set_new(document, "title", json_string(settings->file.title));
     json_object_set_new(document, "settings", settings_json(&result->settings));
     json_object_set_new(document, "n", json_integer((json_int_t)result->n));
-    set_number(document, "time", result->time);
     json_object_set_new(document, "window",
                         json_pack("[f, f]", result->window[0], result->window[1]));
+    json_object_set_new(document, "plan", plan_json(result));
+    json_object_set_new(document, "warnings", json_string(result->warnings));
+}
+
+void run_add_json(const struct run_settings *settings, const struct run_result *result,
+                  json_t *document)
+{
+    const bool broke_down = result->status == STATUS_BROKE_DOWN;
+    json_t *functionals = json_object();
+    run_add_plan(settings, result, document);
+    set_number(document, "time", result->time);
     json_object_set_new(document, "status", json_string(broke_down ? "broke_down" : "ok"));
     if (broke_down) json_object_set_new(document, "message", json_string(result->message));
     json_object_set_new(document, "errors", run_errors_json(result));
     json_object_set_new(document, "conservation", conservation_json(result));
     json_object_set_new(document, "cost", cost_json(result));
-    json_object_set_new(document, "plan", plan_json(result));
-    json_object_set_new(document, "warnings", json_string(result->warnings));
-    json_t *functionals = json_object();
     for (size_t i = 0; i < result->functional_count; i++)
         set_number(functionals, result->functionals[i].name, result->functionals[i].value);
     json_object_set_new(document, "functionals", functionals);

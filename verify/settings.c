@@ -149,7 +149,6 @@ static enum status unknown_key(struct error *error, const char *word)
 enum status settings_apply(struct settings *settings, int n, char *const *arguments,
                            struct error *error)
 {
-    bool given[SETTINGS] = {false};
     for (int i = 0; i < n; i++) {
         char name[64];
         const char *equals = strchr(arguments[i], '=');
@@ -160,8 +159,6 @@ enum status settings_apply(struct settings *settings, int n, char *const *argume
         snprintf(name, sizeof name, "%.*s", (int)(equals - arguments[i]), arguments[i]);
         const int key = setting_find(name);
         if (key < 0) return unknown_key(error, name);
-        if (given[key]) return error_set(error, STATUS_BAD_INPUT, "key %s is given twice", name);
-        given[key] = true;
         if (settings_set(settings, (enum setting)key, equals + 1, SOURCE_USER, NULL, error))
             return error->status;
     }

@@ -65,7 +65,7 @@ void settings_init(struct settings *settings);
 enum status settings_set(struct settings *settings, enum setting key, const char *text,
                          enum setting_source source, const char *where, struct error *error);
 
-/* Applies KEY=VALUE arguments; a key given twice is an error. */
+/* Applies KEY=VALUE arguments; of a key given twice the last value counts. */
 enum status settings_apply(struct settings *settings, int n, char *const *arguments,
                            struct error *error);
 

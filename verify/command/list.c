@@ -3,65 +3,209 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "cases.h"
 #include "command.h"
+#include "integrator.h"
 #include "kernel.h"
 #include "result.h"
+#include "settings.h"
+#include "suite.h"
+#include "table.h"
 #include "text.h"
 
-static const struct family *const families[] = {
-    &kernel_family,
-};
-enum { FAMILIES = sizeof families / sizeof *families };
+enum { ITEMS_MAX = 512, LABEL_MAX = 160 };
 
-static void print_family(const struct family *family)
+/* A family made at run time, from a registry whose members are not struct member. */
+struct made {
+    struct family family;
+    struct member items[ITEMS_MAX];
+    const struct member *members[ITEMS_MAX];
+    char labels[ITEMS_MAX][LABEL_MAX];
+};
+
+static void made_add(struct made *made, const char *name, const char *label, const char *paper)
 {
-    printf("%s: %s\n", family->name, family->title);
+    const size_t i = made->family.n;
+    if (i == ITEMS_MAX) return;
+    snprintf(made->labels[i], LABEL_MAX, "%s", label);
+    made->items[i] = (struct member){name, made->labels[i], paper};
+    made->members[i] = &made->items[i];
+    made->family.members = made->members;
+    made->family.n++;
+}
+
+static const struct family *cases(void)
+{
+    static struct made made = {.family = {"cases", "built-in cases", NULL, 0}};
+    struct case_file file;
+    struct error error;
+    made.family.n = 0;
+    for (const struct case_builtin *builtin = case_builtins; builtin->name; builtin++)
+        if (!case_load(&file, builtin->name, &error))
+            made_add(&made, builtin->name, file.title, "");
+    return &made.family;
+}
+
+static const struct family *keys(void)
+{
+    static struct made made = {.family = {"keys", "keys of a run: KEY=VALUE", NULL, 0}};
+    made.family.n = 0;
+    for (int i = 0; i < SETTINGS; i++)
+        made_add(&made, setting_keys[i].name, setting_keys[i].meaning, "");
+    return &made.family;
+}
+
+static const struct family *checks(void)
+{
+    static struct made made = {.family = {"checks", "checks of `sphproof verify`", NULL, 0}};
+    made.family.n = 0;
+    for (size_t i = 0; i < check_registry_count; i++)
+        made_add(&made, check_registry[i]->name, check_registry[i]->property, "");
+    return &made.family;
+}
+
+static const struct family *mutants(void)
+{
+    static struct made made = {
+        .family = {"mutants", "wrong variants that the checks must reject", NULL, 0}};
+    made.family.n = 0;
+    for (size_t i = 0; i < check_registry_count; i++)
+        for (const struct check_mutant *m = check_registry[i]->mutants; m && m->name; m++)
+            made_add(&made, m->name, m->fault, "");
+    return &made.family;
+}
+
+static const struct family *kernels(void)
+{
+    return &kernel_family;
+}
+
+#define PLAIN(name)                                                                                \
+    static const struct family *name##_list(void)                                                  \
+    {                                                                                              \
+        return &name##_family;                                                                     \
+    }
+PLAIN(gradient)
+PLAIN(formulation)
+PLAIN(volume_element)
+PLAIN(integrator)
+PLAIN(viscosity)
+PLAIN(energy)
+PLAIN(pair_width)
+PLAIN(h_method)
+PLAIN(field)
+PLAIN(norm)
+
+static const struct family *(*const lists[])(void) = {
+    cases,           kernels,        gradient_list, formulation_list, volume_element_list,
+    integrator_list, viscosity_list, energy_list,   pair_width_list,  h_method_list,
+    field_list,      norm_list,      checks,        mutants,          keys};
+enum { LISTS = sizeof lists / sizeof *lists };
+
+static void print_family(const struct family *family, const struct table_style *style)
+{
+    printf("%s%s%s: %s\n", style->bold, family->name, style->end, family->title);
     for (size_t i = 0; i < family->n; i++)
-        printf("  %-24s %s\n", family->members[i]->name, family->members[i]->label);
+        printf("  %-26s %s\n", family->members[i]->name, family->members[i]->label);
+}
+
+static void print_key(const struct setting_key *key, const struct table_style *style)
+{
+    char allowed[256];
+    setting_allowed(key, allowed, sizeof allowed);
+    printf("  %s%s%s [%s]%s%s\n", style->bold, key->name, style->end, key->fallback,
+           *key->unit ? " in " : "", key->unit);
+    table_wrap("      ", key->meaning);
+    table_wrap("      ", allowed);
+}
+
+/* The README's table. */
+static void print_keys_markdown(void)
+{
+    printf("| key | default | unit | allowed | meaning |\n|---|---|---|---|---|\n");
+    for (int i = 0; i < SETTINGS; i++) {
+        char allowed[256];
+        const struct setting_key *key = &setting_keys[i];
+        setting_allowed(key, allowed, sizeof allowed);
+        printf("| `%s` | `%s` | %s | %s | %s |\n", key->name, key->fallback, key->unit, allowed,
+               key->meaning);
+    }
 }
 
 static json_t *family_json(const struct family *family)
 {
     json_t *list = json_array();
-    for (size_t i = 0; i < family->n; i++)
-        json_array_append_new(list, json_pack("{s:s, s:s, s:s}", "name", family->members[i]->name,
-                                              "label", family->members[i]->label, "paper",
-                                              family->members[i]->paper));
+    for (size_t i = 0; i < family->n; i++) {
+        const struct member *member = family->members[i];
+        json_t *item = json_pack("{s:s, s:s, s:s}", "name", member->name, "label", member->label,
+                                 "paper", member->paper);
+        const int key = strcmp(family->name, "keys") == 0 ? setting_find(member->name) : -1;
+        if (key >= 0) {
+            char allowed[256];
+            setting_allowed(&setting_keys[key], allowed, sizeof allowed);
+            json_object_set_new(item, "default", json_string(setting_keys[key].fallback));
+            json_object_set_new(item, "unit", json_string(setting_keys[key].unit));
+            json_object_set_new(item, "allowed", json_string(allowed));
+        }
+        json_array_append_new(list, item);
+    }
     return list;
 }
 
 static enum status choose(const char *word, const struct family **chosen, struct error *error)
 {
-    const char *names[FAMILIES];
-    for (size_t i = 0; i < FAMILIES; i++) {
-        names[i] = families[i]->name;
-        if (strcmp(word, names[i]) == 0) *chosen = families[i];
+    const char *names[LISTS];
+    for (size_t i = 0; i < LISTS; i++) {
+        const struct family *family = lists[i]();
+        names[i] = family->name;
+        if (strcmp(word, family->name) == 0) *chosen = family;
     }
-    return *chosen ? STATUS_OK : text_unknown(error, "list", "family", word, names, FAMILIES);
+    return *chosen ? STATUS_OK : text_unknown(error, "list", "family", word, names, LISTS);
 }
 
 static enum status run(const struct options *options, int n, char **arguments, struct error *error)
 {
     const struct family *chosen = NULL;
+    const struct table_style style = table_style(options);
+    const bool markdown = options_value(options, "markdown");
     if (n > 1) return command_usage(options, error, "one family at a time");
     if (n == 1 && choose(arguments[0], &chosen, error)) return error->status;
-    json_t *document = result_new("list"), *lists = json_object();
-    for (size_t i = 0; i < FAMILIES; i++) {
-        if (chosen && chosen != families[i]) continue;
-        if (options->speak) print_family(families[i]);
-        json_object_set_new(lists, families[i]->name, family_json(families[i]));
+    const bool only_keys = chosen && strcmp(chosen->name, "keys") == 0;
+    if (markdown && !only_keys)
+        return command_usage(options, error, "--markdown goes with `list keys` only");
+    json_t *families = json_object();
+    for (size_t i = 0; i < LISTS; i++) {
+        const struct family *family = lists[i]();
+        if (chosen && chosen != family) continue;
+        if (options->speak && !only_keys) print_family(family, &style);
+        json_object_set_new(families, family->name, family_json(family));
     }
-    json_object_set_new(document, "families", lists);
-    const enum status status =
-        options->json ? result_write(document, options->json, error) : STATUS_OK;
-    json_decref(document);
+    for (int i = 0; i < SETTINGS && only_keys && options->speak && !markdown; i++)
+        print_key(&setting_keys[i], &style);
+    if (markdown && options->speak) print_keys_markdown();
+    enum status status = STATUS_OK;
+    if (options->json) {
+        json_t *document = result_new("list");
+        json_object_set(document, "families", families);
+        status = result_write(document, options->json, error);
+        json_decref(document);
+    }
+    json_decref(families);
     return status;
 }
+
+static const struct command_option own_options[] = {
+    {"markdown", NULL, "the keys as a table for a README"},
+    {NULL, NULL, NULL},
+};
 
 const struct command command_list = {
     .name = "list",
     .synopsis = "[FAMILY]",
-    .help = "the names of cases, kernels, gradients ..., one line each",
+    .help = "the names of cases, kernels, gradients, keys ..., one line each\n"
+            "FAMILY: cases kernels gradients formulations volume_elements integrators viscosities\n"
+            "energies pair_widths h_methods fields norms checks mutants keys",
     .run = run,
-    .examples = "sphproof list\nsphproof list kernels",
+    .options = own_options,
+    .examples = "sphproof list\nsphproof list kernels\nsphproof list keys",
 };

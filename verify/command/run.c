@@ -1,0 +1,300 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * sphproof run: one run with its errors, conservation and cost. */
+#include "run.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "command.h"
+#include "output.h"
+#include "plot.h"
+#include "progress.h"
+#include "result.h"
+#include "table.h"
+
+enum { PLOT_POINTS_EXACT = 1001 };
+
+static void print_head(const struct run_settings *settings, const struct run_result *result,
+                       const struct table_style *style)
+{
+    const char *const parts[] = {"kernel",         "eta",        "gradient", "formulation",
+                                 "volume_element", "integrator", "cfl",      "energy",
+                                 "viscosity",      "alpha",      "beta"};
+    char line[1024];
+    size_t used = 0;
+    printf("%s%s%s: %s\n", style->bold, settings->file.name, style->end, settings->file.title);
+    for (size_t i = 0; i < sizeof parts / sizeof *parts && used < sizeof line; i++) {
+        char value[SETTING_TEXT_MAX];
+        settings_text(&result->settings, (enum setting)setting_find(parts[i]), value);
+        used += (size_t)snprintf(line + used, sizeof line - used, "%s%s=%s", i ? " " : "", parts[i],
+                                 value);
+    }
+    table_wrap("", line);
+}
+
+static void print_errors(const struct run_settings *settings, const struct run_result *result,
+                         const struct table_style *style)
+{
+    static const char *const units[FIELDS] = {"mass/length", "length/time", "mass/(length time^2)",
+                                              "(length/time)^2"};
+    printf("\n%s%-16s %12s %12s %12s %14s  %s%s\n", style->bold, "error", "L1", "L2", "Linf",
+           "particle mean", "unit", style->end);
+    for (int field = 0; field < FIELDS; field++) {
+        const struct norms *e = &result->errors[field];
+        if (!settings->file.fields[field]) continue;
+        printf("%-16s %12.4e %12.4e %12.4e %14.4e  %s\n", field_family.members[field]->name, e->l1,
+               e->l2, e->linf, e->particle_mean, units[field]);
+    }
+    printf("%-16s %12.4e  mean over %d bins of |mean density - mean exact density|\n",
+           "density, binned", result->binned_density_l1, NORM_BINS);
+    printf("%sL1 = sum V|q - exact|/sum V, L2 = sqrt(sum V (q - exact)^2/sum V), Linf = max "
+           "|q - exact|,\nparticle mean = sum |q - exact|/N: over the %zu particles in [%g, %g] at "
+           "t = %g; V = volume; code units%s\n",
+           style->faint, result->errors[0].n, result->window[0], result->window[1], result->time,
+           style->end);
+}
+
+static void print_rest(const struct run_result *result, const struct table_style *style)
+{
+    const struct simulation_cost *cost = &result->cost;
+    printf("\n%sconservation%s     mass %.1e  momentum %.1e  energy %.1e  (relative, t = %g "
+           "against 0)\n",
+           style->bold, style->end, result->mass, result->momentum, result->energy, result->time);
+    printf("%scost%s             %.4g s wall, %.4g s CPU, %llu steps, %llu particle updates (%llu "
+           "skipped),\n                 %llu pair interactions, %.1f MB\n",
+           style->bold, style->end, cost->wall_s, cost->cpu_s, (unsigned long long)cost->steps,
+           (unsigned long long)cost->particle_updates,
+           (unsigned long long)cost->skipped_particle_updates,
+           (unsigned long long)cost->pair_interactions, 1e-6 * result->peak_rss);
+}
+
+static void print_plan(const struct run_result *result, const struct table_style *style)
+{
+    printf("\n%s%-28s %-6s %s%s\n", style->bold, "pass", "runs", "why", style->end);
+    for (size_t i = 0; i < result->plan_count; i++)
+        printf("%-28s %-6s %s\n", result->plan[i].pass, result->plan[i].runs ? "yes" : "no",
+               result->plan[i].why);
+}
+
+/* One field over x: particles in the window on top of the exact solution. */
+struct profile {
+    struct plot_series series[2];
+    double *storage;
+};
+
+static bool profile_fill(struct profile *profile, const struct run_result *result, int field)
+{
+    const struct snapshot *s = &result->snapshot;
+    const double *const values[FIELDS] = {s->rho, s->v[0], s->P, s->u};
+    const size_t exact_n = PLOT_POINTS_EXACT;
+    profile->storage = malloc(2 * (exact_n + s->n) * sizeof(double));
+    if (!profile->storage) return false;
+    double *exact_x = profile->storage, *exact_y = exact_x + exact_n, *x = exact_y + exact_n,
+           *y = x + s->n;
+    for (size_t i = 0; i < exact_n; i++) {
+        double all[FIELDS];
+        exact_x[i] = result->window[0] +
+                     (result->window[1] - result->window[0]) * (double)i / (double)(exact_n - 1);
+        exact_sample(&result->exact, exact_x[i], result->time, all);
+        exact_y[i] = all[field];
+    }
+    size_t n = 0;
+    for (size_t i = 0; i < s->n; i++)
+        if (s->x[0][i] >= result->window[0] && s->x[0][i] <= result->window[1]) {
+            x[n] = s->x[0][i];
+            y[n++] = values[field][i];
+        }
+    profile->series[0] = (struct plot_series){.label = "exact",
+                                              .kind = PLOT_LINES,
+                                              .n = exact_n,
+                                              .x = exact_x,
+                                              .y = exact_y,
+                                              .color = PLOT_NEUTRAL};
+    profile->series[1] = (struct plot_series){
+        .label = "particles", .kind = PLOT_POINTS, .n = n, .x = x, .y = y, .size = 0.5};
+    return true;
+}
+
+static enum status draw(const struct run_settings *settings, const struct run_result *result,
+                        const char *path, struct error *error)
+{
+    static const char *const labels[FIELDS] = {"density", "velocity", "pressure",
+                                               "internal energy"};
+    struct profile profiles[FIELDS] = {0};
+    struct plot_panel panels[FIELDS] = {0};
+    size_t n = 0;
+    char title[256], message[300] = "no memory";
+    char *bytes = NULL;
+    size_t size = 0;
+    struct output output;
+    enum plot_format format;
+    enum plot_status drawn = PLOT_FAILED;
+    plot_format_of(path, &format);
+    for (int field = 0; field < FIELDS; field++) {
+        if (!settings->file.fields[field]) continue;
+        if (!profile_fill(&profiles[n], result, field)) goto end;
+        panels[n] = (struct plot_panel){.x_label = "x (code units)",
+                                        .y_label = labels[field],
+                                        .key = n ? PLOT_KEY_NONE : PLOT_KEY_TOP,
+                                        .series = profiles[n].series,
+                                        .series_count = 2};
+        n++;
+    }
+    snprintf(title, sizeof title, "%s, n = %zu, t = %g", settings->file.title, result->n,
+             result->time);
+    const struct plot plot = {
+        .name = "run", .title = title, .show_title = true, .panels = panels, .panel_count = n};
+    drawn = plot_draw(&plot, format, &bytes, &size, message, sizeof message);
+end:
+    for (size_t i = 0; i < FIELDS; i++) free(profiles[i].storage);
+    if (drawn != PLOT_OK)
+        return error_set(error, STATUS_ENVIRONMENT, "--plot %.150s: %s", path, message);
+    if (!output_open(&output, path, error)) {
+        fwrite(bytes, 1, size, output.stream);
+        output_close(&output, error);
+    }
+    free(bytes);
+    return error->status;
+}
+
+static enum status check_files(const struct options *options, struct error *error)
+{
+    const char *plot = options_value(options, "plot");
+    const char *snapshot = options_value(options, "snapshot");
+    enum plot_format format;
+    if (plot && !plot_format_of(plot, &format))
+        return error_set(error, STATUS_BAD_INPUT, "--plot '%.150s': allowed: FILE.svg or FILE.png",
+                         plot);
+    if (snapshot && options->json && strcmp(snapshot, options->json) == 0)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "--json and --snapshot name the same file '%.150s'", snapshot);
+    if (plot && output_probe(plot, error)) return error->status;
+    if (snapshot && output_probe(snapshot, error)) return error->status;
+    return STATUS_OK;
+}
+
+struct progress_of_run {
+    struct progress progress;
+    double t_end;
+};
+
+static bool show_progress(void *context, double time, uint64_t steps)
+{
+    struct progress_of_run *of_run = context;
+    (void)steps;
+    progress_update(&of_run->progress, time, of_run->t_end);
+    return true;
+}
+
+static enum status write_json(const struct options *options, const struct run_settings *settings,
+                              const struct run_result *result, struct error *error)
+{
+    if (!options->json) return STATUS_OK;
+    json_t *document = result_new("run");
+    run_add_json(settings, result, document);
+    const enum status status = result_write(document, options->json, error);
+    json_decref(document);
+    return status;
+}
+
+static void remark(const struct options *options, const char *text)
+{
+    if (text[0] && !options->quiet) fprintf(stderr, "sphproof: note: %s\n", text);
+}
+
+static enum status explain(const struct options *options, const struct run_settings *settings,
+                           struct error *error)
+{
+    struct run_result result;
+    const struct table_style style = table_style(options);
+    enum status status = run_explain(settings, &result, error);
+    if (status) return status;
+    remark(options, result.warnings);
+    if (options->speak) {
+        print_head(settings, &result, &style);
+        printf("n=%zu; nothing has been run\n", result.n);
+        print_plan(&result, &style);
+    }
+    if (!options->json) return STATUS_OK;
+    json_t *document = result_new("run");
+    run_add_plan(settings, &result, document);
+    status = result_write(document, options->json, error);
+    json_decref(document);
+    return status;
+}
+
+static enum status present(const struct options *options, const struct run_settings *settings,
+                           const struct run_result *result, struct error *error)
+{
+    const char *plot = options_value(options, "plot");
+    const char *snapshot = options_value(options, "snapshot");
+    const struct table_style style = table_style(options);
+    enum status status = STATUS_OK;
+    if (plot) status = draw(settings, result, plot, error);
+    if (!status && snapshot) status = run_write_snapshot(result, snapshot, error);
+    if (!status) status = write_json(options, settings, result, error);
+    if (status) return status;
+    remark(options, result->warnings);
+    remark(options, result->suspicion);
+    if (!options->speak || result->status == STATUS_BROKE_DOWN) return STATUS_OK;
+    print_head(settings, result, &style);
+    printf("n=%zu t=%g\n", result->n, result->time);
+    print_errors(settings, result, &style);
+    print_rest(result, &style);
+    return STATUS_OK;
+}
+
+static enum status run(const struct options *options, int n, char **arguments, struct error *error)
+{
+    struct run_settings settings;
+    struct run_result result;
+    struct settings resolved;
+    struct scheme scheme;
+    if (n < 1) return command_usage(options, error, "a case is needed (`sphproof list cases`)");
+    if (run_prepare(&settings, arguments[0], n - 1, arguments + 1, error)) return error->status;
+    settings.threads = options->threads;
+    if (options_value(options, "explain")) return explain(options, &settings, error);
+    resolved = settings.settings;
+    if (settings_resolve(&resolved, settings.file.dimension, &scheme, error)) return error->status;
+    if (check_files(options, error)) return error->status;
+
+    struct progress_of_run of_run = {.t_end = settings_real(&resolved, SETTING_t_end)};
+    progress_begin(&of_run.progress, settings.file.name, options);
+    settings.progress = show_progress;
+    settings.progress_context = &of_run;
+    enum status status = run_execute(&settings, &result, error);
+    progress_end(&of_run.progress);
+    if (status != STATUS_OK && status != STATUS_BROKE_DOWN) return status;
+    struct error trouble = {0};
+    if (present(options, &settings, &result, &trouble)) {
+        *error = trouble;
+        status = trouble.status;
+    }
+    run_free(&result);
+    return status;
+}
+
+static const struct command_option own_options[] = {
+    {"snapshot", "FILE", "write the particles at the end: x,vx,m,rho,u,P,h, one line each"},
+    {"plot", "FILE.svg|.png", "draw the profiles over the exact solution (needs gnuplot)"},
+    {"explain", NULL, "print the plan: what would run and why; run nothing"},
+    {NULL, NULL, NULL},
+};
+
+const struct command command_run = {
+    .name = "run",
+    .synopsis = "CASE [KEY=VALUE ...]",
+    .help = "one run: errors, conservation, cost\n"
+            "CASE is a built-in name (`sphproof list cases`) or the path of a case file (with a "
+            "slash,\nor ending in .ini). Keys and what they may be: `sphproof list keys`. Without "
+            "keys the\ncase's own scheme is used.",
+    .run = run,
+    .options = own_options,
+    .examples = "sphproof run sod\n"
+                "sphproof run sod n=800 kernel=cubic_spline eta=2 gradient=ia --plot sod.svg\n"
+                "sphproof run sod left=\"1 0.75 1\" t_end=0.15 --json -\n"
+                "sphproof run ./my_tube.ini --snapshot end.csv\n"
+                "sphproof run sound_wave --explain",
+};

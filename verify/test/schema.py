@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""schema.py SPHPROOF SCHEMA: result documents against the committed JSON Schema.
+
+A validator of the part of JSON Schema (2020-12) that the schema uses; a word that it does not know
+is an error, so that nothing in the schema goes unchecked."""
+import json
+import re
+import subprocess
+import sys
+import tempfile
+
+TYPES = {"object": dict, "array": list, "string": str, "null": type(None), "boolean": bool}
+
+
+def is_type(value, name):
+    if name in ("number", "integer"):
+        number = isinstance(value, (int, float)) and not isinstance(value, bool)
+        return number and (name == "number" or isinstance(value, int))
+    return isinstance(value, TYPES[name])
+
+
+class Validator:
+    """faults(value, schema, path) yields a text per departure."""
+
+    def __init__(self, root):
+        self.root = root
+
+    def faults(self, value, schema, path="$"):
+        for word, rule in schema.items():
+            yield from getattr(self, "do_" + word.replace("$", ""))(value, rule, schema, path)
+
+    def valid(self, value, schema):
+        return not any(True for _ in self.faults(value, schema))
+
+    def nothing(self, value, rule, schema, path):
+        return ()
+
+    do_title = do_description = do_defs = do_schema = do_then = nothing
+
+    def do_ref(self, value, rule, schema, path):
+        target = self.root
+        for part in rule.lstrip("#/").split("/"):
+            target = target[part]
+        return self.faults(value, target, path)
+
+    def do_type(self, value, rule, schema, path):
+        if not is_type(value, rule):
+            yield "%s: %r is no %s" % (path, value, rule)
+
+    def do_const(self, value, rule, schema, path):
+        if value != rule:
+            yield "%s: %r is not %r" % (path, value, rule)
+
+    def do_enum(self, value, rule, schema, path):
+        if not any(value == one and type(value) is type(one) for one in rule):
+            yield "%s: %r is none of %r" % (path, value, rule)
+
+    def do_pattern(self, value, rule, schema, path):
+        if isinstance(value, str) and not re.search(rule, value):
+            yield "%s: %r does not match %s" % (path, value, rule)
+
+    def do_minimum(self, value, rule, schema, path):
+        if is_type(value, "number") and not value >= rule:
+            yield "%s: %r < %r" % (path, value, rule)
+
+    def do_minItems(self, value, rule, schema, path):
+        if isinstance(value, list) and len(value) < rule:
+            yield "%s: fewer than %d items" % (path, rule)
+
+    def do_maxItems(self, value, rule, schema, path):
+        if isinstance(value, list) and len(value) > rule:
+            yield "%s: more than %d items" % (path, rule)
+
+    def do_required(self, value, rule, schema, path):
+        for name in rule:
+            if isinstance(value, dict) and name not in value:
+                yield "%s: no %s" % (path, name)
+
+    def do_dependentRequired(self, value, rule, schema, path):
+        for name, needed in rule.items():
+            if isinstance(value, dict) and name in value:
+                yield from self.do_required(value, needed, schema, path)
+
+    def do_properties(self, value, rule, schema, path):
+        for name, sub in rule.items():
+            if isinstance(value, dict) and name in value:
+                yield from self.faults(value[name], sub, "%s.%s" % (path, name))
+
+    def do_additionalProperties(self, value, rule, schema, path):
+        for name in value if isinstance(value, dict) else ():
+            if name in schema.get("properties", {}):
+                continue
+            if rule is False:
+                yield "%s: %s is not expected" % (path, name)
+            elif rule is not True:
+                yield from self.faults(value[name], rule, "%s.%s" % (path, name))
+
+    def do_items(self, value, rule, schema, path):
+        for i, item in enumerate(value if isinstance(value, list) else ()):
+            yield from self.faults(item, rule, "%s[%d]" % (path, i))
+
+    def do_allOf(self, value, rule, schema, path):
+        for sub in rule:
+            yield from self.faults(value, sub, path)
+
+    def do_anyOf(self, value, rule, schema, path):
+        if not any(self.valid(value, sub) for sub in rule):
+            yield "%s: %r fits no alternative" % (path, value)
+
+    def do_if(self, value, rule, schema, path):
+        return self.faults(value, schema["then"], path) if self.valid(value, rule) else ()
+
+
+COMMANDS = [
+    ["list"],
+    ["list", "keys"],
+    ["run", "sod", "n=60"],
+    ["run", "sound_wave", "n=32", "t_end=0.1"],
+    ["run", "sod", "n=60", "--explain"],
+    ["run", "two_rarefactions", "n=60", "cfl=50"],
+    ["converge", "sod", "--n", "20,40,60,80", "t_end=0.1"],
+    ["converge", "sod", "--n", "20,40,60,80", "t_end=0.05", "--vary", "gradient"],
+    ["riemann", "1", "0", "1", "0.125", "0", "0.1", "--sample", "-1:1:5", "--time", "0.1"],
+    ["riemann", "1", "-5", "0.4", "1", "5", "0.4"],
+    ["kernel", "cubic_spline", "--dim", "2", "--at", "0.5"],
+]
+
+
+def main():
+    program, path = sys.argv[1:]
+    with open(path, encoding="ascii") as text:
+        schema = json.load(text)
+    validator, bad = Validator(schema), 0
+    with tempfile.TemporaryDirectory() as folder:
+        for words in COMMANDS:
+            done = subprocess.run([program, *words, "--json", "-"], capture_output=True, text=True,
+                                  cwd=folder, timeout=60)
+            try:
+                document = json.loads(done.stdout, parse_constant=lambda c: 1 / 0)
+                faults = list(validator.faults(document, schema))
+            except (ValueError, ZeroDivisionError) as error:
+                faults = ["no JSON (exit %d): %s; %s" % (done.returncode, error, done.stderr)]
+            for fault in faults[:5]:
+                print("%s: %s" % (" ".join(words), fault))
+            bad += bool(faults)
+            # the validator must be able to fail: each document without its parts is wrong
+            for name in () if faults else ("schema", "machine", "date"):
+                broken = {key: part for key, part in document.items() if key != name}
+                if validator.valid(broken, schema):
+                    print("%s: a document without %s is accepted" % (" ".join(words), name))
+                    bad += 1
+    print("%d documents, %d wrong" % (len(COMMANDS), bad))
+    return bad > 0
+
+
+sys.exit(main())
