@@ -4,6 +4,7 @@
 A validator of the part of JSON Schema (2020-12) that the schema uses; a word that it does not know
 is an error, so that nothing in the schema goes unchecked."""
 import json
+import os
 import re
 import subprocess
 import sys
@@ -127,7 +128,7 @@ COMMANDS = [
 
 
 def main():
-    program, path = sys.argv[1:]
+    program, path = map(os.path.abspath, sys.argv[1:])
     with open(path, encoding="ascii") as text:
         schema = json.load(text)
     validator, bad = Validator(schema), 0
