@@ -1,0 +1,218 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""bad_input.py SPHPROOF: what a stranger gets wrong, and what the program answers.
+
+Each line: arguments, exit status, words that the message must contain (what, where, what is
+allowed). Always: one message on standard error, nothing on standard output, no file left behind,
+no hang."""
+import os
+import subprocess
+import sys
+import tempfile
+
+GOOD = """[case]
+title = A tube
+dimension = 1
+reference = riemann
+[initial]
+kind = riemann
+left = 1 0 1
+right = 0.125 0 0.1
+[run]
+t_end = 0.02
+n = 40
+[measure]
+window = -0.5 0.5
+"""
+
+FILES = {
+    "good.ini": GOOD,
+    "crlf.ini": GOOD.replace("\n", "\r\n"),
+    "indented.ini": GOOD.replace("\nn = 40", "\n   n = 40"),
+    "empty.ini": "",
+    "comment.ini": "; nothing here\n",
+    "binary.ini": b"[case]\x00\x01\x02\n",
+    "nonascii.ini": GOOD.replace("A tube", "Une \u00e9tude").encode(),
+    "bom.ini": b"\xef\xbb\xbf" + GOOD.encode(),
+    "huge.ini": "; padding padding padding\n" * 40000,
+    "longline.ini": GOOD + "; " + "x" * 60000 + "\n",
+    "cutline.ini": GOOD.replace("window =", "window = -0.5 0.5" + " " * 170 + "\nwindow ="),
+    "duplicate.ini": GOOD.replace("n = 40", "n = 40\nn = 50"),
+    "unknown.ini": GOOD.replace("n = 40", "nn = 40"),
+    "misplaced.ini": GOOD.replace("n = 40", "eta = 2"),
+    "section.ini": GOOD.replace("[run]", "[rum]"),
+    "outside.ini": "n = 4\n" + GOOD,
+    "type.ini": GOOD.replace("n = 40", "n = many"),
+    "range.ini": GOOD.replace("n = 40", "n = 2"),
+    "nokey.ini": GOOD.replace("t_end = 0.02\n", ""),
+    "noise.ini": GOOD.replace("n = 40", "forty particles"),
+    "state.ini": GOOD.replace("1 0 1", "1 0"),
+    "reference.ini": GOOD.replace("reference = riemann", "reference = simple_wave"),
+    "dimension.ini": GOOD.replace("dimension = 1", "dimension = 2"),
+    "foreign.ini": GOOD.replace("kind = riemann", "kind = riemann\nwaves = 2"),
+    "gate.ini": GOOD + "[converge]\ndensity_l1 = 1.1 0.9 1\n",
+    "ladder.ini": GOOD + "[converge]\nn = 100 200 400\n",
+    "field.ini": GOOD + "fields = density presure\n",
+    "bracket.ini": GOOD + "[converge\n",
+    "space name.ini": GOOD,
+}
+
+# arguments, exit status, words of the message
+BAD = [
+    ("", 2, "no command", "--help"),
+    ("frobnicate", 2, "frobnicate", "allowed", "run"),
+    ("rnu sod", 2, "rnu", "run"),
+    ("run", 2, "case", "usage"),
+    ("run nope", 2, "nope", "allowed", "sod"),
+    ("run sodd", 2, "sodd", "did you mean 'sod'"),
+    ("run sod --frob", 2, "--frob", "allowed", "--snapshot"),
+    ("run sod --jsn x", 2, "--jsn", "did you mean '--json'"),
+    ("run sod --json", 2, "--json", "argument"),
+    ("run sod -x", 2, "-x", "allowed"),
+    ("run sod --quiet=3", 2, "--quiet", "no argument"),
+    ("run sod --threads 0", 2, "--threads", "0", "1 to"),
+    ("run sod --threads two", 2, "--threads", "two", "integer"),
+    ("run sod --color blue", 2, "--color", "blue", "always"),
+    ("run sod n", 2, "n", "KEY=VALUE"),
+    ("run sod nn=5", 2, "nn", "allowed"),
+    ("run sod kernal=cubic_spline", 2, "kernal", "did you mean 'kernel'"),
+    ("run sod kernel=cubic", 2, "cubic", "did you mean 'cubic_spline'", "wendland_c2"),
+    ("run sod kernel=", 2, "kernel", "allowed"),
+    ("run sod gradient=best", 2, "best", "standard ia"),
+    ("run sod integrator=rk4", 2, "rk4", "rk3"),
+    ("run sod viscosity=some", 2, "some", "constant"),
+    ("run sod n=0", 2, "n=0", "from 4"),
+    ("run sod n=-5", 2, "n=-5", "from 4"),
+    ("run sod n=1000000000000", 2, "n=1000000000000", "to 10000000"),
+    ("run sod n=1e3x", 2, "n=1e3x", "integer"),
+    ("run sod n=0x40", 2, "n=0x40", "integer"),
+    ("run sod n=10.5", 2, "n=10.5", "integer"),
+    ("run sod n=", 2, "n=", "integer"),
+    ("run sod eta=0", 2, "eta=0", "above 0"),
+    ("run sod eta=nan", 2, "eta=nan", "number"),
+    ("run sod kernel=cubic_spline eta=1.2", 2, "eta", "1.2", "1.333"),
+    ("run sod cfl=0", 2, "cfl=0", "above 0"),
+    ("run sod cfl=-0.1", 2, "cfl=-0.1", "above 0"),
+    ("run sod gamma=1", 2, "gamma=1", "above 1"),
+    ("run sod gamma=0.9", 2, "gamma=0.9", "above 1"),
+    ("run sod t_end=inf", 2, "t_end=inf", "number"),
+    ("run sod t_end=-1", 2, "t_end=-1", "from 0"),
+    ("run sod t_end=1", 2, "t_end", "mirrored tube", "allowed"),
+    ("run sod|left=-1 0 1", 2, "left", "-1 0 1", "rho > 0"),
+    ("run sod|left=1 0", 2, "left", "1 0", "3 numbers"),
+    ("run sod|left=1 0 1 1", 2, "left", "3 numbers"),
+    ("run sod|left=1 0 0", 2, "left", "P > 0"),
+    ("run sod|right=0 0 0", 2, "right", "vacuum"),
+    ("run sod alpha=-1", 2, "alpha=-1", "from 0"),
+    ("run sod jitter=0.5", 2, "jitter=0.5", "to 0.49"),
+    ("run sod sinc_n=2", 2, "sinc_n=2", "from 3 to 12"),
+    ("run sod waves=2", 2, "waves", "riemann", "exclude"),
+    ("run sod lo=1 hi=-1", 2, "lo", "hi"),
+    ("run sod|window=0.5 -0.5", 2, "window", "rising"),
+    ("run sod pair_width=max formulation=lagrangian", 2, "pair_width", "lagrangian", "exclude"),
+    ("run sound_wave left=1", 2, "left"),
+    ("run missing.ini", 2, "missing.ini", "No such file"),
+    ("run ./folder", 2, "folder", "directory"),
+    ("run empty.ini", 2, "empty.ini", "empty"),
+    ("run comment.ini", 2, "comment.ini", "missing", "title"),
+    ("run binary.ini", 2, "binary.ini:1", "0x00"),
+    ("run nonascii.ini", 2, "nonascii.ini:2", "ASCII"),
+    ("run bom.ini", 2, "bom.ini:1", "0xef"),
+    ("run huge.ini", 2, "huge.ini", "64 KiB"),
+    ("run longline.ini", 2, "longline.ini:14", "180"),
+    ("run cutline.ini", 2, "cutline.ini:13", "180"),
+    ("run duplicate.ini", 2, "duplicate.ini:12", "twice", "line 11"),
+    ("run unknown.ini", 2, "unknown.ini:11", "nn", "allowed"),
+    ("run misplaced.ini", 2, "misplaced.ini:11", "eta", "[scheme]"),
+    ("run section.ini", 2, "section.ini:10", "rum", "did you mean 'run'"),
+    ("run outside.ini", 2, "outside.ini:1", "before the first section"),
+    ("run type.ini", 2, "type.ini:11", "n=many", "integer"),
+    ("run range.ini", 2, "range.ini:11", "n=2", "from 4"),
+    ("run nokey.ini", 2, "nokey.ini", "t_end", "missing"),
+    ("run noise.ini", 2, "noise.ini:11", "key = value"),
+    ("run state.ini", 2, "state.ini:7", "left=1 0", "3 numbers"),
+    ("run reference.ini", 2, "reference.ini:4", "simple_wave", "riemann"),
+    ("run dimension.ini", 2, "dimension.ini:3", "2", "allowed: 1"),
+    ("run foreign.ini", 2, "foreign.ini:7", "waves", "exclude"),
+    ("run gate.ini", 2, "gate.ini:15", "density_l1", "allowed"),
+    ("run ladder.ini", 2, "ladder.ini:15", "at least four"),
+    ("run field.ini", 2, "field.ini:14", "presure", "did you mean 'pressure'"),
+    ("run bracket.ini", 2, "bracket.ini:14", "section"),
+    ("run /dev/zero.ini", 2, "/dev/zero.ini"),
+    ("run sod --plot x.pdf", 2, "x.pdf", ".svg or"),
+    ("run sod --snapshot nowhere/s.csv", 4, "nowhere/s.csv", "No such file"),
+    ("run sod --snapshot folder", 4, "folder", "directory"),
+    ("run sod --json nowhere/r.json", 4, "nowhere/r.json", "No such file"),
+    ("run sod --json /dev/full", 4, "/dev/full", "space"),
+    ("run sod cfl=50", 3, "particle", "t ="),
+    ("converge sod --n 100", 2, "--n", "at least 4"),
+    ("converge sod --n 100,100,100,100", 2, "--n", "1 distinct", "at least 4"),
+    ("converge sod --n 100,200,x,400", 2, "--n", "x", "integers"),
+    ("converge sod --n 1,2,3,4", 2, "--n", "from 4"),
+    ("converge sod n=100", 2, "n", "--n"),
+    ("converge sod --vary kernl", 2, "kernl", "did you mean 'kernel'"),
+    ("converge sod --vary kernel=cubic", 2, "cubic", "cubic_spline"),
+    ("converge sod --vary eta", 2, "eta", "values"),
+    ("converge sod --vary n=1,2", 2, "--n"),
+    ("converge good.ini", 2, "ladder", "--n"),
+    ("list nothing", 2, "nothing", "allowed", "kernels"),
+]
+
+GOOD_ONES = ["run good.ini", "run ./crlf.ini", "run indented.ini", "run|space name.ini",
+             "run sod n=1e2 t_end=1e-2", "run sod n=20 n=30 t_end=0.01", "run --quiet sod n=20",
+             "--threads 2 run sod n=20 t_end=.01"]
+
+
+def words(line):
+    """Blanks separate arguments up to the first '|', then each '|' does."""
+    head, *rest = line.split("|")
+    return head.split() + rest
+
+
+def call(program, line, folder):
+    return subprocess.run([program, *words(line)], capture_output=True, text=True, cwd=folder,
+                          stdin=subprocess.DEVNULL, timeout=20, errors="replace")
+
+
+def judge(program, folder, line, status, needed):
+    done = call(program, line, folder)
+    if done.returncode != status:
+        yield "exit %d, not %d" % (done.returncode, status)
+    message = done.stderr.strip()
+    for word in needed:
+        if word not in message:
+            yield "the message does not say %r" % word
+    if message.count("\n") > (1 if status == 3 else 0):
+        yield "more than one message"
+    if done.stdout:
+        yield "standard output is not empty: %r" % done.stdout[:60]
+    if len(message) > 700:
+        yield "a message of %d characters" % len(message)
+    left = set(os.listdir(folder)) - set(FILES) - {"folder"}
+    if left:
+        yield "files left behind: %s" % left
+
+
+def main():
+    program, bad = os.path.abspath(sys.argv[1]), 0
+    with tempfile.TemporaryDirectory() as folder:
+        os.mkdir(os.path.join(folder, "folder"))
+        for name, text in FILES.items():
+            with open(os.path.join(folder, name), "wb") as file:
+                file.write(text if isinstance(text, bytes) else text.encode())
+        for line, status, *needed in BAD:
+            faults = list(judge(program, folder, line, status, needed))
+            for fault in faults:
+                print("sphproof %s: %s\n    %s" % (line, fault,
+                                                   call(program, line, folder).stderr.strip()))
+            bad += bool(faults)
+        for line in GOOD_ONES:
+            done = call(program, line, folder)
+            if done.returncode or (not done.stdout and "quiet" not in line):
+                print("sphproof %s: exit %d: %s" % (line, done.returncode, done.stderr))
+                bad += 1
+    print("%d kinds of bad input, %d good ones, %d answered wrongly"
+          % (len(BAD), len(GOOD_ONES), bad))
+    return bad > 0
+
+
+sys.exit(main())
