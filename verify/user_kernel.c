@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <time.h>
@@ -264,7 +265,8 @@ static enum status probe(const char *path, int dim, struct error *error)
     if (child == 0) {
         struct user_kernel user = {0};
         struct error ignored = {0};
-        signal(SIGSEGV, SIG_DFL);
+        const struct rlimit no_core = {0, 0};
+        setrlimit(RLIMIT_CORE, &no_core);
         load(&user, path, dim, &ignored);
         _exit(0);
     }

@@ -90,8 +90,10 @@ void property_continuity(const struct pieces *pieces, struct property_sink *sink
     measure_class(pieces, &class);
     for (int k = 0; k <= declared && k <= MEASURE_CLASS_MAX; k++) {
         const struct measure_jump *jump = &class.jump[k];
+        const char *place = jump->at == 0 ? "the origin" : jump->at == 1 ? "the edge" : "a knot";
         property_take(sink, jump->jump, measure_significant * jump->floor, jump->floor,
-                      "jump of w^(%d) at q = %.6g", k, jump->at);
+                      "jump of w^(%d) at %s, q = %.6g%s", k, place, jump->at,
+                      k == 0 && jump->at == 1 ? ": w must vanish there" : "");
     }
     property_take(sink, fmax(0, fmin(declared, MEASURE_CLASS_MAX) - class.class), 0, 0,
                   "declared C%d, measured C%d%s", declared, class.class,

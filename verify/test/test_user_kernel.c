@@ -1,0 +1,178 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The examples of plug-in kernels (examples/): right ones are accepted in all dimensions, subtle
+ * faults are rejected by the property that ought to, unusable ones are refused with a message. The
+ * program's exit status follows. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+
+#include <jansson.h>
+
+#include "certificate.h"
+#include "near.h"
+#include "user_kernel.h"
+
+static const char *program, *folder;
+
+static const char *path_of(const char *name)
+{
+    static char path[4096];
+    snprintf(path, sizeof path, "%s/%s.so", folder, name);
+    return path;
+}
+
+/* The certificate of a plug-in that must be usable; whether property `by` (if given) fails. */
+static int rejected(const char *name, int dim, const char *by)
+{
+    struct user_kernel user;
+    struct certificate certificate;
+    struct error error = {0};
+    int by_that = 0;
+    if (user_kernel_load(&user, path_of(name), dim, &error)) fail_msg("%s", error.message);
+    assert_int_equal(certificate_measure(&certificate, &user.kernel, dim, NULL), STATUS_OK);
+    for (int i = 0; i < certificate.figure_count; i++) {
+        const struct certificate_figure *figure = &certificate.figures[i];
+        if (!figure->passed && !by)
+            print_error("%s, dim %d: %s: %g > %g, floor %g, %s\n", name, dim,
+                        figure->property->name, figure->value, figure->bound, figure->floor,
+                        figure->where);
+        by_that |= by && !figure->passed && strcmp(figure->property->name, by) == 0;
+    }
+    const int failed = certificate.failed;
+    certificate_free(&certificate);
+    user_kernel_unload(&user);
+    return by ? by_that : failed;
+}
+
+static void test_right(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"wendland_c8", "gaussian", "table", "faulty_NONE"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        for (int dim = 1; dim <= 3; dim++) assert_int_equal(rejected(names[i], dim, NULL), 0);
+}
+
+static void test_derived(void **state)
+{
+    (void)state;
+    struct user_kernel user;
+    assert_int_equal(user_kernel_load(&user, path_of("wendland_c8"), 0, NULL), STATUS_OK);
+    assert_true(user.found_constant && user.found_knots && user.found_dh && !user.found_class);
+    near_relative(user.kernel.constant[1], 525. / 256, 1e-14); /* exact integrals */
+    near_relative(user.kernel.constant[2], 40 / (3 * M_PI), 1e-14);
+    near_relative(user.kernel.constant[3], 1785 / (64 * M_PI), 1e-14);
+    assert_string_equal(user.kernel.member.name, "wendland_c8");
+    user_kernel_unload(&user);
+    assert_int_equal(user_kernel_load(&user, path_of("table"), 2, NULL), STATUS_OK);
+    assert_true(user.found_class && user.kernel.smoothness[2] == 2);
+    assert_string_equal(user.kernel.member.name, "table");
+    user_kernel_unload(&user);
+}
+
+static void test_subtle(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name;
+        int dim;
+        const char *by;
+    } list[] = {
+        {"faulty_CONSTANT_SEVENTH_DIGIT", 1, "normalisation"},
+        {"faulty_CONSTANT_WRONG_IN_2D", 2, "normalisation"},
+        {"faulty_DH_POWER", 3, "width_derivative"},
+        {"faulty_DH_OUTER_BRANCH", 2, "width_derivative"},
+        {"faulty_DW_ELEVENTH_DIGIT", 1, "radial_derivative"},
+        {"faulty_DW_ELEVENTH_DIGIT", 3, "fundamental"},
+        {"faulty_JUMP_AT_KNOT", 2, "continuity"},
+        {"faulty_JUMP_IN_CURVATURE", 1, "continuity"},
+        {"faulty_EXTRA_KNOT", 1, "continuity"},
+        {"faulty_CLASS_OVERSTATED", 3, "continuity"},
+        {"faulty_SUPPORT_SHORT", 2, "support"},
+        {"faulty_BEYOND_EDGE", 1, "support"},
+        {"faulty_WRONG_IN_3D", 3, "radial_derivative"},
+        {"gaussian_unshifted", 1, "continuity"},
+    };
+    for (size_t i = 0; i < sizeof list / sizeof *list; i++)
+        if (!rejected(list[i].name, list[i].dim, list[i].by))
+            fail_msg("%s, dim %d: accepted by %s", list[i].name, list[i].dim, list[i].by);
+    assert_int_equal(rejected("faulty_WRONG_IN_3D", 2, NULL), 0);
+    assert_int_equal(rejected("faulty_CONSTANT_WRONG_IN_2D", 1, NULL), 0);
+}
+
+static void refused(const char *path, const char *why)
+{
+    struct user_kernel user;
+    struct error error = {0};
+    assert_int_equal(user_kernel_load(&user, path, 0, &error), STATUS_BAD_INPUT);
+    if (!strstr(error.message, why)) fail_msg("'%s' lacks '%s'", error.message, why);
+}
+
+static void test_unusable(void **state)
+{
+    (void)state;
+    refused(path_of("faulty_NOT_A_NUMBER"), "finite");
+    refused(path_of("faulty_CONSTANT_NEGATIVE"), "above 0");
+    refused(path_of("faulty_KNOTS_TOO_MANY"), "0 to 4096");
+    refused(path_of("faulty_KNOTS_NEGATIVE"), "= -1");
+    refused(path_of("faulty_KNOTS_DESCENDING"), "ascending");
+    refused(path_of("faulty_CRASH"), "crashes");
+    refused(path_of("gaussian_without_dw"), "sphproof_kernel_dw");
+    refused(path_of("no_such_file"), "No such file");
+    refused(folder, "directory");
+    refused(program, ""); /* an executable is no shared object */
+}
+
+/* Exit status of the program with these arguments (%s, at most twice: the folder of the plug-ins).
+ */
+static int status_of(const char *arguments)
+{
+    char tail[4096], command[8192];
+    snprintf(tail, sizeof tail, arguments, folder, folder);
+    snprintf(command, sizeof command, "'%s' %s >/dev/null 2>&1", program, tail);
+    return WEXITSTATUS(system(command));
+}
+
+static void test_program(void **state)
+{
+    (void)state;
+    assert_int_equal(status_of("kernel cubic_spline --dim 3"), 0);
+    assert_int_equal(status_of("kernel '%s/table.so' --dim 1 --json -"), 0);
+    assert_int_equal(status_of("kernel '%s/faulty_DH_POWER.so' --dim 1"), 1);
+    assert_int_equal(status_of("kernel '%s/faulty_CRASH.so' --dim 1"), 2);
+    assert_int_equal(status_of("kernel '%s' --dim 1"), 2);
+    assert_int_equal(status_of("kernel cubic --dim 1"), 2);
+    assert_int_equal(status_of("kernel cubic_spline"), 2);
+    assert_int_equal(status_of("kernel cubic_spline --dim 4"), 2);
+    assert_int_equal(status_of("kernel cubic_spline --dim 1 --h 0"), 2);
+    assert_int_equal(status_of("kernel cubic_spline --dim 1 --at 0,-1"), 2);
+    assert_int_equal(status_of("verify kernels --quiet --kernel-plugin '%s/gaussian.so'"), 0);
+    assert_int_equal(status_of("verify kernels --quiet --failures '%s/failures' "
+                               "--kernel-plugin '%s/faulty_WRONG_IN_3D.so'"),
+                     1);
+    assert_int_equal(status_of("verify kernels --kernel-plugin '%s/none.so'"), 2);
+}
+
+int main(int argc, char **argv)
+{
+    if (argc < 3) return 2;
+    program = argv[1];
+    static char own[4096]; /* the folder of the first module */
+    snprintf(own, sizeof own, "%s", argv[2]);
+    char *slash = strrchr(own, '/');
+    if (slash) *slash = '\0';
+    folder = own;
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_right),   cmocka_unit_test(test_derived),
+        cmocka_unit_test(test_subtle),  cmocka_unit_test(test_unusable),
+        cmocka_unit_test(test_program),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
