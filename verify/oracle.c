@@ -107,7 +107,7 @@ static enum status solve_h(struct oracle *oracle, size_t i, struct error *error)
             lo = h;
         const long double newton = h - residual / (rho + h * drho);
         const long double next = newton > lo && newton < hi ? newton : (lo + hi) / 2;
-        if (fabsl(next - h) <= 1e-18L * h || hi - lo <= 1e-18L * hi) {
+        if (fabsl(next - h) <= 1e-17L * h || hi - lo <= 1e-17L * hi) {
             a->h = next;
             sum_density(oracle, i, a->h, &a->rho_sum, &drho, &a->y, &dy);
             a->grad_h_rho = a->h / a->rho_sum * drho;
@@ -163,15 +163,22 @@ static long double gradient(const struct oracle *oracle, long double x, long dou
     return x == 0 ? 0 : -x / fabsl(x) * dW_dr(oracle, x, h);
 }
 
+/* One gradient of the pair at width h. For ia the moments 1/sum V x^2 w, without the factors C_1/h
+ * of either particle's own width, are averaged: the shape's width is h alone. */
+static long double single_gradient(const struct oracle *oracle, const struct oracle_particle *a,
+                                   const struct oracle_particle *b, long double x, long double h)
+{
+    return gradient(oracle, x, h, (a->C / a->h + b->C / b->h) / 2 * h);
+}
+
 static long double mean_gradient(const struct oracle *oracle, const struct oracle_particle *a,
                                  const struct oracle_particle *b, long double x)
 {
-    const long double C = (a->C + b->C) / 2;
     switch (oracle->scheme.pair_width) {
     case PAIR_MAX:
-        return gradient(oracle, x, larger(a->h, b->h), C);
+        return single_gradient(oracle, a, b, x, larger(a->h, b->h));
     case PAIR_HARMONIC:
-        return gradient(oracle, x, 2 * a->h * b->h / (a->h + b->h), C);
+        return single_gradient(oracle, a, b, x, 2 * a->h * b->h / (a->h + b->h));
     default:
         return (gradient(oracle, x, a->h, a->C) + gradient(oracle, x, b->h, b->C)) / 2;
     }
@@ -238,10 +245,23 @@ static void add_pair(struct oracle *oracle, struct oracle_particle *a,
     a->F -= a->m * b->m * PI * G;
     a->dU += a->m * b->m * PI * v_ij * G / 2;
     a->div_v -= b->V * v_ij * G;
-    /* e_ij . v_ij with e_ij = -x/|x| */
-    const long double radial = x == 0 ? 0 : -v_ij * x / fabsl(x);
-    if (fabsl(x) < larger(a->h, b->h))
-        a->signal = larger(a->signal, a->c + b->c - 3 * (radial < 0 ? radial : 0));
+}
+
+void oracle_signals(struct oracle *oracle)
+{
+    for (size_t i = 0; i < oracle->n; i++) {
+        struct oracle_particle *a = &oracle->particles[i];
+        a->signal = 2 * a->c;
+        for (size_t j = 0; j < oracle->n; j++)
+            for (int k = -1; k <= 1; k++) {
+                const struct oracle_particle *b = &oracle->particles[j];
+                const long double x = separation(oracle, i, j, k);
+                if (x == 0 || fabsl(x) >= larger(a->h, b->h)) continue;
+                /* e_ij . v_ij with e_ij = -x/|x| */
+                const long double radial = -(a->p / a->m - b->p / b->m) * x / fabsl(x);
+                a->signal = larger(a->signal, a->c + b->c - 3 * (radial < 0 ? radial : 0));
+            }
+    }
 }
 
 enum status oracle_evaluate(struct oracle *oracle, struct error *error)
@@ -252,7 +272,6 @@ enum status oracle_evaluate(struct oracle *oracle, struct error *error)
     for (size_t i = 0; i < oracle->n; i++) {
         struct oracle_particle *a = &oracle->particles[i];
         a->F = a->dU = a->div_v = 0;
-        a->signal = 2 * a->c;
         for (size_t j = 0; j < oracle->n; j++)
             for (int k = -1; k <= 1; k++)
                 if (j != i || k != 0)
@@ -264,5 +283,6 @@ enum status oracle_evaluate(struct oracle *oracle, struct error *error)
                         ? growth - (a->alpha - scheme->alpha_min) / tau
                         : 0;
     }
+    oracle_signals(oracle);
     return STATUS_OK;
 }

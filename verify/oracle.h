@@ -37,7 +37,10 @@ void oracle_free(struct oracle *oracle);
 /* Density, h, pressure, rates of the present state. STATUS_BROKE_DOWN: no sound state. */
 enum status oracle_evaluate(struct oracle *oracle, struct error *error);
 
-/* The time step of the present state (after oracle_evaluate). */
+/* The signal speeds of the present momenta; oracle_evaluate does it too. */
+void oracle_signals(struct oracle *oracle);
+
+/* The time step of the present signal speeds. */
 long double oracle_time_step(const struct oracle *oracle);
 
 /* Advances by dt; rates must be there, and are when it returns. */

@@ -61,10 +61,11 @@ static enum status leapfrog(struct oracle *oracle, long double dt, struct error 
         a->e = half[i].e + a->de * dt / 2;
         a->alpha = half[i].alpha + a->dalpha * dt / 2;
     }
+    oracle_signals(oracle);
     return status;
 }
 
-/* The rates stay those of the predicted end; only the state moves on. */
+/* The leapfrog's rates stay those of the predicted end; here they become those of the end. */
 static enum status modified_leapfrog(struct oracle *oracle, long double dt, struct error *error)
 {
     const enum status status = leapfrog(oracle, dt, error);
@@ -172,8 +173,6 @@ enum status oracle_step(struct oracle *oracle, long double dt, struct error *err
     return error_set(error, STATUS_BAD_INPUT, "oracle: no integrator %s", name);
 }
 
-/* The signal speed belongs to the present velocities and sound speeds: integrators that leave the
- * state behind the last evaluation have only their velocities taken anew. */
 long double oracle_time_step(const struct oracle *oracle)
 {
     long double least = INFINITY;

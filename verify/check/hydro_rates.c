@@ -1,0 +1,241 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Density, smoothing length, force and heating of one disordered state against the oracle, for
+ * every combination of the families that stand in the sums. */
+#include <math.h>
+
+#include "check.h"
+#include "hydro_scene.h"
+#include "oracle.h"
+
+enum { PARTICLES = 75 };
+
+/* What the solver is given in place of the right scene; the oracle keeps the right one. */
+struct rates_subject {
+    struct scheme scheme;
+    void (*spoil)(struct scene *scene);
+};
+
+enum { SUBJECTS_MAX = 160 };
+static struct rates_subject subjects[SUBJECTS_MAX];
+static size_t subject_total;
+
+static void add(struct scheme scheme)
+{
+    struct error error;
+    if (subject_total < SUBJECTS_MAX && scheme_check(&scheme, 1, &error) == STATUS_OK)
+        subjects[subject_total++].scheme = scheme;
+}
+
+/* Every combination with the cubic spline; every gradient, formulation and pair width with the
+ * other kernels. */
+static size_t subject_count(void)
+{
+    if (subject_total) return subject_total;
+    struct scheme s = hydro_scheme();
+    for (int c = 0; c < 64; c++) {
+        s.gradient = c & 1 ? GRADIENT_IA : GRADIENT_STANDARD;
+        s.formulation = c & 2 ? FORMULATION_LAGRANGIAN : FORMULATION_VANILLA_ICE;
+        s.volume_element = c & 4 ? VOLUME_ENERGY : VOLUME_MASS;
+        s.energy = c & 8 ? ENERGY_TOTAL : ENERGY_INTERNAL;
+        s.viscosity = (enum viscosity)(c >> 4);
+        add(s);
+    }
+    for (size_t k = 0; k < kernel_family.n; k++) {
+        s = hydro_scheme();
+        hydro_set_kernel(&s, kernel_family.members[k]->name);
+        for (int c = 0; c < 12; c++) {
+            s.gradient = c & 1 ? GRADIENT_IA : GRADIENT_STANDARD;
+            s.formulation = c & 2 ? FORMULATION_LAGRANGIAN : FORMULATION_VANILLA_ICE;
+            s.pair_width = (enum pair_width)(c >> 2);
+            if (c < 4 || s.formulation == FORMULATION_VANILLA_ICE) add(s);
+        }
+    }
+    return subject_total;
+}
+
+static const void *subject_at(size_t i)
+{
+    return &subjects[i];
+}
+
+/* Largest |got - want| over the particles, relative to the largest |want|. */
+struct comparison {
+    double error, scale;
+};
+
+static void compare(struct comparison *c, double got, long double want)
+{
+    const double error = (double)fabsl(got - want);
+    if (!(error <= c->error)) c->error = error;
+    c->scale = fmax(c->scale, (double)fabsl(want));
+}
+
+static void report(struct check_run *run, const struct comparison *c, double bound, double floor,
+                   const char *quantity, const char *where)
+{
+    check_measure(run, c->scale > 0 ? c->error / c->scale : c->error, bound, floor, "%s, %s",
+                  quantity, where);
+}
+
+static void judge(struct check_run *run, const struct simulation *simulation,
+                  const struct oracle *oracle, const char *where)
+{
+    struct snapshot got;
+    struct rates rates;
+    simulation_snapshot(simulation, &got);
+    simulation_rates(simulation, &rates);
+    struct comparison h = {0}, rho = {0}, P = {0}, V = {0}, F = {0}, de = {0}, dalpha = {0};
+    for (size_t i = 0; i < got.n; i++) {
+        const struct oracle_particle *want = &oracle->particles[got.id[i]];
+        compare(&h, got.h[i], want->h);
+        compare(&rho, got.rho[i], want->rho);
+        compare(&P, got.P[i], want->P);
+        compare(&V, got.volume[i], want->V);
+        compare(&F, rates.force[0][i], want->F);
+        compare(&de, rates.energy[i], want->de);
+        if (rates.alpha) compare(&dalpha, rates.alpha[i], want->dalpha);
+    }
+    /* MAGMA2's damping of close pairs is a series good to 1e-9 in src */
+    const bool series = oracle->scheme.viscosity == VISCOSITY_RECONSTRUCTED;
+    const double bound = series ? 1e-8 : 1e-12, floor = series ? 1e-9 : 2e-14;
+    report(run, &h, 1e-13, 2e-15, "smoothing length", where);
+    report(run, &rho, 1e-13, 2e-15, "density", where);
+    report(run, &P, 1e-13, 2e-15, "pressure", where);
+    report(run, &V, 1e-13, 2e-15, "volume", where);
+    report(run, &F, bound, floor, "force", where);
+    report(run, &de, bound, floor, "rate of energy", where);
+    if (oracle->scheme.viscosity == VISCOSITY_TIME_DEPENDENT)
+        report(run, &dalpha, 1e-12, 2e-14, "rate of alpha", where);
+    const double step = (double)oracle_time_step(oracle);
+    check_measure(run, fabs(rates.time_step / step - 1), 1e-13, 2e-15, "time step, %s", where);
+}
+
+static void measure(struct check_run *run, const void *subject)
+{
+    const struct rates_subject *s = subject;
+    static struct hydro_state state;
+    hydro_disordered(&state, PARTICLES);
+    struct scene scene = hydro_scene(&state, &s->scheme);
+    struct oracle oracle;
+    struct simulation *simulation = NULL;
+    struct error error = {0};
+    char where[HYDRO_TEXT];
+    hydro_describe(&s->scheme, where);
+    enum status status = oracle_create(&oracle, &scene, &error);
+    if (!status) {
+        status = oracle_evaluate(&oracle, &error);
+        if (s->spoil) s->spoil(&scene);
+        if (!status) status = simulation_create(&scene, &simulation, &error);
+        if (!status) judge(run, simulation, &oracle, where);
+        simulation_destroy(simulation);
+        oracle_free(&oracle);
+    }
+    if (status) check_measure(run, 1, 0, 0, "%s: %s", where, error.message);
+}
+
+static void wrong_constant(struct scene *scene)
+{
+    scene->scheme.kernel.constant[1] *= 1 + 1e-9;
+}
+
+static double knot_off(const struct kernel *kernel, double q, int dim)
+{
+    struct kernel right;
+    (void)kernel;
+    kernel_select(&right, "cubic_spline", 5, NULL);
+    return right.dw(&right, q, dim) + (q > 0.5 && q < 1 ? 1e-6 * (1 - q) * (q - 0.5) : 0);
+}
+
+static void wrong_slope(struct scene *scene)
+{
+    scene->scheme.kernel.dw = knot_off;
+    scene->unstamped = true;
+}
+
+static void other_eta(struct scene *scene)
+{
+    scene->scheme.eta *= 1 + 1e-9;
+}
+
+static void loose_h(struct scene *scene)
+{
+    scene->scheme.h_tolerance = 1e-4;
+}
+
+static void other_gradient(struct scene *scene)
+{
+    scene->scheme.gradient = GRADIENT_IA;
+}
+
+static void other_formulation(struct scene *scene)
+{
+    scene->scheme.formulation = FORMULATION_LAGRANGIAN;
+}
+
+static void other_element(struct scene *scene)
+{
+    scene->scheme.volume_element = VOLUME_ENERGY;
+}
+
+static void float_alpha(struct scene *scene)
+{
+    scene->scheme.alpha = (double)(1 + 1.2e-7F);
+}
+
+static void beta_of_alpha(struct scene *scene)
+{
+    scene->scheme.beta = scene->scheme.alpha;
+}
+
+static void other_gamma(struct scene *scene)
+{
+    scene->gamma = 5. / 3;
+}
+
+static void other_width(struct scene *scene)
+{
+    scene->scheme.pair_width = PAIR_HARMONIC;
+}
+
+/* The mutants need a scheme that cannot be written as a constant: filled at first use. */
+enum { FAULTS = 11 };
+static struct rates_subject spoiled[FAULTS];
+
+static void measure_or_fill(struct check_run *run, const void *subject)
+{
+    static void (*const faults[FAULTS])(struct scene *) = {
+        wrong_constant, wrong_slope, other_eta,     loose_h,     other_gradient, other_formulation,
+        other_element,  float_alpha, beta_of_alpha, other_gamma, other_width};
+    struct rates_subject mutant;
+    const struct rates_subject *s = subject;
+    if (s >= spoiled && s < spoiled + FAULTS) {
+        mutant = (struct rates_subject){hydro_scheme(), faults[s - spoiled]};
+        subject = &mutant;
+    }
+    measure(run, subject);
+}
+
+static const struct check_mutant mutants[] = {
+    {"hydro_kernel_constant", "kernel's constant off by 1e-9", &spoiled[0]},
+    {"hydro_kernel_slope", "dW/dr off by 1e-7 beyond the knot", &spoiled[1]},
+    {"hydro_eta", "h too large by 1e-9", &spoiled[2]},
+    {"hydro_loose_h", "h solved to 1e-4 only", &spoiled[3]},
+    {"hydro_other_gradient", "ia where standard is asked for", &spoiled[4]},
+    {"hydro_other_formulation", "lagrangian where vanilla_ice is asked for", &spoiled[5]},
+    {"hydro_other_element", "energy element where mass is asked for", &spoiled[6]},
+    {"hydro_alpha_float", "alpha off in the seventh digit", &spoiled[7]},
+    {"hydro_beta", "beta = alpha for 2 alpha", &spoiled[8]},
+    {"hydro_gamma", "gamma 5/3 for 1.4", &spoiled[9]},
+    {"hydro_pair_width", "harmonic mean of widths for mean of gradients", &spoiled[10]},
+    {0},
+};
+
+const struct check check_hydro_rates = {
+    .group = "hydro",
+    .name = "rates",
+    .property = "rho, h, P, dp/dt, de/dt, dalpha/dt, dt equal the oracle's, all pairs, long double",
+    .subject_count = subject_count,
+    .subject = subject_at,
+    .measure = measure_or_fill,
+    .mutants = mutants,
+};

@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * States and schemes that the checks of group hydro run the solver on. */
+#ifndef SPHPROOF_HYDRO_SCENE_H
+#define SPHPROOF_HYDRO_SCENE_H
+
+#include "simulation.h"
+
+enum { HYDRO_MAX = 2000, HYDRO_TEXT = 160 };
+
+struct hydro_state {
+    size_t n;
+    double lo, hi, gamma;
+    double x[HYDRO_MAX], v[HYDRO_MAX], m[HYDRO_MAX], u[HYDRO_MAX];
+};
+
+/* Unequal masses and spacings (8:1), random velocities and energies; the order is not that of x,
+ * the box neither symmetric nor of length 2, and particles sit close to its ends. */
+void hydro_disordered(struct hydro_state *state, size_t n);
+/* A smooth wave of 10 % in all fields, on [0, 1]. */
+void hydro_wave(struct hydro_state *state, size_t n);
+/* A tube 1 0 1 | 0.125 0 0.1 with its mirror image, on [-1, 1]. */
+void hydro_tube(struct hydro_state *state, size_t n);
+
+/* A scene of this state: the arrays stay the state's; threads 1, no skips. */
+struct scene hydro_scene(const struct hydro_state *state, const struct scheme *scheme);
+
+/* cubic_spline standard vanilla_ice mass, constant viscosity, modified leapfrog, h to 1e-14. */
+struct scheme hydro_scheme(void);
+/* Sets the kernel and its default width; the name is a built-in one. */
+void hydro_set_kernel(struct scheme *scheme, const char *name);
+/* By name. */
+const struct integrator *hydro_integrator(const char *name);
+/* "cubic_spline 2 ia lagrangian ...": what tells a scheme from hydro_scheme(). */
+void hydro_describe(const struct scheme *scheme, char text[HYDRO_TEXT]);
+
+#endif
