@@ -131,20 +131,33 @@ struct wave {
     real rho, head, tail;
 };
 
-static struct wave wave_make(const struct side *side, real y, real p)
+static struct wave wave_make(const struct side *side, real y, real p, real v_star)
 {
     const real gamma = side->gamma;
     if (!(side->P > 0 && y <= side->l)) {
         const real ratio = side->P > 0 ? expl(side->l - y) : 0;
         const real flux = ((gamma + 1) * p + (gamma - 1) * side->P) / 2;
-        const real speed = side->v - sqrtl(flux / side->rho);
+        const real speed = fminl(side->v - sqrtl(flux / side->rho), v_star);
         const real compression =
             (gamma + 1 + (gamma - 1) * ratio) / (gamma - 1 + (gamma + 1) * ratio);
         return (struct wave){RIEMANN_SHOCK, side->rho * compression, speed, speed};
     }
-    const real head = side->v - side->c;
+    const real head = fminl(side->v - side->c, v_star);
+    const real c_star = side->c * expl((gamma - 1) / (2 * gamma) * (y - side->l));
     return (struct wave){RIEMANN_RAREFACTION, side->rho * expl((y - side->l) / gamma), head,
-                         head - (gamma + 1) / 2 * rarefaction_jump(side, y)};
+                         fmaxl(v_star - c_star, head)};
+}
+
+/* Velocity between the waves, from the side whose jump depends less on the star pressure. */
+static real star_velocity(const struct problem *problem, real y)
+{
+    real v[2], slope[2];
+    for (int i = 0; i < 2; i++) {
+        const struct side *side = &problem->side[i];
+        v[i] = side->v - velocity_jump(side, problem->scale, y, &slope[i]);
+    }
+    if (slope[0] == slope[1]) return (v[0] - v[1]) / 2;
+    return slope[0] < slope[1] ? v[0] : -v[1];
 }
 
 /* Expansion into vacuum; a side without gas has no wave. */
@@ -216,17 +229,9 @@ const char *riemann_solve(double gamma, const struct riemann_state *left,
         s.v_star = left->v;
     } else {
         const real y = star_pressure(&problem), p = problem.scale * expl(y);
-        real jump[2], slope;
-        for (int i = 0; i < 2; i++) {
-            jump[i] = velocity_jump(&problem.side[i], problem.scale, y, &slope);
-            wave[i] = wave_make(&problem.side[i], y, p);
-        }
-        /* the smaller jump carries the smaller error */
-        const real from_left = left->v - jump[0], from_right = right->v + jump[1];
-        const real difference = fabsl(jump[0]) - fabsl(jump[1]);
-        const real v = difference < 0   ? from_left
-                       : difference > 0 ? from_right
-                                        : (from_left + from_right) / 2;
+        const real v = star_velocity(&problem, y);
+        wave[0] = wave_make(a, y, p, v);
+        wave[1] = wave_make(b, y, p, -v);
         s.p_star = (double)p;
         s.v_star = (double)v;
     }

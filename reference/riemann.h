@@ -33,8 +33,10 @@ struct riemann_solution {
 const char *riemann_wave_name(enum riemann_wave wave);
 
 /* Solves the problem left | right. gamma > 1, rho >= 0, P >= 0, P = 0 where rho = 0, all finite.
- * Star values and speeds are right to 1e-14 (speeds: relative to the largest of |v|, c).
- * Returns NULL, or a text that says what is wrong with the input (solution is then untouched). */
+ * Star values are right to 1e-14 relative, speeds to 1e-14 of the largest of |v|, c; close to
+ * vacuum p* and rho* lose what their problem loses, (2 gamma/(gamma-1))/(1 - dv/dv_vacuum) times
+ * the rounding of long double. Returns NULL, or a text that says what is wrong with the input, or
+ * that the result is beyond the range of double (solution is then untouched). */
 const char *riemann_solve(double gamma, const struct riemann_state *left,
                           const struct riemann_state *right, struct riemann_solution *solution);
 

@@ -65,6 +65,8 @@ static double characteristic_start(const struct simple_wave *wave, double x, dou
     struct characteristic c = {wave, x, t};
     gsl_function f = {miss, &c};
     double low = x - fastest * t - margin, high = x - slowest * t + margin;
+    /* beyond the range of double; and GSL would abort */
+    if (!(miss(low, &c) < 0 && miss(high, &c) > 0 && isfinite(high - low))) return undefined;
     gsl_root_fsolver *solver = gsl_root_fsolver_alloc(gsl_root_fsolver_brent);
     if (!solver) return undefined;
     double start = undefined;

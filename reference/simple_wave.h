@@ -23,8 +23,8 @@ const char *simple_wave_fault(const struct simple_wave *wave);
 /* When the crest overtakes what is before it; infinite for amplitude 0. */
 double simple_wave_breaking_time(const struct simple_wave *wave);
 
-/* The state at x and time 0 <= t < breaking time, all NaN outside of that. The wave is valid
- * (simple_wave_fault). */
+/* The state at x and time 0 <= t < breaking time; all NaN outside of that and where a number would
+ * leave the range of double. The wave is valid (simple_wave_fault). */
 struct simple_wave_state simple_wave_sample(const struct simple_wave *wave, double x, double t);
 
 #endif

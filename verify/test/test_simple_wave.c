@@ -1,0 +1,114 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The simple wave against what is known in closed form: its start, its small-amplitude limit, the
+ * speed of its crest, its period, its breaking. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "near.h"
+#include "simple_wave.h"
+
+static const struct simple_wave wave = {5. / 3, 2.385, -0.3, 0.7, 0.25, 1.7};
+
+static double sound(const struct simple_wave *w)
+{
+    return sqrt(w->gamma * w->P0 / w->rho0);
+}
+
+static void test_start(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 20; i++) {
+        const double x = 0.085 * i, rho = 2.385 * (1 + 0.25 * sin(2 * M_PI * x / 1.7));
+        const struct simple_wave_state s = simple_wave_sample(&wave, x, 0);
+        near_relative(s.rho, rho, 1e-14);
+        near_relative(s.P, 0.7 * pow(rho / 2.385, 5. / 3), 1e-14);
+        near_relative(s.u, s.P / (2. / 3 * s.rho), 1e-15);
+        const double c = sqrt(5. / 3 * s.P / s.rho);
+        near_relative(s.v + 10, 10 - 0.3 + 3 * (c - sound(&wave)), 1e-15);
+    }
+}
+
+/* A value travels with its own v + c, at any amplitude and until it breaks. */
+static void test_characteristics(void **state)
+{
+    (void)state;
+    const double end = simple_wave_breaking_time(&wave);
+    for (int i = 0; i < 200; i++) {
+        const double start = 1.7 * i / 200, t = end * (0.05 + 0.9 * i / 200);
+        const struct simple_wave_state a = simple_wave_sample(&wave, start, 0);
+        const double x = start + (a.v + sqrt(wave.gamma * a.P / a.rho)) * t;
+        const struct simple_wave_state b = simple_wave_sample(&wave, x, t);
+        near_relative(b.rho, a.rho, 1e-13);
+        near_relative(b.P, a.P, 1e-13);
+        const struct simple_wave_state c = simple_wave_sample(&wave, x - 3 * 1.7, t);
+        near_relative(c.rho, a.rho, 1e-13);
+    }
+}
+
+static void test_small_amplitude(void **state)
+{
+    (void)state;
+    const struct simple_wave small = {1.4, 1, 0.5, 1 / 1.4, 1e-7, 1};
+    for (int i = 0; i < 20; i++) {
+        const double x = i / 20., t = 2.3;
+        const struct simple_wave_state s = simple_wave_sample(&small, x, t);
+        const double linear = 1e-7 * sin(2 * M_PI * (x - 1.5 * t));
+        near_below(fabs(s.rho - 1 - linear), 2e-13);
+        near_below(fabs(s.v - 0.5 - linear), 2e-13);
+        near_below(fabs(s.P - 1 / 1.4 - linear), 2e-13);
+    }
+}
+
+static void test_breaking(void **state)
+{
+    (void)state;
+    /* gamma = 3: v + c = v0 + c0 + 2 c0 A sin, so t = L/(4 pi c0 A) */
+    const struct simple_wave linear = {3, 1, 0, 1. / 3, 0.4, 2};
+    near_relative(simple_wave_breaking_time(&linear), 2 / (4 * M_PI * 0.4), 1e-15);
+    const double end = simple_wave_breaking_time(&wave);
+    assert_true(isfinite(simple_wave_sample(&wave, 0.3, end * (1 - 1e-12)).rho));
+    assert_true(isnan(simple_wave_sample(&wave, 0.3, end).rho));
+    assert_true(isnan(simple_wave_sample(&wave, 0.3, -1).u));
+    assert_true(isnan(simple_wave_sample(&wave, (double)NAN, 0).v));
+    struct simple_wave flat = wave;
+    flat.amplitude = 0;
+    assert_true(isinf(simple_wave_breaking_time(&flat)));
+    near_relative(simple_wave_sample(&flat, 0.3, 1e6).rho, 2.385, 1e-15);
+    /* the slope grows like 1/(1 - t/t_b) where it is steepest: some 20 times at 0.95 */
+    double steepest = 0;
+    for (int i = 0; i < 4000; i++) {
+        const double x = 1.7 * i / 4000, dx = 1.7 / 4000;
+        const double late = simple_wave_sample(&wave, x, 0.95 * end).v;
+        steepest = fmax(steepest, (late - simple_wave_sample(&wave, x + dx, 0.95 * end).v) / dx);
+    }
+    const double start = 2 * M_PI / 1.7 * 0.25 * sound(&wave);
+    near_inside(steepest / start, 15, 25);
+}
+
+static void test_faults(void **state)
+{
+    (void)state;
+    assert_null(simple_wave_fault(&wave));
+    const double nan = (double)NAN;
+    const struct simple_wave bad[] = {
+        {1, 1, 0, 1, 0.1, 1},     {nan, 1, 0, 1, 0.1, 1},  {1.4, 0, 0, 1, 0.1, 1},
+        {1.4, 1, nan, 1, 0.1, 1}, {1.4, 1, 0, -1, 0.1, 1}, {1.4, 1, 0, 1, 1, 1},
+        {1.4, 1, 0, 1, nan, 1},   {1.4, 1, 0, 1, 0.1, 0},  {1.4, 1, 0, HUGE_VAL, 0.1, 1},
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
+        assert_non_null(simple_wave_fault(&bad[i]));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_start),           cmocka_unit_test(test_characteristics),
+        cmocka_unit_test(test_small_amplitude), cmocka_unit_test(test_breaking),
+        cmocka_unit_test(test_faults),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
