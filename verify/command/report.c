@@ -1,0 +1,166 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * sphproof report: computes everything and writes the page, the results and what belongs to them.
+ */
+#include "report.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "command.h"
+#include "output.h"
+#include "page.h"
+#include "progress.h"
+#include "result.h"
+#include "text.h"
+
+enum { PATH_LENGTH = 4096, JOBS_MAX = 1024 };
+
+static const struct command_option report_options[] = {
+    {"quick", NULL, "what fits into two minutes on two cores (the default)"},
+    {"nightly", NULL, "one resolution more everywhere, and the slow checks"},
+    {"out", "DIR", "folder for the report (default: reports/out), made if needed"},
+    {"jobs", "J", "so many computations side by side (default: one for each core)"},
+    {NULL, NULL, NULL},
+};
+
+static enum status make_folder(const char *path, struct error *error)
+{
+    char part[PATH_LENGTH];
+    if (snprintf(part, sizeof part, "%s", path) >= (int)sizeof part - 64)
+        return error_set(error, STATUS_BAD_INPUT, "report: --out: the path is too long");
+    for (char *c = part + 1;; c++) {
+        if (*c != '/' && *c) continue;
+        const char kept = *c;
+        *c = '\0';
+        struct stat is;
+        if (mkdir(part, 0777) && !(errno == EEXIST && !stat(part, &is) && S_ISDIR(is.st_mode)))
+            return error_set(error, STATUS_ENVIRONMENT, "cannot make the folder '%s': %s", part,
+                             strerror(errno));
+        *c = kept;
+        if (!kept) return STATUS_OK;
+    }
+}
+
+/* folder/name gets text. */
+static enum status write_text(const char *folder, const char *name, const char *text,
+                              struct error *error)
+{
+    char path[PATH_LENGTH];
+    struct output output;
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    if (!text) return error_set(error, STATUS_ENVIRONMENT, "no memory for %s", path);
+    enum status status = output_open(&output, path, error);
+    if (status) return status;
+    fputs(text, output.stream);
+    return output_close(&output, error);
+}
+
+static enum status write_page(const char *folder, const struct page *page, struct error *error)
+{
+    enum status status = write_text(folder, "index.html", page->html, error);
+    for (size_t k = 0; k < page->file_count && !status; k++) {
+        char name[PATH_LENGTH / 4];
+        snprintf(name, sizeof name, "plots/%s", page->files[k].name);
+        status = write_text(folder, name, page->files[k].bytes, error);
+    }
+    return status;
+}
+
+/* All files of the report. The page comes last: what it links to is then there. */
+static enum status write_report(const char *folder, const json_t *results, struct page *page,
+                                char *summary, struct error *error)
+{
+    char path[PATH_LENGTH];
+    char *junit = page_junit(results);
+    snprintf(path, sizeof path, "%s/results.json", folder);
+    enum status status = result_write(results, path, error);
+    if (!status) status = write_text(folder, "junit.xml", junit, error);
+    if (!status) status = write_text(folder, "summary.md", summary, error);
+    if (!status) status = write_page(folder, page, error);
+    free(junit);
+    return status;
+}
+
+static void show_progress(void *context, const char *what, double done, double total)
+{
+    struct progress *progress = context;
+    progress->what = what;
+    progress_update(progress, done, total);
+}
+
+static enum status take_settings(const struct options *options, struct report_settings *settings,
+                                 struct error *error)
+{
+    const char *jobs = options_value(options, "jobs");
+    double number = (double)sysconf(_SC_NPROCESSORS_ONLN);
+    if (jobs && !(text_integer(jobs, &number) && number >= 1 && number <= JOBS_MAX))
+        return error_set(error, STATUS_BAD_INPUT,
+                         "report: --jobs '%.40s': allowed: an integer from 1 to %d", jobs,
+                         JOBS_MAX);
+    if (options_value(options, "quick") && options_value(options, "nightly"))
+        return error_set(error, STATUS_BAD_INPUT,
+                         "report: --quick and --nightly exclude each other");
+    settings->jobs = number >= 1 ? (int)number : 1;
+    settings->mode = options_value(options, "nightly") ? REPORT_NIGHTLY : REPORT_QUICK;
+    return STATUS_OK;
+}
+
+static enum status run(const struct options *options, int n, char **arguments, struct error *error)
+{
+    struct report_settings settings = {.progress = show_progress};
+    char plots[PATH_LENGTH];
+    const char *folder = options_value(options, "out");
+    if (!folder) folder = "reports/out";
+    if (n) return command_usage(options, error, "no argument is known: '%.40s'", arguments[0]);
+    enum status status = take_settings(options, &settings, error);
+    if (!status && snprintf(plots, sizeof plots, "%s/plots", folder) >= (int)sizeof plots)
+        return error_set(error, STATUS_BAD_INPUT, "report: --out: the path is too long");
+    if (!status) status = make_folder(plots, error);
+    if (status) return status;
+
+    json_t *results;
+    struct progress progress;
+    settings.context = &progress;
+    progress_begin(&progress, "report", options);
+    status = report_compute(&settings, &results, error);
+    progress_end(&progress);
+    if (status) return status;
+
+    struct page page;
+    char *summary = page_summary(results);
+    if (!page_make(&page, results) || !summary)
+        status = error_set(error, STATUS_ENVIRONMENT, "no memory for the page");
+    else
+        status = write_report(folder, results, &page, summary, error);
+    if (!status && options->json) status = result_write(results, options->json, error);
+    if (!status && options->speak) {
+        char absolute[PATH_LENGTH];
+        printf("%s\nreport: %s/index.html\n", summary,
+               realpath(folder, absolute) ? absolute : folder);
+    }
+    if (!status && page.plots_missing)
+        status = error_set(error, STATUS_ENVIRONMENT, "%zu plots are missing: %s",
+                           page.plots_missing, page.message);
+    const char *verdict =
+        json_string_value(json_object_get(json_object_get(results, "verdict"), "status"));
+    if (!status && strcmp(verdict, "pass") != 0) status = STATUS_CHECK_FAILED;
+    page_free(&page);
+    free(summary);
+    json_decref(results);
+    return status;
+}
+
+const struct command command_report = {
+    .name = "report",
+    .synopsis = "[--quick|--nightly] [--out DIR] [--jobs J]",
+    .help = "everything on one page: cases, convergence, kernels, checks\n\n"
+            "Writes index.html (self-contained), results.json, junit.xml, summary.md and the data\n"
+            "and script of each plot. Exit status 1 if anything on the page is not well.",
+    .run = run,
+    .options = report_options,
+    .examples = "sphproof report\nsphproof report --nightly --out /tmp/report --jobs 2",
+};

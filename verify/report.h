@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What a report computes: a list of independent tasks (runs with their profiles, convergence
+ * studies, the checks, kernel certificates), each giving one piece of the results. */
+#ifndef SPHPROOF_REPORT_H
+#define SPHPROOF_REPORT_H
+
+#include <jansson.h>
+#include <stdbool.h>
+
+#include "status.h"
+
+enum report_mode { REPORT_QUICK, REPORT_NIGHTLY };
+
+struct report_settings {
+    enum report_mode mode;
+    int jobs; /* >= 1: tasks side by side */
+    void (*progress)(void *context, const char *what, double done, double total);
+    void *context;
+};
+
+/* Computes all and judges it: *results is a document of command "report" with its verdict (see
+ * reports/verdict.h), owned by the caller. A gate that fails, or a run that breaks down, is part of
+ * the results; anything else that goes wrong is returned, and *results is then NULL. */
+enum status report_compute(const struct report_settings *settings, json_t **results,
+                           struct error *error);
+
+#endif
