@@ -6,11 +6,12 @@
 
 enum { MAX = 3 };
 
+/* NaN if one of them is. */
 static double largest(int n, const double *a, int stride)
 {
     double m = 0;
     for (int i = 0; i < n; i++)
-        if (!(fabs(a[i * stride]) <= m)) m = fabs(a[i * stride]); /* keeps a NaN */
+        if (!(fabs(a[i * stride]) <= m) && !isnan(m)) m = fabs(a[i * stride]);
     return m;
 }
 

@@ -9,7 +9,7 @@
 #include "matrix.h"
 
 #define OPERATOR(name, vectors, difference, corrected, label, paper)                               \
-    static const struct operator operator_##name = {                                               \
+    static const struct operator_form operator_##name = {                                          \
         {#name, label, paper}, vectors, difference, corrected};
 #include "operators.def"
 #undef OPERATOR
@@ -204,7 +204,7 @@ ALWAYS_INLINE void field_values(size_t n, const struct work *work, const double 
 ALWAYS_INLINE uint32_t point_gradient(int dim, const struct task *task, struct work *work, size_t s)
 {
     const struct neighbours *nb = task->neighbours;
-    const struct operator* operator= task->settings->operator;
+    const struct operator_form *form = task->settings->form;
     const struct kernel *kernel = task->settings->kernel;
     const double h = task->h[s],
                  at[3] = {nb->x[0][s], dim > 1 ? nb->x[1][s] : 0, dim > 2 ? nb->x[2][s] : 0};
@@ -213,39 +213,38 @@ ALWAYS_INLINE uint32_t point_gradient(int dim, const struct task *task, struct w
     const size_t n = select_neighbours(dim, task, work, at, h, (uint32_t)s, &inside);
     double matrix[9], inverse[9] = {0};
 
-    if (operator->pair_vector != PAIR_GRADIENT || diagnosed)
-        task->loops.w(kernel, n, work->q, work->w);
-    if (diagnosed && !operator->corrected) {
+    if (form->pair_vector != PAIR_GRADIENT || diagnosed) task->loops.w(kernel, n, work->q, work->w);
+    if (diagnosed && !form->corrected) {
         position_vectors(dim, n, work);
         sum_matrix(dim, n, work->p, work->x, matrix);
     }
-    if (operator->pair_vector == PAIR_POSITION) {
+    if (form->pair_vector == PAIR_POSITION) {
         position_vectors(dim, n, work);
     } else {
         task->loops.dw(kernel, n, work->q, work->dw);
         gradient_vectors(dim, n, work);
-        if (operator->pair_vector == PAIR_NORMALISED) normalise_vectors(dim, n, work);
+        if (form->pair_vector == PAIR_NORMALISED) normalise_vectors(dim, n, work);
     }
     double factor = 1 / h;
     bool invertible = true;
-    if (operator->corrected) {
+    if (form->corrected) {
         sum_matrix(dim, n, work->p, work->x, matrix);
         invertible = matrix_invert(dim, matrix, inverse);
-    } else if (operator->pair_vector != PAIR_NORMALISED) { /* W = C h^-d w; x is in units of h */
+    } else if (form->pair_vector != PAIR_NORMALISED) { /* W = C h^-d w; x is in units of h */
         factor *= kernel->constant[dim];
         for (int a = 0; a < dim; a++) factor /= h;
-        if (operator->pair_vector == PAIR_POSITION) factor *= h * h;
+        if (form->pair_vector == PAIR_POSITION) factor *= h * h;
     }
 
     const size_t i = nb->order[s];
     for (size_t k = 0; k < task->fields; k++) {
         const double *f = task->sorted + (2 + k) * nb->n;
         double sum[3];
-        field_values(n, work, f, operator->difference ? f[s] : 0);
+        field_values(n, work, f, form->difference ? f[s] : 0);
         sum_vector(dim, n, work->p, work->f, sum);
         for (int a = 0; a < dim; a++) {
-            double g = operator->corrected ? 0 : sum[a];
-            for (int b = 0; operator->corrected && b<dim; b++) g += inverse[a * dim + b] * sum[b];
+            double g = form->corrected ? 0 : sum[a];
+            for (int b = 0; form->corrected && b < dim; b++) g += inverse[a * dim + b] * sum[b];
             task->gradient[k * (size_t)dim + (size_t)a][i] = invertible ? g * factor : nan("");
         }
     }
@@ -253,7 +252,7 @@ ALWAYS_INLINE uint32_t point_gradient(int dim, const struct task *task, struct w
         struct operator_point *point = &task->point[i];
         point->neighbours = inside;
         point->condition = matrix_condition(dim, matrix);
-        if (!operator->corrected) invertible = matrix_invert(dim, matrix, inverse);
+        if (!form->corrected) invertible = matrix_invert(dim, matrix, inverse);
         point->state = inside < (uint32_t)dim + 1                      ? OPERATOR_TOO_FEW_NEIGHBOURS
                        : !invertible                                   ? OPERATOR_SINGULAR
                        : !(point->condition <= OPERATOR_CONDITION_MAX) ? OPERATOR_ILL_CONDITIONED

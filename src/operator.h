@@ -25,8 +25,7 @@ enum pair_vector {
     PAIR_NORMALISED, /* (grad_i W - (W/S) sum_k V_k grad_i W_k)/S */
 };
 
-struct operator
-{
+struct operator_form {
     struct member member;
     enum pair_vector pair_vector;
     bool difference; /* f_j - f_i; normalised vectors sum to 0, there it only saves digits */
@@ -56,7 +55,7 @@ struct cloud { /* arrays of n, the caller's */
 };
 
 struct operator_settings {
-    const struct operator* operator;
+    const struct operator_form *form;
     const struct kernel *kernel;
     bool unstamped; /* kernel through its function pointers: the oracle of the stamped loops */
     int threads;    /* >= 1; the result does not depend on it */

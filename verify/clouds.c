@@ -6,6 +6,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "summation.h"
+
 const char *clouds_name(enum clouds_kind kind)
 {
     static const char *const names[] = {
@@ -92,6 +94,21 @@ void clouds_free(struct clouds_cloud *cloud)
     for (int a = 0; a < 3; a++) free(cloud->x[a]);
     free(cloud->volume), free(cloud->h);
     *cloud = (struct clouds_cloud){0};
+}
+
+enum status clouds_sum_volumes(const struct clouds_settings *settings, const struct kernel *kernel,
+                               struct clouds_cloud *cloud, struct error *error)
+{
+    const size_t n = cloud->cloud.points.n;
+    double *rho = malloc((n + 1) * sizeof *rho);
+    if (!rho) return error_set(error, STATUS_ENVIRONMENT, "no memory for %zu densities", n);
+    /* the exact volume as mass: density 1 up to the kernel sum's error, and edges */
+    const struct summation sum = {cloud->cloud.points, kernel, cloud->volume,
+                                  settings->eta,       1e-12,  1};
+    const enum status status = summation_solve(&sum, cloud->h, rho, error);
+    for (size_t i = 0; !status && i < n; i++) cloud->volume[i] /= rho[i];
+    free(rho);
+    return status;
 }
 
 void clouds_transform(struct clouds_cloud *cloud, const double *rotation, const double *shift)

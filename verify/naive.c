@@ -25,6 +25,10 @@ static bool pair_load(struct pair *pair, const struct kernel *kernel, enum naive
     if (fault == NAIVE_WIDTH_1D) h *= power(powl(cloud->volume[i], 1 / (real)dim), dim - 1);
     for (int a = 0; a < dim; a++) {
         pair->x[a] = (real)cloud->points.x[a][j] - cloud->points.x[a][i];
+        if (cloud->points.periodic) { /* nearest image */
+            const real length = (real)cloud->points.hi[a] - cloud->points.lo[a];
+            pair->x[a] -= length * roundl(pair->x[a] / length);
+        }
         r2 += pair->x[a] * pair->x[a];
     }
     pair->r = sqrtl(r2);
@@ -75,14 +79,13 @@ static bool invert(int dim, enum naive_fault fault, real m[3][3], real out[3][3]
     return determinant != 0;
 }
 
-void naive_gradient(const struct operator* operator, const struct kernel * kernel,
+void naive_gradient(const struct operator_form *form, const struct kernel *kernel,
                     enum naive_fault fault, const struct cloud *cloud, const double *f, size_t i,
                     double *gradient)
 {
     const int dim = cloud->points.dim;
-    const bool normalised = operator->pair_vector == PAIR_NORMALISED &&
-                            fault != NAIVE_NO_NORMALISATION;
-    const bool corrected = operator->corrected && fault != NAIVE_NO_GRADIENT_CORRECTION;
+    const bool normalised = form->pair_vector == PAIR_NORMALISED && fault != NAIVE_NO_NORMALISATION;
+    const bool corrected = form->corrected && fault != NAIVE_NO_GRADIENT_CORRECTION;
     struct pair pair;
     real S = 0, K[3] = {0};
     for (size_t j = 0; normalised && j < cloud->points.n; j++) {
@@ -95,11 +98,11 @@ void naive_gradient(const struct operator* operator, const struct kernel * kerne
     real sum[3] = {0}, matrix[3][3] = {{0}}, inverse[3][3] = {{0}};
     for (size_t j = 0; j < cloud->points.n; j++) {
         if (!pair_load(&pair, kernel, fault, cloud, f, i, j)) continue;
-        const bool subtracted = operator->difference && !normalised;
+        const bool subtracted = form->difference && !normalised;
         const real value = pair.f - (subtracted && fault != NAIVE_NO_SUBTRACTION ? f[i] : 0);
         for (int a = 0; a < dim; a++) {
             const real slope = pair.r > 0 ? -pair.x[a] / pair.r * pair.dW : 0;
-            real p = operator->pair_vector == PAIR_POSITION ? pair.x[a] * pair.W : slope;
+            real p = form->pair_vector == PAIR_POSITION ? pair.x[a] * pair.W : slope;
             if (normalised) p = (slope - pair.W / S * K[a]) / S;
             if (fault == NAIVE_SIGN) p = -p;
             sum[a] += pair.V * value * p;

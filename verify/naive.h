@@ -33,8 +33,9 @@ enum naive_fault {
 #undef FAULT
 };
 
-/* Gradient of f at point i of an open cloud: dim values; NaN where the matrix has determinant 0. */
-void naive_gradient(const struct operator* operator, const struct kernel * kernel,
+/* Gradient of f at point i: dim values (periodic: nearest images only, h <= length/2); NaN where
+ * the matrix has determinant 0. */
+void naive_gradient(const struct operator_form *form, const struct kernel *kernel,
                     enum naive_fault fault, const struct cloud *cloud, const double *f, size_t i,
                     double *gradient);
 

@@ -50,19 +50,19 @@ static enum status take_positive(const struct options *options, const char *name
 static enum status take_request(const struct options *options, int n, char **arguments,
                                 struct request *r, struct error *error)
 {
-    const char *operator= options_value(options, "operator");
+    const char *name = options_value(options, "operator");
     const char *kernel = options_value(options, "kernel"), *dim = options_value(options, "dim");
     double number = 0;
     if (n != 1) return command_usage(options, error, "one cloud is needed, %d given", n);
-    if (!operator|| !kernel || !dim)
+    if (!name || !kernel || !dim)
         return command_usage(options, error, "--operator, --kernel and --dim are needed");
     r->path = arguments[0];
-    r->settings = (struct operator_settings){.operator=(const struct operator*)
-                                                 family_find(&operator_family, operator),
-                                             .kernel = &r->kernel,
-                                             .threads = options->threads};
-    if (!r->settings.operator)
-        return text_unknown_member(error, "gradient", "operator", operator, & operator_family);
+    r->settings = (struct operator_settings){
+        .form = (const struct operator_form *)family_find(&operator_family, name),
+        .kernel = &r->kernel,
+        .threads = options->threads};
+    if (!r->settings.form)
+        return text_unknown_member(error, "gradient", "operator", name, &operator_family);
     if (!family_find(&kernel_family, kernel))
         return text_unknown_member(error, "gradient", "kernel", kernel, &kernel_family);
     if (kernel_select(&r->kernel, kernel, SINC_ORDER, error)) return error->status;
@@ -173,8 +173,7 @@ static void judge(const struct request *r, const struct point_cloud *pc,
         }
         if (isnan(ours)) continue; /* no gradient to compare with */
         const double condition = answer->point[i].condition;
-        const double bound =
-            r->tolerance + (r->settings.operator->corrected ? 1e-15 * condition : 0);
+        const double bound = r->tolerance + (r->settings.form->corrected ? 1e-15 * condition : 0);
         const double scale = fmax(ours, 1e-4 * largest / pc->h[i]);
         const double departure = scale > 0 ? difference / scale : difference > 0 ? HUGE_VAL : 0;
         j->judged++;
@@ -227,7 +226,7 @@ static void print_answer(const struct request *r, const struct point_cloud *pc,
                          const struct answer *answer)
 {
     const size_t n = pc->cloud.points.n;
-    printf("%s, %s, %dD, %zu points\n", r->settings.operator->member.name, r->kernel.member.name,
+    printf("%s, %s, %dD, %zu points\n", r->settings.form->member.name, r->kernel.member.name,
            r->dim, n);
     printf("neighbours: points within h, itself included; condition: of the operator's matrix\n\n");
     printf("%7s", "row");
@@ -294,7 +293,7 @@ static enum status write_answer(const struct options *options, const struct requ
 {
     json_t *document = result_new("gradient");
     json_t *content =
-        json_pack("{s:s, s:s, s:i, s:o}", "operator", r->settings.operator->member.name, "kernel",
+        json_pack("{s:s, s:s, s:i, s:o}", "operator", r->settings.form->member.name, "kernel",
                   r->kernel.member.name, "dim", r->dim, "points", points_json(r, pc, answer));
     if (r->check)
         json_object_set_new(

@@ -49,7 +49,7 @@ static int gradient(const char *arguments, json_t **document)
 }
 
 /* A cloud with f, g and the brute-force gradient of f; factor spoils one value of it. */
-static void write_cloud(struct clouds_cloud *cloud, const struct operator* operator, double factor)
+static void write_cloud(struct clouds_cloud *cloud, const struct operator_form *form, double factor)
 {
     struct kernel kernel;
     FILE *stream = fopen(file, "w");
@@ -61,7 +61,7 @@ static void write_cloud(struct clouds_cloud *cloud, const struct operator* opera
         f[i] = 2.385 * sin(4 * cloud->x[0][i]) - 0.7 * cloud->x[1][i] * cloud->x[1][i];
     for (size_t i = 0; i < cloud->cloud.points.n; i++) {
         double g[DIM];
-        naive_gradient(operator, & kernel, NAIVE_NONE, &cloud->cloud, f, i, g);
+        naive_gradient(form, &kernel, NAIVE_NONE, &cloud->cloud, f, i, g);
         fprintf(stream, "%.17g, %.17g,%.17g,%.17g,%.17g,%.17g,%.17g\r\n", cloud->x[0][i],
                 cloud->x[1][i], cloud->volume[i], f[i], g[0], cloud->h[i],
                 g[1] * (i == 40 ? factor : 1));
@@ -74,14 +74,14 @@ static void test_judgement(void **state)
     (void)state;
     for (size_t o = 0; o < operator_family.n; o++) {
         const struct clouds_settings how = {CLOUDS_JITTERED, DIM, SIDE, 0.35, 3.3, 7};
-        const struct operator* operator=(const struct operator*) operator_family.members[o];
+        const struct operator_form *form = (const struct operator_form *)operator_family.members[o];
         struct clouds_cloud cloud;
         char arguments[256];
         assert_int_equal(clouds_make(&how, &cloud, NULL), STATUS_OK);
         snprintf(arguments, sizeof arguments,
                  "--operator %s --kernel wendland_c4 --dim 2 --h 1 --check f=fx,fy",
-                 operator->member.name);
-        write_cloud(&cloud, operator, 1);
+                 form->member.name);
+        write_cloud(&cloud, form, 1);
         json_t *document;
         assert_int_equal(gradient(arguments, &document), STATUS_OK);
         const json_t *points = json_object_get(document, "points");
@@ -94,7 +94,7 @@ static void test_judgement(void **state)
         assert_null(json_object_get(json_object_get(point, "gradients"), "fx"));
         json_decref(document);
 
-        write_cloud(&cloud, operator, 1 + 1e-7);
+        write_cloud(&cloud, form, 1 + 1e-7);
         assert_int_equal(gradient(arguments, &document), STATUS_CHECK_FAILED);
         const json_t *judgement = json_object_get(document, "judgement");
         assert_int_equal(json_integer_value(json_object_get(judgement, "failed")), 1);

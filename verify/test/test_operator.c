@@ -5,13 +5,17 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <cmocka.h>
+#include <gsl/gsl_linalg.h>
+#include <gsl/gsl_rng.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "clouds.h"
+#include "matrix.h"
 #include "naive.h"
 #include "near.h"
+#include "summation.h"
 
 enum { FIELDS = 2 };
 
@@ -56,9 +60,9 @@ static void release(struct computed *c)
     free(c->point);
 }
 
-static const struct operator* operator_at(size_t o)
+static const struct operator_form *operator_at(size_t o)
 {
-    return (const struct operator*)operator_family.members[o];
+    return (const struct operator_form *)operator_family.members[o];
 }
 
 static struct kernel kernel_named(const char *name)
@@ -79,8 +83,7 @@ static double departure(const struct operator_settings *settings, const struct c
         for (size_t i = 0; i < cloud->points.n; i++) scale = fmax(scale, fabs(c->f[k][i]));
         for (size_t i = 0; i < cloud->points.n; i++) {
             double exact[3];
-            naive_gradient(settings->operator, settings->kernel, NAIVE_NONE, cloud, c->f[k], i,
-                           exact);
+            naive_gradient(settings->form, settings->kernel, NAIVE_NONE, cloud, c->f[k], i, exact);
             if (!(c->point[i].condition < 1e8)) continue;
             for (int a = 0; a < dim; a++) {
                 const double error =
@@ -189,7 +192,7 @@ static void test_odd_clouds(void **state)
             compute(&settings, &cloud, &c); /* all at one place */
             assert_int_equal(c.point[3].state, OPERATOR_SINGULAR);
             assert_int_equal(c.point[3].neighbours, 40);
-            assert_true(isnan(c.gradient[0][3]) == settings.operator->corrected);
+            assert_true(isnan(c.gradient[0][3]) == settings.form->corrected);
             release(&c);
             cloud.points.n = 1;
             compute(&settings, &cloud, &c);
@@ -225,13 +228,101 @@ static void test_odd_clouds(void **state)
     assert_non_null(strstr(error.message, "point 17"));
 }
 
+/* h and rho solve their two equations (brute force), and a uniform cloud has density 1. */
+static void test_summation(void **state)
+{
+    (void)state;
+    for (int dim = 1; dim <= 3; dim++)
+        for (int kind = 0; kind < CLOUDS_KINDS; kind++) {
+            const struct kernel kernel = kernel_named("wendland_c4");
+            const struct clouds_settings how = {
+                (enum clouds_kind)kind, dim, dim == 1 ? 90 : dim == 2 ? 14 : 7, 0.3, 3, 3};
+            struct clouds_cloud cloud;
+            assert_int_equal(clouds_make(&how, &cloud, NULL), STATUS_OK);
+            const size_t n = cloud.cloud.points.n;
+            double *h = numbers(n), *rho = numbers(n);
+            struct error error = {0};
+            struct summation sum = {cloud.cloud.points, &kernel, cloud.volume, how.eta, 1e-12, 2};
+            if (summation_solve(&sum, h, rho, &error)) fail_msg("%s", error.message);
+            for (size_t i = 0; i < n; i++) {
+                double expected = 0;
+                for (size_t j = 0; j < n; j++) {
+                    double r = 0;
+                    for (int a = 0; a < dim; a++) r = hypot(r, cloud.x[a][j] - cloud.x[a][i]);
+                    expected += cloud.volume[j] * kernel_value(&kernel, r, h[i], dim);
+                }
+                near_relative(rho[i], expected, 1e-11);
+                near_relative(h[i], how.eta * pow(cloud.volume[i] / expected, 1. / dim), 1e-11);
+                if (kind == CLOUDS_LATTICE && clouds_interior(&how, &cloud, i))
+                    near_relative(rho[i], 1, 0.03);
+            }
+            sum.eta = 0.9;
+            assert_int_equal(summation_solve(&sum, h, rho, &error), STATUS_BAD_INPUT);
+            sum.eta = 1e4;
+            assert_int_equal(summation_solve(&sum, h, rho, &error), STATUS_BROKE_DOWN);
+            sum.eta = how.eta;
+            for (size_t i = 20; i < 49; i++)
+                for (int a = 0; a < dim; a++) cloud.x[a][i] = 0.5;
+            assert_int_equal(summation_solve(&sum, h, rho, &error), STATUS_BROKE_DOWN);
+            assert_non_null(strstr(error.message, "coincides"));
+            sum.points.n = 1;
+            assert_int_equal(summation_solve(&sum, h, rho, &error), STATUS_BROKE_DOWN);
+            free(h), free(rho);
+            clouds_free(&cloud);
+        }
+}
+
+/* Inverse and condition number against GSL's singular values, also badly scaled. */
+static void test_matrix(void **state)
+{
+    (void)state;
+    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
+    for (int trial = 0; trial < 600; trial++) {
+        const int dim = 1 + trial % 3;
+        const size_t d = (size_t)dim;
+        double a[9], inverse[9], scale[3], product, values[3], v[9], work[3], copy[9];
+        for (int i = 0; i < 3; i++) scale[i] = pow(10, 12 * gsl_rng_uniform(rng) - 6);
+        for (int i = 0; i < dim * dim; i++) {
+            a[i] = copy[i] = 2 * gsl_rng_uniform(rng) - 1;
+            if (trial >= 300) a[i] = copy[i] = a[i] * scale[i / dim] * scale[i % dim];
+        }
+        gsl_matrix_view A = gsl_matrix_view_array(copy, d, d), V = gsl_matrix_view_array(v, d, d);
+        gsl_vector_view S = gsl_vector_view_array(values, d);
+        gsl_vector_view W = gsl_vector_view_array(work, d);
+        gsl_linalg_SV_decomp(&A.matrix, &V.matrix, &S.vector, &W.vector);
+        const double condition = values[0] / values[dim - 1];
+        if (condition < 1e10) near_relative(matrix_condition(dim, a), condition, 1e-5);
+        if (condition < 1e4) near_relative(matrix_condition(dim, a), condition, 1e-11);
+        assert_true(matrix_invert(dim, a, inverse));
+        for (int i = 0; i < dim; i++)
+            for (int j = 0; j < dim; j++) {
+                double size = 0;
+                product = -(i == j);
+                for (int k = 0; k < dim; k++) {
+                    product += a[i * dim + k] * inverse[k * dim + j];
+                    size += fabs(a[i * dim + k] * inverse[k * dim + j]);
+                }
+                near_below(fabs(product), 1e-13 * fmax(size, 1) * fmin(condition, 100));
+            }
+    }
+    gsl_rng_free(rng);
+    double inverse[9];
+    assert_false(matrix_invert(2, (double[]){1, 2, 2, 4}, inverse));
+    assert_false(matrix_invert(3, (double[]){1, 2, 3, 4, 5, 6, 7, 8, 9}, inverse));
+    assert_false(matrix_invert(1, (double[]){0}, inverse));
+    assert_false(matrix_invert(1, (double[]){(double)NAN}, inverse));
+    assert_true(matrix_invert(2, (double[]){1, 0, 0, 1e-200}, inverse));
+    near_relative(inverse[3], 1e200, 1e-15);
+    assert_true(isinf(matrix_condition(2, (double[]){0, 0, 0, 0})));
+    assert_true(isnan(matrix_condition(2, (double[]){(double)NAN, 0, 0, 1})));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_brute_force),
-        cmocka_unit_test(test_same_result),
-        cmocka_unit_test(test_periodic),
-        cmocka_unit_test(test_odd_clouds),
+        cmocka_unit_test(test_brute_force), cmocka_unit_test(test_same_result),
+        cmocka_unit_test(test_periodic),    cmocka_unit_test(test_odd_clouds),
+        cmocka_unit_test(test_summation),   cmocka_unit_test(test_matrix),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,204 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "summation.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "kernel_loop.h"
+
+enum { ITERATIONS_MAX = 200, REACHES_MAX = 200 };
+
+struct work {
+    struct candidates candidates;
+    size_t capacity;
+    double *r, *m, *q, *value; /* one allocation, of r */
+};
+
+struct task {
+    const struct summation *of;
+    const struct neighbours *neighbours;
+    struct kernel_loops loops;
+    double *h, *rho;
+};
+
+static bool work_reserve(struct work *work)
+{
+    if (work->candidates.n <= work->capacity) return true;
+    const size_t n = work->candidates.capacity;
+    free(work->r);
+    work->capacity = 0;
+    if (!(work->r = malloc(4 * n * sizeof(double)))) return false;
+    work->m = work->r + n, work->q = work->r + 2 * n, work->value = work->r + 3 * n;
+    work->capacity = n;
+    return true;
+}
+
+/* Distances and masses of the points within reach of the one at sorted position s. */
+static size_t select_near(const struct task *task, struct work *work, size_t s, double reach)
+{
+    const struct candidates *c = &work->candidates;
+    const struct neighbours *nb = task->neighbours;
+    size_t n = 0;
+    for (size_t k = 0; k < c->n; k++) {
+        double r2 = 0;
+        for (int a = 0; a < nb->dim; a++)
+            r2 += (c->x[a][k] - nb->x[a][s]) * (c->x[a][k] - nb->x[a][s]);
+        work->r[n] = sqrt(r2);
+        work->m[n] = task->of->m[nb->order[c->j[k]]];
+        n += work->r[n] < reach ? 1u : 0u;
+    }
+    return n;
+}
+
+/* C sum m_j w(r_j/h); *slope: its derivative times h. */
+static double mass_inside(const struct task *task, struct work *work, size_t n, double h,
+                          double *slope)
+{
+    const struct kernel *kernel = task->of->kernel;
+    const double constant = kernel->constant[task->neighbours->dim];
+    double sum = 0, derivative = 0;
+    for (size_t k = 0; k < n; k++) work->q[k] = work->r[k] / h;
+    task->loops.w(kernel, n, work->q, work->value);
+    for (size_t k = 0; k < n; k++) sum += work->m[k] * work->value[k];
+    task->loops.dw(kernel, n, work->q, work->value);
+    for (size_t k = 0; k < n; k++) derivative -= work->m[k] * work->value[k] * work->q[k];
+    *slope = constant * derivative;
+    return constant * sum;
+}
+
+/* h of one point; *found stays false where its root lies beyond reach. */
+static enum status solve_point(const struct task *task, struct work *work, size_t s, double reach,
+                               bool *found, struct error *error)
+{
+    const int dim = task->neighbours->dim;
+    const size_t i = task->neighbours->order[s];
+    const double wanted = task->of->m[i] * pow(task->of->eta, dim);
+    const size_t n = select_near(task, work, s, reach);
+    double low = 0, high = reach, h = 0.7 * reach, slope, together = 0;
+    if (mass_inside(task, work, n, reach, &slope) < wanted) return STATUS_OK;
+    for (size_t k = 0; k < n; k++) together += work->r[k] > 0 ? 0 : work->m[k];
+    if (task->of->kernel->constant[dim] * task->of->kernel->w(task->of->kernel, 0, dim) *
+            together >=
+        wanted)
+        return error_set(error, STATUS_BROKE_DOWN,
+                         "point %zu: no smoothing length: it coincides with others (mass %g there, "
+                         "own %g)",
+                         i, together, task->of->m[i]);
+    for (int iteration = 0; iteration < ITERATIONS_MAX; iteration++) {
+        const double excess = mass_inside(task, work, n, h, &slope) - wanted;
+        if (excess > 0)
+            high = h;
+        else
+            low = h;
+        const double newton = slope > 0 ? h - h * excess / slope : 0;
+        const double next = newton > low && newton < high ? newton : 0.5 * (low + high);
+        const bool converged = fabs(next - h) <= task->of->tolerance * h;
+        h = next;
+        if (converged) break;
+    }
+    task->h[i] = h;
+    task->rho[i] = task->of->m[i] * pow(task->of->eta / h, dim);
+    *found = true;
+    return STATUS_OK;
+}
+
+/* A first guess of how far the roots of a block lie: its box holds NEIGHBOURS_BLOCK points. */
+static double first_reach(const struct task *task, size_t block)
+{
+    const struct neighbours *nb = task->neighbours;
+    const size_t dim = (size_t)nb->dim;
+    double side = 0, whole = 0;
+    for (size_t a = 0; a < dim; a++) {
+        side = fmax(side, nb->hi[0][block * dim + a] - nb->lo[0][block * dim + a]);
+        whole = fmax(whole, nb->hi[nb->levels - 1][a] - nb->lo[nb->levels - 1][a]);
+    }
+    if (nb->periodic && !(whole > 0)) whole = nb->length[0];
+    const double spacing = side > 0 ? side / (pow(NEIGHBOURS_BLOCK, 1. / nb->dim) - 0.5)
+                                    : whole * pow((double)nb->n, -1. / nb->dim);
+    return 1.3 * task->of->eta * (spacing > 0 ? spacing : 1);
+}
+
+static enum status solve_block(const struct task *task, struct work *work, size_t block,
+                               struct error *error)
+{
+    const struct neighbours *nb = task->neighbours;
+    const size_t first = block * NEIGHBOURS_BLOCK;
+    bool found[NEIGHBOURS_BLOCK] = {false}, all = false;
+    double reach = first_reach(task, block);
+    for (int k = 0; !all && k < REACHES_MAX; k++, reach *= k < 8 ? 1.5 : 4) {
+        enum status status = neighbours_gather(nb, block, reach, &work->candidates, error);
+        if (!status && !work_reserve(work))
+            status = error_set(error, STATUS_ENVIRONMENT, "no memory for neighbours");
+        if (status) return status;
+        all = true;
+        for (size_t s = first; s < first + NEIGHBOURS_BLOCK && s < nb->n; s++) {
+            if (!found[s - first])
+                status = solve_point(task, work, s, reach, &found[s - first], error);
+            if (status) return status;
+            all = all && found[s - first];
+        }
+    }
+    return all ? STATUS_OK
+               : error_set(error, STATUS_BROKE_DOWN, "point %u: no smoothing length found",
+                           nb->order[first]);
+}
+
+static enum status check(const struct summation *of, struct error *error)
+{
+    const int dim = of->points.dim;
+    const double least = kernel_least_eta(of->kernel, dim);
+    double heaviest = 0, total = 0;
+    size_t where = 0;
+    if (!(of->eta > least && isfinite(of->eta)))
+        return error_set(error, STATUS_BAD_INPUT,
+                         "eta = %g; with kernel %s in %dD it must be above %.6g", of->eta,
+                         of->kernel->member.name, dim, least);
+    for (size_t i = 0; i < of->points.n; i++) {
+        if (!(of->m[i] > 0 && isfinite(of->m[i])))
+            return error_set(error, STATUS_BAD_INPUT, "point %zu: mass %g; it must be positive", i,
+                             of->m[i]);
+        total += of->m[i];
+        if (of->m[i] > heaviest) heaviest = of->m[i], where = i;
+    }
+    /* as h grows the sum approaches C w(0) of all mass */
+    if (of->points.n > 0 && !of->points.periodic &&
+        !(pow(least, dim) * total > heaviest * pow(of->eta, dim)))
+        return error_set(error, STATUS_BROKE_DOWN,
+                         "point %zu: no smoothing length: the cloud's mass is %g, eta = %g needs "
+                         "more than %g",
+                         where, total, of->eta, heaviest * pow(of->eta / least, dim));
+    return STATUS_OK;
+}
+
+enum status summation_solve(const struct summation *summation, double *h, double *rho,
+                            struct error *error)
+{
+    struct neighbours *nb;
+    struct task task = {.of = summation, .h = h, .rho = rho};
+    enum status status = check(summation, error);
+    if (status) return status;
+    if ((status = neighbours_create(&summation->points, &nb, error))) return status;
+    task.neighbours = nb;
+    task.loops = kernel_loop_find(summation->kernel, nb->dim, true);
+    const ptrdiff_t blocks = (ptrdiff_t)nb->blocks;
+#pragma omp parallel num_threads(summation->threads)
+    {
+        struct work work = {0};
+#pragma omp for schedule(dynamic, 16)
+        for (ptrdiff_t b = 0; b < blocks; b++) {
+            struct error here;
+            const enum status outcome = solve_block(&task, &work, (size_t)b, &here);
+            if (outcome) {
+#pragma omp critical
+                {
+                    status = outcome;
+                    if (error) *error = here;
+                }
+            }
+        }
+        neighbours_candidates_free(&work.candidates);
+        free(work.r);
+    }
+    neighbours_destroy(nb);
+    return status;
+}

@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What the checks of gradient operators share: an operator or a wrong one as subject, fields with
+ * known gradients, errors over a cloud with interior and edge apart. */
+#ifndef SPHPROOF_GRADIENT_STUDY_H
+#define SPHPROOF_GRADIENT_STUDY_H
+
+#include "clouds.h"
+#include "naive.h"
+
+struct gradient_subject {
+    const struct operator_form *form;
+    enum naive_fault fault; /* NAIVE_NONE: src's operator; else the naive one with this fault */
+};
+
+/* The five right subjects, in the order of operator_family: for struct check. */
+size_t gradient_study_subject_count(void);
+const void *gradient_study_subject(size_t i);
+
+/* Fields of high entropy: mixed polynomials of full degree 0..3 and smooth ones. */
+enum gradient_field { FIELD_CONSTANT, FIELD_LINEAR, FIELD_QUADRATIC, FIELD_CUBIC, FIELD_SMOOTH };
+double gradient_study_field(enum gradient_field field, int dim, const double *x, double *gradient);
+const char *gradient_study_field_name(enum gradient_field field);
+
+struct gradient_errors {
+    double interior, edge; /* largest |gradient - exact| h / max|f|; NaN where a gradient is */
+    double interior_rms;
+    double condition; /* largest */
+    size_t inside, outside;
+};
+
+/* Gradient of f (n) into gradient[0..dim-1] (n each); point as in operator_apply or NULL (a wrong
+ * subject leaves it as the right operator would). */
+enum status gradient_study_apply(const struct gradient_subject *subject,
+                                 const struct kernel *kernel, const struct cloud *cloud,
+                                 const double *f, double *const *gradient,
+                                 struct operator_point *point, struct error *error);
+
+/* The errors of a subject for one field. */
+enum status gradient_study_errors(const struct gradient_subject *subject,
+                                  const struct kernel *kernel,
+                                  const struct clouds_settings *settings,
+                                  const struct clouds_cloud *cloud, enum gradient_field field,
+                                  struct gradient_errors *errors, struct error *error);
+
+/* Points along an axis in the quick checks, and the settings of a quick cloud. */
+struct clouds_settings gradient_study_cloud(enum clouds_kind kind, int dim);
+
+#endif
