@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "clones.h"
+#include "loop.h"
 
 #define BODY(function, shape, dim, attributes)                                                     \
     attributes static void function(const struct kernel *kernel, size_t n,                         \

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "kernel_loop.h"
-#include "clones.h"
+#include "loop.h"
 #include "matrix.h"
 
 #define OPERATOR(name, vectors, difference, corrected, label, paper)                               \
