@@ -1,0 +1,209 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The seed program's method on its own tube, digit by digit, through the same door as every command
+ * (case, settings, set-up, solver, norms); and the set-up of Riemann problems. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "check.h"
+#include "run.h"
+
+enum { ARGUMENTS_MAX = 16 };
+
+/* data/seed_program_crosscheck.csv of the project's notes: two independent implementations agree on
+ * these to 2e-11. N = 100, t = 0.1, particle means of |error| over |x| < 0.5. */
+struct line {
+    const char *formulation, *volume_element, *gradient;
+    double density, velocity, pressure;
+    int steps;
+};
+static const struct line lines[] = {
+    {"vanilla_ice", "mass", "standard", 1.8495472703e-02, 3.4089858947e-02, 2.2039566136e-02, 14},
+    {"vanilla_ice", "mass", "ia", 1.7918596219e-02, 3.1613422749e-02, 2.0133655106e-02, 14},
+    {"vanilla_ice", "energy", "standard", 2.2324966488e-02, 3.4746021206e-02, 2.2598274991e-02, 14},
+    {"lagrangian", "mass", "standard", 2.1228061988e-02, 3.7963554386e-02, 2.6464736833e-02, 15},
+    {"lagrangian", "energy", "ia", 2.4564619304e-02, 4.2347535632e-02, 2.9793232353e-02, 15},
+};
+enum { LINES = sizeof lines / sizeof *lines };
+
+/* Runs a case; NULL-terminated KEY=VALUE arguments. False after noting the failure. */
+static bool execute(struct check_run *run, const char *name, const char *const *arguments,
+                    struct run_result *result)
+{
+    static struct run_settings settings;
+    struct error error = {0};
+    char *list[ARGUMENTS_MAX];
+    int n = 0;
+    for (; arguments[n]; n++) list[n] = (char *)arguments[n];
+    enum status status = run_prepare(&settings, name, n, list, &error);
+    settings.threads = 1;
+    if (!status) status = run_execute(&settings, result, &error);
+    if (status == STATUS_OK) return true;
+    if (status == STATUS_BROKE_DOWN) run_free(result);
+    check_measure(run, 1, 0, 0, "%s: %s", name, error.message);
+    return false;
+}
+
+static void measure_line(struct check_run *run, const struct line *line, const char *changed)
+{
+    char text[3][64];
+    snprintf(text[0], sizeof text[0], "formulation=%s", line->formulation);
+    snprintf(text[1], sizeof text[1], "volume_element=%s", line->volume_element);
+    snprintf(text[2], sizeof text[2], "gradient=%s", line->gradient);
+    const char *arguments[ARGUMENTS_MAX] = {text[0],
+                                            text[1],
+                                            text[2],
+                                            "kernel=cubic_spline",
+                                            "eta=4.8",
+                                            "cfl=0.3",
+                                            "alpha=1",
+                                            "beta=2",
+                                            "viscosity=constant",
+                                            "energy=internal",
+                                            "h_tolerance=1e-13",
+                                            "n=100",
+                                            "t_end=0.1",
+                                            "integrator=modified_leapfrog"};
+    for (int i = 0; changed && arguments[i]; i++)
+        if (strncmp(arguments[i], changed, strcspn(changed, "=") + 1) == 0) arguments[i] = changed;
+    struct run_result result;
+    if (!execute(run, "sod_standard", arguments, &result)) return;
+    const double want[] = {line->density, line->velocity, line->pressure};
+    for (int f = 0; f < 3; f++) {
+        const double got = run_error(&result, (enum field)f, NORM_PARTICLE_MEAN);
+        check_measure(run, fabs(got / want[f] - 1), 1e-8, 1e-10, "%s %s %s: mean error of %s",
+                      line->formulation, line->volume_element, line->gradient,
+                      field_family.members[f]->name);
+    }
+    check_measure(run, fabs((double)result.cost.steps - line->steps), 0, 0, "%s %s %s: steps",
+                  line->formulation, line->volume_element, line->gradient);
+    run_free(&result);
+}
+
+static void measure_seed(struct check_run *run, const void *subject)
+{
+    for (int i = 0; i < LINES; i++) measure_line(run, &lines[i], subject);
+}
+
+static const struct check_mutant seed_mutants[] = {
+    {"seed_cfl", "CFL 0.31 for 0.3", "cfl=0.31"},
+    {"seed_eta", "eta off by 1e-6", "eta=4.8000048"},
+    {"seed_beta", "beta = alpha", "beta=1"},
+    {"seed_n", "one particle less", "n=99"},
+    {"seed_h_loose", "h iteration 1e-4, as loose as the seed program's", "h_tolerance=1e-4"},
+    {"seed_time", "exact solution of another time: t_end off by 1e-7", "t_end=0.1000001"},
+    {"seed_integrator", "leapfrog without the second evaluation", "integrator=leapfrog"},
+    {0},
+};
+
+const struct check check_hydro_seed = {
+    .group = "hydro",
+    .name = "seed_program",
+    .property = "errors of the seed program's method on its tube, as pinned by two other codes",
+    .measure = measure_seed,
+    .mutants = seed_mutants,
+};
+
+/* --- set-up ----------------------------------------------------------------------------------- */
+
+typedef void disturb_function(size_t n, double *x, double *m, double *u);
+
+struct setup_subject {
+    disturb_function *disturb; /* what the mutant does to the particles */
+};
+
+static void measure_setup_of(struct check_run *run, const char *name, size_t n,
+                             const struct setup_subject *subject)
+{
+    char number[32];
+    snprintf(number, sizeof number, "n=%zu", n);
+    const char *arguments[] = {number, "t_end=0", NULL};
+    struct run_result result;
+    if (!execute(run, name, arguments, &result)) return;
+    const struct snapshot *s = &result.snapshot;
+    double x[1000], m[1000], u[1000];
+    for (size_t i = 0; i < s->n; i++) x[i] = s->x[0][i], m[i] = s->m[i], u[i] = s->u[i];
+    if (subject) subject->disturb(s->n, x, m, u);
+
+    const double *left = result.settings.value[SETTING_left].real;
+    const double *right = result.settings.value[SETTING_right].real;
+    const double gamma = settings_real(&result.settings, SETTING_gamma);
+    const double want_left = round((double)n * left[0] / (left[0] + right[0]));
+    double count = 0, place = 0, mass = 0, energy = 0, order = 0;
+    for (size_t i = 0; i < s->n; i++) count += x[i] < 0;
+    for (size_t i = 0; i < s->n; i++) {
+        const bool on_left = x[i] < 0;
+        const double *state = on_left ? left : right;
+        const double share = on_left ? count : (double)s->n - count;
+        const double k = on_left ? (double)i : (double)i - count;
+        place = fmax(place, fabs(x[i] - ((on_left ? -1 : 0) + (k + 0.5) / share)));
+        mass = fmax(mass, fabs(m[i] * share / state[0] - 1));
+        energy = fmax(energy, fabs(u[i] * (gamma - 1) * state[0] / state[2] - 1));
+        if (i > 0 && !(x[i] > x[i - 1])) order++;
+    }
+    check_measure(run, fabs((double)s->n - (double)n), 0, 0, "%s n %zu: particles", name, n);
+    check_measure(run, fabs(count - want_left), 0, 0, "%s n %zu: particles left of the jump", name,
+                  n);
+    check_measure(run, place, 1e-14, 4e-16, "%s n %zu: centred in their cells", name, n);
+    check_measure(run, mass, 1e-13, 2e-15, "%s n %zu: masses", name, n);
+    check_measure(run, energy, 1e-13, 2e-15, "%s n %zu: every side has its own state", name, n);
+    check_measure(run, order, 0, 0, "%s n %zu: in order", name, n);
+    run_free(&result);
+}
+
+static void measure_setup(struct check_run *run, const void *subject)
+{
+    static const char *const names[] = {"sod", "sod_standard", "lax"};
+    static const size_t numbers[] = {50, 99, 101, 450, 747};
+    for (size_t c = 0; c < sizeof names / sizeof *names; c++)
+        for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+            measure_setup_of(run, names[c], numbers[i], subject);
+}
+
+static void one_too_far(size_t n, double *x, double *m, double *u)
+{
+    (void)m;
+    size_t first = 0;
+    while (first < n && x[first] < 0) first++;
+    u[first - 1] = u[first];
+}
+
+static void ceil_for_round(size_t n, double *x, double *m, double *u)
+{
+    (void)m, (void)u, (void)n;
+    size_t first = 0;
+    while (x[first] < 0) first++;
+    x[first] = -1e-3;
+}
+
+static void on_cell_edges(size_t n, double *x, double *m, double *u)
+{
+    (void)m, (void)u;
+    for (size_t i = n; i-- > 1;) x[i] = 0.5 * (x[i] + x[i - 1]);
+}
+
+static void half_masses(size_t n, double *x, double *m, double *u)
+{
+    (void)u;
+    for (size_t i = 0; i < n; i++)
+        if (x[i] >= 0) m[i] *= 0.999999;
+}
+
+static const struct check_mutant setup_mutants[] = {
+    {"setup_one_too_far", "seed program: one particle with the right state inside the left gas",
+     &(struct setup_subject){one_too_far}},
+    {"setup_ceil", "seed program: ceil where round is meant",
+     &(struct setup_subject){ceil_for_round}},
+    {"setup_cell_edges", "particles on the edges of their cells",
+     &(struct setup_subject){on_cell_edges}},
+    {"setup_masses", "masses of one side off by 1e-6", &(struct setup_subject){half_masses}},
+    {0},
+};
+
+const struct check check_hydro_setup = {
+    .group = "hydro",
+    .name = "riemann_setup",
+    .property = "N_L = round(n rho_L/(rho_L + rho_R)), equal masses a side, centred, own state",
+    .measure = measure_setup,
+    .mutants = setup_mutants,
+};

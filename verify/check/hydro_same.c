@@ -1,0 +1,207 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Choices that must not change the answer: threads, stamped loops, left-out work. */
+#include <math.h>
+
+#include "check.h"
+#include "hydro_scene.h"
+#include "integrator.h"
+
+/* Two scenes, run for the same time; the largest difference of any state variable, relative to the
+ * largest value of it. */
+static double difference(const struct scene *a, const struct scene *b, double t_end,
+                         struct error *error)
+{
+    const struct scene *scenes[] = {a, b};
+    struct simulation *simulations[2] = {NULL, NULL};
+    struct snapshot s[2];
+    struct rates r[2];
+    double worst = (double)NAN;
+    for (int k = 0; k < 2; k++) {
+        if (simulation_create(scenes[k], &simulations[k], error)) goto done;
+        if (simulation_run(simulations[k], t_end, NULL, NULL, error)) goto done;
+        simulation_snapshot(simulations[k], &s[k]);
+        simulation_rates(simulations[k], &r[k]);
+    }
+    const double *const pairs[][2] = {
+        {s[0].x[0], s[1].x[0]},         {s[0].v[0], s[1].v[0]},    {s[0].u, s[1].u},
+        {s[0].rho, s[1].rho},           {s[0].h, s[1].h},          {s[0].P, s[1].P},
+        {r[0].force[0], r[1].force[0]}, {r[0].energy, r[1].energy}};
+    worst = r[0].time_step == r[1].time_step ? 0 : fabs(r[0].time_step / r[1].time_step - 1);
+    for (size_t f = 0; f < sizeof pairs / sizeof *pairs; f++) {
+        double error_here = 0, scale = 0;
+        for (size_t i = 0; i < s[0].n; i++) {
+            const double d = fabs(pairs[f][0][i] - pairs[f][1][i]);
+            if (!(d <= error_here)) error_here = d;
+            scale = fmax(scale, fabs(pairs[f][0][i]));
+        }
+        if (!(error_here == 0) && !(error_here / scale <= worst)) worst = error_here / scale;
+    }
+done:
+    simulation_destroy(simulations[0]);
+    simulation_destroy(simulations[1]);
+    return worst;
+}
+
+/* What is changed in the second scene beside what is measured. */
+typedef void spoiler(struct scene *scene, struct hydro_state *state);
+
+static void one_ulp(struct scene *scene, struct hydro_state *state)
+{
+    (void)scene;
+    state->u[state->n / 2] = nextafter(state->u[state->n / 2], 10);
+}
+
+static void one_ulp_mass(struct scene *scene, struct hydro_state *state)
+{
+    (void)scene;
+    state->m[0] = nextafter(state->m[0], 10);
+}
+
+static void ia_for_standard(struct scene *scene, struct hydro_state *state)
+{
+    (void)state;
+    scene->scheme.gradient = !scene->scheme.gradient;
+}
+
+static void swapped_kernel(struct scene *scene, struct hydro_state *state)
+{
+    (void)state;
+    const double eta = scene->scheme.eta;
+    const bool cubic = scene->scheme.kernel.w == hydro_scheme().kernel.w;
+    hydro_set_kernel(&scene->scheme, cubic ? "quadratic_spline" : "cubic_spline");
+    scene->scheme.eta = eta;
+}
+
+static void swapped_forms(struct scene *scene, struct hydro_state *state)
+{
+    (void)state;
+    if (scene->scheme.formulation == FORMULATION_VANILLA_ICE)
+        scene->scheme.pair_width = scene->scheme.pair_width == PAIR_MAX ? PAIR_MEAN : PAIR_MAX;
+}
+
+struct same_subject {
+    spoiler *spoil;
+};
+static const struct same_subject with_one_ulp = {one_ulp}, with_one_ulp_mass = {one_ulp_mass},
+                                 with_other_gradient = {ia_for_standard},
+                                 with_swapped_kernel = {swapped_kernel},
+                                 with_swapped_forms = {swapped_forms};
+
+static void compare(struct check_run *run, const struct same_subject *subject,
+                    const struct scheme *scheme, const struct hydro_state *state, int threads,
+                    bool unstamped, bool skip, double t_end, double bound, const char *what)
+{
+    static struct hydro_state other;
+    struct error error = {0};
+    char where[HYDRO_TEXT];
+    other = *state;
+    const struct scene first = hydro_scene(state, scheme);
+    struct scene second = hydro_scene(&other, scheme);
+    second.threads = threads;
+    second.unstamped = unstamped;
+    second.skip = skip;
+    if (subject) subject->spoil(&second, &other);
+    hydro_describe(scheme, where);
+    check_measure(run, difference(&first, &second, t_end, &error), bound, 0, "%s, %s%s%s", what,
+                  where, error.message[0] ? ": " : "", error.message);
+}
+
+static void measure_threads(struct check_run *run, const void *subject)
+{
+    static struct hydro_state state;
+    const struct scheme standard = hydro_scheme();
+    struct scheme fancy = standard;
+    fancy.gradient = GRADIENT_IA;
+    fancy.formulation = FORMULATION_LAGRANGIAN;
+    fancy.volume_element = VOLUME_ENERGY;
+    fancy.viscosity = VISCOSITY_RECONSTRUCTED;
+    fancy.integrator = hydro_integrator("predicted_midpoint");
+    fancy.energy = ENERGY_TOTAL;
+    hydro_disordered(&state, 1777);
+    for (int threads = 2; threads <= 7; threads += 5) {
+        compare(run, subject, &standard, &state, threads, false, false, 2e-4, 0, "n 1777");
+        compare(run, subject, &fancy, &state, threads, false, false, 2e-4, 0, "n 1777");
+    }
+}
+
+static const struct check_mutant threads_mutants[] = {
+    {"same_one_ulp", "one particle's energy differs in its last bit", &with_one_ulp},
+    {"same_one_ulp_mass", "one particle's mass differs in its last bit", &with_one_ulp_mass},
+    {0},
+};
+
+const struct check check_hydro_threads = {
+    .group = "hydro",
+    .name = "threads",
+    .property = "the same bits with 1, 2 and 7 threads",
+    .measure = measure_threads,
+    .mutants = threads_mutants,
+};
+
+static void measure_skip(struct check_run *run, const void *subject)
+{
+    static struct hydro_state state;
+    struct scheme scheme = hydro_scheme();
+    hydro_tube(&state, 450);
+    compare(run, subject, &scheme, &state, 1, false, true, 0.05, 1e-11, "skip");
+    hydro_set_kernel(&scheme, "quadratic_spline");
+    scheme.integrator = hydro_integrator("predicted_midpoint");
+    scheme.energy = ENERGY_TOTAL;
+    scheme.cfl = 0.8 / scheme.eta;
+    compare(run, subject, &scheme, &state, 1, false, true, 0.05, 1e-11, "skip");
+    scheme.h_method = H_PREDICTED;
+    scheme.pair_width = PAIR_MAX;
+    compare(run, subject, &scheme, &state, 1, false, true, 0.05, 1e-9, "skip");
+}
+
+static const struct check_mutant skip_mutants[] = {
+    {"skip_changes_gradient", "another gradient where work is left out", &with_other_gradient},
+    {"skip_changes_kernel", "another kernel where work is left out", &with_swapped_kernel},
+    {0},
+};
+
+const struct check check_hydro_skip = {
+    .group = "hydro",
+    .name = "skip",
+    .property = "the same answer, to round-off, with and without leaving out idle particles",
+    .measure = measure_skip,
+    .mutants = skip_mutants,
+};
+
+/* Every entry of the tables of stamped loops: kernel x gradient x form, formulation x viscosity x
+ * energy, and what the volume element adds to the density sum. */
+static void measure_stamped(struct check_run *run, const void *subject)
+{
+    static struct hydro_state state;
+    struct error error;
+    hydro_disordered(&state, 150);
+    for (size_t k = 0; k < kernel_family.n; k++)
+        for (int c = 0; c < 2 * 2 * 2 * 2 * 3 * 4; c++) {
+            struct scheme s = hydro_scheme();
+            s.h_tolerance = 1e-10;
+            hydro_set_kernel(&s, kernel_family.members[k]->name);
+            s.gradient = c & 1 ? GRADIENT_IA : GRADIENT_STANDARD;
+            s.formulation = c & 2 ? FORMULATION_LAGRANGIAN : FORMULATION_VANILLA_ICE;
+            s.volume_element = c & 4 ? VOLUME_ENERGY : VOLUME_MASS;
+            s.energy = c & 8 ? ENERGY_TOTAL : ENERGY_INTERNAL;
+            s.pair_width = (enum pair_width)((c >> 4) % 3);
+            s.viscosity = (enum viscosity)((c >> 4) / 3);
+            if (scheme_check(&s, 1, &error)) continue;
+            compare(run, subject, &s, &state, 1, true, false, 1e-4, 1e-12, "unstamped");
+        }
+}
+
+static const struct check_mutant stamped_mutants[] = {
+    {"stamp_gradients_swapped", "the stamps of standard and ia exchanged", &with_other_gradient},
+    {"stamp_kernel_swapped", "one kernel's stamp in the others' places", &with_swapped_kernel},
+    {"stamp_form_swapped", "the stamp of width max in the place of mean", &with_swapped_forms},
+    {0},
+};
+
+const struct check check_hydro_stamped = {
+    .group = "hydro",
+    .name = "stamped",
+    .property = "stamped loops = unstamped loops, for every entry of every table",
+    .measure = measure_stamped,
+    .mutants = stamped_mutants,
+};

@@ -1,0 +1,214 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Whole runs over a few natural time steps, with particles that cross the ends of the box, against
+ * the oracle: every integrator, each with its own choice of time steps, and the last ones cut. */
+#include <math.h>
+
+#include "check.h"
+#include "hydro_scene.h"
+#include "integrator.h"
+#include "oracle.h"
+
+enum { PARTICLES = 34, STEPS = 5, SUBJECTS_MAX = 64 };
+
+struct steps_subject {
+    struct scheme scheme;
+    double part; /* t_end = (STEPS + part) first steps */
+    void (*spoil)(struct scene *scene);
+};
+
+static struct steps_subject subjects[SUBJECTS_MAX];
+static size_t subject_total;
+
+static size_t subject_count(void)
+{
+    if (subject_total) return subject_total;
+    for (size_t i = 0; i < integrator_family.n; i++)
+        for (int c = 0; c < 6; c++) {
+            struct scheme s = hydro_scheme();
+            s.integrator = (const struct integrator *)integrator_family.members[i];
+            s.cfl = s.integrator->cfl_per_width ? 0.4 : s.integrator->cfl;
+            s.viscosity = c % 3 == 0 ? VISCOSITY_TIME_DEPENDENT : VISCOSITY_CONSTANT;
+            s.energy = c % 2 ? ENERGY_TOTAL : ENERGY_INTERNAL;
+            if (c == 2 || c == 3) s.gradient = GRADIENT_IA;
+            if (c >= 4) {
+                s.formulation = FORMULATION_LAGRANGIAN;
+                s.volume_element = c == 5 ? VOLUME_ENERGY : VOLUME_MASS;
+            }
+            subjects[subject_total++] = (struct steps_subject){s, c % 2 ? 0.3 : 0.8, NULL};
+        }
+    return subject_total;
+}
+
+static const void *subject_at(size_t i)
+{
+    return &subjects[i];
+}
+
+/* The largest difference over the particles. */
+static void widen(double *error, long double difference)
+{
+    if (!(fabsl(difference) <= *error)) *error = (double)fabsl(difference);
+}
+
+static void judge(struct check_run *run, const struct simulation *simulation,
+                  const struct oracle *oracle, const char *where)
+{
+    struct snapshot got;
+    struct rates rates;
+    struct simulation_cost cost;
+    double x = 0, v = 0, u = 0, rho = 0, alpha = 0;
+    const long double kinetic = oracle->scheme.energy == ENERGY_TOTAL ? 0.5L : 0;
+    simulation_snapshot(simulation, &got);
+    simulation_rates(simulation, &rates);
+    simulation_cost(simulation, &cost);
+    for (size_t i = 0; i < got.n; i++) {
+        const struct oracle_particle *want = &oracle->particles[got.id[i]];
+        const long double away = got.x[0][i] - want->x;
+        widen(&x, away - oracle->period * roundl(away / oracle->period));
+        widen(&v, got.v[0][i] - want->p / want->m);
+        widen(&u, got.u[i] - (want->e - kinetic * want->p * want->p / want->m) / want->m);
+        widen(&rho, got.rho[i] - want->rho);
+        if (rates.alpha) widen(&alpha, rates.alpha[i] - want->dalpha);
+    }
+    const double bound = 1e-11, floor = 2e-13;
+    check_measure(run, x, bound, floor, "position, %s", where);
+    check_measure(run, v, bound, floor, "velocity, %s", where);
+    check_measure(run, u, bound, floor, "internal energy, %s", where);
+    if (oracle->scheme.integrator->ends_evaluated)
+        check_measure(run, rho, 10 * bound, floor, "density, %s", where);
+    if (rates.alpha && oracle->scheme.integrator->ends_evaluated)
+        check_measure(run, alpha, 100 * bound, 10 * floor, "rate of alpha, %s", where);
+    check_measure(run, fabs((double)cost.steps - (double)oracle->steps), 0, 0,
+                  "number of steps (%zu), %s", oracle->steps, where);
+    check_measure(run, fabs(got.time - (double)oracle->time), 0, 0, "time, %s", where);
+}
+
+static void measure(struct check_run *run, const void *subject)
+{
+    const struct steps_subject *s = subject;
+    static struct hydro_state state;
+    hydro_disordered(&state, PARTICLES);
+    for (size_t i = 0; i < state.n; i++) /* to the left end, and through it */
+        state.v[i] = 0.3 * state.v[i] - (state.x[i] < state.lo + 0.1 ? 1.5 : 0.2);
+    struct scene scene = hydro_scene(&state, &s->scheme);
+    struct oracle oracle;
+    struct simulation *simulation = NULL;
+    struct error error = {0};
+    char where[HYDRO_TEXT];
+    hydro_describe(&s->scheme, where);
+    enum status status = oracle_create(&oracle, &scene, &error);
+    if (!status) {
+        status = oracle_evaluate(&oracle, &error);
+        const double t_end = (double)oracle_time_step(&oracle) * (STEPS + s->part);
+        if (!status) status = oracle_run(&oracle, t_end, &error);
+        if (s->spoil) s->spoil(&scene);
+        if (!status) status = simulation_create(&scene, &simulation, &error);
+        if (!status) status = simulation_run(simulation, t_end, NULL, NULL, &error);
+        if (!status) judge(run, simulation, &oracle, where);
+        simulation_destroy(simulation);
+        oracle_free(&oracle);
+    }
+    if (status) check_measure(run, 1, 0, 0, "%s: %s", where, error.message);
+}
+
+static struct integrator replaced;
+
+static void replace(struct scene *scene, const char *name)
+{
+    replaced = *scene->scheme.integrator;
+    replaced.step = hydro_integrator(name)->step;
+    scene->scheme.integrator = &replaced;
+}
+
+static void never_evaluated_again(struct scene *scene)
+{
+    replace(scene, "leapfrog");
+}
+
+static void heun_for_midpoint(struct scene *scene)
+{
+    replace(scene, "rk2");
+}
+
+static enum status long_step(struct simulation *simulation, double dt, struct error *error)
+{
+    return hydro_integrator("rk3")->step(simulation, dt * (1 + 1e-9), error);
+}
+
+static void step_too_long(struct scene *scene)
+{
+    replace(scene, "rk3");
+    replaced.step = long_step;
+}
+
+static void other_cfl(struct scene *scene)
+{
+    scene->scheme.cfl *= 1 + 1e-6;
+}
+
+static void alpha_stands_still(struct scene *scene)
+{
+    scene->scheme.viscosity = VISCOSITY_CONSTANT;
+    scene->scheme.alpha = scene->scheme.alpha_min;
+    scene->scheme.beta = 2 * scene->scheme.alpha;
+}
+
+static void alpha_max_float(struct scene *scene)
+{
+    scene->scheme.alpha_max = (double)1.49999F;
+}
+
+static void predicted_h(struct scene *scene)
+{
+    scene->scheme.h_method = H_PREDICTED;
+}
+
+/* Mutants: integrator of the right run, viscosity, what the solver gets instead. */
+static const struct fault {
+    const char *integrator;
+    enum viscosity viscosity;
+    void (*spoil)(struct scene *scene);
+} faults[] = {
+    {"modified_leapfrog", VISCOSITY_CONSTANT, never_evaluated_again},
+    {"vl2", VISCOSITY_CONSTANT, heun_for_midpoint},
+    {"rk3", VISCOSITY_CONSTANT, step_too_long},
+    {"rk2", VISCOSITY_CONSTANT, other_cfl},
+    {"symplectic_euler", VISCOSITY_TIME_DEPENDENT, alpha_stands_still},
+    {"rk2", VISCOSITY_TIME_DEPENDENT, alpha_max_float},
+    {"leapfrog", VISCOSITY_CONSTANT, predicted_h},
+};
+
+static void measure_any(struct check_run *run, const void *subject)
+{
+    const struct fault *fault = subject;
+    struct steps_subject mutant = {hydro_scheme(), 0.3, NULL};
+    if (fault >= faults && fault < faults + sizeof faults / sizeof *faults) {
+        mutant.scheme.integrator = hydro_integrator(fault->integrator);
+        mutant.scheme.viscosity = fault->viscosity;
+        mutant.scheme.cfl = mutant.scheme.integrator->cfl;
+        mutant.spoil = fault->spoil;
+        subject = &mutant;
+    }
+    measure(run, subject);
+}
+
+static const struct check_mutant mutants[] = {
+    {"hydro_no_second_evaluation", "leapfrog where modified_leapfrog is asked for", &faults[0]},
+    {"hydro_heun_for_vl2", "rk2 where vl2 is asked for", &faults[1]},
+    {"hydro_step_too_long", "every step too long by 1e-9", &faults[2]},
+    {"hydro_cfl", "cfl too large by 1e-6", &faults[3]},
+    {"hydro_alpha_constant", "alpha does not evolve", &faults[4]},
+    {"hydro_alpha_max", "alpha_max off in the sixth digit", &faults[5]},
+    {"hydro_h_predicted", "h predicted where Newton is asked for", &faults[6]},
+    {0},
+};
+
+const struct check check_hydro_steps = {
+    .group = "hydro",
+    .name = "time_stepping",
+    .property = "x, v, u and the number of steps equal the oracle's after some natural steps",
+    .subject_count = subject_count,
+    .subject = subject_at,
+    .measure = measure_any,
+    .mutants = mutants,
+};
