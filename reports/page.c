@@ -53,6 +53,15 @@ void page_plot(struct page_writer *writer, const struct plot *plot, const char *
     keep(writer->page, to, plot->name, "dat", data);
 }
 
+void page_plot_name(char *name, size_t size, const char *case_name, const char *what)
+{
+    snprintf(name, size, "%.60s-%s", case_name, what);
+    for (char *c = name; *c; c++)
+        if (!strchr("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-", *c))
+            *c = '_';
+    if (*name == '_' || *name == '-' || (*name >= '0' && *name <= '9')) *name = 'c';
+}
+
 static void tile(struct buffer *to, const char *label, double good, double all, const char *anchor)
 {
     if (!(all > 0)) return;
@@ -68,7 +77,9 @@ static void head(struct buffer *to, const json_t *results, const json_t *verdict
                    "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>"
                    "<meta name=\"color-scheme\" content=\"light dark\"/><title>sphproof: ");
     buffer_escape(to, html_string(verdict, "headline"));
-    buffer_format(to, "</title><style>%s%s</style></head><body>\n", page_style, plot_css());
+    buffer_add(to, "</title><style>");
+    for (size_t k = 0; page_styles[k]; k++) buffer_add(to, page_styles[k]);
+    buffer_format(to, "%s</style></head><body>\n", plot_css());
     buffer_format(to, "<header class=\"%s\"><p class=\"kind\">sphproof %s report</p><h1>",
                   well ? "well" : "unwell", html_string(results, "mode"));
     buffer_escape(to, html_string(verdict, "headline"));
@@ -169,6 +180,7 @@ int page_make(struct page *page, const json_t *results)
                        " <a href=\"#detection\">Detection</a>");
     buffer_add(to, " <a href=\"#environment\">Environment</a></nav>\n<main>\n");
     failures(to, verdict);
+    page_overview(&writer, results);
     page_cases(&writer, results);
     if (gradients) page_gradients(&writer, gradients);
     if (kernels) page_kernels(&writer, kernels);

@@ -7,6 +7,8 @@
 #include "page.h"
 #include "plot.h"
 
+enum { PAGE_SCHEMES = PLOT_COLORS }; /* of one case, at most */
+
 struct page_writer {
     struct buffer to;
     struct page *page;
@@ -15,12 +17,23 @@ struct page_writer {
 /* Draws and inlines a plot as <figure>; keeps its sources for beside the page. */
 void page_plot(struct page_writer *writer, const struct plot *plot, const char *caption);
 
+/* "CASE-WHAT" as a plot's name: what is not allowed there becomes '_'. */
+void page_plot_name(char *name, size_t size, const char *case_name, const char *what);
+
+/* The entry of a converge document for a field and a norm, or NULL. */
+const json_t *page_order(const json_t *study, const char *field, const char *norm);
+
+/* Plot and tables of the studies of one case. */
+void page_convergence(struct page_writer *writer, const char *case_name,
+                      const json_t *const *documents, size_t count);
+
+void page_overview(struct page_writer *writer, const json_t *results);
 void page_cases(struct page_writer *writer, const json_t *results);
 void page_gradients(struct page_writer *writer, const json_t *gradients);
 void page_kernels(struct page_writer *writer, const json_t *kernels);
 void page_checks(struct page_writer *writer, const json_t *verify);
 void page_detection(struct page_writer *writer, const json_t *verify);
 
-extern const char *const page_style;
+extern const char *const page_styles[]; /* parts of the style sheet; ends with NULL */
 
 #endif

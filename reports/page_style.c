@@ -7,7 +7,7 @@
     "--paper:#14171b;--card:#1b1f25;--ink:#e6e8eb;--dim:#9aa2ad;--line:#30363e;--good:#3ddc97;"    \
     "--bad:#ff8080;--link:#7cc4ff;--good-card:#12291f;--bad-card:#341c1e;"
 
-const char *const page_style =
+const char *const page_styles[] = {
     ":root{color-scheme:light dark;--paper:#fff;--card:#f6f7f9;--ink:#1b1f24;--dim:#5c6570;"
     "--line:#d9dde3;--good:#0a7d4f;--bad:#c0232c;--link:#0b5cad;--good-card:#e8f6ef;"
     "--bad-card:#fdecec}"
@@ -49,9 +49,12 @@ const char *const page_style =
     "th,td{text-align:left;padding:4px 16px 4px 0;border-bottom:1px solid var(--line);"
     "vertical-align:top}"
     "thead th{color:var(--dim);font-weight:600;vertical-align:bottom}"
-    ".n{text-align:right;white-space:nowrap}td:last-child,th:last-child{padding-right:2px}"
+    ".n{text-align:right;white-space:nowrap}td:last-child,th:last-child{padding-right:2px}",
+    "tr.total>*{border-top:2px solid var(--line);font-weight:600}tbody th{text-align:right;"
+    "color:var(--dim)}table.facts th{text-align:left}"
     "table.facts th{color:var(--dim);font-weight:600;white-space:nowrap}"
-    "code{font:.88em/1.4 ui-monospace,'DejaVu Sans Mono',Menlo,Consolas,monospace}"
+    "td code{white-space:nowrap}code{font:.88em/1.4 ui-monospace,'DejaVu Sans "
+    "Mono',Menlo,Consolas,monospace}"
     ".command{margin:.3em 0;font-size:.9rem;max-width:none}.command span{color:var(--dim)}"
     ".command code{background:var(--card);border:1px solid var(--line);border-radius:5px;"
     "padding:1px 7px;overflow-wrap:anywhere;-webkit-box-decoration-break:clone;"
@@ -72,4 +75,5 @@ const char *const page_style =
     "padding-right:14px}h1{font-size:1.9rem}.tiles{grid-template-columns:1fr 1fr;gap:8px}"
     ".tile{padding:8px 10px}.margin{width:60px}}"
     "@media print{nav{display:none}body{font-size:10pt}figure,tr,li{break-inside:avoid}"
-    "h2,h3{break-after:avoid}.figures{grid-template-columns:1fr 1fr}.scroll{overflow:visible}}\n";
+    "h2,h3{break-after:avoid}.figures{grid-template-columns:1fr 1fr}.scroll{overflow:visible}}\n",
+    NULL};

@@ -71,10 +71,9 @@ static void kernel_row(struct buffer *to, const json_t *kernel)
     buffer_add(to, "<tr>");
     html_cell_code(to, html_string(kernel, "kernel"));
     html_cell_number(to, html_member(kernel, "dim"));
-    flat_cell(to, json_object_get(kernel, "class"));
-    const json_t *normalisation = json_object_get(kernel, "normalisation");
-    html_cell_number(to, json_is_object(normalisation) ? html_member(normalisation, "error")
-                                                       : html_real(normalisation));
+    buffer_format(to, "<td>C%.0f</td>", html_member(kernel, "class"));
+    html_cell_number(to, fabs(1 - html_member(kernel, "normalisation")));
+    html_cell_number(to, html_member2(kernel, "moments", "sigma"));
     const json_t *fourier = json_object_get(kernel, "fourier");
     html_cell_number(to, html_member(fourier, "min"));
     const json_t *negative = json_object_get(fourier, "first_negative_k");
@@ -99,9 +98,10 @@ void page_kernels(struct page_writer *writer, const json_t *kernels)
                "<section id=\"kernels\"><h2>Kernel certificates</h2>\n<p>A kernel whose Fourier "
                "transform turns negative lets particles pair from some number of neighbours "
                "on; one that never does is safe at any.</p>\n");
-    html_table(to, "kernels",
-               "kernel|#dim|class|#normalisation|#least of the transform|#negative from kh|#hold||"
-               "certificate");
+    html_table(
+        to, "kernels",
+        "kernel|#dim|class|#1 − ∫W dV|#sigma/h|#least of the transform|#negative from kh|#hold||"
+        "certificate");
     json_array_foreach(kernels, i, kernel) kernel_row(to, kernel);
     html_table_end(to);
     buffer_add(to, "</section>\n");

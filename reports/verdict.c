@@ -107,6 +107,20 @@ static void judge_study(struct tally *tally, const json_t *study)
             fail(tally, "convergence", name.data, &detail, html_string(study, "reproduce"));
         buffer_free(&name);
     }
+    json_array_foreach(json_object_get(study, "floors"), i, order)
+    {
+        if (!*html_string(order, "suspicion")) continue;
+        struct buffer detail = {0};
+        buffer_format(&detail, "too good to be true: %s", html_string(order, "suspicion"));
+        fail(tally, "suspicion", html_string(study, "case"), &detail,
+             html_string(study, "reproduce"));
+    }
+    if (!strcmp(html_string(study, "status"), "broke_down")) {
+        struct buffer detail = {0};
+        buffer_format(&detail, "broke down: %s", html_string(study, "message"));
+        fail(tally, "convergence", html_string(study, "case"), &detail,
+             html_string(study, "reproduce"));
+    }
 }
 
 static void headline(struct buffer *to, bool checked, size_t failures)

@@ -157,7 +157,7 @@ static enum status compute_study(struct task *task)
     if (prepare(task, &settings, &task->error)) return task->error.status;
     if (task->scheme && !task->compared) settings.file.gate_count = 0;
     for (size_t i = 0; i < settings.file.gate_count && task->scheme; i++)
-        settings.file.gates[i].gate.bound *= 2;
+        settings.file.gates[i].gate.bound *= 3;
     size_t *ladder = settings.file.ladder, count = settings.file.ladder_count;
     char more[256] = "";
     if (task->nightly && count && count < CASE_LADDER_MAX) { /* one level more */
@@ -253,8 +253,11 @@ static size_t list_tasks(struct task *tasks, bool nightly)
     for (int c = 0; c < CASES; c++) {
         for (int s = 0; s < SCHEMES; s++) {
             if (tasks)
-                tasks[n] = (struct task){
-                    .kind = TASK_STUDY, .where = cases[c].name, .scheme = s, .weight = 1};
+                tasks[n] = (struct task){.kind = TASK_STUDY,
+                                         .where = cases[c].name,
+                                         .scheme = s,
+                                         .compared = cases[c].compared,
+                                         .weight = 1};
             n++;
         }
     }
