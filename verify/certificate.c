@@ -54,6 +54,7 @@ enum status certificate_measure(struct certificate *certificate, const struct ke
     measure_moments(&certificate->pieces, &certificate->moments);
     measure_class(&certificate->pieces, &certificate->class);
     measure_fourier(&certificate->spectrum, &certificate->fourier);
+    certificate->pairing = measure_pairing(kernel, dim);
     measure_lattices(certificate);
     for (size_t i = 0; i < property_count; i++) {
         struct certificate_sink context = {{take}, certificate, &property_list[i]};

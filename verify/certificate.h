@@ -28,7 +28,8 @@ struct certificate {
     struct measure_moments moments;
     struct measure_class class;
     struct measure_fourier fourier;
-    struct { /* lattice sums against width: multiples of the mean spacing */
+    double pairing; /* see measure_pairing */
+    struct {        /* lattice sums against width: multiples of the mean spacing */
         double eta, density, gradient;
     } lattice[CERTIFICATE_WIDTHS];
     int figure_count, failed;

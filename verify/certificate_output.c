@@ -31,11 +31,17 @@ static void print_measured(const struct certificate *c, double h, FILE *stream)
     fprintf(stream, "\n  %-28s least %.3g at k h = %.4g\n", "Fourier transform", c->fourier.least,
             c->fourier.least_at);
     if (isnan(c->fourier.first_negative))
-        fprintf(stream, "  %-28s none up to k h = %d: no pairing from the kernel\n",
-                "first negative wavenumber", MEASURE_KAPPA_MAX);
+        fprintf(stream, "  %-28s none up to k h = %d\n", "first negative wavenumber",
+                MEASURE_KAPPA_MAX);
     else
         fprintf(stream, "  %-28s k h = %.6g, k = %.6g\n", "first negative wavenumber",
                 c->fourier.first_negative, c->fourier.first_negative / h);
+    if (isnan(c->pairing))
+        fprintf(stream, "  %-28s at any number of neighbours up to %d\n", "safe from pairing",
+                MEASURE_NEIGHBOURS_MAX);
+    else
+        fprintf(stream, "  %-28s up to %.0f neighbours (eta %.3g)\n", "safe from pairing",
+                c->pairing, pow(c->pairing * dim / measure_sphere(dim), 1. / dim));
 }
 
 static void print_lattice(const struct certificate *c, FILE *stream)
@@ -166,6 +172,8 @@ void certificate_json(const struct certificate *c, double h, json_t *document)
                                   isnan(first) ? json_null() : result_number(first / h),
                                   "first_negative_kh",
                                   isnan(first) ? json_null() : result_number(first)));
+    json_object_set_new(document, "pairing_neighbours",
+                        isnan(c->pairing) ? json_null() : result_number(c->pairing));
     json_object_set_new(document, "self_term", result_number(kernel_value(kernel, 0, h, c->dim)));
     json_object_set_new(document, "least_eta", result_number(kernel_least_eta(kernel, c->dim)));
     json_object_set_new(document, "lattice", lattice_json(c));

@@ -6,6 +6,9 @@
 #include <string.h>
 #include <tgmath.h>
 
+#ifdef __clang__
+#pragma clang diagnostic ignored "-Wkeyword-macro"
+#endif
 #define double long double
 #define KERNEL(name, ...)
 #include "kernels.def"

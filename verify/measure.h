@@ -54,6 +54,13 @@ void measure_class(const struct pieces *pieces, struct measure_class *result);
 void measure_lattice(const struct kernel *kernel, int dim, double eta, double *density,
                      double *gradient);
 
+enum { MEASURE_NEIGHBOURS_MAX = 700 };
+
+/* Number of neighbours (volume of the support in units of a particle's) from which coincident pairs
+ * on the densest lattice have less energy than single particles; NaN: none up to
+ * MEASURE_NEIGHBOURS_MAX. Beyond it particles pair. */
+double measure_pairing(const struct kernel *kernel, int dim);
+
 struct measure_fourier {
     double least;          /* least transform for 0 < kappa <= MEASURE_KAPPA_MAX, W^(0) = 1 */
     double least_at;       /* its kappa */

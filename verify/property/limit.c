@@ -160,6 +160,11 @@ void property_lattice(const struct pieces *pieces, struct property_sink *sink)
         property_take(sink, fmax(fabs(density), fabs(gradient)), 20 * floor, floor,
                       "eta %g: exact width", m * unity);
     }
+    if (pieces->dim == 1 && kernel->default_eta > 0) {
+        measure_lattice(kernel, 1, kernel->default_eta, &density, &gradient);
+        property_take(sink, fmax(fabs(density), fabs(gradient)), 8e-3, floor,
+                      "eta %g: the default width", kernel->default_eta);
+    }
     /* many neighbours: the sums become integrals, with the order of the transform's decay */
     const int class = kernel->smoothness[pieces->dim];
     const double bound = 4 * pow(16, -1 - (class < 2 ? class : 2));

@@ -80,6 +80,8 @@ void property_self_term(const struct pieces *pieces, struct property_sink *sink)
         property_skip(sink, "class C0: the slope at the origin may be one-sided");
     else
         property_take(sink, slope, 16 * floor, floor, "dw(0)/max|dw|");
+    const double alone = kernel_value(kernel, 0, kernel_least_eta(kernel, dim), dim);
+    property_take(sink, fabs(alone - 1), 32 * floor, floor, "W(0) at the least eta against 1");
     property_take(sink, w0 > 0 && w0 <= DBL_MAX ? 0 : 1, 0, 0, "W(0) = %g must be positive", w0);
 }
 

@@ -1,0 +1,134 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Certificates against what is known of the kernels: exact second moments, sign and size of the
+ * transform (from an independent computation with exact rational arithmetic), class, onset of
+ * pairing (Dehnen & Aly 2012 and relaxation runs); and the numbers of `sphproof kernel --json`. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <jansson.h>
+
+#include "certificate.h"
+#include "near.h"
+
+static const char *program, *folder;
+
+struct known {
+    const char *name;
+    int dim, class;
+    double second;          /* sigma^2/h^2 */
+    double first[2], least; /* first negative kappa lies in there, least value; 0: none */
+    double pairs[2];        /* onset of pairing in neighbours, 0: none, -1: not asked */
+};
+
+static const struct known list[] = {
+    {"quadratic_spline", 1, 1, 1. / 9, {9.42, 9.43}, -1.0e-2, {-1, -1}},
+    {"cubic_spline", 1, 2, 1. / 12, {0, 0}, 0, {-1, -1}},
+    {"cubic_spline", 2, 2, 31. / 392, {11.25, 11.5}, -6.405e-4, {18, 22}},
+    {"cubic_spline", 3, 2, 3. / 40, {12.5, 12.75}, -5.991e-4, {50, 65}},
+    {"quartic_spline", 1, 3, 1. / 15, {15.5, 15.75}, -4.837e-4, {-1, -1}},
+    {"quartic_spline", 2, 3, 9759. / 152600, {20.75, 21}, -1.895e-4, {-1, -1}},
+    {"quartic_spline", 3, 3, 23. / 375, {22.25, 22.5}, -7.856e-5, {60, 70}},
+    {"quintic_spline", 1, 4, 1. / 18, {0, 0}, 0, {-1, -1}},
+    {"quintic_spline", 2, 4, 2771. / 51624, {16.5, 16.75}, -2.494e-5, {45, 64}},
+    {"quintic_spline", 3, 4, 7. / 135, {18.75, 19}, -2.149e-5, {185, 215}},
+    {"wendland_c2", 1, 2, 2. / 21, {0, 0}, 0, {0, 0}},
+    {"wendland_c2", 2, 2, 5. / 72, {0, 0}, 0, {0, 0}},
+    {"wendland_c2", 3, 2, 1. / 15, {0, 0}, 0, {0, 0}},
+    {"wendland_c4", 1, 4, 1. / 15, {0, 0}, 0, {0, 0}},
+    {"wendland_c4", 2, 4, 7. / 132, {0, 0}, 0, {0, 0}},
+    {"wendland_c4", 3, 4, 2. / 39, {0, 0}, 0, {0, 0}},
+    {"wendland_c6", 1, 6, 2. / 39, {0, 0}, 0, {0, 0}},
+    {"wendland_c6", 2, 6, 3. / 70, {0, 0}, 0, {0, 0}},
+    {"wendland_c6", 3, 6, 1. / 24, {0, 0}, 0, {0, 0}},
+    {"sinc", 1, 4, 0.053806, {14.5, 15.5}, -7e-5, {-1, -1}},
+};
+
+static void test_known(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof list / sizeof *list; i++) {
+        const struct known *known = &list[i];
+        struct kernel kernel;
+        struct certificate certificate;
+        assert_int_equal(kernel_select(&kernel, known->name, 5, NULL), STATUS_OK);
+        assert_int_equal(certificate_measure(&certificate, &kernel, known->dim, NULL), STATUS_OK);
+        print_message("%s, dim %d\n", known->name, known->dim);
+        assert_int_equal(certificate.failed, 0);
+        assert_int_equal(certificate.class.class, known->class);
+        near_relative(certificate.moments.second, known->second, kernel.order ? 1e-4 : 1e-14);
+        if (known->first[0] > 0) {
+            near_inside(certificate.fourier.first_negative, known->first[0], known->first[1]);
+            near_relative(certificate.fourier.least, known->least, 0.12);
+        } else {
+            assert_true(isnan(certificate.fourier.first_negative));
+            assert_true(certificate.fourier.least > -1e-13);
+        }
+        if (known->pairs[0] > 0)
+            near_inside(certificate.pairing, known->pairs[0], known->pairs[1]);
+        else if (known->pairs[0] == 0)
+            assert_true(isnan(certificate.pairing));
+        certificate_free(&certificate);
+    }
+}
+
+static double number(const json_t *object, const char *key)
+{
+    const json_t *value = json_object_get(object, key);
+    if (!json_is_number(value)) fail_msg("no number '%s'", key);
+    return json_number_value(value);
+}
+
+static void test_json(void **state)
+{
+    (void)state;
+    char path[4096], command[8192];
+    snprintf(path, sizeof path, "%s/certificate.json", folder);
+    snprintf(command, sizeof command,
+             "'%s' kernel wendland_c4 --dim 2 --h 0.25 --at 0.5,0,1,1.5 --json '%s' --quiet "
+             ">/dev/null",
+             program, path);
+    assert_int_equal(system(command), 0);
+    json_t *document = json_load_file(path, 0, NULL);
+    assert_non_null(document);
+    const json_t *values = json_object_get(document, "values");
+    assert_int_equal(json_array_size(values), 4);
+    static const double q[] = {0.5, 0, 1, 1.5};
+    struct kernel kernel;
+    assert_int_equal(kernel_select(&kernel, "wendland_c4", 5, NULL), STATUS_OK);
+    for (size_t i = 0; i < 4; i++) {
+        const json_t *value = json_array_get(values, i);
+        assert_true(number(value, "q") == q[i] && number(value, "r") == 0.25 * q[i]);
+        assert_true(number(value, "w") == kernel_value(&kernel, 0.25 * q[i], 0.25, 2));
+        assert_true(number(value, "dw_dr") == kernel_dr(&kernel, 0.25 * q[i], 0.25, 2));
+        assert_true(number(value, "dw_dh") == kernel_dh(&kernel, 0.25 * q[i], 0.25, 2));
+    }
+    assert_int_equal(json_integer_value(json_object_get(document, "class")), 4);
+    assert_string_equal(json_string_value(json_object_get(document, "kernel")), "wendland_c4");
+    near_relative(number(document, "normalisation"), 1, 1e-13);
+    near_relative(number(json_object_get(document, "moments"), "second_over_h2"), 7. / 132, 1e-13);
+    const json_t *fourier = json_object_get(document, "fourier");
+    assert_true(json_is_null(json_object_get(fourier, "first_negative_k")));
+    near_relative(number(fourier, "min"), 4.83e-11, 0.01);
+    assert_true(json_array_size(json_object_get(document, "checks")) > 40);
+    json_decref(document);
+}
+
+int main(int argc, char **argv)
+{
+    if (argc != 3) return 2;
+    program = argv[1];
+    folder = argv[2];
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_known),
+        cmocka_unit_test(test_json),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
