@@ -191,13 +191,14 @@ static const char *fault(double gamma, const struct riemann_state *left,
     return NULL;
 }
 
+/* Speeds may be NaN, for waves that do not exist. */
 static bool representable(const struct riemann_solution *s)
 {
-    const double all[] = {s->p_star,    s->rho_star_left, s->rho_star_right, s->v_star,
-                          s->left_head, s->left_tail,     s->right_tail,     s->right_head};
-    for (unsigned i = 0; i < sizeof all / sizeof *all; i++)
-        if (isinf(all[i])) return false;
-    return true;
+    const double speeds[] = {s->left_head, s->left_tail, s->right_tail, s->right_head};
+    for (unsigned i = 0; i < sizeof speeds / sizeof *speeds; i++)
+        if (isinf(speeds[i])) return false;
+    return isfinite(s->p_star) && isfinite(s->rho_star_left) && isfinite(s->rho_star_right) &&
+           (s->vacuum || isfinite(s->v_star));
 }
 
 const char *riemann_solve(double gamma, const struct riemann_state *left,

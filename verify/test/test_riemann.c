@@ -248,7 +248,8 @@ static void test_anything(void **state)
 {
     (void)state;
     gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
-    const double less = bound_of(1, 1 - 1e-12);
+    /* in double alone, 600 decades overflow inside */
+    const bool wide = bound_of(1, 0) > 0;
     int solved_count = 0;
     for (int i = 0; i < 100000; i++) {
         const double gamma =
@@ -262,11 +263,13 @@ static void test_anything(void **state)
         solved_count++;
         assert_true(s.p_star >= 0 && s.rho_star_left >= 0 && s.rho_star_right >= 0);
         assert_true(s.vacuum == (isnan(s.v_star) != 0) && s.vacuum == (isnan(s.contact) != 0));
-        if (!s.vacuum && s.left_wave) assert_true(in_order(s.left_head, s.left_tail, s.contact));
-        if (!s.vacuum && s.right_wave) assert_true(in_order(s.contact, s.right_tail, s.right_head));
-        if (s.left_wave == RIEMANN_SHOCK)
-            assert_true(s.p_star >= l.P * less && s.rho_star_left >= l.rho * less);
-        if (s.right_wave == RIEMANN_RAREFACTION) assert_true(s.p_star * less <= r.P);
+        if (wide && !s.vacuum && s.left_wave)
+            assert_true(in_order(s.left_head, s.left_tail, s.contact));
+        if (wide && !s.vacuum && s.right_wave)
+            assert_true(in_order(s.contact, s.right_tail, s.right_head));
+        if (wide && s.left_wave == RIEMANN_SHOCK)
+            assert_true(s.p_star >= l.P && s.rho_star_left >= l.rho);
+        if (wide && s.right_wave == RIEMANN_RAREFACTION) assert_true(s.p_star <= r.P);
         const double places[] = {anything(random), s.left_head, s.left_tail, s.right_tail,
                                  s.right_head};
         for (int k = 0; k < 5; k++) {
