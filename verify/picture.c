@@ -9,8 +9,8 @@ enum status picture_probe(const char *path, struct error *error)
 {
     enum plot_format format;
     if (!plot_format_of(path, &format))
-        return error_set(error, STATUS_BAD_INPUT,
-                         "plot '%.200s': allowed: a file that ends in .svg or .png", path);
+        return error_set(error, STATUS_BAD_INPUT, "--plot '%.150s': allowed: FILE.svg or FILE.png",
+                         path);
     return output_probe(path, error);
 }
 
@@ -22,7 +22,7 @@ enum status picture_write(const struct plot *plot, const char *path, struct erro
     size_t size;
     if (!plot_format_of(path, &format)) return picture_probe(path, error);
     if (plot_draw(plot, format, &bytes, &size, message, sizeof message) != PLOT_OK)
-        return error_set(error, STATUS_ENVIRONMENT, "plot '%.150s': %.250s", path, message);
+        return error_set(error, STATUS_ENVIRONMENT, "--plot '%.150s': %.250s", path, message);
     enum status status = output_open(&output, path, error);
     if (!status) {
         fwrite(bytes, 1, size, output.stream); /* output_close tells whether it worked */

@@ -9,7 +9,7 @@
 
 #include "command.h"
 #include "output.h"
-#include "plot.h"
+#include "picture.h"
 #include "progress.h"
 #include "result.h"
 #include "table.h"
@@ -125,16 +125,14 @@ static enum status draw(const struct run_settings *settings, const struct run_re
     struct profile profiles[FIELDS] = {0};
     struct plot_panel panels[FIELDS] = {0};
     size_t n = 0;
-    char title[256], message[300] = "no memory";
-    char *bytes = NULL;
-    size_t size = 0;
-    struct output output;
-    enum plot_format format;
-    enum plot_status drawn = PLOT_FAILED;
-    plot_format_of(path, &format);
+    char title[256];
+    enum status status = STATUS_OK;
     for (int field = 0; field < FIELDS; field++) {
         if (!settings->file.fields[field]) continue;
-        if (!profile_fill(&profiles[n], result, field)) goto end;
+        if (!profile_fill(&profiles[n], result, field)) {
+            status = error_set(error, STATUS_ENVIRONMENT, "--plot %.150s: no memory", path);
+            goto end;
+        }
         panels[n] = (struct plot_panel){.x_label = "x (code units)",
                                         .y_label = labels[field],
                                         .key = n ? PLOT_KEY_NONE : PLOT_KEY_TOP,
@@ -146,31 +144,20 @@ static enum status draw(const struct run_settings *settings, const struct run_re
              result->time);
     const struct plot plot = {
         .name = "run", .title = title, .show_title = true, .panels = panels, .panel_count = n};
-    drawn = plot_draw(&plot, format, &bytes, &size, message, sizeof message);
+    status = picture_write(&plot, path, error);
 end:
     for (size_t i = 0; i < FIELDS; i++) free(profiles[i].storage);
-    if (drawn != PLOT_OK)
-        return error_set(error, STATUS_ENVIRONMENT, "--plot %.150s: %s", path, message);
-    if (!output_open(&output, path, error)) {
-        fwrite(bytes, 1, size, output.stream);
-        output_close(&output, error);
-    }
-    free(bytes);
-    return error->status;
+    return status;
 }
 
 static enum status check_files(const struct options *options, struct error *error)
 {
     const char *plot = options_value(options, "plot");
     const char *snapshot = options_value(options, "snapshot");
-    enum plot_format format;
-    if (plot && !plot_format_of(plot, &format))
-        return error_set(error, STATUS_BAD_INPUT, "--plot '%.150s': allowed: FILE.svg or FILE.png",
-                         plot);
     if (snapshot && options->json && strcmp(snapshot, options->json) == 0)
         return error_set(error, STATUS_BAD_INPUT,
                          "--json and --snapshot name the same file '%.150s'", snapshot);
-    if (plot && output_probe(plot, error)) return error->status;
+    if (plot && picture_probe(plot, error)) return error->status;
     if (snapshot && output_probe(snapshot, error)) return error->status;
     return STATUS_OK;
 }
