@@ -3,12 +3,20 @@
 
 #include "loop.h"
 
+/* Position of the stamps that belong to a kernel; -1 for a plug-in, or anything that is not a
+ * built-in kernel but carries its name. */
+static int stamp_of(const struct kernel *kernel)
+{
+    const struct member *member = family_find(&kernel_family, kernel->member.name);
+    const struct kernel *built_in = (const struct kernel *)member;
+    const bool same = member && built_in->w == kernel->w && built_in->dw == kernel->dw;
+    return same ? family_index(&kernel_family, kernel->member.name) : -1;
+}
+
 void loops_choose(const struct scheme *scheme, bool stamped, struct loops *loops,
                   struct pair_numbers *numbers)
 {
-    const int kernel = stamped && !scheme->kernel.plugin_w
-                           ? family_index(&kernel_family, scheme->kernel.member.name)
-                           : -1;
+    const int kernel = stamped ? stamp_of(&scheme->kernel) : -1;
     const bool grad_h = scheme->formulation == FORMULATION_LAGRANGIAN;
     const bool energy_element = scheme->volume_element == VOLUME_ENERGY;
     const bool reconstruct = scheme->viscosity == VISCOSITY_RECONSTRUCTED;
