@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "loop.h"
+#include "range.h"
 #include "solver.h"
 
 #ifdef _OPENMP
@@ -58,92 +59,35 @@ static enum status restore_order(struct simulation *simulation, struct error *er
 /* v and U from p and e. */
 static enum status find_primitives(struct simulation *simulation, struct error *error)
 {
-    struct particles *a = &simulation->particles;
+    const struct particles *a = &simulation->particles;
     const double kinetic = simulation->scheme.energy == ENERGY_TOTAL ? 0.5 : 0;
-    const double *restrict p = a->p, *restrict e = a->e, *restrict m_inverse = a->m_inverse;
-    double *restrict v = a->v, *restrict U = a->U;
-    double unsound = 0;
-#pragma omp simd reduction(+ : unsound)
-    for (ptrdiff_t i = 0; i < a->n; i++) {
-        v[i] = p[i] * m_inverse[i];
-        U[i] = e[i] - kinetic * p[i] * v[i];
-        unsound += U[i] > 0 ? 0. : 1.;
-    }
-    for (ptrdiff_t i = 0; unsound > 0 && i < a->n; i++)
-        if (!(U[i] > 0)) return broke_down(simulation, i, "internal energy", U[i], error);
-    return STATUS_OK;
+    if (range_primitives(a, 0, a->n, kinetic) <= 0) return STATUS_OK;
+    ptrdiff_t i = 0;
+    while (a->U[i] > 0) i++;
+    return broke_down(simulation, i, "internal energy", a->U[i], error);
 }
 
 /* --- density and smoothing length ------------------------------------------------------------- */
 
 /* Raises the range's reach until it covers the widths h; false where that takes more ghosts than
  * are filled. */
-static bool cover(const struct simulation *simulation, struct range *range, const double *h)
+static bool cover(const struct simulation *simulation, struct range *range)
 {
-    const double *x = simulation->particles.x + range->first;
-    ptrdiff_t D = range->reach > 1 ? range->reach : 1;
-    for (;; D++) {
-        if (D + 1 > simulation->ghosts_filled) break;
-        int inside = 0;
-        for (int i = 0; i < range->len; i++)
-            inside |= (x[i + D + 1] - x[i] < h[i]) | (x[i] - x[i - D - 1] < h[i]);
-        if (!inside) break;
+    if (range->reach < 1) range->reach = 1;
+    while (range->reach + 1 <= simulation->ghosts_filled) {
+        if (range_inside(&simulation->particles, range->first, range->len, range->reach + 1) <= 0)
+            return true;
+        range->reach++;
     }
-    range->reach = D;
-    return D + 1 <= simulation->ghosts_filled;
+    return false;
 }
 
 /* Lowers a reach that has become larger than needed. */
 static void tighten(const struct simulation *simulation, struct range *range)
 {
-    const double *x = simulation->particles.x + range->first;
-    const double *h = simulation->particles.h + range->first;
-    while (range->reach > 1) {
-        const ptrdiff_t D = range->reach;
-        int inside = 0;
-        for (int i = 0; i < range->len; i++)
-            inside |= (x[i + D] - x[i] < h[i]) | (x[i] - x[i - D] < h[i]);
-        if (inside) break;
+    while (range->reach > 1 &&
+           range_inside(&simulation->particles, range->first, range->len, range->reach) <= 0)
         range->reach--;
-    }
-}
-
-/* Equation of state and what the pair loops need of it, from the sums of a range. */
-static void close_state(struct simulation *simulation, const struct range *range,
-                        const struct density_sums *sums)
-{
-    const struct particles *a = &simulation->particles;
-    const double constant = simulation->scheme.kernel.constant[1], gamma = simulation->gamma;
-    const bool energy_sum = simulation->plan.energy_sum, grad_h = simulation->plan.grad_h,
-               standard = simulation->scheme.gradient == GRADIENT_STANDARD;
-    const ptrdiff_t first = range->first;
-    const double *restrict m = a->m + first, *restrict U = a->U + first,
-                           *restrict h_inverse = a->h_inverse + first,
-                           *restrict m_inverse = a->m_inverse + first;
-    double *restrict rho_sum = a->rho_sum + first, *restrict y = a->y + first,
-                     *restrict V = a->V + first, *restrict rho = a->rho + first,
-                     *restrict P = a->P + first, *restrict c = a->c + first,
-                     *restrict g = a->g + first;
-#pragma omp simd
-    for (int i = 0; i < range->len; i++) {
-        const double scale = constant * h_inverse[i];
-        rho_sum[i] = scale * sums->m[i];
-        y[i] = energy_sum ? scale * sums->Z[i] : rho_sum[i];
-        V[i] = (energy_sum ? U[i] : m[i]) / y[i];
-        rho[i] = energy_sum ? m[i] / V[i] : y[i];
-        P[i] = (gamma - 1) * (energy_sum ? y[i] : y[i] * U[i] * m_inverse[i]);
-        c[i] = sqrt(gamma * (gamma - 1) * U[i] * m_inverse[i]);
-        if (standard) g[i] = scale * h_inverse[i];
-    }
-    if (!grad_h) return;
-    double *restrict factor = a->grad_h + first, *restrict b = a->b + first;
-    for (int i = 0; i < range->len; i++) {
-        /* h/rho drho/dh = -m_dh/m, so f = 1/(1 - m_dh/m); with the energy element
-         * f_ij = 1 - (m_j/Z_j) factor_i (Hopkins 2013), with the mass element f_i = 1 - factor_i */
-        const double dh = energy_sum ? sums->Z_dh[i] : sums->m_dh[i];
-        factor[i] = -dh / (sums->m[i] - sums->m_dh[i]);
-        b[i] = V[i] * P[i] / y[i];
-    }
 }
 
 /* h = eta m/rho(h) of a range: Newton inside a bracket; a particle that has converged keeps its h
@@ -164,7 +108,7 @@ static ptrdiff_t solve_range(struct simulation *simulation, struct range *range,
         h_inverse[i] = 1 / h[i];
     }
     for (int iteration = 0; iteration < NEWTON_MAX; iteration++) {
-        if (!cover(simulation, range, h)) return -2;
+        if (!cover(simulation, range)) return -2;
         simulation->loops.density_newton(&scheme->kernel, a, range->first, range->len, range->reach,
                                          h_inverse, sums);
         ptrdiff_t open = -1;
@@ -195,28 +139,18 @@ static ptrdiff_t solve_range(struct simulation *simulation, struct range *range,
     return -1;
 }
 
-/* One density sum at a predicted h: 1/h = rho/(eta m), extrapolated in time from the last two. */
+/* One density sum at a predicted h. Returns as solve_range does. */
 static ptrdiff_t sum_range(struct simulation *simulation, struct range *range,
                            struct density_sums *sums)
 {
     const struct particles *a = &simulation->particles;
     const struct scheme *scheme = &simulation->scheme;
-    double *restrict h = a->h + range->first, *restrict h_inverse = a->h_inverse + range->first,
-                     *restrict h_inverse_old = a->h_inverse_old + range->first;
-    const double ratio = simulation->predict_ratio;
-    double found[RANGE_MAX];
-    for (int i = 0; i < range->len; i++) {
-        const double now =
-            a->rho_sum[range->first + i] * a->m_inverse[range->first + i] / scheme->eta;
-        const double next = now + ratio * (now - h_inverse_old[i]);
-        found[i] = now;
-        h_inverse[i] = largest(0.5 * now, least(2 * now, next));
-        h[i] = 1 / h_inverse[i];
-    }
-    if (!cover(simulation, range, h)) return -2;
-    simulation->loops.density(&scheme->kernel, a, range->first, range->len, range->reach, h_inverse,
-                              sums);
-    for (int i = 0; i < range->len; i++) h_inverse_old[i] = found[i];
+    if (!range->predicted)
+        range_predict_width(a, range->first, range->len, scheme->eta, simulation->predict_ratio);
+    range->predicted = true;
+    if (!cover(simulation, range)) return -2;
+    simulation->loops.density(&scheme->kernel, a, range->first, range->len, range->reach,
+                              a->h_inverse + range->first, sums);
     return -1;
 }
 
@@ -260,7 +194,8 @@ static enum status find_density(struct simulation *simulation, bool newton, stru
                 } else if (result >= 0) {
                     failed = largest_index(failed, result);
                 } else {
-                    close_state(simulation, range, &sums);
+                    range_close(&simulation->particles, range->first, range->len, &simulation->plan,
+                                simulation->scheme.kernel.constant[1], simulation->gamma, &sums);
                     range->pending = false;
                 }
             }
@@ -300,17 +235,6 @@ static void count_work(struct simulation *simulation)
     simulation->cost.particle_updates += (uint64_t)simulation->particles.n;
 }
 
-static enum status find_nan(const struct simulation *simulation, struct error *error)
-{
-    const struct particles *a = &simulation->particles;
-    for (ptrdiff_t i = 0; i < a->n; i++) {
-        if (!isfinite(a->F[i])) return broke_down(simulation, i, "force", a->F[i], error);
-        if (!(a->h[i] / a->signal[i] >= 0))
-            return broke_down(simulation, i, "signal speed", a->signal[i], error);
-    }
-    return broke_down(simulation, 0, "time step", simulation->time_step, error);
-}
-
 /* --- the evaluations -------------------------------------------------------------------------- */
 
 /* Pairs reach as far as the wider of the two: the reach of a range for forces is the largest of all
@@ -342,7 +266,10 @@ static enum status prepare(struct simulation *simulation, bool newton, struct er
 {
     enum status status = restore_order(simulation, error);
     if (!status) status = find_primitives(simulation, error);
-    for (ptrdiff_t b = 0; b < simulation->range_count; b++) simulation->ranges[b].pending = true;
+    for (ptrdiff_t b = 0; b < simulation->range_count; b++) {
+        simulation->ranges[b].pending = true;
+        simulation->ranges[b].predicted = false;
+    }
     return status ? status : find_density(simulation, newton, error);
 }
 
@@ -366,20 +293,6 @@ static void fill_rate_ghosts(struct simulation *simulation, ptrdiff_t count)
         particles_fill_ghosts(a, a->b, count, 0);
         particles_fill_ghosts(a, a->grad_h, count, 0);
     }
-}
-
-/* The smallest time step of a range from its signal speeds. */
-static double range_time_step(const struct simulation *simulation, const struct range *range)
-{
-    const double *h = simulation->particles.h + range->first;
-    const double *signal = simulation->particles.signal + range->first;
-    double step = INFINITY;
-    for (int i = 0; i < range->len; i++) {
-        const double own = h[i] / signal[i];
-        step = own < step ? own : step;
-        if (own != own) step = -1; /* NaN: the caller names the particle */
-    }
-    return step < 0 ? step : simulation->scheme.cfl * step;
 }
 
 /* dalpha/dt = max(-div v, 0)(alpha_max - alpha) - (alpha - alpha_min)/tau, tau = h/(0.2 c). */
@@ -420,21 +333,20 @@ enum status evaluate_rates(struct simulation *simulation, struct error *error)
 
     const enum status scratch_status = reserve_scratch(simulation, reach, error);
     if (scratch_status) return scratch_status;
-    double time_step = INFINITY;
-#pragma omp parallel for schedule(static) num_threads(threads) reduction(min : time_step)
+    double rate = 0;
+#pragma omp parallel for schedule(static) num_threads(threads) reduction(max : rate)
     for (ptrdiff_t b = 0; b < count; b++) {
         struct range *range = &simulation->ranges[b];
         double *scratch = simulation->scratch + simulation->scratch_size * (size_t)thread_number();
         simulation->loops.force(&simulation->loops, &simulation->numbers, a, range->first,
                                 range->len, range->force_reach, scratch);
         if (simulation->plan.alpha) range_dalpha(simulation, range);
-        const double own = range_time_step(simulation, range);
-        time_step = own < time_step ? own : time_step;
+        rate = largest(range_rate(a, range->first, range->len), rate);
         if (simulation->cost.steps % 8 == 0) tighten(simulation, range);
     }
-    simulation->time_step = time_step;
+    simulation->time_step = simulation->scheme.cfl / rate;
     count_work(simulation);
-    return time_step < 0 ? find_nan(simulation, error) : STATUS_OK;
+    return STATUS_OK;
 }
 
 void evaluate_signal(struct simulation *simulation)
@@ -443,15 +355,12 @@ void evaluate_signal(struct simulation *simulation)
     for (ptrdiff_t i = 0; i < a->n; i++) a->v[i] = a->p[i] * a->m_inverse[i];
     const ptrdiff_t reach = find_force_reach(simulation);
     particles_fill_ghosts(a, a->v, reach + 1, 0);
-    double time_step = INFINITY;
-#pragma omp parallel for schedule(static) num_threads(threads_for(simulation))                     \
-    reduction(min                                                                                  \
-              : time_step)
+    double rate = 0;
+#pragma omp parallel for num_threads(threads_for(simulation)) reduction(max : rate)
     for (ptrdiff_t b = 0; b < simulation->range_count; b++) {
         const struct range *range = &simulation->ranges[b];
         loops_signal(a, range->first, range->len, range->force_reach);
-        const double own = range_time_step(simulation, range);
-        time_step = own < time_step ? own : time_step;
+        rate = largest(range_rate(a, range->first, range->len), rate);
     }
-    simulation->time_step = time_step;
+    simulation->time_step = simulation->scheme.cfl / rate;
 }

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "loop.h"
 #include "scheme.h"
 #include "solver.h"
 

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "range.h"
+
 enum { LINE = 8 }; /* doubles in a cache line */
 
 #define FIELD(name, meaning) +1
@@ -94,9 +96,8 @@ ptrdiff_t particles_sort(struct particles *particles)
 {
     const ptrdiff_t n = particles->n;
     double *x = particles->x, *x_old = particles->x_old;
-    ptrdiff_t crossed = 0;
-    for (ptrdiff_t i = 0; i + 1 < n; i++) crossed += !(x[i] <= x[i + 1]);
-    if (crossed == 0 && x[n - 1] <= x[0] + particles->period) return 0;
+    const double out_of_order = range_crossings(particles, 0, n - 1);
+    if (out_of_order <= 0 && x[n - 1] <= x[0] + particles->period) return 0;
     for (ptrdiff_t i = 0; i < n; i++)
         if (!isfinite(x[i])) return -1;
 
@@ -121,5 +122,5 @@ ptrdiff_t particles_sort(struct particles *particles)
 #undef FIELD
     for (ptrdiff_t i = 0; i < n; i++) particles->order[i] = particles->id[particles->order[i]];
     memcpy(particles->id, particles->order, (size_t)n * sizeof *particles->id);
-    return crossed ? crossed : 1;
+    return out_of_order > 0 ? (ptrdiff_t)out_of_order : 1;
 }

@@ -18,6 +18,7 @@ struct range {
     ptrdiff_t reach;       /* neighbour offsets that suffice for the particles' own h */
     ptrdiff_t force_reach; /* and for pairs within max(h_i, h_j) */
     bool pending;          /* density still to be found in this evaluation */
+    bool predicted;        /* widths of this evaluation are predicted */
 };
 
 struct simulation {

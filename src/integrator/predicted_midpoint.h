@@ -6,7 +6,7 @@
 #ifndef INTEGRATOR_PREDICTED_MIDPOINT_H
 #define INTEGRATOR_PREDICTED_MIDPOINT_H
 
-static void predict_midpoint(struct simulation *simulation, double dt)
+CLONES static void predict_midpoint(struct simulation *simulation, double dt)
 {
     struct particles *a = &simulation->particles;
     const double half = 0.5 * dt;
@@ -33,8 +33,8 @@ static void predict_midpoint(struct simulation *simulation, double dt)
     }
 }
 
-static enum status advance_from_midpoint(struct simulation *simulation, double dt,
-                                         struct error *error)
+/* Returns how many particles are left without internal energy. */
+CLONES static double advance_from_midpoint(struct simulation *simulation, double dt)
 {
     struct particles *a = &simulation->particles;
     const double kinetic = simulation->scheme.energy == ENERGY_TOTAL ? 0.5 : 0;
@@ -52,11 +52,17 @@ static enum status advance_from_midpoint(struct simulation *simulation, double d
     }
     if (simulation->plan.alpha)
         for (ptrdiff_t i = 0; i < a->n; i++) a->alpha[i] = a->alpha_old[i] + a->dalpha[i] * dt;
-    for (ptrdiff_t i = 0; unsound > 0 && i < a->n; i++) {
-        const double U = e[i] - kinetic * p[i] * p[i] * m_inverse[i];
+    return unsound;
+}
+
+static enum status name_unsound(const struct simulation *simulation, struct error *error)
+{
+    const struct particles *a = &simulation->particles;
+    const double kinetic = simulation->scheme.energy == ENERGY_TOTAL ? 0.5 : 0;
+    for (ptrdiff_t i = 0;; i++) {
+        const double U = a->e[i] - kinetic * a->p[i] * a->p[i] * a->m_inverse[i];
         if (!(U >= 0)) return broke_down(simulation, i, "internal energy", U, error);
     }
-    return STATUS_OK;
 }
 
 static enum status predicted_midpoint_step(struct simulation *simulation, double dt,
@@ -64,7 +70,8 @@ static enum status predicted_midpoint_step(struct simulation *simulation, double
 {
     predict_midpoint(simulation, dt);
     const enum status status = evaluate_rates(simulation, error);
-    return status ? status : advance_from_midpoint(simulation, dt, error);
+    if (status) return status;
+    return advance_from_midpoint(simulation, dt) > 0 ? name_unsound(simulation, error) : STATUS_OK;
 }
 
 #endif
