@@ -146,7 +146,7 @@ static ptrdiff_t sum_range(struct simulation *simulation, struct range *range,
     const struct particles *a = &simulation->particles;
     const struct scheme *scheme = &simulation->scheme;
     if (!range->predicted)
-        range_predict_width(a, range->first, range->len, scheme->eta, simulation->predict_ratio);
+        range_predict_width(a, range->first, range->len, simulation->predict_ratio);
     range->predicted = true;
     if (!cover(simulation, range)) return -2;
     simulation->loops.density(&scheme->kernel, a, range->first, range->len, range->reach,
@@ -172,6 +172,8 @@ static enum status fill_density_ghosts(struct simulation *simulation, ptrdiff_t 
 
 static enum status find_density(struct simulation *simulation, bool newton, struct error *error)
 {
+    const struct gas gas = {simulation->gamma, simulation->scheme.kernel.constant[1],
+                            simulation->scheme.eta};
     ptrdiff_t ghosts = 8;
     for (ptrdiff_t b = 0; b < simulation->range_count; b++)
         if (simulation->ranges[b].reach + 2 > ghosts) ghosts = simulation->ranges[b].reach + 2;
@@ -195,7 +197,7 @@ static enum status find_density(struct simulation *simulation, bool newton, stru
                     failed = largest_index(failed, result);
                 } else {
                     range_close(&simulation->particles, range->first, range->len, &simulation->plan,
-                                simulation->scheme.kernel.constant[1], simulation->gamma, &sums);
+                                &gas, &sums);
                     range->pending = false;
                 }
             }
@@ -264,8 +266,7 @@ static ptrdiff_t find_force_reach(struct simulation *simulation)
 
 static enum status prepare(struct simulation *simulation, bool newton, struct error *error)
 {
-    enum status status = restore_order(simulation, error);
-    if (!status) status = find_primitives(simulation, error);
+    const enum status status = restore_order(simulation, error);
     for (ptrdiff_t b = 0; b < simulation->range_count; b++) {
         simulation->ranges[b].pending = true;
         simulation->ranges[b].predicted = false;
@@ -275,16 +276,18 @@ static enum status prepare(struct simulation *simulation, bool newton, struct er
 
 enum status evaluate_state(struct simulation *simulation, struct error *error)
 {
-    return prepare(simulation, true, error);
+    const enum status status = find_primitives(simulation, error);
+    return status ? status : prepare(simulation, true, error);
 }
 
 static void fill_rate_ghosts(struct simulation *simulation, ptrdiff_t count)
 {
     const struct particles *a = &simulation->particles;
     const struct plan *plan = &simulation->plan;
-    double *const always[] = {a->v, a->h, a->h_inverse, a->V, a->P, a->c, a->g};
+    double *const always[] = {a->v, a->h, a->h_inverse, a->V, a->P, a->c};
     for (size_t k = 0; k < sizeof always / sizeof *always; k++)
         particles_fill_ghosts(a, always[k], count, 0);
+    if (plan->own_gradient) particles_fill_ghosts(a, a->g, count, 0);
     if (plan->viscosity) {
         particles_fill_ghosts(a, a->rho, count, 0);
         particles_fill_ghosts(a, a->alpha, count, 0);
@@ -309,12 +312,18 @@ static void range_dalpha(const struct simulation *simulation, const struct range
 
 enum status evaluate_rates(struct simulation *simulation, struct error *error)
 {
+    const enum status status = find_primitives(simulation, error);
+    return status ? status : evaluate_rates_of_primitives(simulation, error);
+}
+
+enum status evaluate_rates_of_primitives(struct simulation *simulation, struct error *error)
+{
     const bool newton = simulation->plan.newton || simulation->last_dt <= 0;
     const enum status status = prepare(simulation, newton, error);
     if (status) return status;
     const struct particles *a = &simulation->particles;
     if (newton && !simulation->plan.newton)
-        for (ptrdiff_t i = 0; i < a->n; i++) a->h_inverse_old[i] = a->h_inverse[i];
+        for (ptrdiff_t i = 0; i < a->n; i++) a->h_inverse_old[i] = a->h_inverse_found[i];
     const ptrdiff_t reach = find_force_reach(simulation);
     fill_rate_ghosts(simulation, reach + 1);
 

@@ -44,7 +44,8 @@ ALWAYS_INLINE void force_body(enum formulation formulation, enum pair_viscosity 
                               const struct pair_numbers *numbers, const struct particles *particles,
                               ptrdiff_t first, int len, ptrdiff_t D, double *scratch)
 {
-    const double beta = numbers->beta, beta_ratio = numbers->beta_ratio, near = numbers->near;
+    const double alpha_0 = numbers->alpha, beta_0 = numbers->beta, beta_ratio = numbers->beta_ratio,
+                 near = numbers->near;
     const ptrdiff_t strip = RANGE_MAX + D;
     double *restrict f = scratch, *restrict e_i = scratch + strip,
                      *restrict e_j = scratch + 2 * strip, *restrict s = scratch + 3 * strip,
@@ -94,9 +95,10 @@ ALWAYS_INLINE void force_body(enum formulation formulation, enum pair_viscosity 
                 /* mu = -t/D2, PI = (-alpha c mu + beta mu^2)/rho, with one division */
                 const double h_bar = 0.25 * (h[i] + h[j]);
                 const double t = h_bar * r * closing, D2 = r * r + 0.01 * (h_bar * h_bar);
-                const double alpha_bar = 0.5 * (alpha[i] + alpha[j]);
+                const bool varying = viscosity == PAIR_VARYING;
+                const double alpha_bar = varying ? 0.5 * (alpha[i] + alpha[j]) : alpha_0;
                 const double c_bar = 0.5 * (c[i] + c[j]), rho_bar = 0.5 * (rho[i] + rho[j]);
-                const double beta_bar = beta + beta_ratio * alpha_bar;
+                const double beta_bar = varying ? beta_ratio * alpha_bar : beta_0;
                 K = m[i] * m[j] * G_bar * t * (alpha_bar * c_bar * D2 + beta_bar * t) /
                     (D2 * D2 * rho_bar);
             }
@@ -132,7 +134,7 @@ ALWAYS_INLINE void force_body(enum formulation formulation, enum pair_viscosity 
 #define ENERGIES(X, f, v) X(f, v, ENERGY_INTERNAL) X(f, v, ENERGY_TOTAL)
 #define VISCOSITIES(X, f)                                                                          \
     ENERGIES(X, f, PAIR_INVISCID)                                                                  \
-    ENERGIES(X, f, PAIR_VISCOUS) ENERGIES(X, f, PAIR_RECONSTRUCTED)
+    ENERGIES(X, f, PAIR_UNIFORM) ENERGIES(X, f, PAIR_VARYING) ENERGIES(X, f, PAIR_RECONSTRUCTED)
 #define ALL(X) VISCOSITIES(X, FORMULATION_VANILLA_ICE) VISCOSITIES(X, FORMULATION_LAGRANGIAN)
 
 #define BODY(function, formulation, viscosity, energy, attributes)                                 \
@@ -147,7 +149,7 @@ ALWAYS_INLINE void force_body(enum formulation formulation, enum pair_viscosity 
 ALL(STAMP)
 
 #define ENTRY(f, v, e) [f][v][e] = force_##f##_##v##_##e,
-static force_loop *const stamped[2][3][2] = {ALL(ENTRY)};
+static force_loop *const stamped[2][4][2] = {ALL(ENTRY)};
 
 /* The unstamped body: every choice is looked up at run time. */
 static void unstamped(const struct loops *loops, const struct pair_numbers *numbers,

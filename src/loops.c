@@ -23,16 +23,17 @@ void loops_choose(const struct scheme *scheme, bool stamped, struct loops *loops
     const bool varies = scheme->viscosity == VISCOSITY_TIME_DEPENDENT;
     static const enum pair_gradient form_of_width[] = {PAIR_GRADIENT_MEAN, PAIR_GRADIENT_MAX,
                                                        PAIR_GRADIENT_HARMONIC};
+    static const enum pair_viscosity form_of_viscosity[] = {PAIR_INVISCID, PAIR_UNIFORM,
+                                                            PAIR_VARYING, PAIR_RECONSTRUCTED};
     *numbers = (struct pair_numbers){
         .kernel = &scheme->kernel,
         .formulation = scheme->formulation,
-        .viscosity = scheme->viscosity == VISCOSITY_NONE ? PAIR_INVISCID
-                     : reconstruct                       ? PAIR_RECONSTRUCTED
-                                                         : PAIR_VISCOUS,
+        .viscosity = form_of_viscosity[scheme->viscosity],
         .energy = scheme->energy,
         .energy_element = energy_element,
         .want_div_v = varies,
-        .beta = varies ? 0 : scheme->beta,
+        .alpha = scheme->alpha,
+        .beta = scheme->beta,
         .beta_ratio = !varies             ? 0
                       : scheme->alpha > 0 ? scheme->beta / scheme->alpha
                                           : 2,

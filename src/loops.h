@@ -58,7 +58,7 @@ typedef void gradient_loop(const struct kernel *kernel, const struct particles *
 /* --- dp/dt, de/dt, signal speed, div v ------------------------------------------------------- */
 
 /* Kinds of viscosity that stand inside the pair expression. */
-enum pair_viscosity { PAIR_INVISCID, PAIR_VISCOUS, PAIR_RECONSTRUCTED };
+enum pair_viscosity { PAIR_INVISCID, PAIR_UNIFORM, PAIR_VARYING, PAIR_RECONSTRUCTED };
 
 struct pair_numbers {
     const struct kernel *kernel;
@@ -67,9 +67,9 @@ struct pair_numbers {
     enum energy energy;
     bool energy_element; /* Z = U, else Z = m */
     bool want_div_v;     /* time-dependent viscosity */
-    double beta;         /* beta of a pair = beta + beta_ratio * mean alpha */
-    double beta_ratio;
-    double near; /* reconstruction: 1/eta, pairs closer than near * h are damped */
+    double alpha, beta;  /* PAIR_UNIFORM, PAIR_RECONSTRUCTED */
+    double beta_ratio;   /* PAIR_VARYING: beta/alpha, alpha the mean of the pair */
+    double near;         /* reconstruction: 1/eta, pairs closer than near * h are damped */
 };
 
 struct loops;

@@ -26,9 +26,8 @@
     FIELD(U, "internal energy")                                                                    \
     FIELD(h, "smoothing length = support radius")                                                  \
     FIELD(h_inverse, "1/h")                                                                        \
-    FIELD(h_inverse_old, "1/h that belonged to the last density sum")                              \
-    FIELD(rho_sum, "kernel sum of mass")                                                           \
-    FIELD(y, "kernel sum of the volume element")                                                   \
+    FIELD(h_inverse_found, "1/h = rho/(eta m) of the last density sum")                            \
+    FIELD(h_inverse_old, "and of the one before")                                                  \
     FIELD(grad_h, "1 - f of the grad-h factor")                                                    \
     FIELD(V, "volume Z/y")                                                                         \
     FIELD(rho, "density of the equation of state")                                                 \

@@ -15,6 +15,9 @@ struct plan plan_make(const struct scheme *scheme, bool skip)
         .energy_sum = scheme->volume_element == VOLUME_ENERGY,
         .grad_h = scheme->formulation == FORMULATION_LAGRANGIAN,
         .matrix = scheme->gradient == GRADIENT_IA,
+        .own_gradient =
+            scheme->gradient == GRADIENT_STANDARD &&
+            (scheme->pair_width == PAIR_MEAN || scheme->formulation == FORMULATION_LAGRANGIAN),
         .slope = scheme->viscosity == VISCOSITY_RECONSTRUCTED,
         .viscosity = scheme->viscosity != VISCOSITY_NONE,
         .alpha = scheme->viscosity == VISCOSITY_TIME_DEPENDENT,

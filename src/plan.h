@@ -9,15 +9,16 @@
 #include "scheme.h"
 
 struct plan {
-    bool newton;      /* h by Newton at every evaluation; else predicted */
-    bool energy_sum;  /* second kernel sum, of U */
-    bool grad_h;      /* grad-h factors */
-    bool matrix;      /* moment matrix of the Integral Approach */
-    bool slope;       /* linear_exact velocity gradient, for reconstruction */
-    bool viscosity;   /* artificial viscosity in the pair expression */
-    bool alpha;       /* evolution of alpha, with div v */
-    bool signal_pass; /* a pass of its own for the time step */
-    bool sleep;       /* leave out particles that no signal has reached */
+    bool newton;       /* h by Newton at every evaluation; else predicted */
+    bool energy_sum;   /* second kernel sum, of U */
+    bool grad_h;       /* grad-h factors */
+    bool matrix;       /* moment matrix of the Integral Approach */
+    bool own_gradient; /* standard gradients at each particle's own h */
+    bool slope;        /* linear_exact velocity gradient, for reconstruction */
+    bool viscosity;    /* artificial viscosity in the pair expression */
+    bool alpha;        /* evolution of alpha, with div v */
+    bool signal_pass;  /* a pass of its own for the time step */
+    bool sleep;        /* leave out particles that no signal has reached */
 };
 
 struct plan plan_make(const struct scheme *scheme, bool skip);

@@ -41,83 +41,80 @@ CLONES double range_inside(const struct particles *particles, ptrdiff_t first, i
 }
 
 CLONES void range_predict_width(const struct particles *particles, ptrdiff_t first, int len,
-                                double eta, double ratio)
+                                double ratio)
 {
-    const double *restrict rho = particles->rho_sum + first, *restrict m_inverse =
-                                                                 particles->m_inverse + first;
+    const double *restrict found = particles->h_inverse_found + first;
     double *restrict h = particles->h + first, *restrict h_inverse = particles->h_inverse + first,
                      *restrict last = particles->h_inverse_old + first;
-    const double eta_inverse = 1 / eta;
 #pragma omp simd
     for (int i = 0; i < len; i++) {
-        const double now = rho[i] * m_inverse[i] * eta_inverse;
-        const double next = now + ratio * (now - last[i]);
-        h_inverse[i] = largest(0.5 * now, least(2 * now, next));
+        const double next = found[i] + ratio * (found[i] - last[i]);
+        h_inverse[i] = largest(0.5 * found[i], least(2 * found[i], next));
         h[i] = 1 / h_inverse[i];
-        last[i] = now;
+        last[i] = found[i];
     }
 }
 
 ALWAYS_INLINE void close_body(const struct particles *particles, ptrdiff_t first, int len,
-                              bool energy_sum, bool standard, double constant, double gamma,
+                              bool energy_sum, bool own_gradient, const struct gas *gas,
                               const struct density_sums *restrict sums)
 {
     const double *restrict m = particles->m + first, *restrict U = particles->U + first,
                            *restrict h_inverse = particles->h_inverse + first,
                            *restrict m_inverse = particles->m_inverse + first;
-    double *restrict rho_sum = particles->rho_sum + first, *restrict y = particles->y + first,
-                     *restrict V = particles->V + first, *restrict rho = particles->rho + first,
-                     *restrict P = particles->P + first, *restrict c = particles->c + first,
-                     *restrict g = particles->g + first;
-    const double c2 = gamma * (gamma - 1);
+    double *restrict found = particles->h_inverse_found + first, *restrict V = particles->V + first,
+                     *restrict rho = particles->rho + first, *restrict P = particles->P + first,
+                     *restrict c = particles->c + first, *restrict g = particles->g + first;
+    const double constant = gas->constant, eta_inverse = 1 / gas->eta, gamma_1 = gas->gamma - 1;
 #pragma omp simd
     for (int i = 0; i < len; i++) {
         const double scale = constant * h_inverse[i], sum = scale * sums->m[i];
-        rho_sum[i] = sum;
+        const double u = U[i] * m_inverse[i];
+        found[i] = sum * m_inverse[i] * eta_inverse;
         if (energy_sum) {
-            y[i] = scale * sums->Z[i];
-            V[i] = U[i] / y[i];
+            const double y = scale * sums->Z[i];
+            V[i] = U[i] / y;
             rho[i] = m[i] / V[i];
-            P[i] = (gamma - 1) * y[i];
+            P[i] = gamma_1 * y;
         } else {
-            y[i] = sum;
             V[i] = m[i] / sum;
             rho[i] = sum;
-            P[i] = (gamma - 1) * sum * U[i] * m_inverse[i];
+            P[i] = gamma_1 * sum * u;
         }
-        c[i] = sqrt(c2 * U[i] * m_inverse[i]);
-        if (standard) g[i] = scale * h_inverse[i];
+        c[i] = sqrt(gas->gamma * gamma_1 * u);
+        if (own_gradient) g[i] = scale * h_inverse[i];
     }
 }
 
-CLONES static void close_mass(const struct particles *particles, ptrdiff_t first, int len,
-                              bool standard, double constant, double gamma,
-                              const struct density_sums *sums)
-{
-    if (standard)
-        close_body(particles, first, len, false, true, constant, gamma, sums);
-    else
-        close_body(particles, first, len, false, false, constant, gamma, sums);
-}
+#define BODY(function, energy_sum, own_gradient)                                                   \
+    CLONES static void function(const struct particles *particles, ptrdiff_t first, int len,       \
+                                const struct gas *gas, const struct density_sums *sums)            \
+    {                                                                                              \
+        close_body(particles, first, len, energy_sum, own_gradient, gas, sums);                    \
+    }
+BODY(close_mass, false, false)
+BODY(close_mass_gradient, false, true)
+BODY(close_energy, true, false)
+BODY(close_energy_gradient, true, true)
 
 void range_close(const struct particles *particles, ptrdiff_t first, int len,
-                 const struct plan *plan, double constant, double gamma,
-                 const struct density_sums *sums)
+                 const struct plan *plan, const struct gas *gas, const struct density_sums *sums)
 {
     if (plan->energy_sum)
-        close_body(particles, first, len, true, !plan->matrix, constant, gamma, sums);
+        (plan->own_gradient ? close_energy_gradient : close_energy)(particles, first, len, gas,
+                                                                    sums);
     else
-        close_mass(particles, first, len, !plan->matrix, constant, gamma, sums);
+        (plan->own_gradient ? close_mass_gradient : close_mass)(particles, first, len, gas, sums);
     if (!plan->grad_h) return;
     double *restrict factor = particles->grad_h + first, *restrict b = particles->b + first;
     const double *restrict V = particles->V + first, *restrict P = particles->P + first,
-                           *restrict y = particles->y + first;
+                           *restrict Z = (plan->energy_sum ? particles->U : particles->m) + first;
     for (int i = 0; i < len; i++) {
         /* h/rho drho/dh = -m_dh/m, so f = 1/(1 - m_dh/m); with the energy element
          * f_ij = 1 - (m_j/Z_j) factor_i (Hopkins 2013), with the mass element f_i = 1 - factor_i */
         const double dh = plan->energy_sum ? sums->Z_dh[i] : sums->m_dh[i];
         factor[i] = -dh / (sums->m[i] - sums->m_dh[i]);
-        b[i] = V[i] * P[i] / y[i];
+        b[i] = P[i] * (V[i] * V[i] / Z[i]);
     }
 }
 

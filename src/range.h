@@ -18,14 +18,17 @@ double range_crossings(const struct particles *particles, ptrdiff_t first, ptrdi
 /* Particles of the range with the neighbour at offset d inside their own width. */
 double range_inside(const struct particles *particles, ptrdiff_t first, int len, ptrdiff_t d);
 
-/* h for the next density sum: 1/h = rho/(eta m), extrapolated by ratio times the last change. */
-void range_predict_width(const struct particles *particles, ptrdiff_t first, int len, double eta,
-                         double ratio);
+/* h for the next density sum: 1/h as last found, extrapolated by ratio times its last change. */
+void range_predict_width(const struct particles *particles, ptrdiff_t first, int len, double ratio);
 
-/* Equation of state and what the pair sums need of it. constant = C_1 of the kernel. */
+/* The numbers of the equation of state: constant = C_1 of the kernel. */
+struct gas {
+    double gamma, constant, eta;
+};
+
+/* Equation of state and what the pair sums need of it. */
 void range_close(const struct particles *particles, ptrdiff_t first, int len,
-                 const struct plan *plan, double constant, double gamma,
-                 const struct density_sums *sums);
+                 const struct plan *plan, const struct gas *gas, const struct density_sums *sums);
 
 /* The largest signal speed / h. */
 double range_rate(const struct particles *particles, ptrdiff_t first, int len);

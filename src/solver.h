@@ -48,6 +48,8 @@ struct simulation {
 enum status evaluate_state(struct simulation *simulation, struct error *error);
 /* And the rates dp/dt, de/dt, dalpha/dt with the time-step limit. */
 enum status evaluate_rates(struct simulation *simulation, struct error *error);
+/* The same where x, v and U are there already (an integrator that predicts them directly). */
+enum status evaluate_rates_of_primitives(struct simulation *simulation, struct error *error);
 /* The time-step limit alone, where velocities have changed since the last rates. */
 void evaluate_signal(struct simulation *simulation);
 

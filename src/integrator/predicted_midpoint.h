@@ -6,25 +6,24 @@
 #ifndef INTEGRATOR_PREDICTED_MIDPOINT_H
 #define INTEGRATOR_PREDICTED_MIDPOINT_H
 
+/* The predicted x, v and U go where the evaluation reads them; p and e stay those of the state. */
 CLONES static void predict_midpoint(struct simulation *simulation, double dt)
 {
     struct particles *a = &simulation->particles;
     const double half = 0.5 * dt;
     const double kinetic = simulation->scheme.energy == ENERGY_TOTAL ? 0.5 : 0;
-    double *restrict x = a->x, *restrict p = a->p, *restrict e = a->e, *restrict x_old = a->x_old,
-                     *restrict p_old = a->p_old, *restrict e_old = a->e_old;
-    const double *restrict F = a->F, *restrict de = a->de, *restrict m_inverse = a->m_inverse;
+    double *restrict x = a->x, *restrict x_old = a->x_old, *restrict v = a->v, *restrict U = a->U;
+    const double *restrict F = a->F, *restrict de = a->de, *restrict m_inverse = a->m_inverse,
+                           *restrict p = a->p, *restrict e = a->e;
 #pragma omp simd
     for (ptrdiff_t i = 0; i < a->n; i++) {
+        const double v_now = p[i] * m_inverse[i];
+        const double U_now = e[i] - kinetic * p[i] * v_now;
+        const double p_half = p[i] + F[i] * half, v_half = p_half * m_inverse[i];
         x_old[i] = x[i];
-        p_old[i] = p[i];
-        e_old[i] = e[i];
-        x[i] += p[i] * m_inverse[i] * half;
-        const double floor = 0.5 * (e[i] - kinetic * p[i] * p[i] * m_inverse[i]);
-        p[i] += F[i] * half;
-        const double moving = kinetic * p[i] * p[i] * m_inverse[i];
-        const double U = e[i] + de[i] * half - moving;
-        e[i] = (U > floor ? U : floor) + moving;
+        x[i] += v_now * half;
+        v[i] = v_half;
+        U[i] = largest(e[i] + de[i] * half - kinetic * p_half * v_half, 0.5 * U_now);
     }
     if (!simulation->plan.alpha) return;
     for (ptrdiff_t i = 0; i < a->n; i++) {
@@ -40,15 +39,15 @@ CLONES static double advance_from_midpoint(struct simulation *simulation, double
     const double kinetic = simulation->scheme.energy == ENERGY_TOTAL ? 0.5 : 0;
     double *restrict x = a->x, *restrict p = a->p, *restrict e = a->e;
     const double *restrict F = a->F, *restrict de = a->de, *restrict m_inverse = a->m_inverse,
-                           *restrict x_old = a->x_old, *restrict p_old = a->p_old,
-                           *restrict e_old = a->e_old;
+                           *restrict x_old = a->x_old;
     double unsound = 0;
 #pragma omp simd reduction(+ : unsound)
     for (ptrdiff_t i = 0; i < a->n; i++) {
-        p[i] = p_old[i] + F[i] * dt;
-        e[i] = e_old[i] + de[i] * dt;
-        x[i] = x_old[i] + 0.5 * (p_old[i] + p[i]) * m_inverse[i] * dt;
-        unsound += e[i] - kinetic * p[i] * p[i] * m_inverse[i] >= 0 ? 0. : 1.;
+        const double p_new = p[i] + F[i] * dt;
+        x[i] = x_old[i] + 0.5 * (p[i] + p_new) * m_inverse[i] * dt;
+        p[i] = p_new;
+        e[i] += de[i] * dt;
+        unsound += e[i] - kinetic * p_new * p_new * m_inverse[i] > 0 ? 0. : 1.;
     }
     if (simulation->plan.alpha)
         for (ptrdiff_t i = 0; i < a->n; i++) a->alpha[i] = a->alpha_old[i] + a->dalpha[i] * dt;
@@ -61,7 +60,7 @@ static enum status name_unsound(const struct simulation *simulation, struct erro
     const double kinetic = simulation->scheme.energy == ENERGY_TOTAL ? 0.5 : 0;
     for (ptrdiff_t i = 0;; i++) {
         const double U = a->e[i] - kinetic * a->p[i] * a->p[i] * a->m_inverse[i];
-        if (!(U >= 0)) return broke_down(simulation, i, "internal energy", U, error);
+        if (!(U > 0)) return broke_down(simulation, i, "internal energy", U, error);
     }
 }
 
@@ -69,7 +68,7 @@ static enum status predicted_midpoint_step(struct simulation *simulation, double
                                            struct error *error)
 {
     predict_midpoint(simulation, dt);
-    const enum status status = evaluate_rates(simulation, error);
+    const enum status status = evaluate_rates_of_primitives(simulation, error);
     if (status) return status;
     return advance_from_midpoint(simulation, dt) > 0 ? name_unsound(simulation, error) : STATUS_OK;
 }
