@@ -159,8 +159,9 @@ static enum status fill_density_ghosts(struct simulation *simulation, ptrdiff_t 
                                        struct error *error)
 {
     struct particles *a = &simulation->particles;
-    if (count > a->ghosts) {
-        const enum status status = particles_grow_ghosts(a, count + count / 2, error);
+    /* loops in whole vectors read a little beyond, and drop it */
+    if (count + 8 > a->ghosts) {
+        const enum status status = particles_grow_ghosts(a, count + count / 2 + 8, error);
         if (status) return status;
     }
     if (count > simulation->ghosts_filled) particles_fill_ghosts(a, a->m, count, 0);

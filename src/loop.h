@@ -22,6 +22,13 @@ gradient_loop *loop_gradient(int kernel, enum gradient gradient, enum pair_gradi
 force_loop *loop_force(bool stamped, enum formulation formulation, enum pair_viscosity viscosity,
                        enum energy energy);
 
+/* Trip count in whole vectors: no remainder loop. What is computed beyond count goes into scratch
+ * and is dropped. */
+ALWAYS_INLINE int whole_vectors(int count)
+{
+    return (count + 7) & ~7;
+}
+
 ALWAYS_INLINE double largest(double a, double b)
 {
     return a > b ? a : b;

@@ -12,14 +12,15 @@ ALWAYS_INLINE void sum_pairs(const struct kernel *kernel, kernel_shape *w, kerne
     const double *restrict x = particles->x + first, *restrict m = particles->m + first,
                            *restrict U = particles->U + first;
     const double w0 = w(kernel, 0, 1);
-    for (int i = 0; i < len; i++) {
+    const int count = whole_vectors(len);
+    for (int i = 0; i < count; i++) {
         sums->m[i] = m[i] * w0;
         if (terms >= DENSITY_DERIVATIVE) sums->m_dh[i] = m[i] * w0;
         if (terms >= DENSITY_ENERGY) sums->Z[i] = sums->Z_dh[i] = U[i] * w0;
     }
     for (ptrdiff_t d = 1; d <= D; d++) {
 #pragma omp simd
-        for (int i = 0; i < len; i++) {
+        for (int i = 0; i < count; i++) {
             const double q_right = (x[i + d] - x[i]) * h_inverse[i];
             const double q_left = (x[i] - x[i - d]) * h_inverse[i];
             const double w_right = w(kernel, q_right, 1), w_left = w(kernel, q_left, 1);

@@ -46,12 +46,13 @@ ALWAYS_INLINE void force_body(enum formulation formulation, enum pair_viscosity 
 {
     const double alpha_0 = numbers->alpha, beta_0 = numbers->beta, beta_ratio = numbers->beta_ratio,
                  near = numbers->near;
-    const ptrdiff_t strip = RANGE_MAX + D;
+    const ptrdiff_t strip = (ptrdiff_t)force_scratch(D) / STRIPS;
     double *restrict f = scratch, *restrict e_i = scratch + strip,
                      *restrict e_j = scratch + 2 * strip, *restrict s = scratch + 3 * strip,
                      *restrict G = scratch + 4 * strip, *restrict G_j = scratch + 5 * strip;
     double F[RANGE_MAX], de[RANGE_MAX], signal[RANGE_MAX], div_v[RANGE_MAX];
-    for (int i = 0; i < len; i++) {
+    const int count = whole_vectors(len);
+    for (int i = 0; i < count; i++) {
         F[i] = de[i] = div_v[i] = 0;
         signal[i] = 2 * particles->c[first + i];
     }
@@ -70,8 +71,9 @@ ALWAYS_INLINE void force_body(enum formulation formulation, enum pair_viscosity 
                                *restrict dv = particles->dv + o,
                                *restrict h_inverse = particles->h_inverse + o;
         const double *restrict Z = (numbers->energy_element ? particles->U : particles->m) + o;
+        const int pair_count = whole_vectors(pairs);
 #pragma omp simd
-        for (int i = 0; i < pairs; i++) {
+        for (int i = 0; i < pair_count; i++) {
             const ptrdiff_t j = i + d;
             const double r = x[j] - x[i], v_ij = v[i] - v[j];
             double a_i, a_j; /* pressure */
@@ -113,7 +115,7 @@ ALWAYS_INLINE void force_body(enum formulation formulation, enum pair_viscosity 
             s[i] = r < largest(h[i], h[j]) ? speed : 0;
         }
 #pragma omp simd
-        for (int i = 0; i < len; i++) {
+        for (int i = 0; i < count; i++) {
             F[i] += f[i + d] - f[i];
             de[i] += energy == ENERGY_TOTAL ? e_i[i + d] - e_i[i] : e_i[i + d] + e_j[i];
             signal[i] = largest(signal[i], largest(s[i], s[i + d]));

@@ -22,8 +22,9 @@ ALWAYS_INLINE void gradients_of_pairs(const struct kernel *kernel, kernel_shape 
     const double *restrict x = particles->x + first, *restrict g = particles->g + first,
                            *restrict h_inverse = particles->h_inverse + first;
     const double constant = kernel->constant[1];
+    const int count = whole_vectors(pairs);
 #pragma omp simd
-    for (int i = 0; i < pairs; i++) {
+    for (int i = 0; i < count; i++) {
         const ptrdiff_t j = i + d;
         const double r = x[j] - x[i];
         if (form == PAIR_GRADIENT_MEAN || form == PAIR_GRADIENT_BOTH) {

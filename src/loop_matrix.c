@@ -15,9 +15,10 @@ ALWAYS_INLINE void sum_moments(const struct kernel *kernel, kernel_shape *w,
                            *restrict v = particles->v + first,
                            *restrict h_inverse = particles->h_inverse + first;
     double second[RANGE_MAX] = {0}, slope[RANGE_MAX] = {0};
+    const int count = whole_vectors(len);
     for (ptrdiff_t d = 1; d <= D; d++) {
 #pragma omp simd
-        for (int i = 0; i < len; i++) {
+        for (int i = 0; i < count; i++) {
             const double right = x[i + d] - x[i], left = x[i] - x[i - d];
             const double right_w = V[i + d] * right * w(kernel, right * h_inverse[i], 1);
             const double left_w = V[i - d] * left * w(kernel, left * h_inverse[i], 1);

@@ -55,7 +55,7 @@ void loops_choose(const struct scheme *scheme, bool stamped, struct loops *loops
 
 size_t force_scratch(ptrdiff_t D)
 {
-    return 6 * (size_t)(RANGE_MAX + D);
+    return STRIPS * (size_t)(RANGE_MAX + D + 8); /* and the rest of a vector */
 }
 
 void loops_signal(const struct particles *particles, ptrdiff_t first, int len, ptrdiff_t D)

@@ -12,7 +12,10 @@
 #include "particles.h"
 #include "scheme.h"
 
-enum { RANGE_MAX = 64 }; /* particles of one range at most */
+enum {
+    RANGE_MAX = 64, /* particles of one range at most, whole vectors */
+    STRIPS = 6      /* of a pair force */
+};
 
 /* --- kernel sums of one range, at width 1/h_inverse[i] -------------------------------------- */
 

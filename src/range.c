@@ -30,7 +30,8 @@ CLONES double range_crossings(const struct particles *particles, ptrdiff_t first
     return crossings;
 }
 
-CLONES double range_inside(const struct particles *particles, ptrdiff_t first, int len, ptrdiff_t d)
+ALWAYS_INLINE double count_inside(const struct particles *particles, ptrdiff_t first, int len,
+                                  ptrdiff_t d)
 {
     const double *restrict x = particles->x + first, *restrict h = particles->h + first;
     double inside = 0;
@@ -40,8 +41,14 @@ CLONES double range_inside(const struct particles *particles, ptrdiff_t first, i
     return inside;
 }
 
-CLONES void range_predict_width(const struct particles *particles, ptrdiff_t first, int len,
-                                double ratio)
+CLONES double range_inside(const struct particles *particles, ptrdiff_t first, int len, ptrdiff_t d)
+{
+    return len == RANGE_MAX ? count_inside(particles, first, RANGE_MAX, d)
+                            : count_inside(particles, first, len, d);
+}
+
+ALWAYS_INLINE void predict_width(const struct particles *particles, ptrdiff_t first, int len,
+                                 double ratio)
 {
     const double *restrict found = particles->h_inverse_found + first;
     double *restrict h = particles->h + first, *restrict h_inverse = particles->h_inverse + first,
@@ -53,6 +60,15 @@ CLONES void range_predict_width(const struct particles *particles, ptrdiff_t fir
         h[i] = 1 / h_inverse[i];
         last[i] = found[i];
     }
+}
+
+CLONES void range_predict_width(const struct particles *particles, ptrdiff_t first, int len,
+                                double ratio)
+{
+    if (len == RANGE_MAX)
+        predict_width(particles, first, RANGE_MAX, ratio);
+    else
+        predict_width(particles, first, len, ratio);
 }
 
 ALWAYS_INLINE void close_body(const struct particles *particles, ptrdiff_t first, int len,
@@ -86,11 +102,15 @@ ALWAYS_INLINE void close_body(const struct particles *particles, ptrdiff_t first
     }
 }
 
+/* Nearly all ranges are full: a constant trip count has no remainder loop. */
 #define BODY(function, energy_sum, own_gradient)                                                   \
     CLONES static void function(const struct particles *particles, ptrdiff_t first, int len,       \
                                 const struct gas *gas, const struct density_sums *sums)            \
     {                                                                                              \
-        close_body(particles, first, len, energy_sum, own_gradient, gas, sums);                    \
+        if (len == RANGE_MAX)                                                                      \
+            close_body(particles, first, RANGE_MAX, energy_sum, own_gradient, gas, sums);          \
+        else                                                                                       \
+            close_body(particles, first, len, energy_sum, own_gradient, gas, sums);                \
     }
 BODY(close_mass, false, false)
 BODY(close_mass_gradient, false, true)
