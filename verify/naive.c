@@ -108,7 +108,8 @@ void naive_gradient(const struct operator_form *form, const struct kernel *kerne
             sum[a] += pair.V * value * p;
             for (int b = 0; b < dim; b++)
                 matrix[a][b] += (fault == NAIVE_NO_VOLUME ? 1 : pair.V) *
-                                (fault == NAIVE_SIGN ? -p : p) * pair.x[b];
+                                (fault == NAIVE_SIGN ? -p : p) *
+                                (fault == NAIVE_ABSOLUTE ? cloud->points.x[b][j] : pair.x[b]);
         }
     }
     const bool ok = !corrected || invert(dim, fault, matrix, inverse);

@@ -24,6 +24,7 @@
     FAULT(POWER_OF_H, "h^-d for h^-(d+1) in dW/dr")                                                \
     FAULT(DIAGONAL, "off-diagonal elements of the matrix dropped")                                 \
     FAULT(SELF_WITHOUT, "the point itself left out of S")                                          \
+    FAULT(ABSOLUTE, "r_j for r_j - r_i in the matrix")                                             \
     FAULT(FLOAT, "sums kept in single precision")                                                  \
     FAULT(HALF, "half of every pair")
 

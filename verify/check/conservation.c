@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "check.h"
-#include "gradient_study.h"
+#include "gradient_forms.h"
 #include "scheme.h"
 #include "summation.h"
 
@@ -178,12 +178,6 @@ static bool measure_state(const struct conservation_subject *subject, int dim, u
 
 /* ---- rates ---- */
 
-#define FORM(identifier, name, ...)                                                                \
-    static const struct operator_form identifier = {{name, "", ""}, __VA_ARGS__}
-FORM(standard, "standard", PAIR_GRADIENT, false, false);
-FORM(ia, "ia", PAIR_POSITION, false, true);
-FORM(linear_exact, "linear_exact", PAIR_POSITION, true, true);
-
 static const struct conservation_subject right[] = {
     {{&standard, NAIVE_NONE}, FORMULATION_VANILLA_ICE, PAIR_RIGHT},
     {{&standard, NAIVE_NONE}, FORMULATION_LAGRANGIAN, PAIR_RIGHT},
@@ -225,23 +219,23 @@ static void measure_rates(struct check_run *run, const void *subject)
     }
 }
 
-#define SUBJECT(form, formulation, fault)                                                          \
+#define PAIRS(form, formulation, fault)                                                            \
     (&(const struct conservation_subject){                                                         \
         {&(form), NAIVE_NONE}, FORMULATION_##formulation, PAIR_##fault})
 
 static const struct check_mutant rates_mutants[] = {
     {"pair_gather", "G(h_i) for the mean: gather for symmetric",
-     SUBJECT(standard, VANILLA_ICE, GATHER)},
-    {"pair_gather_ia", "C_i for both matrices", SUBJECT(ia, LAGRANGIAN, GATHER)},
+     PAIRS(standard, VANILLA_ICE, GATHER)},
+    {"pair_gather_ia", "C_i for both matrices", PAIRS(ia, LAGRANGIAN, GATHER)},
     {"pair_no_half", "1/2 of the pair average missing in the force",
-     SUBJECT(standard, VANILLA_ICE, HALF_IN_FORCE)},
-    {"pair_sign", "G_i - G_j for G_i + G_j", SUBJECT(ia, VANILLA_ICE, PLUS)},
-    {"pair_own_factor", "f_i in both terms", SUBJECT(standard, LAGRANGIAN, OWN_F)},
-    {"pair_no_factor", "grad-h factor dropped in the heating", SUBJECT(ia, LAGRANGIAN, NO_F)},
-    {"pair_own_pressure", "2 P_i for P_i + P_j", SUBJECT(standard, VANILLA_ICE, OWN_PRESSURE)},
+     PAIRS(standard, VANILLA_ICE, HALF_IN_FORCE)},
+    {"pair_sign", "G_i - G_j for G_i + G_j", PAIRS(ia, VANILLA_ICE, PLUS)},
+    {"pair_own_factor", "f_i in both terms", PAIRS(standard, LAGRANGIAN, OWN_F)},
+    {"pair_no_factor", "grad-h factor dropped in the heating", PAIRS(ia, LAGRANGIAN, NO_F)},
+    {"pair_own_pressure", "2 P_i for P_i + P_j", PAIRS(standard, VANILLA_ICE, OWN_PRESSURE)},
     {"pair_heating_sign", "v_ji for v_ij at some points",
-     SUBJECT(standard, VANILLA_ICE, HEATING_SIGN)},
-    {"pair_own_matrix", "V_i for V_j with G(h_j)", SUBJECT(ia, VANILLA_ICE, OWN_MATRIX)},
+     PAIRS(standard, VANILLA_ICE, HEATING_SIGN)},
+    {"pair_own_matrix", "V_i for V_j with G(h_j)", PAIRS(ia, VANILLA_ICE, OWN_MATRIX)},
     {"pair_linear_exact", "linear_exact in the place of ia",
      &(const struct conservation_subject){
          {&linear_exact, NAIVE_NONE}, FORMULATION_VANILLA_ICE, PAIR_RIGHT}},
@@ -313,11 +307,8 @@ static void measure_antisymmetry(struct check_run *run, const void *subject)
 }
 
 static const struct check_mutant antisymmetry_mutants[] = {
-    {"antisymmetry_gather", "G(h_i) for the mean", SUBJECT(standard, VANILLA_ICE, GATHER)},
-    {"antisymmetry_gather_ia", "C_i for both matrices", SUBJECT(ia, VANILLA_ICE, GATHER)},
-    {"antisymmetry_float", "pairs in single precision",
-     &(const struct conservation_subject){
-         {&ia, NAIVE_FLOAT}, FORMULATION_VANILLA_ICE, PAIR_GATHER}},
+    {"antisymmetry_gather", "G(h_i) for the mean", PAIRS(standard, VANILLA_ICE, GATHER)},
+    {"antisymmetry_gather_ia", "C_i for both matrices", PAIRS(ia, VANILLA_ICE, GATHER)},
     {0},
 };
 
@@ -357,8 +348,8 @@ static void measure_defects(struct check_run *run, const void *subject)
 }
 
 static const struct check_mutant defects_mutants[] = {
-    {"defect_of_ia", "ia in the place of linear_exact", SUBJECT(ia, VANILLA_ICE, RIGHT)},
-    {"defect_of_standard", "standard in the place of ia", SUBJECT(standard, VANILLA_ICE, RIGHT)},
+    {"defect_of_ia", "ia in the place of linear_exact", PAIRS(ia, VANILLA_ICE, RIGHT)},
+    {"defect_of_standard", "standard in the place of ia", PAIRS(standard, VANILLA_ICE, RIGHT)},
     {0},
 };
 

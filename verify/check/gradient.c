@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "check.h"
-#include "gradient_study.h"
+#include "gradient_forms.h"
 
 /* What each operator promises, by name: independent of the flags in its descriptor. */
 static const struct promise {
@@ -147,22 +147,6 @@ static void measure_exactness(struct check_run *run, const void *subject)
                                   "%s, %s, %dD, %s, edge", names[0], names[1], dim, names[2]);
             }
 }
-
-#define FORM(identifier, name, ...)                                                                \
-    static const struct operator_form identifier = {{name, "", ""}, __VA_ARGS__}
-FORM(standard, "standard", PAIR_GRADIENT, false, false);
-FORM(difference, "standard_difference", PAIR_GRADIENT, true, false);
-FORM(ia, "ia", PAIR_POSITION, false, true);
-FORM(linear_exact, "linear_exact", PAIR_POSITION, true, true);
-FORM(normalised, "normalised_corrected", PAIR_NORMALISED, true, true);
-/* right names, wrong flags */
-FORM(difference_without, "standard_difference", PAIR_GRADIENT, false, false);
-FORM(linear_without_difference, "linear_exact", PAIR_POSITION, false, true);
-FORM(linear_without_matrix, "linear_exact", PAIR_POSITION, true, false);
-FORM(normalised_without_matrix, "normalised_corrected", PAIR_NORMALISED, true, false);
-FORM(corrected_without_normalisation, "normalised_corrected", PAIR_GRADIENT, false, true);
-
-#define SUBJECT(form, fault) (&(const struct gradient_subject){&(form), NAIVE_##fault})
 
 static const struct check_mutant brute_force_mutants[] = {
     {"gradient_transposed", "B transposed", SUBJECT(normalised, TRANSPOSED)},

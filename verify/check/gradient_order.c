@@ -1,0 +1,132 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * How the error of a gradient operator depends on resolution and on disorder, at a fixed number of
+ * neighbours. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "check.h"
+#include "gradient_forms.h"
+#include "order.h"
+
+enum { LEVELS = 5 };
+
+/* What is expected of each operator: order in the spacing on a lattice and on a jittered lattice,
+ * with cubic_spline at its partition-of-unity width, and in the jitter. A conserving form has an
+ * error O(jitter) on a constant, whose gradient grows as 1/h; the difference form an error O(1) on
+ * a linear field. */
+static const struct expectation {
+    const char *name;
+    struct order_gate lattice, jittered, disorder;
+} expectations[] = {
+    {"standard", {1.85, 2.15, 4e-4}, {-1.2, -0.8, 100}, {0.8, 1.2, 8}},
+    {"standard_difference", {1.85, 2.15, 4e-4}, {-0.25, 0.15, 0.15}, {0.75, 1.25, 0.02}},
+    {"ia", {1.85, 2.15, 4e-4}, {-1.2, -0.8, 100}, {0.85, 1.15, 8}},
+    {"linear_exact", {1.85, 2.15, 4e-4}, {0.85, 1.25, 0.005}, {0.7, 1.9, 0.001}},
+    {"normalised_corrected", {1.85, 2.15, 4e-4}, {0.85, 1.25, 0.005}, {0.7, 1.9, 0.001}},
+};
+
+static const struct expectation *expectation_of(const struct gradient_subject *subject)
+{
+    for (size_t i = 0; i < sizeof expectations / sizeof *expectations; i++)
+        if (strcmp(expectations[i].name, subject->form->member.name) == 0) return &expectations[i];
+    return NULL;
+}
+
+/* Root mean square of |grad - exact| over the interior, mean over seeds. */
+static double interior_error(const struct gradient_subject *subject, const struct kernel *kernel,
+                             const struct clouds_settings *settings)
+{
+    struct clouds_settings with_seed = *settings;
+    double sum = 0;
+    const int seeds = settings->kind == CLOUDS_LATTICE ? 1 : 4;
+    for (int k = 0; k < seeds; k++) {
+        struct clouds_cloud cloud;
+        struct gradient_errors errors;
+        with_seed.seed = 5 + 3 * (unsigned long)k;
+        enum status status = clouds_make(&with_seed, &cloud, NULL);
+        if (!status)
+            status = gradient_study_errors(subject, kernel, &with_seed, &cloud, FIELD_SMOOTH,
+                                           &errors, NULL);
+        sum += status ? (double)NAN
+                      : errors.interior_rms * errors.interior_rms / (cloud.h[0] * cloud.h[0]);
+        clouds_free(&cloud);
+    }
+    return sqrt(sum / seeds);
+}
+
+static void measure_gate(struct check_run *run, const double *spacing, const double *error,
+                         const struct order_gate *gate, const char *name, int dim,
+                         const char *against)
+{
+    struct order_fit fit = {.order = (double)NAN};
+    order_fit(LEVELS, spacing, error, NULL, &fit, NULL);
+    const double middle = 0.5 * (gate->low + gate->high), half = 0.5 * (gate->high - gate->low);
+    check_measure(run, fabs(fit.order - middle), half, 0.1 * half,
+                  "%s, %dD, %s: order %.2f [%.2f, %.2f] in [%g, %g]", name, dim, against, fit.order,
+                  fit.low, fit.high, gate->low, gate->high);
+    check_measure(run, error[LEVELS - 1], gate->bound, 1e-3 * gate->bound,
+                  "%s, %dD, %s: error at the finest level", name, dim, against);
+    double log_spacing[LEVELS], log_error[LEVELS];
+    for (int l = 0; l < LEVELS; l++)
+        log_spacing[l] = log10(spacing[l]), log_error[l] = log10(error[l]);
+    check_series(run, against, LEVELS, log_spacing, log_error);
+}
+
+static void measure_order(struct check_run *run, const void *subject)
+{
+    static const size_t sides[3][LEVELS] = {
+        {32, 48, 72, 108, 162}, {12, 17, 24, 34, 48}, {8, 10, 12, 14, 16}};
+    static const double jitters[LEVELS] = {0.32, 0.16, 0.08, 0.04, 0.02};
+    const struct gradient_subject *s = subject;
+    const struct expectation *expected = expectation_of(s);
+    struct kernel kernel = {0};
+    kernel_select(&kernel, "cubic_spline", 5, NULL);
+    for (int dim = 1; dim <= 2; dim++) {
+        double spacing[LEVELS], error[LEVELS];
+        struct clouds_settings settings = {CLOUDS_LATTICE, dim, 0, 0.2, 2, 0};
+        for (int l = 0; l < LEVELS; l++) {
+            settings.side = sides[dim - 1][l];
+            spacing[l] = 1 / (double)settings.side;
+            error[l] = interior_error(s, &kernel, &settings);
+        }
+        /* in 2D no width makes the lattice sums of standard exact: its error stays */
+        if (dim == 1 || s->form->corrected)
+            measure_gate(run, spacing, error, &expected->lattice, s->form->member.name, dim,
+                         "lattice, spacing");
+        settings.kind = CLOUDS_JITTERED;
+        for (int l = 0; l < LEVELS; l++) {
+            settings.side = sides[dim - 1][l];
+            error[l] = interior_error(s, &kernel, &settings);
+        }
+        measure_gate(run, spacing, error, &expected->jittered, s->form->member.name, dim,
+                     "jittered, spacing");
+        settings.side = sides[dim - 1][3];
+        for (int l = 0; l < LEVELS; l++) {
+            settings.jitter = jitters[l];
+            error[l] = interior_error(s, &kernel, &settings);
+        }
+        measure_gate(run, jitters, error, &expected->disorder, s->form->member.name, dim, "jitter");
+    }
+}
+
+static const struct check_mutant order_mutants[] = {
+    {"order_identity", "identity for the IA matrix", SUBJECT(ia_without_matrix, NONE)},
+    {"order_no_matrix", "linear_exact without its matrix", SUBJECT(linear_without_matrix, NONE)},
+    {"order_difference_without", "difference form without subtracting f_i",
+     SUBJECT(difference_without, NONE)},
+    {"order_shepard_only", "normalised kernel without gradient correction",
+     SUBJECT(normalised_without_matrix, NONE)},
+    {0},
+};
+
+const struct check check_gradient_order = {
+    .group = "gradients",
+    .name = "order",
+    .property =
+        "observed order of |grad f - exact|/max|f| in the spacing and in the jitter, eta = 2",
+    .subject_count = gradient_study_subject_count,
+    .subject = gradient_study_subject,
+    .measure = measure_order,
+    .mutants = order_mutants,
+};
