@@ -52,7 +52,10 @@ static enum status restore_order(struct simulation *simulation, struct error *er
     if (crossed < 0)
         for (ptrdiff_t i = 0; i < a->n; i++)
             if (!isfinite(a->x[i])) return broke_down(simulation, i, "position", a->x[i], error);
-    if (crossed > 0) simulation->ghosts_filled = 0; /* of the masses */
+    if (crossed > 0) {
+        simulation->ghosts_filled = 0; /* of the masses */
+        if (simulation->sleep.on) sleep_end(simulation);
+    }
     return STATUS_OK;
 }
 
@@ -235,7 +238,6 @@ static void count_work(struct simulation *simulation)
         pairs += (uint64_t)(range->len * (2 * sums * range->reach + range->force_reach));
     }
     simulation->cost.pair_interactions += pairs;
-    simulation->cost.particle_updates += (uint64_t)simulation->particles.n;
 }
 
 /* --- the evaluations -------------------------------------------------------------------------- */
@@ -354,7 +356,7 @@ enum status evaluate_rates_of_primitives(struct simulation *simulation, struct e
         rate = largest(range_rate(a, range->first, range->len), rate);
         if (simulation->cost.steps % 8 == 0) tighten(simulation, range);
     }
-    simulation->time_step = simulation->scheme.cfl / rate;
+    simulation->time_step = simulation->scheme.cfl / largest(rate, simulation->sleep.rate);
     count_work(simulation);
     return STATUS_OK;
 }
@@ -372,5 +374,5 @@ void evaluate_signal(struct simulation *simulation)
         loops_signal(a, range->first, range->len, range->force_reach);
         rate = largest(range_rate(a, range->first, range->len), rate);
     }
-    simulation->time_step = simulation->scheme.cfl / rate;
+    simulation->time_step = simulation->scheme.cfl / largest(rate, simulation->sleep.rate);
 }

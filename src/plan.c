@@ -9,7 +9,6 @@
 
 struct plan plan_make(const struct scheme *scheme, bool skip)
 {
-    (void)skip;
     return (struct plan){
         .newton = scheme->h_method == H_NEWTON,
         .energy_sum = scheme->volume_element == VOLUME_ENERGY,
@@ -21,6 +20,7 @@ struct plan plan_make(const struct scheme *scheme, bool skip)
         .slope = scheme->viscosity == VISCOSITY_RECONSTRUCTED,
         .viscosity = scheme->viscosity != VISCOSITY_NONE,
         .alpha = scheme->viscosity == VISCOSITY_TIME_DEPENDENT,
+        .sleep = skip,
         .signal_pass = scheme->integrator->signal_pass,
     };
 }
@@ -84,6 +84,9 @@ size_t plan_explain(const struct scene *scene, struct plan_line *lines, size_t m
          "alpha is constant");
     line(&writer, "signal speed", plan.signal_pass,
          "the integrator changes velocities after the last force", "comes with the pair forces");
+    line(&writer, "sleep", plan.sleep,
+         "skip=auto: no sums where no signal has been; equal to tolerance 1e-10",
+         "skip=none: every particle at every step");
     line(&writer, "final state", !scheme->integrator->ends_evaluated,
          "density and equation of state once more at t_end", "the last evaluation was at t_end");
     if (warnings && warnings_size) warn(scheme, warnings, warnings_size);

@@ -74,8 +74,10 @@ static void set_particles(struct simulation *simulation, const struct scene *sce
 static enum status allocate(struct simulation *simulation, struct error *error)
 {
     const ptrdiff_t n = simulation->particles.n;
+    /* room for spans of every length, each of which ends in a range that is not full */
+    const ptrdiff_t groups = (n + SLEEP_GROUP - 1) / SLEEP_GROUP;
     simulation->range_count = (n + RANGE_MAX - 1) / RANGE_MAX;
-    simulation->ranges = calloc((size_t)simulation->range_count, sizeof *simulation->ranges);
+    simulation->ranges = calloc((size_t)(groups + 1), sizeof *simulation->ranges);
     simulation->wrapped = malloc((size_t)n * sizeof(double));
     simulation->specific_energy = malloc((size_t)n * sizeof(double));
     if (!simulation->ranges || !simulation->wrapped || !simulation->specific_energy)
@@ -114,7 +116,8 @@ enum status simulation_create(const struct scene *scene, struct simulation **res
     set_particles(simulation, scene);
     status = evaluate_rates(simulation, error);
     if (status) goto failed;
-    simulation->cost.particle_updates = 0;
+    status = sleep_begin(simulation, simulation->plan.sleep, error);
+    if (status) goto failed;
     *result = simulation;
     return STATUS_OK;
 failed:
@@ -126,6 +129,7 @@ void simulation_destroy(struct simulation *simulation)
 {
     if (!simulation) return;
     particles_destroy(&simulation->particles);
+    sleep_free(&simulation->sleep);
     free(simulation->ranges);
     free(simulation->scratch);
     free(simulation->wrapped);
@@ -176,7 +180,11 @@ enum status simulation_run(struct simulation *simulation, double t_end,
         status = simulation->scheme.integrator->step(simulation, dt, error);
         if (status) break;
         simulation->time = last ? t_end : simulation->time + dt;
+        sleep_update(simulation);
         simulation->cost.steps++;
+        simulation->cost.particle_updates += (uint64_t)simulation->sleep.awake_count;
+        simulation->cost.skipped_particle_updates +=
+            (uint64_t)(simulation->particles.n - simulation->sleep.awake_count);
         if (simulation->plan.signal_pass && simulation->time < t_end) evaluate_signal(simulation);
         if (progress && simulation->cost.steps % 32 == 0)
             stopped = !progress(context, simulation->time, simulation->cost.steps);

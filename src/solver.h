@@ -10,6 +10,7 @@
 #include "particles.h"
 #include "plan.h"
 #include "simulation.h"
+#include "sleep.h"
 
 /* Up to RANGE_MAX neighbouring particles that are worked on together. */
 struct range {
@@ -32,7 +33,8 @@ struct simulation {
     double last_dt;       /* of the last step, 0 before the first */
     double predict_ratio; /* of the prediction of h: this interval / the last one */
     int threads;
-    struct range *ranges;
+    struct sleep sleep;
+    struct range *ranges; /* of the awake particles */
     ptrdiff_t range_count;
     ptrdiff_t ghosts_filled;
     double *scratch; /* threads * scratch_size */

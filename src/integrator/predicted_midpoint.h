@@ -7,16 +7,18 @@
 #define INTEGRATOR_PREDICTED_MIDPOINT_H
 
 /* The predicted x, v and U go where the evaluation reads them; p and e stay those of the state. */
-CLONES static void predict_midpoint(struct simulation *simulation, double dt)
+CLONES static void predict_midpoint(const struct simulation *simulation, const struct span *span,
+                                    double dt)
 {
-    struct particles *a = &simulation->particles;
+    const struct particles *a = &simulation->particles;
+    const ptrdiff_t end = span->first + span->len;
     const double half = 0.5 * dt;
     const double kinetic = simulation->scheme.energy == ENERGY_TOTAL ? 0.5 : 0;
     double *restrict x = a->x, *restrict x_old = a->x_old, *restrict v = a->v, *restrict U = a->U;
     const double *restrict F = a->F, *restrict de = a->de, *restrict m_inverse = a->m_inverse,
                            *restrict p = a->p, *restrict e = a->e;
 #pragma omp simd
-    for (ptrdiff_t i = 0; i < a->n; i++) {
+    for (ptrdiff_t i = span->first; i < end; i++) {
         const double v_now = p[i] * m_inverse[i];
         const double U_now = e[i] - kinetic * p[i] * v_now;
         const double p_half = p[i] + F[i] * half, v_half = p_half * m_inverse[i];
@@ -26,23 +28,25 @@ CLONES static void predict_midpoint(struct simulation *simulation, double dt)
         U[i] = largest(e[i] + de[i] * half - kinetic * p_half * v_half, 0.5 * U_now);
     }
     if (!simulation->plan.alpha) return;
-    for (ptrdiff_t i = 0; i < a->n; i++) {
+    for (ptrdiff_t i = span->first; i < end; i++) {
         a->alpha_old[i] = a->alpha[i];
         a->alpha[i] += a->dalpha[i] * half;
     }
 }
 
 /* Returns how many particles are left without internal energy. */
-CLONES static double advance_from_midpoint(struct simulation *simulation, double dt)
+CLONES static double advance_from_midpoint(const struct simulation *simulation,
+                                           const struct span *span, double dt)
 {
-    struct particles *a = &simulation->particles;
+    const struct particles *a = &simulation->particles;
+    const ptrdiff_t end = span->first + span->len;
     const double kinetic = simulation->scheme.energy == ENERGY_TOTAL ? 0.5 : 0;
     double *restrict x = a->x, *restrict p = a->p, *restrict e = a->e;
     const double *restrict F = a->F, *restrict de = a->de, *restrict m_inverse = a->m_inverse,
                            *restrict x_old = a->x_old;
     double unsound = 0;
 #pragma omp simd reduction(+ : unsound)
-    for (ptrdiff_t i = 0; i < a->n; i++) {
+    for (ptrdiff_t i = span->first; i < end; i++) {
         const double p_new = p[i] + F[i] * dt;
         x[i] = x_old[i] + 0.5 * (p[i] + p_new) * m_inverse[i] * dt;
         p[i] = p_new;
@@ -50,7 +54,8 @@ CLONES static double advance_from_midpoint(struct simulation *simulation, double
         unsound += e[i] - kinetic * p_new * p_new * m_inverse[i] > 0 ? 0. : 1.;
     }
     if (simulation->plan.alpha)
-        for (ptrdiff_t i = 0; i < a->n; i++) a->alpha[i] = a->alpha_old[i] + a->dalpha[i] * dt;
+        for (ptrdiff_t i = span->first; i < end; i++)
+            a->alpha[i] = a->alpha_old[i] + a->dalpha[i] * dt;
     return unsound;
 }
 
@@ -67,10 +72,23 @@ static enum status name_unsound(const struct simulation *simulation, struct erro
 static enum status predicted_midpoint_step(struct simulation *simulation, double dt,
                                            struct error *error)
 {
-    predict_midpoint(simulation, dt);
+    /* sleepers in moving gas drift, those at rest are left alone */
+    const struct sleep *sleep = &simulation->sleep;
+    const struct span all = {0, simulation->particles.n};
+    const bool spans = sleep->on && sleep->at_rest;
+    const ptrdiff_t count = spans ? sleep->span_count : 1;
+    for (ptrdiff_t s = 0; s < count; s++)
+        predict_midpoint(simulation, spans ? &sleep->spans[s] : &all, dt);
     const enum status status = evaluate_rates_of_primitives(simulation, error);
     if (status) return status;
-    return advance_from_midpoint(simulation, dt) > 0 ? name_unsound(simulation, error) : STATUS_OK;
+    /* all may have woken meanwhile, if particles have crossed */
+    double unsound = 0;
+    if (sleep->on && spans)
+        for (ptrdiff_t s = 0; s < count; s++)
+            unsound += advance_from_midpoint(simulation, &sleep->spans[s], dt);
+    else
+        unsound = advance_from_midpoint(simulation, &all, dt);
+    return unsound > 0 ? name_unsound(simulation, error) : STATUS_OK;
 }
 
 #endif
