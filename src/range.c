@@ -5,8 +5,11 @@
 
 #include "loop.h"
 
-CLONES double range_primitives(const struct particles *particles, ptrdiff_t first, ptrdiff_t len,
-                               double kinetic)
+/* Stamped functions are static here, and the public ones call them: clang 14 gives the dispatched
+ * symbol a name of its own, so that another file would not find it. */
+
+CLONES static double primitives(const struct particles *particles, ptrdiff_t first, ptrdiff_t len,
+                                double kinetic)
 {
     const double *restrict p = particles->p + first, *restrict e = particles->e + first,
                            *restrict m_inverse = particles->m_inverse + first;
@@ -21,7 +24,7 @@ CLONES double range_primitives(const struct particles *particles, ptrdiff_t firs
     return unsound;
 }
 
-CLONES double range_crossings(const struct particles *particles, ptrdiff_t first, ptrdiff_t len)
+CLONES static double crossings_in(const struct particles *particles, ptrdiff_t first, ptrdiff_t len)
 {
     const double *restrict x = particles->x + first;
     double crossings = 0;
@@ -41,7 +44,8 @@ ALWAYS_INLINE double count_inside(const struct particles *particles, ptrdiff_t f
     return inside;
 }
 
-CLONES double range_inside(const struct particles *particles, ptrdiff_t first, int len, ptrdiff_t d)
+CLONES static double inside_stamped(const struct particles *particles, ptrdiff_t first, int len,
+                                    ptrdiff_t d)
 {
     return len == RANGE_MAX ? count_inside(particles, first, RANGE_MAX, d)
                             : count_inside(particles, first, len, d);
@@ -62,8 +66,8 @@ ALWAYS_INLINE void predict_width(const struct particles *particles, ptrdiff_t fi
     }
 }
 
-CLONES void range_predict_width(const struct particles *particles, ptrdiff_t first, int len,
-                                double ratio)
+CLONES static void predict_stamped(const struct particles *particles, ptrdiff_t first, int len,
+                                   double ratio)
 {
     if (len == RANGE_MAX)
         predict_width(particles, first, RANGE_MAX, ratio);
@@ -138,7 +142,7 @@ void range_close(const struct particles *particles, ptrdiff_t first, int len,
     }
 }
 
-CLONES double range_rate(const struct particles *particles, ptrdiff_t first, int len)
+CLONES static double rate(const struct particles *particles, ptrdiff_t first, int len)
 {
     const double *restrict signal = particles->signal + first, *restrict h_inverse =
                                                                    particles->h_inverse + first;
@@ -150,4 +154,30 @@ CLONES double range_rate(const struct particles *particles, ptrdiff_t first, int
     for (; i < len; i++) lane[0] = largest(signal[i] * h_inverse[i], lane[0]);
     for (int k = 1; k < 8; k++) lane[0] = largest(lane[0], lane[k]);
     return lane[0];
+}
+
+double range_primitives(const struct particles *particles, ptrdiff_t first, ptrdiff_t len,
+                        double kinetic)
+{
+    return primitives(particles, first, len, kinetic);
+}
+
+double range_crossings(const struct particles *particles, ptrdiff_t first, ptrdiff_t len)
+{
+    return crossings_in(particles, first, len);
+}
+
+double range_inside(const struct particles *particles, ptrdiff_t first, int len, ptrdiff_t d)
+{
+    return inside_stamped(particles, first, len, d);
+}
+
+void range_predict_width(const struct particles *particles, ptrdiff_t first, int len, double ratio)
+{
+    predict_stamped(particles, first, len, ratio);
+}
+
+double range_rate(const struct particles *particles, ptrdiff_t first, int len)
+{
+    return rate(particles, first, len);
 }
