@@ -13,7 +13,7 @@
 #include <omp.h>
 #endif
 
-enum { NEWTON_MAX = 200, RANGES_WORTH_A_THREAD = 24 };
+enum { NEWTON_MAX = 200, RANGES_WORTH_A_THREAD = 24, NO_GHOSTS = -2 };
 
 static int thread_number(void)
 {
@@ -24,14 +24,19 @@ static int thread_number(void)
 #endif
 }
 
-static ptrdiff_t largest_index(ptrdiff_t a, ptrdiff_t b)
-{
-    return a > b ? a : b;
-}
+/* Work on one range; thread: number of the thread that does it. */
+typedef void range_pass(struct simulation *simulation, struct range *range, int thread);
 
-static int threads_for(const struct simulation *simulation)
+/* A pass over all ranges. What it finds goes into the ranges themselves. */
+static void for_ranges(struct simulation *simulation, range_pass *pass)
 {
-    return simulation->range_count >= RANGES_WORTH_A_THREAD ? simulation->threads : 1;
+    const ptrdiff_t count = simulation->range_count;
+    if (simulation->threads == 1 || count < RANGES_WORTH_A_THREAD) {
+        for (ptrdiff_t b = 0; b < count; b++) pass(simulation, &simulation->ranges[b], 0);
+        return;
+    }
+#pragma omp parallel for schedule(static) num_threads(simulation->threads)
+    for (ptrdiff_t b = 0; b < count; b++) pass(simulation, &simulation->ranges[b], thread_number());
 }
 
 enum status broke_down(const struct simulation *simulation, ptrdiff_t i, const char *quantity,
@@ -94,8 +99,8 @@ static void tighten(const struct simulation *simulation, struct range *range)
 }
 
 /* h = eta m/rho(h) of a range: Newton inside a bracket; a particle that has converged keeps its h
- * while the others go on. Returns the first particle without a root, -1 if all is well, -2 for
- * lack of ghosts. */
+ * while the others go on. Returns the first particle without a root, -1 if all is well, NO_GHOSTS
+ * for lack of ghosts. */
 static ptrdiff_t solve_range(struct simulation *simulation, struct range *range,
                              struct density_sums *sums)
 {
@@ -111,7 +116,7 @@ static ptrdiff_t solve_range(struct simulation *simulation, struct range *range,
         h_inverse[i] = 1 / h[i];
     }
     for (int iteration = 0; iteration < NEWTON_MAX; iteration++) {
-        if (!cover(simulation, range)) return -2;
+        if (!cover(simulation, range)) return NO_GHOSTS;
         simulation->loops.density_newton(&scheme->kernel, a, range->first, range->len, range->reach,
                                          h_inverse, sums);
         ptrdiff_t open = -1;
@@ -151,7 +156,7 @@ static ptrdiff_t sum_range(struct simulation *simulation, struct range *range,
     if (!range->predicted)
         range_predict_width(a, range->first, range->len, simulation->predict_ratio);
     range->predicted = true;
-    if (!cover(simulation, range)) return -2;
+    if (!cover(simulation, range)) return NO_GHOSTS;
     simulation->loops.density(&scheme->kernel, a, range->first, range->len, range->reach,
                               a->h_inverse + range->first, sums);
     return -1;
@@ -174,43 +179,58 @@ static enum status fill_density_ghosts(struct simulation *simulation, ptrdiff_t 
     return STATUS_OK;
 }
 
-static enum status find_density(struct simulation *simulation, bool newton, struct error *error)
+static void close_range(struct simulation *simulation, const struct range *range,
+                        const struct density_sums *sums)
 {
     const struct gas gas = {simulation->gamma, simulation->scheme.kernel.constant[1],
                             simulation->scheme.eta};
-    ptrdiff_t ghosts = 8;
-    for (ptrdiff_t b = 0; b < simulation->range_count; b++)
-        if (simulation->ranges[b].reach + 2 > ghosts) ghosts = simulation->ranges[b].reach + 2;
-    if (ghosts < simulation->ghosts_filled) ghosts = simulation->ghosts_filled;
+    range_close(&simulation->particles, range->first, range->len, &simulation->plan, &gas, sums);
+}
+
+static void newton_pass(struct simulation *simulation, struct range *range, int thread)
+{
+    (void)thread;
+    struct density_sums sums;
+    if (range->done) return;
+    range->result = solve_range(simulation, range, &sums);
+    range->done = range->result == -1;
+    if (range->done) close_range(simulation, range, &sums);
+}
+
+static void predicted_pass(struct simulation *simulation, struct range *range, int thread)
+{
+    (void)thread;
+    struct density_sums sums;
+    if (range->done) return;
+    range->result = sum_range(simulation, range, &sums);
+    range->done = range->result == -1;
+    if (range->done) close_range(simulation, range, &sums);
+}
+
+/* Repeats the pass over ranges that were short of ghosts. */
+static enum status find_density(struct simulation *simulation, range_pass *pass,
+                                struct error *error)
+{
+    struct range *ranges = simulation->ranges;
+    ptrdiff_t ghosts = simulation->ghosts_filled > 8 ? simulation->ghosts_filled : 8;
+    for (ptrdiff_t b = 0; b < simulation->range_count; b++) {
+        ranges[b].done = ranges[b].predicted = false;
+        if (ranges[b].reach + 2 > ghosts) ghosts = ranges[b].reach + 2;
+    }
     for (;;) {
         const enum status status = fill_density_ghosts(simulation, ghosts, error);
         if (status) return status;
-        ptrdiff_t short_of_ghosts = 0, failed = -1;
-#pragma omp parallel for schedule(static) num_threads(threads_for(simulation))                     \
-    reduction(max                                                                                  \
-              : short_of_ghosts, failed)
+        for_ranges(simulation, pass);
+        bool short_of_ghosts = false;
         for (ptrdiff_t b = 0; b < simulation->range_count; b++) {
-            struct range *range = &simulation->ranges[b];
-            struct density_sums sums;
-            if (range->pending) {
-                const ptrdiff_t result = newton ? solve_range(simulation, range, &sums)
-                                                : sum_range(simulation, range, &sums);
-                if (result == -2) {
-                    short_of_ghosts = largest_index(short_of_ghosts, range->reach + 2);
-                } else if (result >= 0) {
-                    failed = largest_index(failed, result);
-                } else {
-                    range_close(&simulation->particles, range->first, range->len, &simulation->plan,
-                                &gas, &sums);
-                    range->pending = false;
-                }
-            }
+            if (ranges[b].result >= 0)
+                return broke_down(simulation, ranges[b].result,
+                                  "smoothing length (no root was found)",
+                                  simulation->particles.h[ranges[b].result], error);
+            short_of_ghosts |= ranges[b].result == NO_GHOSTS;
         }
-        if (failed >= 0)
-            return broke_down(simulation, failed, "smoothing length (no root was found)",
-                              simulation->particles.h[failed], error);
         if (!short_of_ghosts) return STATUS_OK;
-        ghosts = short_of_ghosts + short_of_ghosts / 2;
+        ghosts *= 2;
     }
 }
 
@@ -270,11 +290,7 @@ static ptrdiff_t find_force_reach(struct simulation *simulation)
 static enum status prepare(struct simulation *simulation, bool newton, struct error *error)
 {
     const enum status status = restore_order(simulation, error);
-    for (ptrdiff_t b = 0; b < simulation->range_count; b++) {
-        simulation->ranges[b].pending = true;
-        simulation->ranges[b].predicted = false;
-    }
-    return status ? status : find_density(simulation, newton, error);
+    return status ? status : find_density(simulation, newton ? newton_pass : predicted_pass, error);
 }
 
 enum status evaluate_state(struct simulation *simulation, struct error *error)
@@ -313,6 +329,38 @@ static void range_dalpha(const struct simulation *simulation, const struct range
     }
 }
 
+static void matrix_pass(struct simulation *simulation, struct range *range, int thread)
+{
+    (void)thread;
+    simulation->loops.matrix(&simulation->scheme.kernel, &simulation->particles, range->first,
+                             range->len, range->reach);
+}
+
+static void force_pass(struct simulation *simulation, struct range *range, int thread)
+{
+    double *scratch = simulation->scratch + simulation->scratch_size * (size_t)thread;
+    simulation->loops.force(&simulation->loops, &simulation->numbers, &simulation->particles,
+                            range->first, range->len, range->force_reach, scratch);
+    if (simulation->plan.alpha) range_dalpha(simulation, range);
+    range->rate = range_rate(&simulation->particles, range->first, range->len);
+    if (simulation->cost.steps % 8 == 0) tighten(simulation, range);
+}
+
+static void signal_pass(struct simulation *simulation, struct range *range, int thread)
+{
+    (void)thread;
+    loops_signal(&simulation->particles, range->first, range->len, range->force_reach);
+    range->rate = range_rate(&simulation->particles, range->first, range->len);
+}
+
+static void limit_time_step(struct simulation *simulation)
+{
+    double rate = simulation->sleep.rate;
+    for (ptrdiff_t b = 0; b < simulation->range_count; b++)
+        rate = largest(simulation->ranges[b].rate, rate);
+    simulation->time_step = simulation->scheme.cfl / rate;
+}
+
 enum status evaluate_rates(struct simulation *simulation, struct error *error)
 {
     const enum status status = find_primitives(simulation, error);
@@ -322,41 +370,22 @@ enum status evaluate_rates(struct simulation *simulation, struct error *error)
 enum status evaluate_rates_of_primitives(struct simulation *simulation, struct error *error)
 {
     const bool newton = simulation->plan.newton || simulation->last_dt <= 0;
-    const enum status status = prepare(simulation, newton, error);
+    enum status status = prepare(simulation, newton, error);
     if (status) return status;
     const struct particles *a = &simulation->particles;
     if (newton && !simulation->plan.newton)
         for (ptrdiff_t i = 0; i < a->n; i++) a->h_inverse_old[i] = a->h_inverse_found[i];
     const ptrdiff_t reach = find_force_reach(simulation);
     fill_rate_ghosts(simulation, reach + 1);
-
-    const ptrdiff_t count = simulation->range_count;
-    const int threads = threads_for(simulation);
     if (simulation->loops.matrix) {
-#pragma omp parallel for schedule(static) num_threads(threads)
-        for (ptrdiff_t b = 0; b < count; b++) {
-            const struct range *range = &simulation->ranges[b];
-            simulation->loops.matrix(&simulation->scheme.kernel, a, range->first, range->len,
-                                     range->reach);
-        }
+        for_ranges(simulation, matrix_pass);
         particles_fill_ghosts(a, a->g, reach + 1, 0);
         if (simulation->plan.slope) particles_fill_ghosts(a, a->dv, reach + 1, 0);
     }
-
-    const enum status scratch_status = reserve_scratch(simulation, reach, error);
-    if (scratch_status) return scratch_status;
-    double rate = 0;
-#pragma omp parallel for schedule(static) num_threads(threads) reduction(max : rate)
-    for (ptrdiff_t b = 0; b < count; b++) {
-        struct range *range = &simulation->ranges[b];
-        double *scratch = simulation->scratch + simulation->scratch_size * (size_t)thread_number();
-        simulation->loops.force(&simulation->loops, &simulation->numbers, a, range->first,
-                                range->len, range->force_reach, scratch);
-        if (simulation->plan.alpha) range_dalpha(simulation, range);
-        rate = largest(range_rate(a, range->first, range->len), rate);
-        if (simulation->cost.steps % 8 == 0) tighten(simulation, range);
-    }
-    simulation->time_step = simulation->scheme.cfl / largest(rate, simulation->sleep.rate);
+    status = reserve_scratch(simulation, reach, error);
+    if (status) return status;
+    for_ranges(simulation, force_pass);
+    limit_time_step(simulation);
     count_work(simulation);
     return STATUS_OK;
 }
@@ -367,12 +396,6 @@ void evaluate_signal(struct simulation *simulation)
     for (ptrdiff_t i = 0; i < a->n; i++) a->v[i] = a->p[i] * a->m_inverse[i];
     const ptrdiff_t reach = find_force_reach(simulation);
     particles_fill_ghosts(a, a->v, reach + 1, 0);
-    double rate = 0;
-#pragma omp parallel for num_threads(threads_for(simulation)) reduction(max : rate)
-    for (ptrdiff_t b = 0; b < simulation->range_count; b++) {
-        const struct range *range = &simulation->ranges[b];
-        loops_signal(a, range->first, range->len, range->force_reach);
-        rate = largest(range_rate(a, range->first, range->len), rate);
-    }
-    simulation->time_step = simulation->scheme.cfl / largest(rate, simulation->sleep.rate);
+    for_ranges(simulation, signal_pass);
+    limit_time_step(simulation);
 }

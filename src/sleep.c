@@ -36,13 +36,11 @@ static bool group_disturbed(const struct simulation *simulation, ptrdiff_t group
     return disturbed;
 }
 
-/* Groups around a disturbed one that must be awake: twice the reach of pairs, and some. */
-static ptrdiff_t margin(const struct simulation *simulation)
+/* Groups around a disturbed one that must be awake: a disturbance passes through density and forces
+ * in one step, so it comes twice the reach of pairs closer. */
+static ptrdiff_t margin(ptrdiff_t reach)
 {
-    ptrdiff_t reach = 0;
-    for (ptrdiff_t b = 0; b < simulation->range_count; b++)
-        if (simulation->ranges[b].force_reach > reach) reach = simulation->ranges[b].force_reach;
-    return (2 * reach + 6) / SLEEP_GROUP + 2;
+    return (2 * reach + 2 + SLEEP_GROUP - 1) / SLEEP_GROUP + 1;
 }
 
 static void wake(struct sleep *sleep, ptrdiff_t group, ptrdiff_t reach)
@@ -55,24 +53,19 @@ static void wake(struct sleep *sleep, ptrdiff_t group, ptrdiff_t reach)
         sleep->awake[(group + k + sleep->groups) % sleep->groups] = 1;
 }
 
-/* Spans from the groups, ranges from the spans, and what the sleepers leave behind: no rates, and a
- * limit of the time step. */
+/* Spans from the groups, ranges from the spans. */
 static void lay_out(struct simulation *simulation)
 {
     struct sleep *sleep = &simulation->sleep;
-    struct particles *a = &simulation->particles;
     sleep->span_count = sleep->awake_count = simulation->range_count = 0;
     sleep->rate = 0;
     for (ptrdiff_t group = 0; group < sleep->groups; group++) {
-        const ptrdiff_t first = group * SLEEP_GROUP;
-        const int len = group_len(simulation, group);
         if (!sleep->awake[group]) {
-            memset(a->F + first, 0, (size_t)len * sizeof(double));
-            memset(a->de + first, 0, (size_t)len * sizeof(double));
-            memset(a->dalpha + first, 0, (size_t)len * sizeof(double));
-            sleep->rate = fmax(sleep->rate, range_rate(a, first, len));
+            sleep->rate = fmax(sleep->rate, sleep->group_rate[group]);
             continue;
         }
+        const ptrdiff_t first = group * SLEEP_GROUP;
+        const int len = group_len(simulation, group);
         sleep->awake_count += len;
         struct span *last = sleep->span_count ? &sleep->spans[sleep->span_count - 1] : NULL;
         if (last && last->first + last->len == first)
@@ -88,7 +81,20 @@ static void lay_out(struct simulation *simulation)
                                .len = (int)(left < RANGE_MAX ? left : RANGE_MAX),
                                .reach = 1};
         }
-    sleep->on = sleep->awake_count < a->n;
+    sleep->on = sleep->awake_count < simulation->particles.n;
+}
+
+/* A group falls asleep: it has no rates, and a limit of the time step that stays. */
+static void fall_asleep(struct simulation *simulation, ptrdiff_t group)
+{
+    const struct particles *a = &simulation->particles;
+    const ptrdiff_t first = group * SLEEP_GROUP;
+    const int len = group_len(simulation, group);
+    simulation->sleep.group_rate[group] = range_rate(a, first, len);
+    for (ptrdiff_t i = first; i < first + len; i++) {
+        a->F[i] = a->de[i] = a->dalpha[i] = 0;
+        simulation->sleep.at_rest &= a->p[i] == 0;
+    }
 }
 
 enum status sleep_begin(struct simulation *simulation, bool allowed, struct error *error)
@@ -98,20 +104,23 @@ enum status sleep_begin(struct simulation *simulation, bool allowed, struct erro
     sleep->groups = (a->n + SLEEP_GROUP - 1) / SLEEP_GROUP;
     sleep->awake = malloc((size_t)sleep->groups);
     sleep->spans = malloc((size_t)(sleep->groups / 2 + 1) * sizeof *sleep->spans);
-    if (!sleep->awake || !sleep->spans)
+    sleep->group_rate = malloc((size_t)sleep->groups * sizeof *sleep->group_rate);
+    if (!sleep->awake || !sleep->spans || !sleep->group_rate)
         return error_set(error, STATUS_ENVIRONMENT, "no memory for %td particles", a->n);
-    memset(sleep->awake, !allowed, (size_t)sleep->groups);
     sleep->at_rest = true;
-    if (allowed) {
-        const ptrdiff_t reach = margin(simulation);
-        for (ptrdiff_t group = 0; group < sleep->groups; group++)
-            if (group_disturbed(simulation, group)) wake(sleep, group, reach);
-        for (ptrdiff_t i = 0; i < a->n; i++)
-            sleep->at_rest &= sleep->awake[i / SLEEP_GROUP] || a->p[i] == 0;
-        lay_out(simulation);
-    } else {
+    if (!allowed) {
         sleep_end(simulation);
+        return STATUS_OK;
     }
+    memset(sleep->awake, 0, (size_t)sleep->groups);
+    ptrdiff_t reach = 0;
+    for (ptrdiff_t b = 0; b < simulation->range_count; b++)
+        if (simulation->ranges[b].force_reach > reach) reach = simulation->ranges[b].force_reach;
+    for (ptrdiff_t group = 0; group < sleep->groups; group++)
+        if (group_disturbed(simulation, group)) wake(sleep, group, margin(reach));
+    for (ptrdiff_t group = 0; group < sleep->groups; group++)
+        if (!sleep->awake[group]) fall_asleep(simulation, group);
+    lay_out(simulation);
     return STATUS_OK;
 }
 
@@ -121,28 +130,33 @@ void sleep_end(struct simulation *simulation)
     lay_out(simulation);
 }
 
+/* Disturbances come from inside: looks from one end of a span inwards, in the direction step, for
+ * the outermost disturbed group. Returns whether it woke anybody. */
+static bool wake_beyond(struct simulation *simulation, ptrdiff_t end, ptrdiff_t step,
+                        ptrdiff_t reach, ptrdiff_t groups)
+{
+    for (ptrdiff_t k = 0; k < reach && k < groups; k++)
+        if (group_disturbed(simulation, end + step * k)) {
+            wake(&simulation->sleep, end + step * k, reach);
+            return true;
+        }
+    return false;
+}
+
 void sleep_update(struct simulation *simulation)
 {
     struct sleep *sleep = &simulation->sleep;
     if (!sleep->on) return;
-    const ptrdiff_t reach = margin(simulation);
     bool woken = false;
+    const struct range *range = simulation->ranges;
     for (ptrdiff_t s = 0; s < sleep->span_count; s++) {
-        const ptrdiff_t first = sleep->spans[s].first / SLEEP_GROUP;
-        const ptrdiff_t last = (sleep->spans[s].first + sleep->spans[s].len - 1) / SLEEP_GROUP;
-        /* disturbances come from inside: the outermost one at each end decides */
-        for (ptrdiff_t k = 0; k < reach && first + k <= last; k++)
-            if (group_disturbed(simulation, first + k)) {
-                wake(sleep, first + k, reach);
-                woken = true;
-                break;
-            }
-        for (ptrdiff_t k = 0; k < reach && last - k >= first; k++)
-            if (group_disturbed(simulation, last - k)) {
-                wake(sleep, last - k, reach);
-                woken = true;
-                break;
-            }
+        const struct span *span = &sleep->spans[s];
+        const ptrdiff_t first = span->first / SLEEP_GROUP;
+        const ptrdiff_t last = (span->first + span->len - 1) / SLEEP_GROUP;
+        woken |= wake_beyond(simulation, first, 1, margin(range->force_reach), last - first + 1);
+        range += (span->len + RANGE_MAX - 1) / RANGE_MAX - 1; /* the last one of the span */
+        woken |= wake_beyond(simulation, last, -1, margin(range->force_reach), last - first + 1);
+        range++;
     }
     if (woken) lay_out(simulation);
 }
@@ -150,5 +164,6 @@ void sleep_update(struct simulation *simulation)
 void sleep_free(struct sleep *sleep)
 {
     free(sleep->awake);
+    free(sleep->group_rate);
     free(sleep->spans);
 }

@@ -27,6 +27,7 @@ struct sleep {
     double rate;  /* largest signal speed / h of the sleepers */
     ptrdiff_t groups;
     unsigned char *awake; /* of each group */
+    double *group_rate;   /* signal speed / h of each group when it fell asleep */
     struct span *spans;   /* of awake particles; all particles where nobody sleeps */
     ptrdiff_t span_count, awake_count;
 };

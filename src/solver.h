@@ -18,8 +18,10 @@ struct range {
     int len;
     ptrdiff_t reach;       /* neighbour offsets that suffice for the particles' own h */
     ptrdiff_t force_reach; /* and for pairs within max(h_i, h_j) */
-    bool pending;          /* density still to be found in this evaluation */
+    bool done;             /* density is found in this evaluation */
     bool predicted;        /* widths of this evaluation are predicted */
+    ptrdiff_t result;      /* of its density pass: -1, the particle without a root, or NO_GHOSTS */
+    double rate;           /* largest signal speed / h */
 };
 
 struct simulation {
