@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""report.py SPHPROOF FOLDER: the report as a whole, into FOLDER: its files, that it stands alone, that
+each plot can be drawn again, that jobs do not change results, and what happens when things fail."""
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import xml.etree.ElementTree as xml
+
+program, folder = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
+faults = []
+
+
+def expect(what, well, got=""):
+    if not well:
+        faults.append("%s %s" % (what, got))
+
+
+def report(*arguments, **environment):
+    return subprocess.run([program, "report", *arguments], capture_output=True, text=True,
+                          stdin=subprocess.DEVNULL, env={**os.environ, **environment})
+
+
+def read(*path):
+    with open(os.path.join(folder, *path), encoding="utf-8") as file:
+        return file.read()
+
+
+def without_costs(value):
+    """Everything that must be the same in two reports of one program."""
+    if isinstance(value, dict):
+        drop = ("cost", "cpu_s", "wall_s", "seconds", "date")
+        return {k: without_costs(v) for k, v in value.items() if k not in drop}
+    return [without_costs(v) for v in value] if isinstance(value, list) else value
+
+
+shutil.rmtree(folder, ignore_errors=True)
+done = report("--quick", "--out", os.path.join(folder, "a b", "é"), "--jobs", "2")
+folder = os.path.join(folder, "a b", "é")
+expect("exit status of a sound report:", done.returncode == 0, done.stdout[:500] + done.stderr)
+expect("where the report is:", os.path.join(folder, "index.html") in done.stdout, done.stdout)
+
+page, results = read("index.html"), json.loads(read("results.json"))
+expect("verdict:", "<h1>All is well</h1>" in page and results["verdict"]["status"] == "pass")
+expect("asks the network:", not re.search(r"(src|href)=\"(https?:)?//|url\(|@import|<script", page))
+xml.fromstring(page.replace("<!DOCTYPE html>", ""))
+xml.fromstring(read("junit.xml"))
+expect("summary:", "All is well" in read("summary.md"))
+plots = [name[:-3] for name in os.listdir(os.path.join(folder, "plots")) if name.endswith(".gp")]
+expect("plots:", len(plots) == page.count("<svg ") > 10, len(plots))
+for name in plots:
+    expect("links of a plot:", 'href="plots/%s.dat"' % name in page, name)
+subprocess.run(["gnuplot", plots[0] + ".gp"], cwd=os.path.join(folder, "plots"), check=True)
+expect("a plot drawn again:", "<svg" in read("plots", plots[0] + ".svg"))
+
+commands = [d["reproduce"] for d in results["runs"] + results["studies"] + results["kernels"]]
+for command in commands:
+    expect("a command of the page:", command in page, command)
+again = subprocess.run([program] + commands[1].split()[1:] + ["--json", "-"], capture_output=True,
+                       text=True)
+expect("a run seen again:",
+       json.loads(again.stdout)["errors"] == results["runs"][1]["errors"], again.stderr)
+
+alone = os.path.join(folder, "alone")
+done = report("--out", alone, "--jobs", "1", PATH="/nowhere")
+expect("exit status without gnuplot:", done.returncode == 4 and "gnuplot" in done.stderr, done)
+expect("page without gnuplot:", "<svg" not in read("alone", "index.html")
+       and "All is well" in read("alone", "index.html"))
+expect("one job, other results:",
+       without_costs(json.loads(read("alone", "results.json"))) == without_costs(results))
+
+for arguments, status in ((["--jobs", "0"], 2), (["--quick", "--nightly"], 2), (["sod"], 2),
+                          (["--out", os.path.join(folder, "index.html")], 4)):
+    done = report(*arguments)
+    expect("exit status of %s:" % arguments, done.returncode == status and done.stderr
+           and not done.stdout, done)
+
+print("\n".join(faults) or "the report is sound")
+sys.exit(bool(faults))
