@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The equations of motion as pair forces (PHYSICS section 5) on random disordered states in 1D, 2D
+ * and 3D, straight from their formulas, with gradients G_ij that are src's operators applied to
+ * fields which are 1 at one point. For rates of change of conserved sums without time stepping. */
+#ifndef SPHPROOF_PAIR_FORCES_H
+#define SPHPROOF_PAIR_FORCES_H
+
+#include "gradient_study.h"
+#include "scheme.h"
+
+enum pair_fault {
+    PAIR_RIGHT,
+    PAIR_GATHER,        /* G(h_i) for the mean */
+    PAIR_HALF_IN_FORCE, /* mean without the 1/2 in the force, with it in the heating */
+    PAIR_PLUS,          /* difference for sum of the two gradients */
+    PAIR_OWN_F,         /* f_i in both terms of the Lagrangian force */
+    PAIR_NO_F,          /* no f in the heating */
+    PAIR_OWN_PRESSURE,  /* P_i for P_i + P_j */
+    PAIR_HEATING_SIGN,  /* v_j - v_i in the heating of one of ten points */
+    PAIR_OWN_MATRIX,    /* G(h_j) of particle j divided by the volume of i */
+};
+
+struct pair_forces_subject {
+    struct gradient_subject gradient; /* a difference form: rho dv/dt = -grad P, no pair forces */
+    enum formulation formulation;
+    enum pair_fault fault;
+};
+
+enum { PAIR_FORCES_MAX = 64 };
+
+struct pair_forces_state {
+    int dim;
+    size_t n;
+    struct clouds_cloud cloud; /* volume = m/rho, h = eta volume^(1/dim) */
+    double m[PAIR_FORCES_MAX], v[3][PAIR_FORCES_MAX], P[PAIR_FORCES_MAX], rho[PAIR_FORCES_MAX];
+    double f[PAIR_FORCES_MAX];                     /* grad-h factors */
+    double G[PAIR_FORCES_MAX][PAIR_FORCES_MAX][3]; /* G_ij(h_i) */
+    double condition;                              /* largest */
+};
+
+struct pair_forces_rates { /* of total momentum, angular momentum, energy, over sums of |terms| */
+    double momentum, angular, energy;
+};
+
+/* A jittered cloud of at most PAIR_FORCES_MAX points with random masses, pressures and velocities;
+ * free its cloud with clouds_free. False: no memory. */
+bool pair_forces_state(struct pair_forces_state *state, const struct kernel *kernel, int dim,
+                       unsigned long seed);
+
+/* Fills G and condition. */
+bool pair_forces_gradients(struct pair_forces_state *state, const struct gradient_subject *subject,
+                           const struct kernel *kernel);
+
+/* All of it: the rates of one state. */
+bool pair_forces_rates(const struct pair_forces_subject *subject, int dim, unsigned long seed,
+                       struct pair_forces_rates *rates);
+
+#endif
