@@ -11,6 +11,7 @@
 #include "certificate.h"
 #include "check.h"
 #include "converge.h"
+#include "league.h"
 #include "result.h"
 #include "run.h"
 #include "suite.h"
@@ -40,7 +41,7 @@ enum { CASES = sizeof cases / sizeof *cases, SCHEMES = sizeof schemes / sizeof *
 enum { KEYS_MAX = 16, EXACT_POINTS = 1001 };
 
 struct task {
-    enum { TASK_RUN, TASK_STUDY, TASK_CHECKS, TASK_KERNEL } kind;
+    enum { TASK_RUN, TASK_STUDY, TASK_CHECKS, TASK_KERNEL, TASK_LEAGUE } kind;
     const char *where; /* case or kernel */
     int scheme, dim;
     bool nightly, compared;
@@ -227,6 +228,15 @@ static enum status compute_kernel(struct task *task)
     return status;
 }
 
+static enum status compute_league(struct task *task)
+{
+    struct league_row rows[LEAGUE_ROWS_MAX];
+    size_t count;
+    const enum status status = league_measure(rows, &count, &task->error);
+    if (!status) task->document = league_json(rows, count);
+    return status;
+}
+
 static enum status compute(struct task *task)
 {
     switch (task->kind) {
@@ -238,6 +248,8 @@ static enum status compute(struct task *task)
         return compute_checks(task);
     case TASK_KERNEL:
         return compute_kernel(task);
+    case TASK_LEAGUE:
+        return compute_league(task);
     }
     return STATUS_OK;
 }
@@ -249,6 +261,8 @@ static size_t list_tasks(struct task *tasks, bool nightly)
 {
     size_t n = 0;
     if (tasks) tasks[n] = (struct task){.kind = TASK_CHECKS, .where = "checks", .weight = 20};
+    n++;
+    if (tasks) tasks[n] = (struct task){.kind = TASK_LEAGUE, .where = "operators", .weight = 2};
     n++;
     for (int c = 0; c < CASES; c++) {
         for (int s = 0; s < SCHEMES; s++) {
@@ -319,6 +333,9 @@ static json_t *collect(struct task *tasks, size_t n, enum report_mode mode, doub
             break;
         case TASK_CHECKS:
             json_object_set(results, "verify", document);
+            break;
+        case TASK_LEAGUE:
+            json_object_set(results, "gradients", document);
             break;
         }
     }
