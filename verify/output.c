@@ -139,6 +139,24 @@ enum status output_probe(const char *path, struct error *error)
     return status;
 }
 
+enum status output_folder(const char *path, struct error *error)
+{
+    char part[PATH_MAX];
+    if (snprintf(part, sizeof part, "%s", path) >= (int)sizeof part)
+        return error_set(error, STATUS_BAD_INPUT, "the path '%.60s...' is too long", path);
+    for (char *c = part + (*part != '\0');; c++) {
+        if (*c != '/' && *c) continue;
+        const char kept = *c;
+        struct stat is;
+        *c = '\0';
+        if (mkdir(part, 0777) && !(errno == EEXIST && !stat(part, &is) && S_ISDIR(is.st_mode)))
+            return error_set(error, STATUS_ENVIRONMENT, "cannot make the folder '%s': %s", part,
+                             strerror(errno));
+        *c = kept;
+        if (!kept) return STATUS_OK;
+    }
+}
+
 void output_prepare_process(void)
 {
     /* A closed standard stream is replaced by one that fails, so that no data file gets its

@@ -27,6 +27,9 @@ void output_discard(struct output *output);
 /* Could path be written now? For a clear answer before hours of work. */
 enum status output_probe(const char *path, struct error *error);
 
+/* Makes a folder and those above it; one that is there is fine. */
+enum status output_folder(const char *path, struct error *error);
+
 /* At start-up: interrupts remove temporaries, a full disk or a closed pipe is an error, not a
  * signal; closed standard streams cannot be taken by a file. */
 void output_prepare_process(void);

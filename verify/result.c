@@ -53,6 +53,11 @@ json_t *result_number(double value)
     return json_real(value);
 }
 
+char *result_text(const json_t *document)
+{
+    return json_dumps(document, JSON_COMPACT | JSON_REAL_PRECISION(17));
+}
+
 enum status result_write(const json_t *document, const char *path, struct error *error)
 {
     struct output output;

@@ -14,6 +14,9 @@ json_t *result_new(const char *command);
 /* A number, or the string "nan", "inf" or "-inf" where it is not finite. New reference. */
 json_t *result_number(double value);
 
+/* The document as text, 17 significant digits; malloced, NULL: no memory. */
+char *result_text(const json_t *document);
+
 /* Writes the document to path ("-": standard output), 17 significant digits; a file appears whole
  * or not at all. STATUS_ENVIRONMENT: path cannot be written. */
 enum status result_write(const json_t *document, const char *path, struct error *error);

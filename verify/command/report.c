@@ -3,11 +3,9 @@
  */
 #include "report.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "command.h"
@@ -26,24 +24,6 @@ static const struct command_option report_options[] = {
     {"jobs", "J", "so many computations side by side (default: one for each core)"},
     {NULL, NULL, NULL},
 };
-
-static enum status make_folder(const char *path, struct error *error)
-{
-    char part[PATH_LENGTH];
-    if (snprintf(part, sizeof part, "%s", path) >= (int)sizeof part - 64)
-        return error_set(error, STATUS_BAD_INPUT, "report: --out: the path is too long");
-    for (char *c = part + 1;; c++) {
-        if (*c != '/' && *c) continue;
-        const char kept = *c;
-        *c = '\0';
-        struct stat is;
-        if (mkdir(part, 0777) && !(errno == EEXIST && !stat(part, &is) && S_ISDIR(is.st_mode)))
-            return error_set(error, STATUS_ENVIRONMENT, "cannot make the folder '%s': %s", part,
-                             strerror(errno));
-        *c = kept;
-        if (!kept) return STATUS_OK;
-    }
-}
 
 /* folder/name gets text. */
 static enum status write_text(const char *folder, const char *name, const char *text,
@@ -119,7 +99,7 @@ static enum status run(const struct options *options, int n, char **arguments, s
     enum status status = take_settings(options, &settings, error);
     if (!status && snprintf(plots, sizeof plots, "%s/plots", folder) >= (int)sizeof plots)
         return error_set(error, STATUS_BAD_INPUT, "report: --out: the path is too long");
-    if (!status) status = make_folder(plots, error);
+    if (!status) status = output_folder(plots, error);
     if (status) return status;
 
     json_t *results;

@@ -1,0 +1,171 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cache.h"
+
+#include <dirent.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+#ifdef __APPLE__
+#include <mach-o/dyld.h>
+#endif
+
+#include "output.h"
+#include "result.h"
+#include "version.h"
+
+static const double keep_seconds = 30. * 24 * 3600;
+enum { ENTRY_MAX = 1 << 28, HEAD_MAX = 64 };
+
+uint64_t cache_hash(uint64_t hash, const void *bytes, size_t n)
+{
+    const unsigned char *byte = bytes;
+    for (size_t i = 0; i < n; i++) hash = (hash ^ byte[i]) * UINT64_C(0x100000001b3);
+    return hash;
+}
+
+static FILE *open_program(void)
+{
+#ifdef __APPLE__
+    char path[CACHE_PATH_MAX];
+    uint32_t size = sizeof path;
+    return _NSGetExecutablePath(path, &size) ? NULL : fopen(path, "rb");
+#else
+    return fopen("/proc/self/exe", "rb");
+#endif
+}
+
+/* Any change of the program, or of the library its mathematics come from, is another build. */
+static void build_id(char build[CACHE_BUILD_MAX])
+{
+    char bytes[1 << 16];
+    size_t n;
+    uint64_t hash =
+        cache_hash(CACHE_HASH, VERSION_FLAGS VERSION_GIT, sizeof VERSION_FLAGS VERSION_GIT);
+    FILE *program = open_program();
+    while (program && (n = fread(bytes, 1, sizeof bytes, program)) > 0)
+        hash = cache_hash(hash, bytes, n);
+    if (program) fclose(program);
+#ifdef _CS_GNU_LIBC_VERSION
+    n = confstr(_CS_GNU_LIBC_VERSION, bytes, sizeof bytes);
+    hash = cache_hash(hash, bytes, n < sizeof bytes ? n : sizeof bytes);
+#endif
+    snprintf(build, CACHE_BUILD_MAX, "%016" PRIx64, hash);
+}
+
+/* Temporaries that a killed process left go the same way. */
+static void prune(const struct cache *cache)
+{
+    DIR *folder = opendir(cache->folder);
+    const time_t now = time(NULL);
+    for (struct dirent *entry; folder && (entry = readdir(folder));) {
+        char path[CACHE_PATH_MAX];
+        struct stat is;
+        if (!strstr(entry->d_name, ".entry") ||
+            snprintf(path, sizeof path, "%s/%s", cache->folder, entry->d_name) >= (int)sizeof path)
+            continue;
+        if (!stat(path, &is) && difftime(now, is.st_mtime) > keep_seconds) unlink(path);
+    }
+    if (folder) closedir(folder);
+}
+
+enum status cache_open(struct cache *cache, const char *folder, bool force, struct error *error)
+{
+    cache->force = force;
+    if (snprintf(cache->folder, sizeof cache->folder, "%s", folder) >= (int)sizeof cache->folder)
+        return error_set(error, STATUS_BAD_INPUT, "the path of the cache is too long");
+    const enum status status = output_folder(cache->folder, error);
+    if (status) return status;
+    build_id(cache->build);
+    prune(cache);
+    return STATUS_OK;
+}
+
+void cache_path(const struct cache *cache, const char *key, char path[CACHE_PATH_MAX])
+{
+    uint64_t hash = cache_hash(CACHE_HASH, cache->build, strlen(cache->build));
+    hash = cache_hash(hash, key, strlen(key));
+    snprintf(path, CACHE_PATH_MAX, "%s/%016" PRIx64 ".entry", cache->folder, hash);
+}
+
+/* A file's bytes and a NUL; NULL where it cannot be read. */
+static char *read_file(const char *path, size_t *length)
+{
+    struct stat is;
+    FILE *file = fopen(path, "rb");
+    char *text = NULL;
+    if (file && !fstat(fileno(file), &is) && S_ISREG(is.st_mode) && is.st_size < ENTRY_MAX)
+        text = malloc((size_t)is.st_size + 1);
+    if (text) {
+        *length = fread(text, 1, (size_t)is.st_size, file);
+        text[*length] = '\0';
+    }
+    if (file) fclose(file);
+    return text;
+}
+
+/* The first line of an entry: what its body must be. */
+static int head_of(const char *body, size_t length, char head[HEAD_MAX])
+{
+    return snprintf(head, HEAD_MAX, "sphproof-entry/1 %016" PRIx64 " %zu\n",
+                    cache_hash(CACHE_HASH, body, length), length);
+}
+
+/* The body of an entry whose length and checksum are right, else NULL. */
+static const char *body_of(const char *text, size_t length)
+{
+    char head[HEAD_MAX];
+    const char *end = memchr(text, '\n', length);
+    if (!end) return NULL;
+    const char *body = end + 1;
+    const int size = head_of(body, (size_t)(text + length - body), head);
+    return size == body - text && memcmp(text, head, (size_t)size) == 0 ? body : NULL;
+}
+
+json_t *cache_load(const struct cache *cache, const char *key)
+{
+    char path[CACHE_PATH_MAX];
+    size_t length = 0;
+    json_t *document = NULL;
+    if (cache->force) return NULL;
+    cache_path(cache, key, path);
+    char *text = read_file(path, &length);
+    const char *body = text ? body_of(text, length) : NULL;
+    json_t *entry = body ? json_loads(body, 0, NULL) : NULL;
+    const char *build = json_string_value(json_object_get(entry, "build"));
+    const char *own = json_string_value(json_object_get(entry, "key"));
+    if (build && own && strcmp(build, cache->build) == 0 && strcmp(own, key) == 0)
+        document = json_incref(json_object_get(entry, "document"));
+    if (document) utimensat(AT_FDCWD, path, NULL, 0); /* used: stays another month */
+    json_decref(entry);
+    free(text);
+    return document;
+}
+
+enum status cache_store(const struct cache *cache, const char *key, const json_t *document,
+                        struct error *error)
+{
+    char path[CACHE_PATH_MAX];
+    struct output output;
+    json_t *entry =
+        json_pack("{s:s, s:s, s:O}", "build", cache->build, "key", key, "document", document);
+    char *text = entry ? result_text(entry) : NULL;
+    json_decref(entry);
+    if (!text) return error_set(error, STATUS_ENVIRONMENT, "no memory to keep a result");
+    cache_path(cache, key, path);
+    enum status status = output_open(&output, path, error);
+    if (!status) {
+        const size_t length = strlen(text);
+        char head[HEAD_MAX];
+        head_of(text, length, head);
+        fputs(head, output.stream);
+        fwrite(text, 1, length, output.stream);
+        status = output_close(&output, error);
+    }
+    free(text);
+    return status;
+}

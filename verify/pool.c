@@ -1,0 +1,251 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "pool.h"
+
+#include <errno.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "result.h"
+
+enum { POLL_MS = 200, CHUNK = 1 << 16 };
+
+/* A job in its process: what has come through its pipe so far. */
+struct worker {
+    pid_t pid;
+    int pipe;
+    size_t job, length, room;
+    char *text;
+};
+
+size_t pool_add(struct pool *pool, const char *name, const char *key, double weight,
+                pool_compute *compute, const void *context)
+{
+    if (pool->count == pool->room) {
+        const size_t room = pool->room ? 2 * pool->room : 64;
+        struct pool_job *jobs = realloc(pool->jobs, room * sizeof *jobs);
+        if (!jobs) return (size_t)-1;
+        pool->jobs = jobs;
+        pool->room = room;
+    }
+    struct pool_job job = {.name = strdup(name), .key = key ? strdup(key) : NULL, .weight = weight};
+    if (!job.name || (key && !job.key)) {
+        free(job.name);
+        free(job.key);
+        return (size_t)-1;
+    }
+    job.compute = compute;
+    job.context = context;
+    pool->jobs[pool->count] = job;
+    return pool->count++;
+}
+
+void pool_free(struct pool *pool)
+{
+    for (size_t i = 0; i < pool->count; i++) {
+        free(pool->jobs[i].name);
+        free(pool->jobs[i].key);
+        json_decref(pool->jobs[i].document);
+    }
+    free(pool->jobs);
+    *pool = (struct pool){0};
+}
+
+/* ---- in the worker's process ---- */
+
+/* {"status", "message", "document", "note"}: what a job said, and why it could not be kept. */
+static json_t *reply_of(const struct pool_job *job, const struct cache *cache)
+{
+    json_t *document = NULL;
+    struct error error = {0}, trouble = {0};
+    const enum status status = job->compute(job->context, &document, &error);
+    json_t *reply =
+        json_pack("{s:i, s:s, s:o}", "status", (int)status, "message", status ? error.message : "",
+                  "document", document ? document : json_null());
+    const bool result = status != STATUS_ENVIRONMENT && status != STATUS_BAD_INPUT;
+    if (reply && result && cache && job->key && cache_store(cache, job->key, reply, &trouble))
+        json_object_set_new(reply, "note", json_string(trouble.message));
+    return reply;
+}
+
+static _Noreturn void work(const struct pool_job *job, const struct cache *cache, int pipe)
+{
+    json_t *reply = reply_of(job, cache);
+    char *text = reply ? result_text(reply) : NULL;
+    size_t sent = 0, length = text ? strlen(text) : 0;
+    while (sent < length) {
+        const ssize_t n = write(pipe, text + sent, length - sent);
+        if (n < 0 && errno != EINTR) _exit(STATUS_ENVIRONMENT);
+        if (n > 0) sent += (size_t)n;
+    }
+    _exit(length ? 0 : STATUS_ENVIRONMENT);
+}
+
+/* ---- in the parent ---- */
+
+static bool take_reply(struct pool *pool, struct pool_job *job, json_t *reply)
+{
+    json_t *status = json_object_get(reply, "status"), *document;
+    if (!json_is_integer(status)) return false;
+    job->error.status = (enum status)json_integer_value(status);
+    const char *message = json_string_value(json_object_get(reply, "message"));
+    snprintf(job->error.message, sizeof job->error.message, "%s", message ? message : "");
+    document = json_object_get(reply, "document");
+    job->document = json_is_null(document) ? NULL : json_incref(document);
+    const char *note = json_string_value(json_object_get(reply, "note"));
+    if (note && !pool->note[0]) snprintf(pool->note, sizeof pool->note, "%s", note);
+    return job->done = true;
+}
+
+static enum status start(struct worker *worker, const struct pool *pool, size_t job,
+                         const struct pool_settings *settings, struct error *error)
+{
+    int ends[2];
+    fflush(NULL);
+    if (pipe(ends))
+        return error_set(error, STATUS_ENVIRONMENT, "no pipe for %s: %s", pool->jobs[job].name,
+                         strerror(errno));
+    const pid_t pid = fork();
+    if (pid == 0) {
+        close(ends[0]);
+        work(&pool->jobs[job], settings->cache, ends[1]);
+    }
+    const int reason = errno;
+    close(ends[1]);
+    if (pid < 0) {
+        close(ends[0]);
+        return error_set(error, STATUS_ENVIRONMENT, "no process for %s: %s", pool->jobs[job].name,
+                         strerror(reason));
+    }
+    *worker = (struct worker){.pid = pid, .pipe = ends[0], .job = job};
+    return STATUS_OK;
+}
+
+/* Reads what there is; false at the end. */
+static bool receive(struct worker *worker)
+{
+    if (worker->room - worker->length < CHUNK) {
+        char *text = realloc(worker->text, 2 * worker->room + 2 * CHUNK);
+        if (!text) return false; /* half a reply is none */
+        worker->text = text;
+        worker->room = 2 * worker->room + 2 * CHUNK;
+    }
+    const ssize_t n = read(worker->pipe, worker->text + worker->length, CHUNK);
+    if (n < 0) return errno == EINTR || errno == EAGAIN;
+    worker->length += (size_t)n;
+    return n > 0;
+}
+
+static void finish(struct worker *worker, struct pool *pool)
+{
+    struct pool_job *job = &pool->jobs[worker->job];
+    int status = 0;
+    close(worker->pipe);
+    while (waitpid(worker->pid, &status, 0) < 0 && errno == EINTR) continue;
+    json_t *reply = worker->text ? json_loadb(worker->text, worker->length, 0, NULL) : NULL;
+    if (WIFSIGNALED(status))
+        error_set(&job->error, STATUS_BROKE_DOWN, "%s: its process was ended by signal %d (%s)",
+                  job->name, WTERMSIG(status), strsignal(WTERMSIG(status)));
+    else if (!WIFEXITED(status) || WEXITSTATUS(status) || !take_reply(pool, job, reply))
+        error_set(&job->error, STATUS_ENVIRONMENT, "%s: its process gave no result: no memory?",
+                  job->name);
+    job->done = true;
+    json_decref(reply);
+    free(worker->text);
+    *worker = (struct worker){.pid = 0};
+}
+
+static const struct pool_job *sorted_jobs;
+
+static int heavy_first(const void *a, const void *b)
+{
+    const size_t i = *(const size_t *)a, j = *(const size_t *)b;
+    const double x = sorted_jobs[i].weight, y = sorted_jobs[j].weight;
+    return x != y ? (x < y) - (x > y) : (i > j) - (i < j);
+}
+
+struct course {
+    size_t *order, next, ready; /* jobs by weight; the next one; how many are done */
+    double work, worked;        /* weight that is not in the cache, and what of it is done */
+    const char *last;
+};
+
+/* What the cache has; the others, heavy ones first. */
+static size_t look_up(struct pool *pool, const struct pool_settings *settings,
+                      struct course *course)
+{
+    size_t waiting = 0;
+    for (size_t i = 0; i < pool->count; i++) {
+        struct pool_job *job = &pool->jobs[i];
+        json_t *reply = settings->cache && job->key ? cache_load(settings->cache, job->key) : NULL;
+        job->cached = reply && take_reply(pool, job, reply);
+        json_decref(reply);
+        pool->found += job->cached;
+        course->ready += job->cached;
+        if (job->cached) continue;
+        course->work += job->weight;
+        course->order[waiting++] = i;
+    }
+    sorted_jobs = pool->jobs;
+    qsort(course->order, waiting, sizeof *course->order, heavy_first);
+    return waiting;
+}
+
+static void report(const struct pool *pool, const struct pool_settings *settings,
+                   const struct course *course)
+{
+    if (settings->progress && course->last)
+        settings->progress(settings->progress_context, course->last, course->ready, pool->count,
+                           course->work > 0 ? course->worked / course->work : 1);
+}
+
+static enum status run_workers(struct pool *pool, const struct pool_settings *settings,
+                               struct course *course, size_t waiting, struct worker *workers,
+                               struct pollfd *polls, struct error *error)
+{
+    enum status status = STATUS_OK;
+    int running = 0;
+    while (running || (course->next < waiting && !status)) {
+        while (running < settings->jobs && course->next < waiting && !status) {
+            const size_t job = course->order[course->next++];
+            course->last = pool->jobs[job].name;
+            if (!(status = start(&workers[running], pool, job, settings, error))) running++;
+        }
+        for (int i = 0; i < running; i++)
+            polls[i] = (struct pollfd){.fd = workers[i].pipe, .events = POLLIN};
+        poll(polls, (nfds_t)running, POLL_MS);
+        for (int i = running; i-- > 0;) {
+            if (!polls[i].revents || receive(&workers[i])) continue;
+            course->worked += pool->jobs[workers[i].job].weight;
+            course->ready++;
+            finish(&workers[i], pool);
+            workers[i] = workers[--running]; /* looked at already */
+        }
+        report(pool, settings, course);
+    }
+    return status;
+}
+
+enum status pool_run(struct pool *pool, const struct pool_settings *settings, struct error *error)
+{
+    struct course course = {.order = calloc(pool->count + 1, sizeof *course.order)};
+    struct worker *workers = calloc((size_t)settings->jobs, sizeof *workers);
+    struct pollfd *polls = calloc((size_t)settings->jobs, sizeof *polls);
+    enum status status = STATUS_OK;
+    json_object_seed(0);
+    if (course.order && workers && polls) {
+        const size_t waiting = look_up(pool, settings, &course);
+        status = run_workers(pool, settings, &course, waiting, workers, polls, error);
+    } else {
+        status =
+            error_set(error, STATUS_ENVIRONMENT, "no memory for %zu computations", pool->count);
+    }
+    free(course.order);
+    free(workers);
+    free(polls);
+    return status;
+}

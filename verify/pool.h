@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Independent computations side by side, each in a process of its own: what one does to its memory
+ * is nobody else's, one that crashes takes only itself down, and the results do not depend on how
+ * many run at once. What a cache already has is not computed; what is computed is kept at once, so
+ * that an interruption loses only what was not finished. */
+#ifndef SPHPROOF_POOL_H
+#define SPHPROOF_POOL_H
+
+#include <jansson.h>
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "cache.h"
+#include "status.h"
+
+/* Computes a document. STATUS_OK, STATUS_CHECK_FAILED and STATUS_BROKE_DOWN are results: they are
+ * kept, with error's message and the document, if there is one. */
+typedef enum status pool_compute(const void *context, json_t **document, struct error *error);
+
+struct pool_job {
+    char *name;    /* for messages and progress */
+    char *key;     /* of the cache; NULL: never kept */
+    double weight; /* about how long it takes, in any unit; heavy ones start first */
+    pool_compute *compute;
+    const void *context; /* not owned */
+    /* after pool_run: */
+    bool done, cached;
+    json_t *document;   /* NULL where there is none */
+    struct error error; /* status of compute; STATUS_BROKE_DOWN also where its process crashed */
+};
+
+struct pool {
+    struct pool_job *jobs;
+    size_t count, room;
+    size_t found;   /* in the cache */
+    char note[512]; /* "", or why entries could not be kept */
+};
+
+/* done of total jobs; share: of the work that was to be done, 0..1. Called several times a second.
+ */
+typedef void pool_progress(void *context, const char *what, size_t done, size_t total,
+                           double share);
+
+struct pool_settings {
+    int jobs;                  /* processes at once, >= 1 */
+    const struct cache *cache; /* NULL: none */
+    pool_progress *progress;   /* may be NULL */
+    void *progress_context;
+};
+
+/* Adds a job (name and key are copied) and returns its number, (size_t)-1 without memory. */
+size_t pool_add(struct pool *pool, const char *name, const char *key, double weight,
+                pool_compute *compute, const void *context);
+
+/* Runs all jobs. STATUS_ENVIRONMENT: no process or no memory; what single jobs say is in them. */
+enum status pool_run(struct pool *pool, const struct pool_settings *settings, struct error *error);
+
+void pool_free(struct pool *pool);
+
+#endif
