@@ -4,8 +4,9 @@
 #include <math.h>
 #include <string.h>
 
-enum { LINE = 19, KEY_SAMPLE = 64, STACK_GAP = 36 };
-static const double LETTER = 7.7; /* mean width of a letter of 14 px */
+enum { LINE = 19, KEY_SAMPLE = 55, STACK_GAP = 36 };
+static const double LETTER = 7.7;      /* mean width of a letter of 14 px */
+static const double KEY_LETTER = 10.0; /* what gnuplot reserves for one in the key */
 
 /* Characters, not bytes, of a UTF-8 string. */
 static size_t letters(const char *string)
@@ -122,7 +123,7 @@ static void key(struct layout *layout, const struct plot_panel *panel)
         if (n > longest) longest = n;
     }
     if (panel->key != PLOT_KEY_TOP || !count) return;
-    double column = KEY_SAMPLE + LETTER * (double)longest;
+    double column = KEY_SAMPLE + KEY_LETTER * (double)longest;
     layout->key_columns = (int)fmax(1, floor((layout->right - layout->left) / column));
     layout->key_rows = ((int)count + layout->key_columns - 1) / layout->key_columns;
 }
@@ -132,7 +133,7 @@ void layout_make(struct layout *layout, const struct plot *plot)
     size_t n = plot->panel_count;
     layout->width = plot->width ? plot->width : 560;
     layout->height = plot->height ? plot->height : n == 1 ? 350 : 90 + 165 * (int)n;
-    layout->left = 82;
+    layout->left = 92;
     double room = 18;
     for (size_t k = 0; k < n; k++) {
         const struct plot_panel *panel = &plot->panels[k];

@@ -49,6 +49,8 @@ const char *const page_styles[] = {
     "th,td{text-align:left;padding:4px 16px 4px 0;border-bottom:1px solid var(--line);"
     "vertical-align:top}"
     "thead th{color:var(--dim);font-weight:600;vertical-align:bottom}"
+    ".league th{min-width:5em;white-space:normal}.league "
+    "td{white-space:nowrap}table.league{font-size:.82rem}.league th,.league td{padding-right:10px}"
     ".n{text-align:right;white-space:nowrap}td:last-child,th:last-child{padding-right:2px}",
     "tr.total>*{border-top:2px solid var(--line);font-weight:600}tbody th{text-align:right;"
     "color:var(--dim)}table.facts th{text-align:left}"

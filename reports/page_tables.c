@@ -23,42 +23,119 @@ static void flat_cell(struct buffer *to, const json_t *value)
     }
 }
 
-static void flat_head(struct buffer *to, const json_t *row)
+/* The highest degree of polynomials that an operator gets exactly right. */
+static void degree_cell(struct buffer *to, double degree)
+{
+    static const char *const names[] = {"nothing", "constants", "linear", "quadratic", "cubic"};
+    int index = degree >= -1 && degree <= 3 ? (int)degree + 1 : 0;
+    html_cell(to, isfinite(degree) ? names[index] : "—");
+}
+
+/* "exact_degree_lattice" and the like; the dimension is in the heading. */
+static bool is_degree(const char *name)
+{
+    return !strncmp(name, "exact_degree", 12);
+}
+
+static void league_head(struct buffer *to, const json_t *row)
 {
     const char *name;
     const json_t *value;
     struct buffer columns = {0};
     json_object_foreach((json_t *)row, name, value)
     {
+        if (!strcmp(name, "dim")) continue;
         if (columns.size) buffer_add(&columns, "|");
-        if (json_is_number(value)) buffer_add(&columns, "#");
-        html_words(&columns, name);
+        if (!json_is_string(value) && !is_degree(name)) buffer_add(&columns, "#");
+        html_words(&columns, is_degree(name) ? name + 6 : name);
     }
     if (columns.data) html_table(to, "league", columns.data);
     buffer_free(&columns);
 }
 
+static void league_row(struct buffer *to, const json_t *row)
+{
+    const char *name;
+    const json_t *value;
+    buffer_add(to, "<tr>");
+    json_object_foreach((json_t *)row, name, value)
+    {
+        if (!strcmp(name, "dim")) continue;
+        if (is_degree(name))
+            degree_cell(to, html_real(value));
+        else
+            flat_cell(to, value);
+    }
+    buffer_add(to, "</tr>\n");
+}
+
+/* Error against momentum defect: nobody is in the corner where both are small. */
+static void plot_league(struct page_writer *writer, const json_t *rows)
+{
+    enum { DIMENSIONS = 3 };
+    struct plot_series series[PAGE_SCHEMES];
+    double defect[PAGE_SCHEMES][DIMENSIONS], error[PAGE_SCHEMES][DIMENSIONS];
+    size_t count = 0, i;
+    const json_t *row;
+    json_array_foreach(rows, i, row)
+    {
+        const char *name = html_string(row, "operator");
+        size_t k = 0;
+        while (k < count && strcmp(series[k].label, name)) k++;
+        if (k == PAGE_SCHEMES) continue;
+        if (k == count)
+            series[count++] = (struct plot_series){
+                .label = name, .kind = PLOT_POINTS, .x = defect[k], .y = error[k]};
+        size_t n = series[k].n;
+        if (n == DIMENSIONS) continue;
+        defect[k][n] = fmax(html_member(row, "momentum_defect"), 1e-18);
+        error[k][n] = html_member(row, "error_disordered");
+        series[k].n++;
+    }
+    const struct plot_panel panel = {.x_label = "momentum defect of the pair forces",
+                                     .y_label = "error on disordered points",
+                                     .x_log = true,
+                                     .y_log = true,
+                                     .key = PLOT_KEY_TOP,
+                                     .series = series,
+                                     .series_count = count};
+    const struct plot plot = {.name = "gradients",
+                              .title = "Gradient operators: error against momentum defect",
+                              .panels = &panel,
+                              .panel_count = 1};
+    if (!count) return;
+    buffer_add(&writer->to, "<div class=\"figures\">");
+    page_plot(writer, &plot,
+              "A point for each of 1D, 2D and 3D. To the left: momentum is conserved; below: the "
+              "gradient of a smooth field is right on disordered points.");
+    buffer_add(&writer->to, "</div>\n");
+}
+
 void page_gradients(struct page_writer *writer, const json_t *gradients)
 {
     struct buffer *to = &writer->to;
-    const json_t *rows = json_object_get(gradients, "rows"), *row, *value;
-    const char *name;
+    const json_t *rows = json_object_get(gradients, "rows"), *row;
     size_t i;
     buffer_add(to,
                "<section id=\"gradients\"><h2>Gradient operators: league table</h2>\n<p>What an "
                "operator gains in exactness on disordered points it pays for in conservation: "
                "an antisymmetric form keeps momentum to round-off, a linearly exact one does "
-               "not.</p>\n");
-    if (json_array_size(rows)) {
-        flat_head(to, json_array_get(rows, 0));
-        json_array_foreach(rows, i, row)
-        {
-            buffer_add(to, "<tr>");
-            json_object_foreach((json_t *)row, name, value) flat_cell(to, value);
-            buffer_add(to, "</tr>\n");
+               "not. Errors are those of a smooth field's gradient, times h over its largest "
+               "value.</p>\n");
+    plot_league(writer, rows);
+    double dim = 0;
+    json_array_foreach(rows, i, row)
+    {
+        double now = html_member(row, "dim");
+        if (!(now >= dim && now <= dim)) {
+            if (i) html_table_end(to);
+            buffer_format(to, "<h3>%.0fD</h3>\n", now);
+            league_head(to, row);
+            dim = now;
         }
-        html_table_end(to);
+        league_row(to, row);
     }
+    if (json_array_size(rows)) html_table_end(to);
     html_command(to, "see it again:", html_string(gradients, "reproduce"));
     buffer_add(to, "</section>\n");
 }
@@ -68,8 +145,11 @@ static void kernel_row(struct buffer *to, const json_t *kernel)
     const json_t *checks = json_object_get(kernel, "checks"), *check;
     size_t i, failed = 0;
     json_array_foreach(checks, i, check) failed += !strcmp(html_string(check, "status"), "fail");
-    buffer_add(to, "<tr>");
-    html_cell_code(to, html_string(kernel, "kernel"));
+    buffer_add(to, "<tr><td>");
+    html_status(to, failed ? "fail" : "pass");
+    buffer_add(to, " <code>");
+    buffer_escape(to, html_string(kernel, "kernel"));
+    buffer_add(to, "</code></td>");
     html_cell_number(to, html_member(kernel, "dim"));
     buffer_format(to, "<td>C%.0f</td>", html_member(kernel, "class"));
     html_cell_number(to, fabs(1 - html_member(kernel, "normalisation")));
@@ -78,13 +158,11 @@ static void kernel_row(struct buffer *to, const json_t *kernel)
     html_cell_number(to, html_member(fourier, "min"));
     const json_t *negative = json_object_get(fourier, "first_negative_k");
     if (!json_is_number(negative))
-        html_cell(to, "never");
+        buffer_add(to, "<td class=\"n\">never</td>");
     else
         html_cell_number(to, html_real(negative));
-    buffer_format(to, "<td class=\"n\">%zu of %zu</td><td>", json_array_size(checks) - failed,
+    buffer_format(to, "<td class=\"n\">%zu of %zu</td>", json_array_size(checks) - failed,
                   json_array_size(checks));
-    html_status(to, failed ? "fail" : "pass");
-    buffer_add(to, "</td>");
     html_cell_code(to, html_string(kernel, "reproduce"));
     buffer_add(to, "</tr>\n");
 }
@@ -100,7 +178,7 @@ void page_kernels(struct page_writer *writer, const json_t *kernels)
                "on; one that never does is safe at any.</p>\n");
     html_table(
         to, "kernels",
-        "kernel|#dim|class|#1 − ∫W dV|#sigma/h|#least of the transform|#negative from kh|#hold||"
+        "kernel|#dim|class|#1 − ∫W dV|#sigma/h|#least of transform Ŵ|#Ŵ &lt; 0 from kh|#hold|"
         "certificate");
     json_array_foreach(kernels, i, kernel) kernel_row(to, kernel);
     html_table_end(to);

@@ -26,7 +26,9 @@ static const char *const results_text =
     " 'status': 'pass'}]}],"
     "'kernels': [{'kernel': 'cubic_spline', 'dim': 1, 'class': 2, 'normalisation': 1e-16,"
     " 'fourier': {'min': 0, 'first_negative_k': null}, 'checks': [], 'reproduce': 'x'}],"
-    "'gradients': {'rows': [{'operator': 'ia', 'exact': true, 'defect': 1e-16, 'none': null}],"
+    "'gradients': {'rows': [{'operator': 'ia', 'dim': 2, 'exact_degree_lattice': 2, "
+    "'momentum_defect': 1e-16,"
+    " 'error_disordered': 0.3, 'none': null}],"
     " 'reproduce': 'sphproof verify gradients'},"
     "'verify': {'checks': [{'group': 'kernels', 'name': 'sign', 'subject': 'q < 1 & more',"
     " 'property': 'W >= 0', 'value': 1e-16, 'bound': 1e-15, 'floor': 0, 'status': 'pass',"
@@ -83,7 +85,7 @@ static void judge_page(json_t *results, const char *const *contents, size_t n)
     assert_null(markup_network(page.html));
     for (size_t k = 0; k < n; k++)
         if (!strstr(page.html, contents[k])) fail_msg("the page lacks: %s", contents[k]);
-    assert_int_equal(page.file_count, json_array_size(json_object_get(results, "runs")) ? 6 : 0);
+    assert_int_equal(page.file_count, json_array_size(json_object_get(results, "runs")) ? 8 : 0);
     page_free(&page);
     json_decref(results);
 }
@@ -125,7 +127,7 @@ static void page_without_gnuplot(void **state)
     setenv("PATH", path, 1);
     free(path);
     assert_true(made);
-    assert_int_equal(page.plots_missing, 3);
+    assert_int_equal(page.plots_missing, 4);
     assert_non_null(strstr(page.message, "gnuplot"));
     assert_null(strstr(page.html, "<svg"));
     assert_non_null(strstr(page.html, "4.61e-3"));
