@@ -38,6 +38,8 @@ void pieces_fit(const struct pieces *pieces, const double values[PIECES_NODES],
     fit->noise = isnan(fit->c[0]) ? fit->c[0] : fmax(tail, 0.5 * DBL_EPSILON * largest);
     fit->n = N;
     while (fit->n > 1 && fabs(fit->c[fit->n - 1]) <= 2 * fit->noise) fit->n--;
+    /* a tail above round-off is the trace of a break point that was found only nearly */
+    fit->reach = tail > 4 * DBL_EPSILON * largest ? N : fit->n + 2;
 }
 
 double series_slope(const struct series_fit *fit, double x, double *floor)
@@ -45,7 +47,7 @@ double series_slope(const struct series_fit *fit, double x, double *floor)
     double u = 0, next = 1, sum = 0, amplified = 0; /* u = U_(j-2), next = U_(j-1) */
     for (int j = 1; j < N; j++) {
         if (j < fit->n) sum += fit->c[j] * j * next;
-        if (j < fit->n + 2) amplified += j * fabs(next);
+        if (j < fit->reach) amplified += j * fabs(next);
         const double following = 2 * x * next - u;
         u = next;
         next = following;
@@ -193,7 +195,8 @@ double pieces_derivative(const struct pieces *pieces, double at, double to, int 
         sample(pieces, shape, at, at + length, &fit); /* x = -1 at `at` */
         double sum = 0, amplified = 0;
         const double stretch = pow(2 / length, m);
-        const int terms = fit.n > m ? fit.n + 2 : m + 2; /* the chopped ones are errors as well */
+        const int terms =
+            fit.reach > m + 2 ? fit.reach : m + 2; /* the chopped ones are errors as well */
         for (int j = 0; j < terms && j < N; j++) {
             const double slope = end_slope(j, m) * ((j + m) % 2 ? -1 : 1);
             if (j < fit.n) sum += fit.c[j] * slope;

@@ -27,6 +27,7 @@ struct pieces {
 struct series_fit {
     double c[PIECES_NODES];
     int n;        /* terms kept */
+    int reach;    /* terms that may be wrong by the noise */
     double noise; /* of a coefficient */
 };
 

@@ -239,6 +239,26 @@ static double step_w(const struct kernel *kernel, double q, int dim)
 }
 static const struct kernel knot_value = {.w = step_w, .dw = cubic_spline_dw, CUBIC};
 
+/* q < 1/2 ... else q > 1/2: neither branch holds at the knot itself. */
+static double hole_dw(const struct kernel *kernel, double q, int dim)
+{
+    return q == 0.5 ? 0 : cubic_spline_dw(kernel, q, dim);
+}
+static const struct kernel knot_hole = {.w = cubic_spline_w, .dw = hole_dw, CUBIC};
+
+static double late_dh(double r, double h, int dim)
+{
+    const double q = r / h;
+    return (q > 0.7 && q < 0.71 ? 1.001 : 1) * dh_with(r, h, dim, -dim - 1, dim, 0);
+}
+static const struct kernel dh_narrow = {CUBIC_SHAPE, CUBIC, .plugin_dw_dh = late_dh};
+
+static double tail_w(const struct kernel *kernel, double q, int dim)
+{
+    return q > 1.99 && q < 2.01 ? 1e-9 : cubic_spline_w(kernel, q, dim);
+}
+static const struct kernel support_tail = {.w = tail_w, .dw = cubic_spline_dw, CUBIC};
+
 static const struct kernel class_overstated = {
     .member = {"quadratic_spline", "", ""},
     .w = quadratic_spline_w,
@@ -380,6 +400,18 @@ static const struct kernel unity_width_seed = {CUBIC_SHAPE, CUBIC, .unity_width 
     {                                                                                              \
         "gaussian_unshifted", "truncated Gaussian, W(h) > 0", &gaussian_unshifted                  \
     }
+#define KNOT_HOLE                                                                                  \
+    {                                                                                              \
+        "knot_hole", "dw = 0 at the knot itself", &knot_hole                                       \
+    }
+#define DH_NARROW                                                                                  \
+    {                                                                                              \
+        "dh_narrow", "dW/dh off by 1e-3 in a narrow range", &dh_narrow                             \
+    }
+#define TAIL                                                                                       \
+    {                                                                                              \
+        "support_tail", "W = 1e-9 again around r = 2 h", &support_tail                             \
+    }
 #define KNOT_049                                                                                   \
     {                                                                                              \
         "knot_0.49", "inner branch ends at q = 0.49", &knot_049                                    \
@@ -434,11 +466,12 @@ mutant_list kernel_mutants_fundamental = {OUTER_SIGN, PRINTED,    NINTH,     BAL
                                           KNOT_049,   KNOT_VALUE, UNSHIFTED, END};
 mutant_list kernel_mutants_radial_derivative = {OUTER_SIGN, PRINTED,  GRADIENT_SIGN,
                                                 NINTH,      BALANCED, END};
-mutant_list kernel_mutants_width_derivative = {DH_POWER, DH_OUTER, DH_DIMENSION, BALANCED, END};
-mutant_list kernel_mutants_support = {SUPPORT_0999, UNCLAMPED, END};
+mutant_list kernel_mutants_width_derivative = {DH_NARROW,    DH_POWER, DH_OUTER,
+                                               DH_DIMENSION, BALANCED, END};
+mutant_list kernel_mutants_support = {SUPPORT_0999, UNCLAMPED, TAIL, END};
 mutant_list kernel_mutants_sign = {OUTER_SIGN, GRADIENT_SIGN, LOBE, END};
-mutant_list kernel_mutants_continuity = {KNOT_049, KNOT_DECLARED, KNOT_SECOND, KNOT_VALUE,
-                                         CLASS,    ORIGIN,        UNSHIFTED,   END};
+mutant_list kernel_mutants_continuity = {
+    KNOT_HOLE, KNOT_049, KNOT_DECLARED, KNOT_SECOND, KNOT_VALUE, CLASS, ORIGIN, UNSHIFTED, END};
 mutant_list kernel_mutants_moments = {OUTER_SIGN, PRINTED, NINTH, UNSHIFTED, END};
 mutant_list kernel_mutants_delta_limit = {C_359, C_FLOAT, COEFFICIENT, WENDLAND_1D, END};
 mutant_list kernel_mutants_transform = {OUTER_SIGN, NINTH, C_SEVENTH, UNSHIFTED, END};

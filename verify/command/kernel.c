@@ -133,6 +133,8 @@ static enum status write_json(const struct options *options, const struct user_k
     for (int i = 0; i < 4; i++)
         if (found[i]) json_array_append_new(derived, json_string(names[i]));
     json_object_set_new(document, "kernel", json_string(user->kernel.member.name));
+    if (user->kernel.order)
+        json_object_set_new(document, "sinc_n", json_integer(user->kernel.order));
     json_object_set_new(document, "dim", json_integer(request->dim));
     json_object_set_new(document, "h", result_number(request->h));
     json_object_set_new(document, "status", json_string(certificate->failed ? "fail" : "pass"));

@@ -15,18 +15,22 @@ static void radial_piece(const struct pieces *pieces, double a, double b, double
     const struct kernel *kernel = pieces->kernel;
     const int dim = pieces->dim;
     const double half = (b - a) / 2, unit = kernel->constant[dim] * pow(h, -dim - 1);
-    double values[PIECES_NODES];
-    struct series_fit fit;
-    for (int j = 0; j < PIECES_NODES; j++)
-        values[j] = kernel_value(kernel, (a + half * (1 + pieces_node(pieces, j))) * h, h, dim);
+    double values[PIECES_NODES], slopes[PIECES_NODES];
+    struct series_fit fit, slope_fit;
+    for (int j = 0; j < PIECES_NODES; j++) {
+        const double r = (a + half * (1 + pieces_node(pieces, j))) * h;
+        values[j] = kernel_value(kernel, r, h, dim);
+        slopes[j] = kernel_dr(kernel, r, h, dim);
+    }
     pieces_fit(pieces, values, &fit);
+    pieces_fit(pieces, slopes, &slope_fit);
     for (int j = 0; j < PIECES_NODES; j += 3) {
         double floor;
         const double x = pieces_node(pieces, j), q = a + half * (1 + x);
         const double slope = series_slope(&fit, x, &floor) / (half * h);
-        const double error = fabs(slope - kernel_dr(kernel, q * h, h, dim));
+        const double error = fabs(slope - slopes[j]);
         const double scale = fabs(unit) * pieces->max_dw;
-        floor = floor / (half * h) / scale + 8 * DBL_EPSILON;
+        floor = (floor / (half * h) + slope_fit.noise * slope_fit.reach) / scale + 4 * DBL_EPSILON;
         property_keep(worst, error / scale, fmin(margin * floor, 1e-6), floor, "h %g, q %.6g", h,
                       q);
     }
@@ -64,12 +68,33 @@ static void width_point(const struct pieces *pieces, double a, double b, double 
     property_keep(worst, error / scale, fmin(margin * floor, 1e-6), floor, "h %g, q %.6g", h, q);
 }
 
+/* A supplied dW/dh against the one that follows from w and dw, densely. */
+static void compare_supplied(const struct pieces *pieces, double h, struct property_sink *sink)
+{
+    enum { POINTS = 1200 };
+    const int dim = pieces->dim;
+    const double unit = fabs(pieces->kernel->constant[dim]) * pow(h, -dim - 1);
+    const double scale = unit * (dim * pieces->max_w + pieces->max_dw);
+    struct kernel derived = *pieces->kernel;
+    struct property_worst worst = {0};
+    derived.plugin_dw_dh = NULL;
+    for (int i = 0; i < POINTS; i++) {
+        const double q = (double)i / POINTS, r = q * h;
+        const double error =
+            fabs(kernel_dh(pieces->kernel, r, h, dim) - kernel_dh(&derived, r, h, dim));
+        property_keep(&worst, error / scale, 1e-12, 1e-14,
+                      "h %g, q %.6g, against -C_d h^-(d+1) (d w + q dw)", h, q);
+    }
+    property_take_worst(sink, &worst);
+}
+
 void property_width_derivative(const struct pieces *pieces, struct property_sink *sink)
 {
     enum { POINTS = 7 };
     for (int i = 0; i < PROPERTY_WIDTHS; i++) {
         const double h = property_width[i];
         struct property_worst worst = {0};
+        if (pieces->kernel->plugin_dw_dh) compare_supplied(pieces, h, sink);
         for (int p = 0; p < pieces->n; p++) {
             const double a = pieces->edge[p], b = pieces->edge[p + 1];
             if (p == 0) width_point(pieces, a, b, 0, h, &worst);

@@ -9,6 +9,11 @@
 /* Where the support is probed. 0.9992 is inside: even exp(-1/(1-q^2)) is not yet rounded to 0. */
 static const double inside = 0.9992;
 
+/* The edge's neighbourhood to the last place, and far beyond. */
+static const double outside[] = {1,    1 + 0x1p-52, 1 + 1e-12, 1 + 1e-8, 1.0001, 1.001, 1.01,
+                                 1.05, 1.1,         1.2,       1.25,     1.5,    1.75,  2,
+                                 2.5,  3,           4.75,      10,       100,    1e6,   1e100};
+
 /* At and beyond the edge; a kernel of class C0 may return its one-sided slope at q = 1 itself. */
 void property_support(const struct pieces *pieces, struct property_sink *sink)
 {
@@ -16,16 +21,17 @@ void property_support(const struct pieces *pieces, struct property_sink *sink)
     const int dim = pieces->dim;
     for (int i = 0; i < PROPERTY_WIDTHS; i++) {
         const double h = property_width[i], unit = pow(h, dim);
-        const double r[] = {h, nextafter(h, (double)INFINITY), 1.0001 * h, 1.5 * h, 10 * h};
         struct property_worst worst = {0};
-        for (size_t j = 0; j < sizeof r / sizeof *r; j++) {
-            property_keep(&worst, fabs(kernel_value(kernel, r[j], h, dim)) * unit, 0, 0,
-                          "h %g, W at q = %.17g", h, r[j] / h);
-            if (kernel->smoothness[dim] == 0 && r[j] / h == 1) continue;
-            property_keep(&worst, fabs(kernel_dr(kernel, r[j], h, dim)) * unit * h, 0, 0,
-                          "h %g, h dW/dr at q = %.17g", h, r[j] / h);
-            property_keep(&worst, fabs(kernel_dh(kernel, r[j], h, dim)) * unit * h, 0, 0,
-                          "h %g, h dW/dh at q = %.17g", h, r[j] / h);
+        for (size_t j = 0; j < sizeof outside / sizeof *outside; j++) {
+            double r = outside[j] * h;
+            while (r / h < outside[j]) r = nextafter(r, (double)INFINITY);
+            property_keep(&worst, fabs(kernel_value(kernel, r, h, dim)) * unit, 0, 0,
+                          "h %g, W at q = %.17g", h, r / h);
+            if (kernel->smoothness[dim] == 0 && outside[j] == 1) continue;
+            property_keep(&worst, fabs(kernel_dr(kernel, r, h, dim)) * unit * h, 0, 0,
+                          "h %g, h dW/dr at q = %.17g", h, r / h);
+            property_keep(&worst, fabs(kernel_dh(kernel, r, h, dim)) * unit * h, 0, 0,
+                          "h %g, h dW/dh at q = %.17g", h, r / h);
         }
         property_take_worst(sink, &worst);
     }
@@ -85,6 +91,32 @@ void property_self_term(const struct pieces *pieces, struct property_sink *sink)
     property_take(sink, w0 > 0 && w0 <= DBL_MAX ? 0 : 1, 0, 0, "W(0) = %g must be positive", w0);
 }
 
+/* The value at q itself against the nearer of its neighbours: a hole where no branch applies. */
+static void look_for_hole(const struct pieces *pieces, kernel_shape *shape, double scale, double q,
+                          const char *name, struct property_worst *worst)
+{
+    const double step = 1e-10;
+    const double value = shape(pieces->kernel, q, pieces->dim);
+    const double left = shape(pieces->kernel, fabs(q - step), pieces->dim);
+    const double right = shape(pieces->kernel, q + step, pieces->dim);
+    const double error = fmin(fabs(value - (q < step ? right : left)), fabs(value - right));
+    property_keep(worst, isnan(value) ? value : error / scale, 1e-7, 1e-9,
+                  "%s at q = %.6g itself against its neighbours", name, q);
+}
+
+/* Points where a formula changes: the knots, and fractions where people put them. */
+static void look_for_holes(const struct pieces *pieces, struct property_sink *sink)
+{
+    enum { FRACTIONS = 60 };
+    struct property_worst worst = {0};
+    for (int i = 0; i <= FRACTIONS + pieces->n; i++) {
+        const double q = i <= FRACTIONS ? (double)i / FRACTIONS : pieces->edge[i - FRACTIONS];
+        look_for_hole(pieces, pieces->kernel->w, pieces->max_w, q, "w", &worst);
+        if (q > 0) look_for_hole(pieces, pieces->kernel->dw, pieces->max_dw, q, "dw", &worst);
+    }
+    property_take_worst(sink, &worst);
+}
+
 void property_continuity(const struct pieces *pieces, struct property_sink *sink)
 {
     const int declared = pieces->kernel->smoothness[pieces->dim];
@@ -97,6 +129,7 @@ void property_continuity(const struct pieces *pieces, struct property_sink *sink
                       "jump of w^(%d) at %s, q = %.6g%s", k, place, jump->at,
                       k == 0 && jump->at == 1 ? ": w must vanish there" : "");
     }
+    look_for_holes(pieces, sink);
     property_take(sink, fmax(0, fmin(declared, MEASURE_CLASS_MAX) - class.class), 0, 0,
                   "declared C%d, measured C%d%s", declared, class.class,
                   class.class == MEASURE_CLASS_MAX ? " or higher" : "");
