@@ -91,7 +91,7 @@ static double end_error(const struct pieces *pieces, int i, int k)
 }
 
 /* The jump of derivative k at break point i: even extension at the origin, zero beyond the edge. */
-static struct measure_jump jump_at(const struct pieces *pieces, int i, int k)
+static struct measure_jump plain_jump(const struct pieces *pieces, int i, int k)
 {
     const double *edge = pieces->edge;
     double left = 0, right = 0, left_floor = 0, right_floor = 0;
@@ -103,6 +103,15 @@ static struct measure_jump jump_at(const struct pieces *pieces, int i, int k)
     }
     return (struct measure_jump){edge[i], fabs(right - left),
                                  left_floor + right_floor + end_error(pieces, i, k)};
+}
+
+/* Beside a break point that is off by delta, derivative k differs by delta times the jump of the
+ * next one. */
+static struct measure_jump jump_at(const struct pieces *pieces, int i, int k)
+{
+    struct measure_jump jump = plain_jump(pieces, i, k);
+    if (pieces->doubt[i] > 0) jump.floor += pieces->doubt[i] * plain_jump(pieces, i, k + 1).jump;
+    return jump;
 }
 
 void measure_class(const struct pieces *pieces, struct measure_class *result)

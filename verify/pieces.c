@@ -66,12 +66,18 @@ static void sample(const struct pieces *pieces, kernel_shape *shape, double a, d
     pieces_fit(pieces, values, fit);
 }
 
-static bool resolved(const struct pieces *pieces, double a, double b)
+static bool resolved_nearly(const struct pieces *pieces, double a, double b, double factor)
 {
     struct series_fit w, dw;
     sample(pieces, pieces->kernel->w, a, b, &w);
     sample(pieces, pieces->kernel->dw, a, b, &dw);
-    return w.noise <= tolerance * pieces->max_w && dw.noise <= tolerance * pieces->max_dw;
+    return w.noise <= factor * tolerance * pieces->max_w &&
+           dw.noise <= factor * tolerance * pieces->max_dw;
+}
+
+static bool resolved(const struct pieces *pieces, double a, double b)
+{
+    return resolved_nearly(pieces, a, b, 1);
 }
 
 /* Bisects ]a, b[ until every leaf is resolved or too narrow; appends the leaves' right ends. */
@@ -103,6 +109,87 @@ static int join(const struct pieces *pieces, double a, double *edge, int n)
         i = last + 1;
     }
     return m;
+}
+
+/* Derivative m of the series at x, also somewhat outside [-1, 1], by differentiating the
+ * coefficients m times. */
+static double series_derivative(const struct series_fit *fit, double x, int m)
+{
+    double c[N + 2] = {0};
+    for (int j = 0; j < fit->n; j++) c[j] = fit->c[j];
+    for (int i = 0; i < m; i++) {
+        double d[N + 2] = {0};
+        for (int j = N - 1; j >= 0; j--) d[j] = (j + 2 < N ? d[j + 2] : 0) + 2 * (j + 1) * c[j + 1];
+        d[0] /= 2;
+        for (int j = 0; j < N + 2; j++) c[j] = d[j];
+    }
+    double t = 1, next = x, sum = 0;
+    for (int j = 0; j < N; j++) {
+        sum += c[j] * t;
+        const double following = 2 * x * next - t;
+        t = next;
+        next = following;
+    }
+    return sum;
+}
+
+/* T_j^(k)(1) */
+static double end_slope(int j, int k)
+{
+    double product = 1;
+    for (int i = 0; i < k; i++) product *= (double)(j * j - i * i) / (2 * i + 1);
+    return product;
+}
+
+/* The series to the left and to the right of a break point; their difference is a power of the
+ * distance from the true one. */
+struct junction {
+    struct series_fit left, right;
+    double at, margin, half; /* series on at -+ (margin ... margin + 2 half) */
+};
+
+/* What the noise of a series makes of derivative m at its end. */
+static double end_noise(const struct series_fit *fit, int m)
+{
+    double amplified = 0;
+    for (int j = 0; j < fit->reach && j < N; j++) amplified += end_slope(j, m);
+    return fit->noise * amplified;
+}
+
+static double difference(const struct junction *junction, double q, int m)
+{
+    const double x = q - junction->at, shift = junction->margin + junction->half;
+    return (series_derivative(&junction->left, (x + shift) / junction->half, m) -
+            series_derivative(&junction->right, (x - shift) / junction->half, m)) *
+           pow(junction->half, -m);
+}
+
+/* A break point found by bisection is off by as much as the tolerance lets pass. With D the
+ * difference of the two series, D/D' = (q - break)/s where s is the order of the first derivative
+ * of dw that jumps; the derivative s - 1 of D has a simple zero there. */
+static double refine(const struct pieces *pieces, double before, double at, double after,
+                     double margin, double *doubt)
+{
+    const double length = fmin(at - before, after - at);
+    struct junction junction = {
+        .at = at, .margin = margin * length, .half = (0.5 - margin) * length};
+    const double near = junction.margin, far = near + 2 * junction.half;
+    sample(pieces, pieces->kernel->dw, at - far, at - near, &junction.left);
+    sample(pieces, pieces->kernel->dw, at + near, at + far, &junction.right);
+    const double a = at - length / 2, b = at - length / 4;
+    const double ratio_a = difference(&junction, a, 0) / difference(&junction, a, 1);
+    const double ratio_b = difference(&junction, b, 0) / difference(&junction, b, 1);
+    const double order = round((a - b) / (ratio_a - ratio_b));
+    *doubt = 0.2 * length;
+    if (!(order >= 1 && order <= 8)) return at;
+    const int m = (int)order - 1;
+    double q = at;
+    for (int i = 0; i < 4; i++) q -= difference(&junction, q, m) / difference(&junction, q, m + 1);
+    const double noise = end_noise(&junction.left, m) + end_noise(&junction.right, m);
+    const double unsure = noise * pow(junction.half, -m) / fabs(difference(&junction, at, m + 1));
+    if (!(fabs(q - at) <= near)) return at;
+    *doubt = fabs(q - at) + 3 * unsure;
+    return fabs(q - at) > 3 * unsure ? q : at;
 }
 
 static void find_scale(struct pieces *pieces)
@@ -140,6 +227,55 @@ static int even(double a, double b, double *edge)
     return EVEN;
 }
 
+/* Puts the break point where the function has it, if both pieces are resolved then: nearly, since
+ * the other ends of the pieces may still be off. */
+static bool settle(const struct pieces *pieces, double before, double *at, double after,
+                   double margin, double factor)
+{
+    double doubt;
+    const double q = refine(pieces, before, *at, after, margin, &doubt);
+    const bool sound =
+        resolved_nearly(pieces, before, q, factor) && resolved_nearly(pieces, q, after, factor);
+    if (sound) *at = q;
+    return sound;
+}
+
+/* Settles the break points of n pieces; two of them close together, the debris of bisection around
+ * one, become one where that works out. */
+static int sharpen(const struct pieces *pieces, double *edge, int n)
+{
+    int m = 0;
+    for (int i = 1; i < n; i++) {
+        const double before = edge[m], gap = edge[i + 1] - edge[i];
+        double middle = (edge[i] + edge[i + 1]) / 2;
+        if (i + 1 < n && gap < 0.15 * fmin(edge[i] - before, edge[i + 2] - edge[i + 1]) &&
+            settle(pieces, before, &middle, edge[i + 2], 1. / 8, 100)) {
+            edge[++m] = middle;
+            i++;
+        } else {
+            double at = edge[i];
+            settle(pieces, before, &at, edge[i + 1], 1. / 8, 100);
+            edge[++m] = at;
+        }
+    }
+    edge[++m] = edge[n];
+    for (double margin = 1. / 32; margin > 1e-3; margin /= 2)
+        for (int i = 1; i < m; i++)
+            settle(pieces, edge[i - 1], &edge[i], edge[i + 1], margin, 3200 * margin);
+    return m;
+}
+
+/* The pieces of ]a, b[: edge[0] = a, ..., edge[n] = b; returns n. */
+static int divide(const struct pieces *pieces, double a, double b, double *edge)
+{
+    struct leaves leaves = {pieces, edge + 1, 0};
+    bisect(&leaves, a, b);
+    if (pieces->n + leaves.n >= LEAVES_MAX) return even(a, b, edge + 1);
+    int n = join(pieces, a, edge + 1, leaves.n);
+    if (n == 1) return n;
+    return sharpen(pieces, edge, n);
+}
+
 enum status pieces_find(struct pieces *pieces, const struct kernel *kernel, int dim,
                         struct error *error)
 {
@@ -150,7 +286,8 @@ enum status pieces_find(struct pieces *pieces, const struct kernel *kernel, int 
     const size_t room = (size_t)LEAVES_MAX + 64 * (size_t)(knots + 2);
     pieces->edge = calloc(room, sizeof *pieces->edge);
     pieces->declared = calloc(room, sizeof *pieces->declared);
-    if (!pieces->edge || !pieces->declared) {
+    pieces->doubt = calloc(room, sizeof *pieces->doubt);
+    if (!pieces->edge || !pieces->declared || !pieces->doubt) {
         pieces_free(pieces);
         return error_set(error, STATUS_ENVIRONMENT, "no memory for the pieces of a kernel");
     }
@@ -158,12 +295,13 @@ enum status pieces_find(struct pieces *pieces, const struct kernel *kernel, int 
     for (int i = 0; i <= knots; i++) {
         const double a = pieces->edge[pieces->n];
         const double b = i < knots ? kernel->knots[i] : 1;
-        struct leaves leaves = {pieces, pieces->edge + pieces->n + 1, 0};
-        bisect(&leaves, a, b);
-        pieces->n += pieces->n + leaves.n < LEAVES_MAX ? join(pieces, a, leaves.edge, leaves.n)
-                                                       : even(a, b, leaves.edge);
+        pieces->n += divide(pieces, a, b, pieces->edge + pieces->n);
         pieces->declared[pieces->n] = true;
     }
+    for (int i = 1; i < pieces->n; i++)
+        if (!pieces->declared[i])
+            refine(pieces, pieces->edge[i - 1], pieces->edge[i], pieces->edge[i + 1], 1. / 128,
+                   &pieces->doubt[i]);
     find_noise(pieces);
     return STATUS_OK;
 }
@@ -172,15 +310,8 @@ void pieces_free(struct pieces *pieces)
 {
     free(pieces->edge);
     free(pieces->declared);
+    free(pieces->doubt);
     *pieces = (struct pieces){0};
-}
-
-/* T_j^(k)(1) */
-static double end_slope(int j, int k)
-{
-    double product = 1;
-    for (int i = 0; i < k; i++) product *= (double)(j * j - i * i) / (2 * i + 1);
-    return product;
 }
 
 double pieces_derivative(const struct pieces *pieces, double at, double to, int k, double *floor)

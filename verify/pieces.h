@@ -17,6 +17,7 @@ struct pieces {
     int n;                    /* pieces */
     double *edge;             /* n + 1 break points: 0, ..., 1 */
     bool *declared;           /* n + 1: a declared knot, the origin or the edge */
+    double *doubt;            /* n + 1: how far a break point that was found may be off */
     bool resolved;            /* false: noise or a singularity somewhere; error estimates show it */
     double max_w, max_dw;     /* largest |w|, |dw| met in [0, 1] */
     double noise_w, noise_dw; /* plateau of the series, the evaluation's round-off */
