@@ -2,9 +2,12 @@
  * Hilbert curve: Skilling 2004, AIP Conf. Proc. 707, 381. */
 #include "neighbours.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "loop.h"
 
 enum { BLOCK = NEIGHBOURS_BLOCK, FAN = 8, IMAGES_MAX = 8 };
 
@@ -13,24 +16,42 @@ static size_t smaller(size_t a, size_t b)
     return a < b ? a : b;
 }
 
-/* Position along the Hilbert curve of a cell with coordinates c, bits each (Skilling's
- * AxesToTranspose, then the bits interleaved). */
-static uint64_t hilbert_key(int dim, int bits, uint64_t c[])
+/* The lowest bits of x, stride apart. */
+static uint64_t spread(uint64_t x, int stride)
 {
-    const uint64_t top = (uint64_t)1 << (bits - 1);
-    uint64_t t, key = 0;
-    for (uint64_t q = top; q > 1; q >>= 1)
-        for (int a = 0; a < dim; a++)
-            if (c[a] & q)
-                c[0] ^= q - 1;
-            else
-                t = (c[0] ^ c[a]) & (q - 1), c[0] ^= t, c[a] ^= t;
+    if (stride == 2) {
+        x = (x | x << 16) & 0x0000ffff0000ffff;
+        x = (x | x << 8) & 0x00ff00ff00ff00ff;
+        x = (x | x << 4) & 0x0f0f0f0f0f0f0f0f;
+        x = (x | x << 2) & 0x3333333333333333;
+        x = (x | x << 1) & 0x5555555555555555;
+    } else if (stride == 3) {
+        x = (x | x << 32) & 0x001f00000000ffff;
+        x = (x | x << 16) & 0x001f0000ff0000ff;
+        x = (x | x << 8) & 0x100f00f00f00f00f;
+        x = (x | x << 4) & 0x10c30c30c30c30c3;
+        x = (x | x << 2) & 0x1249249249249249;
+    }
+    return x;
+}
+
+/* Position along the Hilbert curve of a cell with coordinates c, bits each: Skilling's
+ * AxesToTranspose without branches, then the bits interleaved. */
+ALWAYS_INLINE uint64_t hilbert_key(int dim, int bits, uint64_t c[])
+{
+    if (dim == 1) return c[0];
+    for (int b = bits - 1; b > 0; b--) {
+        const uint64_t below = ((uint64_t)1 << b) - 1;
+        for (int a = 0; a < dim; a++) {
+            const uint64_t set = -(c[a] >> b & 1), t = (c[0] ^ c[a]) & below & ~set;
+            c[0] ^= (below & set) | t;
+            c[a] ^= t;
+        }
+    }
     for (int a = 1; a < dim; a++) c[a] ^= c[a - 1];
-    t = 0;
-    for (uint64_t q = top; q > 1; q >>= 1)
-        if (c[dim - 1] & q) t ^= q - 1;
-    for (int b = bits - 1; b >= 0; b--)
-        for (int a = 0; a < dim; a++) key = key << 1 | ((c[a] ^ t) >> b & 1);
+    uint64_t t = 0, key = 0;
+    for (int b = bits - 1; b > 0; b--) t ^= (((uint64_t)1 << b) - 1) & -(c[dim - 1] >> b & 1);
+    for (int a = 0; a < dim; a++) key |= spread(c[a] ^ t, dim) << (dim - 1 - a);
     return key;
 }
 
@@ -95,34 +116,29 @@ static bool order_points(struct neighbours *nb, const struct points *points)
     return true;
 }
 
-static void box_include(int dim, double *lo, double *hi, const double *from, const double *to)
-{
-    for (int a = 0; a < dim; a++) {
-        if (from[a] < lo[a]) lo[a] = from[a];
-        if (to[a] > hi[a]) hi[a] = to[a];
-    }
-}
-
+/* Level 0 encloses blocks of points, each further level eight boxes of the one below. */
 static bool build_boxes(struct neighbours *nb)
 {
     const size_t dim = (size_t)nb->dim;
     for (size_t count = nb->blocks;; count = (count + FAN - 1) / FAN) {
         const int l = nb->levels++;
+        const size_t stride = (count + FAN - 1) / FAN * FAN;
         nb->count[l] = count;
-        nb->lo[l] = malloc(count * dim * sizeof(double));
-        nb->hi[l] = malloc(count * dim * sizeof(double));
+        nb->stride[l] = stride;
+        nb->lo[l] = malloc(stride * dim * sizeof(double));
+        nb->hi[l] = malloc(stride * dim * sizeof(double));
         if (!nb->lo[l] || !nb->hi[l]) return false;
-        const size_t below = l ? nb->count[l - 1] : nb->blocks * BLOCK;
-        for (size_t b = 0; b < count; b++) {
-            double *lo = nb->lo[l] + b * dim, *hi = nb->hi[l] + b * dim;
-            for (size_t a = 0; a < dim; a++) lo[a] = HUGE_VAL, hi[a] = -HUGE_VAL;
-            for (size_t k = b * FAN; k < smaller((b + 1) * FAN, below); k++) {
-                double at[3] = {0};
-                for (size_t a = 0; a < dim; a++) at[a] = nb->x[a][smaller(k, nb->n)];
-                if (l)
-                    box_include(nb->dim, lo, hi, nb->lo[l - 1] + k * dim, nb->hi[l - 1] + k * dim);
-                else
-                    box_include(nb->dim, lo, hi, at, at);
+        for (size_t a = 0; a < dim; a++) {
+            const double *from = l ? nb->lo[l - 1] + a * nb->stride[l - 1] : nb->x[a];
+            const double *to = l ? nb->hi[l - 1] + a * nb->stride[l - 1] : nb->x[a];
+            for (size_t b = 0; b < stride; b++) {
+                double lo = HUGE_VAL, hi = -HUGE_VAL;
+                for (size_t k = b * FAN; b < count && k < (b + 1) * FAN; k++) {
+                    lo = from[k] < lo ? from[k] : lo;
+                    hi = to[k] > hi ? to[k] : hi;
+                }
+                nb->lo[l][a * stride + b] = lo;
+                nb->hi[l][a * stride + b] = hi;
             }
         }
         if (count == 1) return true;
@@ -183,15 +199,21 @@ void neighbours_destroy(struct neighbours *nb)
     free(nb);
 }
 
+static bool grow(double **array, size_t n)
+{
+    double *larger = realloc(*array, n * sizeof *larger);
+    if (larger) *array = larger;
+    return larger != NULL;
+}
+
 static bool reserve(struct candidates *c, size_t n)
 {
     if (n <= c->capacity) return true;
-    const size_t capacity = 2 * n;
-    for (int a = 0; a < 3; a++) {
-        double *x = realloc(c->x[a], capacity * sizeof *x);
-        if (!x) return false;
-        c->x[a] = x;
-    }
+    const size_t capacity = 2 * n / BLOCK * BLOCK;
+    for (int a = 0; a < 3; a++)
+        if (!grow(&c->x[a], capacity) || !grow(&c->lo[a], capacity / BLOCK) ||
+            !grow(&c->hi[a], capacity / BLOCK))
+            return false;
     uint32_t *j = realloc(c->j, capacity * sizeof *j);
     if (!j) return false;
     c->j = j;
@@ -201,56 +223,79 @@ static bool reserve(struct candidates *c, size_t n)
 
 void neighbours_candidates_free(struct candidates *candidates)
 {
-    for (int a = 0; a < 3; a++) free(candidates->x[a]);
+    for (int a = 0; a < 3; a++)
+        free(candidates->x[a]), free(candidates->lo[a]), free(candidates->hi[a]);
     free(candidates->j);
     *candidates = (struct candidates){0};
 }
 
 struct query {
-    const double *lo, *hi; /* the block's box */
+    double lo[3], hi[3]; /* the block's box */
     double radius2;
     double shift[3]; /* added to every point */
 };
 
-static bool near(const struct neighbours *nb, int level, size_t box, const struct query *query)
+static void take_block(const struct neighbours *nb, size_t block, const double *shift,
+                       struct candidates *c)
 {
-    const double *lo = nb->lo[level] + box * (size_t)nb->dim;
-    const double *hi = nb->hi[level] + box * (size_t)nb->dim;
-    double d2 = 0;
+    const size_t filled = smaller(BLOCK, nb->n - block * BLOCK), at = c->n / BLOCK;
     for (int a = 0; a < nb->dim; a++) {
-        const double below = lo[a] + query->shift[a] - query->hi[a];
-        const double above = query->lo[a] - (hi[a] + query->shift[a]);
-        const double gap = fmax(fmax(below, above), 0);
-        d2 += gap * gap;
+        double *x = c->x[a] + c->n;
+        for (size_t l = 0; l < BLOCK; l++) x[l] = nb->x[a][block * BLOCK + l] + shift[a];
+        for (size_t l = filled; l < BLOCK; l++) x[l] = HUGE_VAL;
+        c->lo[a][at] = nb->lo[0][(size_t)a * nb->stride[0] + block] + shift[a];
+        c->hi[a][at] = nb->hi[0][(size_t)a * nb->stride[0] + block] + shift[a];
     }
-    return !(d2 > query->radius2);
+    for (size_t l = 0; l < BLOCK; l++)
+        c->j[c->n + l] = (uint32_t)smaller(block * BLOCK + l, nb->n - 1);
+    c->n += BLOCK;
 }
 
-static bool visit(const struct neighbours *nb, int level, size_t box, const struct query *query,
-                  struct candidates *c)
+/* Adds the blocks near the query, eight boxes at a time from the top of the tree. False: no memory.
+ */
+CLONES static bool walk(const struct neighbours *nb, const struct query *query,
+                        struct candidates *c)
 {
-    if (!near(nb, level, box, query)) return true;
-    if (level > 0) {
-        const size_t end = smaller((box + 1) * FAN, nb->count[level - 1]);
-        for (size_t b = box * FAN; b < end; b++)
-            if (!visit(nb, level - 1, b, query, c)) return false;
-        return true;
+    struct {
+        int level;
+        size_t first; /* of eight boxes */
+    } stack[FAN * NEIGHBOURS_LEVELS] = {{nb->levels - 1, 0}};
+    for (size_t depth = 1; depth > 0;) {
+        const int level = stack[--depth].level;
+        const size_t first = stack[depth].first;
+        double d2[FAN] = {0};
+        for (int a = 0; a < nb->dim; a++) {
+            const double *restrict lo = nb->lo[level] + (size_t)a * nb->stride[level] + first;
+            const double *restrict hi = nb->hi[level] + (size_t)a * nb->stride[level] + first;
+            const double from = query->lo[a] - query->shift[a], to = query->hi[a] - query->shift[a];
+#pragma omp simd
+            for (int l = 0; l < FAN; l++) {
+                const double below = lo[l] - to, above = from - hi[l];
+                const double gap = below > above ? below : above;
+                d2[l] += gap > 0 ? gap * gap : 0;
+            }
+        }
+        if (level == 0 && !reserve(c, c->n + FAN * BLOCK)) return false;
+        for (size_t l = FAN; l-- > 0;) {
+            if (d2[l] > query->radius2) continue;
+            if (level == 0)
+                take_block(nb, first + l, query->shift, c);
+            else
+                stack[depth].level = level - 1, stack[depth++].first = (first + l) * FAN;
+        }
     }
-    if (!reserve(c, c->n + BLOCK)) return false;
-    for (int a = 0; a < nb->dim; a++)
-        for (size_t l = 0; l < BLOCK; l++)
-            c->x[a][c->n + l] = nb->x[a][box * BLOCK + l] + query->shift[a];
-    for (size_t l = 0; l < BLOCK; l++) c->j[c->n + l] = (uint32_t)(box * BLOCK + l);
-    c->n += smaller(BLOCK, nb->n - box * BLOCK);
     return true;
 }
 
 enum status neighbours_gather(const struct neighbours *nb, size_t block, double radius,
                               struct candidates *c, struct error *error)
 {
-    const size_t first = block * (size_t)nb->dim;
     /* a little more than asked for, so that round-off in the box distance loses nobody */
-    struct query query = {nb->lo[0] + first, nb->hi[0] + first, radius * radius * (1 + 1e-12), {0}};
+    struct query query = {.radius2 = fmin(radius * radius * (1 + 1e-12), DBL_MAX)};
+    for (int a = 0; a < nb->dim; a++) {
+        query.lo[a] = nb->lo[0][(size_t)a * nb->stride[0] + block];
+        query.hi[a] = nb->hi[0][(size_t)a * nb->stride[0] + block];
+    }
     int images[3] = {0};
     c->n = 0;
     for (int a = 0; nb->periodic && a < nb->dim; a++) {
@@ -265,7 +310,7 @@ enum status neighbours_gather(const struct neighbours *nb, size_t block, double 
             for (int k = -images[2]; k <= images[2]; k++) {
                 const int image[3] = {i, j, k};
                 for (int a = 0; a < nb->dim; a++) query.shift[a] = image[a] * nb->length[a];
-                if (!visit(nb, nb->levels - 1, 0, &query, c))
+                if (!walk(nb, &query, c))
                     return error_set(error, STATUS_ENVIRONMENT, "no memory for neighbour lists");
             }
     return STATUS_OK;

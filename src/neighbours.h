@@ -29,17 +29,20 @@ struct neighbours {
     double *x[3];    /* blocks * NEIGHBOURS_BLOCK each: sorted positions, the last one repeated */
     uint32_t *order; /* n: sorted position -> the caller's index */
     int levels;      /* level 0: the blocks; the last level has one box */
-    size_t count[NEIGHBOURS_LEVELS];
-    double *lo[NEIGHBOURS_LEVELS], *hi[NEIGHBOURS_LEVELS]; /* count * dim: corners of the boxes */
+    size_t count[NEIGHBOURS_LEVELS];  /* of boxes */
+    size_t stride[NEIGHBOURS_LEVELS]; /* count rounded up to eights; boxes beyond are empty */
+    double *lo[NEIGHBOURS_LEVELS], *hi[NEIGHBOURS_LEVELS]; /* corners: axis * stride + box */
     bool periodic;
     double length[3]; /* of the periodic box */
 };
 
-/* Points that may lie within a radius of some block; grows as needed. Zero-initialise. */
+/* Whole blocks that may hold points within a radius of some block; grows as needed.
+ * Zero-initialise. */
 struct candidates {
-    size_t n, capacity;
-    double *x[3]; /* periodic images already shifted: differences need no further thought */
-    uint32_t *j;  /* sorted positions */
+    size_t n, capacity; /* points, NEIGHBOURS_BLOCK a block; fillings lie at infinity */
+    double *x[3];       /* periodic images already shifted: differences need no further thought */
+    uint32_t *j;        /* sorted positions */
+    double *lo[3], *hi[3]; /* n / NEIGHBOURS_BLOCK: the blocks' boxes */
 };
 
 /* STATUS_BAD_INPUT: a coordinate is not finite (the message names the point), the box is empty or
@@ -48,9 +51,9 @@ enum status neighbours_create(const struct points *points, struct neighbours **n
                               struct error *error);
 void neighbours_destroy(struct neighbours *neighbours);
 
-/* Replaces the candidates by all points (periodic: all their images) within radius of the bounding
- * box of a block, and others; in an order that depends on the points alone.
- * STATUS_BAD_INPUT: the radius exceeds eight periodic boxes. */
+/* Replaces the candidates by all blocks (periodic: all their images) whose box comes within radius
+ * of that of a block; in an order that depends on the points alone. STATUS_BAD_INPUT: the radius
+ * exceeds eight periodic boxes. */
 enum status neighbours_gather(const struct neighbours *neighbours, size_t block, double radius,
                               struct candidates *candidates, struct error *error);
 void neighbours_candidates_free(struct candidates *candidates);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "operator.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -82,27 +83,73 @@ static void work_free(struct work *work)
     free(work->memory), free(work->list), free(work->j);
 }
 
-/* Fills list, j, x, q, v with the neighbours of a point; returns their number with the filling.
- * *inside: those with r < h. */
+/* Squares of the distances from a point to the boxes of candidate blocks. */
+ALWAYS_INLINE void box_distances(int dim, const struct candidates *c, const double *at,
+                                 double *restrict distance2)
+{
+    const size_t blocks = c->n / NEIGHBOURS_BLOCK;
+    const double *restrict lx = c->lo[0], *restrict ly = c->lo[1], *restrict lz = c->lo[2];
+    const double *restrict hx = c->hi[0], *restrict hy = c->hi[1], *restrict hz = c->hi[2];
+#pragma omp simd
+    for (size_t b = 0; b < blocks; b++) {
+        const double x = largest(largest(lx[b] - at[0], at[0] - hx[b]), 0);
+        double sum = x * x;
+        if (dim > 1) {
+            const double y = largest(largest(ly[b] - at[1], at[1] - hy[b]), 0);
+            sum += y * y;
+        }
+        if (dim > 2) {
+            const double z = largest(largest(lz[b] - at[2], at[2] - hz[b]), 0);
+            sum += z * z;
+        }
+        distance2[b] = sum;
+    }
+}
+
+/* Fills list and distance2 with the candidates within reach of a point, block by block; returns
+ * their number. No branches: the append costs the same, in or out. */
+ALWAYS_INLINE size_t list_neighbours(int dim, struct work *work, const double *at, double limit)
+{
+    const struct candidates *c = &work->candidates;
+    const double *restrict cx = c->x[0], *restrict cy = c->x[1], *restrict cz = c->x[2];
+    double *restrict box2 = work->w, *restrict distance2 = work->distance2;
+    uint32_t *restrict list = work->list, *restrict near = work->j;
+    size_t n = 0, near_count = 0;
+    box_distances(dim, c, at, box2);
+    for (size_t b = 0; b < c->n / NEIGHBOURS_BLOCK; b++) {
+        near[near_count] = (uint32_t)b;
+        near_count += box2[b] > limit ? 0u : 1u;
+    }
+    for (size_t k = 0; k < near_count; k++) {
+        const size_t first = near[k] * (size_t)NEIGHBOURS_BLOCK;
+        double r2[NEIGHBOURS_BLOCK];
+#pragma omp simd
+        for (size_t l = 0; l < NEIGHBOURS_BLOCK; l++) {
+            const double x = cx[first + l] - at[0];
+            r2[l] = x * x;
+            if (dim > 1) r2[l] += (cy[first + l] - at[1]) * (cy[first + l] - at[1]);
+            if (dim > 2) r2[l] += (cz[first + l] - at[2]) * (cz[first + l] - at[2]);
+        }
+        for (size_t l = 0; l < NEIGHBOURS_BLOCK; l++) {
+            list[n] = (uint32_t)(first + l);
+            distance2[n] = r2[l];
+            n += r2[l] > limit ? 0u : 1u;
+        }
+    }
+    return n;
+}
+
+/* Fills j, x, q, v with the neighbours of a point; returns their number with the filling. *inside:
+ * those with r < h. */
 ALWAYS_INLINE size_t select_neighbours(int dim, const struct task *task, struct work *work,
                                        const double *at, double h, uint32_t self, uint32_t *inside)
 {
     const struct candidates *c = &work->candidates;
     const double *restrict cx = c->x[0], *restrict cy = c->x[1], *restrict cz = c->x[2];
-    double *restrict distance2 = work->distance2;
-#pragma omp simd
-    for (size_t k = 0; k < c->n; k++) {
-        const double x = cx[k] - at[0], y = dim > 1 ? cy[k] - at[1] : 0,
-                     z = dim > 2 ? cz[k] - at[2] : 0;
-        distance2[k] = dim == 1 ? x * x : dim == 2 ? x * x + y * y : x * x + y * y + z * z;
-    }
-    const double limit = h * h * (1 + 1e-12);
-    uint32_t *restrict list = work->list;
-    size_t n = 0;
-    for (size_t k = 0; k < c->n; k++) { /* no branch: the append costs the same, in or out */
-        list[n] = (uint32_t)k;
-        n += distance2[k] > limit ? 0u : 1u;
-    }
+    const double *restrict distance2 = work->distance2;
+    const uint32_t *restrict list = work->list;
+    /* finite, so that the fillings stay outside */
+    size_t n = list_neighbours(dim, work, at, fmin(h * h * (1 + 1e-12), DBL_MAX));
     const double inverse = 1 / h;
     const double *restrict volume = task->volume;
     double *restrict wx = work->x[0], *restrict wy = work->x[1], *restrict wz = work->x[2],
@@ -110,14 +157,17 @@ ALWAYS_INLINE size_t select_neighbours(int dim, const struct task *task, struct 
     uint32_t *restrict j = work->j, count = 0;
     for (size_t m = 0; m < n; m++) {
         const uint32_t k = list[m];
-        const double r = sqrt(distance2[k]);
         wx[m] = (cx[k] - at[0]) * inverse;
         if (dim > 1) wy[m] = (cy[k] - at[1]) * inverse;
         if (dim > 2) wz[m] = (cz[k] - at[2]) * inverse;
-        q[m] = r * inverse;
-        count += r < h;
         j[m] = c->j[k];
         v[m] = volume[j[m]];
+    }
+#pragma omp simd reduction(+ : count)
+    for (size_t m = 0; m < n; m++) {
+        const double r = sqrt(distance2[m]);
+        q[m] = r * inverse;
+        count += r < h ? 1u : 0u;
     }
     *inside = count;
     for (; n % (size_t)LANES; n++) {

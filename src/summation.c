@@ -109,8 +109,9 @@ static double first_reach(const struct task *task, size_t block)
     const size_t dim = (size_t)nb->dim;
     double side = 0, whole = 0;
     for (size_t a = 0; a < dim; a++) {
-        side = fmax(side, nb->hi[0][block * dim + a] - nb->lo[0][block * dim + a]);
-        whole = fmax(whole, nb->hi[nb->levels - 1][a] - nb->lo[nb->levels - 1][a]);
+        const size_t at = a * nb->stride[0] + block, top = a * nb->stride[nb->levels - 1];
+        side = fmax(side, nb->hi[0][at] - nb->lo[0][at]);
+        whole = fmax(whole, nb->hi[nb->levels - 1][top] - nb->lo[nb->levels - 1][top]);
     }
     if (nb->periodic && !(whole > 0)) whole = nb->length[0];
     const double spacing = side > 0 ? side / (pow(NEIGHBOURS_BLOCK, 1. / nb->dim) - 0.5)
