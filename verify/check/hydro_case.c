@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "check.h"
+#include "riemann.h"
 #include "run.h"
 
 enum { ARGUMENTS_MAX = 16 };
@@ -206,4 +207,97 @@ const struct check check_hydro_setup = {
     .property = "N_L = round(n rho_L/(rho_L + rho_R)), equal masses a side, centred, own state",
     .measure = measure_setup,
     .mutants = setup_mutants,
+};
+
+/* --- errors of a run, once more from its particles -------------------------------------------- */
+
+enum { FINE = 400 }; /* samples of a bin */
+
+struct errors_subject {
+    int field;   /* of the run that is compared with the right one's exact solution */
+    double late; /* the exact solution is taken so much later */
+};
+
+static double exact_of(const struct riemann_solution *tube, int field, double x, double t)
+{
+    const struct riemann_state at = riemann_sample(tube, x, 0, t);
+    const double values[] = {at.rho, at.v, at.P, at.P / (0.4 * at.rho)};
+    return values[field];
+}
+
+static double binned_again(const struct snapshot *s, const struct riemann_solution *tube, double t)
+{
+    double total = 0, used = 0;
+    for (int k = 0; k < NORM_BINS; k++) {
+        const double lo = -0.5 + 0.05 * k;
+        double mean = 0, sum = 0, weight = 0;
+        for (int i = 0; i < FINE; i++)
+            mean += exact_of(tube, 0, lo + 0.05 * (i + 0.5) / FINE, t) / FINE;
+        for (size_t i = 0; i < s->n; i++) {
+            const double x = s->x[0][i];
+            if (!(x >= lo && (x < lo + 0.05 || (k == NORM_BINS - 1 && x <= 0.5)))) continue;
+            sum += s->volume[i] * s->rho[i];
+            weight += s->volume[i];
+        }
+        if (weight > 0) total += fabs(sum / weight - mean), used++;
+    }
+    return total / used;
+}
+
+static void measure_errors_again(struct check_run *run, const void *subject)
+{
+    const struct errors_subject *wrong = subject;
+    const char *arguments[] = {"n=200", NULL};
+    struct run_result result;
+    struct riemann_solution tube;
+    if (!execute(run, "sod", arguments, &result)) return;
+    riemann_solve(1.4, &(struct riemann_state){1, 0, 1}, &(struct riemann_state){0.125, 0, 0.1},
+                  &tube);
+    const struct snapshot *s = &result.snapshot;
+    const double *const fields[] = {s->rho, s->v[0], s->P, s->u};
+    for (int f = 0; f < FIELDS; f++) {
+        const double *value = fields[wrong && wrong->field == f ? FIELD_DENSITY : f];
+        long double l1 = 0, l2 = 0, linf = 0, mean = 0, weight = 0, count = 0;
+        for (size_t i = 0; i < s->n; i++) {
+            if (fabs(s->x[0][i]) > 0.5) continue;
+            const long double error =
+                fabsl(value[i] - exact_of(&tube, f, s->x[0][i], 0.2 + (wrong ? wrong->late : 0)));
+            weight += s->volume[i];
+            l1 += s->volume[i] * error;
+            l2 += s->volume[i] * error * error;
+            linf = error > linf ? error : linf;
+            mean += error;
+            count += 1;
+        }
+        const double want[NORMS] = {(double)(l1 / weight), (double)sqrtl(l2 / weight), (double)linf,
+                                    (double)(mean / count)};
+        for (int k = 0; k < NORMS; k++)
+            check_measure(run, fabs(run_error(&result, (enum field)f, (enum norm)k) / want[k] - 1),
+                          1e-12, 2e-14, "%s of %s", norm_family.members[k]->name,
+                          field_family.members[f]->name);
+    }
+    const double late = wrong ? wrong->late : 0;
+    check_measure(run, fabs(result.binned_density_l1 / binned_again(s, &tube, 0.2 + late) - 1),
+                  2e-3, 2e-4, "binned density, against a sum with %d samples a bin", FINE);
+    check_measure(run, result.momentum, 1e-13, 2e-16, "momentum");
+    check_measure(run, result.energy, 1e-12, 2e-16, "energy");
+    run_free(&result);
+}
+
+static const struct check_mutant errors_mutants[] = {
+    {"run_pressure_is_density", "error of pressure taken with the density",
+     &(struct errors_subject){FIELD_PRESSURE, 0}},
+    {"run_velocity_is_density", "error of velocity taken with the density",
+     &(struct errors_subject){FIELD_VELOCITY, 0}},
+    {"run_exact_later", "seed program: exact solution at another time than the state's",
+     &(struct errors_subject){-1, 1e-6}},
+    {0},
+};
+
+const struct check check_hydro_errors = {
+    .group = "hydro",
+    .name = "run_errors",
+    .property = "a run's error norms, recomputed from its particles and the exact solution",
+    .measure = measure_errors_again,
+    .mutants = errors_mutants,
 };

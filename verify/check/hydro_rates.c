@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Density, smoothing length, force and heating of one disordered state against the oracle, for
+ * Density, smoothing length, force and heating of disordered states against the oracle, for
  * every combination of the families that stand in the sums. */
 #include <math.h>
 
@@ -7,11 +7,12 @@
 #include "hydro_scene.h"
 #include "oracle.h"
 
-enum { PARTICLES = 75 };
+enum { PARTICLES = 82 };
 
 /* What the solver is given in place of the right scene; the oracle keeps the right one. */
 struct rates_subject {
     struct scheme scheme;
+    void (*state)(struct hydro_state *state, size_t n);
     void (*spoil)(struct scene *scene);
 };
 
@@ -19,11 +20,11 @@ enum { SUBJECTS_MAX = 160 };
 static struct rates_subject subjects[SUBJECTS_MAX];
 static size_t subject_total;
 
-static void add(struct scheme scheme)
+static void add(struct scheme scheme, void (*state)(struct hydro_state *state, size_t n))
 {
     struct error error;
     if (subject_total < SUBJECTS_MAX && scheme_check(&scheme, 1, &error) == STATUS_OK)
-        subjects[subject_total++].scheme = scheme;
+        subjects[subject_total++] = (struct rates_subject){scheme, state, NULL};
 }
 
 /* Every combination with the cubic spline; every gradient, formulation and pair width with the
@@ -38,7 +39,8 @@ static size_t subject_count(void)
         s.volume_element = c & 4 ? VOLUME_ENERGY : VOLUME_MASS;
         s.energy = c & 8 ? ENERGY_TOTAL : ENERGY_INTERNAL;
         s.viscosity = (enum viscosity)(c >> 4);
-        add(s);
+        add(s, hydro_disordered);
+        if (c >> 3 == 4) add(s, hydro_expanding);
     }
     for (size_t k = 0; k < kernel_family.n; k++) {
         s = hydro_scheme();
@@ -47,7 +49,7 @@ static size_t subject_count(void)
             s.gradient = c & 1 ? GRADIENT_IA : GRADIENT_STANDARD;
             s.formulation = c & 2 ? FORMULATION_LAGRANGIAN : FORMULATION_VANILLA_ICE;
             s.pair_width = (enum pair_width)(c >> 2);
-            if (c < 4 || s.formulation == FORMULATION_VANILLA_ICE) add(s);
+            if (c < 4 || s.formulation == FORMULATION_VANILLA_ICE) add(s, hydro_disordered);
         }
     }
     return subject_total;
@@ -114,7 +116,7 @@ static void measure(struct check_run *run, const void *subject)
 {
     const struct rates_subject *s = subject;
     static struct hydro_state state;
-    hydro_disordered(&state, PARTICLES);
+    s->state(&state, PARTICLES);
     struct scene scene = hydro_scene(&state, &s->scheme);
     struct oracle oracle;
     struct simulation *simulation = NULL;
@@ -209,7 +211,7 @@ static void measure_or_fill(struct check_run *run, const void *subject)
     struct rates_subject mutant;
     const struct rates_subject *s = subject;
     if (s >= spoiled && s < spoiled + FAULTS) {
-        mutant = (struct rates_subject){hydro_scheme(), faults[s - spoiled]};
+        mutant = (struct rates_subject){hydro_scheme(), hydro_disordered, faults[s - spoiled]};
         subject = &mutant;
     }
     measure(run, subject);
@@ -238,4 +240,59 @@ const struct check check_hydro_rates = {
     .subject = subject_at,
     .measure = measure_or_fill,
     .mutants = mutants,
+};
+
+/* --- residual of the smoothing length --------------------------------------------------------- */
+
+static void measure_residual(struct check_run *run, const void *subject)
+{
+    static struct hydro_state state;
+    const struct rates_subject *s = subject;
+    struct error error = {0};
+    hydro_disordered(&state, HYDRO_MAX);
+    for (int digits = 2; digits <= 13; digits++) {
+        struct scheme scheme = hydro_scheme();
+        scheme.h_tolerance = pow(10, -digits);
+        struct scene scene = hydro_scene(&state, &scheme);
+        if (s) s->spoil(&scene);
+        struct simulation *simulation;
+        if (simulation_create(&scene, &simulation, &error)) {
+            check_measure(run, 1, 0, 0, "%s", error.message);
+            continue;
+        }
+        struct snapshot got;
+        double worst = 0;
+        simulation_snapshot(simulation, &got);
+        for (size_t i = 0; i < got.n; i++) {
+            const double residual = fabs(scheme.eta * got.m[i] / got.rho[i] / got.h[i] - 1);
+            if (!(residual <= worst)) worst = residual;
+        }
+        simulation_destroy(simulation);
+        check_measure(run, worst, scheme.h_tolerance * 1.01, 1e-15, "h_tolerance 1e-%d", digits);
+    }
+}
+
+static void four_times(struct scene *scene)
+{
+    scene->scheme.h_tolerance *= 4;
+}
+
+static void once_more(struct scene *scene)
+{
+    scene->scheme.eta *= 1 + 1e-12;
+}
+
+static const struct check_mutant residual_mutants[] = {
+    {"h_four_times_too_loose", "seed program: the iteration's measure 4 times too loose",
+     &(struct rates_subject){.spoil = four_times}},
+    {"h_other_eta", "eta off by 1e-12", &(struct rates_subject){.spoil = once_more}},
+    {0},
+};
+
+const struct check check_hydro_residual = {
+    .group = "hydro",
+    .name = "h_residual",
+    .property = "|eta m/rho(h) - h| <= h_tolerance h for every particle, whatever the tolerance",
+    .measure = measure_residual,
+    .mutants = residual_mutants,
 };

@@ -29,6 +29,30 @@ void hydro_disordered(struct hydro_state *state, size_t n)
     gsl_rng_free(rng);
 }
 
+void hydro_contact(struct hydro_state *state, size_t n)
+{
+    enum { FIRST = 64, END = 128 };
+    double at = 0, x[HYDRO_MAX];
+    hydro_disordered(state, n);
+    for (size_t i = 0; i < n; i++) {
+        const double depth = i >= FIRST && i < END ? (double)(i - FIRST + 1) / (END - FIRST) : 0;
+        const double spacing = pow(20, -depth) * (1 + 0.3 * sin(7. * (double)i));
+        x[i] = at + 0.5 * spacing;
+        at += spacing;
+    }
+    for (size_t i = 0; i < n; i++) state->x[i] = state->lo + (state->hi - state->lo) * x[i] / at;
+}
+
+void hydro_expanding(struct hydro_state *state, size_t n)
+{
+    hydro_disordered(state, n);
+    const double middle = 0.5 * (state->lo + state->hi);
+    for (size_t i = 0; i < n; i++) {
+        state->v[i] = 0.9 * (state->x[i] - middle);
+        if (fabs(state->x[i] - middle) > 0.4 * (state->hi - state->lo)) state->u[i] *= 0.01;
+    }
+}
+
 void hydro_wave(struct hydro_state *state, size_t n)
 {
     *state = (struct hydro_state){.n = n, .lo = 0, .hi = 1, .gamma = 1.4};

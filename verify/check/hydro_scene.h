@@ -16,6 +16,11 @@ struct hydro_state {
 /* Unequal masses and spacings (8:1), random velocities and energies; the order is not that of x,
  * the box neither symmetric nor of length 2, and particles sit close to its ends. */
 void hydro_disordered(struct hydro_state *state, size_t n);
+/* 64 particles at 20 times the density of the rest, side by side: neighbours reach far on one side.
+ */
+void hydro_contact(struct hydro_state *state, size_t n);
+/* Everything recedes from the dense middle, which limits the time step, except at the cold ends. */
+void hydro_expanding(struct hydro_state *state, size_t n);
 /* A smooth wave of 10 % in all fields, on [0, 1]. */
 void hydro_wave(struct hydro_state *state, size_t n);
 /* A tube 1 0 1 | 0.125 0 0.1 with its mirror image, on [-1, 1]. */

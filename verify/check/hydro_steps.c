@@ -8,11 +8,16 @@
 #include "integrator.h"
 #include "oracle.h"
 
-enum { PARTICLES = 34, STEPS = 5, SUBJECTS_MAX = 64 };
+enum { PARTICLES = 34, FAR_PARTICLES = 150, STEPS = 5, SUBJECTS_MAX = 64 };
+
+/* Gas that runs to the left end of the box and through it; cold gas whose outermost particles pass
+ * each other there in the first step; a contact with neighbours far to one side. */
+enum start { RUNNING, PASSING, CONTACT };
 
 struct steps_subject {
     struct scheme scheme;
     double part; /* t_end = (STEPS + part) first steps */
+    enum start start;
     void (*spoil)(struct scene *scene);
 };
 
@@ -23,19 +28,22 @@ static size_t subject_count(void)
 {
     if (subject_total) return subject_total;
     for (size_t i = 0; i < integrator_family.n; i++)
-        for (int c = 0; c < 6; c++) {
+        for (int c = 0; c < 7; c++) {
             struct scheme s = hydro_scheme();
             s.integrator = (const struct integrator *)integrator_family.members[i];
             s.cfl = s.integrator->cfl_per_width ? 0.4 : s.integrator->cfl;
             s.viscosity = c % 3 == 0 ? VISCOSITY_TIME_DEPENDENT : VISCOSITY_CONSTANT;
             s.energy = c % 2 ? ENERGY_TOTAL : ENERGY_INTERNAL;
             if (c == 2 || c == 3) s.gradient = GRADIENT_IA;
-            if (c >= 4) {
+            if (c == 6) s.viscosity = VISCOSITY_NONE, s.eta = 4.8; /* coincident ones have an h */
+            if (c == 4 || c == 5) {
                 s.formulation = FORMULATION_LAGRANGIAN;
                 s.volume_element = c == 5 ? VOLUME_ENERGY : VOLUME_MASS;
             }
-            subjects[subject_total++] = (struct steps_subject){s, c % 2 ? 0.3 : 0.8, NULL};
+            subjects[subject_total++] =
+                (struct steps_subject){s, c % 2 ? 0.3 : 0.8, c == 6 ? PASSING : RUNNING, NULL};
         }
+    subjects[subject_total++] = (struct steps_subject){hydro_scheme(), 0.3, CONTACT, NULL};
     return subject_total;
 }
 
@@ -83,13 +91,32 @@ static void judge(struct check_run *run, const struct simulation *simulation,
     check_measure(run, fabs(got.time - (double)oracle->time), 0, 0, "time, %s", where);
 }
 
+static void prepare(struct hydro_state *state, enum start start)
+{
+    if (start == CONTACT) {
+        hydro_contact(state, FAR_PARTICLES);
+        return;
+    }
+    if (start == PASSING)
+        hydro_wave(state, PARTICLES);
+    else
+        hydro_disordered(state, PARTICLES);
+    for (size_t i = 0; i < state->n; i++) {
+        state->v[i] = 0.3 * state->v[i] - (state->x[i] < state->lo + 0.1 ? 1.5 : 0.2);
+        if (start == PASSING) state->v[i] *= 0.01, state->u[i] *= 1e-3;
+    }
+    if (start != PASSING) return;
+    state->x[0] = state->lo + 5e-4;
+    state->x[PARTICLES - 1] = state->hi - 5e-4;
+    state->v[0] = -1;
+    state->v[PARTICLES - 1] = 1;
+}
+
 static void measure(struct check_run *run, const void *subject)
 {
     const struct steps_subject *s = subject;
     static struct hydro_state state;
-    hydro_disordered(&state, PARTICLES);
-    for (size_t i = 0; i < state.n; i++) /* to the left end, and through it */
-        state.v[i] = 0.3 * state.v[i] - (state.x[i] < state.lo + 0.1 ? 1.5 : 0.2);
+    prepare(&state, s->start);
     struct scene scene = hydro_scene(&state, &s->scheme);
     struct oracle oracle;
     struct simulation *simulation = NULL;
@@ -181,7 +208,7 @@ static const struct fault {
 static void measure_any(struct check_run *run, const void *subject)
 {
     const struct fault *fault = subject;
-    struct steps_subject mutant = {hydro_scheme(), 0.3, NULL};
+    struct steps_subject mutant = {hydro_scheme(), 0.3, RUNNING, NULL};
     if (fault >= faults && fault < faults + sizeof faults / sizeof *faults) {
         mutant.scheme.integrator = hydro_integrator(fault->integrator);
         mutant.scheme.viscosity = fault->viscosity;
