@@ -36,11 +36,12 @@ CLONES static double crossings_in(const struct particles *particles, ptrdiff_t f
 ALWAYS_INLINE double count_inside(const struct particles *particles, ptrdiff_t first, int len,
                                   ptrdiff_t d)
 {
-    const double *restrict x = particles->x + first, *restrict h = particles->h + first;
+    const double *restrict x = particles->x + first, *restrict h_inverse =
+                                                         particles->h_inverse + first;
     double inside = 0;
 #pragma omp simd reduction(+ : inside)
     for (int i = 0; i < len; i++)
-        inside += least(x[i + d] - x[i], x[i] - x[i - d]) < h[i] ? 1. : 0.;
+        inside += least(x[i + d] - x[i], x[i] - x[i - d]) * h_inverse[i] < 1 ? 1. : 0.;
     return inside;
 }
 
@@ -55,13 +56,12 @@ ALWAYS_INLINE void predict_width(const struct particles *particles, ptrdiff_t fi
                                  double ratio)
 {
     const double *restrict found = particles->h_inverse_found + first;
-    double *restrict h = particles->h + first, *restrict h_inverse = particles->h_inverse + first,
-                     *restrict last = particles->h_inverse_old + first;
+    double *restrict h_inverse = particles->h_inverse + first, *restrict last =
+                                                                   particles->h_inverse_old + first;
 #pragma omp simd
     for (int i = 0; i < len; i++) {
         const double next = found[i] + ratio * (found[i] - last[i]);
         h_inverse[i] = largest(0.5 * found[i], least(2 * found[i], next));
-        h[i] = 1 / h_inverse[i];
         last[i] = found[i];
     }
 }
@@ -82,6 +82,7 @@ ALWAYS_INLINE void close_body(const struct particles *particles, ptrdiff_t first
     const double *restrict m = particles->m + first, *restrict U = particles->U + first,
                            *restrict h_inverse = particles->h_inverse + first,
                            *restrict m_inverse = particles->m_inverse + first;
+    double *restrict h = particles->h + first;
     double *restrict found = particles->h_inverse_found + first, *restrict V = particles->V + first,
                      *restrict rho = particles->rho + first, *restrict P = particles->P + first,
                      *restrict c = particles->c + first, *restrict g = particles->g + first;
@@ -96,10 +97,12 @@ ALWAYS_INLINE void close_body(const struct particles *particles, ptrdiff_t first
             V[i] = U[i] / y;
             rho[i] = m[i] / V[i];
             P[i] = gamma_1 * y;
+            h[i] = 1 / found[i];
         } else {
             V[i] = m[i] / sum;
             rho[i] = sum;
             P[i] = gamma_1 * sum * u;
+            h[i] = gas->eta * V[i];
         }
         c[i] = sqrt(gas->gamma * gamma_1 * u);
         if (own_gradient) g[i] = scale * h_inverse[i];

@@ -18,7 +18,7 @@ double range_crossings(const struct particles *particles, ptrdiff_t first, ptrdi
 /* Particles of the range with the neighbour at offset d inside their own width. */
 double range_inside(const struct particles *particles, ptrdiff_t first, int len, ptrdiff_t d);
 
-/* h for the next density sum: 1/h as last found, extrapolated by ratio times its last change. */
+/* 1/h for the next density sum: as last found, extrapolated by ratio times its last change. */
 void range_predict_width(const struct particles *particles, ptrdiff_t first, int len, double ratio);
 
 /* The numbers of the equation of state: constant = C_1 of the kernel. */
@@ -26,7 +26,7 @@ struct gas {
     double gamma, constant, eta;
 };
 
-/* Equation of state and what the pair sums need of it. */
+/* Equation of state and what the pair sums need of it; h as the sum of mass has found it. */
 void range_close(const struct particles *particles, ptrdiff_t first, int len,
                  const struct plan *plan, const struct gas *gas, const struct density_sums *sums);
 
