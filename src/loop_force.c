@@ -11,13 +11,13 @@
 /* exp(-z) for 0 <= z <= 7, to 1e-9 relative: (exp(-z/16))^16 by the series. Vectorises. */
 ALWAYS_INLINE double damping(double z)
 {
-    const double t = -z / 16;
-    double s = 1 + t / 7;
-    s = 1 + t / 6 * s;
-    s = 1 + t / 5 * s;
-    s = 1 + t / 4 * s;
-    s = 1 + t / 3 * s;
-    s = 1 + t / 2 * s;
+    const double t = -0.0625 * z;
+    double s = 1 + t * (1. / 7);
+    s = 1 + t * (1. / 6) * s;
+    s = 1 + t * (1. / 5) * s;
+    s = 1 + t * (1. / 4) * s;
+    s = 1 + t * (1. / 3) * s;
+    s = 1 + t * (1. / 2) * s;
     s = 1 + t * s;
     s *= s;
     s *= s;
@@ -26,17 +26,18 @@ ALWAYS_INLINE double damping(double z)
 }
 
 /* Closing speed of a pair extrapolated to its midpoint with a limited slope (Rosswog 2020, MAGMA2
- * eqs. 18-22): v~_ij = v_ij + phi/2 (v'_i + v'_j) r; pairs closer than q = near are damped. */
+ * eqs. 18-22): v_ij + phi/2 (v'_i + v'_j) r, phi = max(0, 4 v'_i v'_j/(v'_i + v'_j)^2) damped in
+ * pairs closer than q = near. As a fraction over *scale, so that the pair needs one division. Zero
+ * where the pair itself recedes: the heating uses v_ij, and viscosity never cools. */
 ALWAYS_INLINE double closing_at_midpoint(double v_ij, double slope_i, double slope_j, double r,
-                                         double q, double near)
+                                         double q, double near, double *scale)
 {
-    const double sum = slope_i + slope_j;
-    const double ratio = 4 * slope_i * slope_j / (sum * sum);
-    const double phi = ratio > 0 ? least(ratio, 1) : 0; /* a vanishing sum: NaN > 0 is false */
+    const double sum = slope_i + slope_j, product = slope_i * slope_j;
     const double z = q < near ? least((near - q) * 5, 2.6) : 0;
-    const double closing = v_ij + 0.5 * phi * damping(z * z) * r * sum;
-    /* the heating uses v_ij itself: viscosity never cools */
-    return v_ij > 0 ? largest(closing, 0) : 0;
+    const double one_sided = product > 0 ? 2 * r * product * damping(z * z) : 0;
+    *scale = product > 0 ? sum : 1;
+    const double closing = v_ij * *scale + one_sided;
+    return v_ij > 0 && closing * *scale > 0 ? closing : 0;
 }
 
 ALWAYS_INLINE void force_body(enum formulation formulation, enum pair_viscosity viscosity,
@@ -87,16 +88,17 @@ ALWAYS_INLINE void force_body(enum formulation formulation, enum pair_viscosity 
                 a_j = b[j] * (Z[i] - m[i] * grad_h[j]) * G_j[i];
             }
             if (viscosity != PAIR_INVISCID) {
+                double scale = 1;
                 const double closing =
                     viscosity == PAIR_RECONSTRUCTED
                         ? closing_at_midpoint(v_ij, dv[i], dv[j], r,
-                                              r * least(h_inverse[i], h_inverse[j]), near)
+                                              r * least(h_inverse[i], h_inverse[j]), near, &scale)
                         : largest(v_ij, 0);
                 const double G_bar =
                     formulation == FORMULATION_VANILLA_ICE ? G[i] : 0.5 * (G[i] + G_j[i]);
-                /* mu = -t/D2, PI = (-alpha c mu + beta mu^2)/rho, with one division */
+                /* mu = -t/(D2 scale), PI = (-alpha c mu + beta mu^2)/rho */
                 const double h_bar = 0.25 * (h[i] + h[j]);
-                const double t = h_bar * r * closing, D2 = r * r + 0.01 * (h_bar * h_bar);
+                const double t = h_bar * r * closing, D2 = (r * r + 0.01 * (h_bar * h_bar)) * scale;
                 const bool varying = viscosity == PAIR_VARYING;
                 const double alpha_bar = varying ? 0.5 * (alpha[i] + alpha[j]) : alpha_0;
                 const double c_bar = 0.5 * (c[i] + c[j]), rho_bar = 0.5 * (rho[i] + rho[j]);
