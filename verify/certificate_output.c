@@ -22,8 +22,10 @@ static void print_measured(const struct certificate *c, double h, FILE *stream)
     fprintf(stream, "  %-28s %.10g h^4\n", "fourth moment (per axis)", c->moments.fourth);
     fprintf(stream, "  %-28s W(0) = %.10g, so eta must exceed %.6g\n", "self-term",
             kernel_value(kernel, 0, h, dim), kernel_least_eta(kernel, dim));
-    fprintf(stream, "  %-28s C%d%s (declared C%d)", "class", c->class.class,
-            c->class.class == MEASURE_CLASS_MAX ? " or higher" : "", kernel->smoothness[dim]);
+    fprintf(stream, "  %-28s C%d%s", "class", c->class.class,
+            c->class.class == MEASURE_CLASS_MAX ? " or higher" : "");
+    if (c->class.class < MEASURE_CLASS_MAX && c->class.class != kernel->smoothness[dim])
+        fprintf(stream, " (declared C%d)", kernel->smoothness[dim]);
     if (c->class.at == 0 || c->class.at == 1)
         fprintf(stream, ", limited by the %s", c->class.at == 0 ? "origin" : "edge");
     else if (c->class.at > 0)
@@ -102,9 +104,17 @@ void certificate_print(const struct certificate *c, double h, FILE *stream, bool
     print_lattice(c, stream);
     print_properties(c, stream, color);
     fprintf(stream, "\n%s: ", c->failed ? "REJECTED" : "accepted");
-    if (c->failed)
-        fprintf(stream, "%d of %d figures beyond their bound\n", c->failed, c->figure_count);
-    else
+    if (c->failed) {
+        fprintf(stream, "%d of %d figures beyond their bound, in", c->failed, c->figure_count);
+        const struct property *last = NULL;
+        for (int i = 0; i < c->figure_count; i++) {
+            const struct certificate_figure *figure = &c->figures[i];
+            if (figure->passed || figure->property == last) continue;
+            fprintf(stream, "%s %s", last ? "," : "", figure->property->name);
+            last = figure->property;
+        }
+        fprintf(stream, "\n");
+    } else
         fprintf(stream, "%d figures within their bounds\n", c->figure_count);
 }
 

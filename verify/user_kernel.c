@@ -17,7 +17,7 @@
 #include "measure.h"
 #include "pieces.h"
 
-enum { PROBE_SECONDS = 20, KNOTS_ROOM = 1 << 16 };
+enum { PROBE_SECONDS = 20, PROBE_PASSED = 42, KNOTS_ROOM = 1 << 16 };
 
 /* The functions of a plug-in; w and dw are there, the others may be NULL. */
 struct functions {
@@ -248,7 +248,7 @@ static int wait_for(pid_t child)
     for (int i = 0; i < PROBE_SECONDS * 500; i++) {
         const pid_t done = waitpid(child, &outcome, WNOHANG);
         if (done == child) return outcome;
-        if (done < 0 && errno != EINTR) return 0;
+        if (done < 0 && errno != EINTR) return -1;
         nanosleep(&pause, NULL);
     }
     kill(child, SIGKILL);
@@ -268,13 +268,16 @@ static enum status probe(const char *path, int dim, struct error *error)
         const struct rlimit no_core = {0, 0};
         setrlimit(RLIMIT_CORE, &no_core);
         load(&user, path, dim, &ignored);
-        _exit(0);
+        _exit(PROBE_PASSED);
     }
     const int outcome = wait_for(child);
     if (outcome == -1)
         return error_set(error, STATUS_BAD_INPUT,
                          "kernel '%.200s' does not return from its functions within %d s", path,
                          PROBE_SECONDS);
+    if (WIFEXITED(outcome) && WEXITSTATUS(outcome) != PROBE_PASSED)
+        return error_set(error, STATUS_BAD_INPUT, "kernel '%.200s' ends the process with exit(%d)",
+                         path, WEXITSTATUS(outcome));
     if (WIFSIGNALED(outcome))
         return error_set(error, STATUS_BAD_INPUT, "kernel '%.200s' crashes: %s", path,
                          strsignal(WTERMSIG(outcome)));

@@ -27,7 +27,8 @@ enum {
     KNOTS_TOO_MANY,
     KNOTS_NEGATIVE,
     KNOTS_DESCENDING,
-    CRASH
+    CRASH,
+    EXIT
 };
 
 static const double pi = 3.14159265358979323846;
@@ -35,6 +36,7 @@ static const double pi = 3.14159265358979323846;
 double sphproof_kernel_w(double q, int dim)
 {
     if (FAULT == NOT_A_NUMBER && q > 0.3) return sqrt(-q);
+    if (FAULT == EXIT) exit(0);
     if (FAULT == CRASH && q > 0.3) abort();
     if (FAULT == SUPPORT_SHORT) q /= 0.999;
     if (q >= 1) return FAULT == BEYOND_EDGE && q < 1.2 ? 1e-12 : 0;

@@ -166,9 +166,11 @@ void property_lattice(const struct pieces *pieces, struct property_sink *sink)
                       "eta %g: the default width", kernel->default_eta);
     }
     /* many neighbours: the sums become integrals, with the order of the transform's decay */
+    const double eta = pieces->dim == 1 ? 64 : 16;
     const int class = kernel->smoothness[pieces->dim];
-    const double bound = 4 * pow(16, -1 - (class < 2 ? class : 2));
-    measure_lattice(kernel, pieces->dim, 16, &density, &gradient);
-    property_take(sink, fabs(density), bound, floor, "eta 16, density");
-    property_take(sink, fabs(gradient), bound, floor, "eta 16, gradient");
+    const int order = pieces->dim == 1 ? 1 + (class > 0) : 1 + (class < 2 ? class : 2);
+    const double bound = 4 * pow(eta, -order);
+    measure_lattice(kernel, pieces->dim, eta, &density, &gradient);
+    property_take(sink, fabs(density), bound, floor, "eta %g, density", eta);
+    property_take(sink, fabs(gradient), bound, floor, "eta %g, gradient", eta);
 }

@@ -124,6 +124,7 @@ static void test_unusable(void **state)
     refused(path_of("faulty_KNOTS_NEGATIVE"), "= -1");
     refused(path_of("faulty_KNOTS_DESCENDING"), "ascending");
     refused(path_of("faulty_CRASH"), "crashes");
+    refused(path_of("faulty_EXIT"), "exit(0)");
     refused(path_of("gaussian_without_dw"), "sphproof_kernel_dw");
     refused(path_of("no_such_file"), "No such file");
     refused(folder, "directory");
