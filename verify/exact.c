@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#include "norm.h"
+
 static enum status solve(struct riemann_solution *solution, double gamma, const double *left,
                          const double *right, struct error *error)
 {
@@ -117,4 +119,24 @@ enum status exact_check_window(const struct exact *exact, const double window[2]
                      "%.4g, or a narrower window",
                      t, exact->lo + front(exact, 1, t), exact->hi - front(exact, -1, t), window[0],
                      window[1], floor(free * 1e6) / 1e6);
+}
+
+struct density_at {
+    const struct exact *exact;
+    double time;
+};
+
+static double exact_density(const void *context, double x)
+{
+    const struct density_at *at = context;
+    double values[FIELDS];
+    exact_sample(at->exact, x, at->time, values);
+    return values[FIELD_DENSITY];
+}
+
+void exact_density_means(const struct exact *exact, double t, const double window[2], size_t bins,
+                         double *means)
+{
+    const struct density_at at = {exact, t};
+    norm_bin_means(exact_density, &at, window, bins, means);
 }

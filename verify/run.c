@@ -8,6 +8,7 @@
 #include <sys/resource.h>
 
 #include "initial.h"
+#include "plain.h"
 
 enum status run_prepare(struct run_settings *settings, const char *case_name, int n,
                         char *const *arguments, struct error *error)
@@ -82,11 +83,10 @@ enum status run_explain(const struct run_settings *settings, struct run_result *
     return status;
 }
 
-static enum status keep_snapshot(struct run_result *result, const struct simulation *simulation,
+static enum status keep_snapshot(struct run_result *result, const struct snapshot *snapshot,
                                  struct error *error)
 {
-    struct snapshot seen;
-    simulation_snapshot(simulation, &seen);
+    const struct snapshot seen = *snapshot;
     const double *const from[] = {seen.x[0], seen.v[0], seen.m, seen.rho,
                                   seen.u,    seen.P,    seen.h, seen.volume};
     const double **const to[] = {&result->snapshot.x[0], &result->snapshot.v[0],
@@ -104,19 +104,6 @@ static enum status keep_snapshot(struct run_result *result, const struct simulat
     result->snapshot.n = seen.n;
     result->snapshot.time = result->time = seen.time;
     return STATUS_OK;
-}
-
-struct density_at {
-    const struct exact *exact;
-    double time;
-};
-
-static double exact_density(const void *context, double x)
-{
-    const struct density_at *at = context;
-    double values[FIELDS];
-    exact_sample(at->exact, x, at->time, values);
-    return values[FIELD_DENSITY];
 }
 
 static enum status measure_errors(struct run_result *result, struct error *error)
@@ -146,8 +133,7 @@ static enum status measure_errors(struct run_result *result, struct error *error
     suspicion_swapped(FIELDS, (const char *[]){"density", "velocity", "pressure", "energy"},
                       end - first, volume, inside[0], inside[1], result->suspicion);
     free(exact);
-    const struct density_at at = {&result->exact, result->time};
-    norm_bin_means(exact_density, &at, result->window, NORM_BINS, means);
+    exact_density_means(&result->exact, result->time, result->window, NORM_BINS, means);
     result->binned_density_l1 =
         norm_binned_l1(s->n, s->x[0], result->window, s->volume, s->rho, NORM_BINS, means);
     return STATUS_OK;
@@ -219,30 +205,60 @@ static void measure_conservation(struct run_result *result, const struct conserv
     result->energy = fabs(end->energy - start->energy) / fabs(start->energy);
 }
 
+/* What a solver leaves behind; the snapshot's arrays are still the solver's. */
+struct outcome {
+    enum status status; /* of the run */
+    struct error reason;
+    struct conservation start, end;
+    struct snapshot snapshot;
+};
+
+static enum status finish(struct run_result *result, const struct outcome *outcome,
+                          struct error *error)
+{
+    if (outcome->status != STATUS_OK && outcome->status != STATUS_BROKE_DOWN) {
+        *error = outcome->reason;
+        return error->status;
+    }
+    result->status = outcome->status;
+    snprintf(result->message, sizeof result->message, "%s", outcome->reason.message);
+    measure_conservation(result, &outcome->start, &outcome->end);
+    const enum status status = keep_snapshot(result, &outcome->snapshot, error);
+    return status ? status : measure_errors(result, error);
+}
+
 static enum status simulate(const struct run_settings *settings, struct run_result *result,
                             const struct initial *initial, struct error *error)
 {
     struct simulation *simulation = NULL;
-    struct conservation start, end;
-    struct error reason = {0};
+    struct outcome outcome = {0};
     const struct scene scene = scene_of(settings, result, initial);
     enum status status = simulation_create(&scene, &simulation, error);
     if (status) return status;
-    simulation_conservation(simulation, &start);
-    result->status = simulation_run(simulation, scene.t_end, settings->progress,
-                                    settings->progress_context, &reason);
-    if (result->status != STATUS_OK && result->status != STATUS_BROKE_DOWN) {
-        *error = reason;
-        status = result->status;
-    } else {
-        snprintf(result->message, sizeof result->message, "%s", reason.message);
-        simulation_cost(simulation, &result->cost);
-        simulation_conservation(simulation, &end);
-        measure_conservation(result, &start, &end);
-        if (!(status = keep_snapshot(result, simulation, error)))
-            status = measure_errors(result, error);
-    }
+    simulation_conservation(simulation, &outcome.start);
+    outcome.status = simulation_run(simulation, scene.t_end, settings->progress,
+                                    settings->progress_context, &outcome.reason);
+    simulation_cost(simulation, &result->cost);
+    simulation_conservation(simulation, &outcome.end);
+    simulation_snapshot(simulation, &outcome.snapshot);
+    status = finish(result, &outcome, error);
     simulation_destroy(simulation);
+    return status;
+}
+
+static enum status simulate_plainly(const struct run_settings *settings, struct run_result *result,
+                                    const struct initial *initial, struct error *error)
+{
+    struct plain plain;
+    struct outcome outcome = {0};
+    const struct scene scene = scene_of(settings, result, initial);
+    outcome.status = plain_run(&plain, &scene, &outcome.reason);
+    outcome.start = plain.start;
+    outcome.end = plain.end;
+    result->cost = plain.cost;
+    plain_snapshot(&plain, &outcome.snapshot);
+    const enum status status = finish(result, &outcome, error);
+    plain_free(&plain);
     return status;
 }
 
@@ -251,7 +267,8 @@ enum status run_execute(const struct run_settings *settings, struct run_result *
 {
     struct initial initial;
     enum status status = begin(settings, result, &initial, error);
-    if (!status) status = simulate(settings, result, &initial, error);
+    if (!status)
+        status = (settings->plain ? simulate_plainly : simulate)(settings, result, &initial, error);
     initial_free(&initial);
     if (status) {
         run_free(result);

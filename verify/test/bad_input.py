@@ -58,6 +58,14 @@ FILES = {
 
 # arguments, exit status, words of the message
 BAD = [
+    ("bench sodd", 2, "sodd", "did you mean 'sod'"),
+    ("bench n=100", 2, "n", "--n N1,N2"),
+    ("bench sod --n 100,many", 2, "many", "integers"),
+    ("bench sod --vary kernels", 2, "kernels", "did you mean 'kernel'"),
+    ("bench sod --n 40 --vary eta=0.5,0.7", 2, "no combination", "eta"),
+    ("bench sod --time 0", 2, "--time", "above 0"),
+    ("bench sod --samples 1e9", 2, "--samples", "1 to"),
+    ("bench sod --plot front.jpg", 2, "front.jpg", ".svg"),
     ("", 2, "no command", "--help"),
     ("frobnicate", 2, "frobnicate", "allowed", "run"),
     ("rnu sod", 2, "rnu", "run"),

@@ -112,6 +112,7 @@ class Validator:
         return self.faults(value, schema["then"], path) if self.valid(value, rule) else ()
 
 
+BRIEF = ["--time", "1e-5", "--samples", "2"]
 COMMANDS = [
     ["list"],
     ["list", "keys"],
@@ -121,6 +122,8 @@ COMMANDS = [
     ["run", "two_rarefactions", "n=60", "cfl=50"],
     ["converge", "sod", "--n", "20,40,60,80", "t_end=0.1"],
     ["converge", "sod", "--n", "20,40,60,80", "t_end=0.05", "--vary", "gradient"],
+    ["bench", "--n", "20,40", "t_end=0.05", "--vary", "gradient", *BRIEF],
+    ["bench", "sound_wave", "--n", "24,16", "--vary", "eta=1.5,0.1", *BRIEF],
     ["riemann", "1", "0", "1", "0.125", "0", "0.1", "--sample", "-1:1:5", "--time", "0.1"],
     ["riemann", "1", "-5", "0.4", "1", "5", "0.4"],
     ["kernel", "cubic_spline", "--dim", "2", "--at", "0.5"],

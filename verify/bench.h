@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Timing that can be trusted on a busy machine (after FFTW's libbench2/speed.c): every subject is
+ * warmed up, its work is repeated, doubling, until one sample takes a least time, and then samples
+ * of all subjects are taken in turn, so that a burst of foreign load does not hit one alone. What
+ * counts is the least sample; the median says how far to trust it. */
+#ifndef SPHPROOF_BENCH_H
+#define SPHPROOF_BENCH_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "status.h"
+
+struct bench_taken {
+    double wall_s, cpu_s; /* cpu_s: of all threads of the process */
+};
+
+/* Does the work `times` times and adds what it took, and nothing else, to *taken. */
+typedef enum status bench_work(void *context, uint64_t times, struct bench_taken *taken,
+                               struct error *error);
+
+struct bench_time {
+    double wall_s, cpu_s; /* of the work done once: the least of the samples */
+    double spread;        /* median of the samples' cpu_s over the least one, minus 1 */
+    uint64_t times;       /* the work was done so often in a sample */
+    int samples;
+};
+
+struct bench_subject {
+    bench_work *work;
+    void *context;
+    struct bench_time time; /* result */
+    struct error failure;   /* STATUS_OK, or why there is no result */
+};
+
+enum { BENCH_SAMPLES_MAX = 64 };
+struct bench_rules {
+    double least_s; /* CPU time of a sample, at least */
+    double most_s;  /* of all of a subject's samples; two are taken in any case */
+    int samples;    /* 1 .. BENCH_SAMPLES_MAX */
+};
+extern const struct bench_rules bench_usual;
+
+/* done of total samples; may be NULL. */
+typedef void bench_progress(void *context, double done, double total);
+
+/* Measures all subjects. One that breaks down is left out and says so in its failure; any other
+ * status ends the measurement and is returned. */
+enum status bench_measure(struct bench_subject *subjects, size_t count,
+                          const struct bench_rules *rules, bench_progress *progress, void *context,
+                          struct error *error);
+
+/* Clocks: from `start`, taken before, to now. */
+struct bench_taken bench_now(void);
+void bench_add(struct bench_taken *taken, const struct bench_taken *start);
+
+#endif

@@ -1,0 +1,150 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * sphproof bench: what an error costs. */
+#include "bench.h"
+
+#include <string.h>
+
+#include "command.h"
+#include "output.h"
+#include "picture.h"
+#include "precision.h"
+#include "precision_output.h"
+#include "progress.h"
+#include "result.h"
+#include "text.h"
+
+/* What all kinds of benchmark are given. */
+struct request {
+    const struct options *options;
+    struct bench_rules rules;
+    struct progress progress;
+    int n; /* arguments after the case */
+    char **arguments;
+    const char *case_name; /* NULL: not named */
+};
+
+static void show_progress(void *context, double done, double total)
+{
+    progress_update(context, done, total);
+}
+
+static enum status read_rules(struct request *request, struct error *error)
+{
+    const char *least = options_value(request->options, "time");
+    const char *samples = options_value(request->options, "samples");
+    double value;
+    request->rules = bench_usual;
+    if (least) {
+        if (!text_real(least, &value) || !(value > 0 && value <= 60))
+            return command_usage(request->options, error,
+                                 "--time %.40s: allowed: seconds, above 0 up to 60", least);
+        request->rules.least_s = value;
+    }
+    if (samples) {
+        if (!text_integer(samples, &value) || !(value >= 1 && value <= BENCH_SAMPLES_MAX))
+            return command_usage(request->options, error,
+                                 "--samples %.40s: allowed: an integer from 1 to %d", samples,
+                                 BENCH_SAMPLES_MAX);
+        request->rules.samples = (int)value;
+    }
+    return STATUS_OK;
+}
+
+static enum status write_result(const struct request *request, json_t *document,
+                                struct error *error)
+{
+    return request->options->json ? result_write(document, request->options->json, error)
+                                  : STATUS_OK;
+}
+
+/* --- work-precision --------------------------------------------------------------------------- */
+
+static enum status take_ladder(const struct request *request, const struct run_settings *settings,
+                               size_t ladder[CASE_LADDER_MAX], size_t *count, struct error *error)
+{
+    const char *text = options_value(request->options, "n");
+    if (settings->settings.value[SETTING_n].source == SOURCE_USER)
+        return error_set(
+            error, STATUS_BAD_INPUT,
+            "bench: the key n and a ladder exclude each other; allowed: --n N1,N2,...");
+    if (text) return sweep_ladder(text, 1, ladder, count, error);
+    *count = settings->file.ladder_count;
+    memcpy(ladder, settings->file.ladder, sizeof settings->file.ladder);
+    if (*count) return STATUS_OK;
+    return error_set(error, STATUS_BAD_INPUT,
+                     "bench: the case %s has no ladder; give one: --n 100,200,400,800",
+                     settings->file.name);
+}
+
+static enum status work_precision(struct request *request, struct error *error)
+{
+    static struct run_settings settings;
+    struct sweep sweep;
+    struct precision precision = {0};
+    size_t ladder[CASE_LADDER_MAX], count;
+    const char *plot = options_value(request->options, "plot");
+    if (run_prepare(&settings, request->case_name ? request->case_name : "sod", request->n,
+                    request->arguments, error) ||
+        sweep_parse(&sweep, options_value(request->options, "vary"), error) ||
+        take_ladder(request, &settings, ladder, &count, error) ||
+        (plot && picture_probe(plot, error)))
+        return error->status;
+    settings.threads = request->options->threads;
+    progress_begin(&request->progress, "bench", request->options);
+    enum status status = precision_measure(&settings, &sweep, ladder, count, &request->rules,
+                                           show_progress, &request->progress, &precision, error);
+    progress_end(&request->progress);
+    if (!status && plot) status = precision_plot(&precision, plot, error);
+    if (!status) {
+        json_t *document = result_new("bench");
+        precision_add_json(&precision, document);
+        status = write_result(request, document, error);
+        json_decref(document);
+    }
+    if (!status && request->options->speak) {
+        const struct table_style style = table_style(request->options);
+        precision_print(&precision, &style);
+    }
+    precision_free(&precision);
+    return status;
+}
+
+static enum status run(const struct options *options, int n, char **arguments, struct error *error)
+{
+    struct request request = {.options = options, .n = n, .arguments = arguments};
+    if (read_rules(&request, error)) return error->status;
+    if (n > 0 && !strchr(arguments[0], '=')) {
+        request.case_name = arguments[0];
+        request.n--;
+        request.arguments++;
+    }
+    return work_precision(&request, error);
+}
+
+static const struct command_option own_options[] = {
+    {"n", "N1,N2,...", "numbers of particles (default: the case's ladder)"},
+    {"vary", "KEY[=A,B][,...]", "every member of a family, or these values; all combinations"},
+    {"plot", "FILE.svg|.png", "draw error against CPU time (needs gnuplot)"},
+    {"time", "S", "CPU time of a sample, at least (default 0.02 s)"},
+    {"samples", "N", "samples of each measurement (default 5); the least counts"},
+    {NULL, NULL, NULL},
+};
+
+const struct command command_bench = {
+    .name = "bench",
+    .synopsis = "[CASE] [KEY=VALUE ...]",
+    .help = "what an error costs: CPU time and pair interactions against the L1 error of density\n"
+            "For every scheme of --vary and every resolution of --n (default case: sod): the "
+            "Pareto\nfront, the cheapest way to 1 %, 0.3 % and 0.1 % of the mean density, and L1^2 "
+            "x CPU time\nagainst the seed program's corrected method. Samples of all schemes are "
+            "taken in turn, so\nthat ratios hold on a busy machine, too; the least sample counts "
+            "and the spread is shown.",
+    .run = run,
+    .options = own_options,
+    .examples = "sphproof bench\n"
+                "sphproof bench sod --vary kernel,gradient --n 200,400,800 --plot front.svg\n"
+                "sphproof bench strong_shock --vary "
+                "integrator=predicted_midpoint,rk3,viscosity --json -\n"
+                "sphproof bench sod_standard kernel=quartic_spline --vary "
+                "viscosity=constant,reconstructed",
+};

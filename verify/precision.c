@@ -1,0 +1,319 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "precision.h"
+
+#include <gsl/gsl_statistics_double.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "result.h"
+
+const double precision_targets[PRECISION_TARGETS] = {0.01, 0.003, 0.001};
+
+/* What the seed program does, its errors corrected: on top of the user's keys, which say what is
+ * computed. */
+static const char *const seed_keys[] = {
+    "kernel=cubic_spline",
+    "eta=4.8",
+    "gradient=standard",
+    "formulation=vanilla_ice",
+    "volume_element=mass",
+    "integrator=modified_leapfrog",
+    "cfl=0.3",
+    "energy=internal",
+    "viscosity=constant",
+    "alpha=1",
+    "beta=2",
+    "pair_width=mean",
+    "h_method=newton",
+    "h_tolerance=1e-10",
+    "skip=none",
+};
+enum { SEED_KEYS = sizeof seed_keys / sizeof *seed_keys };
+
+void precision_front(size_t n, const double *cost, const double *error, bool *on_front)
+{
+    for (size_t i = 0; i < n; i++) {
+        on_front[i] = isfinite(cost[i]) && isfinite(error[i]);
+        for (size_t j = 0; j < n && on_front[i]; j++)
+            if (cost[j] <= cost[i] && error[j] <= error[i] &&
+                (cost[j] < cost[i] || error[j] < error[i]))
+                on_front[i] = false;
+    }
+}
+
+double precision_cost_of(size_t n, const double *cost, const double *error, double target)
+{
+    double least = NAN;
+    if (n && error[0] <= target) least = cost[0];
+    for (size_t i = 1; i < n; i++) {
+        if (!(error[i] <= target)) continue;
+        double here = cost[i];
+        if (error[i - 1] > target && error[i] > 0) {
+            const double part = log(error[i - 1] / target) / log(error[i - 1] / error[i]);
+            here = cost[i - 1] * pow(cost[i] / cost[i - 1], part);
+        }
+        if (!(least <= here)) least = here;
+    }
+    return least;
+}
+
+/* --- one point -------------------------------------------------------------------------------- */
+
+struct job {
+    struct run_settings settings;
+    struct precision_point *point;
+};
+
+static enum status execute(void *context, uint64_t times, struct bench_taken *taken,
+                           struct error *error)
+{
+    struct job *job = context;
+    for (uint64_t i = 0; i < times; i++) {
+        struct run_result result;
+        const enum status status = run_execute(&job->settings, &result, error);
+        if (status == STATUS_BROKE_DOWN) run_free(&result);
+        if (status) return status;
+        taken->wall_s += result.cost.wall_s;
+        taken->cpu_s += result.cost.cpu_s;
+        job->point->n = result.n;
+        job->point->error = result.errors[FIELD_DENSITY].l1;
+        job->point->pairs = (double)result.cost.pair_interactions;
+        job->point->settings = result.settings;
+        run_free(&result);
+    }
+    return STATUS_OK;
+}
+
+/* --- all of them ------------------------------------------------------------------------------ */
+
+static enum status find_mean_density(const struct run_settings *settings, double *mean,
+                                     struct error *error)
+{
+    struct settings resolved = settings->settings;
+    struct scheme scheme;
+    struct exact exact;
+    double means[NORM_BINS];
+    if (settings_resolve(&resolved, settings->file.dimension, &scheme, error) ||
+        exact_prepare(&exact, &resolved, error))
+        return error->status;
+    exact_density_means(&exact, settings_real(&resolved, SETTING_t_end),
+                        resolved.value[SETTING_window].real, NORM_BINS, means);
+    *mean = gsl_stats_mean(means, 1, NORM_BINS);
+    return STATUS_OK;
+}
+
+/* "kernel=a eta=2" -> "a eta=2": names say themselves what they are. */
+static void shorten(const char *label, char brief[SWEEP_LABEL])
+{
+    size_t used = 0;
+    while (*label) {
+        const size_t word = strcspn(label, " "), name = strcspn(label, "=");
+        const char *value = name < word ? label + name + 1 : label;
+        const bool number = strchr("0123456789.-", *value) != NULL;
+        const char *from = number ? label : value;
+        used += (size_t)snprintf(brief + used, SWEEP_LABEL - used, "%s%.*s", used ? " " : "",
+                                 (int)(label + word - from), from);
+        label += word + (label[word] == ' ');
+    }
+}
+
+/* Sets the scheme's keys; why it cannot be goes into scheme->excluded. */
+static enum status prepare(const struct precision *precision, const struct sweep *sweep, size_t i,
+                           struct run_settings *settings, struct error *error)
+{
+    struct precision_scheme *scheme = &precision->schemes[i];
+    *settings = *precision->settings;
+    if (i < sweep->count) {
+        sweep_label(sweep, i, scheme->label);
+        shorten(scheme->label, scheme->brief);
+        if (!scheme->label[0]) {
+            strcpy(scheme->label, "as given");
+            strcpy(scheme->brief, "as given");
+        }
+        if (sweep_apply(sweep, i, settings, error)) return error->status;
+    } else {
+        scheme->reference = i == sweep->count ? REFERENCE_SEED : REFERENCE_SEED_PLAIN;
+        settings->plain = scheme->reference == REFERENCE_SEED_PLAIN;
+        strcpy(scheme->label, settings->plain ? "seed method, plain C" : "seed method");
+        strcpy(scheme->brief, scheme->label);
+        if (settings_apply(&settings->settings, SEED_KEYS, (char *const *)seed_keys, error) ||
+            settings_set(&settings->settings, SETTING_grade, "1", SOURCE_CASE, NULL, error))
+            return error->status;
+    }
+    struct settings resolved = settings->settings;
+    struct scheme ignored;
+    struct error reason;
+    if (settings_resolve(&resolved, settings->file.dimension, &ignored, &reason))
+        snprintf(scheme->excluded, sizeof scheme->excluded, "%s", reason.message);
+    return STATUS_OK;
+}
+
+/* Points of schemes that broke down go away, the others close up. */
+static void collect(struct precision *precision, const struct bench_subject *subjects,
+                    const struct job *jobs)
+{
+    struct precision_point *points = precision->points;
+    size_t kept = 0;
+    for (size_t i = 0; i < precision->point_count; i++) {
+        struct precision_scheme *scheme = &precision->schemes[points[i].scheme];
+        if (subjects[i].failure.status && !scheme->excluded[0])
+            snprintf(scheme->excluded, sizeof scheme->excluded, "n = %g: %.450s",
+                     settings_real(&jobs[i].settings.settings, SETTING_n),
+                     subjects[i].failure.message);
+    }
+    for (size_t i = 0; i < precision->point_count; i++) {
+        struct precision_scheme *scheme = &precision->schemes[points[i].scheme];
+        if (scheme->excluded[0]) continue;
+        if (scheme->count++ == 0) scheme->first = kept;
+        points[kept] = points[i];
+        points[kept].time = subjects[i].time;
+        points[kept].relative = points[kept].error / precision->mean_density;
+        kept++;
+    }
+    precision->point_count = kept;
+}
+
+static enum status judge(struct precision *precision, struct error *error)
+{
+    const size_t n = precision->point_count;
+    double *cost = malloc((2 * n + 1) * sizeof *cost), *wrong = cost + n;
+    bool *front = malloc((n + 1) * sizeof *front);
+    if (!cost || !front) {
+        free(cost), free(front);
+        return error_set(error, STATUS_ENVIRONMENT, "no memory for %zu points", n);
+    }
+    for (size_t i = 0; i < n; i++) {
+        cost[i] = precision->points[i].time.cpu_s;
+        wrong[i] = precision->points[i].error;
+    }
+    precision_front(n, cost, wrong, front);
+    for (size_t i = 0; i < n; i++) precision->points[i].on_front = front[i];
+    for (size_t t = 0; t < PRECISION_TARGETS; t++)
+        precision->cheapest[t] =
+            (struct precision_way){precision_targets[t] * precision->mean_density, NAN, 0};
+    double plain = NAN;
+    for (size_t i = precision->scheme_count; i-- > 0;) {
+        struct precision_scheme *scheme = &precision->schemes[i];
+        const size_t last = scheme->first + scheme->count - 1;
+        scheme->merit = scheme->count ? wrong[last] * wrong[last] * cost[last] : (double)NAN;
+        if (scheme->reference == REFERENCE_SEED_PLAIN) plain = scheme->merit;
+        scheme->gain = plain / scheme->merit;
+        for (size_t t = 0; t < PRECISION_TARGETS; t++) {
+            struct precision_way *way = &precision->cheapest[t];
+            const double here = precision_cost_of(scheme->count, cost + scheme->first,
+                                                  wrong + scheme->first, way->error);
+            if (here <= way->cpu_s || isnan(way->cpu_s)) way->cpu_s = here, way->scheme = i;
+        }
+    }
+    free(cost), free(front);
+    return STATUS_OK;
+}
+
+enum status precision_measure(const struct run_settings *settings, const struct sweep *sweep,
+                              const size_t *ladder, size_t count, const struct bench_rules *rules,
+                              bench_progress *progress, void *context, struct precision *precision,
+                              struct error *error)
+{
+    const size_t schemes = sweep->count + 2, most = schemes * count;
+    *precision = (struct precision){.settings = settings, .scheme_count = schemes};
+    precision->schemes = calloc(schemes, sizeof *precision->schemes);
+    precision->points = calloc(most, sizeof *precision->points);
+    struct bench_subject *subjects = calloc(most, sizeof *subjects);
+    struct job *jobs = calloc(most, sizeof *jobs);
+    struct run_settings *own = malloc(sizeof *own);
+    enum status status = STATUS_OK;
+    if (!precision->schemes || !precision->points || !subjects || !jobs || !own)
+        status = error_set(error, STATUS_ENVIRONMENT, "no memory for %zu points", most);
+    if (!status) status = find_mean_density(settings, &precision->mean_density, error);
+    size_t n = 0, own_schemes = 0;
+    for (size_t i = 0; i < schemes && !status; i++) {
+        status = prepare(precision, sweep, i, own, error);
+        if (status || precision->schemes[i].excluded[0]) continue;
+        own_schemes += i < sweep->count;
+        for (size_t l = 0; l < count; l++, n++) {
+            char key[40], *keys[] = {key};
+            snprintf(key, sizeof key, "n=%zu", ladder[l]);
+            jobs[n] = (struct job){*own, &precision->points[n]};
+            precision->points[n].scheme = i;
+            subjects[n] = (struct bench_subject){.work = execute, .context = &jobs[n]};
+            if (!status) status = settings_apply(&jobs[n].settings.settings, 1, keys, error);
+        }
+    }
+    precision->point_count = n;
+    if (!status && !own_schemes)
+        status =
+            error_set(error, STATUS_BAD_INPUT, "bench: no combination of --vary is allowed: %s",
+                      precision->schemes[0].excluded);
+    if (!status) status = bench_measure(subjects, n, rules, progress, context, error);
+    if (!status) {
+        collect(precision, subjects, jobs);
+        status = judge(precision, error);
+    }
+    free(subjects), free(jobs), free(own);
+    return status;
+}
+
+void precision_free(struct precision *precision)
+{
+    free(precision->schemes);
+    free(precision->points);
+    *precision = (struct precision){0};
+}
+
+/* --- results ---------------------------------------------------------------------------------- */
+
+static json_t *point_json(const struct precision *precision, const struct precision_point *point)
+{
+    static const char *const references[] = {"", "seed", "seed_plain"};
+    const struct precision_scheme *scheme = &precision->schemes[point->scheme];
+    json_t *item = json_pack(
+        "{s:s, s:o, s:I, s:o, s:o, s:o, s:o, s:o, s:i, s:o, s:o, s:b}", "scheme", scheme->label,
+        "settings", settings_json(&point->settings), "n", (json_int_t)point->n, "error",
+        result_number(point->error), "relative_error", result_number(point->relative), "wall_s",
+        result_number(point->time.wall_s), "cpu_s", result_number(point->time.cpu_s), "spread",
+        result_number(point->time.spread), "samples", point->time.samples, "pair_interactions",
+        result_number(point->pairs), "figure_of_merit",
+        result_number(point->error * point->error * point->time.cpu_s), "on_front",
+        point->on_front);
+    if (scheme->reference)
+        json_object_set_new(item, "reference", json_string(references[scheme->reference]));
+    return item;
+}
+
+void precision_add_json(const struct precision *precision, json_t *document)
+{
+    json_t *points = json_array(), *schemes = json_array(), *ways = json_array(),
+           *excluded = json_array();
+    for (size_t i = 0; i < precision->point_count; i++)
+        json_array_append_new(points, point_json(precision, &precision->points[i]));
+    for (size_t i = 0; i < precision->scheme_count; i++) {
+        const struct precision_scheme *scheme = &precision->schemes[i];
+        if (!scheme->count)
+            json_array_append_new(excluded, json_pack("{s:s, s:s}", "scheme", scheme->label,
+                                                      "reason", scheme->excluded));
+        else
+            json_array_append_new(schemes,
+                                  json_pack("{s:s, s:o, s:o}", "scheme", scheme->label,
+                                            "figure_of_merit", result_number(scheme->merit),
+                                            "seed_plain_over_this", result_number(scheme->gain)));
+    }
+    for (size_t t = 0; t < PRECISION_TARGETS; t++) {
+        const struct precision_way *way = &precision->cheapest[t];
+        const bool reached = isfinite(way->cpu_s);
+        json_array_append_new(
+            ways,
+            json_pack("{s:f, s:o, s:o, s:o}", "target", precision_targets[t], "error",
+                      result_number(way->error), "cpu_s",
+                      reached ? result_number(way->cpu_s) : json_null(), "scheme",
+                      reached ? json_string(precision->schemes[way->scheme].label) : json_null()));
+    }
+    json_object_set_new(document, "case", json_string(precision->settings->file.name));
+    json_object_set_new(document, "title", json_string(precision->settings->file.title));
+    json_object_set_new(document, "mean_density", result_number(precision->mean_density));
+    json_object_set_new(document, "points", points);
+    json_object_set_new(document, "schemes", schemes);
+    json_object_set_new(document, "cheapest", ways);
+    json_object_set_new(document, "excluded", excluded);
+}

@@ -1,0 +1,78 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Work-precision: what an error costs. Schemes (a sweep) x resolutions on one case, each timed as
+ * bench.h says; the Pareto front; the cheapest way to a given error; L1^2 x CPU time, which for a
+ * first-order scheme does not depend on the resolution. For comparison the corrected method of the
+ * seed program, by the solver and as plain C. The error is the L1 of density. */
+#ifndef SPHPROOF_PRECISION_H
+#define SPHPROOF_PRECISION_H
+
+#include <jansson.h>
+
+#include "bench.h"
+#include "run.h"
+#include "sweep.h"
+
+enum { PRECISION_TARGETS = 3, PRECISION_SHORT = 96 };
+extern const double precision_targets[PRECISION_TARGETS]; /* relative to the mean density */
+
+struct precision_point {
+    size_t scheme, n; /* n: as the set-up allowed */
+    double error, relative;
+    double pairs; /* pair interactions */
+    bool on_front;
+    struct settings settings; /* as used, resolved */
+    struct bench_time time;
+    struct error failure;
+};
+
+enum precision_reference { REFERENCE_NONE, REFERENCE_SEED, REFERENCE_SEED_PLAIN };
+
+struct precision_scheme {
+    char label[SWEEP_LABEL]; /* "kernel=cubic_spline gradient=ia" */
+    char brief[SWEEP_LABEL]; /* the values alone, for plots */
+    enum precision_reference reference;
+    size_t first, count; /* its points, n rising; 0 where it is excluded or broke down */
+    double merit;        /* L1^2 x CPU time at the finest n; NaN without points */
+    double gain;         /* the plain reference's merit over this one's, same ladder */
+    char excluded[512];  /* why there is no point */
+};
+
+struct precision_way {
+    double error; /* L1 of density */
+    double cpu_s; /* interpolated along a scheme's curve; NaN: no scheme gets there */
+    size_t scheme;
+};
+
+struct precision {
+    const struct run_settings *settings;
+    double mean_density; /* exact, of the measure window at t_end */
+    size_t scheme_count, point_count;
+    struct precision_scheme *schemes; /* references last */
+    struct precision_point *points;   /* by scheme, then n */
+    struct precision_way cheapest[PRECISION_TARGETS];
+};
+
+/* ladder: count rising numbers of particles. settings must live as long as the result. Schemes that
+ * keys exclude, or that break down at some n, are kept with the reason. STATUS_BAD_INPUT: nothing
+ * is left. Free with precision_free, also after a failure. */
+enum status precision_measure(const struct run_settings *settings, const struct sweep *sweep,
+                              const size_t *ladder, size_t count, const struct bench_rules *rules,
+                              bench_progress *progress, void *context, struct precision *precision,
+                              struct error *error);
+void precision_free(struct precision *precision);
+
+/* "case", "points", "schemes", "cheapest", "excluded" ... of a result document. */
+void precision_add_json(const struct precision *precision, json_t *document);
+
+/* --- the arithmetic, by itself ---------------------------------------------------------------- */
+
+/* A point is on the front if no other is at most as dear and at most as wrong, and better in one;
+ * a point that is not finite never is. */
+void precision_front(size_t n, const double *cost, const double *error, bool *on_front);
+
+/* Least cost at which a curve (points in order of resolution) comes down to an error: log-log
+ * between neighbouring points, never beyond the ends; the first point's own cost where already
+ * that one is good enough. NaN: not reached. */
+double precision_cost_of(size_t n, const double *cost, const double *error, double target);
+
+#endif

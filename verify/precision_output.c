@@ -1,0 +1,192 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "precision_output.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "picture.h"
+
+static double merit_of(const struct precision_scheme *scheme)
+{
+    return scheme->count && isfinite(scheme->merit) ? scheme->merit : (double)INFINITY;
+}
+
+static int by_merit(const void *a, const void *b)
+{
+    const struct precision_scheme *const *x = a, *const *y = b;
+    const double p = merit_of(*x), q = merit_of(*y);
+    return p < q ? -1 : p > q ? 1 : *x < *y ? -1 : *x > *y;
+}
+
+static int by_cost(const void *a, const void *b)
+{
+    const struct precision_point *const *x = a, *const *y = b;
+    const double p = (*x)->time.cpu_s, q = (*y)->time.cpu_s;
+    return p < q ? -1 : p > q ? 1 : *x < *y ? -1 : *x > *y;
+}
+
+/* Pointers to all schemes, best first; the caller frees. */
+static const struct precision_scheme **sorted_schemes(const struct precision *precision)
+{
+    const struct precision_scheme **list = malloc((precision->scheme_count + 1) * sizeof *list);
+    for (size_t i = 0; list && i < precision->scheme_count; i++) list[i] = &precision->schemes[i];
+    if (list) qsort(list, precision->scheme_count, sizeof *list, by_merit);
+    return list;
+}
+
+static void print_schemes(const struct precision *precision, const struct precision_scheme **list,
+                          const struct table_style *style)
+{
+    size_t width = 24;
+    for (size_t i = 0; i < precision->scheme_count; i++)
+        if (list[i]->count && strlen(list[i]->label) > width) width = strlen(list[i]->label);
+    printf("%s%-*s %7s %11s %8s %10s %7s %11s %11s %9s%s\n", style->bold, (int)width, "scheme", "n",
+           "error", "", "CPU s", "spread", "pairs", "L1^2 CPU s", "gain", style->end);
+    for (size_t i = 0; i < precision->scheme_count; i++) {
+        const struct precision_scheme *scheme = list[i];
+        if (!scheme->count) continue;
+        const struct precision_point *p = &precision->points[scheme->first + scheme->count - 1];
+        printf("%-*s %7zu %11.4e %7.3f%% %10.3e %6.0f%% %11.3e %11.3e %9.3g\n", (int)width,
+               scheme->label, p->n, p->error, 100 * p->relative, p->time.cpu_s,
+               100 * p->time.spread, p->pairs, scheme->merit, scheme->gain);
+    }
+    printf("%sat the finest n, best first. error: L1 of density, absolute and of the window's mean "
+           "density %.6g;\nCPU s: least of %d samples, all threads; spread: their median above it; "
+           "gain: L1^2 x CPU s of the\nseed program's corrected method in plain C over that of "
+           "the scheme%s\n",
+           style->faint, precision->mean_density, precision->points[0].time.samples, style->end);
+    for (size_t i = 0; i < precision->scheme_count; i++)
+        if (!list[i]->count) printf("excluded: %s: %s\n", list[i]->label, list[i]->excluded);
+}
+
+static void print_front(const struct precision *precision, const struct table_style *style)
+{
+    const struct precision_point **list = malloc((precision->point_count + 1) * sizeof *list);
+    size_t n = 0;
+    for (size_t i = 0; list && i < precision->point_count; i++)
+        if (precision->points[i].on_front) list[n++] = &precision->points[i];
+    if (list) qsort(list, n, sizeof *list, by_cost);
+    printf("\n%sPareto front: nothing else is both cheaper and better%s\n", style->bold,
+           style->end);
+    for (size_t i = 0; i < n; i++)
+        printf("  %10.3e CPU s  error %10.4e  n = %-7zu %s\n", list[i]->time.cpu_s, list[i]->error,
+               list[i]->n, precision->schemes[list[i]->scheme].label);
+    free(list);
+}
+
+static void print_ways(const struct precision *precision, const struct table_style *style)
+{
+    printf("\n%scheapest way to%s\n", style->bold, style->end);
+    for (size_t t = 0; t < PRECISION_TARGETS; t++) {
+        const struct precision_way *way = &precision->cheapest[t];
+        printf("  %4.1f %% (L1 = %.2e): ", 100 * precision_targets[t], way->error);
+        if (isfinite(way->cpu_s))
+            printf("%.3e CPU s, %s\n", way->cpu_s, precision->schemes[way->scheme].label);
+        else
+            printf("no scheme gets there with this --n\n");
+    }
+}
+
+void precision_print(const struct precision *precision, const struct table_style *style)
+{
+    const struct precision_scheme **list = sorted_schemes(precision);
+    if (!list) return;
+    printf("%s%s%s: %s, t = %g: what an error costs\n", style->bold, precision->settings->file.name,
+           style->end, precision->settings->file.title,
+           settings_real(&precision->points[0].settings, SETTING_t_end));
+    print_schemes(precision, list, style);
+    print_front(precision, style);
+    print_ways(precision, style);
+    free(list);
+}
+
+/* --- the plot --------------------------------------------------------------------------------- */
+
+static bool touches_front(const struct precision *precision, const struct precision_scheme *scheme)
+{
+    for (size_t i = 0; i < scheme->count; i++)
+        if (precision->points[scheme->first + i].on_front) return true;
+    return false;
+}
+
+/* The curves to be named: the references, then the best of those on the front, then others. */
+static size_t choose(const struct precision *precision, const struct precision_scheme **list,
+                     const struct precision_scheme *chosen[PLOT_COLORS])
+{
+    size_t n = 0;
+    for (int round = 0; round < 3; round++)
+        for (size_t i = 0; i < precision->scheme_count && n < PLOT_COLORS; i++) {
+            const int rank = list[i]->reference ? 0 : touches_front(precision, list[i]) ? 1 : 2;
+            if (list[i]->count && rank == round) chosen[n++] = list[i];
+        }
+    return n;
+}
+
+enum status precision_plot(const struct precision *precision, const char *path, struct error *error)
+{
+    const size_t n = precision->point_count;
+    const struct precision_scheme **list = sorted_schemes(precision), *chosen[PLOT_COLORS];
+    double *x = malloc((4 * n + 1) * sizeof *x), *y = x + n, *rest_x = y + n, *rest_y = rest_x + n;
+    if (!list || !x) {
+        free(list), free(x);
+        return error_set(error, STATUS_ENVIRONMENT, "--plot %.150s: no memory", path);
+    }
+    struct plot_series series[PLOT_COLORS + 1];
+    const size_t curves = choose(precision, list, chosen);
+    size_t rest = 0, count = 0;
+    for (size_t i = 0; i < n; i++) {
+        const struct precision_point *point = &precision->points[i];
+        bool named = false;
+        for (size_t c = 0; c < curves; c++)
+            named = named || chosen[c] == &precision->schemes[point->scheme];
+        x[i] = point->time.cpu_s;
+        y[i] = 100 * point->relative;
+        if (named) continue;
+        rest_x[rest] = x[i];
+        rest_y[rest++] = y[i];
+    }
+    if (rest)
+        series[count++] = (struct plot_series){.kind = PLOT_POINTS,
+                                               .n = rest,
+                                               .x = rest_x,
+                                               .y = rest_y,
+                                               .color = PLOT_NEUTRAL,
+                                               .size = 0.35};
+    for (size_t c = 0; c < curves; c++)
+        series[count++] = (struct plot_series){.label = chosen[c]->brief,
+                                               .kind = PLOT_LINES_POINTS,
+                                               .n = chosen[c]->count,
+                                               .x = x + chosen[c]->first,
+                                               .y = y + chosen[c]->first,
+                                               .dashed = chosen[c]->reference != REFERENCE_NONE};
+    struct plot_mark marks[PRECISION_TARGETS];
+    char names[PRECISION_TARGETS][16];
+    for (size_t t = 0; t < PRECISION_TARGETS; t++) {
+        const double percent = 100 * precision_targets[t];
+        snprintf(names[t], sizeof names[t], "%g %%", percent);
+        marks[t] = (struct plot_mark){.at = percent, .horizontal = true, .label = names[t]};
+    }
+    char title[256];
+    snprintf(title, sizeof title, "%.200s: what an error costs", precision->settings->file.title);
+    const struct plot_panel panel = {.x_label = "CPU time (s)",
+                                     .y_label = "L1 error of density (% of the mean)",
+                                     .x_log = true,
+                                     .y_log = true,
+                                     .key = PLOT_KEY_END,
+                                     .series = series,
+                                     .series_count = count,
+                                     .marks = marks,
+                                     .mark_count = PRECISION_TARGETS};
+    const struct plot plot = {.name = "bench",
+                              .title = title,
+                              .show_title = true,
+                              .width = 760,
+                              .height = 480,
+                              .panels = &panel,
+                              .panel_count = 1};
+    const enum status status = picture_write(&plot, path, error);
+    free(list), free(x);
+    return status;
+}

@@ -1,0 +1,290 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The benchmark's own arithmetic on made-up data (no test looks at a real clock), and its plain C
+ * baseline against the solver. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "bench.h"
+#include "near.h"
+#include "precision.h"
+
+/* --- the timing core, on a clock of our own --------------------------------------------------- */
+
+struct fake {
+    double once, warm_up, noise[BENCH_SAMPLES_MAX]; /* noise: factors, call by call */
+    int calls;
+    uint64_t times[BENCH_SAMPLES_MAX];
+    int breaks_at; /* call, 0: never */
+    enum status status;
+};
+
+static enum status fake_work(void *context, uint64_t times, struct bench_taken *taken,
+                             struct error *error)
+{
+    struct fake *fake = context;
+    const int call = fake->calls++;
+    fake->times[call] = times;
+    if (fake->calls == fake->breaks_at) return error_set(error, fake->status, "as arranged");
+    const double factor = fake->noise[call] > 0 ? fake->noise[call] : 1;
+    taken->cpu_s += (double)times * fake->once * factor + (call ? 0 : fake->warm_up);
+    taken->wall_s += 2 * (double)times * fake->once * factor;
+    return STATUS_OK;
+}
+
+static const struct bench_rules rules = {.least_s = 0.01, .most_s = 1e9, .samples = 5};
+
+static void test_samples_double_until_they_are_long_enough(void **state)
+{
+    (void)state;
+    /* calls: warm-up; 1, 2, 4, 8 ms ... 16 ms is the first sample */
+    struct fake fake = {.once = 1e-3, .warm_up = 0.1};
+    fake.noise[6] = 1.5, fake.noise[7] = 3, fake.noise[8] = 1.25, fake.noise[9] = 1.75;
+    struct bench_subject subject = {.work = fake_work, .context = &fake};
+    fake.warm_up = 0;
+    assert_int_equal(bench_measure(&subject, 1, &rules, NULL, NULL, NULL), STATUS_OK);
+    assert_int_equal(subject.time.times, 16);
+    assert_int_equal(subject.time.samples, 5);
+    assert_int_equal(fake.calls, 10);
+    for (int call = 6; call < 10; call++) assert_int_equal(fake.times[call], 16);
+    near_relative(subject.time.cpu_s, 1e-3, 1e-12);
+    near_relative(subject.time.wall_s, 2e-3, 1e-12);
+    near_relative(subject.time.spread, 0.5, 1e-12); /* 1 1.25 1.5 1.75 3 */
+}
+
+static void test_first_call_does_not_count(void **state)
+{
+    (void)state;
+    struct fake fake = {.once = 0.02, .warm_up = 0.05};
+    struct bench_subject subject = {.work = fake_work, .context = &fake};
+    fake.noise[0] = 0.1; /* a first call that is too fast to be true */
+    assert_int_equal(bench_measure(&subject, 1, &rules, NULL, NULL, NULL), STATUS_OK);
+    near_relative(subject.time.cpu_s, 0.02, 1e-12);
+    assert_int_equal(fake.calls, 6);
+}
+
+static void test_long_work_is_not_repeated_for_ever(void **state)
+{
+    (void)state;
+    struct fake fake = {.once = 3};
+    struct bench_subject subject = {.work = fake_work, .context = &fake};
+    const struct bench_rules short_of_time = {.least_s = 0.01, .most_s = 4, .samples = 5};
+    assert_int_equal(bench_measure(&subject, 1, &short_of_time, NULL, NULL, NULL), STATUS_OK);
+    assert_int_equal(fake.calls, 2); /* the first is worth a sample */
+    assert_int_equal(subject.time.samples, 2);
+}
+
+static void test_samples_are_taken_in_turn(void **state)
+{
+    (void)state;
+    struct fake fake = {.once = 0.02};
+    struct bench_subject subjects[2] = {{.work = fake_work, .context = &fake},
+                                        {.work = fake_work, .context = &fake}};
+    /* both share their calls: 2 each to calibrate, then a b a b ...; b is dearer */
+    for (int call = 0; call < 12; call++)
+        fake.noise[call] = call == 3 || (call > 3 && call % 2 == 1) ? 2 : 1;
+    assert_int_equal(bench_measure(subjects, 2, &rules, NULL, NULL, NULL), STATUS_OK);
+    near_relative(subjects[1].time.cpu_s / subjects[0].time.cpu_s, 2, 1e-12);
+    near_absolute(subjects[0].time.spread, 0, 1e-12);
+    near_absolute(subjects[1].time.spread, 0, 1e-12);
+}
+
+static void test_breakdown_leaves_the_others(void **state)
+{
+    (void)state;
+    struct error error = {0};
+    struct fake sound = {.once = 0.02}, unsound = {.once = 0.02, .breaks_at = 4},
+                hopeless = {.once = 0.02, .breaks_at = 1};
+    unsound.status = hopeless.status = STATUS_BROKE_DOWN;
+    struct bench_subject subjects[3] = {{.work = fake_work, .context = &unsound},
+                                        {.work = fake_work, .context = &hopeless},
+                                        {.work = fake_work, .context = &sound}};
+    assert_int_equal(bench_measure(subjects, 3, &rules, NULL, NULL, &error), STATUS_OK);
+    assert_int_equal(subjects[0].failure.status, STATUS_BROKE_DOWN);
+    assert_int_equal(subjects[1].failure.status, STATUS_BROKE_DOWN);
+    assert_string_equal(subjects[1].failure.message, "as arranged");
+    assert_int_equal(subjects[2].failure.status, STATUS_OK);
+    assert_int_equal(unsound.calls, 4);
+    assert_int_equal(hopeless.calls, 1);
+    near_relative(subjects[2].time.cpu_s, 0.02, 1e-12);
+
+    struct fake wrong = {.once = 0.02, .breaks_at = 2, .status = STATUS_ENVIRONMENT};
+    struct bench_subject subject = {.work = fake_work, .context = &wrong};
+    assert_int_equal(bench_measure(&subject, 1, &rules, NULL, NULL, &error), STATUS_ENVIRONMENT);
+    assert_string_equal(error.message, "as arranged");
+}
+
+/* --- front and ways --------------------------------------------------------------------------- */
+
+static void test_front(void **state)
+{
+    (void)state;
+    static const double cost[] = {1, 2, 3, 4, 2, 1, 5, (double)NAN, 0.5, 4};
+    static const double error[] = {8, 4, 5, 2, 4, 9, 2, 0.1, (double)INFINITY, 1.5};
+    /* 2: dearer and worse than 1; 1 and 4 tie; 3, 6: worse than 9 */
+    static const bool expected[] = {true,  true,  false, false, true,
+                                    false, false, false, false, true};
+    enum { N = sizeof cost / sizeof *cost };
+    bool front[N];
+    precision_front(N, cost, error, front);
+    for (size_t i = 0; i < N; i++) assert_int_equal(front[i], expected[i]);
+    precision_front(0, cost, error, front);
+}
+
+static void test_cost_of_an_error(void **state)
+{
+    (void)state;
+    /* error = cost^-1/2 from 1e-1 to 1e-3 */
+    const double cost[] = {1e2, 1e4, 1e6}, error[] = {1e-1, 1e-2, 1e-3};
+    near_relative(precision_cost_of(3, cost, error, 2e-2), 2500, 1e-12);
+    near_relative(precision_cost_of(3, cost, error, 2e-3), 250000, 1e-12);
+    near_relative(precision_cost_of(3, cost, error, 1e-2), 1e4, 1e-12);
+    near_relative(precision_cost_of(3, cost, error, 0.5), 1e2, 1e-12); /* the coarsest will do */
+    assert_true(isnan(precision_cost_of(3, cost, error, 9e-4)));       /* no extrapolation */
+    assert_true(isnan(precision_cost_of(0, cost, error, 1)));
+    /* an error that rises again: the first way down is the cheapest */
+    const double bumpy[] = {1e-1, 1e-3, 1e-2};
+    near_relative(precision_cost_of(3, cost, bumpy, 1e-2), 1e3, 1e-12);
+    const double broken[] = {1e-1, (double)NAN, 1e-3};
+    near_relative(precision_cost_of(3, cost, broken, 1e-2), 1e6, 1e-12);
+}
+
+/* --- the baseline ----------------------------------------------------------------------------- */
+
+static void compare_plain(const char *name, int n, char *const *more)
+{
+    static char *const keys[] = {"kernel=cubic_spline",
+                                 "eta=4.8",
+                                 "gradient=standard",
+                                 "formulation=vanilla_ice",
+                                 "energy=internal",
+                                 "integrator=modified_leapfrog",
+                                 "cfl=0.3",
+                                 "alpha=1",
+                                 "skip=none",
+                                 "h_tolerance=1e-13"};
+    struct run_settings *settings = calloc(1, sizeof *settings);
+    struct run_result fast, plain;
+    struct error error = {0};
+    assert_int_equal(run_prepare(settings, name, sizeof keys / sizeof *keys, keys, &error), 0);
+    assert_int_equal(settings_apply(&settings->settings, n, more, &error), 0);
+    settings->threads = 1;
+    assert_int_equal(run_execute(settings, &fast, &error), STATUS_OK);
+    settings->plain = true;
+    assert_int_equal(run_execute(settings, &plain, &error), STATUS_OK);
+    assert_int_equal(plain.n, fast.n);
+    assert_int_equal(plain.cost.steps, fast.cost.steps);
+    near_relative(plain.time, fast.time, 1e-15);
+    double worst = 0, moved = 0;
+    /* the solver's order is cyclic: begin with its leftmost particle */
+    size_t first = 0;
+    for (size_t i = 1; i < fast.n; i++)
+        if (fast.snapshot.x[0][i] < fast.snapshot.x[0][first]) first = i;
+    for (size_t i = 0; i < fast.n; i++) {
+        const size_t k = (first + i) % fast.n;
+        const struct snapshot *a = &plain.snapshot, *b = &fast.snapshot;
+        const double wrong[] = {a->x[0][i] - b->x[0][k],         a->v[0][i] - b->v[0][k],
+                                a->rho[i] / b->rho[k] - 1,       a->u[i] / b->u[k] - 1,
+                                a->h[i] / b->h[k] - 1,           a->P[i] / b->P[k] - 1,
+                                a->volume[i] / b->volume[k] - 1, a->m[i] / b->m[k] - 1};
+        for (size_t q = 0; q < sizeof wrong / sizeof *wrong; q++)
+            if (!(fabs(wrong[q]) <= worst)) worst = fabs(wrong[q]);
+        moved = fmax(moved, fabs(b->v[0][k]));
+    }
+    near_below(worst, 1e-9);
+    near_inside(moved, 1e-5, 1e3); /* something has happened */
+    near_below(plain.momentum, 1e-12);
+    near_relative(plain.errors[FIELD_DENSITY].l1, fast.errors[FIELD_DENSITY].l1, 1e-8);
+    run_free(&fast);
+    run_free(&plain);
+    free(settings);
+}
+
+static void test_plain_is_the_solver(void **state)
+{
+    (void)state;
+    compare_plain("sod", 2, (char *[]){"n=126", "t_end=0.15"});
+    compare_plain("sod_standard", 3, (char *[]){"n=100", "eta=2", "cfl=0.15"});
+    compare_plain("strong_shock", 3, (char *[]){"n=80", "t_end=0.006", "jitter=0.1"});
+    compare_plain("sound_wave", 3, (char *[]){"n=48", "background=1 0.7 1", "viscosity=none"});
+}
+
+static void test_plain_refuses_other_schemes(void **state)
+{
+    (void)state;
+    static char *const keys[] = {"n=60", "kernel=wendland_c2"};
+    struct run_settings *settings = calloc(1, sizeof *settings);
+    struct run_result result;
+    struct error error = {0};
+    assert_int_equal(run_prepare(settings, "sod", 2, keys, &error), 0);
+    settings->threads = 1;
+    settings->plain = true;
+    assert_int_equal(run_execute(settings, &result, &error), STATUS_BAD_INPUT);
+    assert_non_null(strstr(error.message, "cubic_spline"));
+    free(settings);
+}
+
+/* --- a small study: order and consistency of its points --------------------------------------- */
+
+static void test_study(void **state)
+{
+    (void)state;
+    static struct run_settings settings;
+    static const size_t ladder[] = {45, 90};
+    struct sweep sweep;
+    struct precision precision;
+    struct error error = {0};
+    const struct bench_rules brief = {.least_s = 1e-6, .most_s = 1, .samples = 2};
+    assert_int_equal(run_prepare(&settings, "sod", 1, (char *[]){"t_end=0.1"}, &error), 0);
+    settings.threads = 1;
+    assert_int_equal(sweep_parse(&sweep, "kernel=quadratic_spline,cubic_spline,eta=2,1.1", &error),
+                     0);
+    assert_int_equal(
+        precision_measure(&settings, &sweep, ladder, 2, &brief, NULL, NULL, &precision, &error), 0);
+    assert_int_equal(precision.scheme_count, 6);
+    /* eta = 1.1 is below the existence limit of either kernel: excluded */
+    assert_int_equal(precision.point_count, 8);
+    near_relative(precision.mean_density, 0.5625, 1e-6);
+    size_t on_front = 0;
+    for (size_t i = 0; i < precision.point_count; i++) {
+        const struct precision_point *p = &precision.points[i];
+        assert_true(precision.schemes[p->scheme].first <= i);
+        if (i && p->scheme == p[-1].scheme) assert_true(p->n > p[-1].n);
+        if (i) assert_true(p->scheme >= p[-1].scheme);
+        near_inside(p->error, 1e-4, 0.1);
+        near_relative(p->relative, p->error / 0.5625, 1e-6);
+        on_front += p->on_front;
+    }
+    assert_true(on_front >= 1);
+    for (size_t i = 0; i < precision.scheme_count; i++) {
+        const struct precision_scheme *scheme = &precision.schemes[i];
+        assert_int_equal(scheme->count, scheme->excluded[0] ? 0 : 2);
+    }
+    /* both references compute the same */
+    const struct precision_point *seed = &precision.points[4], *plain = &precision.points[6];
+    for (size_t l = 0; l < 2; l++) near_relative(plain[l].error, seed[l].error, 1e-8);
+    near_relative(precision.schemes[5].gain, 1, 1e-12);
+    precision_free(&precision);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_samples_double_until_they_are_long_enough),
+        cmocka_unit_test(test_first_call_does_not_count),
+        cmocka_unit_test(test_long_work_is_not_repeated_for_ever),
+        cmocka_unit_test(test_samples_are_taken_in_turn),
+        cmocka_unit_test(test_breakdown_leaves_the_others),
+        cmocka_unit_test(test_front),
+        cmocka_unit_test(test_cost_of_an_error),
+        cmocka_unit_test(test_plain_is_the_solver),
+        cmocka_unit_test(test_plain_refuses_other_schemes),
+        cmocka_unit_test(test_study),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
