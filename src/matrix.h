@@ -5,8 +5,9 @@
 
 #include <stdbool.h>
 
-/* The inverse of a, by elimination with complete pivoting on rows and columns scaled to a largest
- * element of 1: axes of very different extent cost no accuracy. False, and inverse untouched, where
+/* The inverse of a: by cofactors where that is safe, else by elimination with complete pivoting on
+ * rows and columns scaled to a largest element of 1, so that axes of very different extent cost no
+ * accuracy. False, and inverse untouched, where
  * a is singular in double precision (scaled condition number beyond 1/(16 epsilon)) or not finite.
  */
 bool matrix_invert(int dim, const double *a, double *inverse);

@@ -215,15 +215,18 @@ ALWAYS_INLINE void position_vectors(int dim, size_t n, struct work *work)
     }
 }
 
-/* p = -V (x/q) dw/dq */
+/* p = -V (x/q) dw/dq; one division a pair, the slope replaces dw */
 ALWAYS_INLINE void gradient_vectors(int dim, size_t n, struct work *work)
 {
+    const double *restrict v = work->v, *restrict q = work->q;
+    double *restrict slope = work->dw;
+#pragma omp simd
+    for (size_t m = 0; m < n; m++) slope[m] = q[m] > 0 ? -v[m] * slope[m] / q[m] : 0;
     for (int a = 0; a < dim; a++) {
         double *restrict p = work->p[a];
-        const double *restrict x = work->x[a], *restrict v = work->v, *restrict dw = work->dw,
-                               *restrict q = work->q;
+        const double *restrict x = work->x[a];
 #pragma omp simd
-        for (size_t m = 0; m < n; m++) p[m] = q[m] > 0 ? -v[m] * dw[m] * (x[m] / q[m]) : 0;
+        for (size_t m = 0; m < n; m++) p[m] = slope[m] * x[m];
     }
 }
 
