@@ -45,14 +45,19 @@ static const struct family reference_family = {
     2}; /* in the order of enum kind */
 
 /* Keys of a case file beside settings_keys. */
-enum extra { EXTRA_title, EXTRA_dimension, EXTRA_reference, EXTRA_fields, EXTRA_ladder, EXTRAS };
+enum extra {
+    EXTRA_title,
+    EXTRA_dimension,
+    EXTRA_reference,
+    EXTRA_fields,
+    EXTRA_exact,
+    EXTRA_ladder,
+    EXTRAS
+};
 static const struct {
     const char *section, *name;
-} extras[EXTRAS] = {{"case", "title"},
-                    {"case", "dimension"},
-                    {"case", "reference"},
-                    {"measure", "fields"},
-                    {"converge", "n"}};
+} extras[EXTRAS] = {{"case", "title"},     {"case", "dimension"}, {"case", "reference"},
+                    {"measure", "fields"}, {"measure", "exact"},  {"converge", "n"}};
 static const char *const sections[] = {"case", "domain",  "initial", "scheme",
                                        "run",  "measure", "converge"};
 
@@ -95,13 +100,13 @@ static bool first_time(struct parser *parser, int *line, const char *key)
     return false;
 }
 
-static void set_fields(struct parser *parser, const char *value)
+static void set_fields(struct parser *parser, const char *name, const char *value, bool *fields)
 {
     char copy[LINE_LENGTH_MAX + 1], where[256], *rest = NULL;
     snprintf(copy, sizeof copy, "%s", value);
     snprintf(where, sizeof where, "%.200s:%d", parser->path, parser->line);
-    memset(parser->file->fields, 0, sizeof parser->file->fields);
-    if (!*value) fail_value(parser, "fields", value, "names of fields");
+    memset(fields, 0, FIELDS * sizeof *fields);
+    if (!*value) fail_value(parser, name, value, "names of fields");
     for (char *word = strtok_r(copy, " \t,", &rest); word; word = strtok_r(NULL, " \t,", &rest)) {
         const int field = family_index(&field_family, word);
         if (field < 0) {
@@ -109,7 +114,7 @@ static void set_fields(struct parser *parser, const char *value)
             parser->failed = true;
             return;
         }
-        parser->file->fields[field] = true;
+        fields[field] = true;
     }
 }
 
@@ -155,7 +160,10 @@ static void set_extra(struct parser *parser, enum extra extra, const char *value
         parser->failed = true;
         return;
     case EXTRA_fields:
-        set_fields(parser, value);
+        set_fields(parser, "fields", value, parser->file->fields);
+        return;
+    case EXTRA_exact:
+        set_fields(parser, "exact", value, parser->file->exact);
         return;
     case EXTRA_ladder:
         set_ladder(parser, value);

@@ -30,6 +30,7 @@ struct case_file {
     int dimension;
     struct settings settings; /* fallbacks and what the file says */
     bool fields[FIELDS];      /* those that a person wants to see */
+    bool exact[FIELDS];       /* those that every scheme gets exactly: an error of 0 is no wonder */
     size_t ladder[CASE_LADDER_MAX], ladder_count;
     struct case_gate gates[CASE_GATES_MAX];
     size_t gate_count;

@@ -121,22 +121,23 @@ enum status exact_check_window(const struct exact *exact, const double window[2]
                      window[1], floor(free * 1e6) / 1e6);
 }
 
-struct density_at {
+struct field_at {
     const struct exact *exact;
     double time;
+    enum field field;
 };
 
-static double exact_density(const void *context, double x)
+static double field_value(const void *context, double x)
 {
-    const struct density_at *at = context;
+    const struct field_at *at = context;
     double values[FIELDS];
     exact_sample(at->exact, x, at->time, values);
-    return values[FIELD_DENSITY];
+    return values[at->field];
 }
 
-void exact_density_means(const struct exact *exact, double t, const double window[2], size_t bins,
-                         double *means)
+void exact_means(const struct exact *exact, enum field field, double t, const double window[2],
+                 size_t bins, double *means)
 {
-    const struct density_at at = {exact, t};
-    norm_bin_means(exact_density, &at, window, bins, means);
+    const struct field_at at = {exact, t, field};
+    norm_bin_means(field_value, &at, window, bins, means);
 }

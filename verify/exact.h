@@ -25,9 +25,9 @@ enum status exact_prepare(struct exact *exact, const struct settings *settings,
  * pressure and internal energy 0, and the velocity that joins its edges, (x - x0)/t. */
 void exact_sample(const struct exact *exact, double x, double t, double values[FIELDS]);
 
-/* Mean exact density of each of bins equal parts of the window at time t. */
-void exact_density_means(const struct exact *exact, double t, const double window[2], size_t bins,
-                         double *means);
+/* Means of a field over each of bins equal parts of the window at t, to 1e-10. */
+void exact_means(const struct exact *exact, enum field field, double t, const double window[2],
+                 size_t bins, double *means);
 
 /* STATUS_BAD_INPUT where the window is not free at t: names where the mirrored tube's waves are and
  * the longest time that is allowed (or that a simple wave has broken by then). */

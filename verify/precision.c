@@ -98,8 +98,8 @@ static enum status find_mean_density(const struct run_settings *settings, double
     if (settings_resolve(&resolved, settings->file.dimension, &scheme, error) ||
         exact_prepare(&exact, &resolved, error))
         return error->status;
-    exact_density_means(&exact, settings_real(&resolved, SETTING_t_end),
-                        resolved.value[SETTING_window].real, NORM_BINS, means);
+    exact_means(&exact, FIELD_DENSITY, settings_real(&resolved, SETTING_t_end),
+                resolved.value[SETTING_window].real, NORM_BINS, means);
     *mean = gsl_stats_mean(means, 1, NORM_BINS);
     return STATUS_OK;
 }

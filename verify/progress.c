@@ -21,19 +21,43 @@ void progress_begin(struct progress *progress, const char *what, const struct op
     progress->terminal = isatty(STDERR_FILENO);
 }
 
-void progress_update(struct progress *progress, double done, double total)
+/* Is it time to say something? */
+static int due(struct progress *progress, double time)
 {
-    if (progress->silent) return;
-    const double time = now(), passed = time - progress->began;
     const double wait = progress->spoke > 0  ? progress->spoke
                         : progress->terminal ? progress->began + patience - interval_terminal
                                              : progress->began;
-    if (time - wait < (progress->terminal ? interval_terminal : interval_log)) return;
+    if (progress->silent || time - wait < (progress->terminal ? interval_terminal : interval_log))
+        return 0;
     progress->spoke = time;
-    const double left = done > 0 ? passed * (total - done) / done : 0;
-    fprintf(stderr, "%s%s: %.3g of %.3g (%.0f %%), %.0f s, %.0f s left%s",
-            progress->terminal ? "\r" : "", progress->what, done, total, 100 * done / total, passed,
-            left, progress->terminal ? "\033[K" : "\n");
+    return 1;
+}
+
+static void say(const struct progress *progress, double time, const char *count, double share)
+{
+    const double passed = time - progress->began;
+    char left[40] = "";
+    if (share > 0) snprintf(left, sizeof left, ", %.0f s left", passed * (1 - share) / share);
+    fprintf(stderr, "%s%s: %s, %.0f s%s%s", progress->terminal ? "\r" : "", progress->what, count,
+            passed, left, progress->terminal ? "\033[K" : "\n");
+}
+
+void progress_update(struct progress *progress, double done, double total)
+{
+    const double time = now();
+    char count[80];
+    if (!due(progress, time)) return;
+    snprintf(count, sizeof count, "%.3g of %.3g (%.0f %%)", done, total, 100 * done / total);
+    say(progress, time, count, done / total);
+}
+
+void progress_share(struct progress *progress, size_t done, size_t total, double share)
+{
+    const double time = now();
+    char count[80];
+    if (!due(progress, time)) return;
+    snprintf(count, sizeof count, "%zu of %zu (%.0f %%)", done, total, 100 * share);
+    say(progress, time, count, share);
 }
 
 void progress_end(struct progress *progress)

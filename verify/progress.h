@@ -4,6 +4,8 @@
 #ifndef SPHPROOF_PROGRESS_H
 #define SPHPROOF_PROGRESS_H
 
+#include <stddef.h>
+
 #include "command.h"
 
 struct progress {
@@ -15,6 +17,8 @@ struct progress {
 void progress_begin(struct progress *progress, const char *what, const struct options *options);
 /* done of total, in any unit; cheap enough to be called every step. */
 void progress_update(struct progress *progress, double done, double total);
+/* done of total pieces of unequal size: share of the work, 0..1, tells the time that is left. */
+void progress_share(struct progress *progress, size_t done, size_t total, double share);
 /* Clears the line. */
 void progress_end(struct progress *progress);
 

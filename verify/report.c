@@ -2,24 +2,21 @@
 #include "report.h"
 
 #include <gsl/gsl_errno.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
-#include "certificate.h"
 #include "check.h"
-#include "converge.h"
-#include "league.h"
+#include "pool.h"
+#include "report_piece.h"
 #include "result.h"
-#include "run.h"
+#include "study.h"
 #include "suite.h"
-#include "suite_output.h"
 #include "verdict.h"
 
-/* compared: the schemes below get the case's gates too, with twice its bound of the error; not
- * where one of them is known to have no order yet at these resolutions. */
+/* compared: the schemes below get the case's gates too, with a wider bound of the error; not where
+ * one of them is known to have no order yet at these resolutions. */
 static const struct {
     const char *name;
     bool compared;
@@ -36,312 +33,196 @@ static const struct {
                  "energy=internal"},
     {"ia", "kernel=cubic_spline eta=2 gradient=ia integrator=modified_leapfrog energy=internal"},
 };
+/* Of the bound on the finest error, for schemes other than the default. */
+static const double compared_bound = 3;
 
 enum { CASES = sizeof cases / sizeof *cases, SCHEMES = sizeof schemes / sizeof *schemes };
-enum { KEYS_MAX = 16, EXACT_POINTS = 1001 };
+enum { KEYS_MAX = 16, PIECES_MAX = 256, GROUPS_MAX = 64, COMMAND_TEXT = 1024 };
 
-struct task {
-    enum { TASK_RUN, TASK_STUDY, TASK_CHECKS, TASK_KERNEL, TASK_LEAGUE } kind;
-    const char *where; /* case or kernel */
-    int scheme, dim;
-    bool nightly, compared;
-    double weight; /* about how long it takes, in any unit */
-    json_t *document;
-    struct error error;
+struct report {
+    bool nightly;
+    struct pool pool;
+    struct study studies[CASES][SCHEMES];
+    struct report_piece pieces[PIECES_MAX];
+    size_t piece_count;
+    char more[CASES][256]; /* what the command line of a study has beside its keys */
 };
 
-/* ---- one task each ---- */
+/* ---- what is to be computed ---- */
 
-/* The case with the scheme's keys; text holds the words that arguments point to. */
-static enum status prepare(const struct task *task, struct run_settings *settings,
-                           struct error *error)
+/* The case with the scheme's keys. */
+static enum status prepare(int c, int s, struct run_settings *settings, struct error *error)
 {
     char text[512], *arguments[KEYS_MAX], *rest = text;
     int n = 0;
-    snprintf(text, sizeof text, "%s", schemes[task->scheme].keys);
+    snprintf(text, sizeof text, "%s", schemes[s].keys);
     for (char *word; n < KEYS_MAX && (word = strtok_r(rest, " ", &rest));) arguments[n++] = word;
-    enum status status = run_prepare(settings, task->where, n, arguments, error);
-    settings->threads = 1;
-    return status;
+    return run_prepare(settings, cases[c].name, n, arguments, error);
 }
 
-static void describe(const struct task *task, const char *command, const char *more,
-                     json_t *document)
+static enum status add_study(struct report *report, int c, int s, struct error *error)
 {
-    char reproduce[1024];
-    const char *keys = schemes[task->scheme].keys;
-    snprintf(reproduce, sizeof reproduce, "sphproof %s %s%s%s%s", command, task->where, more,
+    struct study *study = &report->studies[c][s];
+    struct case_file *file = &study->settings.file;
+    if (prepare(c, s, &study->settings, error) || sweep_parse(&study->sweep, NULL, error))
+        return error->status;
+    if (s && !cases[c].compared) file->gate_count = 0;
+    for (size_t i = 0; i < file->gate_count && s; i++) file->gates[i].gate.bound *= compared_bound;
+    memcpy(study->ladder, file->ladder, sizeof study->ladder);
+    study->level_count = file->ladder_count;
+    study->seeds = 1;
+    if (report->nightly && study->level_count < CASE_LADDER_MAX) { /* one level more */
+        char *more = report->more[c];
+        study->ladder[study->level_count] = 2 * study->ladder[study->level_count - 1];
+        study->level_count++;
+        int used = snprintf(more, sizeof report->more[c], " --n ");
+        for (size_t i = 0; i < study->level_count && used < (int)sizeof report->more[c]; i++)
+            used += snprintf(more + used, sizeof report->more[c] - (size_t)used, "%s%zu",
+                             i ? "," : "", study->ladder[i]);
+    }
+    return study_plan(study, &report->pool, error);
+}
+
+static enum status add_piece(struct report *report, struct report_piece piece, struct error *error)
+{
+    if (report->piece_count == PIECES_MAX)
+        return error_set(error, STATUS_ENVIRONMENT, "a report of more than %d pieces", PIECES_MAX);
+    struct report_piece *kept = &report->pieces[report->piece_count++];
+    piece.slow = report->nightly;
+    *kept = piece;
+    return report_piece_add(&report->pool, kept, error);
+}
+
+static enum status add_all(struct report *report, struct error *error)
+{
+    const char *groups[GROUPS_MAX];
+    const size_t group_count = suite_groups(check_registry, check_registry_count, groups);
+    for (int c = 0; c < CASES; c++)
+        for (int s = 0; s < SCHEMES; s++) {
+            struct report_piece run = {.kind = REPORT_RUN, .where = cases[c].name};
+            if (add_study(report, c, s, error) || prepare(c, s, &run.settings, error) ||
+                add_piece(report, run, error))
+                return error->status;
+        }
+    for (size_t g = 0; g < group_count; g++)
+        if (add_piece(report, (struct report_piece){.kind = REPORT_CHECKS, .where = groups[g]},
+                      error))
+            return error->status;
+    if (add_piece(report, (struct report_piece){.kind = REPORT_LEAGUE, .where = "operators"},
+                  error))
+        return error->status;
+    for (size_t k = 0; k < kernel_family.n; k++)
+        for (int dim = 1; dim <= 3; dim++) {
+            const char *name = kernel_family.members[k]->name;
+            if (add_piece(report,
+                          (struct report_piece){.kind = REPORT_KERNEL, .where = name, .dim = dim},
+                          error))
+                return error->status;
+        }
+    return STATUS_OK;
+}
+
+/* ---- what has come out ---- */
+
+static void describe(const char *command, int c, int s, const char *more, json_t *document)
+{
+    char reproduce[COMMAND_TEXT];
+    const char *keys = schemes[s].keys;
+    snprintf(reproduce, sizeof reproduce, "sphproof %s %s%s%s%s", command, cases[c].name, more,
              *keys ? " " : "", keys);
-    json_object_set_new(document, "label", json_string(schemes[task->scheme].label));
+    json_object_set_new(document, "label", json_string(schemes[s].label));
     json_object_set_new(document, "reproduce", json_string(reproduce));
 }
 
-static const char *const profile_fields[] = {"density", "velocity", "pressure"};
-static const enum field profile_field[] = {FIELD_DENSITY, FIELD_VELOCITY, FIELD_PRESSURE};
-enum { PROFILE_FIELDS = sizeof profile_field / sizeof *profile_field };
-
-static void append(json_t *object, const char *name, double value)
+static json_t *study_document(const struct report *report, int c, int s)
 {
-    json_t *array = json_object_get(object, name);
-    if (!array) {
-        array = json_array();
-        json_object_set_new(object, name, array);
-    }
-    json_array_append_new(array, result_number(value));
+    const struct study *study = &report->studies[c][s];
+    json_t *document = result_new("converge");
+    json_object_set_new(document, "case", json_string(study->settings.file.name));
+    json_object_set_new(document, "title", json_string(study->settings.file.title));
+    json_object_set_new(document, "status",
+                        json_string(study->status == STATUS_BROKE_DOWN ? "broke_down"
+                                    : study->status                    ? "fail"
+                                                                       : "pass"));
+    study_add_json(study, document);
+    describe("converge", c, s, report->more[c], document);
+    return document;
 }
 
-/* The exact curve; points on a straight line between their neighbours are left out. */
-static json_t *exact_profile(const struct run_result *result)
+/* Two schemes of a case with the same errors to the last bit: one setting was not read. */
+static void suspect_same(const struct report *report, int c, json_t *documents[SCHEMES])
 {
-    json_t *profile = json_object();
-    double lo = result->window[0], step = (result->window[1] - lo) / (EXACT_POINTS - 1);
-    double kept[FIELDS], now[FIELDS], next[FIELDS];
-    exact_sample(&result->exact, lo, result->time, now);
-    memcpy(kept, now, sizeof kept);
-    for (int i = 0; i < EXACT_POINTS; i++) {
-        exact_sample(&result->exact, lo + (i + 1) * step, result->time, next);
-        bool bend = i == 0 || i == EXACT_POINTS - 1;
-        for (int f = 0; f < FIELDS; f++)
-            bend = bend ||
-                   !(fabs(next[f] - 2 * now[f] + kept[f]) <= 1e-9 * (fabs(now[f]) + fabs(next[f])));
-        if (bend) {
-            append(profile, "x", lo + i * step);
-            for (int f = 0; f < PROFILE_FIELDS; f++)
-                append(profile, profile_fields[f], now[profile_field[f]]);
+    for (int s = 1; s < SCHEMES; s++) {
+        const struct study_result *a = &report->studies[c][s - 1].results[0],
+                                  *b = &report->studies[c][s].results[0];
+        char why[SUSPICION_TEXT];
+        if (study_suspect_same("the scheme", a, b, why))
+            json_object_set_new(documents[s], "suspicion", json_string(why));
+    }
+}
+
+/* A piece whose process crashed. */
+static void add_trouble(json_t *results, const struct report_piece *piece,
+                        const struct pool_job *job)
+{
+    json_t *list = json_object_get(results, "trouble");
+    if (!list) json_object_set_new(results, "trouble", list = json_array());
+    json_array_append_new(
+        list, json_pack("{s:s, s:s}", "name", piece->where, "message", job->error.message));
+}
+
+/* Runs are listed by case and scheme, as they were added. */
+static void add_documents(struct report *report, json_t *results)
+{
+    json_t *runs = json_array(), *kernels = json_array(), *verify = NULL;
+    size_t run = 0;
+    for (size_t k = 0; k < report->piece_count; k++) {
+        const struct report_piece *piece = &report->pieces[k];
+        const struct pool_job *job = &report->pool.jobs[piece->job];
+        const int c = (int)(run / SCHEMES), s = (int)(run % SCHEMES);
+        run += piece->kind == REPORT_RUN;
+        if (!job->document) {
+            add_trouble(results, piece, job);
+            continue;
         }
-        memcpy(kept, now, sizeof kept);
-        memcpy(now, next, sizeof now);
-    }
-    return profile;
-}
-
-static json_t *profile(const struct run_result *result)
-{
-    const struct snapshot *s = &result->snapshot;
-    json_t *particles = json_object();
-    for (size_t i = 0; i < s->n; i++) {
-        const double x = s->x[0][i];
-        if (!(x >= result->window[0] && x <= result->window[1])) continue;
-        const double value[PROFILE_FIELDS] = {s->rho[i], s->v[0][i], s->P[i]};
-        double exact[FIELDS];
-        exact_sample(&result->exact, x, result->time, exact);
-        append(particles, "x", x);
-        for (int f = 0; f < PROFILE_FIELDS; f++) {
-            char name[64];
-            snprintf(name, sizeof name, "exact_%s", profile_fields[f]);
-            append(particles, profile_fields[f], value[f]);
-            append(particles, name, exact[profile_field[f]]);
-        }
-    }
-    json_object_set_new(particles, "exact", exact_profile(result));
-    return particles;
-}
-
-static enum status compute_run(struct task *task)
-{
-    struct run_settings settings;
-    struct run_result result;
-    if (prepare(task, &settings, &task->error)) return task->error.status;
-    enum status status = run_execute(&settings, &result, &task->error);
-    if (status != STATUS_OK && status != STATUS_BROKE_DOWN) return status;
-    task->document = result_new("run");
-    run_add_json(&settings, &result, task->document);
-    describe(task, "run", "", task->document);
-    if (status == STATUS_OK) json_object_set_new(task->document, "profile", profile(&result));
-    run_free(&result);
-    return STATUS_OK;
-}
-
-static enum status compute_study(struct task *task)
-{
-    struct run_settings settings;
-    if (prepare(task, &settings, &task->error)) return task->error.status;
-    if (task->scheme && !task->compared) settings.file.gate_count = 0;
-    for (size_t i = 0; i < settings.file.gate_count && task->scheme; i++)
-        settings.file.gates[i].gate.bound *= 3;
-    size_t *ladder = settings.file.ladder, count = settings.file.ladder_count;
-    char more[256] = "";
-    if (task->nightly && count && count < CASE_LADDER_MAX) { /* one level more */
-        ladder[count] = 2 * ladder[count - 1];
-        count++;
-        int used = snprintf(more, sizeof more, " --n ");
-        for (size_t i = 0; i < count && used < (int)sizeof more; i++)
-            used +=
-                snprintf(more + used, sizeof more - (size_t)used, "%s%zu", i ? "," : "", ladder[i]);
-    }
-    struct converge_result *result = calloc(1, sizeof *result);
-    if (!result) return error_set(&task->error, STATUS_ENVIRONMENT, "no memory for a study");
-    enum status status =
-        converge_execute(&settings, ladder, count, result, NULL, NULL, &task->error);
-    if (status == STATUS_OK || status == STATUS_BROKE_DOWN) {
-        task->document = result_new("converge");
-        json_object_set_new(task->document, "case", json_string(settings.file.name));
-        json_object_set_new(task->document, "title", json_string(settings.file.title));
-        json_object_set_new(task->document, "status",
-                            json_string(status           ? "broke_down"
-                                        : result->passed ? "pass"
-                                                         : "fail"));
-        if (status)
-            json_object_set_new(task->document, "message", json_string(task->error.message));
-        converge_add_json(result, NULL, task->document);
-        describe(task, "converge", more, task->document);
-        status = STATUS_OK;
-    }
-    free(result);
-    return status;
-}
-
-static enum status compute_checks(struct task *task)
-{
-    struct suite suite;
-    const struct suite_choice choice = {.slow = task->nightly, .mutants = true};
-    enum status status =
-        suite_run(&suite, check_registry, check_registry_count, &choice, &task->error);
-    if (status != STATUS_OK && status != STATUS_CHECK_FAILED) return status;
-    task->document = result_new("verify");
-    suite_output_json(&suite, task->document);
-    suite_free(&suite);
-    return STATUS_OK;
-}
-
-static enum status compute_kernel(struct task *task)
-{
-    struct kernel kernel;
-    struct certificate *certificate = calloc(1, sizeof *certificate);
-    if (!certificate) return error_set(&task->error, STATUS_ENVIRONMENT, "no memory for a kernel");
-    enum status status = kernel_select(&kernel, task->where, 5, &task->error);
-    if (!status) status = certificate_measure(certificate, &kernel, task->dim, &task->error);
-    if (!status) {
-        char reproduce[128];
-        snprintf(reproduce, sizeof reproduce, "sphproof kernel %s --dim %d", task->where,
-                 task->dim);
-        task->document = result_new("kernel");
-        json_object_set_new(task->document, "kernel", json_string(task->where));
-        json_object_set_new(task->document, "dim", json_integer(task->dim));
-        json_object_set_new(task->document, "h", result_number(1));
-        json_object_set_new(task->document, "values", json_array());
-        certificate_json(certificate, 1, task->document);
-        json_object_set_new(task->document, "reproduce", json_string(reproduce));
-        certificate_free(certificate);
-    }
-    free(certificate);
-    return status;
-}
-
-static enum status compute_league(struct task *task)
-{
-    struct league_row rows[LEAGUE_ROWS_MAX];
-    size_t count;
-    const enum status status = league_measure(rows, &count, &task->error);
-    if (!status) task->document = league_json(rows, count);
-    return status;
-}
-
-static enum status compute(struct task *task)
-{
-    switch (task->kind) {
-    case TASK_RUN:
-        return compute_run(task);
-    case TASK_STUDY:
-        return compute_study(task);
-    case TASK_CHECKS:
-        return compute_checks(task);
-    case TASK_KERNEL:
-        return compute_kernel(task);
-    case TASK_LEAGUE:
-        return compute_league(task);
-    }
-    return STATUS_OK;
-}
-
-/* ---- all of them ---- */
-
-/* Longest first, so that side by side they end together; the results keep the order of the list. */
-static size_t list_tasks(struct task *tasks, bool nightly)
-{
-    size_t n = 0;
-    if (tasks) tasks[n] = (struct task){.kind = TASK_CHECKS, .where = "checks", .weight = 20};
-    n++;
-    if (tasks) tasks[n] = (struct task){.kind = TASK_LEAGUE, .where = "operators", .weight = 2};
-    n++;
-    for (int c = 0; c < CASES; c++) {
-        for (int s = 0; s < SCHEMES; s++) {
-            if (tasks)
-                tasks[n] = (struct task){.kind = TASK_STUDY,
-                                         .where = cases[c].name,
-                                         .scheme = s,
-                                         .compared = cases[c].compared,
-                                         .weight = 1};
-            n++;
-        }
-    }
-    for (int c = 0; c < CASES; c++) {
-        for (int s = 0; s < SCHEMES; s++) {
-            if (tasks)
-                tasks[n] = (struct task){
-                    .kind = TASK_RUN, .where = cases[c].name, .scheme = s, .weight = 0.1};
-            n++;
-        }
-    }
-    for (size_t k = 0; k < kernel_family.n; k++) {
-        for (int dim = 1; dim <= 3; dim++) {
-            if (tasks)
-                tasks[n] = (struct task){.kind = TASK_KERNEL,
-                                         .where = kernel_family.members[k]->name,
-                                         .dim = dim,
-                                         .weight = 0.3};
-            n++;
-        }
-    }
-    for (size_t k = 0; tasks && k < n; k++) tasks[k].nightly = nightly;
-    return n;
-}
-
-static void run_tasks(struct task *tasks, size_t n, const struct report_settings *settings)
-{
-    double done = 0, total = 0;
-    for (size_t k = 0; k < n; k++) total += tasks[k].weight;
-#pragma omp parallel for schedule(dynamic, 1) num_threads(settings->jobs) if (settings->jobs > 1)
-    for (size_t k = 0; k < n; k++) {
-        tasks[k].error.status = compute(&tasks[k]);
-#pragma omp critical(report_progress)
-        {
-            done += tasks[k].weight;
-            if (settings->progress)
-                settings->progress(settings->context, tasks[k].where, done, total);
-        }
-    }
-}
-
-static json_t *collect(struct task *tasks, size_t n, enum report_mode mode, double seconds)
-{
-    json_t *results = result_new("report"), *runs = json_array(), *studies = json_array(),
-           *kernels = json_array();
-    json_object_set_new(results, "mode", json_string(mode == REPORT_QUICK ? "quick" : "nightly"));
-    json_object_set_new(results, "seconds", result_number(seconds));
-    for (size_t k = 0; k < n; k++) {
-        json_t *document = tasks[k].document;
-        switch (tasks[k].kind) {
-        case TASK_RUN:
-            json_array_append(runs, document);
+        switch (piece->kind) {
+        case REPORT_RUN:
+            describe("run", c, s, "", job->document);
+            json_array_append(runs, job->document);
             break;
-        case TASK_STUDY:
-            json_array_append(studies, document);
+        case REPORT_KERNEL:
+            json_array_append(kernels, job->document);
             break;
-        case TASK_KERNEL:
-            json_array_append(kernels, document);
+        case REPORT_LEAGUE:
+            json_object_set(results, "gradients", job->document);
             break;
-        case TASK_CHECKS:
-            json_object_set(results, "verify", document);
-            break;
-        case TASK_LEAGUE:
-            json_object_set(results, "gradients", document);
+        case REPORT_CHECKS:
+            if (!verify) json_object_set_new(results, "verify", verify = result_new("verify"));
+            report_piece_join(verify, job->document);
             break;
         }
     }
     json_object_set_new(results, "runs", runs);
-    json_object_set_new(results, "studies", studies);
     json_object_set_new(results, "kernels", kernels);
+}
+
+static json_t *collect(struct report *report, double seconds)
+{
+    json_t *results = result_new("report"), *studies = json_array();
+    json_object_set_new(results, "mode", json_string(report->nightly ? "nightly" : "quick"));
+    json_object_set_new(results, "seconds", result_number(seconds));
+    json_object_set_new(results, "computations", json_integer((json_int_t)report->pool.count));
+    json_object_set_new(results, "found", json_integer((json_int_t)report->pool.found));
+    for (int c = 0; c < CASES; c++) {
+        json_t *documents[SCHEMES];
+        for (int s = 0; s < SCHEMES; s++) {
+            documents[s] = study_document(report, c, s);
+            json_array_append_new(studies, documents[s]);
+        }
+        suspect_same(report, c, documents);
+    }
+    json_object_set_new(results, "studies", studies);
+    add_documents(report, results);
     json_object_set_new(results, "verdict", verdict_make(results));
     return results;
 }
@@ -353,24 +234,43 @@ static double now(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
+/* What is no result: no memory, no process. A crash is one, see add_trouble. */
+static enum status sound(const struct pool *pool, struct error *error)
+{
+    for (size_t k = 0; k < pool->count; k++) {
+        const struct error *said = &pool->jobs[k].error;
+        if (said->status == STATUS_ENVIRONMENT || said->status == STATUS_BAD_INPUT)
+            return error_set(error, said->status, "%s: %.400s", pool->jobs[k].name, said->message);
+    }
+    return STATUS_OK;
+}
+
 enum status report_compute(const struct report_settings *settings, json_t **results,
                            struct error *error)
 {
     *results = NULL;
     const double began = now();
-    size_t n = list_tasks(NULL, false);
-    struct task *tasks = calloc(n, sizeof *tasks);
-    if (!tasks) return error_set(error, STATUS_ENVIRONMENT, "no memory for a report");
-    list_tasks(tasks, settings->mode == REPORT_NIGHTLY);
+    const struct pool_settings how = {.jobs = settings->jobs,
+                                      .cache = settings->cache,
+                                      .progress = settings->progress,
+                                      .progress_context = settings->context};
+    struct report *report = calloc(1, sizeof *report);
+    if (!report) return error_set(error, STATUS_ENVIRONMENT, "no memory for a report");
+    report->nightly = settings->mode == REPORT_NIGHTLY;
     gsl_set_error_handler_off();
-    json_object_seed(0); /* before threads do it at once */
-    run_tasks(tasks, n, settings);
-    enum status status = STATUS_OK;
-    for (size_t k = 0; k < n && !status; k++)
-        if (tasks[k].error.status)
-            status = error_set(error, tasks[k].error.status, "%s", tasks[k].error.message);
-    if (!status) *results = collect(tasks, n, settings->mode, now() - began);
-    for (size_t k = 0; k < n; k++) json_decref(tasks[k].document);
-    free(tasks);
+    enum status status = add_all(report, error);
+    if (!status) status = pool_run(&report->pool, &how, error);
+    if (!status) status = sound(&report->pool, error);
+    for (int k = 0; k < CASES * SCHEMES && !status; k++)
+        status = study_judge(&report->studies[k / SCHEMES][k % SCHEMES], &report->pool, error);
+    if (!status) {
+        *results = collect(report, now() - began);
+        if (report->pool.note[0])
+            json_object_set_new(*results, "note", json_string(report->pool.note));
+    }
+    for (int k = 0; k < CASES * SCHEMES; k++)
+        study_free(&report->studies[k / SCHEMES][k % SCHEMES]);
+    pool_free(&report->pool);
+    free(report);
     return status;
 }

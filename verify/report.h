@@ -7,14 +7,16 @@
 #include <jansson.h>
 #include <stdbool.h>
 
+#include "pool.h"
 #include "status.h"
 
 enum report_mode { REPORT_QUICK, REPORT_NIGHTLY };
 
 struct report_settings {
     enum report_mode mode;
-    int jobs; /* >= 1: tasks side by side */
-    void (*progress)(void *context, const char *what, double done, double total);
+    int jobs;                  /* >= 1: tasks side by side */
+    const struct cache *cache; /* what is computed is kept there and not repeated; NULL: none */
+    pool_progress *progress;   /* may be NULL */
     void *context;
 };
 

@@ -7,6 +7,7 @@
 #include <string.h>
 #include <sys/resource.h>
 
+#include "functional.h"
 #include "initial.h"
 #include "plain.h"
 
@@ -102,6 +103,7 @@ static enum status keep_snapshot(struct run_result *result, const struct snapsho
         *to[i] = copy;
     }
     result->snapshot.n = seen.n;
+    result->spacing = (result->exact.hi - result->exact.lo) / (double)seen.n;
     result->snapshot.time = result->time = seen.time;
     return STATUS_OK;
 }
@@ -132,65 +134,13 @@ static enum status measure_errors(struct run_result *result, struct error *error
     }
     suspicion_swapped(FIELDS, (const char *[]){"density", "velocity", "pressure", "energy"},
                       end - first, volume, inside[0], inside[1], result->suspicion);
+    const double *const fields[] = {exact, exact + s->n, exact + 2 * s->n, exact + 3 * s->n};
+    budget_measure(&result->exact, result->window, s, fields, &result->budget);
     free(exact);
-    exact_density_means(&result->exact, result->time, result->window, NORM_BINS, means);
+    exact_means(&result->exact, FIELD_DENSITY, result->time, result->window, NORM_BINS, means);
     result->binned_density_l1 =
         norm_binned_l1(s->n, s->x[0], result->window, s->volume, s->rho, NORM_BINS, means);
     return STATUS_OK;
-}
-
-/* Mean of a field over the window, weighted with volume. */
-static double window_mean(const struct run_result *result, const double *field)
-{
-    const struct snapshot *s = &result->snapshot;
-    double sum = 0, volume = 0;
-    for (size_t i = 0; i < s->n; i++)
-        if (s->x[0][i] >= result->window[0] && s->x[0][i] <= result->window[1]) {
-            sum += s->volume[i] * field[i];
-            volume += s->volume[i];
-        }
-    return sum / volume;
-}
-
-/* Where the pressure, seen from the right, first passes the mean of both sides of the shock. */
-static double shock_position(const struct run_result *result)
-{
-    const struct snapshot *s = &result->snapshot;
-    const struct riemann_solution *tube = &result->exact.tube;
-    const double level = 0.5 * (tube->p_star + tube->right.P);
-    for (size_t i = s->n; i-- > 1;) {
-        const double x0 = s->x[0][i - 1], x1 = s->x[0][i], p0 = s->P[i - 1], p1 = s->P[i];
-        if (x1 <= result->window[1] && p0 >= level && p1 < level)
-            return x0 + (x1 - x0) * (p0 - level) / (p0 - p1);
-    }
-    return NAN;
-}
-
-/* Amplitude of the density's first Fourier mode, relative to the background. */
-static double mode_amplitude(const struct run_result *result)
-{
-    const struct snapshot *s = &result->snapshot;
-    const struct simple_wave *wave = &result->exact.wave;
-    double a = 0, b = 0, volume = 0;
-    for (size_t i = 0; i < s->n; i++) {
-        const double phase = 2 * M_PI * (s->x[0][i] - result->exact.lo) / wave->length;
-        a += s->volume[i] * (s->rho[i] - wave->rho0) * cos(phase);
-        b += s->volume[i] * (s->rho[i] - wave->rho0) * sin(phase);
-        volume += s->volume[i];
-    }
-    return 2 * hypot(a, b) / volume / wave->rho0;
-}
-
-static void measure_functionals(struct run_result *result)
-{
-    struct run_functional *f = result->functionals;
-    *f++ = (struct run_functional){"mean_internal_energy", window_mean(result, result->snapshot.u)};
-    *f++ = (struct run_functional){"mean_pressure", window_mean(result, result->snapshot.P)};
-    if (result->exact.kind == KIND_SOUND_WAVE)
-        *f++ = (struct run_functional){"mode_amplitude", mode_amplitude(result)};
-    else if (result->exact.tube.right_wave == RIEMANN_SHOCK)
-        *f++ = (struct run_functional){"shock_position", shock_position(result)};
-    result->functional_count = (size_t)(f - result->functionals);
 }
 
 /* Sums at the end against t = 0; momentum in units of sum |p|, where that vanishes of mass times
@@ -274,7 +224,7 @@ enum status run_execute(const struct run_settings *settings, struct run_result *
         run_free(result);
         return status;
     }
-    measure_functionals(result);
+    functional_measure(result);
     result->peak_rss = peak_rss();
     if (result->status == STATUS_BROKE_DOWN)
         error_set(error, STATUS_BROKE_DOWN, "%s", result->message);

@@ -6,6 +6,7 @@
 
 #include <jansson.h>
 
+#include "budget.h"
 #include "cases.h"
 #include "exact.h"
 #include "norm.h"
@@ -14,6 +15,17 @@
 #include "suspicion.h"
 
 enum { RUN_PLAN_MAX = 32, RUN_FUNCTIONALS_MAX = 4 };
+
+/* Every functional that a run may have. */
+#define RUN_FUNCTIONAL_LIST(F)                                                                     \
+    F(mean_internal_energy) F(mean_pressure) F(mode_amplitude) F(shock_position)
+enum run_functional_name {
+#define F(name) RUN_##name,
+    RUN_FUNCTIONAL_LIST(F)
+#undef F
+        RUN_FUNCTIONALS
+};
+extern const char *const run_functional_names[RUN_FUNCTIONALS];
 
 struct run_settings {
     struct case_file file;
@@ -28,7 +40,7 @@ struct run_settings {
 /* A scalar of the final state, for extrapolation where no exact value is at hand. */
 struct run_functional {
     const char *name;
-    double value;
+    double value, exact;
 };
 
 struct run_result {
@@ -41,6 +53,8 @@ struct run_result {
     double time, window[2];
     struct norms errors[FIELDS]; /* at time; NaN where no particle is in the window */
     double binned_density_l1;
+    double spacing, h;             /* box/n; mean smoothing length in the window, by volume */
+    struct budget budget;          /* L1 by regions of a Riemann problem */
     double mass, momentum, energy; /* conservation: relative, >= 0; see CONSERVATION in run.c */
     struct simulation_cost cost;
     double peak_rss; /* bytes, of the process so far */

@@ -72,7 +72,7 @@ void run_add_json(const struct run_settings *settings, const struct run_result *
                   json_t *document)
 {
     const bool broke_down = result->status == STATUS_BROKE_DOWN;
-    json_t *functionals = json_object();
+    json_t *functionals = json_object(), *exact = json_object();
     run_add_plan(settings, result, document);
     set_number(document, "time", result->time);
     json_object_set_new(document, "status", json_string(broke_down ? "broke_down" : "ok"));
@@ -80,9 +80,16 @@ void run_add_json(const struct run_settings *settings, const struct run_result *
     json_object_set_new(document, "errors", run_errors_json(result));
     json_object_set_new(document, "conservation", conservation_json(result));
     json_object_set_new(document, "cost", cost_json(result));
-    for (size_t i = 0; i < result->functional_count; i++)
+    for (size_t i = 0; i < result->functional_count; i++) {
         set_number(functionals, result->functionals[i].name, result->functionals[i].value);
+        set_number(exact, result->functionals[i].name, result->functionals[i].exact);
+    }
     json_object_set_new(document, "functionals", functionals);
+    json_object_set_new(document, "functionals_exact", exact);
+    set_number(document, "spacing", result->spacing);
+    set_number(document, "h", result->h);
+    json_object_set_new(document, "budget", budget_json(&result->budget));
+    json_object_set_new(document, "suspicion", json_string(result->suspicion));
 }
 
 enum status run_write_snapshot(const struct run_result *result, const char *path,

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * sphproof converge: a ladder of resolutions, orders with their uncertainty, gates. */
-#include "converge.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -10,15 +9,20 @@
 #include "command.h"
 #include "progress.h"
 #include "result.h"
-#include "sweep.h"
+#include "study.h"
 #include "table.h"
+#include "text.h"
 
-static void show_progress(void *context, double done, double total)
+enum { SEEDS_DEFAULT = 3, JOBS_MAX = 1024 };
+
+static void show_progress(void *context, const char *what, size_t done, size_t total, double share)
 {
-    progress_update(context, done, total);
+    struct progress *progress = context;
+    progress->what = what;
+    progress_share(progress, done, total, share);
 }
 
-static void print_ladder(const struct case_file *file, const struct converge_result *result,
+static void print_ladder(const struct case_file *file, const struct study_result *result,
                          const struct table_style *style)
 {
     printf("%s%10s %12s", style->bold, "n", "h");
@@ -26,7 +30,7 @@ static void print_ladder(const struct case_file *file, const struct converge_res
         if (file->fields[field]) printf(" %15s", field_family.members[field]->name);
     printf(" %10s%s\n", "CPU s", style->end);
     for (size_t i = 0; i < result->level_count; i++) {
-        const struct converge_level *level = &result->levels[i];
+        const struct study_level *level = &result->levels[i];
         printf("%10zu %12.4e", level->n, level->h);
         for (int field = 0; field < FIELDS; field++)
             if (file->fields[field]) printf(" %15.4e", level->errors[field][NORM_L1]);
@@ -34,14 +38,14 @@ static void print_ladder(const struct case_file *file, const struct converge_res
     }
 }
 
-static void print_orders(const struct case_file *file, const struct converge_result *result,
+static void print_orders(const struct case_file *file, const struct study_result *result,
                          const struct table_style *style)
 {
     printf("%s%-22s %7s %18s  %-14s %s%s\n", style->bold, "order of", "order", "95 % interval",
            "class", "between levels", style->end);
     for (int field = 0; field < FIELDS; field++)
         for (int norm = 0; norm < NORMS; norm++) {
-            const struct converge_order *order = &result->orders[field][norm];
+            const struct study_order *order = &result->orders[field][norm];
             if (order->status == GATE_NONE && (norm != NORM_L1 || !file->fields[field])) continue;
             char name[40];
             snprintf(name, sizeof name, "%s_%s", field_family.members[field]->name,
@@ -59,7 +63,7 @@ static void print_orders(const struct case_file *file, const struct converge_res
         }
 }
 
-static void print_floor(const struct converge_result *result, const struct table_style *style)
+static void print_floor(const struct study_result *result, const struct table_style *style)
 {
     printf("lattice sums of %s at eta = %g: density %+.1e, gradient %+.1e (relative): %s\n",
            result->scheme.kernel.member.name, result->scheme.eta, result->floor_density,
@@ -76,23 +80,51 @@ static void print_floor(const struct converge_result *result, const struct table
     printf("\n");
 }
 
-static void print_functionals(const struct converge_result *result, const struct table_style *style)
+static void print_functionals(const struct study_result *result, const struct table_style *style)
 {
-    printf("%s%-22s %14s %14s %10s  %s%s\n", style->bold, "functional", "finest", "extrapolated",
-           "GCI", "order, class", style->end);
+    printf("%s%-22s %14s %14s %10s %14s  %s%s\n", style->bold, "functional", "finest",
+           "extrapolated", "GCI", "exact", "order, class", style->end);
     for (size_t i = 0; i < result->functional_count; i++) {
-        const struct converge_level *finest = &result->levels[result->level_count - 1];
+        const struct study_level *finest = &result->levels[result->level_count - 1];
         const struct order_extrapolation *e = &result->functionals[i];
-        printf("%-22s %14.8g", finest->functionals[i].name, finest->functionals[i].value);
+        printf("%-22s %14.8g", result->functional_names[i], finest->functionals[i]);
         if (isfinite(e->value))
-            printf(" %14.8g %9.2g%%  %.2f, ", e->value, 100 * e->gci_fine, e->order);
+            printf(" %14.8g %9.2g%%", e->value, 100 * e->gci_fine);
         else
-            printf(" %14s %10s  ", "-", "-");
+            printf(" %14s %10s", "-", "-");
+        printf(" %14.8g  ", result->functional_exact[i]);
+        if (isfinite(e->order)) printf("%.2f, ", e->order);
         printf("%s\n", order_class_name(e->class));
     }
 }
 
-static void print_study(const struct case_file *file, const struct converge_result *result,
+static void print_budget(const struct study_result *result, const struct table_style *style)
+{
+    const struct study_level *finest = &result->levels[result->level_count - 1];
+    if (!finest->budget.known) return;
+    printf("%s%-22s %12s %7s  %s%s\n", style->bold, "L1 of density from", "finest", "share",
+           "order, 95 % interval", style->end);
+    for (int r = 0; r < REGIONS; r++) {
+        const double part = finest->budget.l1[r][FIELD_DENSITY];
+        const struct order_fit *fit = &result->regions[r];
+        if (part == 0) continue;
+        printf("%-22s %12.4e %6.1f%%", budget_regions[r], part,
+               100 * part / finest->errors[FIELD_DENSITY][NORM_L1]);
+        if (fit->n) printf("  %.3f [%6.3f, %6.3f]", fit->order, fit->low, fit->high);
+        printf("\n");
+    }
+    if (isnan(result->still)) return;
+    const bool good = result->still_status != GATE_FAIL;
+    printf("still gas stays still: |v - v0| <= %.2g c far ahead of every wave (allowed: %g): "
+           "%s%s%s\n",
+           result->still, STUDY_STILL_BOUND, good ? style->good : style->bad,
+           result->still_status == GATE_NONE ? "not judged, the start is random"
+           : good                            ? "pass"
+                                             : "FAIL",
+           style->end);
+}
+
+static void print_study(const struct case_file *file, const struct study_result *result,
                         const char *label, const struct options *options)
 {
     const struct table_style style = table_style(options);
@@ -107,153 +139,149 @@ static void print_study(const struct case_file *file, const struct converge_resu
            style.end);
     print_floor(result, &style);
     print_functionals(result, &style);
+    print_budget(result, &style);
     if (result->suspicion[0])
         printf("%ssuspicious: %s%s\n", style.bad, result->suspicion, style.end);
     printf("\n");
 }
 
-/* One level's L1 of all fields at the finest resolution, to notice a setting without effect. */
-static bool same_as_before(const struct converge_result *a, const struct converge_result *b)
+static void print_all(const struct study *study, const struct options *options)
 {
-    const size_t last = a->level_count - 1;
-    return a->level_count == b->level_count &&
-           memcmp(a->levels[last].errors, b->levels[last].errors, sizeof a->levels[last].errors) ==
-               0;
-}
-
-struct study {
-    const struct options *options;
-    struct run_settings settings;
-    struct sweep sweep;
-    size_t ladder[CASE_LADDER_MAX], count;
-    json_t *document;
-    bool passed;
-    size_t excluded;
-};
-
-/* A combination that the scheme excludes is no error of the sweep; it is listed with the reason. */
-static void exclude(struct study *study, size_t i, const char *label, const char *why)
-{
-    json_t *list = json_object_get(study->document, "excluded");
-    json_array_append_new(
-        list, json_pack("{s:o, s:s}", "settings", sweep_json(&study->sweep, i), "reason", why));
-    if (study->options->speak) printf("%s: excluded: %s\n\n", label, why);
-    study->excluded++;
-}
-
-static enum status run_combination(struct study *study, size_t i, struct converge_result *result,
-                                   struct error *error)
-{
-    struct run_settings settings = study->settings;
-    struct settings resolved;
-    struct scheme scheme;
-    struct progress progress;
-    struct error reason = {0};
-    char label[SWEEP_LABEL], what[SWEEP_LABEL + 80];
-    const struct sweep *sweep = &study->sweep;
-    sweep_label(sweep, i, label);
-    if (sweep_apply(sweep, i, &settings, error)) return error->status;
-    resolved = settings.settings;
-    if (sweep->count > 1 &&
-        settings_resolve(&resolved, settings.file.dimension, &scheme, &reason)) {
-        exclude(study, i, label, reason.message);
-        return STATUS_OK;
+    for (size_t c = 0; c < study->sweep.count; c++) {
+        const struct study_result *result = &study->results[c];
+        char label[SWEEP_LABEL];
+        sweep_label(&study->sweep, c, label);
+        if (result->excluded)
+            printf("%s: excluded: %s\n\n", label, result->message);
+        else if (result->status == STATUS_BROKE_DOWN)
+            printf("%s%sbroke down: %s\n\n", label, *label ? ": " : "", result->message);
+        else
+            print_study(&study->settings.file, result, label, options);
     }
-    snprintf(what, sizeof what, "%s %s", settings.file.name, label);
-    progress_begin(&progress, what, study->options);
-    const enum status status = converge_execute(&settings, study->ladder, study->count, result,
-                                                show_progress, &progress, error);
-    progress_end(&progress);
-    if (status && status != STATUS_BROKE_DOWN) return status;
-    json_t *varied = sweep_json(sweep, i);
-    converge_add_json(result, sweep->key_count ? varied : NULL, study->document);
-    json_decref(varied);
-    if (status) {
-        json_object_set_new(study->document, "status", json_string("broke_down"));
-        json_object_set_new(study->document, "message", json_string(error->message));
-        return status;
-    }
-    study->passed = study->passed && result->passed;
-    if (study->options->speak) print_study(&settings.file, result, label, study->options);
-    return STATUS_OK;
+    const struct table_style style = table_style(options);
+    if (study->suspicion[0]) printf("%ssuspicious: %s%s\n", style.bad, study->suspicion, style.end);
 }
 
-static enum status run_all(struct study *study, struct error *error)
+static enum status take_ladder(struct study *study, const struct options *options,
+                               struct error *error)
 {
-    enum status status = STATUS_OK;
-    struct converge_result *results = calloc(2, sizeof *results);
-    if (!results) return error_set(error, STATUS_ENVIRONMENT, "no memory");
-    for (size_t i = 0; i < study->sweep.count && !status; i++) {
-        struct converge_result *now = &results[i % 2], *before = &results[(i + 1) % 2];
-        now->level_count = 0;
-        status = run_combination(study, i, now, error);
-        if (!status && now->level_count && before->level_count && same_as_before(now, before)) {
-            char label[SWEEP_LABEL];
-            sweep_label(&study->sweep, i, label);
-            json_object_set_new(study->document, "suspicion",
-                                json_sprintf("%s gives the same errors as the one before", label));
-            if (!study->options->quiet)
-                fprintf(stderr, "sphproof: note: %s gives the same errors as the one before\n",
-                        label);
-        }
-    }
-    free(results);
-    if (!status && study->excluded == study->sweep.count)
-        status =
-            error_set(error, STATUS_BAD_INPUT, "converge: no combination of --vary is allowed");
-    return status;
-}
-
-static enum status take_ladder(struct study *study, struct error *error)
-{
-    const char *text = options_value(study->options, "n");
+    const char *text = options_value(options, "n");
     const struct case_file *file = &study->settings.file;
-    if (text) return sweep_ladder(text, ORDER_LEVELS_MIN, study->ladder, &study->count, error);
+    if (study->settings.settings.value[SETTING_n].source == SOURCE_USER)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "converge: the key n and a ladder exclude each other; allowed: --n "
+                         "N1,N2,N3,N4,...");
+    if (text)
+        return sweep_ladder(text, ORDER_LEVELS_MIN, study->ladder, &study->level_count, error);
     if (file->ladder_count == 0)
         return error_set(error, STATUS_BAD_INPUT,
                          "converge: the case %s has no ladder; give one: --n 100,200,400,800",
                          file->name);
     memcpy(study->ladder, file->ladder, sizeof study->ladder);
-    study->count = file->ladder_count;
+    study->level_count = file->ladder_count;
     return STATUS_OK;
+}
+
+static enum status take_seeds(struct study *study, const struct options *options,
+                              struct error *error)
+{
+    const char *text = options_value(options, "seeds");
+    double seeds = study_is_random(&study->settings.settings) ? SEEDS_DEFAULT : 1;
+    for (size_t k = 0; k < study->sweep.key_count; k++) {
+        if (study->sweep.keys[k].key != SETTING_seed) continue;
+        if (text)
+            return error_set(error, STATUS_BAD_INPUT,
+                             "converge: --seeds and --vary seed exclude each other");
+        seeds = 1;
+    }
+    if (text && !(text_integer(text, &seeds) && seeds >= 1 && seeds <= STUDY_SEEDS_MAX))
+        return error_set(error, STATUS_BAD_INPUT,
+                         "converge: --seeds '%.40s': allowed: an integer from 1 to %d", text,
+                         STUDY_SEEDS_MAX);
+    study->seeds = (size_t)seeds;
+    return STATUS_OK;
+}
+
+static enum status take_jobs(const struct options *options, struct pool_settings *settings,
+                             struct error *error)
+{
+    const char *text = options_value(options, "jobs");
+    double jobs = 1;
+    if (text && !(text_integer(text, &jobs) && jobs >= 1 && jobs <= JOBS_MAX))
+        return error_set(error, STATUS_BAD_INPUT,
+                         "converge: --jobs '%.40s': allowed: an integer from 1 to %d", text,
+                         JOBS_MAX);
+    settings->jobs = (int)jobs;
+    return STATUS_OK;
+}
+
+/* Runs everything and judges it; the document gets what came out. */
+static enum status carry_out(struct study *study, const struct options *options,
+                             struct pool_settings *settings, json_t *document, struct error *error)
+{
+    struct pool pool = {0};
+    struct progress progress;
+    progress_begin(&progress, study->settings.file.name, options);
+    settings->progress = show_progress;
+    settings->progress_context = &progress;
+    enum status status = study_plan(study, &pool, error);
+    if (!status) status = pool_run(&pool, settings, error);
+    progress_end(&progress);
+    if (!status) status = study_judge(study, &pool, error);
+    if (pool.note[0] && !options->quiet) fprintf(stderr, "sphproof: note: %s\n", pool.note);
+    pool_free(&pool);
+    if (status) return status;
+    if (study->status == STATUS_BROKE_DOWN)
+        json_object_set_new(document, "status", json_string("broke_down"));
+    study_add_json(study, document);
+    const char *message = json_string_value(json_object_get(document, "message"));
+    return study->status == STATUS_BROKE_DOWN
+               ? error_set(error, STATUS_BROKE_DOWN, "%s", message ? message : "")
+               : study->status;
 }
 
 static enum status run(const struct options *options, int n, char **arguments, struct error *error)
 {
-    struct study study = {.options = options, .passed = true};
+    struct study study = {0};
+    struct pool_settings settings = {0};
+    struct cache cache;
+    const char *folder = options_value(options, "cache");
     if (n < 1) return command_usage(options, error, "a case is needed (`sphproof list cases`)");
     if (run_prepare(&study.settings, arguments[0], n - 1, arguments + 1, error) ||
         sweep_parse(&study.sweep, options_value(options, "vary"), error) ||
-        take_ladder(&study, error))
+        take_ladder(&study, options, error) || take_seeds(&study, options, error) ||
+        take_jobs(options, &settings, error) ||
+        (folder && cache_open(&cache, folder, false, error)))
         return error->status;
-    if (study.settings.settings.value[SETTING_n].source == SOURCE_USER)
-        return error_set(error, STATUS_BAD_INPUT,
-                         "converge: the key n and a ladder exclude each other; allowed: --n "
-                         "N1,N2,N3,N4,...");
+    settings.cache = folder ? &cache : NULL;
     study.settings.threads = options->threads;
-    study.document = result_new("converge");
-    json_object_set_new(study.document, "case", json_string(study.settings.file.name));
-    json_object_set_new(study.document, "status", json_string("ok"));
-    json_object_set_new(study.document, "excluded", json_array());
+    json_t *document = result_new("converge");
+    json_object_set_new(document, "case", json_string(study.settings.file.name));
+    json_object_set_new(document, "status", json_string("ok"));
     struct settings resolved = study.settings.settings;
     struct scheme scheme;
-    struct error ignored;
-    if (!settings_resolve(&resolved, study.settings.file.dimension, &scheme, &ignored))
-        json_object_set_new(study.document, "settings", settings_json(&resolved));
-    enum status status = run_all(&study, error);
     struct error trouble = {0};
-    if (options->json && (status == STATUS_OK || status == STATUS_BROKE_DOWN) &&
-        result_write(study.document, options->json, &trouble)) {
+    if (!settings_resolve(&resolved, study.settings.file.dimension, &scheme, &trouble))
+        json_object_set_new(document, "settings", settings_json(&resolved));
+    enum status status = carry_out(&study, options, &settings, document, error);
+    const bool sound = status == STATUS_OK || status == STATUS_CHECK_FAILED;
+    if (options->speak && (sound || status == STATUS_BROKE_DOWN)) print_all(&study, options);
+    if (options->json && (sound || status == STATUS_BROKE_DOWN) &&
+        result_write(document, options->json, &trouble)) {
         *error = trouble;
         status = trouble.status;
     }
-    json_decref(study.document);
-    return status == STATUS_OK && !study.passed ? STATUS_CHECK_FAILED : status;
+    json_decref(document);
+    study_free(&study);
+    return status;
 }
 
 static const struct command_option own_options[] = {
     {"n", "N1,N2,...", "numbers of particles, at least four distinct ones (default: the case's)"},
     {"vary", "KEY[=A,B][,...]", "repeat for every member of a family, or for these values"},
+    {"seeds", "R", "replicates where the start is random (default there: 3); they widen intervals"},
+    {"jobs", "J", "runs side by side (default 1); results do not depend on it"},
+    {"cache", "DIR", "keep each run there, and do not repeat what is there already"},
     {NULL, NULL, NULL},
 };
 
@@ -268,5 +296,6 @@ const struct command command_converge = {
     .examples = "sphproof converge sod\n"
                 "sphproof converge sod --n 100,200,400,800 kernel=cubic_spline eta=2\n"
                 "sphproof converge sod --vary kernel=cubic_spline,wendland_c2,gradient\n"
+                "sphproof converge sound_wave jitter=0.1 --seeds 5 --jobs 2\n"
                 "sphproof converge sound_wave --json orders.json",
 };

@@ -22,6 +22,8 @@ static const struct command_option report_options[] = {
     {"nightly", NULL, "one resolution more everywhere, and the slow checks"},
     {"out", "DIR", "folder for the report (default: reports/out), made if needed"},
     {"jobs", "J", "so many computations side by side (default: one for each core)"},
+    {"resume", NULL, "go on after an interruption: what was finished is in DIR/cache"},
+    {"force", NULL, "compute everything, also what DIR/cache has from this build"},
     {NULL, NULL, NULL},
 };
 
@@ -65,11 +67,11 @@ static enum status write_report(const char *folder, const json_t *results, struc
     return status;
 }
 
-static void show_progress(void *context, const char *what, double done, double total)
+static void show_progress(void *context, const char *what, size_t done, size_t total, double share)
 {
     struct progress *progress = context;
     progress->what = what;
-    progress_update(progress, done, total);
+    progress_share(progress, done, total, share);
 }
 
 static enum status take_settings(const struct options *options, struct report_settings *settings,
@@ -84,6 +86,9 @@ static enum status take_settings(const struct options *options, struct report_se
     if (options_value(options, "quick") && options_value(options, "nightly"))
         return error_set(error, STATUS_BAD_INPUT,
                          "report: --quick and --nightly exclude each other");
+    if (options_value(options, "resume") && options_value(options, "force"))
+        return error_set(error, STATUS_BAD_INPUT,
+                         "report: --resume and --force exclude each other");
     settings->jobs = number >= 1 ? (int)number : 1;
     settings->mode = options_value(options, "nightly") ? REPORT_NIGHTLY : REPORT_QUICK;
     return STATUS_OK;
@@ -92,7 +97,8 @@ static enum status take_settings(const struct options *options, struct report_se
 static enum status run(const struct options *options, int n, char **arguments, struct error *error)
 {
     struct report_settings settings = {.progress = show_progress};
-    char plots[PATH_LENGTH];
+    struct cache cache;
+    char plots[PATH_LENGTH], kept[PATH_LENGTH];
     const char *folder = options_value(options, "out");
     if (!folder) folder = "reports/out";
     if (n) return command_usage(options, error, "no argument is known: '%.40s'", arguments[0]);
@@ -100,7 +106,10 @@ static enum status run(const struct options *options, int n, char **arguments, s
     if (!status && snprintf(plots, sizeof plots, "%s/plots", folder) >= (int)sizeof plots)
         return error_set(error, STATUS_BAD_INPUT, "report: --out: the path is too long");
     if (!status) status = output_folder(plots, error);
+    snprintf(kept, sizeof kept, "%.*s/cache", PATH_LENGTH - 64, folder);
+    if (!status) status = cache_open(&cache, kept, options_value(options, "force") != NULL, error);
     if (status) return status;
+    settings.cache = &cache;
 
     json_t *results;
     struct progress progress;
@@ -119,7 +128,11 @@ static enum status run(const struct options *options, int n, char **arguments, s
     if (!status && options->json) status = result_write(results, options->json, error);
     if (!status && options->speak) {
         char absolute[PATH_LENGTH];
-        printf("%s\nreport: %s/index.html\n", summary,
+        printf("%s\n%.0f computations, %.0f of them found in %s/cache; %.1f s\n"
+               "report: %s/index.html\n",
+               summary, result_real(json_object_get(results, "computations")),
+               result_real(json_object_get(results, "found")), folder,
+               result_real(json_object_get(results, "seconds")),
                realpath(folder, absolute) ? absolute : folder);
     }
     if (!status && page.plots_missing)
@@ -136,10 +149,12 @@ static enum status run(const struct options *options, int n, char **arguments, s
 
 const struct command command_report = {
     .name = "report",
-    .synopsis = "[--quick|--nightly] [--out DIR] [--jobs J]",
+    .synopsis = "[--quick|--nightly] [--out DIR] [--jobs J] [--resume|--force]",
     .help = "everything on one page: cases, convergence, kernels, checks\n\n"
             "Writes index.html (self-contained), results.json, junit.xml, summary.md and the data\n"
-            "and script of each plot. Exit status 1 if anything on the page is not well.",
+            "and script of each plot. Exit status 1 if anything on the page is not well.\n"
+            "Each finished computation is kept at once: after an interruption, or in a night in "
+            "which\nnothing has changed, only what is missing is computed.",
     .run = run,
     .options = report_options,
     .examples = "sphproof report\nsphproof report --nightly --out /tmp/report --jobs 2",

@@ -1,0 +1,159 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "report_piece.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "certificate.h"
+#include "check.h"
+#include "league.h"
+#include "profile.h"
+#include "result.h"
+#include "run_job.h"
+#include "suite.h"
+#include "suite_output.h"
+
+static enum status compute_run(const struct report_piece *piece, json_t **document,
+                               struct error *error)
+{
+    struct run_result result;
+    const enum status status = run_execute(&piece->settings, &result, error);
+    if (status != STATUS_OK && status != STATUS_BROKE_DOWN) return status;
+    *document = result_new("run");
+    run_add_json(&piece->settings, &result, *document);
+    if (status == STATUS_OK) json_object_set_new(*document, "profile", profile_json(&result));
+    run_free(&result);
+    return status;
+}
+
+static enum status compute_checks(const struct report_piece *piece, json_t **document,
+                                  struct error *error)
+{
+    struct suite suite;
+    const struct suite_choice choice = {
+        .groups = &piece->where, .group_count = 1, .slow = piece->slow, .mutants = true};
+    const enum status status =
+        suite_run(&suite, check_registry, check_registry_count, &choice, error);
+    if (status != STATUS_OK && status != STATUS_CHECK_FAILED) return status;
+    *document = result_new("verify");
+    suite_output_json(&suite, *document);
+    suite_free(&suite);
+    return status;
+}
+
+static enum status compute_kernel(const struct report_piece *piece, json_t **document,
+                                  struct error *error)
+{
+    struct kernel kernel;
+    struct certificate *certificate = calloc(1, sizeof *certificate);
+    if (!certificate) return error_set(error, STATUS_ENVIRONMENT, "no memory for a kernel");
+    enum status status = kernel_select(&kernel, piece->where, 5, error);
+    if (!status) status = certificate_measure(certificate, &kernel, piece->dim, error);
+    if (!status) {
+        char reproduce[128];
+        snprintf(reproduce, sizeof reproduce, "sphproof kernel %s --dim %d", piece->where,
+                 piece->dim);
+        *document = result_new("kernel");
+        json_object_set_new(*document, "kernel", json_string(piece->where));
+        json_object_set_new(*document, "dim", json_integer(piece->dim));
+        json_object_set_new(*document, "h", result_number(1));
+        json_object_set_new(*document, "values", json_array());
+        certificate_json(certificate, 1, *document);
+        json_object_set_new(*document, "reproduce", json_string(reproduce));
+        certificate_free(certificate);
+    }
+    free(certificate);
+    return status;
+}
+
+static enum status compute_league(json_t **document, struct error *error)
+{
+    struct league_row rows[LEAGUE_ROWS_MAX];
+    size_t count;
+    const enum status status = league_measure(rows, &count, error);
+    if (!status) *document = league_json(rows, count);
+    return status;
+}
+
+static enum status compute(const void *context, json_t **document, struct error *error)
+{
+    const struct report_piece *piece = context;
+    switch (piece->kind) {
+    case REPORT_RUN:
+        return compute_run(piece, document, error);
+    case REPORT_CHECKS:
+        return compute_checks(piece, document, error);
+    case REPORT_KERNEL:
+        return compute_kernel(piece, document, error);
+    case REPORT_LEAGUE:
+        return compute_league(document, error);
+    }
+    return STATUS_OK;
+}
+
+enum status report_piece_add(struct pool *pool, struct report_piece *piece, struct error *error)
+{
+    static const char *const names[] = {"profile", "checks", "kernel", "league"};
+    static const double weights[] = {0, 4, 0.1, 2}; /* about seconds */
+    char name[128], *run = NULL, *key = name;
+    snprintf(name, sizeof name, "%s of %s", names[piece->kind], piece->where);
+    if (piece->kind == REPORT_CHECKS && piece->slow) strcat(name, ", slow ones too");
+    if (piece->kind == REPORT_KERNEL)
+        snprintf(name, sizeof name, "kernel %s, dim %d", piece->where, piece->dim);
+    if (piece->kind == REPORT_RUN && !(key = run = run_job_key(&piece->settings, "profile", error)))
+        return error->status;
+    const double weight = run ? run_job_weight(&piece->settings) : weights[piece->kind];
+    piece->job = pool_add(pool, name, key, weight, compute, piece);
+    free(run);
+    return piece->job == (size_t)-1
+               ? error_set(error, STATUS_ENVIRONMENT, "no memory for a piece of the report")
+               : STATUS_OK;
+}
+
+/* ---- joining checks ---- */
+
+static const char *text(const json_t *object, const char *name)
+{
+    const char *string = json_string_value(json_object_get(object, name));
+    return string ? string : "";
+}
+
+/* Distinct mutants; one counts as detected where it is in every entry. */
+static void count_mutants(const json_t *list, json_t *summary)
+{
+    json_int_t mutants = 0, detected = 0;
+    for (size_t i = 0; i < json_array_size(list); i++) {
+        const char *name = text(json_array_get(list, i), "mutant");
+        bool first = true, everywhere = true;
+        for (size_t j = 0; j < json_array_size(list); j++) {
+            const json_t *other = json_array_get(list, j);
+            if (strcmp(text(other, "mutant"), name) != 0) continue;
+            first = first && j >= i;
+            everywhere = everywhere && json_is_true(json_object_get(other, "detected"));
+        }
+        mutants += first;
+        detected += first && everywhere;
+    }
+    json_object_set_new(summary, "mutants", json_integer(mutants));
+    json_object_set_new(summary, "detected", json_integer(detected));
+}
+
+void report_piece_join(json_t *verify, json_t *part)
+{
+    static const char *const lists[] = {"checks", "mutants"};
+    static const char *const counts[] = {"passed", "failed", "skipped"};
+    json_t *summary = json_object_get(verify, "summary");
+    if (!summary) json_object_set_new(verify, "summary", summary = json_object());
+    for (size_t i = 0; i < sizeof lists / sizeof *lists; i++) {
+        json_t *list = json_object_get(verify, lists[i]);
+        if (!list) json_object_set_new(verify, lists[i], list = json_array());
+        json_array_extend(list, json_object_get(part, lists[i]));
+    }
+    for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
+        const json_t *more = json_object_get(json_object_get(part, "summary"), counts[i]);
+        const json_int_t sum = json_integer_value(json_object_get(summary, counts[i]));
+        json_object_set_new(summary, counts[i], json_integer(sum + json_integer_value(more)));
+    }
+    count_mutants(json_object_get(verify, "mutants"), summary);
+}

@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Runs as jobs of a pool: the key that decides a run's result, and what it leaves behind. */
+#ifndef SPHPROOF_RUN_JOB_H
+#define SPHPROOF_RUN_JOB_H
+
+#include "pool.h"
+#include "run.h"
+
+/* All that decides the result of a run, as text: case, dimension and every setting as used. kind
+ * tells apart what is computed from it. Malloced; NULL with error: bad settings, or no memory. */
+char *run_job_key(const struct run_settings *settings, const char *kind, struct error *error);
+
+/* About how many seconds a run with these settings takes. */
+double run_job_weight(const struct run_settings *settings);
+
+/* Adds the run; settings must outlive the pool. Its document is that of `sphproof run`. */
+enum status run_job_add(struct pool *pool, const struct run_settings *settings, size_t *job,
+                        struct error *error);
+
+#endif

@@ -1,0 +1,409 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "measure.h"
+#include "result.h"
+#include "run_job.h"
+
+/* An order lost to the lattice sums shows a relative error of this many floors at most. */
+static const double floor_reach = 20;
+/* Of a level's variance over replicates, at least this part of the mean over levels: few seeds can
+ * agree by accident. */
+static const double variance_least = 0.1;
+
+bool study_is_random(const struct settings *settings)
+{
+    return settings_real(settings, SETTING_jitter) > 0;
+}
+
+/* ---- planning ---- */
+
+static struct run_settings *run_at(const struct study *study, size_t combination, size_t level,
+                                   size_t seed)
+{
+    return &study->runs[(combination * study->level_count + level) * study->seeds + seed];
+}
+
+static size_t job_at(const struct study *study, size_t combination, size_t level, size_t seed)
+{
+    return study->jobs[run_at(study, combination, level, seed) - study->runs];
+}
+
+static enum status set_integer(struct run_settings *run, enum setting key, double value,
+                               struct error *error)
+{
+    char text[32];
+    snprintf(text, sizeof text, "%.0f", value);
+    return settings_set(&run->settings, key, text, SOURCE_USER, NULL, error);
+}
+
+/* What no level could run is said before anything runs. */
+static enum status try_coarsest(const struct run_settings *run, struct error *error)
+{
+    struct run_result *plan = malloc(sizeof *plan);
+    if (!plan) return error_set(error, STATUS_ENVIRONMENT, "no memory for a study");
+    const enum status status = run_explain(run, plan, error);
+    free(plan);
+    return status;
+}
+
+static enum status plan_combination(struct study *study, size_t c, struct pool *pool,
+                                    struct error *error)
+{
+    struct study_result *result = &study->results[c];
+    struct run_settings base = study->settings;
+    struct error reason = {0};
+    if (sweep_apply(&study->sweep, c, &base, error)) return error->status;
+    result->settings = base.settings;
+    if (settings_resolve(&result->settings, base.file.dimension, &result->scheme, &reason)) {
+        if (study->sweep.count == 1) return error_set(error, reason.status, "%s", reason.message);
+        result->excluded = true;
+        memcpy(result->message, reason.message, sizeof result->message);
+        return STATUS_OK;
+    }
+    if (study->seeds > 1 && !study_is_random(&result->settings))
+        return error_set(error, STATUS_BAD_INPUT,
+                         "%zu seeds: the initial state is not random; allowed: one seed, or "
+                         "jitter > 0",
+                         study->seeds);
+    const double seed = settings_real(&result->settings, SETTING_seed);
+    for (size_t l = 0; l < study->level_count; l++)
+        for (size_t r = 0; r < study->seeds; r++) {
+            struct run_settings *run = run_at(study, c, l, r);
+            *run = base;
+            if (set_integer(run, SETTING_n, (double)study->ladder[l], error) ||
+                (r && set_integer(run, SETTING_seed, seed + (double)r, error)) ||
+                (l == 0 && r == 0 && try_coarsest(run, error)) ||
+                run_job_add(pool, run, &study->jobs[run - study->runs], error))
+                return error->status;
+        }
+    return STATUS_OK;
+}
+
+enum status study_plan(struct study *study, struct pool *pool, struct error *error)
+{
+    const size_t runs = study->sweep.count * study->level_count * study->seeds;
+    study->results = calloc(study->sweep.count, sizeof *study->results);
+    study->runs = calloc(runs, sizeof *study->runs);
+    study->jobs = calloc(runs, sizeof *study->jobs);
+    if (!study->results || !study->runs || !study->jobs)
+        return error_set(error, STATUS_ENVIRONMENT, "no memory for a study of %zu runs", runs);
+    size_t excluded = 0;
+    for (size_t c = 0; c < study->sweep.count; c++) {
+        if (plan_combination(study, c, pool, error)) return error->status;
+        excluded += study->results[c].excluded;
+    }
+    if (excluded == study->sweep.count)
+        return error_set(error, STATUS_BAD_INPUT, "no combination of --vary is allowed: %.400s",
+                         study->results[0].message);
+    return STATUS_OK;
+}
+
+void study_free(struct study *study)
+{
+    free(study->results);
+    free(study->runs);
+    free(study->jobs);
+    study->results = NULL;
+    study->runs = NULL;
+    study->jobs = NULL;
+}
+
+/* ---- reading the runs ---- */
+
+static double number(const json_t *object, const char *name)
+{
+    return result_real(json_object_get(object, name));
+}
+
+static double error_of(const json_t *run, int field, int norm)
+{
+    const json_t *fields = json_object_get(run, "errors");
+    return number(json_object_get(fields, field_family.members[field]->name),
+                  norm_family.members[norm]->name);
+}
+
+static void read_functionals(struct study_result *result, struct study_level *level,
+                             const json_t *run, double weight)
+{
+    const char *name;
+    json_t *value, *values = json_object_get(run, "functionals");
+    size_t i = 0;
+    json_object_foreach(values, name, value)
+    {
+        if (i == RUN_FUNCTIONALS_MAX) break;
+        for (size_t k = 0; k < RUN_FUNCTIONALS && !result->functional_names[i]; k++)
+            if (strcmp(run_functional_names[k], name) == 0)
+                result->functional_names[i] = run_functional_names[k];
+        level->functionals[i] += weight * result_real(value);
+        result->functional_exact[i] = number(json_object_get(run, "functionals_exact"), name);
+        i++;
+    }
+    result->functional_count = i;
+}
+
+static void read_run(struct study_result *result, struct study_level *level, const json_t *run,
+                     double weight)
+{
+    level->n = (size_t)number(run, "n");
+    level->spacing = number(run, "spacing");
+    level->h += weight * number(run, "h");
+    for (int f = 0; f < FIELDS; f++)
+        for (int m = 0; m < NORMS; m++) {
+            const double value = log(error_of(run, f, m));
+            level->errors[f][m] += weight * value;
+            level->spread[f][m] += weight * value * value;
+        }
+    level->binned_density_l1 +=
+        weight * log(number(json_object_get(run, "errors"), "binned_density_l1"));
+    level->cpu_s += weight * number(json_object_get(run, "cost"), "cpu_s");
+    budget_add(&level->budget, json_object_get(run, "budget"), weight);
+    read_functionals(result, level, run, weight);
+    const char *suspicion = json_string_value(json_object_get(run, "suspicion"));
+    if (suspicion && *suspicion && !result->suspicion[0])
+        snprintf(result->suspicion, sizeof result->suspicion, "%s", suspicion);
+}
+
+/* From sums of logarithms and their squares to geometric means and standard deviations; a single
+ * run keeps its own bits. */
+static void close_level(struct study_level *level, const json_t *first, size_t seeds)
+{
+    const double freedom = seeds > 1 ? (double)seeds / (double)(seeds - 1) : 0;
+    for (int f = 0; f < FIELDS; f++)
+        for (int m = 0; m < NORMS; m++) {
+            const double mean = level->errors[f][m], squares = level->spread[f][m];
+            level->spread[f][m] = sqrt(freedom * fmax(0, squares - mean * mean));
+            level->errors[f][m] = seeds > 1 ? exp(mean) : error_of(first, f, m);
+        }
+    level->binned_density_l1 = seeds > 1
+                                   ? exp(level->binned_density_l1)
+                                   : number(json_object_get(first, "errors"), "binned_density_l1");
+}
+
+/* Levels in order, up to the first that broke down. */
+static enum status read_levels(struct study *study, size_t c, const struct pool *pool,
+                               struct error *error)
+{
+    struct study_result *result = &study->results[c];
+    for (size_t l = 0; l < study->level_count; l++) {
+        struct study_level *level = &result->levels[l];
+        for (size_t r = 0; r < study->seeds; r++) {
+            const struct pool_job *job = &pool->jobs[job_at(study, c, l, r)];
+            if (job->error.status == STATUS_BROKE_DOWN) {
+                result->status = STATUS_BROKE_DOWN;
+                snprintf(result->message, sizeof result->message, "n = %zu: %.480s",
+                         study->ladder[l], job->error.message);
+                return STATUS_OK;
+            }
+            if (job->error.status || !job->document)
+                return error_set(error, job->error.status ? job->error.status : STATUS_ENVIRONMENT,
+                                 "%s", job->error.message);
+            read_run(result, level, job->document, 1 / (double)study->seeds);
+        }
+        close_level(level, pool->jobs[job_at(study, c, l, 0)].document, study->seeds);
+        result->level_count++;
+    }
+    struct scheme scheme;
+    struct error none;
+    struct run_settings finest = *run_at(study, c, study->level_count - 1, 0);
+    if (!settings_resolve(&finest.settings, finest.file.dimension, &scheme, &none))
+        result->settings = finest.settings;
+    return STATUS_OK;
+}
+
+/* ---- judging ---- */
+
+/* Variances of the mean log(error); false where there are no replicates. */
+static bool variances(const struct study *study, const struct study_result *result, int f, int m,
+                      double *variance)
+{
+    double mean = 0;
+    for (size_t l = 0; l < result->level_count; l++) {
+        const double spread = result->levels[l].spread[f][m];
+        variance[l] = spread * spread / (double)study->seeds;
+        mean += variance[l] / (double)result->level_count;
+    }
+    for (size_t l = 0; l < result->level_count; l++)
+        variance[l] = fmax(variance[l], variance_least * mean);
+    return study->seeds > 1 && mean > 0;
+}
+
+static enum status fit_orders(const struct study *study, struct study_result *result,
+                              struct error *error)
+{
+    double spacing[CASE_LADDER_MAX], errors[CASE_LADDER_MAX], variance[CASE_LADDER_MAX];
+    const size_t n = result->level_count;
+    for (size_t l = 0; l < n; l++) spacing[l] = result->levels[l].spacing;
+    for (int f = 0; f < FIELDS; f++)
+        for (int m = 0; m < NORMS; m++) {
+            const bool known = variances(study, result, f, m, variance);
+            for (size_t l = 0; l < n; l++) errors[l] = result->levels[l].errors[f][m];
+            if (order_fit(n, spacing, errors, known ? variance : NULL, &result->orders[f][m].fit,
+                          error))
+                return error->status;
+        }
+    for (int r = 0; r < REGIONS; r++) {
+        bool everywhere = result->levels[0].budget.known;
+        for (size_t l = 0; l < n; l++) {
+            errors[l] = result->levels[l].budget.l1[r][FIELD_DENSITY];
+            everywhere = everywhere && errors[l] > 0;
+        }
+        if (everywhere && order_fit(n, spacing, errors, NULL, &result->regions[r], error))
+            return error->status;
+    }
+    return STATUS_OK;
+}
+
+static void extrapolate(struct study_result *result)
+{
+    const struct study_level *last = &result->levels[result->level_count - 3];
+    const double spacing[3] = {last[0].spacing, last[1].spacing, last[2].spacing};
+    for (size_t i = 0; i < result->functional_count; i++) {
+        const double values[3] = {last[0].functionals[i], last[1].functionals[i],
+                                  last[2].functionals[i]};
+        result->functionals[i] = order_extrapolate(spacing, values);
+    }
+}
+
+static void judge_gates(struct study_result *result, const struct case_file *file)
+{
+    const struct study_level *finest = &result->levels[result->level_count - 1];
+    const bool standard = result->scheme.gradient == GRADIENT_STANDARD;
+    measure_lattice(&result->scheme.kernel, file->dimension, result->scheme.eta,
+                    &result->floor_density, &result->floor_gradient);
+    const double floor =
+        fmax(fabs(result->floor_density), standard ? fabs(result->floor_gradient) : 0);
+    for (size_t i = 0; i < file->gate_count; i++) {
+        const struct case_gate *gate = &file->gates[i];
+        struct study_order *order = &result->orders[gate->field][gate->norm];
+        order->gate = gate->gate;
+        if (file->ladder_count) {
+            const double coarser = (double)file->ladder[file->ladder_count - 1] / (double)finest->n;
+            order->gate.bound *= pow(fmax(1, coarser), gate->gate.low);
+        }
+        order->status = order_passes(&order->fit, &order->gate, order->why) ? GATE_PASS : GATE_FAIL;
+        if (order->status == GATE_PASS) continue;
+        result->status = STATUS_CHECK_FAILED;
+        result->floor_explains |= !(order->fit.order >= order->gate.low) &&
+                                  finest->errors[gate->field][gate->norm] <= floor_reach * floor;
+    }
+}
+
+/* Gas that no wave has reached: noise that was put there is none of its own. */
+static void judge_stillness(struct study_result *result)
+{
+    result->still = NAN;
+    for (size_t l = 0; l < result->level_count; l++)
+        if (result->levels[l].budget.known)
+            result->still = fmax(result->still, result->levels[l].budget.still);
+    if (isnan(result->still) || study_is_random(&result->settings)) return;
+    result->still_status = result->still <= STUDY_STILL_BOUND ? GATE_PASS : GATE_FAIL;
+    if (result->still_status == GATE_FAIL) result->status = STATUS_CHECK_FAILED;
+}
+
+static void suspect(struct study_result *result, const struct case_file *file)
+{
+    double errors[CASE_LADDER_MAX];
+    char why[SUSPICION_TEXT];
+    for (int field = 0; field < FIELDS && !result->suspicion[0]; field++) {
+        if (file->exact[field]) continue;
+        for (size_t i = 0; i < result->level_count; i++)
+            errors[i] = result->levels[i].errors[field][NORM_L1];
+        if (suspicion_zero(result->level_count, errors, why) ||
+            suspicion_repeated(result->level_count, errors, why))
+            snprintf(result->suspicion, sizeof result->suspicion, "%s: %.160s",
+                     field_family.members[field]->name, why);
+    }
+    if (result->suspicion[0]) result->status = STATUS_CHECK_FAILED;
+}
+
+/* ---- settings without effect ---- */
+
+/* Do these settings say anything to the solver that the key could change? `skip` must not. */
+static bool is_read(enum setting key, const struct settings *settings)
+{
+    const int viscosity = settings_choice(settings, SETTING_viscosity);
+    const int kernel = settings_choice(settings, SETTING_kernel);
+    switch (key) {
+    case SETTING_skip:
+        return false;
+    case SETTING_sinc_n:
+        return strcmp(kernel_family.members[kernel]->name, "sinc") == 0;
+    case SETTING_alpha:
+    case SETTING_beta:
+        return viscosity != VISCOSITY_NONE && viscosity != VISCOSITY_TIME_DEPENDENT;
+    case SETTING_alpha_min:
+    case SETTING_alpha_max:
+        return viscosity == VISCOSITY_TIME_DEPENDENT;
+    case SETTING_seed:
+        return study_is_random(settings);
+    case SETTING_grade_ratio:
+        return settings_real(settings, SETTING_grade) < 1;
+    case SETTING_h_tolerance:
+        return settings_choice(settings, SETTING_h_method) == H_NEWTON;
+    default:
+        return true;
+    }
+}
+
+bool study_suspect_same(const char *what, const struct study_result *a,
+                        const struct study_result *b, char *why)
+{
+    double before[CASE_LADDER_MAX * FIELDS], after[CASE_LADDER_MAX * FIELDS];
+    size_t n = 0;
+    for (size_t l = 0; l < a->level_count && l < b->level_count; l++)
+        for (int f = 0; f < FIELDS; f++, n++) {
+            before[n] = a->levels[l].errors[f][NORM_L1];
+            after[n] = b->levels[l].errors[f][NORM_L1];
+        }
+    return suspicion_idle_setting(what, n, before, after, why);
+}
+
+/* Every pair of combinations that differ in one key only and should have differed in their results:
+ * suspicious where none of a key's pairs does. */
+static void suspect_idle(struct study *study)
+{
+    size_t stride = study->sweep.count;
+    for (size_t k = 0; k < study->sweep.key_count; k++) {
+        const struct sweep_key *key = &study->sweep.keys[k];
+        char why[SUSPICION_TEXT] = "";
+        size_t pairs = 0, same = 0;
+        stride /= key->count;
+        for (size_t c = 0; c < study->sweep.count; c++) {
+            const struct study_result *a = &study->results[c], *b = a + stride;
+            if ((c / stride) % key->count == key->count - 1) continue;
+            if (a->excluded || b->excluded || !is_read(key->key, &a->settings) ||
+                !is_read(key->key, &b->settings))
+                continue;
+            pairs++;
+            same += study_suspect_same(setting_keys[key->key].name, a, b, why);
+        }
+        if (!pairs || same < pairs) continue;
+        memcpy(study->suspicion, why, sizeof study->suspicion);
+        study->status = STATUS_CHECK_FAILED;
+    }
+}
+
+enum status study_judge(struct study *study, const struct pool *pool, struct error *error)
+{
+    for (size_t c = 0; c < study->sweep.count; c++) {
+        struct study_result *result = &study->results[c];
+        if (result->excluded) continue;
+        if (read_levels(study, c, pool, error)) return error->status;
+        if (result->status == STATUS_OK) {
+            if (fit_orders(study, result, error)) return error->status;
+            extrapolate(result);
+            judge_gates(result, &study->settings.file);
+            judge_stillness(result);
+            suspect(result, &study->settings.file);
+        }
+        if (result->status > study->status) study->status = result->status;
+    }
+    suspect_idle(study);
+    return STATUS_OK;
+}

@@ -1,0 +1,99 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Studies: any case, any combination of schemes, a ladder of resolutions, replicates over seeds
+ * where the initial state is random. Every run is a job of a pool; from the runs come orders with
+ * their 95 % interval, gates, functionals with Richardson extrapolation and GCI, error budgets, and
+ * whatever looks too good to be true. */
+#ifndef SPHPROOF_STUDY_H
+#define SPHPROOF_STUDY_H
+
+#include <jansson.h>
+
+#include "budget.h"
+#include "order.h"
+#include "pool.h"
+#include "run.h"
+#include "suspicion.h"
+#include "sweep.h"
+
+enum { STUDY_SEEDS_MAX = 64 };
+
+/* Means over the replicates of one resolution; of errors the geometric mean. */
+struct study_level {
+    size_t n;
+    double spacing, h; /* box/n; mean smoothing length in the window: lengths */
+    double errors[FIELDS][NORMS], binned_density_l1;
+    double spread[FIELDS][NORMS]; /* standard deviation of log(error) over the replicates */
+    double cpu_s;
+    struct budget budget;
+    double functionals[RUN_FUNCTIONALS_MAX];
+};
+
+enum study_gate { GATE_NONE, GATE_PASS, GATE_FAIL };
+
+struct study_order {
+    struct order_fit fit;
+    enum study_gate status;
+    struct order_gate gate;    /* bound: at the ladder's finest level; see study_judge */
+    char why[ORDER_GATE_TEXT]; /* the condition that fails */
+};
+
+/* One scheme over the ladder. */
+struct study_result {
+    enum status status;       /* OK, CHECK_FAILED (a gate, or suspicious), BROKE_DOWN */
+    char message[512];        /* how it broke down; why the combination is excluded */
+    bool excluded;            /* the scheme does not allow it: nothing was run */
+    struct settings settings; /* resolved, at the finest level */
+    struct scheme scheme;
+    size_t level_count, functional_count; /* levels that are sound, from the coarsest on */
+    struct study_level levels[CASE_LADDER_MAX];
+    struct study_order orders[FIELDS][NORMS];
+    struct order_fit regions[REGIONS]; /* of L1(density); n = 0: not in the window everywhere */
+    const char *functional_names[RUN_FUNCTIONALS_MAX];
+    double functional_exact[RUN_FUNCTIONALS_MAX];
+    struct order_extrapolation functionals[RUN_FUNCTIONALS_MAX]; /* of the three finest */
+    double floor_density, floor_gradient; /* lattice sums of kernel and eta, relative */
+    bool floor_explains;                  /* a failed order is of the size of the floor */
+    double still;                         /* largest of the levels' budgets; NaN: none */
+    enum study_gate still_status;
+    char suspicion[SUSPICION_TEXT]; /* "" if nothing is too good to be true */
+};
+
+/* Undisturbed gas may move at this part of the sound speed. */
+#define STUDY_STILL_BOUND 1e-3
+
+struct study {
+    struct run_settings settings; /* n, seed and what varies are set for each run */
+    struct sweep sweep;
+    size_t ladder[CASE_LADDER_MAX], level_count; /* rising, at least ORDER_LEVELS_MIN */
+    size_t seeds;                                /* replicates, >= 1 */
+    /* from study_plan and study_judge: */
+    enum status status;             /* the worst of the results */
+    struct study_result *results;   /* sweep.count */
+    struct run_settings *runs;      /* combination, level, replicate: the last runs fastest */
+    size_t *jobs;                   /* their numbers in the pool */
+    char suspicion[SUSPICION_TEXT]; /* a setting that changes nothing */
+};
+
+/* Adds the runs to the pool. STATUS_BAD_INPUT: settings that no run could have; replicates of a
+ * state that is not random. The study must stay where it is until study_free. */
+enum status study_plan(struct study *study, struct pool *pool, struct error *error);
+
+/* After pool_run: fills and judges the results. The gates are the case's; a bound belongs to the
+ * case's own finest level and is raised as the least order allows where the ladder ends before it.
+ * Anything but STATUS_OK means that runs are missing for reasons of the environment. */
+enum status study_judge(struct study *study, const struct pool *pool, struct error *error);
+
+void study_free(struct study *study);
+
+/* Same errors at all levels to the last bit although `what` differs? See suspicion.h. */
+bool study_suspect_same(const char *what, const struct study_result *a,
+                        const struct study_result *b, char *why);
+
+/* Is the initial state random, so that a seed makes a difference? */
+bool study_is_random(const struct settings *settings);
+
+/* Adds "levels", "orders", "functionals", "floors", "budgets", "excluded", and "message" and
+ * "suspicion" where there are any, to a converge document. */
+void study_add_json(const struct study *study, json_t *document);
+
+#endif

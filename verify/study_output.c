@@ -1,0 +1,146 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Studies as JSON. */
+#include "study.h"
+
+#include <math.h>
+
+#include "result.h"
+
+static void set(json_t *object, const char *name, double value)
+{
+    json_object_set_new(object, name, result_number(value));
+}
+
+static json_t *level_json(const struct study *study, const struct study_level *level)
+{
+    json_t *errors = json_object(), *spread = json_object();
+    for (int f = 0; f < FIELDS; f++) {
+        json_t *norms = json_object(), *spreads = json_object();
+        for (int m = 0; m < NORMS; m++) {
+            set(norms, norm_family.members[m]->name, level->errors[f][m]);
+            set(spreads, norm_family.members[m]->name, level->spread[f][m]);
+        }
+        json_object_set_new(errors, field_family.members[f]->name, norms);
+        json_object_set_new(spread, field_family.members[f]->name, spreads);
+    }
+    set(errors, "binned_density_l1", level->binned_density_l1);
+    json_t *item = json_pack("{s:I, s:o, s:o, s:o, s:o, s:o}", "n", (json_int_t)level->n, "h",
+                             result_number(level->h), "spacing", result_number(level->spacing),
+                             "errors", errors, "cpu_s", result_number(level->cpu_s), "budget",
+                             budget_json(&level->budget));
+    json_object_set_new(item, "replicates", json_integer((json_int_t)study->seeds));
+    if (study->seeds > 1) json_object_set(item, "spread", spread);
+    json_decref(spread);
+    return item;
+}
+
+static const char *const gate_names[] = {"none", "pass", "fail"};
+
+static json_t *order_json(const struct study_order *order, int field, int norm)
+{
+    json_t *pairwise = json_array(), *gate = json_null();
+    for (size_t i = 0; i + 1 < order->fit.n; i++)
+        json_array_append_new(pairwise, result_number(order->fit.pairwise[i]));
+    if (order->status != GATE_NONE)
+        gate =
+            json_pack("{s:o, s:o, s:o}", "low", result_number(order->gate.low), "high",
+                      result_number(order->gate.high), "bound", result_number(order->gate.bound));
+    json_t *item = json_pack(
+        "{s:s, s:s, s:o, s:o, s:o, s:o, s:s, s:o, s:s}", "field", field_family.members[field]->name,
+        "norm", norm_family.members[norm]->name, "order", result_number(order->fit.order), "low",
+        result_number(order->fit.low), "high", result_number(order->fit.high), "pairwise", pairwise,
+        "class", order_class_name(order->fit.class), "gate", gate, "status",
+        gate_names[order->status]);
+    if (order->status == GATE_FAIL) json_object_set_new(item, "why", json_string(order->why));
+    return item;
+}
+
+static json_t *functional_json(const struct study_result *result, size_t i)
+{
+    const struct order_extrapolation *e = &result->functionals[i];
+    json_t *values = json_array();
+    for (size_t l = 0; l < result->level_count; l++)
+        json_array_append_new(values, result_number(result->levels[l].functionals[i]));
+    return json_pack(
+        "{s:s, s:o, s:o, s:o, s:o, s:o, s:s, s:o}", "name", result->functional_names[i], "values",
+        values, "extrapolated", result_number(e->value), "gci", result_number(e->gci_fine),
+        "gci_coarse", result_number(e->gci_coarse), "order", result_number(e->order), "class",
+        order_class_name(e->class), "exact", result_number(result->functional_exact[i]));
+}
+
+static json_t *floor_json(const struct study_result *result)
+{
+    return json_pack("{s:s, s:o, s:o, s:o, s:b, s:s}", "kernel", result->scheme.kernel.member.name,
+                     "eta", result_number(result->scheme.eta), "density",
+                     result_number(result->floor_density), "gradient",
+                     result_number(result->floor_gradient), "explains", result->floor_explains,
+                     "suspicion", result->suspicion);
+}
+
+/* Where the finest level's L1(density) comes from, and how fast each part falls. */
+static json_t *budget_orders_json(const struct study_result *result)
+{
+    const struct study_level *finest = &result->levels[result->level_count - 1];
+    json_t *regions = json_array();
+    for (int r = 0; r < REGIONS; r++) {
+        const struct order_fit *fit = &result->regions[r];
+        const double part = finest->budget.l1[r][FIELD_DENSITY];
+        json_t *region =
+            json_pack("{s:s, s:o, s:o}", "region", budget_regions[r], "l1", result_number(part),
+                      "share", result_number(part / finest->errors[FIELD_DENSITY][NORM_L1]));
+        if (fit->n) {
+            set(region, "order", fit->order);
+            set(region, "low", fit->low);
+            set(region, "high", fit->high);
+        }
+        json_array_append_new(regions, region);
+    }
+    return json_pack("{s:o, s:{s:o, s:o, s:s}}", "regions", regions, "still_gas", "value",
+                     isnan(result->still) ? json_null() : result_number(result->still), "bound",
+                     result_number(STUDY_STILL_BOUND), "status", gate_names[result->still_status]);
+}
+
+static void add(json_t *document, const char *list, json_t *item, const json_t *varied)
+{
+    json_t *array = json_object_get(document, list);
+    if (!array) json_object_set_new(document, list, array = json_array());
+    if (json_object_size(varied)) json_object_set_new(item, "settings", json_deep_copy(varied));
+    json_array_append_new(array, item);
+}
+
+static void add_result(const struct study *study, const struct study_result *result,
+                       const json_t *varied, json_t *document)
+{
+    for (size_t l = 0; l < result->level_count; l++)
+        add(document, "levels", level_json(study, &result->levels[l]), varied);
+    if (result->status == STATUS_BROKE_DOWN) return;
+    for (int f = 0; f < FIELDS; f++)
+        for (int m = 0; m < NORMS; m++)
+            add(document, "orders", order_json(&result->orders[f][m], f, m), varied);
+    for (size_t i = 0; i < result->functional_count; i++)
+        add(document, "functionals", functional_json(result, i), varied);
+    add(document, "floors", floor_json(result), varied);
+    if (result->levels[0].budget.known)
+        add(document, "budgets", budget_orders_json(result), varied);
+}
+
+void study_add_json(const struct study *study, json_t *document)
+{
+    static const char *const lists[] = {"levels", "orders", "functionals", "floors", "excluded"};
+    for (size_t i = 0; i < sizeof lists / sizeof *lists; i++)
+        json_object_set_new(document, lists[i], json_array());
+    for (size_t c = 0; c < study->sweep.count; c++) {
+        const struct study_result *result = &study->results[c];
+        json_t *varied = sweep_json(&study->sweep, c);
+        if (result->excluded) {
+            add(document, "excluded", json_pack("{s:s}", "reason", result->message), varied);
+        } else {
+            add_result(study, result, varied, document);
+            if (result->status == STATUS_BROKE_DOWN && !json_object_get(document, "message"))
+                json_object_set_new(document, "message", json_string(result->message));
+        }
+        json_decref(varied);
+    }
+    if (study->suspicion[0])
+        json_object_set_new(document, "suspicion", json_string(study->suspicion));
+}
