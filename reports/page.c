@@ -171,8 +171,10 @@ int page_make(struct page *page, const json_t *results)
     const json_t *verify = json_object_get(results, "verify");
     const json_t *kernels = json_object_get(results, "kernels");
     const json_t *gradients = json_object_get(results, "gradients");
+    const json_t *bench = json_object_get(results, "bench");
     head(to, results, verdict);
     buffer_add(to, "<nav><a href=\"#cases\">Cases</a>");
+    if (json_array_size(bench)) buffer_add(to, " <a href=\"#cost\">Cost</a>");
     if (gradients) buffer_add(to, " <a href=\"#gradients\">Gradients</a>");
     if (kernels) buffer_add(to, " <a href=\"#kernels\">Kernels</a>");
     if (verify)
@@ -182,6 +184,7 @@ int page_make(struct page *page, const json_t *results)
     failures(to, verdict);
     page_overview(&writer, results);
     page_cases(&writer, results);
+    page_bench(&writer, bench);
     if (gradients) page_gradients(&writer, gradients);
     if (kernels) page_kernels(&writer, kernels);
     if (verify) page_checks(&writer, verify);

@@ -29,6 +29,7 @@ void page_convergence(struct page_writer *writer, const char *case_name,
 
 void page_overview(struct page_writer *writer, const json_t *results);
 void page_cases(struct page_writer *writer, const json_t *results);
+void page_bench(struct page_writer *writer, const json_t *bench);
 void page_gradients(struct page_writer *writer, const json_t *gradients);
 void page_kernels(struct page_writer *writer, const json_t *kernels);
 void page_checks(struct page_writer *writer, const json_t *verify);

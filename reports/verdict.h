@@ -11,6 +11,7 @@
  *   studies         [converge documents, and "label", "reproduce"]
  *   verify          verify document
  *   kernels         [kernel documents, and "reproduce"]
+ *   bench           [bench documents, and "reproduce"]
  *   gradients       {"rows": [{flat: operator, ...}], "reproduce"}
  *   verdict         what verdict_make returned */
 #ifndef SPHPROOF_VERDICT_H

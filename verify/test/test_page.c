@@ -26,6 +26,11 @@ static const char *const results_text =
     " 'status': 'pass'}]}],"
     "'kernels': [{'kernel': 'cubic_spline', 'dim': 1, 'class': 2, 'normalisation': 1e-16,"
     " 'fourier': {'min': 0, 'first_negative_k': null}, 'checks': [], 'reproduce': 'x'}],"
+    "'bench': [{'case': 'sod', 'title': 'Sod', 'reproduce': 'sphproof bench sod', 'schemes':"
+    " [{'scheme': 'kernel=cubic_spline gradient=ia', 'figure_of_merit': 1e-8,"
+    " 'seed_plain_over_this': 120}], 'points': [{'scheme': 'kernel=cubic_spline gradient=ia',"
+    " 'n': 4, 'error': 0.01, 'cpu_s': 0.001}], 'cheapest': [{'target': 0.01, 'cpu_s': null,"
+    " 'scheme': null}]}],"
     "'gradients': {'rows': [{'operator': 'ia', 'dim': 2, 'exact_degree_lattice': 2, "
     "'momentum_defect': 1e-16,"
     " 'error_disordered': 0.3, 'none': null}],"
@@ -85,7 +90,7 @@ static void judge_page(json_t *results, const char *const *contents, size_t n)
     assert_null(markup_network(page.html));
     for (size_t k = 0; k < n; k++)
         if (!strstr(page.html, contents[k])) fail_msg("the page lacks: %s", contents[k]);
-    assert_int_equal(page.file_count, json_array_size(json_object_get(results, "runs")) ? 8 : 0);
+    assert_int_equal(page.file_count, json_array_size(json_object_get(results, "runs")) ? 10 : 0);
     page_free(&page);
     json_decref(results);
 }
@@ -93,9 +98,13 @@ static void judge_page(json_t *results, const char *const *contents, size_t n)
 static void good_page(void **state)
 {
     (void)state;
-    const char *const contents[] = {"<h1>All is well</h1>",  "a &lt;b&gt; &amp; c",
-                                    "q &lt; 1 &amp; more",   "sphproof run sod",
-                                    "sphproof converge sod", "4.61e-3"};
+    const char *const contents[] = {"<h1>All is well</h1>",
+                                    "a &lt;b&gt; &amp; c",
+                                    "q &lt; 1 &amp; more",
+                                    "sphproof run sod",
+                                    "sphproof converge sod",
+                                    "cubic spline, ia",
+                                    "4.61e-3"};
     judge_page(sound(), contents, sizeof contents / sizeof *contents);
 }
 
@@ -127,7 +136,7 @@ static void page_without_gnuplot(void **state)
     setenv("PATH", path, 1);
     free(path);
     assert_true(made);
-    assert_int_equal(page.plots_missing, 4);
+    assert_int_equal(page.plots_missing, 5);
     assert_non_null(strstr(page.message, "gnuplot"));
     assert_null(strstr(page.html, "<svg"));
     assert_non_null(strstr(page.html, "4.61e-3"));

@@ -1,0 +1,175 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Work-precision: what an error costs, per case. Schemes by L1^2 x CPU time, best first. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "html.h"
+#include "page_part.h"
+
+enum { SHOWN = 12, POINTS = 64, NAME = 96 };
+
+struct curve {
+    const json_t *scheme;
+    char name[NAME]; /* values without their keys */
+    size_t n;
+    double cpu[POINTS], error[POINTS];
+};
+
+/* "kernel=cubic_spline gradient=ia" is "cubic spline, ia". */
+static void short_name(char name[NAME], const char *scheme)
+{
+    size_t used = 0;
+    for (const char *word = scheme; *word && used + 3 < NAME;) {
+        const size_t length = strcspn(word, " ");
+        const char *value = memchr(word, '=', length);
+        const char *from = value ? value + 1 : word;
+        if (used && value) name[used++] = ',';
+        if (used) name[used++] = ' ';
+        for (; from < word + length && used + 1 < NAME; from++)
+            name[used++] = (char)(*from == '_' ? ' ' : *from);
+        word += length;
+        word += strspn(word, " ");
+    }
+    name[used] = '\0';
+}
+
+static int by_merit(const void *a, const void *b)
+{
+    double x = html_member(((const struct curve *)a)->scheme, "figure_of_merit");
+    double y = html_member(((const struct curve *)b)->scheme, "figure_of_merit");
+    if (isnan(x) || isnan(y)) return isnan(x) - isnan(y);
+    return (x > y) - (x < y);
+}
+
+/* The curves of a document, best first; their number. */
+static size_t read_curves(const json_t *document, struct curve *curves, size_t most)
+{
+    size_t count = 0, i;
+    const json_t *entry;
+    json_array_foreach(json_object_get(document, "schemes"), i, entry)
+    {
+        if (count == most) break;
+        struct curve *curve = &curves[count++];
+        *curve = (struct curve){.scheme = entry};
+        short_name(curve->name, html_string(entry, "scheme"));
+    }
+    json_array_foreach(json_object_get(document, "points"), i, entry)
+    {
+        for (size_t k = 0; k < count; k++) {
+            struct curve *curve = &curves[k];
+            if (strcmp(html_string(curve->scheme, "scheme"), html_string(entry, "scheme")) ||
+                curve->n == POINTS)
+                continue;
+            curve->cpu[curve->n] = html_member(entry, "cpu_s");
+            curve->error[curve->n++] = html_member(entry, "error");
+        }
+    }
+    qsort(curves, count, sizeof *curves, by_merit);
+    return count;
+}
+
+static void plot_curves(struct page_writer *writer, const char *case_name,
+                        const struct curve *curves, size_t count)
+{
+    struct plot_series series[PLOT_COLORS];
+    size_t used = 0;
+    for (size_t k = 0; k < count && used < PLOT_COLORS; k++) {
+        if (!curves[k].n) continue;
+        series[used] = (struct plot_series){.label = curves[k].name,
+                                            .kind = PLOT_LINES_POINTS,
+                                            .n = curves[k].n,
+                                            .x = curves[k].cpu,
+                                            .y = curves[k].error};
+        used++;
+    }
+    const struct plot_panel panel = {.x_label = "CPU time [s]",
+                                     .y_label = "L1 error of density",
+                                     .x_log = true,
+                                     .y_log = true,
+                                     .key = PLOT_KEY_END,
+                                     .series = series,
+                                     .series_count = used};
+    char name[NAME];
+    page_plot_name(name, sizeof name, case_name, "cost");
+    const struct plot plot = {.name = name,
+                              .title = "Error against CPU time",
+                              .width = 660,
+                              .height = 380,
+                              .panels = &panel,
+                              .panel_count = 1};
+    if (used) page_plot(writer, &plot, "Further down and to the left is better.");
+}
+
+static void scheme_table(struct buffer *to, const struct curve *curves, size_t count)
+{
+    html_table(to, "costs", "scheme|#L1 density, finest n|#CPU s|#L1² × CPU s|#gain");
+    for (size_t k = 0; k < count && k < SHOWN; k++) {
+        const struct curve *curve = &curves[k];
+        buffer_add(to, "<tr>");
+        html_cell(to, curve->name);
+        html_cell_number(to, curve->n ? curve->error[curve->n - 1] : (double)NAN);
+        html_cell_number(to, curve->n ? curve->cpu[curve->n - 1] : (double)NAN);
+        html_cell_number(to, html_member(curve->scheme, "figure_of_merit"));
+        html_cell_number(to, html_member(curve->scheme, "seed_plain_over_this"));
+        buffer_add(to, "</tr>\n");
+    }
+    html_table_end(to);
+}
+
+static void cheapest_table(struct buffer *to, const json_t *ways)
+{
+    size_t i;
+    const json_t *way;
+    if (!json_array_size(ways)) return;
+    html_table(to, "costs", "cheapest way to|#CPU s|scheme");
+    json_array_foreach(ways, i, way)
+    {
+        char name[NAME];
+        short_name(name, html_string(way, "scheme"));
+        buffer_format(to, "<tr><td>%g %%</td>", 100 * html_member(way, "target"));
+        if (*name)
+            html_cell_number(to, html_member(way, "cpu_s"));
+        else
+            buffer_add(to, "<td class=\"n\">—</td>");
+        html_cell(to, *name ? name : "not reached at these resolutions");
+        buffer_add(to, "</tr>\n");
+    }
+    html_table_end(to);
+}
+
+void page_bench(struct page_writer *writer, const json_t *bench)
+{
+    struct buffer *to = &writer->to;
+    const json_t *document;
+    size_t i;
+    if (!json_array_size(bench)) return;
+    buffer_add(to, "<section id=\"cost\"><h2>What an error costs</h2>\n<p>Each scheme at several "
+                   "resolutions. For a first-order scheme L1² × CPU time does not depend on the "
+                   "resolution: the gain compares it with the seed program's corrected method in "
+                   "plain C. Times are the least of several samples, taken in turn.</p>\n");
+    json_array_foreach(bench, i, document)
+    {
+        size_t most = json_array_size(json_object_get(document, "schemes"));
+        struct curve *curves = calloc(most + 1, sizeof *curves);
+        if (!curves) {
+            to->failed = true;
+            return;
+        }
+        size_t count = read_curves(document, curves, most);
+        buffer_add(to, "<h3><code>");
+        buffer_escape(to, html_string(document, "case"));
+        buffer_add(to, "</code> <span>");
+        buffer_escape(to, html_string(document, "title"));
+        buffer_add(to, "</span></h3>\n<div class=\"figures\">");
+        plot_curves(writer, html_string(document, "case"), curves, count);
+        buffer_add(to, "<div>");
+        scheme_table(to, curves, count);
+        cheapest_table(to, json_object_get(document, "cheapest"));
+        buffer_add(to, "</div></div>\n");
+        html_command(to, "see it again:", html_string(document, "reproduce"));
+        free(curves);
+    }
+    buffer_add(to, "</section>\n");
+}
