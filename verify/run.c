@@ -48,6 +48,7 @@ static struct scene scene_of(const struct run_settings *settings, const struct r
         .rho = initial->rho,
         .scheme = result->scheme,
         .skip = settings_choice(&result->settings, SETTING_skip) == SKIP_AUTO,
+        .unstamped = settings->unstamped,
         .threads = settings->threads,
     };
 }

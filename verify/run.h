@@ -32,6 +32,7 @@ struct run_settings {
     struct settings settings;      /* the case's with the user's on top; `auto` still in it */
     int threads;                   /* >= 1 */
     bool any_window;               /* run also where the mirrored tube reaches the window */
+    bool unstamped;                /* by the loops that look every choice up */
     bool plain;                    /* by plain.c, not by the solver: the baseline of bench */
     simulation_progress *progress; /* may be NULL */
     void *progress_context;

@@ -4,6 +4,7 @@
 
 #include <string.h>
 
+#include "bench_kernels.h"
 #include "command.h"
 #include "output.h"
 #include "picture.h"
@@ -109,22 +110,86 @@ static enum status work_precision(struct request *request, struct error *error)
     return status;
 }
 
+/* --- what a pair costs ------------------------------------------------------------------------ */
+
+static enum status refuse_case(const struct request *request, const char *mode, struct error *error)
+{
+    return command_usage(request->options, error, "%s takes neither a case nor keys; '%.60s' given",
+                         mode, request->case_name ? request->case_name : request->arguments[0]);
+}
+
+static enum status refuse_option(const struct request *request, const char *mode, const char *name,
+                                 struct error *error)
+{
+    return options_value(request->options, name)
+               ? command_usage(request->options, error, "%s and --%s exclude each other", mode,
+                               name)
+               : STATUS_OK;
+}
+
+static enum status kernels(struct request *request, struct error *error)
+{
+    struct sweep sweep;
+    struct bench_kernels result;
+    if (request->case_name || request->n) return refuse_case(request, "--kernels", error);
+    if (refuse_option(request, "--kernels", "n", error) ||
+        refuse_option(request, "--kernels", "plot", error) ||
+        sweep_parse(&sweep, options_value(request->options, "vary"), error))
+        return error->status;
+    progress_begin(&request->progress, "bench --kernels", request->options);
+    enum status status = bench_kernels_measure(&sweep, &request->rules, show_progress,
+                                               &request->progress, &result, error);
+    progress_end(&request->progress);
+    if (!status) {
+        json_t *document = result_new("bench");
+        json_object_set_new(document, "points", json_array());
+        bench_kernels_add_json(&result, document);
+        status = write_result(request, document, error);
+        json_decref(document);
+    }
+    if (!status && request->options->speak) {
+        const struct table_style style = table_style(request->options);
+        bench_kernels_print(&result, &style);
+    }
+    bench_kernels_free(&result);
+    return status;
+}
+
+/* --- which of them ---------------------------------------------------------------------------- */
+
+static const struct {
+    const char *flag;
+    enum status (*run)(struct request *request, struct error *error);
+} modes[] = {
+    {"kernels", kernels},
+};
+enum { MODES = sizeof modes / sizeof *modes };
+
 static enum status run(const struct options *options, int n, char **arguments, struct error *error)
 {
     struct request request = {.options = options, .n = n, .arguments = arguments};
+    enum status (*chosen)(struct request *, struct error *) = work_precision;
+    for (int m = 0; m < MODES; m++) {
+        if (!options_value(options, modes[m].flag)) continue;
+        if (chosen != work_precision)
+            return command_usage(options, error,
+                                 "--kernels, --skips and --scaling exclude each other");
+        chosen = modes[m].run;
+    }
     if (read_rules(&request, error)) return error->status;
     if (n > 0 && !strchr(arguments[0], '=')) {
         request.case_name = arguments[0];
         request.n--;
         request.arguments++;
     }
-    return work_precision(&request, error);
+    return chosen(&request, error);
 }
 
 static const struct command_option own_options[] = {
     {"n", "N1,N2,...", "numbers of particles (default: the case's ladder)"},
     {"vary", "KEY[=A,B][,...]", "every member of a family, or these values; all combinations"},
     {"plot", "FILE.svg|.png", "draw error against CPU time (needs gnuplot)"},
+    {"kernels", NULL, "ns per pair: kernels x solver loops and gradient operators x dimension"},
     {"time", "S", "CPU time of a sample, at least (default 0.02 s)"},
     {"samples", "N", "samples of each measurement (default 5); the least counts"},
     {NULL, NULL, NULL},
@@ -145,6 +210,7 @@ const struct command command_bench = {
                 "sphproof bench sod --vary kernel,gradient --n 200,400,800 --plot front.svg\n"
                 "sphproof bench strong_shock --vary "
                 "integrator=predicted_midpoint,rk3,viscosity --json -\n"
+                "sphproof bench --kernels --vary kernel=cubic_spline,quintic_spline\n"
                 "sphproof bench sod_standard kernel=quartic_spline --vary "
                 "viscosity=constant,reconstructed",
 };

@@ -123,6 +123,7 @@ COMMANDS = [
     ["converge", "sod", "--n", "20,40,60,80", "t_end=0.1"],
     ["converge", "sod", "--n", "20,40,60,80", "t_end=0.05", "--vary", "gradient"],
     ["bench", "--n", "20,40", "t_end=0.05", "--vary", "gradient", *BRIEF],
+    ["bench", "--kernels", "--vary", "kernel=cubic_spline", *BRIEF],
     ["bench", "sound_wave", "--n", "24,16", "--vary", "eta=1.5,0.1", *BRIEF],
     ["riemann", "1", "0", "1", "0.125", "0", "0.1", "--sample", "-1:1:5", "--time", "0.1"],
     ["riemann", "1", "-5", "0.4", "1", "5", "0.4"],

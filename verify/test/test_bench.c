@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "bench.h"
+#include "bench_limit.h"
 #include "near.h"
 #include "precision.h"
 
@@ -154,6 +155,56 @@ static void test_cost_of_an_error(void **state)
     near_relative(precision_cost_of(3, cost, broken, 1e-2), 1e6, 1e-12);
 }
 
+/* --- the practical limit ---------------------------------------------------------------------- */
+
+/* Contiguous arrays give the gradient that the operators find by search. */
+static void compare_limit(const struct kernel *kernel, const struct operator_form *form, int dim)
+{
+    enum { N = 64 };
+    double x[3][N], r[3][N], volume[N], f[N], h[N], sums[BENCH_LIMIT_SUMS], out[3][N], limit[3];
+    const double width = 0.37;
+    for (size_t i = 0; i < N; i++) {
+        for (size_t a = 0; a < 3; a++) { /* far from each other, near the first */
+            r[a][i] = i ? 0.55 * sin(12.9898 * (double)(i + 1) * (double)(a + 1)) : 0;
+            x[a][i] = 1.7 + width * r[a][i];
+        }
+        volume[i] = 0.6 + 0.3 * cos(3.1 * (double)i);
+        f[i] = 2.385 + sin(0.7 * (double)i);
+        h[i] = width;
+    }
+    struct cloud cloud = {.points = {.dim = dim, .n = N, .x = {x[0], x[1], x[2]}}, .h = h};
+    double physical[N];
+    for (size_t i = 0; i < N; i++) physical[i] = volume[i] * pow(width, dim);
+    cloud.volume = physical;
+    const struct operator_settings settings = {form, kernel, false, 1};
+    struct error error = {0};
+    assert_int_equal(operator_apply(&settings, &cloud, 1, (const double *const[]){f},
+                                    (double *const[]){out[0], out[1], out[2]}, NULL, NULL, &error),
+                     STATUS_OK);
+    const struct bench_neighbours list = {N, {r[0], r[1], r[2]}, volume, f};
+    bench_limit_find(kernel, form, dim)(kernel, &list, sums);
+    assert_true(bench_limit_gradient(kernel, form, dim, sums, f[0], width, limit));
+    double scale = 0, wrong = 0;
+    for (int a = 0; a < dim; a++) {
+        scale = fmax(scale, fabs(out[a][0]));
+        wrong = fmax(wrong, fabs(out[a][0] - limit[a]));
+    }
+    near_below(wrong / scale, 1e-10);
+}
+
+static void test_limit_does_the_same_arithmetic(void **state)
+{
+    (void)state;
+    for (size_t k = 0; k < kernel_family.n; k++) {
+        struct kernel kernel;
+        assert_int_equal(kernel_select(&kernel, kernel_family.members[k]->name, 5, NULL), 0);
+        for (size_t o = 0; o < operator_family.n; o++)
+            for (int dim = 1; dim <= 3; dim++)
+                compare_limit(&kernel, (const struct operator_form *)operator_family.members[o],
+                              dim);
+    }
+}
+
 /* --- the baseline ----------------------------------------------------------------------------- */
 
 static void compare_plain(const char *name, int n, char *const *more)
@@ -282,6 +333,7 @@ int main(void)
         cmocka_unit_test(test_breakdown_leaves_the_others),
         cmocka_unit_test(test_front),
         cmocka_unit_test(test_cost_of_an_error),
+        cmocka_unit_test(test_limit_does_the_same_arithmetic),
         cmocka_unit_test(test_plain_is_the_solver),
         cmocka_unit_test(test_plain_refuses_other_schemes),
         cmocka_unit_test(test_study),

@@ -1,0 +1,403 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "bench_kernels.h"
+
+#include <assert.h>
+#include <gsl/gsl_rng.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bench_limit.h"
+#include "bench_loops.h"
+#include "gradient_study.h"
+#include "result.h"
+#include "run.h"
+
+enum { VARIANTS = 3, PARTICLES = 1600, LIST = 1024 };
+enum variant { STAMPED, UNSTAMPED, LIMIT };
+
+/* One measurement: what a row's column is made from. */
+struct job {
+    enum { JOB_NONE, JOB_LOOPS, JOB_STEP, JOB_OPERATOR, JOB_LIMIT } kind;
+    double pairs, particles; /* of the work done once */
+    struct bench_loops loops;
+    struct run_settings *run;
+    struct operator_settings settings;
+    const struct clouds_cloud *cloud;
+    const double *field;
+    double *gradient[3]; /* into the bench's scratch */
+    bench_limit_loop *limit;
+    const struct bench_neighbours *list;
+};
+
+struct bench {
+    struct kernel kernels[SWEEP_VALUES_MAX];
+    size_t kernel_count, row_count, row_max;
+    struct job *jobs; /* VARIANTS a row */
+    struct clouds_settings cloud_settings[KERNEL_DIM_MAX];
+    struct clouds_cloud clouds[KERNEL_DIM_MAX];
+    double *fields[KERNEL_DIM_MAX], *scratch;
+    struct bench_neighbours lists[KERNEL_DIM_MAX];
+    double *list_memory;
+    struct bench_kernels *result;
+};
+
+/* --- the work --------------------------------------------------------------------------------- */
+
+static enum status step_work(struct job *job, uint64_t times, struct bench_taken *taken,
+                             struct error *error)
+{
+    for (uint64_t i = 0; i < times; i++) {
+        struct run_result result;
+        const enum status status = run_execute(job->run, &result, error);
+        if (!status) {
+            taken->wall_s += result.cost.wall_s;
+            taken->cpu_s += result.cost.cpu_s;
+            job->pairs = (double)result.cost.pair_interactions;
+            job->particles = (double)result.cost.particle_updates;
+        }
+        if (!status || status == STATUS_BROKE_DOWN) run_free(&result);
+        if (status) return status;
+    }
+    return STATUS_OK;
+}
+
+static enum status work(void *context, uint64_t times, struct bench_taken *taken,
+                        struct error *error)
+{
+    struct job *job = context;
+    if (job->kind == JOB_LOOPS) return bench_loops_work(&job->loops, times, taken, error);
+    if (job->kind == JOB_STEP) return step_work(job, times, taken, error);
+    enum status status = STATUS_OK;
+    const struct bench_taken start = bench_now();
+    for (uint64_t i = 0; i < times && !status; i++) {
+        double sums[BENCH_LIMIT_SUMS];
+        uint64_t pairs;
+        if (job->kind == JOB_LIMIT) {
+            job->limit(job->settings.kernel, job->list, sums);
+        } else {
+            status = operator_apply(&job->settings, &job->cloud->cloud, 1, &job->field,
+                                    job->gradient, NULL, &pairs, error);
+            job->pairs = (double)pairs;
+        }
+    }
+    bench_add(taken, &start);
+    return status;
+}
+
+/* --- set-up ----------------------------------------------------------------------------------- */
+
+/* Neighbours at random in the ball of radius 1, all of them inside. */
+static void make_list(struct bench *bench, int dim, gsl_rng *rng)
+{
+    struct bench_neighbours *list = &bench->lists[dim - 1];
+    double *memory = bench->list_memory + (size_t)(dim - 1) * 5 * LIST;
+    for (size_t m = 0; m < LIST; m++) {
+        double x[3], r2;
+        do {
+            r2 = 0;
+            for (int a = 0; a < dim; a++) {
+                x[a] = 2 * gsl_rng_uniform(rng) - 1;
+                r2 += x[a] * x[a];
+            }
+        } while (r2 >= 1);
+        for (int a = 0; a < dim; a++) memory[(size_t)a * LIST + m] = x[a];
+        memory[3 * LIST + m] = 1. / LIST;
+        memory[4 * LIST + m] = gsl_rng_uniform(rng);
+    }
+    *list = (struct bench_neighbours){.n = LIST,
+                                      .x = {memory, memory + LIST, memory + 2 * LIST},
+                                      .volume = memory + 3 * LIST,
+                                      .f = memory + 4 * LIST};
+}
+
+static enum status make_clouds(struct bench *bench, struct error *error)
+{
+    static const size_t side[] = {4096, 64, 16};
+    size_t most = 0;
+    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
+    bench->list_memory = calloc((size_t)KERNEL_DIM_MAX * 5 * LIST, sizeof(double));
+    if (!bench->list_memory) goto no_memory;
+    for (int dim = 1; dim <= KERNEL_DIM_MAX; dim++) {
+        struct clouds_settings *settings = &bench->cloud_settings[dim - 1];
+        struct clouds_cloud *cloud = &bench->clouds[dim - 1];
+        *settings = gradient_study_cloud(CLOUDS_JITTERED, dim);
+        settings->side = side[dim - 1];
+        settings->jitter = 0.2;
+        if (clouds_make(settings, cloud, error)) goto failed;
+        const size_t n = cloud->cloud.points.n;
+        double *field = bench->fields[dim - 1] = malloc(n * sizeof *field);
+        if (!field) goto no_memory;
+        for (size_t i = 0; i < n; i++) {
+            double x[3] = {0}, gradient[3];
+            for (int a = 0; a < dim; a++) x[a] = cloud->x[a][i];
+            field[i] = gradient_study_field(FIELD_SMOOTH, dim, x, gradient);
+        }
+        make_list(bench, dim, rng);
+        if (n > most) most = n;
+    }
+    bench->scratch = malloc(3 * most * sizeof(double));
+    if (!bench->scratch) goto no_memory;
+    for (size_t k = 0; k < bench->row_max * VARIANTS; k++)
+        for (size_t a = 0; a < 3; a++) bench->jobs[k].gradient[a] = bench->scratch + a * most;
+    gsl_rng_free(rng);
+    return STATUS_OK;
+no_memory:
+    error_set(error, STATUS_ENVIRONMENT, "no memory for clouds of points");
+failed:
+    gsl_rng_free(rng);
+    return error->status;
+}
+
+static struct job *new_row(struct bench *bench, const char *kernel, const char *what, int dim,
+                           bool on_cloud)
+{
+    assert(bench->row_count < bench->row_max);
+    const size_t row = bench->row_count++;
+    bench->result->rows[row] = (struct bench_kernel_row){
+        .kernel = kernel, .what = what, .dim = dim, .on_cloud = on_cloud, .error = (double)NAN};
+    return &bench->jobs[row * VARIANTS];
+}
+
+static enum status prepare_loops(struct job *job, const struct scheme *scheme, bool stamped,
+                                 unsigned passes, struct error *error)
+{
+    job->kind = JOB_LOOPS;
+    if (bench_loops_create(&job->loops, scheme, PARTICLES, stamped, passes, error))
+        return error->status;
+    job->pairs = (double)job->loops.pairs;
+    job->particles = PARTICLES;
+    return STATUS_OK;
+}
+
+/* The solver with one kernel and gradient: each loop, and whole steps of a sound wave. */
+static enum status add_solver(struct bench *bench, const char *kernel, const char *gradient,
+                              struct error *error)
+{
+    static const struct {
+        const char *name;
+        unsigned passes;
+        bool ia, both; /* belongs to ia; to both gradients, then named after it */
+    } loops[] = {
+        {"density", 1u << PASS_DENSITY, false, false},
+        {"matrix", 1u << PASS_MATRIX, true, false},
+        {"force", 1u << PASS_FORCE, false, true},
+    };
+    const bool ia = strcmp(gradient, "ia") == 0;
+    char keys[2][64];
+    snprintf(keys[0], sizeof keys[0], "kernel=%s", kernel);
+    snprintf(keys[1], sizeof keys[1], "gradient=%s", gradient);
+    char *arguments[] = {keys[0],  keys[1],     "viscosity=constant",
+                         "n=1600", "skip=none", "t_end=0.1"};
+    struct run_settings *run = malloc(sizeof *run);
+    if (!run) return error_set(error, STATUS_ENVIRONMENT, "no memory");
+    struct job *step = new_row(bench, kernel, ia ? "step ia" : "step standard", 1, false);
+    step[STAMPED].run = run; /* owned by the first job */
+    if (run_prepare(run, "sound_wave", sizeof arguments / sizeof *arguments, arguments, error))
+        return error->status;
+    run->threads = 1;
+    struct settings resolved = run->settings;
+    struct scheme scheme;
+    if (settings_resolve(&resolved, 1, &scheme, error)) return error->status;
+    for (enum variant v = STAMPED; v <= UNSTAMPED; v++) {
+        step[v].kind = JOB_STEP;
+        if (v == UNSTAMPED && !(step[v].run = malloc(sizeof *run)))
+            return error_set(error, STATUS_ENVIRONMENT, "no memory");
+        *step[v].run = *run;
+        step[v].run->unstamped = v == UNSTAMPED;
+    }
+    const unsigned all = 1u << PASS_DENSITY | 1u << PASS_MATRIX | 1u << PASS_FORCE;
+    if (prepare_loops(&step[LIMIT], &scheme, true, all, error)) return error->status;
+    for (size_t l = 0; l < sizeof loops / sizeof *loops; l++) {
+        if (loops[l].ia != ia && !loops[l].both) continue;
+        const char *name = !loops[l].both ? loops[l].name : ia ? "force ia" : "force standard";
+        struct job *job = new_row(bench, kernel, name, 1, false);
+        for (enum variant v = STAMPED; v <= UNSTAMPED; v++)
+            if (prepare_loops(&job[v], &scheme, v == STAMPED, loops[l].passes, error))
+                return error->status;
+    }
+    return STATUS_OK;
+}
+
+static enum status add_operator(struct bench *bench, const struct kernel *kernel,
+                                const struct operator_form *form, int dim, struct error *error)
+{
+    struct job *job = new_row(bench, kernel->member.name, form->member.name, dim, true);
+    struct bench_kernel_row *row = &bench->result->rows[bench->row_count - 1];
+    const struct gradient_subject subject = {.form = form};
+    const struct clouds_cloud *cloud = &bench->clouds[dim - 1];
+    struct gradient_errors errors;
+    if (gradient_study_errors(&subject, kernel, &bench->cloud_settings[dim - 1], cloud,
+                              FIELD_SMOOTH, &errors, error))
+        return error->status;
+    row->error = errors.interior_rms;
+    for (enum variant v = STAMPED; v <= LIMIT; v++) {
+        job[v].kind = v == LIMIT ? JOB_LIMIT : JOB_OPERATOR;
+        job[v].settings = (struct operator_settings){
+            .form = form, .kernel = kernel, .unstamped = v == UNSTAMPED, .threads = 1};
+        job[v].cloud = cloud;
+        job[v].field = bench->fields[dim - 1];
+        job[v].particles = (double)cloud->cloud.points.n;
+    }
+    job[LIMIT].list = &bench->lists[dim - 1];
+    job[LIMIT].limit = bench_limit_find(kernel, form, dim);
+    job[LIMIT].pairs = LIST;
+    return STATUS_OK;
+}
+
+static enum status choose_kernels(struct bench *bench, const struct sweep *sweep,
+                                  struct error *error)
+{
+    if (sweep->key_count > 1 || (sweep->key_count && sweep->keys[0].key != SETTING_kernel))
+        return error_set(error, STATUS_BAD_INPUT,
+                         "bench --kernels: --vary %s: allowed: kernel or kernel=A,B,...",
+                         setting_keys[sweep->keys[sweep->key_count - 1].key].name);
+    bench->kernel_count = sweep->key_count ? sweep->keys[0].count : kernel_family.n;
+    for (size_t k = 0; k < bench->kernel_count; k++) {
+        const char *name =
+            sweep->key_count ? sweep->keys[0].values[k] : kernel_family.members[k]->name;
+        if (kernel_select(&bench->kernels[k], name, 5, error)) return error->status;
+    }
+    enum { SOLVER_ROWS = 6 }; /* see add_solver */
+    bench->row_max = bench->kernel_count * (SOLVER_ROWS + KERNEL_DIM_MAX * operator_family.n);
+    bench->jobs = calloc(bench->row_max * VARIANTS, sizeof *bench->jobs);
+    bench->result->rows = calloc(bench->row_max, sizeof *bench->result->rows);
+    if (bench->jobs && bench->result->rows) return STATUS_OK;
+    return error_set(error, STATUS_ENVIRONMENT, "no memory for %zu measurements", bench->row_max);
+}
+
+static enum status set_up(struct bench *bench, const struct sweep *sweep, struct error *error)
+{
+    if (choose_kernels(bench, sweep, error) || make_clouds(bench, error)) return error->status;
+    for (size_t k = 0; k < bench->kernel_count; k++) {
+        const struct kernel *kernel = &bench->kernels[k];
+        for (size_t g = 0; g < gradient_family.n; g++)
+            if (add_solver(bench, kernel->member.name, gradient_family.members[g]->name, error))
+                return error->status;
+        for (int dim = 1; dim <= KERNEL_DIM_MAX; dim++)
+            for (size_t o = 0; o < operator_family.n; o++)
+                if (add_operator(bench, kernel,
+                                 (const struct operator_form *)operator_family.members[o], dim,
+                                 error))
+                    return error->status;
+    }
+    return STATUS_OK;
+}
+
+static void clean_up(struct bench *bench)
+{
+    for (size_t k = 0; bench->jobs && k < bench->row_max * VARIANTS; k++) {
+        if (bench->jobs[k].kind == JOB_LOOPS) bench_loops_free(&bench->jobs[k].loops);
+        free(bench->jobs[k].run);
+    }
+    for (int dim = 0; dim < KERNEL_DIM_MAX; dim++) {
+        clouds_free(&bench->clouds[dim]);
+        free(bench->fields[dim]);
+    }
+    free(bench->jobs), free(bench->scratch), free(bench->list_memory);
+}
+
+static struct bench_cost cost_of(const struct job *job, const struct bench_subject *subject)
+{
+    if (job->kind == JOB_NONE || subject->failure.status)
+        return (struct bench_cost){(double)NAN, (double)NAN};
+    return (struct bench_cost){1e9 * subject->time.cpu_s / job->pairs, subject->time.spread};
+}
+
+enum status bench_kernels_measure(const struct sweep *sweep, const struct bench_rules *rules,
+                                  bench_progress *progress, void *context,
+                                  struct bench_kernels *result, struct error *error)
+{
+    struct bench bench = {.result = result};
+    struct bench_subject *subjects = NULL;
+    *result = (struct bench_kernels){0};
+    enum status status = set_up(&bench, sweep, error);
+    if (status) goto end;
+    subjects = calloc(bench.row_count * VARIANTS, sizeof *subjects);
+    if (!subjects) {
+        status = error_set(error, STATUS_ENVIRONMENT, "no memory");
+        goto end;
+    }
+    size_t count = 0;
+    for (size_t k = 0; k < bench.row_count * VARIANTS; k++)
+        if (bench.jobs[k].kind != JOB_NONE)
+            subjects[count++] = (struct bench_subject){.work = work, .context = &bench.jobs[k]};
+    if ((status = bench_measure(subjects, count, rules, progress, context, error))) goto end;
+    result->count = bench.row_count;
+    const struct bench_subject *next = subjects;
+    for (size_t r = 0; r < bench.row_count; r++) {
+        struct bench_kernel_row *row = &result->rows[r];
+        const struct job *job = &bench.jobs[r * VARIANTS];
+        struct bench_cost *const costs[] = {&row->stamped, &row->unstamped, &row->limit};
+        row->pairs = job->pairs / job->particles;
+        row->ns_per_particle = 1e9 * next->time.cpu_s / job->particles;
+        for (size_t v = 0; v < VARIANTS; v++) {
+            *costs[v] = cost_of(&job[v], next);
+            next += job[v].kind != JOB_NONE;
+        }
+    }
+end:
+    clean_up(&bench);
+    free(subjects);
+    return status;
+}
+
+void bench_kernels_free(struct bench_kernels *result)
+{
+    free(result->rows);
+    *result = (struct bench_kernels){0};
+}
+
+/* --- results ---------------------------------------------------------------------------------- */
+
+void bench_kernels_add_json(const struct bench_kernels *result, json_t *document)
+{
+    json_t *rows = json_array();
+    for (size_t i = 0; i < result->count; i++) {
+        const struct bench_kernel_row *row = &result->rows[i];
+        const bool limit = isfinite(row->limit.ns_per_pair);
+        json_array_append_new(
+            rows,
+            json_pack("{s:s, s:s, s:s, s:i, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "kernel",
+                      row->kernel, "of", row->on_cloud ? "operator" : "solver", "what", row->what,
+                      "dim", row->dim, "pairs_per_particle", result_number(row->pairs),
+                      "ns_per_particle", result_number(row->ns_per_particle), "ns_per_pair",
+                      result_number(row->stamped.ns_per_pair), "spread",
+                      result_number(row->stamped.spread), "ns_per_pair_unstamped",
+                      result_number(row->unstamped.ns_per_pair), "ns_per_pair_limit",
+                      limit ? result_number(row->limit.ns_per_pair) : json_null(),
+                      "limit_over_this",
+                      limit ? result_number(row->limit.ns_per_pair / row->stamped.ns_per_pair)
+                            : json_null(),
+                      "error", row->on_cloud ? result_number(row->error) : json_null()));
+    }
+    json_object_set_new(document, "kernels", rows);
+}
+
+void bench_kernels_print(const struct bench_kernels *result, const struct table_style *style)
+{
+    printf("%s%-18s %-22s %3s %7s %9s %9s %7s %10s %9s %7s %10s%s\n", style->bold, "kernel", "what",
+           "dim", "pairs", "ns/part.", "ns/pair", "spread", "unstamped", "limit", "of it", "error",
+           style->end);
+    for (size_t i = 0; i < result->count; i++) {
+        const struct bench_kernel_row *row = &result->rows[i];
+        printf("%-18s %-22s %3d %7.3g %9.4g %9.3g %6.0f%% %10.3g", row->kernel, row->what, row->dim,
+               row->pairs, row->ns_per_particle, row->stamped.ns_per_pair,
+               100 * row->stamped.spread, row->unstamped.ns_per_pair);
+        if (isfinite(row->limit.ns_per_pair))
+            printf(" %9.3g %6.0f%%", row->limit.ns_per_pair,
+                   100 * row->limit.ns_per_pair / row->stamped.ns_per_pair);
+        else
+            printf(" %9s %7s", "-", "-");
+        if (row->on_cloud) printf(" %10.2e", row->error);
+        printf("\n");
+    }
+    printf("%sns: CPU time of one thread. step: whole steps of the 1D solver (sound wave, n = %d), "
+           "its limit the same\nloops with neighbours known; density, matrix, force: these loops "
+           "one by one. Others: gradient operators on\n4096 jittered points, search included, "
+           "h = 2.4 spacings; their limit is the same arithmetic on one\ncontiguous array. "
+           "unstamped: every choice and the kernel behind a pointer. error: rms of a smooth\n"
+           "field's gradient error, times h/max|f|.%s\n",
+           style->faint, PARTICLES, style->end);
+}

@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What a pair costs: every kernel in the solver's 1D loops and steps and in every gradient operator
+ * in 1D, 2D and 3D; stamped, unstamped, and the same arithmetic where nothing has to be found. */
+#ifndef SPHPROOF_BENCH_KERNELS_H
+#define SPHPROOF_BENCH_KERNELS_H
+
+#include <jansson.h>
+
+#include "bench.h"
+#include "sweep.h"
+#include "table.h"
+
+struct bench_cost {
+    double ns_per_pair, spread; /* NaN: does not apply */
+};
+
+struct bench_kernel_row {
+    const char *kernel, *what; /* what: "density", "step ia", an operator's name ... */
+    bool on_cloud;             /* a gradient operator on a cloud of points, else the 1D solver */
+    int dim;
+    double pairs; /* a particle */
+    double ns_per_particle;
+    struct bench_cost stamped, unstamped, limit;
+    double error; /* operators: rms of |gradient error| h/max|f|, smooth field, jittered cloud */
+};
+
+struct bench_kernels {
+    size_t count;
+    struct bench_kernel_row *rows;
+};
+
+/* sweep: which kernels (its one key may be kernel; no key: all). Free with bench_kernels_free, also
+ * after a failure. */
+enum status bench_kernels_measure(const struct sweep *sweep, const struct bench_rules *rules,
+                                  bench_progress *progress, void *context,
+                                  struct bench_kernels *result, struct error *error);
+void bench_kernels_free(struct bench_kernels *result);
+
+/* Array "kernels" of a result document. */
+void bench_kernels_add_json(const struct bench_kernels *result, json_t *document);
+void bench_kernels_print(const struct bench_kernels *result, const struct table_style *style);
+
+#endif

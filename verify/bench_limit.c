@@ -1,0 +1,107 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * One pass over the neighbours: sums of V p f, V p, V p (x) x with p = x w or (x/q) dw/dq, and for
+ * the normalised kernel also those of V w, V w f, V w x, into which its gradient separates. */
+#include "bench_limit.h"
+
+#include <math.h>
+
+#include "loop.h"
+#include "matrix.h"
+
+/* Places of the sums. */
+enum { PF = 0, P = 3, PX = 6, W = 15, WF = 16, WX = 17, USED = 20 };
+
+ALWAYS_INLINE void sum_up(const struct kernel *kernel, kernel_shape *w, kernel_shape *dw,
+                          enum pair_vector vector, bool matrix, int dim,
+                          const struct bench_neighbours *list, double *restrict sums)
+{
+    const double *restrict x0 = list->x[0], *restrict x1 = list->x[1], *restrict x2 = list->x[2],
+                           *restrict volume = list->volume, *restrict f = list->f;
+    enum { LANES = 8 };
+    double lane[USED][LANES] = {{0}};
+    for (size_t begin = 0; begin < list->n; begin += LANES)
+#pragma omp simd
+        for (int k = 0; k < LANES; k++) {
+            const size_t m = begin + (size_t)k;
+            const double x[3] = {x0[m], dim > 1 ? x1[m] : 0, dim > 2 ? x2[m] : 0};
+            const double q = dim == 1   ? fabs(x[0])
+                             : dim == 2 ? sqrt(x[0] * x[0] + x[1] * x[1])
+                                        : sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
+            const double V = volume[m], Vf = V * f[m];
+            const double shape = vector == PAIR_GRADIENT ? 0 : w(kernel, q, dim);
+            const double factor = vector == PAIR_POSITION ? shape
+                                  : q > 0                 ? -dw(kernel, q, dim) / q
+                                                          : 0;
+            for (int a = 0; a < dim; a++) {
+                const double p = factor * x[a];
+                lane[PF + a][k] += Vf * p;
+                lane[P + a][k] += V * p;
+                for (int b = 0; b < dim && matrix; b++) lane[PX + 3 * a + b][k] += V * p * x[b];
+            }
+            if (vector == PAIR_NORMALISED) {
+                lane[W][k] += V * shape;
+                lane[WF][k] += Vf * shape;
+                for (int a = 0; a < dim; a++) lane[WX + a][k] += V * shape * x[a];
+            }
+        }
+    for (int s = 0; s < USED; s++) {
+        sums[s] = 0;
+        for (int k = 0; k < LANES; k++) sums[s] += lane[s][k];
+    }
+}
+
+#define BODY(name, tag, vector, matrix, dim)                                                       \
+    CLONES static void name##_##tag##_##dim(const struct kernel *kernel,                           \
+                                            const struct bench_neighbours *list, double *sums)     \
+    {                                                                                              \
+        sum_up(kernel, name##_w, name##_dw, vector, matrix, dim, list, sums);                      \
+    }
+#define DIMENSIONS(X, name, tag, vector, matrix)                                                   \
+    X(name, tag, vector, matrix, 1) X(name, tag, vector, matrix, 2) X(name, tag, vector, matrix, 3)
+/* The kinds of sums that the five operators need. */
+#define KINDS(X, name)                                                                             \
+    DIMENSIONS(X, name, plain, PAIR_GRADIENT, false)                                               \
+    DIMENSIONS(X, name, position, PAIR_POSITION, true)                                             \
+    DIMENSIONS(X, name, normalised, PAIR_NORMALISED, true)
+
+#define KERNEL(name, ...) KINDS(BODY, name)
+#include "kernels.def"
+#undef KERNEL
+
+#define ENTRY(name, tag, vector, matrix, dim) [vector][dim - 1] = name##_##tag##_##dim,
+static bench_limit_loop *const loops[][3][KERNEL_DIM_MAX] = {
+#define KERNEL(name, ...) {KINDS(ENTRY, name)},
+#include "kernels.def"
+#undef KERNEL
+};
+
+bench_limit_loop *bench_limit_find(const struct kernel *kernel, const struct operator_form *form,
+                                   int dim)
+{
+    return loops[family_index(&kernel_family, kernel->member.name)][form->pair_vector][dim - 1];
+}
+
+bool bench_limit_gradient(const struct kernel *kernel, const struct operator_form *form, int dim,
+                          const double *sums, double f_0, double h, double *gradient)
+{
+    const bool normalised = form->pair_vector == PAIR_NORMALISED;
+    double pf[3] = {0}, matrix[9] = {0}, inverse[9];
+    for (int a = 0; a < dim; a++) {
+        const double mean = normalised ? sums[P + a] / sums[W] : 0;
+        pf[a] = sums[PF + a] - mean * sums[WF];
+        /* normalised vectors sum to nothing: the difference is for free */
+        if (form->difference) pf[a] -= f_0 * (sums[P + a] - mean * sums[W]);
+        for (int b = 0; b < dim; b++)
+            matrix[a * dim + b] = sums[PX + 3 * a + b] - mean * sums[WX + b];
+    }
+    if (!form->corrected) {
+        for (int a = 0; a < dim; a++) gradient[a] = pf[a] * kernel->constant[dim] / h;
+        return true;
+    }
+    if (!matrix_invert(dim, matrix, inverse)) return false;
+    for (int a = 0; a < dim; a++) {
+        gradient[a] = 0;
+        for (int b = 0; b < dim; b++) gradient[a] += inverse[a * dim + b] * pf[b] / h;
+    }
+    return true;
+}

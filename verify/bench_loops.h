@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The solver's 1D pair loops by themselves: a state of particles that stands still, neighbour
+ * offsets known, arrays contiguous, nothing searched. What a whole step costs beyond this is
+ * search, bookkeeping and memory. */
+#ifndef SPHPROOF_BENCH_LOOPS_H
+#define SPHPROOF_BENCH_LOOPS_H
+
+#include <stdbool.h>
+
+#include "bench.h"
+#include "loops.h"
+
+struct bench_loops {
+    struct scheme scheme;
+    struct loops loops;
+    struct pair_numbers numbers; /* points into scheme: do not move the struct */
+    struct particles particles;
+    ptrdiff_t reach; /* offsets that the widths cover */
+    double *scratch;
+    unsigned passes; /* what bench_loops_work runs: 1 << enum bench_pass */
+    uint64_t pairs;  /* of one run of these passes, counted as the solver counts */
+};
+
+enum bench_pass { PASS_DENSITY, PASS_MATRIX, PASS_FORCE, PASS_SIGNAL };
+
+/* A slightly disordered lattice of n particles, with every array that the scheme's loops read;
+ * passes that the scheme does not have are left out. stamped: as in loops_choose.
+ * STATUS_ENVIRONMENT: no memory. Free with bench_loops_free, also after a failure. */
+enum status bench_loops_create(struct bench_loops *loops, const struct scheme *scheme, size_t n,
+                               bool stamped, unsigned passes, struct error *error);
+void bench_loops_free(struct bench_loops *loops);
+
+/* A bench_work; context: struct bench_loops. */
+enum status bench_loops_work(void *context, uint64_t times, struct bench_taken *taken,
+                             struct error *error);
+
+#endif
