@@ -27,6 +27,9 @@ const json_t *page_order(const json_t *study, const char *field, const char *nor
 void page_convergence(struct page_writer *writer, const char *case_name,
                       const json_t *const *documents, size_t count);
 
+/* Where the errors of these studies come from, by regions; nothing where that is not known. */
+void page_budget(struct page_writer *writer, const json_t *const *documents, size_t count);
+
 void page_overview(struct page_writer *writer, const json_t *results);
 void page_cases(struct page_writer *writer, const json_t *results);
 void page_bench(struct page_writer *writer, const json_t *bench);

@@ -220,5 +220,6 @@ void page_convergence(struct page_writer *writer, const char *case_name,
     error_table(to, studies, count);
     buffer_add(to, "</div></div>\n");
     order_table(to, studies, count);
+    page_budget(writer, documents, count);
     free(studies);
 }

@@ -83,6 +83,32 @@ static void judge_run(struct tally *tally, const json_t *run)
     fail(tally, "run", html_string(run, "case"), &detail, html_string(run, "reproduce"));
 }
 
+static void judge_still_gas(struct tally *tally, const json_t *study, const json_t *still)
+{
+    const char *status = html_string(still, "status");
+    if (!strcmp(status, "pass")) tally->gates_passed++;
+    if (strcmp(status, "fail")) return;
+    tally->gates_failed++;
+    struct buffer detail = {0}, name = {0};
+    buffer_format(&name, "%s, %s: still gas", html_string(study, "case"),
+                  html_string(study, "label"));
+    buffer_add(&detail, "gas that no wave has reached moves at ");
+    html_number(&detail, html_member(still, "value"));
+    buffer_add(&detail, " of its sound speed, allowed is ");
+    html_number(&detail, html_member(still, "bound"));
+    if (!name.failed)
+        fail(tally, "convergence", name.data, &detail, html_string(study, "reproduce"));
+    buffer_free(&name);
+}
+
+/* What gave no result at all. */
+static void judge_trouble(struct tally *tally, const json_t *trouble)
+{
+    struct buffer detail = {0};
+    buffer_add(&detail, html_string(trouble, "message"));
+    fail(tally, "harness", html_string(trouble, "name"), &detail, "sphproof report --force");
+}
+
 static void judge_study(struct tally *tally, const json_t *study)
 {
     size_t i;
@@ -115,6 +141,16 @@ static void judge_study(struct tally *tally, const json_t *study)
         fail(tally, "suspicion", html_string(study, "case"), &detail,
              html_string(study, "reproduce"));
     }
+    json_array_foreach(json_object_get(study, "budgets"), i, order)
+    {
+        judge_still_gas(tally, study, json_object_get(order, "still_gas"));
+    }
+    if (*html_string(study, "suspicion")) {
+        struct buffer detail = {0};
+        buffer_format(&detail, "too good to be true: %s", html_string(study, "suspicion"));
+        fail(tally, "suspicion", html_string(study, "case"), &detail,
+             html_string(study, "reproduce"));
+    }
     if (!strcmp(html_string(study, "status"), "broke_down")) {
         struct buffer detail = {0};
         buffer_format(&detail, "broke down: %s", html_string(study, "message"));
@@ -141,6 +177,7 @@ json_t *verdict_make(const json_t *results)
     const json_t *entry;
     json_array_foreach(json_object_get(results, "runs"), i, entry) judge_run(&tally, entry);
     json_array_foreach(json_object_get(results, "studies"), i, entry) judge_study(&tally, entry);
+    json_array_foreach(json_object_get(results, "trouble"), i, entry) judge_trouble(&tally, entry);
     judge_verify(&tally, json_object_get(results, "verify"));
 
     struct buffer words = {0};

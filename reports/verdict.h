@@ -10,6 +10,7 @@
  *                   "exact": {"x", "density", "velocity", "pressure"}}]
  *   studies         [converge documents, and "label", "reproduce"]
  *   verify          verify document
+ *   trouble         [{"name", "message"}]: what gave no result, its process having crashed
  *   kernels         [kernel documents, and "reproduce"]
  *   bench           [bench documents, and "reproduce"]
  *   gradients       {"rows": [{flat: operator, ...}], "reproduce"}
