@@ -64,7 +64,7 @@ static void judge(struct check_run *run, const struct simulation *simulation,
     struct snapshot got;
     struct rates rates;
     struct simulation_cost cost;
-    double x = 0, v = 0, u = 0, rho = 0, alpha = 0;
+    double x = 0, v = 0, u = 0, rho = 0, alpha = 0, outside = 0;
     const long double kinetic = oracle->scheme.energy == ENERGY_TOTAL ? 0.5L : 0;
     simulation_snapshot(simulation, &got);
     simulation_rates(simulation, &rates);
@@ -73,6 +73,8 @@ static void judge(struct check_run *run, const struct simulation *simulation,
         const struct oracle_particle *want = &oracle->particles[got.id[i]];
         const long double away = got.x[0][i] - want->x;
         widen(&x, away - oracle->period * roundl(away / oracle->period));
+        outside += !(got.x[0][i] >= (double)oracle->lo &&
+                     got.x[0][i] < (double)(oracle->lo + oracle->period));
         widen(&v, got.v[0][i] - want->p / want->m);
         widen(&u, got.u[i] - (want->e - kinetic * want->p * want->p / want->m) / want->m);
         widen(&rho, got.rho[i] - want->rho);
@@ -80,6 +82,7 @@ static void judge(struct check_run *run, const struct simulation *simulation,
     }
     const double bound = 1e-11, floor = 2e-13;
     check_measure(run, x, bound, floor, "position, %s", where);
+    check_measure(run, outside, 0, 0, "positions outside the box, %s", where);
     check_measure(run, v, bound, floor, "velocity, %s", where);
     check_measure(run, u, bound, floor, "internal energy, %s", where);
     if (oracle->scheme.integrator->ends_evaluated)
