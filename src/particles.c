@@ -5,8 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "range.h"
-
 enum { LINE = 8 }; /* doubles in a cache line */
 
 #define FIELD(name, meaning) +1
@@ -92,14 +90,12 @@ static void permute(struct particles *particles, double *array)
     memcpy(array, particles->spare, (size_t)particles->n * sizeof *array);
 }
 
-ptrdiff_t particles_sort(struct particles *particles)
+bool particles_sort(struct particles *particles)
 {
     const ptrdiff_t n = particles->n;
     double *x = particles->x, *x_old = particles->x_old;
-    const double out_of_order = range_crossings(particles, 0, n - 1);
-    if (out_of_order <= 0 && x[n - 1] <= x[0] + particles->period) return 0;
     for (ptrdiff_t i = 0; i < n; i++)
-        if (!isfinite(x[i])) return -1;
+        if (!isfinite(x[i])) return false;
 
     /* All into one period that starts at the first particle, then a stable insertion sort: the
      * order is nearly right. */
@@ -122,5 +118,5 @@ ptrdiff_t particles_sort(struct particles *particles)
 #undef FIELD
     for (ptrdiff_t i = 0; i < n; i++) particles->order[i] = particles->id[particles->order[i]];
     memcpy(particles->id, particles->order, (size_t)n * sizeof *particles->id);
-    return out_of_order > 0 ? (ptrdiff_t)out_of_order : 1;
+    return true;
 }

@@ -5,6 +5,7 @@
 #ifndef SPHPROOF_PARTICLES_H
 #define SPHPROOF_PARTICLES_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "status.h"
@@ -69,8 +70,8 @@ enum status particles_grow_ghosts(struct particles *particles, ptrdiff_t ghosts,
 void particles_fill_ghosts(const struct particles *particles, double *array, ptrdiff_t count,
                            double shift);
 
-/* Restores the order of positions if particles have crossed, also across the ends of the box.
- * Returns the number of particles out of order (0: nothing was done), -1 for a NaN position. */
-ptrdiff_t particles_sort(struct particles *particles);
+/* Restores the order of positions, also across the ends of the box. false: a position is not
+ * finite, and nothing has been done. */
+bool particles_sort(struct particles *particles);
 
 #endif

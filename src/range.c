@@ -149,14 +149,13 @@ CLONES static double rate(const struct particles *particles, ptrdiff_t first, in
 {
     const double *restrict signal = particles->signal + first, *restrict h_inverse =
                                                                    particles->h_inverse + first;
-    double lane[8] = {0}; /* a maximum a lane: clang does not vectorise reduction(max) */
-    int i = 0;
-    for (; i + 8 <= len; i += 8)
+    double of[RANGE_MAX];
 #pragma omp simd
-        for (int k = 0; k < 8; k++) lane[k] = largest(signal[i + k] * h_inverse[i + k], lane[k]);
-    for (; i < len; i++) lane[0] = largest(signal[i] * h_inverse[i], lane[0]);
-    for (int k = 1; k < 8; k++) lane[0] = largest(lane[0], lane[k]);
-    return lane[0];
+    for (int i = 0; i < RANGE_MAX; i++) of[i] = i < len ? signal[i] * h_inverse[i] : 0;
+    /* by halves: clang does not vectorise reduction(max) */
+    for (int half = RANGE_MAX / 2; half > 0; half /= 2)
+        for (int i = 0; i < half; i++) of[i] = largest(of[i], of[i + half]);
+    return of[0];
 }
 
 double range_primitives(const struct particles *particles, ptrdiff_t first, ptrdiff_t len,

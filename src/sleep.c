@@ -58,21 +58,19 @@ static void lay_out(struct simulation *simulation)
 {
     struct sleep *sleep = &simulation->sleep;
     sleep->span_count = sleep->awake_count = simulation->range_count = 0;
-    sleep->rate = 0;
-    for (ptrdiff_t group = 0; group < sleep->groups; group++) {
-        if (!sleep->awake[group]) {
-            sleep->rate = fmax(sleep->rate, sleep->group_rate[group]);
-            continue;
-        }
-        const ptrdiff_t first = group * SLEEP_GROUP;
-        const int len = group_len(simulation, group);
-        sleep->awake_count += len;
-        struct span *last = sleep->span_count ? &sleep->spans[sleep->span_count - 1] : NULL;
-        if (last && last->first + last->len == first)
-            last->len += len;
-        else
-            sleep->spans[sleep->span_count++] = (struct span){first, len};
+    double rate = 0;
+    for (ptrdiff_t group = 0; group < sleep->groups;) {
+        const ptrdiff_t begin = group;
+        for (; group < sleep->groups && !sleep->awake[group]; group++)
+            rate = sleep->group_rate[group] > rate ? sleep->group_rate[group] : rate;
+        if (group > begin) continue;
+        while (group < sleep->groups && sleep->awake[group]) group++;
+        const ptrdiff_t first = begin * SLEEP_GROUP, n = simulation->particles.n;
+        const ptrdiff_t end = group * SLEEP_GROUP < n ? group * SLEEP_GROUP : n;
+        sleep->spans[sleep->span_count++] = (struct span){first, end - first};
+        sleep->awake_count += end - first;
     }
+    sleep->rate = rate;
     for (ptrdiff_t s = 0; s < sleep->span_count; s++)
         for (ptrdiff_t done = 0; done < sleep->spans[s].len; done += RANGE_MAX) {
             const ptrdiff_t left = sleep->spans[s].len - done;
