@@ -19,7 +19,7 @@ static int group_len(const struct simulation *simulation, ptrdiff_t group)
  * n eps. */
 static double tolerance(const struct simulation *simulation)
 {
-    return fmax(1e-10, 1e3 * DBL_EPSILON * (double)simulation->particles.n);
+    return fmax(1e-11, 30 * DBL_EPSILON * (double)simulation->particles.n);
 }
 
 static bool group_disturbed(const struct simulation *simulation, ptrdiff_t group)
@@ -40,7 +40,7 @@ static bool group_disturbed(const struct simulation *simulation, ptrdiff_t group
  * in one step, so it comes twice the reach of pairs closer. */
 static ptrdiff_t margin(ptrdiff_t reach)
 {
-    return (2 * reach + 2 + SLEEP_GROUP - 1) / SLEEP_GROUP + 1;
+    return (2 * reach + 2 + SLEEP_GROUP - 1) / SLEEP_GROUP;
 }
 
 static void wake(struct sleep *sleep, ptrdiff_t group, ptrdiff_t reach)
