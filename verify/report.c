@@ -16,13 +16,13 @@
 #include "verdict.h"
 
 /* compared: the schemes below get the case's gates too, with a wider bound of the error; not where
- * one of them is known to have no order yet at these resolutions. */
+ * one of them is known to have no order yet at these resolutions. benched: what an error costs. */
 static const struct {
     const char *name;
-    bool compared;
-} cases[] = {{"sod", true},           {"sod_standard", true},
-             {"strong_shock", false}, {"two_rarefactions", true},
-             {"lax", true},           {"sound_wave", true}};
+    bool compared, benched;
+} cases[] = {{"sod", true, true},           {"sod_standard", true, true},
+             {"strong_shock", false, true}, {"two_rarefactions", true, false},
+             {"lax", true, false},          {"sound_wave", true, true}};
 
 /* The default scheme, and the two gradients with all else equal. */
 static const struct {
@@ -104,6 +104,12 @@ static enum status add_all(struct report *report, struct error *error)
                 add_piece(report, run, error))
                 return error->status;
         }
+    for (int c = 0; c < CASES; c++) {
+        struct report_piece bench = {.kind = REPORT_BENCH, .where = cases[c].name};
+        if (cases[c].benched &&
+            (prepare(c, 0, &bench.settings, error) || add_piece(report, bench, error)))
+            return error->status;
+    }
     for (size_t g = 0; g < group_count; g++)
         if (add_piece(report, (struct report_piece){.kind = REPORT_CHECKS, .where = groups[g]},
                       error))
@@ -174,7 +180,7 @@ static void add_trouble(json_t *results, const struct report_piece *piece,
 /* Runs are listed by case and scheme, as they were added. */
 static void add_documents(struct report *report, json_t *results)
 {
-    json_t *runs = json_array(), *kernels = json_array(), *verify = NULL;
+    json_t *runs = json_array(), *kernels = json_array(), *bench = json_array(), *verify = NULL;
     size_t run = 0;
     for (size_t k = 0; k < report->piece_count; k++) {
         const struct report_piece *piece = &report->pieces[k];
@@ -196,6 +202,9 @@ static void add_documents(struct report *report, json_t *results)
         case REPORT_LEAGUE:
             json_object_set(results, "gradients", job->document);
             break;
+        case REPORT_BENCH:
+            json_array_append(bench, job->document);
+            break;
         case REPORT_CHECKS:
             if (!verify) json_object_set_new(results, "verify", verify = result_new("verify"));
             report_piece_join(verify, job->document);
@@ -204,6 +213,7 @@ static void add_documents(struct report *report, json_t *results)
     }
     json_object_set_new(results, "runs", runs);
     json_object_set_new(results, "kernels", kernels);
+    json_object_set_new(results, "bench", bench);
 }
 
 static json_t *collect(struct report *report, double seconds)

@@ -8,6 +8,7 @@
 #include "certificate.h"
 #include "check.h"
 #include "league.h"
+#include "precision.h"
 #include "profile.h"
 #include "result.h"
 #include "run_job.h"
@@ -76,6 +77,34 @@ static enum status compute_league(json_t **document, struct error *error)
     return status;
 }
 
+/* Schemes that answer the two first questions: which kernel, which gradient. */
+#define BENCH_VARY "kernel=quadratic_spline,cubic_spline,quartic_spline,gradient"
+
+static enum status compute_bench(const struct report_piece *piece, json_t **document,
+                                 struct error *error)
+{
+    const struct bench_rules rules = {.least_s = 0.01, .most_s = 1, .samples = 3};
+    const struct case_file *file = &piece->settings.file;
+    struct precision precision = {0};
+    struct sweep *sweep = calloc(1, sizeof *sweep);
+    if (!sweep) return error_set(error, STATUS_ENVIRONMENT, "no memory for a bench");
+    enum status status = sweep_parse(sweep, BENCH_VARY, error);
+    if (!status)
+        status = precision_measure(&piece->settings, sweep, file->ladder, file->ladder_count,
+                                   &rules, NULL, NULL, &precision, error);
+    if (!status) {
+        char reproduce[256];
+        snprintf(reproduce, sizeof reproduce, "sphproof bench %s --vary %s --time %g --samples %d",
+                 piece->where, BENCH_VARY, rules.least_s, rules.samples);
+        *document = result_new("bench");
+        precision_add_json(&precision, *document);
+        json_object_set_new(*document, "reproduce", json_string(reproduce));
+    }
+    precision_free(&precision);
+    free(sweep);
+    return status;
+}
+
 static enum status compute(const void *context, json_t **document, struct error *error)
 {
     const struct report_piece *piece = context;
@@ -88,14 +117,16 @@ static enum status compute(const void *context, json_t **document, struct error 
         return compute_kernel(piece, document, error);
     case REPORT_LEAGUE:
         return compute_league(document, error);
+    case REPORT_BENCH:
+        return compute_bench(piece, document, error);
     }
     return STATUS_OK;
 }
 
 enum status report_piece_add(struct pool *pool, struct report_piece *piece, struct error *error)
 {
-    static const char *const names[] = {"profile", "checks", "kernel", "league"};
-    static const double weights[] = {0, 4, 0.1, 2}; /* about seconds */
+    static const char *const names[] = {"profile", "checks", "kernel", "league", "work-precision"};
+    static const double weights[] = {0, 4, 0.1, 2, 5}; /* about seconds */
     char name[128], *run = NULL, *key = name;
     snprintf(name, sizeof name, "%s of %s", names[piece->kind], piece->where);
     if (piece->kind == REPORT_CHECKS && piece->slow) strcat(name, ", slow ones too");

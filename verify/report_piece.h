@@ -1,20 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The pieces of a report that are no studies: runs with their profiles, groups of checks, kernel
- * certificates, the league of gradient operators; each one job of a pool. */
+ * certificates, the league of gradient operators, what an error costs; each one job of a pool. */
 #ifndef SPHPROOF_REPORT_PIECE_H
 #define SPHPROOF_REPORT_PIECE_H
 
 #include "pool.h"
 #include "run.h"
 
-enum report_kind { REPORT_RUN, REPORT_CHECKS, REPORT_KERNEL, REPORT_LEAGUE };
+enum report_kind { REPORT_RUN, REPORT_CHECKS, REPORT_KERNEL, REPORT_LEAGUE, REPORT_BENCH };
 
 struct report_piece {
     enum report_kind kind;
     const char *where;            /* case, group, kernel */
     int dim;                      /* of a kernel */
     bool slow;                    /* the slow checks too */
-    struct run_settings settings; /* of a run */
+    struct run_settings settings; /* of a run or a bench */
     size_t job;                   /* its number, from report_piece_add */
 };
 

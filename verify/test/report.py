@@ -31,7 +31,8 @@ def read(*path):
 def without_costs(value):
     """Everything that must be the same in two reports of one program."""
     if isinstance(value, dict):
-        drop = ("cost", "cpu_s", "wall_s", "seconds", "date")
+        drop = ("cost", "bench", "cpu_s", "wall_s", "seconds", "date", "ns_per_point",
+                "ns_per_pair")
         return {k: without_costs(v) for k, v in value.items() if k not in drop}
     return [without_costs(v) for v in value] if isinstance(value, list) else value
 
