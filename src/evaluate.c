@@ -13,7 +13,7 @@
 #include <omp.h>
 #endif
 
-enum { NEWTON_MAX = 200, RANGES_WORTH_A_THREAD = 24, NO_GHOSTS = -2 };
+enum { NEWTON_MAX = 200, NO_GHOSTS = -2 };
 
 static int thread_number(void)
 {
@@ -31,7 +31,7 @@ typedef void range_pass(struct simulation *simulation, struct range *range, int 
 static void for_ranges(struct simulation *simulation, range_pass *pass)
 {
     const ptrdiff_t count = simulation->range_count;
-    if (simulation->threads == 1 || count < RANGES_WORTH_A_THREAD) {
+    if (simulation->threads == 1 || count < WORTH_A_THREAD) {
         for (ptrdiff_t b = 0; b < count; b++) pass(simulation, &simulation->ranges[b], 0);
         return;
     }

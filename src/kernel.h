@@ -25,7 +25,10 @@ struct kernel {
     int smoothness[KERNEL_DIM_MAX + 1];  /* class C^k: least over origin, knots and edge */
     double unity_width; /* smallest eta in 1D whose lattice sums are exact; 0: none */
     double default_eta; /* eta where the user gives none, in 1D */
-    int order;          /* n of sinc_n; 0 for the others */
+    /* Largest eta at which the uniform 1D lattice is linearly stable without viscosity,
+     * vanilla_ice, gamma 1.4, with the standard and the ia gradient; 0: no limit was found. */
+    double stable_eta[2];
+    int order; /* n of sinc_n; 0 for the others */
     /* A plug-in's own functions (see verify/plugin.h); NULL for the built-in kernels. */
     double (*plugin_w)(double q, int dim);
     double (*plugin_dw)(double q, int dim);

@@ -2,7 +2,9 @@
 #include "plan.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "integrator.h"
 #include "simulation.h"
@@ -40,19 +42,40 @@ static void line(struct writer *writer, const char *pass, bool runs, const char 
     snprintf(next->why, sizeof next->why, "%s", runs ? why_runs : why_not);
 }
 
-/* Where eta lies against the widths at which lattice sums are exact (M_n: multiples of n/2). */
-static void warn(const struct scheme *scheme, char *text, size_t size)
+/* Adds a sentence to the warnings. */
+__attribute__((format(printf, 3, 4))) static void warn(char *text, size_t size, const char *format,
+                                                       ...)
 {
-    const double unity = scheme->kernel.unity_width;
-    const double off = unity > 0 ? fabs(scheme->eta / unity - round(scheme->eta / unity)) : 0;
+    const size_t used = strlen(text);
+    va_list arguments;
+    va_start(arguments, format);
+    if (used + 2 < size) {
+        const int n = snprintf(text + used, size - used, "%s", used ? "; " : "");
+        vsnprintf(text + used + n, size - used - (size_t)n, format, arguments);
+    }
+    va_end(arguments);
+}
+
+static void find_warnings(const struct scheme *scheme, char *text, size_t size)
+{
+    const double unity = scheme->kernel.unity_width, eta = scheme->eta;
+    const double limit = scheme->kernel.stable_eta[scheme->gradient];
+    const double off = unity > 0 ? fabs(eta / unity - fmax(1, round(eta / unity))) * unity : 0;
     text[0] = '\0';
-    if (unity > 0 && (off * unity > 0.03 * scheme->eta || scheme->eta < 0.97 * unity))
-        snprintf(text, size,
-                 "eta = %g is off the partition-of-unity widths of %s (multiples of %g): errors "
-                 "will level off at the lattice-sum floor",
-                 scheme->eta, scheme->kernel.member.name, unity);
-    else if (scheme->energy == ENERGY_TOTAL && scheme->viscosity == VISCOSITY_NONE)
-        snprintf(text, size, "energy=total in cold flow (u << v^2): U = E - p^2/2m loses digits");
+    if (off > 0.03 * eta)
+        warn(text, size,
+             "eta = %g is off the partition-of-unity widths of %s (multiples of %g): errors will "
+             "level off at the lattice-sum floor",
+             eta, scheme->kernel.member.name, unity);
+    if (limit > 0 && eta > limit)
+        warn(
+            text, size,
+            "eta = %g is beyond %g, where %s with gradient=%s turns linearly unstable: noise grows "
+            "unless viscosity hides it",
+            eta, limit, scheme->kernel.member.name,
+            gradient_family.members[scheme->gradient]->name);
+    if (scheme->energy == ENERGY_TOTAL && scheme->viscosity == VISCOSITY_NONE)
+        warn(text, size, "energy=total in cold flow (u << v^2): U = E - p^2/2m loses digits");
 }
 
 size_t plan_explain(const struct scene *scene, struct plan_line *lines, size_t max, char *warnings,
@@ -89,6 +112,6 @@ size_t plan_explain(const struct scene *scene, struct plan_line *lines, size_t m
          "skip=none: every particle at every step");
     line(&writer, "final state", !scheme->integrator->ends_evaluated,
          "density and equation of state once more at t_end", "the last evaluation was at t_end");
-    if (warnings && warnings_size) warn(scheme, warnings, warnings_size);
+    if (warnings && warnings_size) find_warnings(scheme, warnings, warnings_size);
     return writer.count;
 }

@@ -12,6 +12,8 @@
 #include "simulation.h"
 #include "sleep.h"
 
+enum { WORTH_A_THREAD = 32 }; /* ranges: with fewer of them threads cost more than they save */
+
 /* Up to RANGE_MAX neighbouring particles that are worked on together. */
 struct range {
     ptrdiff_t first;

@@ -22,8 +22,12 @@ static void print_measured(const struct certificate *c, double h, FILE *stream)
     fprintf(stream, "  %-28s %.10g h^4\n", "fourth moment (per axis)", c->moments.fourth);
     fprintf(stream, "  %-28s W(0) = %.10g, so eta must exceed %.6g\n", "self-term",
             kernel_value(kernel, 0, h, dim), kernel_least_eta(kernel, dim));
-    fprintf(stream, "  %-28s C%d%s", "class", c->class.class,
-            c->class.class == MEASURE_CLASS_MAX ? " or higher" : "");
+    fprintf(stream, "  %-28s ", "class");
+    if (c->class.class < 0)
+        fprintf(stream, "discontinuous");
+    else
+        fprintf(stream, "C%d%s", c->class.class,
+                c->class.class == MEASURE_CLASS_MAX ? " or higher" : "");
     if (c->class.class < MEASURE_CLASS_MAX && c->class.class != kernel->smoothness[dim])
         fprintf(stream, " (declared C%d)", kernel->smoothness[dim]);
     if (c->class.at == 0 || c->class.at == 1)

@@ -19,6 +19,10 @@ void check_measure(struct check_run *run, double value, double bound, double flo
 /* The figure could not be measured here, and why; neither passes nor fails. */
 void check_skip(struct check_run *run, const char *why, ...) __attribute__((format(printf, 2, 3)));
 
+/* True once a mutant has been rejected: long loops over subjects may stop there. Never true for a
+ * right subject. */
+bool check_decided(const struct check_run *run);
+
 /* Data behind the figures (n points), kept with a failure and plotted there: y over x. */
 void check_series(struct check_run *run, const char *label, size_t n, const double *x,
                   const double *y);

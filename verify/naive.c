@@ -22,13 +22,19 @@ static bool pair_load(struct pair *pair, const struct kernel *kernel, enum naive
 {
     const int dim = cloud->points.dim;
     real r2 = 0, h = cloud->h[fault == NAIVE_WIDTH_OF_NEIGHBOUR ? j : i];
+    double shift[3] = {0}, d2 = 0; /* to the nearest image; far pairs are not worth more */
+    for (int a = 0; a < dim; a++) {
+        const double d = cloud->points.x[a][j] - cloud->points.x[a][i];
+        const double length =
+            cloud->points.periodic ? cloud->points.hi[a] - cloud->points.lo[a] : 0;
+        shift[a] = d > 0.5 * length ? -length : d < -0.5 * length ? length : 0;
+        d2 += (d + shift[a]) * (d + shift[a]);
+    }
+    if (d2 > 1.001 * (double)(h * h)) return false;
     if (fault == NAIVE_WIDTH_1D) h *= power(powl(cloud->volume[i], 1 / (real)dim), dim - 1);
     for (int a = 0; a < dim; a++) {
         pair->x[a] = (real)cloud->points.x[a][j] - cloud->points.x[a][i];
-        if (cloud->points.periodic) { /* nearest image */
-            const real length = (real)cloud->points.hi[a] - cloud->points.lo[a];
-            pair->x[a] -= length * roundl(pair->x[a] / length);
-        }
+        pair->x[a] += shift[a];
         r2 += pair->x[a] * pair->x[a];
     }
     pair->r = sqrtl(r2);

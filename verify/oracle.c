@@ -18,9 +18,7 @@ enum status oracle_create(struct oracle *oracle, const struct scene *scene, stru
                               .period = (long double)scene->hi[0] - scene->lo[0],
                               .gamma = scene->gamma,
                               .n = scene->n};
-    const struct kernel *kernel = &scene->scheme.kernel;
-    if (!oracle_kernel_find(&oracle->kernel, kernel->member.name, kernel->order))
-        return error_set(error, STATUS_BAD_INPUT, "oracle: no kernel %s", kernel->member.name);
+    oracle->kernel = oracle_kernel_find(&oracle->scheme.kernel);
     oracle->particles = calloc(scene->n, sizeof *oracle->particles);
     oracle->start = calloc(scene->n, sizeof *oracle->start);
     if (!oracle->particles || !oracle->start) {
@@ -59,13 +57,12 @@ static long double separation(const struct oracle *oracle, size_t i, size_t j, i
 
 static long double W(const struct oracle *oracle, long double x, long double h)
 {
-    return oracle->kernel.constant / h * oracle->kernel.w(oracle->kernel.parameter, fabsl(x) / h);
+    return oracle->kernel.constant / h * oracle_kernel_w(&oracle->kernel, fabsl(x) / h);
 }
 
 static long double dW_dr(const struct oracle *oracle, long double x, long double h)
 {
-    return oracle->kernel.constant / (h * h) *
-           oracle->kernel.dw(oracle->kernel.parameter, fabsl(x) / h);
+    return oracle->kernel.constant / (h * h) * oracle_kernel_dw(&oracle->kernel, fabsl(x) / h);
 }
 
 static long double dW_dh(const struct oracle *oracle, long double x, long double h)

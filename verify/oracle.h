@@ -29,8 +29,8 @@ struct oracle {
     struct oracle_particle *start;     /* n, workspace of the integrators */
 };
 
-/* Takes a 1D scene. STATUS_BAD_INPUT: a kernel that the oracle does not know, an integrator
- * likewise. Free with oracle_free. */
+/* Takes a 1D scene; the oracle must stay where it is. STATUS_ENVIRONMENT: no memory. Free with
+ * oracle_free. */
 enum status oracle_create(struct oracle *oracle, const struct scene *scene, struct error *error);
 void oracle_free(struct oracle *oracle);
 
@@ -43,7 +43,8 @@ void oracle_signals(struct oracle *oracle);
 /* The time step of the present signal speeds. */
 long double oracle_time_step(const struct oracle *oracle);
 
-/* Advances by dt; rates must be there, and are when it returns. */
+/* Advances by dt; rates must be there, and are when it returns. STATUS_BAD_INPUT: an integrator
+ * that the oracle does not know. */
 enum status oracle_step(struct oracle *oracle, long double dt, struct error *error);
 
 /* Steps to t_end; oracle_evaluate is called first. */

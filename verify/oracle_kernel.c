@@ -107,36 +107,51 @@ static long double constant_by_quadrature(const struct oracle_kernel *kernel)
     return 1 / (2 * (sum + (sum - last) / 15));
 }
 
-bool oracle_kernel_find(struct oracle_kernel *kernel, const char *name, int sinc_order)
+long double oracle_kernel_w(const struct oracle_kernel *kernel, long double q)
+{
+    if (kernel->source) return kernel->source->w(kernel->source, (double)q, 1);
+    return kernel->w(kernel->parameter, q);
+}
+
+long double oracle_kernel_dw(const struct oracle_kernel *kernel, long double q)
+{
+    if (kernel->source) return kernel->source->dw(kernel->source, (double)q, 1);
+    return kernel->dw(kernel->parameter, q);
+}
+
+/* int of (knot - q)^(n-1) from 0 to knot, summed over the knots: half of the normalisation. */
+static long double spline_constant(int n)
+{
+    long double half = 0;
+    for (int k = 0; 2 * k < n; k++) half += factor_of_knot(n, k) * power(1 - 2.0L * k / n, n) / n;
+    return 1 / (2 * half);
+}
+
+struct oracle_kernel oracle_kernel_find(const struct kernel *source)
 {
     static const struct {
         const char *name;
         struct oracle_kernel kernel;
     } table[] = {
-        {"quadratic_spline", {0, spline_w, spline_dw, 3}},
-        {"cubic_spline", {4 / 3.0L, cubic_w, cubic_dw, 4}},
-        {"quartic_spline", {0, spline_w, spline_dw, 5}},
-        {"quintic_spline", {0, spline_w, spline_dw, 6}},
-        {"wendland_c2", {5 / 4.0L, wendland_w, wendland_dw, 3}},
-        {"wendland_c4", {3 / 2.0L, wendland_w, wendland_dw, 5}},
-        {"wendland_c6", {55 / 32.0L, wendland_w, wendland_dw, 7}},
-        {"sinc", {0, sinc_w, sinc_dw, 5}},
+        {"quadratic_spline", {0, spline_w, spline_dw, 3, NULL}},
+        {"cubic_spline", {4 / 3.0L, cubic_w, cubic_dw, 4, NULL}},
+        {"quartic_spline", {0, spline_w, spline_dw, 5, NULL}},
+        {"quintic_spline", {0, spline_w, spline_dw, 6, NULL}},
+        {"wendland_c2", {5 / 4.0L, wendland_w, wendland_dw, 3, NULL}},
+        {"wendland_c4", {3 / 2.0L, wendland_w, wendland_dw, 5, NULL}},
+        {"wendland_c6", {55 / 32.0L, wendland_w, wendland_dw, 7, NULL}},
+        {"sinc", {0, sinc_w, sinc_dw, 5, NULL}},
     };
     for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
-        if (strcmp(name, table[i].name) != 0) continue;
-        *kernel = table[i].kernel;
-        if (kernel->w == sinc_w) {
-            kernel->parameter = sinc_order;
-            kernel->constant = constant_by_quadrature(kernel);
-        } else if (kernel->constant == 0) {
-            /* int of (knot - q)^(n-1) from 0 to knot, summed over the knots */
-            long double half = 0;
-            const int n = kernel->parameter;
-            for (int k = 0; 2 * k < n; k++)
-                half += factor_of_knot(n, k) * power(1 - 2.0L * k / n, n) / n;
-            kernel->constant = 1 / (2 * half);
+        if (strcmp(source->member.name, table[i].name) != 0) continue;
+        struct oracle_kernel kernel = table[i].kernel;
+        if (kernel.w == sinc_w) {
+            kernel.parameter = source->order;
+            kernel.constant = constant_by_quadrature(&kernel);
+        } else if (kernel.constant == 0) {
+            kernel.constant = spline_constant(kernel.parameter);
         }
-        return true;
+        return kernel;
     }
-    return false;
+    return (struct oracle_kernel){.constant = source->constant[1], .source = source};
 }

@@ -1,19 +1,25 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Kernels of the oracle: w(q) and dw/dq in long double, in the textbook's piecewise form, and their
- * constants. Nothing of src's kernels is used. */
+ * constants. Nothing of src's own kernels is used. */
 #ifndef SPHPROOF_ORACLE_KERNEL_H
 #define SPHPROOF_ORACLE_KERNEL_H
 
-#include <stdbool.h>
+#include "kernel.h"
 
 struct oracle_kernel {
     long double constant; /* C_1: W = C_1/h w(r/h) in 1D */
     long double (*w)(int parameter, long double q);
     long double (*dw)(int parameter, long double q);
-    int parameter; /* of a spline: its M_n; of sinc_n: n */
+    int parameter;               /* of a spline: its M_n; of sinc_n: n */
+    const struct kernel *source; /* of a kernel that the oracle does not know: itself; else NULL */
 };
 
-/* The kernel by its key, in 1D; false if the oracle does not know it. */
-bool oracle_kernel_find(struct oracle_kernel *kernel, const char *name, int sinc_order);
+/* The kernel in 1D, by its name. One that the oracle does not know, such as a new one, is taken as
+ * it is: then the sums are judged, not the kernel (group kernels does that). */
+struct oracle_kernel oracle_kernel_find(const struct kernel *source);
+
+/* w and dw/dq at q >= 0. */
+long double oracle_kernel_w(const struct oracle_kernel *kernel, long double q);
+long double oracle_kernel_dw(const struct oracle_kernel *kernel, long double q);
 
 #endif

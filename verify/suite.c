@@ -28,6 +28,7 @@ struct check_run {
     size_t figure_count, series_count;
     double began; /* of the figure being measured */
     bool no_memory;
+    bool mutant, rejected;
 };
 
 static double clock_now(void)
@@ -65,6 +66,7 @@ static void add_figure(struct check_run *run, struct figure figure)
         free(figure.subject);
         return;
     }
+    run->rejected = run->rejected || (run->mutant && figure.status == FIGURE_FAIL);
     run->figures[run->figure_count++] = figure;
 }
 
@@ -88,6 +90,11 @@ void check_measure(struct check_run *run, double value, double bound, double flo
                                     .bound = bound,
                                     .floor = floor,
                                     .status = pass ? FIGURE_PASS : FIGURE_FAIL});
+}
+
+bool check_decided(const struct check_run *run)
+{
+    return run->rejected;
 }
 
 void check_skip(struct check_run *run, const char *why, ...)
@@ -203,7 +210,7 @@ static bool run_mutants(struct suite *suite, const struct check *check)
     bool any = false, sound = true;
     for (const struct check_mutant *mutant = check->mutants; sound && mutant && mutant->name;
          mutant++) {
-        struct check_run run = {.check = check, .began = clock_now()};
+        struct check_run run = {.check = check, .began = clock_now(), .mutant = true};
         check->measure(&run, mutant->subject);
         const struct mutant_outcome outcome = judge_mutant(&run, mutant);
         any = any || outcome.detected;

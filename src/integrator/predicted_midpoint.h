@@ -7,8 +7,8 @@
 #define INTEGRATOR_PREDICTED_MIDPOINT_H
 
 /* The predicted x, v and U go where the evaluation reads them; p and e stay those of the state. */
-CLONES static void predict_midpoint(const struct simulation *simulation, const struct span *span,
-                                    double dt)
+CLONES static double predict_midpoint(const struct simulation *simulation, const struct span *span,
+                                      double dt)
 {
     const struct particles *a = &simulation->particles;
     const ptrdiff_t end = span->first + span->len;
@@ -27,11 +27,11 @@ CLONES static void predict_midpoint(const struct simulation *simulation, const s
         v[i] = v_half;
         U[i] = largest(e[i] + de[i] * half - kinetic * p_half * v_half, 0.5 * U_now);
     }
-    if (!simulation->plan.alpha) return;
-    for (ptrdiff_t i = span->first; i < end; i++) {
+    for (ptrdiff_t i = span->first; simulation->plan.alpha && i < end; i++) {
         a->alpha_old[i] = a->alpha[i];
         a->alpha[i] += a->dalpha[i] * half;
     }
+    return 0;
 }
 
 /* Returns how many particles are left without internal energy. */
@@ -59,6 +59,31 @@ CLONES static double advance_from_midpoint(const struct simulation *simulation,
     return unsound;
 }
 
+/* One of the two above over all that moves: sleepers in moving gas drift, those at rest are left
+ * alone. A count of particles: its sum does not depend on the order. */
+static double move_all(const struct simulation *simulation, double dt,
+                       double (*move)(const struct simulation *, const struct span *, double))
+{
+    const struct sleep *sleep = &simulation->sleep;
+    const struct span all = {0, simulation->particles.n};
+    const bool spans = sleep->on && sleep->at_rest;
+    double count = 0;
+    for (ptrdiff_t s = 0; s < (spans ? sleep->span_count : 1); s++) {
+        const struct span *span = spans ? &sleep->spans[s] : &all;
+        const ptrdiff_t parts = span->len >= WORTH_A_THREAD * RANGE_MAX ? simulation->threads : 1;
+        if (parts == 1) {
+            count += move(simulation, span, dt);
+            continue;
+        }
+#pragma omp parallel for num_threads((int)parts) reduction(+ : count)
+        for (ptrdiff_t k = 0; k < parts; k++) {
+            const ptrdiff_t begin = span->len * k / parts, end = span->len * (k + 1) / parts;
+            count += move(simulation, &(struct span){span->first + begin, end - begin}, dt);
+        }
+    }
+    return count;
+}
+
 static enum status name_unsound(const struct simulation *simulation, struct error *error)
 {
     const struct particles *a = &simulation->particles;
@@ -69,25 +94,15 @@ static enum status name_unsound(const struct simulation *simulation, struct erro
     }
 }
 
+/* Should all wake in between, because particles have crossed: those who slept have x_old = x and no
+ * rates, which is what the prediction would have left. */
 static enum status predicted_midpoint_step(struct simulation *simulation, double dt,
                                            struct error *error)
 {
-    /* sleepers in moving gas drift, those at rest are left alone */
-    const struct sleep *sleep = &simulation->sleep;
-    const struct span all = {0, simulation->particles.n};
-    const bool spans = sleep->on && sleep->at_rest;
-    const ptrdiff_t count = spans ? sleep->span_count : 1;
-    for (ptrdiff_t s = 0; s < count; s++)
-        predict_midpoint(simulation, spans ? &sleep->spans[s] : &all, dt);
+    move_all(simulation, dt, predict_midpoint);
     const enum status status = evaluate_rates_of_primitives(simulation, error);
     if (status) return status;
-    /* all may have woken meanwhile, if particles have crossed */
-    double unsound = 0;
-    if (sleep->on && spans)
-        for (ptrdiff_t s = 0; s < count; s++)
-            unsound += advance_from_midpoint(simulation, &sleep->spans[s], dt);
-    else
-        unsound = advance_from_midpoint(simulation, &all, dt);
+    const double unsound = move_all(simulation, dt, advance_from_midpoint);
     return unsound > 0 ? name_unsound(simulation, error) : STATUS_OK;
 }
 

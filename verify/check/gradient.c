@@ -80,8 +80,13 @@ static void measure_brute_force(struct check_run *run, const void *subject)
             const struct clouds_settings settings = gradient_study_cloud(kind, dim);
             const struct kernel kernel = kernel_at(k);
             struct clouds_cloud cloud;
+            const bool periodic = kind <= CLOUDS_JITTERED;
             double value = (double)NAN;
-            if (!clouds_make(&settings, &cloud, NULL)) value = departure(s, &kernel, &cloud);
+            if (!clouds_make(&settings, &cloud, NULL)) {
+                cloud.cloud.points.periodic = periodic;
+                for (int a = 0; a < dim; a++) cloud.cloud.points.hi[a] = 1;
+                value = departure(s, &kernel, &cloud);
+            }
             clouds_free(&cloud);
             check_measure(run, value, 1e-12, 1e-14, "%s, %s, %dD, %s", s->form->member.name,
                           kernel.member.name, dim, clouds_name(kind));

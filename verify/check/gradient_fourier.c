@@ -89,7 +89,7 @@ static double symbol(const struct gradient_subject *subject, const struct kernel
 
 static void measure_fourier(struct check_run *run, const void *subject)
 {
-    static const size_t side[] = {0, 40, 20, 12};
+    static const size_t side[] = {0, 40, 18, 9};
     const struct gradient_subject *s = subject;
     const char *name = s->form->member.name;
     struct kernel kernel = {0};

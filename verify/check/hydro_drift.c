@@ -72,7 +72,7 @@ static void measure_drift(struct check_run *run, const void *subject)
     const struct drift_subject *s = subject;
     hydro_tube(&state, TUBE);
     for (size_t i = 0; i < integrator_family.n; i++)
-        for (int c = 0; c < COMBINATIONS; c++) {
+        for (int c = 0; c < COMBINATIONS && !check_decided(run); c++) {
             struct scheme scheme =
                 combination(c, (const struct integrator *)integrator_family.members[i]);
             struct integrator wrapped = *scheme.integrator;

@@ -53,6 +53,12 @@ void hydro_expanding(struct hydro_state *state, size_t n)
     }
 }
 
+void hydro_coincident(struct hydro_state *state, size_t n)
+{
+    hydro_disordered(state, n);
+    state->x[1] = state->x[0];
+}
+
 void hydro_wave(struct hydro_state *state, size_t n)
 {
     *state = (struct hydro_state){.n = n, .lo = 0, .hi = 1, .gamma = 1.4};

@@ -21,6 +21,8 @@ void hydro_disordered(struct hydro_state *state, size_t n);
 void hydro_contact(struct hydro_state *state, size_t n);
 /* Everything recedes from the dense middle, which limits the time step, except at the cold ends. */
 void hydro_expanding(struct hydro_state *state, size_t n);
+/* Disordered, with two particles in one place. */
+void hydro_coincident(struct hydro_state *state, size_t n);
 /* A smooth wave of 10 % in all fields, on [0, 1]. */
 void hydro_wave(struct hydro_state *state, size_t n);
 /* A tube 1 0 1 | 0.125 0 0.1 with its mirror image, on [-1, 1]. */

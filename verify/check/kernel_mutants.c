@@ -468,7 +468,7 @@ mutant_list kernel_mutants_radial_derivative = {OUTER_SIGN, PRINTED,  GRADIENT_S
                                                 NINTH,      BALANCED, END};
 mutant_list kernel_mutants_width_derivative = {DH_NARROW,    DH_POWER, DH_OUTER,
                                                DH_DIMENSION, BALANCED, END};
-mutant_list kernel_mutants_support = {SUPPORT_0999, UNCLAMPED, TAIL, END};
+mutant_list kernel_mutants_support = {UNSHIFTED, SUPPORT_0999, UNCLAMPED, TAIL, END};
 mutant_list kernel_mutants_sign = {OUTER_SIGN, GRADIENT_SIGN, LOBE, END};
 mutant_list kernel_mutants_continuity = {
     KNOT_HOLE, KNOT_049, KNOT_DECLARED, KNOT_SECOND, KNOT_VALUE, CLASS, ORIGIN, UNSHIFTED, END};

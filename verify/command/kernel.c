@@ -90,7 +90,7 @@ static void print_derived(const struct user_kernel *user)
     };
     for (size_t i = 0; user->library && i < sizeof list / sizeof *list; i++)
         printf("  %-28s %s%s\n", list[i].what, list[i].found ? "not supplied: found " : "supplied",
-               list[i].found ? list[i].how : ": checked below");
+               list[i].found ? list[i].how : " and checked");
     if (user->library) printf("\n");
 }
 

@@ -7,6 +7,7 @@
 #include "command.h"
 #include "integrator.h"
 #include "kernel.h"
+#include "operator.h"
 #include "result.h"
 #include "settings.h"
 #include "suite.h"
@@ -89,6 +90,7 @@ PLAIN(gradient)
 PLAIN(formulation)
 PLAIN(volume_element)
 PLAIN(integrator)
+PLAIN(operator)
 PLAIN(viscosity)
 PLAIN(energy)
 PLAIN(pair_width)
@@ -96,10 +98,22 @@ PLAIN(h_method)
 PLAIN(field)
 PLAIN(norm)
 
-static const struct family *(*const lists[])(void) = {
-    cases,           kernels,        gradient_list, formulation_list, volume_element_list,
-    integrator_list, viscosity_list, energy_list,   pair_width_list,  h_method_list,
-    field_list,      norm_list,      checks,        mutants,          keys};
+static const struct family *(*const lists[])(void) = {cases,
+                                                      kernels,
+                                                      gradient_list,
+                                                      operator_list,
+                                                      formulation_list,
+                                                      volume_element_list,
+                                                      integrator_list,
+                                                      viscosity_list,
+                                                      energy_list,
+                                                      pair_width_list,
+                                                      h_method_list,
+                                                      field_list,
+                                                      norm_list,
+                                                      checks,
+                                                      mutants,
+                                                      keys};
 enum { LISTS = sizeof lists / sizeof *lists };
 
 static void print_family(const struct family *family, const struct table_style *style)

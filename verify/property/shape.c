@@ -35,6 +35,10 @@ void property_support(const struct pieces *pieces, struct property_sink *sink)
         }
         property_take_worst(sink, &worst);
     }
+    double floor;
+    const double last = pieces_derivative(pieces, 1, pieces->edge[pieces->n - 1], 0, &floor);
+    property_take(sink, fabs(last), measure_significant * floor, floor,
+                  "w = %.3g just inside the edge: it must go to 0 there", last);
     const bool reaches = kernel->w(kernel, inside, dim) != 0;
     property_take(sink, reaches ? 0 : 1, 0, 0, "w(%g) = 0: the support ends before q = 1", inside);
 }

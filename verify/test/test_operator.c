@@ -175,6 +175,41 @@ static void test_periodic(void **state)
                      STATUS_BAD_INPUT);
 }
 
+/* States at their limits: dim + 1 points including itself, condition number 1e6. */
+static void test_states(void **state)
+{
+    (void)state;
+    const struct kernel kernel = kernel_named("quadratic_spline");
+    const double V[] = {1, 1, 1, 1, 1}, h[] = {1, 1, 1, 1, 1};
+    const struct operator_settings settings = {operator_at(3), &kernel, false, 1};
+    for (int dim = 1; dim <= 3; dim++)
+        for (size_t n = 1; n <= 5; n++) {
+            const double x[] = {0, 0.4, 0, 0, 0.4}, y[] = {0, 0, 0.4, 0, 0.4};
+            const double z[] = {0, 0, 0, 0.4, 0.4};
+            struct computed c;
+            const struct cloud cloud = {{.dim = dim, .n = n, .x = {x, y, z}}, V, h};
+            compute(&settings, &cloud, &c);
+            assert_int_equal(c.point[0].neighbours, n);
+            assert_int_equal(c.point[0].state == OPERATOR_TOO_FEW_NEIGHBOURS, n < (size_t)dim + 1);
+            assert_string_equal(operator_state_name(c.point[0].state),
+                                n < (size_t)dim + 1 ? "too_few_neighbours" : "ok");
+            release(&c);
+        }
+    for (int above = 0; above < 2; above++) { /* T = diag(1, 1e-6) but for a few per cent */
+        const double s = 0.4,
+                     root = sqrt(kernel_value(&kernel, s, 1, 2) / kernel_value(&kernel, 0, 1, 2));
+        const double t = s * root * (above ? 0.97e-3 : 1.03e-3);
+        const double x[] = {0, s, -s, 0, 0}, y[] = {0, 0, 0, t, -t};
+        struct computed c;
+        const struct cloud cloud = {{.dim = 2, .n = 5, .x = {x, y}}, V, h};
+        compute(&settings, &cloud, &c);
+        const double ratio = kernel_value(&kernel, s, 1, 2) / kernel_value(&kernel, t, 1, 2);
+        near_relative(c.point[0].condition, s * s / (t * t) * ratio, 1e-12);
+        assert_int_equal(c.point[0].state, above ? OPERATOR_ILL_CONDITIONED : OPERATOR_OK);
+        release(&c);
+    }
+}
+
 static void test_odd_clouds(void **state)
 {
     (void)state;
@@ -321,8 +356,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_brute_force), cmocka_unit_test(test_same_result),
-        cmocka_unit_test(test_periodic),    cmocka_unit_test(test_odd_clouds),
-        cmocka_unit_test(test_summation),   cmocka_unit_test(test_matrix),
+        cmocka_unit_test(test_periodic),    cmocka_unit_test(test_states),
+        cmocka_unit_test(test_odd_clouds),  cmocka_unit_test(test_summation),
+        cmocka_unit_test(test_matrix),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
