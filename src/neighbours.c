@@ -11,11 +11,6 @@
 
 enum { BLOCK = NEIGHBOURS_BLOCK, FAN = 8, IMAGES_MAX = 8 };
 
-static size_t smaller(size_t a, size_t b)
-{
-    return a < b ? a : b;
-}
-
 /* The lowest bits of x, stride apart. */
 static uint64_t spread(uint64_t x, int stride)
 {
@@ -112,7 +107,7 @@ static bool order_points(struct neighbours *nb, const struct points *points)
     free(entries);
     for (int a = 0; a < dim; a++)
         for (size_t i = 0; i < nb->blocks * BLOCK; i++)
-            nb->x[a][i] = coordinate(points, a, nb->order[smaller(i, points->n - 1)]);
+            nb->x[a][i] = i < points->n ? coordinate(points, a, nb->order[i]) : HUGE_VAL;
     return true;
 }
 
@@ -129,11 +124,12 @@ static bool build_boxes(struct neighbours *nb)
         nb->hi[l] = malloc(stride * dim * sizeof(double));
         if (!nb->lo[l] || !nb->hi[l]) return false;
         for (size_t a = 0; a < dim; a++) {
+            const size_t end = l ? nb->count[l - 1] : nb->n;
             const double *from = l ? nb->lo[l - 1] + a * nb->stride[l - 1] : nb->x[a];
             const double *to = l ? nb->hi[l - 1] + a * nb->stride[l - 1] : nb->x[a];
             for (size_t b = 0; b < stride; b++) {
                 double lo = HUGE_VAL, hi = -HUGE_VAL;
-                for (size_t k = b * FAN; b < count && k < (b + 1) * FAN; k++) {
+                for (size_t k = b * FAN; k < end && k < (b + 1) * FAN; k++) {
                     lo = from[k] < lo ? from[k] : lo;
                     hi = to[k] > hi ? to[k] : hi;
                 }
@@ -235,19 +231,21 @@ struct query {
     double shift[3]; /* added to every point */
 };
 
-static void take_block(const struct neighbours *nb, size_t block, const double *shift,
-                       struct candidates *c)
+ALWAYS_INLINE void take_block(const struct neighbours *nb, size_t block, const double *shift,
+                              struct candidates *c)
 {
-    const size_t filled = smaller(BLOCK, nb->n - block * BLOCK), at = c->n / BLOCK;
+    const size_t at = c->n / BLOCK;
     for (int a = 0; a < nb->dim; a++) {
-        double *x = c->x[a] + c->n;
-        for (size_t l = 0; l < BLOCK; l++) x[l] = nb->x[a][block * BLOCK + l] + shift[a];
-        for (size_t l = filled; l < BLOCK; l++) x[l] = HUGE_VAL;
-        c->lo[a][at] = nb->lo[0][(size_t)a * nb->stride[0] + block] + shift[a];
-        c->hi[a][at] = nb->hi[0][(size_t)a * nb->stride[0] + block] + shift[a];
+        const double *restrict from = nb->x[a] + block * BLOCK, by = shift[a];
+        double *restrict x = c->x[a] + c->n;
+#pragma omp simd
+        for (size_t l = 0; l < BLOCK; l++) x[l] = from[l] + by;
+        c->lo[a][at] = nb->lo[0][(size_t)a * nb->stride[0] + block] + by;
+        c->hi[a][at] = nb->hi[0][(size_t)a * nb->stride[0] + block] + by;
     }
-    for (size_t l = 0; l < BLOCK; l++)
-        c->j[c->n + l] = (uint32_t)smaller(block * BLOCK + l, nb->n - 1);
+    uint32_t *restrict j = c->j + c->n;
+#pragma omp simd
+    for (size_t l = 0; l < BLOCK; l++) j[l] = (uint32_t)(block * BLOCK + l);
     c->n += BLOCK;
 }
 

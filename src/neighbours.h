@@ -26,7 +26,7 @@ struct points { /* arrays belong to the caller */
 struct neighbours {
     int dim;
     size_t n, blocks;
-    double *x[3];    /* blocks * NEIGHBOURS_BLOCK each: sorted positions, the last one repeated */
+    double *x[3];    /* blocks * NEIGHBOURS_BLOCK each: sorted positions, then infinity */
     uint32_t *order; /* n: sorted position -> the caller's index */
     int levels;      /* level 0: the blocks; the last level has one box */
     size_t count[NEIGHBOURS_LEVELS];  /* of boxes */

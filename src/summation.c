@@ -43,9 +43,9 @@ static size_t select_near(const struct task *task, struct work *work, size_t s, 
         double r2 = 0;
         for (int a = 0; a < nb->dim; a++)
             r2 += (c->x[a][k] - nb->x[a][s]) * (c->x[a][k] - nb->x[a][s]);
+        if (!(r2 < reach * reach)) continue; /* so are the fillings */
         work->r[n] = sqrt(r2);
-        work->m[n] = task->of->m[nb->order[c->j[k]]];
-        n += work->r[n] < reach ? 1u : 0u;
+        work->m[n++] = task->of->m[nb->order[c->j[k]]];
     }
     return n;
 }
