@@ -2,6 +2,7 @@
 #include "suite_output.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -85,6 +86,18 @@ static void print_check(const struct suite *suite, const struct tally *t, FILE *
     if (t->failed) print_failures(suite, t, stream);
 }
 
+/* How far beyond the bound the faintest rejected mutant of a check lies; infinite where the bound
+ * is 0 or the figure NaN. */
+static double faintest_rejected(const struct suite *suite, const struct check *check)
+{
+    double least = HUGE_VAL;
+    for (size_t i = 0; i < suite->outcome_count; i++) {
+        const struct mutant_outcome *o = &suite->outcomes[i];
+        if (o->check == check && o->detected) least = fmin(least, suite_ratio(o->value, o->bound));
+    }
+    return least;
+}
+
 static void print_mutants(const struct suite *suite, FILE *stream, bool color)
 {
     const char *end = paint(color, "\033[0m");
@@ -92,7 +105,9 @@ static void print_mutants(const struct suite *suite, FILE *stream, bool color)
     fprintf(stream, "\nmutants: faults that the checks must reject\n");
     for (size_t i = 0; i < suite->outcome_count; i++) {
         const struct mutant_outcome *o = &suite->outcomes[i];
-        if (o->check != last) fprintf(stream, "  %s %s\n", o->check->group, o->check->name);
+        if (o->check != last)
+            fprintf(stream, "  %s %s: the faintest rejected one is %.3g x bound\n", o->check->group,
+                    o->check->name, faintest_rejected(suite, o->check));
         last = o->check;
         fprintf(stream, "    %s%s%s  %-30s %11.3g %9.2g  %s\n",
                 paint(color, o->detected ? "\033[32m" : "\033[1;31m"),
