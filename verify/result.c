@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "result.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <sys/utsname.h>
 #include <time.h>
 #include <unistd.h>
@@ -64,6 +66,31 @@ double result_real(const json_t *value)
 char *result_text(const json_t *document)
 {
     return json_dumps(document, JSON_COMPACT | JSON_REAL_PRECISION(17));
+}
+
+enum status result_load(json_t **document, const char *path, struct error *error)
+{
+    json_error_t reason;
+    struct stat is;
+    *document = NULL;
+    if (stat(path, &is))
+        return error_set(error, STATUS_BAD_INPUT, "'%.200s': %s", path, strerror(errno));
+    if (!S_ISREG(is.st_mode))
+        return error_set(error, STATUS_BAD_INPUT, "'%.200s': not a regular file", path);
+    *document = json_load_file(path, JSON_REJECT_DUPLICATES, &reason);
+    if (!*document)
+        return error_set(error, STATUS_BAD_INPUT, "%.200s:%d: no result document: %.200s", path,
+                         reason.line, reason.text);
+    const char *schema = json_string_value(json_object_get(*document, "schema"));
+    if (schema && strcmp(schema, "sphproof/1") == 0 &&
+        json_is_string(json_object_get(*document, "command")))
+        return STATUS_OK;
+    json_decref(*document);
+    *document = NULL;
+    return error_set(error, STATUS_BAD_INPUT,
+                     "'%.200s': no result document: \"schema\": \"sphproof/1\" and \"command\" "
+                     "are needed",
+                     path);
 }
 
 enum status result_write(const json_t *document, const char *path, struct error *error)

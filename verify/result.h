@@ -20,6 +20,9 @@ double result_real(const json_t *value);
 /* The document as text, 17 significant digits; malloced, NULL: no memory. */
 char *result_text(const json_t *document);
 
+/* Reads a result document. STATUS_BAD_INPUT: it cannot be read, is no JSON or none of ours. */
+enum status result_load(json_t **document, const char *path, struct error *error);
+
 /* Writes the document to path ("-": standard output), 17 significant digits; a file appears whole
  * or not at all. STATUS_ENVIRONMENT: path cannot be written. */
 enum status result_write(const json_t *document, const char *path, struct error *error);

@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * sphproof diff: what a change did to the figures of two result documents. */
+#include "diff.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "command.h"
+#include "result.h"
+#include "text.h"
+
+static const char *head_of(const json_t *document, const char *name)
+{
+    const char *text = json_string_value(json_object_get(document, name));
+    return text ? text : "?";
+}
+
+static void print_head(const char *side, const char *path, const json_t *document)
+{
+    printf("%s  %s: %s of %s, git %s, %s\n", side, path, head_of(document, "command"),
+           head_of(document, "date"), head_of(document, "git"), head_of(document, "compiler"));
+}
+
+static json_t *diff_json(const struct diff *diff, const json_t *old, const json_t *new,
+                         double threshold)
+{
+    json_t *document = result_new("diff");
+    json_object_set_new(document, "of", json_string(head_of(new, "command")));
+    json_object_set_new(document, "old_git", json_string(head_of(old, "git")));
+    json_object_set_new(document, "new_git", json_string(head_of(new, "git")));
+    json_object_set_new(document, "threshold", result_number(threshold));
+    json_object_set_new(document, "problem", json_string(diff->problem));
+    diff_add_json(diff, document);
+    return document;
+}
+
+static enum status take_threshold(const struct options *options, double *threshold,
+                                  struct error *error)
+{
+    const char *text = options_value(options, "threshold");
+    double percent = 100 * DIFF_THRESHOLD;
+    if (text && !(text_real(text, &percent) && percent >= 0 && percent <= 1e6))
+        return error_set(error, STATUS_BAD_INPUT,
+                         "diff: --threshold '%.40s': allowed: a number of percent from 0 to 1e6",
+                         text);
+    *threshold = percent / 100;
+    return STATUS_OK;
+}
+
+static enum status run(const struct options *options, int n, char **arguments, struct error *error)
+{
+    double threshold = DIFF_THRESHOLD;
+    json_t *old = NULL, *new = NULL;
+    struct diff diff = {.count = 0};
+    struct error trouble;
+    if (n != 2) return command_usage(options, error, "two result documents are needed");
+    if (take_threshold(options, &threshold, error)) return error->status;
+    enum status status = result_load(&old, arguments[0], error);
+    if (!status) status = result_load(&new, arguments[1], error);
+    if (!status) status = diff_documents(old, new, threshold, &diff, error);
+    if (status == STATUS_OK || status == STATUS_CHECK_FAILED) {
+        if (options->speak) {
+            print_head("old", arguments[0], old);
+            print_head("new", arguments[1], new);
+            diff_print(&diff, threshold, false, options);
+        }
+        json_t *document = options->json ? diff_json(&diff, old, new, threshold) : NULL;
+        if (document && result_write(document, options->json, &trouble)) {
+            *error = trouble;
+            status = trouble.status;
+        }
+        json_decref(document);
+        diff_free(&diff);
+    }
+    json_decref(old);
+    json_decref(new);
+    return status;
+}
+
+static const struct command_option own_options[] = {
+    {"threshold", "PERCENT", "by how much an error may grow before it is a regression (default 5)"},
+    {NULL, NULL, NULL},
+};
+
+const struct command command_diff = {
+    .name = "diff",
+    .synopsis = "OLD.json NEW.json",
+    .help = "what a change did: each figure old, new, ratio, and a verdict against its noise\n\n"
+            "Takes two result documents of one command (--json FILE of any of them, results.json "
+            "of a\nreport). Verdicts: worse, better, same (within noise), incomparable (there is "
+            "no better or\nworse, or only one document has it). Exit status 1 if there is a "
+            "regression.",
+    .run = run,
+    .options = own_options,
+    .examples = "sphproof diff old/results.json reports/out/results.json\n"
+                "sphproof diff before.json after.json --threshold 1 --json diff.json",
+};

@@ -1,0 +1,117 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "diff.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Settings that make another problem of a case; the others are what one wants to compare. */
+static const char *const problem_keys[] = {"kind",   "left",   "right", "background", "amplitude",
+                                           "waves",  "gamma",  "t_end", "lo",         "hi",
+                                           "window", "jitter", "seed"};
+
+static bool differs(const json_t *a, const json_t *b)
+{
+    return a && b && !json_equal(a, b);
+}
+
+/* Are two documents about one problem? Where they do not say, yes. */
+static void compare_problems(const json_t *old, const json_t *new, struct diff *diff)
+{
+    const json_t *before = json_object_get(old, "settings"),
+                 *after = json_object_get(new, "settings");
+    static const char *const tops[] = {"case", "n", "kernel", "dim", "h"};
+    const char *what = NULL, *command = json_string_value(json_object_get(new, "command"));
+    const bool kernel = command && strcmp(command, "kernel") == 0;
+    for (size_t i = 0; i < (kernel ? 5 : 2) && !what; i++)
+        if (differs(json_object_get(old, tops[i]), json_object_get(new, tops[i]))) what = tops[i];
+    for (size_t i = 0; i < sizeof problem_keys / sizeof *problem_keys && !what; i++)
+        if (differs(json_object_get(before, problem_keys[i]),
+                    json_object_get(after, problem_keys[i])))
+            what = problem_keys[i];
+    if (what)
+        snprintf(diff->problem, sizeof diff->problem,
+                 "the documents differ in %s: two problems, whose figures say nothing about each "
+                 "other",
+                 what);
+}
+
+static int severity(const struct difference *d)
+{
+    static const int order[] = {
+        [VERDICT_SAME] = 4, [VERDICT_BETTER] = 2, [VERDICT_WORSE] = 1, [VERDICT_INCOMPARABLE] = 3};
+    return d->regression ? 0 : order[d->verdict];
+}
+
+static const char *path_of(const struct difference *d)
+{
+    return d->new ? d->new->path : d->old->path;
+}
+
+static int worst_first(const void *a, const void *b)
+{
+    const struct difference *x = a, *y = b;
+    const int i = severity(x), j = severity(y);
+    if (i != j) return i - j;
+    const bool a_head = x->new && x->new->headline, b_head = y->new && y->new->headline;
+    if (a_head != b_head) return a_head ? -1 : 1;
+    if (x->amount != y->amount) return x->amount > y->amount ? -1 : 1;
+    return strcmp(path_of(x), path_of(y));
+}
+
+static void judge(struct diff *diff, const struct reading *old, const struct reading *new,
+                  double threshold)
+{
+    struct difference *d = &diff->list[diff->count++];
+    bool fault;
+    *d = (struct difference){.old = old, .new = new};
+    d->verdict = reading_judge(old, new, &d->amount, &fault);
+    if (diff->problem[0] && d->verdict != VERDICT_INCOMPARABLE)
+        d->verdict = VERDICT_INCOMPARABLE, d->amount = 0, fault = false;
+    const bool order = new &&new->kind == READING_ORDER; /* its interval is its threshold */
+    d->regression = d->verdict == VERDICT_WORSE && fault && (order || d->amount > threshold);
+    diff->verdicts[d->verdict]++;
+    diff->regressions += d->regression;
+}
+
+enum status diff_documents(const json_t *old, const json_t *new, double threshold,
+                           struct diff *diff, struct error *error)
+{
+    const char *before = json_string_value(json_object_get(old, "command"));
+    const char *after = json_string_value(json_object_get(new, "command"));
+    *diff = (struct diff){.count = 0};
+    if (!before || !after || strcmp(before, after) != 0)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "documents of two commands, '%.40s' and '%.40s': allowed: two of one",
+                         before ? before : "", after ? after : "");
+    compare_problems(old, new, diff);
+    if (reading_collect(old, &diff->old, error) || reading_collect(new, &diff->new, error)) {
+        diff_free(diff);
+        return error->status;
+    }
+    const struct readings *a = &diff->old, *b = &diff->new;
+    diff->list = calloc(a->count + b->count + 1, sizeof *diff->list);
+    if (!diff->list) {
+        diff_free(diff);
+        return error_set(error, STATUS_ENVIRONMENT, "no memory for the differences");
+    }
+    for (size_t i = 0, j = 0; i < a->count || j < b->count;) {
+        const int order = i == a->count   ? 1
+                          : j == b->count ? -1
+                                          : strcmp(a->list[i].path, b->list[j].path);
+        judge(diff, order <= 0 ? &a->list[i] : NULL, order >= 0 ? &b->list[j] : NULL, threshold);
+        i += order <= 0;
+        j += order >= 0;
+    }
+    qsort(diff->list, diff->count, sizeof *diff->list, worst_first);
+    return diff->regressions ? STATUS_CHECK_FAILED : STATUS_OK;
+}
+
+void diff_free(struct diff *diff)
+{
+    reading_free(&diff->old);
+    reading_free(&diff->new);
+    free(diff->list);
+    *diff = (struct diff){.count = 0};
+}

@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What a change did: the readings of two result documents of the same command, each judged against
+ * its noise. */
+#ifndef SPHPROOF_DIFF_H
+#define SPHPROOF_DIFF_H
+
+#include "command.h"
+#include "reading.h"
+
+/* Worse by more than this part of the old value is a regression (of an order: beyond its interval;
+ * of a word: it says fail). Timings and counts of work never are. */
+#define DIFF_THRESHOLD 0.05
+
+struct difference {
+    const struct reading *old, *new; /* NULL: on the other side only */
+    enum reading_verdict verdict;
+    double amount; /* see reading_judge */
+    bool regression;
+};
+
+struct diff {
+    struct readings old, new;
+    struct difference *list; /* regressions first, then worse, better, incomparable, same */
+    size_t count, verdicts[4], regressions;
+    char problem[256]; /* "", or why errors cannot be compared: different cases ... */
+};
+
+/* STATUS_OK or STATUS_CHECK_FAILED (regressions); STATUS_BAD_INPUT: documents of two commands. */
+enum status diff_documents(const json_t *old, const json_t *new, double threshold,
+                           struct diff *diff, struct error *error);
+void diff_free(struct diff *diff);
+
+/* new/old; NaN where that says nothing. */
+double diff_ratio(const struct difference *difference);
+
+/* The value that a figure would have at its best: an error's 0, a functional's exact value; NaN
+ * where nobody knows. */
+double diff_exact(const struct difference *difference);
+
+/* [{"path", "old", "new", "exact", "ratio", "verdict", "regression"}], the first `most` of them. */
+json_t *diff_figures_json(const struct diff *diff, size_t most);
+
+/* Adds "figures", "summary" and "problem". */
+void diff_add_json(const struct diff *diff, json_t *document);
+
+/* Table of everything that is not the same, on standard output; exact: with that column. */
+void diff_print(const struct diff *diff, double threshold, bool exact,
+                const struct options *options);
+
+#endif

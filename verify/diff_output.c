@@ -1,0 +1,136 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Differences as a table and as JSON. */
+#include "diff.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "result.h"
+#include "table.h"
+
+enum { LINES_MAX = 60 };
+
+double diff_ratio(const struct difference *d)
+{
+    if (!d->old || !d->new || d->old->word || d->new->word) return (double)NAN;
+    return d->new->value / d->old->value;
+}
+
+double diff_exact(const struct difference *d)
+{
+    const struct reading *reading = d->new ? d->new : d->old;
+    switch (reading->kind) {
+    case READING_ERROR:
+    case READING_CHECK:
+    case READING_PART:
+        return 0;
+    case READING_EXACT:
+        return reading->exact;
+    default:
+        return (double)NAN;
+    }
+}
+
+static const char *path_of(const struct difference *d)
+{
+    return d->new ? d->new->path : d->old->path;
+}
+
+/* ---- JSON ---- */
+
+static json_t *value_json(const struct reading *reading)
+{
+    if (!reading) return json_null();
+    return reading->word ? json_string(reading->word) : result_number(reading->value);
+}
+
+static json_t *known(double value)
+{
+    return isnan(value) ? json_null() : result_number(value);
+}
+
+json_t *diff_figures_json(const struct diff *diff, size_t most)
+{
+    json_t *figures = json_array();
+    for (size_t i = 0; i < diff->count && i < most; i++) {
+        const struct difference *d = &diff->list[i];
+        json_array_append_new(
+            figures, json_pack("{s:s, s:o, s:o, s:o, s:o, s:s, s:b}", "path", path_of(d), "old",
+                               value_json(d->old), "new", value_json(d->new), "exact",
+                               known(diff_exact(d)), "ratio", known(diff_ratio(d)), "verdict",
+                               reading_verdicts[d->verdict], "regression", d->regression));
+    }
+    return figures;
+}
+
+void diff_add_json(const struct diff *diff, json_t *document)
+{
+    json_t *summary = json_object();
+    for (int v = 0; v < 4; v++)
+        json_object_set_new(summary, reading_verdicts[v],
+                            json_integer((json_int_t)diff->verdicts[v]));
+    json_object_set_new(summary, "regressions", json_integer((json_int_t)diff->regressions));
+    json_object_set_new(document, "problem", json_string(diff->problem));
+    json_object_set_new(document, "figures", diff_figures_json(diff, diff->count));
+    json_object_set_new(document, "summary", summary);
+}
+
+/* ---- table ---- */
+
+static void print_value(const struct reading *reading)
+{
+    if (!reading)
+        printf(" %13s", "-");
+    else if (reading->word)
+        printf(" %13s", *reading->word ? reading->word : "\"\"");
+    else
+        printf(" %13.6g", reading->value);
+}
+
+static void print_number(const char *format, int width, double value)
+{
+    if (isfinite(value))
+        printf(format, width, value);
+    else
+        printf(" %*s", width, "");
+}
+
+static void print_difference(const struct difference *d, bool exact,
+                             const struct table_style *style)
+{
+    const char *color = d->verdict == VERDICT_WORSE    ? style->bad
+                        : d->verdict == VERDICT_BETTER ? style->good
+                                                       : "";
+    printf("%s%-12s%s", color, d->regression ? "REGRESSION" : reading_verdicts[d->verdict],
+           style->end);
+    print_value(d->old);
+    print_value(d->new);
+    if (exact) print_number(" %*.6g", 13, diff_exact(d));
+    print_number(" %*.4g", 9, diff_ratio(d));
+    printf("  %s\n", path_of(d));
+}
+
+void diff_print(const struct diff *diff, double threshold, bool exact,
+                const struct options *options)
+{
+    const struct table_style style = table_style(options);
+    const size_t shown = diff->problem[0] ? 0 : diff->count - diff->verdicts[VERDICT_SAME];
+    if (shown) {
+        printf("%s%-12s %13s %13s", style.bold, "verdict", "old", "new");
+        if (exact) printf(" %13s", "exact");
+        printf(" %9s  %s%s\n", "ratio", "figure", style.end);
+    }
+    for (size_t i = 0; i < shown && i < LINES_MAX; i++)
+        print_difference(&diff->list[i], exact, &style);
+    if (shown > LINES_MAX) printf("... and %zu more (all with --json)\n", shown - LINES_MAX);
+    if (diff->problem[0]) printf("%s\n", diff->problem);
+    printf("%s%zu worse%s, %zu of them regressions (errors by more than %.3g %%, orders beyond "
+           "their intervals, new failures); %zu better, %zu same, %zu incomparable\n",
+           diff->regressions ? style.bad : style.bold, diff->verdicts[VERDICT_WORSE], style.end,
+           diff->regressions, 100 * threshold, diff->verdicts[VERDICT_BETTER],
+           diff->verdicts[VERDICT_SAME], diff->verdicts[VERDICT_INCOMPARABLE]);
+    printf("%snoise: errors 0.1 %%, orders their 95 %% intervals, figures of checks a factor of 3 "
+           "or ten floors,\ntimings a factor of 1.5; timings and counts of work are never "
+           "regressions%s\n",
+           style.faint, style.end);
+}

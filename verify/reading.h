@@ -1,0 +1,59 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Readings: every figure of a result document of any kind, each with a path that stays the same
+ * from one document to the next (entries of lists are named by what they are about, not by their
+ * place), what it is, and how far it may move without meaning anything. Diff, history and baseline
+ * are made of them. */
+#ifndef SPHPROOF_READING_H
+#define SPHPROOF_READING_H
+
+#include <jansson.h>
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "status.h"
+
+enum reading_kind {
+    READING_ERROR,   /* less is better; noise is relative */
+    READING_CHECK,   /* less is better, a factor of 3 means nothing; its own status judges it */
+    READING_ORDER,   /* more is better; noise is absolute */
+    READING_PART,    /* less is better, but what it is a part of is judged itself: never a fault */
+    READING_EXACT,   /* nearer `exact` is better; noise is relative, of the distance */
+    READING_COUNT,   /* of work: less is better, never a fault; noise is relative */
+    READING_TIMING,  /* less is better, judged as a ratio, never a fault */
+    READING_STATUS,  /* a word */
+    READING_NEUTRAL, /* neither more nor less is better */
+};
+
+struct reading {
+    char *path; /* studies[sod, default].levels[198].errors.density.l1 */
+    enum reading_kind kind;
+    double value;               /* NaN for a word */
+    double noise, floor, exact; /* up to the floor all values are the same */
+    char *word;                 /* of a STATUS, else NULL */
+    size_t number;              /* in the document */
+    bool headline;              /* goes into the history */
+};
+
+struct readings {
+    struct reading *list; /* sorted by path, each once */
+    size_t count, room;
+    bool failed; /* no memory */
+};
+
+/* All readings of a document. STATUS_ENVIRONMENT: no memory. */
+enum status reading_collect(const json_t *document, struct readings *readings, struct error *error);
+void reading_free(struct readings *readings);
+
+/* The reading at a path, or NULL. */
+const struct reading *reading_find(const struct readings *readings, const char *path);
+
+enum reading_verdict { VERDICT_SAME, VERDICT_BETTER, VERDICT_WORSE, VERDICT_INCOMPARABLE };
+extern const char *const reading_verdicts[];
+
+/* What became of a reading (either may be NULL: it is there on one side only). *amount: how much
+ * worse, relative (an order: absolute), infinite where a word or a finite number got lost; 0 unless
+ * it is worse. fault: does it count where amounts beyond a threshold fail? */
+enum reading_verdict reading_judge(const struct reading *old, const struct reading *new,
+                                   double *amount, bool *fault);
+
+#endif
