@@ -49,4 +49,4 @@ static inline double sinc_dw(const struct kernel *kernel, double q, int dim)
 
 #endif
 KERNEL(sinc, .member = {"sinc", "sinc family, (sin(pi q)/(pi q))^n", "Cabezon et al. 2008"},
-       .smoothness = {0, 4, 4, 4}, .default_eta = 2.5, .order = 5)
+       .smoothness = {0, 4, 4, 4}, .default_eta = 2.5, .stable_eta = {4.687, 4.886}, .order = 5)

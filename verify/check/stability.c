@@ -1,0 +1,345 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Linear theory against the solver: the linearised rates and time steps that the stability atlas
+ * is made of are differences of the solver's own, and its limits of eta are the known ones. */
+#include <math.h>
+#include <stdio.h>
+
+#include "check.h"
+#include "hydro_scene.h"
+#include "integrator.h"
+#include "simulation.h"
+#include "stability.h"
+
+enum { PARTICLES = 24, SUBJECTS_MAX = 128, STEPS = 32 };
+
+/* A scheme, and what a mutant does to the theory of it. */
+struct theory {
+    struct scheme scheme;
+    void (*spoil)(struct stability *lattice);
+};
+
+enum component { DISPLACEMENT, VELOCITY, HEAT };
+
+/* A lattice of unit spacing with one wave in one component. */
+static void set_wave(struct hydro_state *state, const struct stability *lattice, double kappa,
+                     enum component component, double amplitude)
+{
+    *state = (struct hydro_state){.n = PARTICLES, .hi = PARTICLES, .gamma = 1.4};
+    for (int i = 0; i < PARTICLES; i++) {
+        const double wave = amplitude * cos(kappa * i);
+        state->x[i] = i + 0.5 + (component == DISPLACEMENT ? wave : 0);
+        state->v[i] = component == VELOCITY ? wave : 0;
+        state->m[i] = 1;
+        state->u[i] = lattice->u + (component == HEAT ? amplitude * sin(kappa * i) : 0);
+    }
+}
+
+static double project(const double *values, const struct snapshot *s, double kappa, double phase)
+{
+    double sum = 0;
+    for (size_t i = 0; i < s->n; i++)
+        sum += values[i] * cos(kappa * (double)s->id[i] - phase) * 2 / (double)s->n;
+    return sum;
+}
+
+/* Force and heating of a wave by the solver, per amplitude. */
+static enum status solver_response(const struct stability *lattice, double kappa,
+                                   enum component component, double *force, double *heat,
+                                   struct error *error)
+{
+    static struct hydro_state state;
+    const double amplitude = 3e-5;
+    *force = *heat = 0;
+    for (int sign = -1; sign <= 1; sign += 2) {
+        struct simulation *simulation;
+        struct snapshot s;
+        struct rates rates;
+        set_wave(&state, lattice, kappa, component, sign * amplitude);
+        const struct scene scene = hydro_scene(&state, &lattice->scheme);
+        if (simulation_create(&scene, &simulation, error)) return error->status;
+        simulation_snapshot(simulation, &s);
+        simulation_rates(simulation, &rates);
+        *force += sign * project(rates.force[0], &s, kappa, 0) / (2 * amplitude);
+        *heat += sign * project(rates.energy, &s, kappa, 0.5 * M_PI) / (2 * amplitude);
+        simulation_destroy(simulation);
+    }
+    return STATUS_OK;
+}
+
+/* --- rates -------------------------------------------------------------------------------------
+ */
+
+static struct theory subjects[SUBJECTS_MAX];
+static size_t subject_total;
+
+static size_t subject_count(void)
+{
+    if (subject_total) return subject_total;
+    for (size_t k = 0; k < kernel_family.n; k++)
+        for (int c = 0; c < 16; c++) {
+            struct scheme s = hydro_scheme();
+            if (c >= 8 && k != 1) continue;
+            kernel_select(&s.kernel, kernel_family.members[k]->name, 5, NULL);
+            s.eta = 3.37; /* no neighbour on a knot, where the kernel has no second derivative */
+            s.gradient = c & 1 ? GRADIENT_IA : GRADIENT_STANDARD;
+            s.formulation = c & 2 ? FORMULATION_LAGRANGIAN : FORMULATION_VANILLA_ICE;
+            s.volume_element = c & 4 ? VOLUME_ENERGY : VOLUME_MASS;
+            s.beta = 0; /* quadratic */
+            s.viscosity = c & 8 ? VISCOSITY_CONSTANT : VISCOSITY_NONE;
+            subjects[subject_total++].scheme = s;
+        }
+    return subject_total;
+}
+
+static const void *subject_at(size_t i)
+{
+    return &subjects[i];
+}
+
+static void measure_rates(struct check_run *run, const void *subject)
+{
+    const struct theory *theory = subject;
+    struct stability lattice;
+    struct error error = {0};
+    char where[HYDRO_TEXT];
+    double worst = 0;
+    hydro_describe(&theory->scheme, where);
+    enum status status = stability_begin(&lattice, &theory->scheme, 1.4, &error);
+    for (int p = 1; p <= 11 && !status; p += 5) {
+        const double kappa = 2 * M_PI * p / PARTICLES;
+        double x = 0, v = 0, u = 0, heat = 0, ignored;
+        struct stability_rates r;
+        if (theory->spoil) theory->spoil(&lattice);
+        stability_rates(&lattice, kappa, &r);
+        lattice.scheme = theory->scheme;
+        status = solver_response(&lattice, kappa, DISPLACEMENT, &x, &ignored, &error);
+        if (!status) status = solver_response(&lattice, kappa, VELOCITY, &v, &heat, &error);
+        if (!status) status = solver_response(&lattice, kappa, HEAT, &u, &ignored, &error);
+        /* viscous heating has no linear part, and a quadratic one that the differences keep */
+        if (theory->scheme.viscosity != VISCOSITY_NONE) heat = r.energy;
+        worst = fmax(worst, fmax(fmax(fabs(x - r.x), fabs(v - r.v)),
+                                 fmax(fabs(u - r.u), fabs(heat - r.energy))));
+    }
+    if (status)
+        check_measure(run, 1, 0, 0, "%s: %s", where, error.message);
+    else
+        check_measure(run, worst, 1e-7, 1e-8, "%s", where);
+}
+
+static void frozen_width(struct stability *lattice)
+{
+    for (int k = 0; k <= lattice->reach; k++) lattice->pair[k].h = 0;
+}
+
+static void frozen_gradient(struct stability *lattice)
+{
+    for (int k = 0; k <= lattice->reach; k++) lattice->pair[k].rh = 0;
+}
+
+static void bent_kernel(struct stability *lattice)
+{
+    lattice->pair[1].rr *= 1 + 1e-6;
+}
+
+static void all_pairs(struct stability *lattice)
+{
+    lattice->approaching = 1;
+}
+
+static void other_form(struct stability *lattice)
+{
+    lattice->scheme.formulation = FORMULATION_LAGRANGIAN;
+}
+
+static void other_element(struct stability *lattice)
+{
+    lattice->scheme.volume_element = VOLUME_ENERGY;
+}
+
+static void hotter(struct stability *lattice)
+{
+    lattice->u *= 1 + 1e-6;
+}
+
+/* Mutants: the first scheme, with viscosity, and a spoilt theory of it. */
+enum { FAULTS = 7 };
+static struct theory spoilt[FAULTS];
+
+static void measure_rates_or_fill(struct check_run *run, const void *subject)
+{
+    static void (*const faults[FAULTS])(struct stability *) = {
+        frozen_width, frozen_gradient, bent_kernel, all_pairs, other_form, other_element, hotter};
+    const struct theory *theory = subject;
+    if (theory >= spoilt && theory < spoilt + FAULTS)
+        for (int i = 0; i < FAULTS; i++) {
+            spoilt[i] = (struct theory){hydro_scheme(), faults[i]};
+            spoilt[i].scheme.eta = 3.37;
+            spoilt[i].scheme.beta = 0;
+        }
+    measure_rates(run, subject);
+}
+
+static const struct check_mutant rates_mutants[] = {
+    {"stability_frozen_width", "smoothing length does not follow density", &spoilt[0]},
+    {"stability_frozen_gradient", "gradient does not follow the smoothing length", &spoilt[1]},
+    {"stability_curvature", "second derivative of the kernel off by 1e-6", &spoilt[2]},
+    {"stability_all_pairs", "viscosity also on pairs that part", &spoilt[3]},
+    {"stability_formulation", "theory of lagrangian for vanilla_ice", &spoilt[4]},
+    {"stability_element", "theory of the energy element for mass", &spoilt[5]},
+    {"stability_energy", "internal energy off by 1e-6", &spoilt[6]},
+    {0},
+};
+
+const struct check check_stability_rates = {
+    .group = "stability",
+    .name = "rates",
+    .property = "linearised rates of a wave equal differences of the solver's, c/dx = 1",
+    .subject_count = subject_count,
+    .subject = subject_at,
+    .measure = measure_rates_or_fill,
+    .mutants = rates_mutants,
+};
+
+/* --- time steps --------------------------------------------------------------------------------
+ */
+
+struct stepping {
+    const char *followed; /* the integrator that the theory takes; NULL: the right ones */
+    bool newton;          /* theory without predicted widths */
+};
+
+static bool stop(void *context, double time, uint64_t steps)
+{
+    (void)context, (void)time, (void)steps;
+    return false;
+}
+
+/* The wave after the first STEPS steps of the solver, and their length. */
+static enum status run_wave(const struct stability *lattice, double kappa, double *dt, double *x,
+                            double *v, struct error *error)
+{
+    static struct hydro_state state;
+    const double amplitude = 1e-6;
+    struct simulation *simulation;
+    struct snapshot s;
+    double moved[PARTICLES];
+    set_wave(&state, lattice, kappa, DISPLACEMENT, amplitude);
+    const struct scene scene = hydro_scene(&state, &lattice->scheme);
+    if (simulation_create(&scene, &simulation, error)) return error->status;
+    const enum status status = simulation_run(simulation, 1e9, stop, NULL, error);
+    simulation_snapshot(simulation, &s);
+    for (size_t i = 0; i < s.n; i++) moved[i] = s.x[0][i] - ((double)s.id[i] + 0.5);
+    *dt = s.time / STEPS;
+    *x = project(moved, &s, kappa, 0) / amplitude;
+    *v = project(s.v[0], &s, kappa, 0) / amplitude;
+    simulation_destroy(simulation);
+    return status;
+}
+
+static void measure_steps(struct check_run *run, const void *subject)
+{
+    static const struct stepping right;
+    const struct stepping *stepping = subject ? subject : &right;
+    for (size_t k = 0; k < integrator_family.n; k++)
+        for (int predicted = 0; predicted <= 1; predicted++) {
+            struct scheme scheme = hydro_scheme();
+            struct stability lattice;
+            struct error error = {0};
+            double dt = 0, x = 0, v = 0, x_theory, v_theory;
+            scheme.integrator = (const struct integrator *)integrator_family.members[k];
+            scheme.eta = 3.37;
+            scheme.viscosity = VISCOSITY_NONE;
+            scheme.h_method = predicted ? H_PREDICTED : H_NEWTON;
+            scheme.cfl = 0.3;
+            const double kappa = 2 * M_PI * 5 / PARTICLES;
+            enum status status = stability_begin(&lattice, &scheme, 1.4, &error);
+            if (!status) status = run_wave(&lattice, kappa, &dt, &x, &v, &error);
+            if (stepping->followed)
+                lattice.scheme.integrator = hydro_integrator(stepping->followed);
+            if (stepping->newton) lattice.scheme.h_method = H_NEWTON;
+            stability_follow(&lattice, kappa, dt, STEPS, &x_theory, &v_theory);
+            const double size = hypot(x_theory, v_theory);
+            check_measure(run, status ? 1 : hypot(x - x_theory, v - v_theory) / size, 1e-4, 1e-5,
+                          "%s, h %s, c dt/dx %.3f", scheme.integrator->member.name,
+                          predicted ? "predicted" : "newton", dt);
+        }
+}
+
+static const struct stepping heun = {.followed = "rk2"},
+                             reevaluated = {.followed = "modified_leapfrog"},
+                             solved = {.newton = true};
+static const struct check_mutant steps_mutants[] = {
+    {"stability_all_heun", "the theory of rk2 for every integrator", &heun},
+    {"stability_all_modified", "the theory of modified_leapfrog for every integrator",
+     &reevaluated},
+    {"stability_not_predicted", "theory without predicted widths", &solved},
+    {0},
+};
+
+const struct check check_stability_steps = {
+    .group = "stability",
+    .name = "steps",
+    .property = "a wave after 32 steps is where the amplification matrix puts it",
+    .measure = measure_steps,
+    .mutants = steps_mutants,
+};
+
+/* --- limits of eta -----------------------------------------------------------------------------
+ */
+
+/* Where a wave first grows, as a kernel's descriptor says it: the plan warns from there on. */
+struct limit {
+    const char *kernel;
+    enum gradient gradient;
+    double eta; /* 0: none */
+};
+
+static void measure_limit(struct check_run *run, const struct limit *limit)
+{
+    struct scheme scheme = hydro_scheme();
+    struct stability_interval intervals[4];
+    kernel_select(&scheme.kernel, limit->kernel, 5, NULL);
+    scheme.gradient = limit->gradient;
+    scheme.viscosity = VISCOSITY_NONE;
+    const double to = limit->eta > 0 ? limit->eta + 0.5 : 9;
+    const int count = stability_intervals(&scheme, 1.4, to, intervals, 4);
+    const double want = limit->eta > 0 ? limit->eta : to;
+    /* limits are declared to three digits */
+    check_measure(run, count > 0 ? fabs(intervals[0].to / want - 1) : 1, 2e-3, 0,
+                  limit->eta > 0 ? "%s %s, unstable from eta = %g" : "%s %s, stable up to 9",
+                  limit->kernel, gradient_family.members[limit->gradient]->name, limit->eta);
+}
+
+static void measure_limits(struct check_run *run, const void *subject)
+{
+    if (subject) {
+        measure_limit(run, subject);
+        return;
+    }
+    for (size_t k = 0; k < kernel_family.n; k++) {
+        struct kernel kernel;
+        kernel_select(&kernel, kernel_family.members[k]->name, 5, NULL);
+        for (int g = 0; g < 2; g++) {
+            const struct limit limit = {kernel.member.name, (enum gradient)g, kernel.stable_eta[g]};
+            measure_limit(run, &limit);
+        }
+    }
+}
+
+static const struct limit swapped = {"cubic_spline", GRADIENT_STANDARD, 4},
+                          narrow = {"wendland_c2", GRADIENT_IA, 3.55},
+                          undeclared = {"sinc", GRADIENT_STANDARD, 0};
+static const struct check_mutant limit_mutants[] = {
+    {"stability_limit_gradient", "the limit of ia declared for the standard gradient", &swapped},
+    {"stability_limit_window", "edge of the second stable window taken for the limit", &narrow},
+    {"stability_limit_missing", "no limit declared where there is one", &undeclared},
+    {0},
+};
+
+const struct check check_stability_limits = {
+    .group = "stability",
+    .name = "limits",
+    .property = "first unstable eta of a lattice, gamma 1.4, no viscosity",
+    .measure = measure_limits,
+    .mutants = limit_mutants,
+};
