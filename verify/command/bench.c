@@ -2,9 +2,11 @@
  * sphproof bench: what an error costs. */
 #include "bench.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include "bench_kernels.h"
+#include "bench_skips.h"
 #include "command.h"
 #include "output.h"
 #include "picture.h"
@@ -155,6 +157,60 @@ static enum status kernels(struct request *request, struct error *error)
     return status;
 }
 
+/* --- what is left out ------------------------------------------------------------------------- */
+
+/* Settings of the case named, or of all built-in ones. The caller frees. */
+static struct run_settings *all_cases(const struct request *request, size_t *count,
+                                      struct error *error)
+{
+    *count = 0;
+    while (!request->case_name && case_builtins[*count].name) ++*count;
+    if (request->case_name) *count = 1;
+    struct run_settings *cases = calloc(*count, sizeof *cases);
+    if (!cases) error_set(error, STATUS_ENVIRONMENT, "no memory for %zu cases", *count);
+    for (size_t c = 0; cases && c < *count; c++) {
+        const char *name = request->case_name ? request->case_name : case_builtins[c].name;
+        if (run_prepare(&cases[c], name, request->n, request->arguments, error)) {
+            free(cases);
+            return NULL;
+        }
+        cases[c].threads = request->options->threads;
+    }
+    return cases;
+}
+
+static enum status skips(struct request *request, struct error *error)
+{
+    struct bench_skips result;
+    size_t count;
+    bool kept = true;
+    if (refuse_option(request, "--skips", "n", error) ||
+        refuse_option(request, "--skips", "vary", error) ||
+        refuse_option(request, "--skips", "plot", error))
+        return error->status;
+    struct run_settings *cases = all_cases(request, &count, error);
+    if (!cases) return error->status;
+    progress_begin(&request->progress, "bench --skips", request->options);
+    enum status status = bench_skips_measure(cases, count, &request->rules, show_progress,
+                                             &request->progress, &result, error);
+    progress_end(&request->progress);
+    for (size_t s = 0; s < result.count; s++) kept = kept && result.skips[s].kept;
+    if (!status) {
+        json_t *document = result_new("bench");
+        json_object_set_new(document, "points", json_array());
+        bench_skips_add_json(&result, document);
+        status = write_result(request, document, error);
+        json_decref(document);
+    }
+    if (!status && request->options->speak) {
+        const struct table_style style = table_style(request->options);
+        bench_skips_print(&result, &style);
+    }
+    bench_skips_free(&result);
+    free(cases);
+    return status || kept ? status : STATUS_CHECK_FAILED;
+}
+
 /* --- which of them ---------------------------------------------------------------------------- */
 
 static const struct {
@@ -162,6 +218,7 @@ static const struct {
     enum status (*run)(struct request *request, struct error *error);
 } modes[] = {
     {"kernels", kernels},
+    {"skips", skips},
 };
 enum { MODES = sizeof modes / sizeof *modes };
 
@@ -190,6 +247,7 @@ static const struct command_option own_options[] = {
     {"vary", "KEY[=A,B][,...]", "every member of a family, or these values; all combinations"},
     {"plot", "FILE.svg|.png", "draw error against CPU time (needs gnuplot)"},
     {"kernels", NULL, "ns per pair: kernels x solver loops and gradient operators x dimension"},
+    {"skips", NULL, "what each piece of work left out saves, and that the answer is the same"},
     {"time", "S", "CPU time of a sample, at least (default 0.02 s)"},
     {"samples", "N", "samples of each measurement (default 5); the least counts"},
     {NULL, NULL, NULL},
@@ -211,6 +269,7 @@ const struct command command_bench = {
                 "sphproof bench strong_shock --vary "
                 "integrator=predicted_midpoint,rk3,viscosity --json -\n"
                 "sphproof bench --kernels --vary kernel=cubic_spline,quintic_spline\n"
+                "sphproof bench --skips\n"
                 "sphproof bench sod_standard kernel=quartic_spline --vary "
                 "viscosity=constant,reconstructed",
 };

@@ -1,0 +1,430 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "bench_skips.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bench_loops.h"
+#include "integrator.h"
+#include "result.h"
+
+enum { WITHOUT, WITH, SIDES, LOOP_PARTICLES = 1600 };
+
+/* Work that keys bring back; where the case's own scheme does not leave it out, nothing is shown.
+ */
+enum when { ALWAYS, PREDICTED, INVISCID, UNIFORM };
+static const struct {
+    const char *name, *keys[SIDES]; /* ALPHA stands for the scheme's own alpha */
+    enum when when;
+    enum bench_promise promise;
+    double bound;
+} switches[] = {
+    {"particles no signal has reached",
+     {"skip=auto", "skip=none"},
+     ALWAYS,
+     PROMISE_ROUND_OFF,
+     1e-8},
+    {"h by Newton", {"h_method=predicted", "h_method=newton"}, PREDICTED, PROMISE_ERROR, 0.05},
+    {"viscosity of none", {"", "viscosity=constant alpha=0 beta=0"}, INVISCID, PROMISE_BITS, 0},
+    {"evolution of alpha",
+     {"", "viscosity=time_dependent alpha_min=ALPHA alpha_max=ALPHA"},
+     UNIFORM,
+     PROMISE_ROUND_OFF,
+     1e-10},
+};
+enum { SWITCHES = sizeof switches / sizeof *switches };
+
+/* Passes by themselves: the loops of another scheme, less those of its own where they replace
+ * them. */
+enum extra { EXTRA_MATRIX, EXTRA_SLOPE, EXTRA_GRAD_H, EXTRA_ENERGY_SUM, EXTRA_SIGNAL, EXTRAS };
+static const struct {
+    const char *name, *keys;
+    enum bench_pass pass;
+    bool replaces;
+} extras[EXTRAS] = {
+    [EXTRA_MATRIX] = {"moment matrix", "the pass alone", PASS_MATRIX, false},
+    [EXTRA_SLOPE] = {"velocity gradient", "the pass alone", PASS_MATRIX, false},
+    [EXTRA_GRAD_H] = {"grad-h factors", "in the density sum", PASS_DENSITY, true},
+    [EXTRA_ENERGY_SUM] = {"energy sum", "in the density sum", PASS_DENSITY, true},
+    [EXTRA_SIGNAL] = {"time step by itself", "the pass alone", PASS_SIGNAL, false},
+};
+
+/* --- comparing -------------------------------------------------------------------------------- */
+
+double bench_skips_difference(const struct snapshot *a, const struct snapshot *b, double period)
+{
+    const double *const of_a[] = {a->x[0], a->v[0], a->rho, a->u, a->P, a->h};
+    const double *const of_b[] = {b->x[0], b->v[0], b->rho, b->u, b->P, b->h};
+    double worst = 0;
+    if (a->n != b->n) return (double)INFINITY;
+    for (size_t k = 0; k < sizeof of_a / sizeof *of_a; k++) {
+        double largest = 0, difference = 0;
+        if (memcmp(of_a[k], of_b[k], a->n * sizeof(double)) == 0) continue;
+        for (size_t i = 0; i < a->n; i++) {
+            double here = fabs(of_a[k][i] - of_b[k][i]);
+            if (k == 0) here = fmin(here, fabs(period - here));
+            if (!(here <= difference)) difference = here;
+            largest = fmax(largest, fabs(of_a[k][i]));
+        }
+        const double relative = difference > 0 ? difference / largest : 0;
+        if (!(relative <= worst)) worst = relative;
+        /* bits that differ in the sign of a zero are a difference, too */
+        worst = fmax(worst, 1e-300);
+    }
+    return isnan(worst) ? (double)INFINITY : worst;
+}
+
+/* --- one measurement -------------------------------------------------------------------------- */
+
+struct job {
+    struct run_settings *run; /* or */
+    struct bench_loops *loops;
+    struct run_result last; /* of the run */
+};
+
+static enum status work(void *context, uint64_t times, struct bench_taken *taken,
+                        struct error *error)
+{
+    struct job *job = context;
+    if (job->loops) return bench_loops_work(job->loops, times, taken, error);
+    for (uint64_t i = 0; i < times; i++) {
+        run_free(&job->last);
+        const enum status status = run_execute(job->run, &job->last, error);
+        if (status == STATUS_BROKE_DOWN) run_free(&job->last);
+        if (status) return status;
+        taken->wall_s += job->last.cost.wall_s;
+        taken->cpu_s += job->last.cost.cpu_s;
+    }
+    return STATUS_OK;
+}
+
+struct bench {
+    struct bench_skips *result;
+    size_t max;
+    struct job *jobs; /* SIDES a skip; then one whole step of each case */
+    struct bench_subject *subjects;
+};
+
+/* Keys as words, ALPHA replaced. */
+static enum status apply(struct run_settings *settings, const char *keys, double alpha,
+                         struct error *error)
+{
+    char text[256], *rest = text;
+    snprintf(text, sizeof text, "%s", keys);
+    for (char *word; (word = strtok_r(rest, " ", &rest));) {
+        char key[80], *arguments[] = {key};
+        char *named = strstr(word, "=ALPHA");
+        if (named)
+            snprintf(key, sizeof key, "%.*s=%.17g", (int)(named - word), word, alpha);
+        else
+            snprintf(key, sizeof key, "%s", word);
+        if (settings_apply(&settings->settings, 1, arguments, error)) return error->status;
+    }
+    return STATUS_OK;
+}
+
+static bool applies(enum when when, const struct scheme *scheme)
+{
+    switch (when) {
+    case PREDICTED:
+        return scheme->h_method == H_PREDICTED;
+    case INVISCID:
+        return scheme->viscosity == VISCOSITY_NONE;
+    case UNIFORM:
+        return scheme->viscosity == VISCOSITY_CONSTANT;
+    default:
+        return true;
+    }
+}
+
+static struct bench_skip *new_skip(struct bench *bench, size_t c, const char *name,
+                                   const char *keys)
+{
+    struct bench_skip *skip = &bench->result->skips[bench->result->count++];
+    *skip = (struct bench_skip){.case_index = c,
+                                .name = name,
+                                .keys = keys,
+                                .promise = PROMISE_UNUSED,
+                                .difference = (double)NAN,
+                                .l1 = {(double)NAN, (double)NAN},
+                                .skipped = (double)NAN,
+                                .kept = true};
+    return skip;
+}
+
+static struct job *jobs_of(const struct bench *bench, const struct bench_skip *skip)
+{
+    return &bench->jobs[(size_t)(skip - bench->result->skips) * SIDES];
+}
+
+static struct run_settings *copy_settings(const struct run_settings *from, struct error *error)
+{
+    struct run_settings *copy = malloc(sizeof *copy);
+    if (copy)
+        *copy = *from;
+    else
+        error_set(error, STATUS_ENVIRONMENT, "no memory");
+    return copy;
+}
+
+static enum status add_switches(struct bench *bench, size_t c, const struct scheme *scheme,
+                                struct error *error)
+{
+    for (size_t s = 0; s < SWITCHES; s++) {
+        if (!applies(switches[s].when, scheme)) continue;
+        struct bench_skip *skip = new_skip(bench, c, switches[s].name, switches[s].keys[WITH]);
+        skip->promise = switches[s].promise;
+        skip->bound = switches[s].bound;
+        for (int side = WITHOUT; side <= WITH; side++) {
+            struct job *job = &jobs_of(bench, skip)[side];
+            job->run = copy_settings(&bench->result->cases[c], error);
+            if (!job->run || apply(job->run, switches[s].keys[side], scheme->alpha, error))
+                return error->status;
+        }
+    }
+    return STATUS_OK;
+}
+
+/* The scheme whose loops contain the work; false where the case needs that work itself. */
+static bool scheme_with(enum extra extra, struct scheme *scheme)
+{
+    const struct scheme own = *scheme;
+    switch (extra) {
+    case EXTRA_MATRIX:
+        scheme->gradient = GRADIENT_IA;
+        scheme->viscosity = VISCOSITY_CONSTANT;
+        return own.gradient != GRADIENT_IA;
+    case EXTRA_SLOPE:
+        scheme->viscosity = VISCOSITY_RECONSTRUCTED;
+        scheme->gradient = GRADIENT_STANDARD;
+        return own.viscosity != VISCOSITY_RECONSTRUCTED;
+    case EXTRA_GRAD_H:
+        scheme->formulation = FORMULATION_LAGRANGIAN;
+        return own.formulation != FORMULATION_LAGRANGIAN && own.volume_element == VOLUME_MASS;
+    case EXTRA_ENERGY_SUM:
+        scheme->volume_element = VOLUME_ENERGY;
+        return own.volume_element != VOLUME_ENERGY;
+    case EXTRA_SIGNAL:
+        return !own.integrator->signal_pass;
+    default:
+        return false;
+    }
+}
+
+static enum status add_loops(struct job *job, const struct scheme *scheme, enum bench_pass pass,
+                             struct error *error)
+{
+    job->loops = calloc(1, sizeof *job->loops);
+    if (!job->loops) return error_set(error, STATUS_ENVIRONMENT, "no memory");
+    return bench_loops_create(job->loops, scheme, LOOP_PARTICLES, true, 1u << pass, error);
+}
+
+static enum status add_extras(struct bench *bench, size_t c, const struct scheme *scheme,
+                              struct error *error)
+{
+    for (enum extra e = 0; e < EXTRAS; e++) {
+        struct scheme with = *scheme;
+        if (!scheme_with(e, &with)) continue;
+        struct job *job = jobs_of(bench, new_skip(bench, c, extras[e].name, extras[e].keys));
+        if (add_loops(&job[WITH], &with, extras[e].pass, error)) return error->status;
+        if (extras[e].replaces && add_loops(&job[WITHOUT], scheme, extras[e].pass, error))
+            return error->status;
+    }
+    return STATUS_OK;
+}
+
+static enum status add_case(struct bench *bench, size_t c, struct error *error)
+{
+    struct run_settings *settings = &bench->result->cases[c];
+    struct settings resolved = settings->settings;
+    struct scheme scheme;
+    if (settings_resolve(&resolved, settings->file.dimension, &scheme, error) ||
+        add_switches(bench, c, &scheme, error) || add_extras(bench, c, &scheme, error))
+        return error->status;
+    struct job *whole = &bench->jobs[bench->max * SIDES + c];
+    whole->run = copy_settings(settings, error);
+    return whole->run ? apply(whole->run, "skip=none", 0, error) : error->status;
+}
+
+/* --- all of them ------------------------------------------------------------------------------ */
+
+static void judge(struct bench_skip *skip, const struct job *job)
+{
+    const struct run_result *a = &job[WITHOUT].last, *b = &job[WITH].last;
+    skip->l1[WITHOUT] = a->errors[FIELD_DENSITY].l1;
+    skip->l1[WITH] = b->errors[FIELD_DENSITY].l1;
+    if (a->cost.skipped_particle_updates)
+        skip->skipped = (double)a->cost.skipped_particle_updates /
+                        (double)(a->cost.skipped_particle_updates + a->cost.particle_updates);
+    skip->difference =
+        skip->promise == PROMISE_ERROR
+            ? fabs(skip->l1[WITHOUT] / skip->l1[WITH] - 1)
+            : bench_skips_difference(&a->snapshot, &b->snapshot, a->exact.hi - a->exact.lo);
+    skip->kept = skip->difference <= skip->bound;
+}
+
+static void finish(struct bench *bench, const struct bench_subject *of_job[])
+{
+    for (size_t s = 0; s < bench->result->count; s++) {
+        struct bench_skip *skip = &bench->result->skips[s];
+        const struct job *job = jobs_of(bench, skip);
+        const struct bench_subject *const *times = &of_job[s * SIDES];
+        if (job[WITH].loops) {
+            /* a particle's update of the whole run, and what the pass adds to it */
+            const size_t whole = bench->max * SIDES + skip->case_index;
+            const struct run_result *run = &bench->jobs[whole].last;
+            const double update = of_job[whole]->time.cpu_s / (double)run->cost.particle_updates;
+            const double without = times[WITHOUT] ? times[WITHOUT]->time.cpu_s : 0;
+            skip->cpu_s[WITHOUT] = update;
+            skip->cpu_s[WITH] = update + (times[WITH]->time.cpu_s - without) / LOOP_PARTICLES;
+            skip->spread = fmax(of_job[whole]->time.spread, times[WITH]->time.spread);
+            continue;
+        }
+        for (int side = WITHOUT; side <= WITH; side++) {
+            skip->cpu_s[side] = times[side]->time.cpu_s;
+            skip->spread = fmax(skip->spread, times[side]->time.spread);
+        }
+        judge(skip, job);
+    }
+    for (size_t c = 0; c < bench->result->case_count; c++)
+        bench->result->n[c] = bench->jobs[bench->max * SIDES + c].last.n;
+}
+
+static enum status measure(struct bench *bench, const struct bench_rules *rules,
+                           bench_progress *progress, void *context, struct error *error)
+{
+    const size_t all = bench->max * SIDES + bench->result->case_count;
+    const struct bench_subject **of_job = calloc(all, sizeof *of_job);
+    struct bench_subject *subjects = calloc(all, sizeof *subjects);
+    enum status status = STATUS_OK;
+    size_t count = 0;
+    if (!of_job || !subjects) {
+        status = error_set(error, STATUS_ENVIRONMENT, "no memory");
+        goto end;
+    }
+    for (size_t k = 0; k < all; k++) {
+        if (!bench->jobs[k].run && !bench->jobs[k].loops) continue;
+        subjects[count] = (struct bench_subject){.work = work, .context = &bench->jobs[k]};
+        of_job[k] = &subjects[count++];
+    }
+    status = bench_measure(subjects, count, rules, progress, context, error);
+    for (size_t k = 0; k < count && !status; k++)
+        if (subjects[k].failure.status) {
+            *error = subjects[k].failure;
+            status = error->status;
+        }
+    if (!status) finish(bench, of_job);
+end:
+    free(of_job), free(subjects);
+    return status;
+}
+
+enum status bench_skips_measure(const struct run_settings *cases, size_t count,
+                                const struct bench_rules *rules, bench_progress *progress,
+                                void *context, struct bench_skips *result, struct error *error)
+{
+    struct bench bench = {.result = result, .max = count * (SWITCHES + EXTRAS)};
+    *result = (struct bench_skips){.case_count = count,
+                                   .cases = malloc(count * sizeof *cases),
+                                   .n = calloc(count, sizeof(size_t)),
+                                   .skips = calloc(bench.max, sizeof *result->skips)};
+    bench.jobs = calloc(bench.max * SIDES + count, sizeof *bench.jobs);
+    enum status status = STATUS_OK;
+    if (!result->cases || !result->n || !result->skips || !bench.jobs)
+        status = error_set(error, STATUS_ENVIRONMENT, "no memory");
+    for (size_t c = 0; c < count && !status; c++) {
+        result->cases[c] = cases[c];
+        status = add_case(&bench, c, error);
+    }
+    if (!status) status = measure(&bench, rules, progress, context, error);
+    for (size_t k = 0; bench.jobs && k < bench.max * SIDES + count; k++) {
+        free(bench.jobs[k].run);
+        run_free(&bench.jobs[k].last);
+        if (bench.jobs[k].loops) bench_loops_free(bench.jobs[k].loops);
+        free(bench.jobs[k].loops);
+    }
+    free(bench.jobs);
+    return status;
+}
+
+void bench_skips_free(struct bench_skips *result)
+{
+    free(result->cases), free(result->n), free(result->skips);
+    *result = (struct bench_skips){0};
+}
+
+/* --- results ---------------------------------------------------------------------------------- */
+
+static const char *const promises[] = {
+#define PROMISE(name, text) text,
+    BENCH_PROMISE_LIST(PROMISE)
+#undef PROMISE
+};
+
+static json_t *number_or_null(double value)
+{
+    return isnan(value) ? json_null() : result_number(value);
+}
+
+void bench_skips_add_json(const struct bench_skips *result, json_t *document)
+{
+    json_t *list = json_array();
+    for (size_t s = 0; s < result->count; s++) {
+        const struct bench_skip *skip = &result->skips[s];
+        json_array_append_new(
+            list,
+            json_pack("{s:s, s:I, s:s, s:s, s:o, s:o, s:o, s:o, s:o, s:s, s:o, s:o, s:s}", "case",
+                      result->cases[skip->case_index].file.name, "n",
+                      (json_int_t)result->n[skip->case_index], "skip", skip->name, "against",
+                      skip->keys, "cpu_s", result_number(skip->cpu_s[WITHOUT]),
+                      "cpu_s_without_skip", result_number(skip->cpu_s[WITH]), "saves",
+                      result_number(skip->cpu_s[WITH] / skip->cpu_s[WITHOUT]), "spread",
+                      result_number(skip->spread), "skipped_fraction",
+                      number_or_null(skip->skipped), "promise", promises[skip->promise],
+                      "difference", number_or_null(skip->difference), "bound",
+                      skip->promise == PROMISE_UNUSED ? json_null() : result_number(skip->bound),
+                      "status", skip->kept ? "pass" : "fail"));
+    }
+    json_object_set_new(document, "skips", list);
+}
+
+static void print_answer(const struct bench_skip *skip, const struct table_style *style)
+{
+    if (skip->promise == PROMISE_UNUSED) {
+        printf("  %s", promises[skip->promise]);
+        return;
+    }
+    printf("  %s%s%s: ", skip->kept ? "" : style->bad, skip->kept ? "" : "NOT ",
+           promises[skip->promise]);
+    if (skip->promise == PROMISE_ERROR)
+        printf("L1 %.4e against %.4e", skip->l1[WITHOUT], skip->l1[WITH]);
+    else
+        printf("%.1e", skip->difference);
+    if (skip->promise != PROMISE_BITS) printf(" (bound %.0e)", skip->bound);
+    if (!skip->kept) printf("%s", style->end);
+}
+
+void bench_skips_print(const struct bench_skips *result, const struct table_style *style)
+{
+    printf("%s%-16s %6s  %-32s %8s %7s %9s  %s%s\n", style->bold, "case", "n", "left out", "saves",
+           "spread", "updates", "the answer", style->end);
+    for (size_t s = 0; s < result->count; s++) {
+        const struct bench_skip *skip = &result->skips[s];
+        printf("%-16s %6zu  %-32s %7.2fx %6.0f%%", result->cases[skip->case_index].file.name,
+               result->n[skip->case_index], skip->name, skip->cpu_s[WITH] / skip->cpu_s[WITHOUT],
+               100 * skip->spread);
+        if (isnan(skip->skipped))
+            printf(" %9s", "");
+        else
+            printf(" %8.0f%%", -100 * skip->skipped);
+        print_answer(skip, style);
+        printf("\n");
+    }
+    printf("%ssaves: CPU time with the work over that without, both runs of one benchmark; passes "
+           "that the plan\ndoes not contain are timed by themselves (n = %d) on top of a "
+           "particle's whole update. updates: particle\nupdates left out. Differences: largest of "
+           "any field at t_end over the field's largest value%s\n",
+           style->faint, LOOP_PARTICLES, style->end);
+}

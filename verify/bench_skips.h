@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What each piece of work that a run leaves out would cost, and whether the answer is the same
+ * without it. Some can be switched on by a key: both runs are made and compared. Others are passes
+ * that the plan does not contain and nothing would read: these are timed by themselves. */
+#ifndef SPHPROOF_BENCH_SKIPS_H
+#define SPHPROOF_BENCH_SKIPS_H
+
+#include <jansson.h>
+
+#include "bench.h"
+#include "run.h"
+#include "table.h"
+
+/* What is promised about the answer with and without the work. */
+#define BENCH_PROMISE_LIST(PROMISE)                                                                \
+    PROMISE(BITS, "same bits")                                                                     \
+    PROMISE(ROUND_OFF, "same to round-off")   /* largest difference of a field, relative */        \
+    PROMISE(ERROR, "same error")              /* |L1 of density/L1 - 1| */                         \
+    PROMISE(UNUSED, "result would be unused") /* nothing to compare */
+
+enum bench_promise {
+#define PROMISE(name, text) PROMISE_##name,
+    BENCH_PROMISE_LIST(PROMISE)
+#undef PROMISE
+};
+
+struct bench_skip {
+    size_t case_index;
+    const char *name; /* of the work left out */
+    const char *keys; /* that bring it back, or the pass by itself */
+    enum bench_promise promise;
+    double bound;      /* of the difference; 0 for bits */
+    double difference; /* as the promise defines it; NaN where there is nothing to compare */
+    double l1[2];      /* of density: left out, done */
+    double cpu_s[2];   /* left out, done: of a run, or of a particle's update */
+    double spread;     /* the larger of both */
+    double skipped;    /* fraction of particle updates left out; NaN: no such thing */
+    bool kept;         /* the promise */
+};
+
+struct bench_skips {
+    size_t case_count, count;
+    struct run_settings *cases;
+    size_t *n; /* particles, of each case */
+    struct bench_skip *skips;
+};
+
+/* cases: count prepared settings, copied. STATUS_OK also where a promise is broken: see kept. Free
+ * with bench_skips_free, also after a failure. */
+enum status bench_skips_measure(const struct run_settings *cases, size_t count,
+                                const struct bench_rules *rules, bench_progress *progress,
+                                void *context, struct bench_skips *result, struct error *error);
+void bench_skips_free(struct bench_skips *result);
+
+/* Array "skips" of a result document. */
+void bench_skips_add_json(const struct bench_skips *result, json_t *document);
+void bench_skips_print(const struct bench_skips *result, const struct table_style *style);
+
+/* Largest difference of two snapshots in any field, relative to the field's largest value,
+ * positions to the period; 0 only for the same bits. INFINITY: not comparable. */
+double bench_skips_difference(const struct snapshot *a, const struct snapshot *b, double period);
+
+#endif
