@@ -64,16 +64,15 @@ double bench_skips_difference(const struct snapshot *a, const struct snapshot *b
         if (memcmp(of_a[k], of_b[k], a->n * sizeof(double)) == 0) continue;
         for (size_t i = 0; i < a->n; i++) {
             double here = fabs(of_a[k][i] - of_b[k][i]);
+            if (isnan(here)) return (double)INFINITY;
             if (k == 0) here = fmin(here, fabs(period - here));
-            if (!(here <= difference)) difference = here;
+            difference = fmax(difference, here);
             largest = fmax(largest, fabs(of_a[k][i]));
         }
-        const double relative = difference > 0 ? difference / largest : 0;
-        if (!(relative <= worst)) worst = relative;
         /* bits that differ in the sign of a zero are a difference, too */
-        worst = fmax(worst, 1e-300);
+        worst = fmax(worst, difference > 0 ? difference / largest : 1e-300);
     }
-    return isnan(worst) ? (double)INFINITY : worst;
+    return worst;
 }
 
 /* --- one measurement -------------------------------------------------------------------------- */
@@ -392,8 +391,9 @@ void bench_skips_add_json(const struct bench_skips *result, json_t *document)
 
 static void print_answer(const struct bench_skip *skip, const struct table_style *style)
 {
-    if (skip->promise == PROMISE_UNUSED) {
-        printf("  %s", promises[skip->promise]);
+    const bool compared = skip->promise == PROMISE_BITS || skip->promise == PROMISE_ROUND_OFF;
+    if (skip->promise == PROMISE_UNUSED || (compared && !(skip->difference > 0))) {
+        printf("  %s", promises[compared ? PROMISE_BITS : PROMISE_UNUSED]);
         return;
     }
     printf("  %s%s%s: ", skip->kept ? "" : style->bad, skip->kept ? "" : "NOT ",

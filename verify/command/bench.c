@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "bench_kernels.h"
+#include "bench_scaling.h"
 #include "bench_skips.h"
 #include "command.h"
 #include "output.h"
@@ -62,14 +63,22 @@ static enum status write_result(const struct request *request, json_t *document,
 
 /* --- work-precision --------------------------------------------------------------------------- */
 
+/* The case, sod if none is named; resolutions belong to --n. */
+static enum status prepare_case(const struct request *request, struct run_settings *settings,
+                                struct error *error)
+{
+    const char *name = request->case_name ? request->case_name : "sod";
+    if (run_prepare(settings, name, request->n, request->arguments, error)) return error->status;
+    settings->threads = request->options->threads;
+    if (settings->settings.value[SETTING_n].source != SOURCE_USER) return STATUS_OK;
+    return error_set(error, STATUS_BAD_INPUT,
+                     "bench: the key n and a ladder exclude each other; allowed: --n N1,N2,...");
+}
+
 static enum status take_ladder(const struct request *request, const struct run_settings *settings,
                                size_t ladder[CASE_LADDER_MAX], size_t *count, struct error *error)
 {
     const char *text = options_value(request->options, "n");
-    if (settings->settings.value[SETTING_n].source == SOURCE_USER)
-        return error_set(
-            error, STATUS_BAD_INPUT,
-            "bench: the key n and a ladder exclude each other; allowed: --n N1,N2,...");
     if (text) return sweep_ladder(text, 1, ladder, count, error);
     *count = settings->file.ladder_count;
     memcpy(ladder, settings->file.ladder, sizeof settings->file.ladder);
@@ -86,13 +95,11 @@ static enum status work_precision(struct request *request, struct error *error)
     struct precision precision = {0};
     size_t ladder[CASE_LADDER_MAX], count;
     const char *plot = options_value(request->options, "plot");
-    if (run_prepare(&settings, request->case_name ? request->case_name : "sod", request->n,
-                    request->arguments, error) ||
+    if (prepare_case(request, &settings, error) ||
         sweep_parse(&sweep, options_value(request->options, "vary"), error) ||
         take_ladder(request, &settings, ladder, &count, error) ||
         (plot && picture_probe(plot, error)))
         return error->status;
-    settings.threads = request->options->threads;
     progress_begin(&request->progress, "bench", request->options);
     enum status status = precision_measure(&settings, &sweep, ladder, count, &request->rules,
                                            show_progress, &request->progress, &precision, error);
@@ -211,6 +218,41 @@ static enum status skips(struct request *request, struct error *error)
     return status || kept ? status : STATUS_CHECK_FAILED;
 }
 
+/* --- how cost grows --------------------------------------------------------------------------- */
+
+static const char usual_sizes[] = "100,316,1000,3162,10000,31623,100000,316228,1000000";
+
+static enum status scaling(struct request *request, struct error *error)
+{
+    static struct run_settings settings;
+    static struct scaling result;
+    size_t ladder[CASE_LADDER_MAX], count;
+    const char *sizes = options_value(request->options, "n");
+    const char *plot = options_value(request->options, "plot");
+    const int threads = request->options->threads > 1 ? request->options->threads : 2;
+    if (refuse_option(request, "--scaling", "vary", error) ||
+        prepare_case(request, &settings, error) ||
+        sweep_ladder(sizes ? sizes : usual_sizes, 1, ladder, &count, error) ||
+        (plot && picture_probe(plot, error)))
+        return error->status;
+    progress_begin(&request->progress, "bench --scaling", request->options);
+    enum status status = bench_scaling_measure(&settings, ladder, count, threads, &request->rules,
+                                               show_progress, &request->progress, &result, error);
+    progress_end(&request->progress);
+    if (!status && plot) status = bench_scaling_plot(&result, plot, error);
+    if (!status) {
+        json_t *document = result_new("bench");
+        bench_scaling_add_json(&result, document);
+        status = write_result(request, document, error);
+        json_decref(document);
+    }
+    if (!status && request->options->speak) {
+        const struct table_style style = table_style(request->options);
+        bench_scaling_print(&result, &style);
+    }
+    return status;
+}
+
 /* --- which of them ---------------------------------------------------------------------------- */
 
 static const struct {
@@ -219,6 +261,7 @@ static const struct {
 } modes[] = {
     {"kernels", kernels},
     {"skips", skips},
+    {"scaling", scaling},
 };
 enum { MODES = sizeof modes / sizeof *modes };
 
@@ -248,6 +291,7 @@ static const struct command_option own_options[] = {
     {"plot", "FILE.svg|.png", "draw error against CPU time (needs gnuplot)"},
     {"kernels", NULL, "ns per pair: kernels x solver loops and gradient operators x dimension"},
     {"skips", NULL, "what each piece of work left out saves, and that the answer is the same"},
+    {"scaling", NULL, "time and memory against n, with exponents; gain of threads"},
     {"time", "S", "CPU time of a sample, at least (default 0.02 s)"},
     {"samples", "N", "samples of each measurement (default 5); the least counts"},
     {NULL, NULL, NULL},
@@ -270,6 +314,7 @@ const struct command command_bench = {
                 "integrator=predicted_midpoint,rk3,viscosity --json -\n"
                 "sphproof bench --kernels --vary kernel=cubic_spline,quintic_spline\n"
                 "sphproof bench --skips\n"
+                "sphproof bench --scaling --n 100,1000,10000,100000 --threads 2\n"
                 "sphproof bench sod_standard kernel=quartic_spline --vary "
                 "viscosity=constant,reconstructed",
 };

@@ -12,6 +12,8 @@
 
 #include "bench.h"
 #include "bench_limit.h"
+#include "bench_scaling.h"
+#include "bench_skips.h"
 #include "near.h"
 #include "precision.h"
 
@@ -280,6 +282,75 @@ static void test_plain_refuses_other_schemes(void **state)
     free(settings);
 }
 
+/* --- left-out work ---------------------------------------------------------------------------- */
+
+static void test_difference_of_states(void **state)
+{
+    (void)state;
+    double x[2][3] = {{-0.999999999, 0.1, 0.4}, {0.999999999, 0.1, 0.4}}, v[3] = {0, -4, 2},
+           w[3] = {0, -4, 2 + 4e-9}, one[3] = {1, 1, 1};
+    struct snapshot a = {.n = 3, .x = {x[0]}, .v = {v}, .rho = one, .u = one, .P = one, .h = one},
+                    b = a;
+    assert_true(bench_skips_difference(&a, &b, 2) == 0);
+    b.v[0] = w;
+    near_relative(bench_skips_difference(&a, &b, 2), 1e-9, 1e-6);
+    b.v[0] = v;
+    b.x[0] = x[1]; /* the same place, seen from the box's other end, but for 2e-9 */
+    near_relative(bench_skips_difference(&a, &b, 2), 2e-9, 1e-6);
+    b.x[0] = x[0];
+    double negative[3] = {-0., -4, 2};
+    b.v[0] = negative;
+    near_inside(bench_skips_difference(&a, &b, 2), 1e-310, 1e-290); /* other bits */
+    double broken[3] = {0, (double)NAN, 2};
+    b.v[0] = broken;
+    assert_true(isinf(bench_skips_difference(&a, &b, 2)));
+    b.n = 2;
+    assert_true(isinf(bench_skips_difference(&a, &b, 2)));
+}
+
+static void test_promises_are_kept_or_seen_broken(void **state)
+{
+    (void)state;
+    static struct run_settings settings;
+    struct bench_skips skips;
+    struct error error = {0};
+    const struct bench_rules brief = {.least_s = 1e-6, .most_s = 1, .samples = 2};
+    assert_int_equal(run_prepare(&settings, "sod", 2, (char *[]){"t_end=0.1", "n=180"}, &error), 0);
+    settings.threads = 1;
+    assert_int_equal(bench_skips_measure(&settings, 1, &brief, NULL, NULL, &skips, &error), 0);
+    assert_true(skips.count >= 6);
+    near_inside(skips.skips[0].skipped, 0.2, 0.9); /* no signal has come far at t = 0.1 */
+    for (size_t i = 0; i < skips.count; i++) {
+        const struct bench_skip *skip = &skips.skips[i];
+        assert_true(skip->kept);
+        assert_true(isnan(skip->difference) == (skip->promise == PROMISE_UNUSED));
+    }
+    bench_skips_free(&skips);
+}
+
+/* --- how cost grows --------------------------------------------------------------------------- */
+
+static void test_scaling(void **state)
+{
+    (void)state;
+    static struct run_settings settings;
+    static struct scaling scaling;
+    static const size_t ladder[] = {90, 180, 270, 810};
+    struct error error = {0};
+    const struct bench_rules brief = {.least_s = 1e-6, .most_s = 1, .samples = 2};
+    assert_int_equal(run_prepare(&settings, "sod", 1, (char *[]){"t_end=0.02"}, &error), 0);
+    assert_int_equal(
+        bench_scaling_measure(&settings, ladder, 4, 2, &brief, NULL, NULL, &scaling, &error), 0);
+    for (size_t i = 0; i < 4; i++) {
+        assert_int_equal(scaling.levels[i].n, ladder[i]);
+        near_inside(scaling.levels[i].error, 1e-5, 0.1);
+        assert_true(scaling.levels[i].run_steps > 0);
+    }
+    assert_int_equal(scaling.thread_count, 1);
+    assert_true(scaling.threads[0].same_bits);
+    assert_int_equal(scaling.run.n, 4);
+}
+
 /* --- a small study: order and consistency of its points --------------------------------------- */
 
 static void test_study(void **state)
@@ -336,6 +407,9 @@ int main(void)
         cmocka_unit_test(test_limit_does_the_same_arithmetic),
         cmocka_unit_test(test_plain_is_the_solver),
         cmocka_unit_test(test_plain_refuses_other_schemes),
+        cmocka_unit_test(test_difference_of_states),
+        cmocka_unit_test(test_promises_are_kept_or_seen_broken),
+        cmocka_unit_test(test_scaling),
         cmocka_unit_test(test_study),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

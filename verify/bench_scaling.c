@@ -1,0 +1,202 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "bench_scaling.h"
+
+#include <gsl/gsl_fit.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "bench_skips.h"
+#include "precision.h"
+
+/* A step's time is that of a longer run less that of a shorter one: the set-up cancels. The solver
+ * asks every 32 steps whether to go on. */
+enum { STEPS_SHORT = 32, STEPS_LONG = 96 };
+enum { RUN_N_MAX = 10000 }; /* whole runs cost as n^2 */
+static const size_t thread_n[] = {800, 6400, 20000, 100000};
+enum { THREAD_LEVELS = sizeof thread_n / sizeof *thread_n };
+
+enum part { PART_SHORT, PART_LONG, PART_RUN, PARTS };
+
+struct job {
+    struct run_settings settings;
+    uint64_t most_steps; /* 0: to t_end */
+    bool keep;           /* the last state, to compare; else memory is measured without it */
+    struct run_result last;
+    double peak_rss; /* after the first call */
+};
+
+static bool go_on(void *context, double time, uint64_t steps)
+{
+    const struct job *job = context;
+    (void)time;
+    return job->most_steps == 0 || steps < job->most_steps;
+}
+
+static enum status work(void *context, uint64_t times, struct bench_taken *taken,
+                        struct error *error)
+{
+    struct job *job = context;
+    job->settings.progress = go_on;
+    job->settings.progress_context = job;
+    for (uint64_t i = 0; i < times; i++) {
+        run_free(&job->last);
+        const enum status status = run_execute(&job->settings, &job->last, error);
+        if (status == STATUS_BROKE_DOWN || (!status && !job->keep)) run_free(&job->last);
+        if (status) return status;
+        taken->wall_s += job->last.cost.wall_s;
+        taken->cpu_s += job->last.cost.cpu_s;
+        if (!(job->peak_rss > 0)) job->peak_rss = job->last.peak_rss;
+    }
+    return STATUS_OK;
+}
+
+/* Steps of a state in motion: no particle may sleep, and t_end does not come. */
+static enum status prepare(struct job *job, const struct run_settings *settings, size_t n,
+                           uint64_t most_steps, int threads, struct error *error)
+{
+    static char *const awake[] = {"skip=none", "t_end=1e9"};
+    char key[40], *keys[] = {key};
+    *job = (struct job){.settings = *settings, .most_steps = most_steps};
+    job->settings.threads = threads;
+    snprintf(key, sizeof key, "n=%zu", n);
+    if (settings_apply(&job->settings.settings, 1, keys, error)) return error->status;
+    if (!most_steps) return STATUS_OK;
+    job->settings.any_window = true;
+    return settings_apply(&job->settings.settings, 2, awake, error);
+}
+
+struct bench {
+    struct scaling *scaling;
+    struct job *jobs; /* PARTS a level, then two a thread level and part */
+    struct bench_subject *subjects;
+    size_t count;
+};
+
+static enum status add(struct bench *bench, size_t n, uint64_t most_steps, int threads,
+                       struct error *error)
+{
+    struct job *job = &bench->jobs[bench->count];
+    bench->subjects[bench->count++] = (struct bench_subject){.work = work, .context = job};
+    return prepare(job, bench->scaling->settings, n, most_steps, threads, error);
+}
+
+static struct order_fit exponent(size_t n, const double *particles, const double *cost)
+{
+    double spacing[CASE_LADDER_MAX];
+    struct order_fit fit = {0};
+    struct error ignored;
+    for (size_t i = 0; i < n; i++) spacing[i] = 1 / particles[i];
+    if (n < ORDER_LEVELS_MIN || order_fit(n, spacing, cost, NULL, &fit, &ignored)) fit.n = 0;
+    return fit;
+}
+
+static void fit(struct scaling *scaling)
+{
+    double n[CASE_LADDER_MAX], step[CASE_LADDER_MAX], run[CASE_LADDER_MAX], rss[CASE_LADDER_MAX],
+        error[CASE_LADDER_MAX], c0, c[3], chi2;
+    bool front[CASE_LADDER_MAX];
+    size_t runs = 0;
+    const size_t count = scaling->level_count, last = count < 3 ? 0 : count - 3;
+    for (size_t i = 0; i < count; i++) {
+        const struct scaling_level *level = &scaling->levels[i];
+        n[i] = (double)level->n;
+        step[i] = level->step_cpu_s;
+        rss[i] = level->peak_rss;
+        run[i] = level->run_cpu_s;
+        error[i] = level->error;
+        runs += isfinite(run[i]);
+    }
+    scaling->step = exponent(count, n, step);
+    scaling->run = exponent(runs, n, run);
+    precision_front(runs, run, error, front);
+    for (size_t i = 0; i < runs; i++) scaling->levels[i].on_front = front[i];
+    scaling->bytes_per_particle = (double)NAN;
+    if (count >= 2)
+        gsl_fit_linear(n + last, 1, rss + last, 1, count - last, &c0, &scaling->bytes_per_particle,
+                       &c[0], &c[1], &c[2], &chi2);
+}
+
+static void read_level(struct bench *bench, size_t i, size_t first)
+{
+    struct scaling_level *level = &bench->scaling->levels[i];
+    const struct bench_subject *parts = &bench->subjects[first];
+    const struct job *jobs = &bench->jobs[first];
+    const double brief = parts[PART_SHORT].time.cpu_s, longer = parts[PART_LONG].time.cpu_s;
+    level->n = jobs[PART_LONG].last.n;
+    level->step_cpu_s = (longer - brief) / (STEPS_LONG - STEPS_SHORT);
+    level->set_up_cpu_s = fmax(brief - STEPS_SHORT * level->step_cpu_s, 0);
+    level->spread = fmax(parts[PART_SHORT].time.spread, parts[PART_LONG].time.spread);
+    level->peak_rss = jobs[PART_LONG].peak_rss;
+    level->run_cpu_s = level->error = (double)NAN;
+    if (level->n > RUN_N_MAX) return;
+    const struct run_result *run = &jobs[PART_RUN].last;
+    level->run_cpu_s = parts[PART_RUN].time.cpu_s;
+    level->run_wall_s = parts[PART_RUN].time.wall_s;
+    level->run_pairs = (double)run->cost.pair_interactions;
+    level->run_steps = run->cost.steps;
+    level->error = run->errors[FIELD_DENSITY].l1;
+    level->settings = run->settings;
+}
+
+static void read_threads(struct bench *bench, size_t i, size_t first, int threads)
+{
+    struct scaling_threads *level = &bench->scaling->threads[i];
+    const struct bench_subject *parts = &bench->subjects[first]; /* short, long; one thread, more */
+    const struct job *jobs = &bench->jobs[first];
+    double step[2];
+    for (int k = 0; k < 2; k++)
+        step[k] =
+            (parts[2 * k + 1].time.wall_s - parts[2 * k].time.wall_s) / (STEPS_LONG - STEPS_SHORT);
+    const struct exact *exact = &jobs[1].last.exact;
+    *level = (struct scaling_threads){
+        .n = jobs[1].last.n,
+        .threads = threads,
+        .wall_s = step[1],
+        .gain = step[0] / step[1],
+        .same_bits = !(bench_skips_difference(&jobs[1].last.snapshot, &jobs[3].last.snapshot,
+                                              exact->hi - exact->lo) > 0)};
+}
+
+enum status bench_scaling_measure(const struct run_settings *settings, const size_t *ladder,
+                                  size_t count, int threads, const struct bench_rules *rules,
+                                  bench_progress *progress, void *context, struct scaling *scaling,
+                                  struct error *error)
+{
+    *scaling = (struct scaling){.settings = settings, .level_count = count};
+    const size_t most = PARTS * count + 4 * THREAD_LEVELS;
+    size_t first[CASE_LADDER_MAX + THREAD_LEVELS];
+    struct bench bench = {.scaling = scaling,
+                          .jobs = calloc(most, sizeof *bench.jobs),
+                          .subjects = calloc(most, sizeof *bench.subjects)};
+    enum status status = STATUS_OK;
+    if (!bench.jobs || !bench.subjects) status = error_set(error, STATUS_ENVIRONMENT, "no memory");
+    for (size_t i = 0; i < count && !status; i++) {
+        first[i] = bench.count;
+        status = add(&bench, ladder[i], STEPS_SHORT, 1, error);
+        if (!status) status = add(&bench, ladder[i], STEPS_LONG, 1, error);
+        if (!status && ladder[i] <= RUN_N_MAX) status = add(&bench, ladder[i], 0, 1, error);
+    }
+    while (scaling->thread_count < THREAD_LEVELS && count &&
+           thread_n[scaling->thread_count] <= ladder[count - 1])
+        scaling->thread_count++;
+    for (size_t i = 0; i < scaling->thread_count && !status; i++) {
+        first[count + i] = bench.count;
+        for (int k = 0; k < 4 && !status; k++)
+            status = add(&bench, thread_n[i], k % 2 ? STEPS_LONG : STEPS_SHORT, k < 2 ? 1 : threads,
+                         error);
+    }
+    if (!status)
+        status = bench_measure(bench.subjects, bench.count, rules, progress, context, error);
+    for (size_t k = 0; k < bench.count && !status; k++)
+        if (bench.subjects[k].failure.status) {
+            *error = bench.subjects[k].failure;
+            status = error->status;
+        }
+    for (size_t i = 0; i < count && !status; i++) read_level(&bench, i, first[i]);
+    for (size_t i = 0; i < scaling->thread_count && !status; i++)
+        read_threads(&bench, i, first[count + i], threads);
+    if (!status) fit(scaling);
+    for (size_t k = 0; k < bench.count; k++) run_free(&bench.jobs[k].last);
+    free(bench.jobs), free(bench.subjects);
+    return status;
+}

@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * How cost grows with the number of particles: of a step, of a whole run, of memory; and what
+ * threads gain. Exponents are least-squares slopes in log-log with their 95 % interval. */
+#ifndef SPHPROOF_BENCH_SCALING_H
+#define SPHPROOF_BENCH_SCALING_H
+
+#include <jansson.h>
+
+#include "bench.h"
+#include "order.h"
+#include "run.h"
+#include "table.h"
+
+enum { SCALING_THREADS_MAX = 8 };
+
+struct scaling_level {
+    size_t n;
+    double step_cpu_s, set_up_cpu_s; /* one step with all particles awake; all before the first */
+    double spread;
+    double peak_rss;                     /* bytes, of the process, after this level (they rise) */
+    double run_cpu_s;                    /* whole run as given; NaN where it would take too long */
+    double run_wall_s, run_pairs, error; /* of the whole run; error: L1 of density */
+    bool on_front;
+    uint64_t run_steps;
+    struct settings settings; /* of the whole run, resolved */
+};
+
+struct scaling_threads {
+    size_t n;
+    int threads;
+    double wall_s, gain; /* of a step; the same with one thread over it */
+    bool same_bits;
+};
+
+struct scaling {
+    const struct run_settings *settings;
+    size_t level_count, thread_count;
+    struct scaling_level levels[CASE_LADDER_MAX];
+    struct scaling_threads threads[SCALING_THREADS_MAX];
+    struct order_fit step, run; /* exponent = -order: spacing is 1/n. n = 0: too few levels */
+    double bytes_per_particle;  /* slope of peak_rss, three largest levels; NaN: fewer than two */
+};
+
+/* ladder: count rising numbers of particles; threads: compared with one, >= 2. settings must live
+ * as long as the result. */
+enum status bench_scaling_measure(const struct run_settings *settings, const size_t *ladder,
+                                  size_t count, int threads, const struct bench_rules *rules,
+                                  bench_progress *progress, void *context, struct scaling *scaling,
+                                  struct error *error);
+
+/* "points" (the whole runs) and "scaling" of a result document. */
+void bench_scaling_add_json(const struct scaling *scaling, json_t *document);
+void bench_scaling_print(const struct scaling *scaling, const struct table_style *style);
+enum status bench_scaling_plot(const struct scaling *scaling, const char *path,
+                               struct error *error);
+
+#endif

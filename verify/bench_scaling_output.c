@@ -1,0 +1,144 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * A scaling study for people and programs. */
+#include <math.h>
+#include <stdio.h>
+
+#include "bench_scaling.h"
+#include "picture.h"
+#include "result.h"
+
+static json_t *exponent_json(const char *of, const struct order_fit *fit)
+{
+    return json_pack("{s:s, s:o, s:o, s:o}", "of", of, "exponent", result_number(-fit->order),
+                     "low", result_number(-fit->high), "high", result_number(-fit->low));
+}
+
+void bench_scaling_add_json(const struct scaling *scaling, json_t *document)
+{
+    json_t *points = json_array(), *levels = json_array(), *threads = json_array(),
+           *exponents = json_array();
+    for (size_t i = 0; i < scaling->level_count; i++) {
+        const struct scaling_level *level = &scaling->levels[i];
+        json_array_append_new(
+            levels,
+            json_pack("{s:I, s:o, s:o, s:o, s:o, s:o}", "n", (json_int_t)level->n, "step_cpu_s",
+                      result_number(level->step_cpu_s), "ns_per_particle",
+                      result_number(1e9 * level->step_cpu_s / (double)level->n), "set_up_cpu_s",
+                      result_number(level->set_up_cpu_s), "spread", result_number(level->spread),
+                      "peak_rss_bytes", result_number(level->peak_rss)));
+        if (!isfinite(level->run_cpu_s)) continue;
+        json_array_append_new(points,
+                              json_pack("{s:o, s:I, s:o, s:o, s:o, s:o, s:I, s:b}", "settings",
+                                        settings_json(&level->settings), "n", (json_int_t)level->n,
+                                        "error", result_number(level->error), "wall_s",
+                                        result_number(level->run_wall_s), "cpu_s",
+                                        result_number(level->run_cpu_s), "pair_interactions",
+                                        result_number(level->run_pairs), "steps",
+                                        (json_int_t)level->run_steps, "on_front", level->on_front));
+    }
+    for (size_t i = 0; i < scaling->thread_count; i++) {
+        const struct scaling_threads *t = &scaling->threads[i];
+        json_array_append_new(
+            threads, json_pack("{s:I, s:i, s:o, s:o, s:b}", "n", (json_int_t)t->n, "threads",
+                               t->threads, "step_wall_s", result_number(t->wall_s), "gain",
+                               result_number(t->gain), "same_bits", t->same_bits));
+    }
+    if (scaling->step.n)
+        json_array_append_new(exponents, exponent_json("step_cpu_s", &scaling->step));
+    if (scaling->run.n) json_array_append_new(exponents, exponent_json("cpu_s", &scaling->run));
+    json_object_set_new(document, "case", json_string(scaling->settings->file.name));
+    json_object_set_new(document, "points", points);
+    json_object_set_new(document, "scaling",
+                        json_pack("{s:o, s:o, s:o, s:o}", "levels", levels, "exponents", exponents,
+                                  "threads", threads, "bytes_per_particle",
+                                  result_number(scaling->bytes_per_particle)));
+}
+
+static void print_exponent(const char *what, const struct order_fit *fit)
+{
+    if (fit->n)
+        printf("  %-34s n^%.3f   95 %% interval [%.3f, %.3f]\n", what, -fit->order, -fit->high,
+               -fit->low);
+    else
+        printf("  %-34s (at least %d resolutions are needed)\n", what, ORDER_LEVELS_MIN);
+}
+
+void bench_scaling_print(const struct scaling *scaling, const struct table_style *style)
+{
+    printf("%s%s%s: %s: how cost grows\n", style->bold, scaling->settings->file.name, style->end,
+           scaling->settings->file.title);
+    printf("%s%10s %12s %12s %12s %7s %12s %9s %10s%s\n", style->bold, "n", "step CPU s",
+           "ns/particle", "set-up CPU s", "spread", "run CPU s", "steps", "peak MB", style->end);
+    for (size_t i = 0; i < scaling->level_count; i++) {
+        const struct scaling_level *level = &scaling->levels[i];
+        printf("%10zu %12.3e %12.3g %12.3e %6.0f%%", level->n, level->step_cpu_s,
+               1e9 * level->step_cpu_s / (double)level->n, level->set_up_cpu_s,
+               100 * level->spread);
+        if (isfinite(level->run_cpu_s))
+            printf(" %12.3e %9llu", level->run_cpu_s, (unsigned long long)level->run_steps);
+        else
+            printf(" %12s %9s", "-", "-");
+        printf(" %10.1f\n", 1e-6 * level->peak_rss);
+    }
+    printf("%sstep: all particles awake, one thread; run: as given, to t_end (up to n = 10000)%s\n",
+           style->faint, style->end);
+    printf("%sexponents%s\n", style->bold, style->end);
+    print_exponent("CPU time of a step", &scaling->step);
+    print_exponent("CPU time of a whole run", &scaling->run);
+    if (isfinite(scaling->bytes_per_particle))
+        printf("%smemory%s\n  %.0f bytes a particle (slope of the peak; set-up, solver, snapshot "
+               "and errors)\n",
+               style->bold, style->end, scaling->bytes_per_particle);
+    if (!scaling->thread_count) return;
+    printf("%sthreads%s (wall time of a step, against one thread of the same benchmark)\n",
+           style->bold, style->end);
+    for (size_t i = 0; i < scaling->thread_count; i++) {
+        const struct scaling_threads *t = &scaling->threads[i];
+        printf("  n = %-8zu %d threads: %.3e s, %.2f times as fast, %s\n", t->n, t->threads,
+               t->wall_s, t->gain, t->same_bits ? "same bits" : "OTHER BITS");
+    }
+}
+
+enum status bench_scaling_plot(const struct scaling *scaling, const char *path, struct error *error)
+{
+    double n[CASE_LADDER_MAX], step[CASE_LADDER_MAX], run[CASE_LADDER_MAX];
+    size_t runs = 0;
+    for (size_t i = 0; i < scaling->level_count; i++) {
+        n[i] = (double)scaling->levels[i].n;
+        step[i] = scaling->levels[i].step_cpu_s;
+        run[i] = scaling->levels[i].run_cpu_s;
+        runs += isfinite(run[i]);
+    }
+    char titles[2][64];
+    snprintf(titles[0], sizeof titles[0], "a step, n^%.2f", -scaling->step.order);
+    snprintf(titles[1], sizeof titles[1], "a whole run, n^%.2f", -scaling->run.order);
+    const struct plot_series series[] = {
+        {.label = scaling->step.n ? titles[0] : "a step",
+         .kind = PLOT_LINES_POINTS,
+         .n = scaling->level_count,
+         .x = n,
+         .y = step},
+        {.label = scaling->run.n ? titles[1] : "a whole run",
+         .kind = PLOT_LINES_POINTS,
+         .n = runs,
+         .x = n,
+         .y = run},
+    };
+    const struct plot_panel panel = {.x_label = "number of particles",
+                                     .y_label = "CPU time (s)",
+                                     .x_log = true,
+                                     .y_log = true,
+                                     .key = PLOT_KEY_END,
+                                     .series = series,
+                                     .series_count = runs ? 2 : 1};
+    char title[256];
+    snprintf(title, sizeof title, "%.200s: how cost grows", scaling->settings->file.title);
+    const struct plot plot = {.name = "scaling",
+                              .title = title,
+                              .show_title = true,
+                              .width = 680,
+                              .height = 420,
+                              .panels = &panel,
+                              .panel_count = 1};
+    return picture_write(&plot, path, error);
+}
