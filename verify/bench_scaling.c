@@ -104,7 +104,7 @@ static void fit(struct scaling *scaling)
         rss[i] = level->peak_rss;
         run[i] = level->run_cpu_s;
         error[i] = level->error;
-        runs += isfinite(run[i]);
+        runs += isfinite(run[i]) ? 1u : 0u;
     }
     scaling->step = exponent(count, n, step);
     scaling->run = exponent(runs, n, run);

@@ -107,7 +107,7 @@ enum status bench_scaling_plot(const struct scaling *scaling, const char *path, 
         n[i] = (double)scaling->levels[i].n;
         step[i] = scaling->levels[i].step_cpu_s;
         run[i] = scaling->levels[i].run_cpu_s;
-        runs += isfinite(run[i]);
+        runs += isfinite(run[i]) ? 1u : 0u;
     }
     char titles[2][64];
     snprintf(titles[0], sizeof titles[0], "a step, n^%.2f", -scaling->step.order);
