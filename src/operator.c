@@ -26,7 +26,8 @@ const struct family operator_family = {"operators", "gradient operators on a clo
 
 const char *operator_state_name(enum operator_state state)
 {
-    static const char *const names[] = {"ok", "too_few_neighbours", "ill_conditioned", "singular"};
+    static const char *const names[] = {"ok", "too_few_neighbours", "ill_conditioned", "singular",
+                                        "overflow"};
     return names[state];
 }
 
@@ -290,6 +291,7 @@ ALWAYS_INLINE uint32_t point_gradient(int dim, const struct task *task, struct w
     }
 
     const size_t i = nb->order[s];
+    bool finite = true;
     for (size_t k = 0; k < task->fields; k++) {
         const double *f = task->sorted + (2 + k) * nb->n;
         double sum[3];
@@ -298,7 +300,9 @@ ALWAYS_INLINE uint32_t point_gradient(int dim, const struct task *task, struct w
         for (int a = 0; a < dim; a++) {
             double g = form->corrected ? 0 : sum[a];
             for (int b = 0; form->corrected && b < dim; b++) g += inverse[a * dim + b] * sum[b];
-            task->gradient[k * (size_t)dim + (size_t)a][i] = invertible ? g * factor : nan("");
+            g = invertible ? g * factor : nan("");
+            task->gradient[k * (size_t)dim + (size_t)a][i] = g;
+            finite = finite && isfinite(g);
         }
     }
     if (diagnosed) {
@@ -309,6 +313,7 @@ ALWAYS_INLINE uint32_t point_gradient(int dim, const struct task *task, struct w
         point->state = inside < (uint32_t)dim + 1                      ? OPERATOR_TOO_FEW_NEIGHBOURS
                        : !invertible                                   ? OPERATOR_SINGULAR
                        : !(point->condition <= OPERATOR_CONDITION_MAX) ? OPERATOR_ILL_CONDITIONED
+                       : !finite                                       ? OPERATOR_OVERFLOW
                                                                        : OPERATOR_OK;
     }
     return inside;

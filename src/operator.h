@@ -39,6 +39,7 @@ enum operator_state {
     OPERATOR_TOO_FEW_NEIGHBOURS, /* fewer than dim + 1, the point itself included */
     OPERATOR_ILL_CONDITIONED,    /* condition above OPERATOR_CONDITION_MAX */
     OPERATOR_SINGULAR,           /* no inverse in double precision */
+    OPERATOR_OVERFLOW,           /* a gradient is not a finite number */
 };
 #define OPERATOR_CONDITION_MAX 1e6 /* beyond, a gradient keeps fewer than ten digits */
 
@@ -70,7 +71,7 @@ enum status operator_apply(const struct operator_settings *settings, const struc
                            size_t fields, const double *const *f, double *const *gradient,
                            struct operator_point *point, uint64_t *pairs, struct error *error);
 
-/* "ok", "too_few_neighbours", "ill_conditioned", "singular" */
+/* "ok", "too_few_neighbours", "ill_conditioned", "singular", "overflow" */
 const char *operator_state_name(enum operator_state state);
 
 #endif

@@ -2,7 +2,41 @@
 #include "status.h"
 
 #include <stdarg.h>
+#include <stddef.h>
 #include <stdio.h>
+
+/* Length of the UTF-8 character at text if it is one to print, else 0. */
+static size_t printable(const unsigned char *text)
+{
+    static const struct {
+        unsigned char first, last; /* of leading bytes */
+        unsigned char low, high;   /* what the second byte may be */
+        size_t length;
+    } forms[] = {{' ', '~', 0, 0, 1},         {0xc2, 0xc2, 0xa0, 0xbf, 2},
+                 {0xc3, 0xdf, 0x80, 0xbf, 2}, {0xe0, 0xe0, 0xa0, 0xbf, 3},
+                 {0xe1, 0xec, 0x80, 0xbf, 3}, {0xed, 0xed, 0x80, 0x9f, 3},
+                 {0xee, 0xef, 0x80, 0xbf, 3}, {0xf0, 0xf0, 0x90, 0xbf, 4},
+                 {0xf1, 0xf3, 0x80, 0xbf, 4}, {0xf4, 0xf4, 0x80, 0x8f, 4}};
+    for (size_t i = 0; i < sizeof forms / sizeof *forms; i++) {
+        if (text[0] < forms[i].first || text[0] > forms[i].last) continue;
+        if (forms[i].length > 1 && (text[1] < forms[i].low || text[1] > forms[i].high)) return 0;
+        for (size_t k = 2; k < forms[i].length; k++)
+            if (text[k] < 0x80 || text[k] > 0xbf) return 0;
+        return forms[i].length;
+    }
+    return 0;
+}
+
+/* Messages quote what strangers typed and files say: no escape sequence shall reach a terminal, and
+ * JSON takes valid UTF-8 only. */
+static void clean(char *message)
+{
+    for (char *c = message; *c;) {
+        const size_t length = printable((unsigned char *)c);
+        if (!length) *c = *c == '\n' ? ' ' : '?';
+        c += length ? length : 1;
+    }
+}
 
 enum status error_set(struct error *error, enum status status, const char *format, ...)
 {
@@ -11,6 +45,7 @@ enum status error_set(struct error *error, enum status status, const char *forma
         va_start(arguments, format);
         vsnprintf(error->message, sizeof error->message, format, arguments);
         va_end(arguments);
+        clean(error->message);
         error->status = status;
     }
     return status;

@@ -23,7 +23,8 @@ struct error {
 };
 
 /* Formats the message, sets the status and returns it: `return error_set(error, STATUS_X, ...)`.
- * error may be NULL (the message is dropped). */
+ * error may be NULL (the message is dropped). The message is one line of valid UTF-8: what cannot be
+ * printed becomes '?'. */
 enum status error_set(struct error *error, enum status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 

@@ -190,7 +190,7 @@ static void judge(const struct request *r, const struct point_cloud *pc,
 static const char *state_text(enum operator_state state)
 {
     static const char *const texts[] = {"ok", "too few neighbours", "ill-conditioned matrix",
-                                        "singular matrix"};
+                                        "singular matrix", "overflow"};
     return texts[state];
 }
 

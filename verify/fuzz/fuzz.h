@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Targets for coverage-guided fuzzing: whatever the bytes are, a target returns within a second of
+ * CPU time, without a crash, a leak or a broken promise (FUZZ_PROMISE). Built with -Dfuzzer=true
+ * (clang) they are run by libFuzzer, otherwise by replay.c. */
+#ifndef SPHPROOF_FUZZ_H
+#define SPHPROOF_FUZZ_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "run.h"
+#include "status.h"
+
+/* What a target file defines. */
+void fuzz_one(const uint8_t *bytes, size_t size);
+
+/* The path of a file that holds bytes; the same file each time. */
+const char *fuzz_file(const uint8_t *bytes, size_t size);
+
+/* A NUL-terminated copy; free it. */
+char *fuzz_text(const uint8_t *bytes, size_t size);
+
+/* A refusal must be bad input, with a message in valid UTF-8: no escape sequence of a hostile file
+ * reaches the terminal. */
+void fuzz_refused(enum status status, const struct error *error);
+
+/* Everything up to the first step of a run with few particles. */
+void fuzz_plan(const struct run_settings *settings);
+
+/* Aborts with the text of a promise that does not hold. */
+#define FUZZ_PROMISE(holds) ((holds) ? (void)0 : fuzz_broken(__FILE__, __LINE__, #holds))
+_Noreturn void fuzz_broken(const char *file, int line, const char *promise);
+
+#endif
