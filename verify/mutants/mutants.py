@@ -92,6 +92,8 @@ class Worker:
         self.tree, self.build = os.path.join(folder, "tree"), os.path.join(folder, "build")
         self.program = os.path.join(self.build, "sphproof")
         copy_tree(source, self.tree)
+
+    def prepare(self):
         shutil.rmtree(self.build, ignore_errors=True)
         demand(["meson", "setup", self.build, self.tree] + OPTIONS)
         demand(["ninja", "-C", self.build, "sphproof"])
@@ -129,6 +131,8 @@ def run(source, work, names):
         waiting.put(m)
     workers = [Worker(source, os.path.join(work, "worker%d" % i))
                for i in range(min(WORKERS, len(mutants)))]
+    for worker in workers:  # after the copies: all of them are of the same moment
+        worker.prepare()
     groups = sorted({m.group for m in mutants})
     failing = [g for g in groups if workers[0].verify(g) != 0]
     if failing:
