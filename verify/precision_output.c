@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "precision_output.h"
 
+#include <gsl/gsl_statistics_double.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -36,22 +37,34 @@ static const struct precision_scheme **sorted_schemes(const struct precision *pr
     return list;
 }
 
+/* The best ones, and the references. */
+enum { ROWS_MAX = 40 };
+
+static bool shown(const struct precision_scheme *scheme, size_t rank)
+{
+    return scheme->count && (rank < ROWS_MAX || scheme->reference);
+}
+
 static void print_schemes(const struct precision *precision, const struct precision_scheme **list,
                           const struct table_style *style)
 {
-    size_t width = 24;
+    size_t width = 24, hidden = 0;
     for (size_t i = 0; i < precision->scheme_count; i++)
-        if (list[i]->count && strlen(list[i]->label) > width) width = strlen(list[i]->label);
+        if (shown(list[i], i) && strlen(list[i]->brief) > width) width = strlen(list[i]->brief);
     printf("%s%-*s %7s %11s %8s %10s %7s %11s %11s %9s%s\n", style->bold, (int)width, "scheme", "n",
            "error", "", "CPU s", "spread", "pairs", "L1^2 CPU s", "gain", style->end);
     for (size_t i = 0; i < precision->scheme_count; i++) {
         const struct precision_scheme *scheme = list[i];
-        if (!scheme->count) continue;
+        if (!shown(scheme, i)) {
+            hidden += scheme->count ? 1u : 0u;
+            continue;
+        }
         const struct precision_point *p = &precision->points[scheme->first + scheme->count - 1];
         printf("%-*s %7zu %11.4e %7.3f%% %10.3e %6.0f%% %11.3e %11.3e %9.3g\n", (int)width,
-               scheme->label, p->n, p->error, 100 * p->relative, p->time.cpu_s,
+               scheme->brief, p->n, p->error, 100 * p->relative, p->time.cpu_s,
                100 * p->time.spread, p->pairs, scheme->merit, scheme->gain);
     }
+    if (hidden) printf("... and %zu more (all of them: --json)\n", hidden);
     printf("%sat the finest n, best first. error: L1 of density, absolute and of the window's mean "
            "density %.6g;\nCPU s: least of %d samples, all threads; spread: their median above it; "
            "gain: L1^2 x CPU s of the\nseed program's corrected method in plain C over that of "
@@ -72,7 +85,7 @@ static void print_front(const struct precision *precision, const struct table_st
            style->end);
     for (size_t i = 0; i < n; i++)
         printf("  %10.3e CPU s  error %10.4e  n = %-7zu %s\n", list[i]->time.cpu_s, list[i]->error,
-               list[i]->n, precision->schemes[list[i]->scheme].label);
+               list[i]->n, precision->schemes[list[i]->scheme].brief);
     free(list);
 }
 
@@ -153,7 +166,7 @@ enum status precision_plot(const struct precision *precision, const char *path, 
                                                .x = rest_x,
                                                .y = rest_y,
                                                .color = PLOT_NEUTRAL,
-                                               .size = 0.35};
+                                               .size = 0.25};
     for (size_t c = 0; c < curves; c++)
         series[count++] = (struct plot_series){.label = chosen[c]->brief,
                                                .kind = PLOT_LINES_POINTS,
@@ -163,11 +176,17 @@ enum status precision_plot(const struct precision *precision, const char *path, 
                                                .dashed = chosen[c]->reference != REFERENCE_NONE};
     struct plot_mark marks[PRECISION_TARGETS];
     char names[PRECISION_TARGETS][16];
+    size_t mark_count = 0; /* those that anything comes near to */
     for (size_t t = 0; t < PRECISION_TARGETS; t++) {
         const double percent = 100 * precision_targets[t];
+        if (percent < 0.5 * gsl_stats_min(y, 1, n)) continue;
         snprintf(names[t], sizeof names[t], "%g %%", percent);
-        marks[t] = (struct plot_mark){.at = percent, .horizontal = true, .label = names[t]};
+        marks[mark_count++] =
+            (struct plot_mark){.at = percent, .horizontal = true, .label = names[t]};
     }
+    size_t longest = 0; /* names stand right of the panel */
+    for (size_t c = 0; c < curves; c++)
+        if (strlen(chosen[c]->brief) > longest) longest = strlen(chosen[c]->brief);
     char title[256];
     snprintf(title, sizeof title, "%.200s: what an error costs", precision->settings->file.title);
     const struct plot_panel panel = {.x_label = "CPU time (s)",
@@ -178,11 +197,11 @@ enum status precision_plot(const struct precision *precision, const char *path, 
                                      .series = series,
                                      .series_count = count,
                                      .marks = marks,
-                                     .mark_count = PRECISION_TARGETS};
+                                     .mark_count = mark_count};
     const struct plot plot = {.name = "bench",
                               .title = title,
                               .show_title = true,
-                              .width = 760,
+                              .width = 560 + 8 * (int)longest,
                               .height = 480,
                               .panels = &panel,
                               .panel_count = 1};
