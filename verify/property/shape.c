@@ -9,10 +9,11 @@
 /* Where the support is probed. 0.9992 is inside: even exp(-1/(1-q^2)) is not yet rounded to 0. */
 static const double inside = 0.9992;
 
-/* The edge's neighbourhood to the last place, and far beyond. */
+/* The edge's neighbourhood to the last place, and far beyond: not so far that the polynomial which
+ * (1 - q)+ multiplies is infinite there. */
 static const double outside[] = {1,    1 + 0x1p-52, 1 + 1e-12, 1 + 1e-8, 1.0001, 1.001, 1.01,
                                  1.05, 1.1,         1.2,       1.25,     1.5,    1.75,  2,
-                                 2.5,  3,           4.75,      10,       100,    1e6,   1e100};
+                                 2.5,  3,           4.75,      10,       100,    1e6,   1e25};
 
 /* At and beyond the edge; a kernel of class C0 may return its one-sided slope at q = 1 itself. */
 void property_support(const struct pieces *pieces, struct property_sink *sink)
