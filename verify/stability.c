@@ -103,7 +103,7 @@ enum status stability_begin(struct stability *lattice, const struct scheme *sche
 /* From one particle to its neighbour. */
 static double complex phase(double angle)
 {
-    return CMPLX(cos(angle), sin(angle));
+    return cos(angle) + (double complex)I * sin(angle);
 }
 
 /* Amplitudes given, and what follows from them. */
@@ -243,7 +243,8 @@ static void respond(const struct stability *lattice, double kappa, struct wave w
 void stability_response(const struct stability *lattice, double kappa, struct stability_response *r)
 {
     double zero;
-    const struct wave x = {.x = 1}, v = {.v = 1}, u = {.u = CMPLX(0, -1)}, h = {.h = CMPLX(0, -1)};
+    const struct wave x = {.x = 1}, v = {.v = 1}, u = {.u = -(double complex)I},
+                      h = {.h = -(double complex)I};
     respond(lattice, kappa, x, &r->force_x, &zero, &r->found_x);
     respond(lattice, kappa, v, &r->force_v, &r->energy_v, &zero);
     respond(lattice, kappa, u, &r->force_u, &zero, &zero);
