@@ -61,7 +61,7 @@ double bench_skips_difference(const struct snapshot *a, const struct snapshot *b
     if (a->n != b->n) return (double)INFINITY;
     for (size_t k = 0; k < sizeof of_a / sizeof *of_a; k++) {
         double largest = 0, difference = 0;
-        if (memcmp(of_a[k], of_b[k], a->n * sizeof(double)) == 0) continue;
+        if (!a->n || memcmp(of_a[k], of_b[k], a->n * sizeof(double)) == 0) continue;
         for (size_t i = 0; i < a->n; i++) {
             double here = fabs(of_a[k][i] - of_b[k][i]);
             if (isnan(here)) return (double)INFINITY;
