@@ -257,7 +257,7 @@ enum status suite_run(struct suite *suite, const struct check *const *checks, si
     const double began = clock_now();
     bool sound = true;
     *suite = (struct suite){0};
-    for (size_t i = 0; i < count && sound; i++) {
+    for (size_t i = 0; i < count && sound && !(choice->first && suite->failed); i++) {
         if (!chosen(checks[i], choice)) continue;
         if (choice->progress) choice->progress(choice->context, checks[i], i, count);
         sound =

@@ -44,6 +44,7 @@ struct suite_choice {
     const char *const *groups; /* NULL: all */
     size_t group_count;
     bool slow, mutants;
+    bool first; /* stop after the first check that fails */
     void (*progress)(void *context, const struct check *check, size_t done, size_t total);
     void *context;
 };

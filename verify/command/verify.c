@@ -20,6 +20,7 @@ enum { GROUPS_MAX = 64, FOLDER_LENGTH = 1000 };
 static const struct command_option verify_options[] = {
     {"mutants", NULL, "also run the mutants: wrong variants that the checks must reject"},
     {"slow", NULL, "also run the checks that take more than a few seconds"},
+    {"first", NULL, "stop after the first check that fails"},
     {"kernel-plugin", "F.so", "check a kernel of your own as well (see `sphproof kernel --help`)"},
     {"junit", "FILE", "write a JUnit file"},
     {"failures", "DIR", "where failing checks leave data (default: failures/ beside the program)"},
@@ -96,6 +97,7 @@ static enum status run(const struct options *options, int n, char **arguments, s
         .group_count = (size_t)n,
         .slow = options_value(options, "slow"),
         .mutants = options_value(options, "mutants"),
+        .first = options_value(options, "first"),
         .progress = show_progress,
         .context = &progress,
     };
@@ -120,7 +122,7 @@ static enum status run(const struct options *options, int n, char **arguments, s
 
 const struct command command_verify = {
     .name = "verify",
-    .synopsis = "[GROUP ...] [--mutants] [--slow]",
+    .synopsis = "[GROUP ...] [--mutants] [--slow] [--first]",
     .help = "check kernels, gradients, solver, exact solutions and norms\n\n"
             "Every check states a property, the measured value, its bound and the noise floor.\n"
             "Without a GROUP all groups run. Exit status 1 if a figure is beyond its bound or,\n"

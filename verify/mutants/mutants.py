@@ -99,7 +99,7 @@ class Worker:
         demand(["ninja", "-C", self.build, "sphproof"])
 
     def verify(self, group):
-        command = [self.program, "verify", group, "--quiet", "--failures",
+        command = [self.program, "verify", group, "--first", "--quiet", "--failures",
                    os.path.join(self.build, "failures")]
         try:
             return quietly(command, timeout=PATIENCE).returncode
