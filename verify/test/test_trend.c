@@ -1,0 +1,125 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Change points: steps are found where they are, odd nights and noise are not steps. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <gsl/gsl_randist.h>
+#include <gsl/gsl_rng.h>
+
+#include "near.h"
+#include "trend.h"
+
+enum { NIGHTS = 30, MOST = 8 };
+
+static void level(double *value, size_t first, size_t end, double height)
+{
+    for (size_t i = first; i < end; i++) value[i] = height;
+}
+
+static size_t changes_of(const double *value, struct trend_change *changes)
+{
+    return trend_changes(NIGHTS, value, 0.01, changes, MOST);
+}
+
+static void nothing_changes(void **state)
+{
+    (void)state;
+    double value[NIGHTS];
+    struct trend_change changes[MOST];
+    level(value, 0, NIGHTS, -5);
+    assert_int_equal(changes_of(value, changes), 0);
+    level(value, 12, NIGHTS, -4.992); /* within the noise */
+    assert_int_equal(changes_of(value, changes), 0);
+    assert_int_equal(trend_changes(1, value, 0.01, changes, MOST), 0);
+    assert_int_equal(trend_changes(0, value, 0.01, changes, MOST), 0);
+}
+
+static void one_step(void **state)
+{
+    (void)state;
+    double value[NIGHTS];
+    struct trend_change changes[MOST];
+    for (size_t at = 1; at < NIGHTS; at++)
+        for (double height = -4.98; height < -1; height += 0.7) {
+            level(value, 0, at, -5);
+            level(value, at, NIGHTS, height);
+            assert_int_equal(changes_of(value, changes), 1);
+            assert_int_equal(changes[0].at, at);
+            near_absolute(changes[0].before, -5, 0);
+            near_absolute(changes[0].after, height, 0);
+        }
+    assert_int_equal(trend_changes(2, (const double[]){1, 2}, 0.01, changes, MOST), 1);
+}
+
+/* One or two odd nights that are over do not count; a last night does. */
+static void odd_nights(void **state)
+{
+    (void)state;
+    double value[NIGHTS];
+    struct trend_change changes[MOST];
+    for (size_t at = 4; at < NIGHTS - 4; at++) {
+        level(value, 0, NIGHTS, 1);
+        value[at] = 3;
+        assert_int_equal(changes_of(value, changes), 0);
+        value[at + 1] = 3;
+        assert_int_equal(changes_of(value, changes), 0);
+    }
+    level(value, 0, NIGHTS, 1);
+    value[NIGHTS - 1] = 3;
+    assert_int_equal(changes_of(value, changes), 1);
+    assert_int_equal(changes[0].at, NIGHTS - 1);
+}
+
+static void several_steps(void **state)
+{
+    (void)state;
+    double value[NIGHTS];
+    struct trend_change changes[MOST];
+    level(value, 0, 9, 1);
+    level(value, 9, 13, 2); /* up, down again, and up a little */
+    level(value, 13, 25, 1);
+    level(value, 25, NIGHTS, 1.1);
+    assert_int_equal(changes_of(value, changes), 3);
+    assert_int_equal(changes[0].at, 9);
+    assert_int_equal(changes[1].at, 13);
+    assert_int_equal(changes[2].at, 25);
+    assert_int_equal(trend_changes(NIGHTS, value, 0.01, changes, 2), 2);
+}
+
+/* Noise of 5 %: rarely taken for a step; a step of 50 % is found within a night of its place. */
+static void noise(void **state)
+{
+    (void)state;
+    enum { TRIALS = 400 };
+    double value[NIGHTS];
+    struct trend_change changes[MOST];
+    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
+    size_t false_alarms = 0, found = 0;
+    for (int trial = 0; trial < TRIALS; trial++) {
+        for (size_t i = 0; i < NIGHTS; i++) value[i] = gsl_ran_gaussian(random, 0.05);
+        false_alarms += trend_changes(NIGHTS, value, 0.1, changes, MOST);
+        for (size_t i = 17; i < NIGHTS; i++) value[i] += 0.5;
+        const size_t n = trend_changes(NIGHTS, value, 0.1, changes, MOST);
+        for (size_t c = 0; c < n; c++)
+            if (changes[c].at >= 16 && changes[c].at <= 18) {
+                found++;
+                break;
+            }
+    }
+    gsl_rng_free(random);
+    print_message("%zu false alarms, %zu of %d steps found\n", false_alarms, found, TRIALS);
+    assert_true(false_alarms < TRIALS / 10);
+    assert_true(found > TRIALS * 97 / 100);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(nothing_changes), cmocka_unit_test(one_step), cmocka_unit_test(odd_nights),
+        cmocka_unit_test(several_steps),   cmocka_unit_test(noise),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,86 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "trend.h"
+
+#include <gsl/gsl_sort.h>
+#include <gsl/gsl_statistics.h>
+#include <math.h>
+#include <stdbool.h>
+#include <string.h>
+
+static const double scatters = 3, normal = 1.4826; /* MAD to standard deviation */
+
+/* Of an even number the middle value nearer to `other`: in doubt nothing has changed. */
+static double median(const double *value, size_t n, double other)
+{
+    double sorted[TREND_WINDOW];
+    memcpy(sorted, value, n * sizeof *value);
+    gsl_sort(sorted, 1, n);
+    const double low = sorted[(n - 1) / 2], high = sorted[n / 2];
+    return fabs(low - other) <= fabs(high - other) ? low : high;
+}
+
+struct split {
+    double before, after;
+    double merit; /* jump less the mean residual */
+    double step;  /* between the two nights themselves */
+    bool accepted;
+};
+
+/* A split in front of night k of first..end - 1. */
+static struct split try_split(const double *value, size_t first, size_t end, size_t k, double noise)
+{
+    const size_t left = k - first < TREND_WINDOW ? k - first : TREND_WINDOW;
+    const size_t right = end - k < TREND_WINDOW ? end - k : TREND_WINDOW;
+    const double *a = value + k - left, *b = value + k;
+    double residual[2 * TREND_WINDOW], sum = 0;
+    struct split split = {.step = fabs(value[k] - value[k - 1])};
+    split.before = median(a, left, value[k]);
+    split.after = median(b, right, split.before);
+    split.before = median(a, left, split.after);
+    for (size_t i = 0; i < left; i++) sum += residual[i] = fabs(a[i] - split.before);
+    for (size_t i = 0; i < right; i++) sum += residual[left + i] = fabs(b[i] - split.after);
+    gsl_sort(residual, 1, left + right);
+    const double scatter = normal * gsl_stats_median_from_sorted_data(residual, 1, left + right);
+    const double jump = fabs(split.after - split.before);
+    split.accepted = jump > noise + scatters * scatter;
+    split.merit = jump - sum / (double)(left + right);
+    return split;
+}
+
+static bool better(const struct split *a, const struct split *b)
+{
+    return a->merit != b->merit ? a->merit > b->merit : a->step > b->step;
+}
+
+struct search {
+    const double *value;
+    double noise;
+    struct trend_change *changes;
+    size_t count, most;
+};
+
+/* The clearest change first, then each side by itself, so that levels do not mix. */
+static void search_part(struct search *search, size_t first, size_t end)
+{
+    struct split best = {.accepted = false};
+    size_t at = 0;
+    for (size_t k = first + 1; k < end; k++) {
+        const struct split split = try_split(search->value, first, end, k, search->noise);
+        if (!split.accepted || (best.accepted && !better(&split, &best))) continue;
+        best = split;
+        at = k;
+    }
+    if (!best.accepted) return;
+    search_part(search, first, at);
+    if (search->count < search->most)
+        search->changes[search->count++] = (struct trend_change){at, best.before, best.after};
+    search_part(search, at, end);
+}
+
+size_t trend_changes(size_t n, const double *value, double noise, struct trend_change *changes,
+                     size_t most)
+{
+    struct search search = {.value = value, .noise = noise, .changes = changes, .most = most};
+    search_part(&search, 0, n);
+    return search.count;
+}
