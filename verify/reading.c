@@ -222,6 +222,7 @@ static void take(struct readings *readings, const struct place *at, const json_t
     reading.headline = !one_of(name, minor, sizeof minor / sizeof *minor) &&
                        (!norm || !strcmp(norm, "l1")) && reading.kind != READING_NEUTRAL &&
                        !passes(at->path, "kernels") && !passes(at->path, "verify") &&
+                       !passes(at->path, "budget") && !passes(at->path, "budgets") &&
                        strcmp(name, "suspicion") != 0;
     add(readings, reading, path);
 }

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "command.h"
+#include "history.h"
 #include "output.h"
 #include "page.h"
 #include "progress.h"
@@ -22,6 +23,7 @@ static const struct command_option report_options[] = {
     {"nightly", NULL, "one resolution more everywhere, and the slow checks"},
     {"out", "DIR", "folder for the report (default: reports/out), made if needed"},
     {"jobs", "J", "so many computations side by side (default: one for each core)"},
+    {"history", "FILE", "one line a night is added there (default: DIR/history.jsonl)"},
     {"resume", NULL, "go on after an interruption: what was finished is in DIR/cache"},
     {"force", NULL, "compute everything, also what DIR/cache has from this build"},
     {NULL, NULL, NULL},
@@ -98,8 +100,9 @@ static enum status run(const struct options *options, int n, char **arguments, s
 {
     struct report_settings settings = {.progress = show_progress};
     struct cache cache;
-    char plots[PATH_LENGTH], kept[PATH_LENGTH];
-    const char *folder = options_value(options, "out");
+    char plots[PATH_LENGTH], kept[PATH_LENGTH], nights[PATH_LENGTH];
+    const char *history = options_value(options, "history"),
+               *folder = options_value(options, "out");
     if (!folder) folder = "reports/out";
     if (n) return command_usage(options, error, "no argument is known: '%.40s'", arguments[0]);
     enum status status = take_settings(options, &settings, error);
@@ -108,6 +111,11 @@ static enum status run(const struct options *options, int n, char **arguments, s
     if (!status) status = output_folder(plots, error);
     snprintf(kept, sizeof kept, "%.*s/cache", PATH_LENGTH - 64, folder);
     if (!status) status = cache_open(&cache, kept, options_value(options, "force") != NULL, error);
+    if (!history) {
+        snprintf(nights, sizeof nights, "%.*s/history.jsonl", PATH_LENGTH - 64, folder);
+        history = nights;
+    }
+    if (!status) status = output_probe(history, error);
     if (status) return status;
     settings.cache = &cache;
 
@@ -118,6 +126,12 @@ static enum status run(const struct options *options, int n, char **arguments, s
     status = report_compute(&settings, &results, error);
     progress_end(&progress);
     if (status) return status;
+    json_t *told;
+    if ((status = history_tell(results, history, &told, error))) {
+        json_decref(results);
+        return status;
+    }
+    json_object_set_new(results, "history", told);
 
     struct page page;
     char *summary = page_summary(results);
@@ -125,6 +139,7 @@ static enum status run(const struct options *options, int n, char **arguments, s
         status = error_set(error, STATUS_ENVIRONMENT, "no memory for the page");
     else
         status = write_report(folder, results, &page, summary, error);
+    if (!status) status = history_append(results, history, error);
     if (!status && options->json) status = result_write(results, options->json, error);
     if (!status && options->speak) {
         char absolute[PATH_LENGTH];

@@ -1,0 +1,304 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "history.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "reading.h"
+#include "result.h"
+#include "trend.h"
+
+/* What a figure may move by without having changed: an error relatively, an order absolutely. */
+static const double error_noise = 0.01, order_noise = 0.03;
+static const double error_least = 1e-15; /* a logarithm needs one */
+enum { CHANGES_PER_FIGURE = 8, PATH_LENGTH = 1024, GROUPS = 256 };
+
+static const char *string_of(const json_t *object, const char *name)
+{
+    const char *string = json_string_value(json_object_get(object, name));
+    return string ? string : "";
+}
+
+/* ---- this night's line ---- */
+
+/* Thousands of checks are too many for every night: of each, the value nearest its bound. */
+static void add_checks(const json_t *checks, json_t *figures)
+{
+    for (size_t i = 0; i < json_array_size(checks); i++) {
+        const json_t *check = json_array_get(checks, i);
+        const double value = result_real(json_object_get(check, "value")),
+                     bound = result_real(json_object_get(check, "bound"));
+        char path[PATH_LENGTH];
+        if (!(bound > 0) || strcmp(string_of(check, "status"), "skip") == 0) continue;
+        snprintf(path, sizeof path, "verify[%s, %s].value_over_bound", string_of(check, "group"),
+                 string_of(check, "name"));
+        const json_t *kept = json_object_get(figures, path);
+        if (!kept || !(value / bound <= result_real(kept)))
+            json_object_set_new(figures, path, result_number(value / bound));
+    }
+}
+
+static json_t *value_of(const struct reading *reading)
+{
+    return reading->word ? json_string(reading->word) : result_number(reading->value);
+}
+
+/* {path: value} of the headline figures. */
+static json_t *figures_of(const struct readings *readings, const json_t *results)
+{
+    json_t *figures = json_object();
+    for (size_t i = 0; i < readings->count; i++)
+        if (readings->list[i].headline)
+            json_object_set_new(figures, readings->list[i].path, value_of(&readings->list[i]));
+    add_checks(json_object_get(json_object_get(results, "verify"), "checks"), figures);
+    return figures;
+}
+
+static json_t *line_of(const json_t *results, struct error *error)
+{
+    struct readings readings;
+    const json_t *verdict = json_object_get(results, "verdict");
+    if (reading_collect(results, &readings, error)) return NULL;
+    json_t *line =
+        json_pack("{s:s, s:s, s:s, s:s, s:s, s:s, s:I, s:o}", "schema", "sphproof-history/1",
+                  "date", string_of(results, "date"), "git", string_of(results, "git"), "mode",
+                  string_of(results, "mode"), "processor",
+                  string_of(json_object_get(results, "machine"), "processor"), "verdict",
+                  string_of(verdict, "status"), "failures",
+                  (json_int_t)json_array_size(json_object_get(verdict, "failures")), "figures",
+                  figures_of(&readings, results));
+    reading_free(&readings);
+    if (!line) error_set(error, STATUS_ENVIRONMENT, "no memory for the history");
+    return line;
+}
+
+/* One write, which begins on a line of its own even where an earlier one was cut off. */
+enum status history_append(const json_t *results, const char *path, struct error *error)
+{
+    json_t *line = line_of(results, error);
+    char *body = line ? json_dumps(line, JSON_COMPACT | JSON_REAL_PRECISION(9)) : NULL;
+    json_decref(line);
+    if (!body) return error_set(error, STATUS_ENVIRONMENT, "no memory for the history");
+    const size_t length = strlen(body);
+    char *text = malloc(length + 3), last = '\n';
+    const int file = open(path, O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+    enum status status = STATUS_OK;
+    if (file >= 0 && lseek(file, 0, SEEK_END) > 0) {
+        lseek(file, -1, SEEK_END);
+        if (read(file, &last, 1) != 1) last = '\n';
+    }
+    const int total =
+        text ? snprintf(text, length + 3, "%s%s\n", last == '\n' ? "" : "\n", body) : 0;
+    if (file < 0 || !text || write(file, text, (size_t)total) != total)
+        status = error_set(error, STATUS_ENVIRONMENT, "cannot write the history '%.200s': %s", path,
+                           strerror(errno ? errno : ENOSPC));
+    if (file >= 0) close(file);
+    free(text);
+    free(body);
+    return status;
+}
+
+/* ---- earlier nights ---- */
+
+/* Lines of this mode, the newest ones, oldest first; a line that is none is counted. */
+static enum status read_nights(const char *path, const char *mode, json_t *nights,
+                               size_t *unreadable, struct error *error)
+{
+    char *text = NULL;
+    size_t room = 0;
+    *unreadable = 0;
+    FILE *file = fopen(path, "r");
+    if (!file && errno == ENOENT) return STATUS_OK;
+    if (!file)
+        return error_set(error, STATUS_ENVIRONMENT, "cannot read the history '%.200s': %s", path,
+                         strerror(errno));
+    for (ssize_t length; (length = getline(&text, &room, file)) > 0;) {
+        json_t *line = json_loadb(text, (size_t)length, 0, NULL);
+        if (!line || strcmp(string_of(line, "schema"), "sphproof-history/1") != 0)
+            *unreadable += text[0] != '\n';
+        else if (strcmp(string_of(line, "mode"), mode) == 0)
+            json_array_append(nights, line);
+        json_decref(line);
+        if (json_array_size(nights) >= HISTORY_NIGHTS_MAX) json_array_remove(nights, 0);
+    }
+    free(text);
+    fclose(file);
+    return STATUS_OK;
+}
+
+static json_t *since_last(const json_t *nights, const struct readings *now)
+{
+    const size_t count = json_array_size(nights);
+    if (count < 2) return json_null();
+    const json_t *last = json_array_get(nights, count - 2),
+                 *figures = json_object_get(last, "figures");
+    json_t *moved = json_array();
+    size_t verdicts[4] = {0};
+    for (size_t i = 0; i < now->count; i++) {
+        const struct reading *new = &now->list[i];
+        if (!new->headline) continue;
+        const json_t *value = json_object_get(figures, new->path);
+        struct reading old = *new;
+        double amount;
+        bool fault;
+        old.value = result_real(value);
+        old.word = new->word ? (char *)json_string_value(value) : NULL;
+        const enum reading_verdict verdict =
+            reading_judge(value ? &old : NULL, new, &amount, &fault);
+        verdicts[verdict]++;
+        if (verdict == VERDICT_SAME || new->kind == READING_TIMING) continue;
+        const double ratio = new->word || !value ? (double)NAN : new->value / old.value;
+        json_array_append_new(moved, json_pack("{s:s, s:o, s:o, s:o, s:s}", "path", new->path,
+                                               "old", value ? value_of(&old) : json_null(), "new",
+                                               value_of(new), "ratio",
+                                               isfinite(ratio) ? result_number(ratio) : json_null(),
+                                               "verdict", reading_verdicts[verdict]));
+    }
+    json_t *since = json_pack("{s:s, s:s, s:o}", "date", string_of(last, "date"), "git",
+                              string_of(last, "git"), "figures", moved);
+    for (int v = 0; v < 4; v++)
+        json_object_set_new(since, reading_verdicts[v], json_integer((json_int_t)verdicts[v]));
+    return since;
+}
+
+/* ---- trends ---- */
+
+static json_t *series_of(const json_t *nights, const char *path)
+{
+    json_t *series = json_array();
+    for (size_t i = 0; i < json_array_size(nights); i++) {
+        const json_t *figures = json_object_get(json_array_get(nights, i), "figures");
+        json_array_append_new(series, result_number(result_real(json_object_get(figures, path))));
+    }
+    return series;
+}
+
+static json_t *trends(const json_t *nights, const json_t *results)
+{
+    json_t *list = json_array();
+    const json_t *studies = json_object_get(results, "studies");
+    for (size_t i = 0; i < json_array_size(studies); i++) {
+        const json_t *study = json_array_get(studies, i),
+                     *levels = json_object_get(study, "levels");
+        const char *name = string_of(study, "case"), *label = string_of(study, "label");
+        const json_t *finest = json_array_get(levels, json_array_size(levels) - 1);
+        char error[PATH_LENGTH], order[PATH_LENGTH];
+        const double n = result_real(json_object_get(finest, "n"));
+        snprintf(error, sizeof error, "studies[%s, %s].levels[n %.10g].errors.density.l1", name,
+                 label, n);
+        snprintf(order, sizeof order, "studies[%s, %s].orders[density, l1].order", name, label);
+        json_array_append_new(list,
+                              json_pack("{s:s, s:s, s:o, s:o, s:o}", "case", name, "label", label,
+                                        "n", result_number(n), "error", series_of(nights, error),
+                                        "order", series_of(nights, order)));
+    }
+    return list;
+}
+
+static json_t *change_json(const struct reading *reading, const json_t *nights, const size_t *night,
+                           const struct trend_change *change)
+{
+    const bool order = reading->kind == READING_ORDER;
+    const double before = order ? change->before : exp(change->before),
+                 after = order ? change->after : exp(change->after);
+    const json_t *at = json_array_get(nights, night[change->at]),
+                 *last = json_array_get(nights, night[change->at - 1]);
+    return json_pack("{s:s, s:I, s:s, s:s, s:s, s:o, s:o, s:o, s:s}", "path", reading->path,
+                     "night", (json_int_t)night[change->at], "date", string_of(at, "date"), "git",
+                     string_of(at, "git"), "git_before", string_of(last, "git"), "before",
+                     result_number(before), "after", result_number(after), "ratio",
+                     result_number(after / before), "verdict",
+                     (after > before) == order ? "better" : "worse");
+}
+
+/* Change points of one figure; nights without it are left out. */
+static void add_changes(const struct reading *reading, const json_t *nights, json_t *changes)
+{
+    double value[HISTORY_NIGHTS_MAX];
+    size_t night[HISTORY_NIGHTS_MAX], n = 0;
+    struct trend_change found[CHANGES_PER_FIGURE];
+    const bool order = reading->kind == READING_ORDER;
+    for (size_t i = 0; i < json_array_size(nights) && i < HISTORY_NIGHTS_MAX; i++) {
+        const json_t *figures = json_object_get(json_array_get(nights, i), "figures");
+        double now = result_real(json_object_get(figures, reading->path));
+        if (!order) now = log(fmax(now, fmax(reading->floor, error_least)));
+        if (!isfinite(now)) continue;
+        value[n] = now;
+        night[n++] = i;
+    }
+    const size_t count = trend_changes(
+        n, value, order ? fmax(order_noise, reading->noise) : fmax(error_noise, reading->noise),
+        found, CHANGES_PER_FIGURE);
+    for (size_t c = 0; c < count; c++)
+        json_array_append_new(changes, change_json(reading, nights, night, &found[c]));
+}
+
+static int newest_first(const void *a, const void *b)
+{
+    const json_t *x = *(json_t *const *)a, *y = *(json_t *const *)b;
+    const double i = result_real(json_object_get(x, "night")),
+                 j = result_real(json_object_get(y, "night"));
+    if (i != j) return i > j ? -1 : 1;
+    const double p = fabs(log(result_real(json_object_get(x, "ratio")))),
+                 q = fabs(log(result_real(json_object_get(y, "ratio"))));
+    return p != q ? (p > q ? -1 : 1) : strcmp(string_of(x, "path"), string_of(y, "path"));
+}
+
+static json_t *sorted(json_t *list)
+{
+    const size_t n = json_array_size(list);
+    json_t **items = malloc((n + 1) * sizeof(json_t *)), *result = json_array();
+    for (size_t i = 0; items && i < n; i++) items[i] = json_array_get(list, i);
+    if (items) qsort(items, n, sizeof(json_t *), newest_first);
+    for (size_t i = 0; items && i < n; i++) json_array_append(result, items[i]);
+    free(items);
+    json_decref(list);
+    return result;
+}
+
+static json_t *heads(const json_t *nights)
+{
+    json_t *list = json_array();
+    for (size_t i = 0; i < json_array_size(nights); i++) {
+        const json_t *night = json_array_get(nights, i);
+        json_array_append_new(list, json_pack("{s:s, s:s}", "date", string_of(night, "date"), "git",
+                                              string_of(night, "git")));
+    }
+    return list;
+}
+
+enum status history_tell(const json_t *results, const char *path, json_t **history,
+                         struct error *error)
+{
+    struct readings readings;
+    size_t unreadable;
+    json_t *nights = json_array(), *changes = json_array();
+    *history = NULL;
+    enum status status = read_nights(path, string_of(results, "mode"), nights, &unreadable, error);
+    json_t *line = status ? NULL : line_of(results, error);
+    if (!status && (!line || reading_collect(results, &readings, error))) status = error->status;
+    if (!status) {
+        json_array_append(nights, line);
+        for (size_t i = 0; i < readings.count; i++) {
+            const struct reading *reading = &readings.list[i];
+            if (reading->headline &&
+                (reading->kind == READING_ERROR || reading->kind == READING_ORDER))
+                add_changes(reading, nights, changes);
+        }
+        *history = json_pack("{s:o, s:I, s:o, s:o, s:o}", "nights", heads(nights), "unreadable",
+                             (json_int_t)unreadable, "since", since_last(nights, &readings),
+                             "trends", trends(nights, results), "changes", sorted(changes));
+        changes = NULL;
+        reading_free(&readings);
+        if (!*history) status = error_set(error, STATUS_ENVIRONMENT, "no memory for the history");
+    }
+    json_decref(changes);
+    json_decref(line);
+    json_decref(nights);
+    return status;
+}

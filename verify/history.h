@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The history of a report: one line of JSON per night with all its headline figures (date, git,
+ * mode, processor, verdict, {path: value}), and what it tells: what has changed since last night,
+ * and since when each figure has been where it is. */
+#ifndef SPHPROOF_HISTORY_H
+#define SPHPROOF_HISTORY_H
+
+#include <jansson.h>
+
+#include "status.h"
+
+/* Of the same mode, the newest count. */
+enum { HISTORY_NIGHTS_MAX = 120 };
+
+/* The results' place in the history at path (which need not be there yet; lines that cannot be
+ * read are counted and left alone):
+ *   "nights"      [{"date", "git"}], oldest first; the last is this one
+ *   "unreadable"  lines
+ *   "since"       against the night before: {"date", "git", "worse", "better", "same",
+ *                 "incomparable", "figures": as in a diff, what is not the same}, or null
+ *   "trends"      [{"case", "label", "error": [...], "order": [...]}]: of L1(density), per night
+ *   "changes"     [{"path", "date", "git", "git_before", "before", "after", "ratio", "verdict"}],
+ *                 newest first: change points of errors and orders
+ * New reference in *history. STATUS_ENVIRONMENT: no memory, or the file cannot be read. */
+enum status history_tell(const json_t *results, const char *path, json_t **history,
+                         struct error *error);
+
+/* Adds this night's line, whole or not at all. */
+enum status history_append(const json_t *results, const char *path, struct error *error);
+
+#endif
