@@ -89,7 +89,9 @@ static void head(struct buffer *to, const json_t *results, const json_t *verdict
     buffer_escape(to, html_string(results, "git"));
     double seconds = html_member(results, "seconds");
     if (seconds > 0) buffer_format(to, " · computed in %.0f s", seconds);
-    buffer_add(to, "</p>\n<p class=\"tiles\">");
+    buffer_add(to, "</p>\n");
+    page_since(to, results);
+    buffer_add(to, "<p class=\"tiles\">");
     double passed = html_member(verdict, "figures_passed");
     double gates = html_member(verdict, "gates_passed");
     double runs = html_member(verdict, "runs");
@@ -169,11 +171,15 @@ int page_make(struct page *page, const json_t *results)
     struct buffer *to = &writer.to;
     const json_t *verdict = json_object_get(results, "verdict");
     const json_t *verify = json_object_get(results, "verify");
+    const json_t *history = json_object_get(results, "history");
     const json_t *kernels = json_object_get(results, "kernels");
     const json_t *gradients = json_object_get(results, "gradients");
     const json_t *bench = json_object_get(results, "bench");
     head(to, results, verdict);
-    buffer_add(to, "<nav><a href=\"#cases\">Cases</a>");
+    buffer_add(to, "<nav>");
+    if (json_is_object(json_object_get(history, "since")))
+        buffer_add(to, "<a href=\"#history\">Changes</a> ");
+    buffer_add(to, "<a href=\"#cases\">Cases</a>");
     if (json_array_size(bench)) buffer_add(to, " <a href=\"#cost\">Cost</a>");
     if (gradients) buffer_add(to, " <a href=\"#gradients\">Gradients</a>");
     if (kernels) buffer_add(to, " <a href=\"#kernels\">Kernels</a>");
@@ -182,6 +188,7 @@ int page_make(struct page *page, const json_t *results)
                        " <a href=\"#detection\">Detection</a>");
     buffer_add(to, " <a href=\"#environment\">Environment</a></nav>\n<main>\n");
     failures(to, verdict);
+    if (history) page_history(&writer, history);
     page_overview(&writer, results);
     page_cases(&writer, results);
     page_bench(&writer, bench);

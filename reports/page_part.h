@@ -30,6 +30,10 @@ void page_convergence(struct page_writer *writer, const char *case_name,
 /* Where the errors of these studies come from, by regions; nothing where that is not known. */
 void page_budget(struct page_writer *writer, const json_t *const *documents, size_t count);
 
+/* One line for the head, and the section: what changed since last night and over the nights. */
+void page_since(struct buffer *to, const json_t *results);
+void page_history(struct page_writer *writer, const json_t *history);
+
 void page_overview(struct page_writer *writer, const json_t *results);
 void page_cases(struct page_writer *writer, const json_t *results);
 void page_bench(struct page_writer *writer, const json_t *bench);

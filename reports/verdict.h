@@ -14,6 +14,7 @@
  *   kernels         [kernel documents, and "reproduce"]
  *   bench           [bench documents, and "reproduce"]
  *   gradients       {"rows": [{flat: operator, ...}], "reproduce"}
+ *   history         what verify/history.h tells: nights, since, trends, changes
  *   verdict         what verdict_make returned */
 #ifndef SPHPROOF_VERDICT_H
 #define SPHPROOF_VERDICT_H

@@ -81,7 +81,7 @@ static json_t *line_of(const json_t *results, struct error *error)
 enum status history_append(const json_t *results, const char *path, struct error *error)
 {
     json_t *line = line_of(results, error);
-    char *body = line ? json_dumps(line, JSON_COMPACT | JSON_REAL_PRECISION(9)) : NULL;
+    char *body = line ? json_dumps(line, JSON_COMPACT | JSON_REAL_PRECISION(15)) : NULL;
     json_decref(line);
     if (!body) return error_set(error, STATUS_ENVIRONMENT, "no memory for the history");
     const size_t length = strlen(body);

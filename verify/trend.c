@@ -21,8 +21,7 @@ static double median(const double *value, size_t n, double other)
 
 struct split {
     double before, after;
-    double merit; /* jump less the mean residual */
-    double step;  /* between the two nights themselves */
+    double merit; /* jump less the mean residual; between equals, the larger step decides */
     bool accepted;
 };
 
@@ -33,7 +32,8 @@ static struct split try_split(const double *value, size_t first, size_t end, siz
     const size_t right = end - k < TREND_WINDOW ? end - k : TREND_WINDOW;
     const double *a = value + k - left, *b = value + k;
     double residual[2 * TREND_WINDOW], sum = 0;
-    struct split split = {.step = fabs(value[k] - value[k - 1])};
+    const double step = fabs(value[k] - value[k - 1]);
+    struct split split = {.accepted = false};
     split.before = median(a, left, value[k]);
     split.after = median(b, right, split.before);
     split.before = median(a, left, split.after);
@@ -43,13 +43,8 @@ static struct split try_split(const double *value, size_t first, size_t end, siz
     const double scatter = normal * gsl_stats_median_from_sorted_data(residual, 1, left + right);
     const double jump = fabs(split.after - split.before);
     split.accepted = jump > noise + scatters * scatter;
-    split.merit = jump - sum / (double)(left + right);
+    split.merit = jump - sum / (double)(left + right) + step / (2 * TREND_WINDOW);
     return split;
-}
-
-static bool better(const struct split *a, const struct split *b)
-{
-    return a->merit != b->merit ? a->merit > b->merit : a->step > b->step;
 }
 
 struct search {
@@ -66,7 +61,7 @@ static void search_part(struct search *search, size_t first, size_t end)
     size_t at = 0;
     for (size_t k = first + 1; k < end; k++) {
         const struct split split = try_split(search->value, first, end, k, search->noise);
-        if (!split.accepted || (best.accepted && !better(&split, &best))) continue;
+        if (!split.accepted || (best.accepted && !(split.merit > best.merit))) continue;
         best = split;
         at = k;
     }

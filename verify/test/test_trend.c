@@ -87,6 +87,15 @@ static void several_steps(void **state)
     assert_int_equal(changes[1].at, 13);
     assert_int_equal(changes[2].at, 25);
     assert_int_equal(trend_changes(NIGHTS, value, 0.01, changes, 2), 2);
+    /* four nights at another level, and back in the last: equally near to either night before */
+    for (double height = -7.01; height < -6; height += 0.0371) {
+        level(value, 0, NIGHTS, -6.011);
+        level(value, NIGHTS - 5, NIGHTS - 1, height);
+        if (height > -6.1 && height < -5.9) continue;
+        assert_int_equal(changes_of(value, changes), 2);
+        assert_int_equal(changes[0].at, NIGHTS - 5);
+        assert_int_equal(changes[1].at, NIGHTS - 1);
+    }
 }
 
 /* Noise of 5 %: rarely taken for a step; a step of 50 % is found within a night of its place. */

@@ -1,0 +1,322 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What has changed since last night, and over the nights: change points with the revision where a
+ * figure moved, errors and orders of each case against time. */
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "html.h"
+#include "page_part.h"
+
+enum { SHOWN = 16, NIGHTS = 128, MARKS = 6, REVISION = 12 };
+
+static void value_cell(struct buffer *to, const json_t *value)
+{
+    const char *word = json_string_value(value);
+    if (word && strcmp(word, "nan") && strcmp(word, "inf") && strcmp(word, "-inf")) {
+        html_cell(to, word);
+    } else if (json_is_null(value)) {
+        html_cell(to, "–");
+    } else {
+        html_cell_number(to, html_real(value));
+    }
+}
+
+static void ratio_cell(struct buffer *to, double ratio)
+{
+    buffer_add(to, "<td class=\"n\">");
+    if (isfinite(ratio) && fabs(ratio - 1) < 1)
+        buffer_format(to, "%+.1f %%", 100 * (ratio - 1));
+    else if (isfinite(ratio))
+        buffer_format(to, "× %.3g", ratio);
+    buffer_add(to, "</td>");
+}
+
+static void verdict_cell(struct buffer *to, const char *verdict)
+{
+    buffer_format(to, "<td><b class=\"%s\">%s</b></td>",
+                  !strcmp(verdict, "worse")    ? "fail"
+                  : !strcmp(verdict, "better") ? "pass"
+                                               : "skip",
+                  verdict);
+}
+
+/* The part of a path that says which run, study or check it belongs to. */
+static size_t subject_length(const char *path)
+{
+    const char *end = strchr(path, ']');
+    return end ? (size_t)(end - path) + 1 : strcspn(path, ".");
+}
+
+/* Two entries that one row can stand for: of one subject, with one verdict, of one night. */
+static bool together(const json_t *a, const json_t *b)
+{
+    const char *p = html_string(a, "path"), *q = html_string(b, "path");
+    const size_t length = subject_length(p);
+    return length == subject_length(q) && !strncmp(p, q, length) &&
+           !strcmp(html_string(a, "verdict"), html_string(b, "verdict")) &&
+           !strcmp(html_string(a, "git"), html_string(b, "git")) &&
+           !strcmp(html_string(a, "date"), html_string(b, "date"));
+}
+
+static double amount(const json_t *entry)
+{
+    const double ratio = html_member(entry, "ratio");
+    return ratio > 0 ? fabs(log(ratio)) : (double)INFINITY;
+}
+
+/* The entry that stands for all of list[i]'s kind, the one that has moved most; NULL where an
+ * earlier entry has spoken for them. */
+static const json_t *spokesman(const json_t *list, size_t i, size_t *others)
+{
+    const json_t *most = json_array_get(list, i), *entry = most;
+    *others = 0;
+    for (size_t k = 0; k < json_array_size(list); k++) {
+        const json_t *other = json_array_get(list, k);
+        if (k == i || !together(entry, other)) continue;
+        if (k < i) return NULL;
+        ++*others;
+        if (amount(other) > amount(most)) most = other;
+    }
+    return most;
+}
+
+static void path_cell(struct buffer *to, const char *path, size_t others)
+{
+    buffer_add(to, "<td>");
+    buffer_escape(to, path);
+    if (others) buffer_format(to, "<br/>and %zu more of the same", others);
+    buffer_add(to, "</td>");
+}
+
+static void since_rows(struct buffer *to, const json_t *figures, const char *verdict, size_t *rows)
+{
+    for (size_t i = 0; i < json_array_size(figures) && *rows < SHOWN; i++) {
+        size_t others;
+        if (strcmp(html_string(json_array_get(figures, i), "verdict"), verdict)) continue;
+        const json_t *figure = spokesman(figures, i, &others);
+        if (!figure) continue;
+        ++*rows;
+        buffer_add(to, "<tr>");
+        verdict_cell(to, verdict);
+        path_cell(to, html_string(figure, "path"), others);
+        value_cell(to, json_object_get(figure, "old"));
+        value_cell(to, json_object_get(figure, "new"));
+        ratio_cell(to, html_member(figure, "ratio"));
+        buffer_add(to, "</tr>\n");
+    }
+}
+
+static void since_words(struct buffer *to, const json_t *since)
+{
+    buffer_format(to, "%.0f worse, %.0f better, %.0f the same", html_member(since, "worse"),
+                  html_member(since, "better"), html_member(since, "same"));
+    if (html_member(since, "incomparable") > 0)
+        buffer_format(to, ", %.0f that cannot be compared", html_member(since, "incomparable"));
+}
+
+static void revision(struct buffer *to, const char *git)
+{
+    char text[REVISION + 1];
+    strncpy(text, git, REVISION);
+    text[REVISION] = '\0';
+    buffer_add(to, "<code>");
+    buffer_escape(to, text);
+    buffer_add(to, "</code>");
+}
+
+void page_since(struct buffer *to, const json_t *results)
+{
+    const json_t *since = json_object_get(json_object_get(results, "history"), "since");
+    if (!json_is_object(since)) return;
+    buffer_add(to, "<p class=\"facts\"><a href=\"#history\">Since last night</a> (git ");
+    revision(to, html_string(since, "git"));
+    buffer_add(to, "): ");
+    since_words(to, since);
+    buffer_add(to, "</p>\n");
+}
+
+static void since_section(struct buffer *to, const json_t *since)
+{
+    static const char *const verdicts[] = {"worse", "better", "incomparable"};
+    const json_t *figures = json_object_get(since, "figures");
+    size_t rows = 0;
+    buffer_add(to, "<h3>Since last night</h3><p>Against ");
+    buffer_escape(to, html_string(since, "date"));
+    buffer_add(to, ", git ");
+    revision(to, html_string(since, "git"));
+    buffer_add(to, ": ");
+    since_words(to, since);
+    buffer_add(to, ".</p>\n");
+    if (!json_array_size(figures)) return;
+    html_table(to, "since", "|figure|#last night|#now|#change");
+    for (size_t v = 0; v < 3; v++) since_rows(to, figures, verdicts[v], &rows);
+    html_table_end(to);
+    if (rows == SHOWN) buffer_add(to, "<p>All of them are in results.json.</p>");
+}
+
+static void change_row(struct buffer *to, const json_t *change, size_t others)
+{
+    char date[11];
+    snprintf(date, sizeof date, "%.10s", html_string(change, "date"));
+    buffer_add(to, "<tr>");
+    verdict_cell(to, html_string(change, "verdict"));
+    path_cell(to, html_string(change, "path"), others);
+    html_cell_number(to, html_member(change, "before"));
+    html_cell_number(to, html_member(change, "after"));
+    ratio_cell(to, html_member(change, "ratio"));
+    html_cell(to, date);
+    buffer_add(to, "<td>");
+    revision(to, html_string(change, "git_before"));
+    buffer_add(to, " → ");
+    revision(to, html_string(change, "git"));
+    buffer_add(to, "</td></tr>\n");
+}
+
+static void change_table(struct buffer *to, const json_t *changes)
+{
+    size_t rows = 0, others;
+    buffer_add(to, "<h3>Where figures moved</h3>\n");
+    if (!json_array_size(changes)) {
+        buffer_add(to, "<p>No error and no order has moved in all these nights.</p>\n");
+        return;
+    }
+    html_table(to, "changes", "|figure|#before|#after|#change|first night|revision");
+    for (size_t i = 0; i < json_array_size(changes) && rows < SHOWN; i++) {
+        const json_t *change = spokesman(changes, i, &others);
+        if (!change) continue;
+        change_row(to, change, others);
+        rows++;
+    }
+    html_table_end(to);
+    if (rows == SHOWN) buffer_add(to, "<p>All of them are in results.json.</p>");
+}
+
+/* Curves of one case. */
+struct curves {
+    size_t count, nights;
+    const char *label[PAGE_SCHEMES];
+    double night[NIGHTS], error[PAGE_SCHEMES][NIGHTS], order[PAGE_SCHEMES][NIGHTS];
+    struct plot_mark marks[MARKS];
+    size_t mark_count;
+    char mark_names[MARKS][REVISION + 1];
+};
+
+static void read_curve(struct curves *curves, const json_t *trend)
+{
+    const json_t *error = json_object_get(trend, "error"), *order = json_object_get(trend, "order");
+    const size_t k = curves->count++;
+    curves->label[k] = html_string(trend, "label");
+    for (size_t i = 0; i < curves->nights; i++) {
+        curves->error[k][i] = html_real(json_array_get(error, i));
+        curves->order[k][i] = html_real(json_array_get(order, i));
+    }
+}
+
+/* Nights at which something of this case has moved, each once. */
+static void read_marks(struct curves *curves, const json_t *changes, const char *case_name)
+{
+    size_t i, length = strlen(case_name);
+    const json_t *change;
+    json_array_foreach(changes, i, change)
+    {
+        const char *path = html_string(change, "path");
+        const double night = html_member(change, "night") + 1;
+        bool known = curves->mark_count == MARKS;
+        for (size_t m = 0; m < curves->mark_count; m++)
+            known = known || curves->marks[m].at == night;
+        if (known || strncmp(path, "studies[", 8) || strncmp(path + 8, case_name, length) ||
+            path[8 + length] != ',')
+            continue;
+        char *name = curves->mark_names[curves->mark_count];
+        strncpy(name, html_string(change, "git"), 7);
+        name[7] = '\0';
+        curves->marks[curves->mark_count++] = (struct plot_mark){.at = night, .label = name};
+    }
+}
+
+static void plot_trend(struct page_writer *writer, const char *case_name, struct curves *curves)
+{
+    struct plot_series series[2][PAGE_SCHEMES];
+    char name[96], title[256];
+    for (size_t k = 0; k < curves->count; k++)
+        for (int panel = 0; panel < 2; panel++)
+            series[panel][k] =
+                (struct plot_series){.label = curves->label[k],
+                                     .kind = PLOT_LINES_POINTS,
+                                     .n = curves->nights,
+                                     .x = curves->night,
+                                     .y = panel ? curves->order[k] : curves->error[k],
+                                     .color = (int)k + 1,
+                                     .size = 0.6};
+    const struct plot_panel panels[2] = {{.x_label = "night",
+                                          .y_label = "L1 of density",
+                                          .y_log = true,
+                                          .key = PLOT_KEY_TOP,
+                                          .series = series[0],
+                                          .series_count = curves->count,
+                                          .marks = curves->marks,
+                                          .mark_count = curves->mark_count},
+                                         {.x_label = "night",
+                                          .y_label = "order",
+                                          .key = PLOT_KEY_NONE,
+                                          .series = series[1],
+                                          .series_count = curves->count}};
+    page_plot_name(name, sizeof name, case_name, "trend");
+    snprintf(title, sizeof title, "Error and order of %.80s over the nights", case_name);
+    const struct plot plot = {.name = name, .title = title, .panels = panels, .panel_count = 2};
+    snprintf(title, sizeof title,
+             "%.80s: finest level's error and the order; the last night is this one, lines stand "
+             "where something moved.",
+             case_name);
+    page_plot(writer, &plot, title);
+}
+
+static void plot_trends(struct page_writer *writer, const json_t *history, size_t nights)
+{
+    const json_t *trends = json_object_get(history, "trends"), *trend;
+    struct curves *curves = calloc(1, sizeof *curves);
+    const char *name = "";
+    size_t i;
+    if (!curves) {
+        writer->to.failed = true;
+        return;
+    }
+    buffer_add(&writer->to, "<div class=\"figures\">\n");
+    json_array_foreach(trends, i, trend)
+    {
+        const char *own = html_string(trend, "case");
+        if (strcmp(own, name)) {
+            if (curves->count) plot_trend(writer, name, curves);
+            *curves = (struct curves){.nights = nights};
+            for (size_t k = 0; k < nights; k++) curves->night[k] = (double)k + 1;
+            read_marks(curves, json_object_get(history, "changes"), own);
+            name = own;
+        }
+        if (curves->count < PAGE_SCHEMES) read_curve(curves, trend);
+    }
+    if (curves->count) plot_trend(writer, name, curves);
+    buffer_add(&writer->to, "</div>\n");
+    free(curves);
+}
+
+void page_history(struct page_writer *writer, const json_t *history)
+{
+    struct buffer *to = &writer->to;
+    const json_t *since = json_object_get(history, "since");
+    size_t nights = json_array_size(json_object_get(history, "nights"));
+    if (!json_is_object(since)) return;
+    if (nights > NIGHTS) nights = NIGHTS;
+    buffer_add(to, "<section id=\"history\"><h2>What changed</h2>\n");
+    since_section(to, since);
+    if (nights >= 3) {
+        change_table(to, json_object_get(history, "changes"));
+        plot_trends(writer, history, nights);
+    }
+    if (html_member(history, "unreadable") > 0)
+        buffer_format(to, "<p>%.0f lines of the history could not be read.</p>",
+                      html_member(history, "unreadable"));
+    buffer_add(to, "</section>\n");
+}
