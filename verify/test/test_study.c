@@ -1,0 +1,270 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Studies: the same results in any number of processes and from the cache, replicates and what they
+ * do to intervals, budgets that add up, still gas, settings without effect, broken levels. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "near.h"
+#include "result.h"
+#include "study.h"
+
+/* A study of a case with keys, over a small ladder; its pool is run with so many processes. */
+static enum status make(struct study *study, const char *name, const char *keys, const char *vary,
+                        size_t seeds, int jobs, struct error *error)
+{
+    static const size_t ladder[] = {40, 60, 80, 120};
+    char text[256], *arguments[16], *rest = text;
+    struct pool pool = {0};
+    const struct pool_settings settings = {.jobs = jobs};
+    int n = 0;
+    *study = (struct study){.level_count = 4, .seeds = seeds};
+    memcpy(study->ladder, ladder, sizeof ladder);
+    strcpy(text, keys);
+    for (char *word; (word = strtok_r(rest, " ", &rest));) arguments[n++] = word;
+    enum status status = run_prepare(&study->settings, name, n, arguments, error);
+    if (!status) status = sweep_parse(&study->sweep, vary, error);
+    if (!status) status = study_plan(study, &pool, error);
+    if (!status) status = pool_run(&pool, &settings, error);
+    if (!status) status = study_judge(study, &pool, error);
+    pool_free(&pool);
+    return status;
+}
+
+static struct study made(const char *name, const char *keys, const char *vary, size_t seeds,
+                         int jobs)
+{
+    struct study study;
+    struct error error = {0};
+    if (make(&study, name, keys, vary, seeds, jobs, &error)) fail_msg("%s", error.message);
+    return study;
+}
+
+static json_t *document(const struct study *study)
+{
+    json_t *result = json_object(), *level;
+    size_t i;
+    study_add_json(study, result);
+    json_array_foreach(json_object_get(result, "levels"), i, level) json_object_del(level, "cpu_s");
+    return result;
+}
+
+static void any_number_of_processes(void **state)
+{
+    (void)state;
+    struct study one = made("sod", "t_end=0.1", "gradient,eta=1.5,2", 1, 1),
+                 three = made("sod", "t_end=0.1", "gradient,eta=1.5,2", 1, 3);
+    json_t *a = document(&one), *b = document(&three);
+    assert_int_equal(json_array_size(json_object_get(a, "levels")), 16);
+    assert_true(json_equal(a, b));
+    json_decref(a);
+    json_decref(b);
+    study_free(&one);
+    study_free(&three);
+}
+
+/* Levels of a study are runs like any other. */
+static void levels_are_runs(void **state)
+{
+    (void)state;
+    struct study study = made("sod", "t_end=0.1", NULL, 1, 2);
+    struct run_settings settings;
+    struct run_result run;
+    struct error error = {0};
+    char *arguments[] = {"t_end=0.1", "n=80"};
+    assert_int_equal(run_prepare(&settings, "sod", 2, arguments, &error), STATUS_OK);
+    assert_int_equal(run_execute(&settings, &run, &error), STATUS_OK);
+    const struct study_level *level = &study.results[0].levels[2];
+    for (int f = 0; f < FIELDS; f++)
+        for (int m = 0; m < NORMS; m++)
+            assert_true(level->errors[f][m] == run_error(&run, (enum field)f, (enum norm)m));
+    assert_true(level->h == run.h && level->binned_density_l1 == run.binned_density_l1);
+    run_free(&run);
+    study_free(&study);
+}
+
+static void replicates(void **state)
+{
+    (void)state;
+    struct study study = made("sod", "t_end=0.1 jitter=0.1", NULL, 4, 2);
+    const struct study_result *result = &study.results[0];
+    const struct study_level *level = &result->levels[1];
+    /* geometric mean and spread of four single runs */
+    double sum = 0, squares = 0;
+    for (int r = 0; r < 4; r++) {
+        struct run_settings settings;
+        struct run_result run;
+        struct error error = {0};
+        char seed[32];
+        snprintf(seed, sizeof seed, "seed=%d", r + 1);
+        char *arguments[] = {"t_end=0.1", "jitter=0.1", "n=60", seed};
+        assert_int_equal(run_prepare(&settings, "sod", 4, arguments, &error), STATUS_OK);
+        assert_int_equal(run_execute(&settings, &run, &error), STATUS_OK);
+        const double value = log(run.errors[FIELD_DENSITY].l1);
+        sum += value;
+        squares += value * value;
+        run_free(&run);
+    }
+    const double mean = sum / 4, variance = (squares - 4 * mean * mean) / 3;
+    near_relative(level->errors[FIELD_DENSITY][NORM_L1], exp(mean), 1e-12);
+    near_relative(level->spread[FIELD_DENSITY][NORM_L1], sqrt(variance), 1e-9);
+    /* the interval is at least what the spread alone makes of it */
+    double sxx = 0, sx = 0, weights = 0, mean_variance = 0;
+    for (size_t l = 0; l < 4; l++) {
+        const double s = result->levels[l].spread[FIELD_DENSITY][NORM_L1];
+        mean_variance += s * s / 4 / 4;
+    }
+    for (size_t l = 0; l < 4; l++) {
+        const double s = result->levels[l].spread[FIELD_DENSITY][NORM_L1];
+        const double w = 1 / fmax(s * s / 4, 0.1 * mean_variance),
+                     x = log(result->levels[l].spacing);
+        weights += w;
+        sx += w * x;
+        sxx += w * x * x;
+    }
+    const double slope_variance = 1 / (sxx - sx * sx / weights);
+    const struct order_fit *fit = &result->orders[FIELD_DENSITY][NORM_L1].fit;
+    const double student = 4.302652729911275; /* 97.5 %, two degrees of freedom */
+    near_below(student * sqrt(slope_variance), (fit->high - fit->low) / 2 * (1 + 1e-9));
+    assert_int_equal(result->still_status, GATE_NONE); /* a random start is noisy */
+    study_free(&study);
+
+    struct error error = {0};
+    assert_int_equal(make(&study, "sod", "", NULL, 2, 1, &error), STATUS_BAD_INPUT);
+    assert_non_null(strstr(error.message, "not random"));
+    study_free(&study);
+}
+
+static void budgets_add_up(void **state)
+{
+    (void)state;
+    struct study study = made("sod", "", NULL, 1, 2);
+    const struct study_result *result = &study.results[0];
+    for (size_t l = 0; l < result->level_count; l++)
+        for (int f = 0; f < FIELDS; f++) {
+            const struct budget *budget = &result->levels[l].budget;
+            double sum = 0;
+            assert_true(budget->known);
+            for (int r = 0; r < REGIONS; r++) {
+                assert_true(budget->l1[r][f] >= 0);
+                sum += budget->l1[r][f];
+            }
+            near_relative(sum, result->levels[l].errors[f][NORM_L1], 1e-12);
+        }
+    assert_int_equal(result->still_status, GATE_PASS);
+    study_free(&study);
+
+    struct study wave = made("sound_wave", "t_end=0.1", NULL, 1, 2);
+    assert_false(wave.results[0].levels[0].budget.known);
+    assert_int_equal(wave.results[0].still_status, GATE_NONE);
+    study_free(&wave);
+}
+
+/* What a snapshot that has been tampered with shows: particles far ahead of every wave. */
+static void still_gas_that_moves(void **state)
+{
+    (void)state;
+    struct run_settings settings;
+    struct run_result run;
+    struct error error = {0};
+    struct budget budget;
+    char *arguments[] = {"n=800"};
+    assert_int_equal(run_prepare(&settings, "sod", 1, arguments, &error), STATUS_OK);
+    assert_int_equal(run_execute(&settings, &run, &error), STATUS_OK);
+    const double *none[FIELDS] = {run.snapshot.rho, run.snapshot.v[0], run.snapshot.P,
+                                  run.snapshot.u};
+    near_below(run.budget.still, 1e-6);
+    double *v = (double *)run.snapshot.v[0];
+    for (size_t i = 0; i < run.n; i++)
+        if (fabs(run.snapshot.x[0][i] + 0.5) < 0.01) v[i] = 0.05;
+    budget_measure(&run.exact, run.window, &run.snapshot, none, &budget);
+    near_relative(budget.still, 0.05 / sqrt(1.4), 1e-12);
+    /* behind the shock gas may move as it likes */
+    for (size_t i = 0; i < run.n; i++) {
+        if (fabs(run.snapshot.x[0][i] + 0.5) < 0.01) v[i] = 0;
+        if (fabs(run.snapshot.x[0][i] - 0.25) < 0.01) v[i] = 9;
+    }
+    budget_measure(&run.exact, run.window, &run.snapshot, none, &budget);
+    near_below(budget.still, 1e-6);
+    run_free(&run);
+}
+
+static void settings_without_effect(void **state)
+{
+    (void)state;
+    /* read, but the scheme cannot tell the values apart: viscous constants of still gas */
+    struct study idle = made("sod", "left=1,0,1 right=1,0,0.999999999999999 t_end=0.05",
+                             "alpha=1,1.0000000000000002", 1, 2);
+    assert_string_not_equal(idle.suspicion, "");
+    assert_int_equal(idle.status, STATUS_CHECK_FAILED);
+    study_free(&idle);
+    /* not read by this scheme: no wonder */
+    struct study unread = made("sod", "t_end=0.1 kernel=cubic_spline", "sinc_n=3,5", 1, 2);
+    assert_string_equal(unread.suspicion, "");
+    study_free(&unread);
+    struct study read = made("sod", "t_end=0.1 kernel=sinc", "sinc_n=3,5", 1, 2);
+    assert_string_equal(read.suspicion, "");
+    study_free(&read);
+    struct study skip = made("sod", "t_end=0.1", "skip=auto,none", 1, 2);
+    assert_string_equal(skip.suspicion, "");
+    study_free(&skip);
+}
+
+/* An error of 0 is suspicious; a broken level ends the ladder; an excluded combination is none. */
+static void what_is_not_well(void **state)
+{
+    (void)state;
+    struct study zero = made("sod", "left=1,0,1 right=1,0,1 t_end=0.05", NULL, 1, 2);
+    assert_string_not_equal(zero.results[0].suspicion, "");
+    assert_int_equal(zero.status, STATUS_CHECK_FAILED);
+    study_free(&zero);
+    struct study broken = made("two_rarefactions", "cfl=50", NULL, 1, 2);
+    assert_int_equal(broken.status, STATUS_BROKE_DOWN);
+    assert_non_null(strstr(broken.results[0].message, "n = 40"));
+    assert_int_equal(broken.results[0].level_count, 0);
+    study_free(&broken);
+    struct study some = made("sod", "t_end=0.1", "eta=0.5,1.5", 1, 2);
+    assert_true(some.results[0].excluded);
+    assert_int_equal(some.results[1].level_count, 4);
+    study_free(&some);
+    struct error error = {0};
+    assert_int_equal(make(&some, "sod", "eta=0.5", NULL, 1, 1, &error), STATUS_BAD_INPUT);
+    study_free(&some);
+    assert_int_equal(make(&some, "sod", "t_end=5", NULL, 1, 1, &error), STATUS_BAD_INPUT);
+    assert_non_null(strstr(error.message, "mirrored tube"));
+    study_free(&some);
+}
+
+static void functionals_know_their_exact_values(void **state)
+{
+    (void)state;
+    struct study study = made("sod", "", NULL, 1, 2);
+    const struct study_result *result = &study.results[0];
+    assert_int_equal(result->functional_count, 3);
+    for (size_t i = 0; i < result->functional_count; i++) {
+        near_relative(result->levels[3].functionals[i], result->functional_exact[i], 0.05);
+        if (strcmp(result->functional_names[i], "shock_position") == 0)
+            near_relative(result->functional_exact[i], 0.2 * 1.7521557320301779, 1e-12);
+    }
+    study_free(&study);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(any_number_of_processes),
+        cmocka_unit_test(levels_are_runs),
+        cmocka_unit_test(replicates),
+        cmocka_unit_test(budgets_add_up),
+        cmocka_unit_test(still_gas_that_moves),
+        cmocka_unit_test(settings_without_effect),
+        cmocka_unit_test(what_is_not_well),
+        cmocka_unit_test(functionals_know_their_exact_values),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
