@@ -81,7 +81,8 @@ static void fill_riemann(struct initial *initial, const struct settings *setting
     const double gamma = settings_real(settings, SETTING_gamma);
     const struct grading grading = {settings_real(settings, SETTING_grade),
                                     settings_real(settings, SETTING_grade_ratio)};
-    const size_t n_left = left_share(&grading, initial->n, left[0], right[0]);
+    const size_t n_left = left_share(&grading, initial->n, left[0],
+                                     right[0] / settings_real(settings, SETTING_mass_ratio));
     fill_side(initial, 0, n_left, exact->lo, exact->x0 - exact->lo, left, gamma, &grading);
     fill_side(initial, n_left, initial->n - n_left, exact->x0, exact->hi - exact->x0, right, gamma,
               &grading);
@@ -117,6 +118,22 @@ static void fill_wave(struct initial *initial, const struct exact *exact)
     }
 }
 
+/* Brings every second particle close to its neighbour on the same side of the jump. */
+static void pair_up(struct initial *initial, const struct settings *settings)
+{
+    const int lattice = settings_choice(settings, SETTING_lattice);
+    if (lattice == LATTICE_UNIFORM) return;
+    const double part = lattice == LATTICE_CLUSTERED ? 0.05 : 0;
+    double *x = initial->x;
+    for (size_t i = 0; i + 1 < initial->n; i++) {
+        if (initial->rho[i] != initial->rho[i + 1] || initial->m[i] != initial->m[i + 1]) continue;
+        const double middle = 0.5 * (x[i] + x[i + 1]), half = part * (x[i + 1] - x[i]);
+        x[i] = middle - half;
+        x[i + 1] = middle + half;
+        i++;
+    }
+}
+
 /* Moves each particle by up to jitter times its share of the space, so that their order stays. */
 static enum status shake(struct initial *initial, const struct settings *settings,
                          const struct exact *exact)
@@ -148,6 +165,7 @@ enum status initial_create(struct initial *initial, const struct settings *setti
         fill_riemann(initial, settings, exact);
     else
         fill_wave(initial, exact);
+    pair_up(initial, settings);
     if (shake(initial, settings, exact)) {
         initial_free(initial);
         return error_set(error, STATUS_ENVIRONMENT, "no memory for random numbers");

@@ -85,6 +85,15 @@ enum status run_explain(const struct run_settings *settings, struct run_result *
     return status;
 }
 
+/* Particles start in the order of their numbers, round the box. */
+static size_t count_crossed(const struct snapshot *snapshot)
+{
+    size_t crossed = 0;
+    for (size_t i = 0; snapshot->id && i < snapshot->n; i++)
+        crossed += snapshot->id[(i + 1) % snapshot->n] != (snapshot->id[i] + 1) % snapshot->n;
+    return crossed;
+}
+
 static enum status keep_snapshot(struct run_result *result, const struct snapshot *snapshot,
                                  struct error *error)
 {
@@ -104,6 +113,7 @@ static enum status keep_snapshot(struct run_result *result, const struct snapsho
         *to[i] = copy;
     }
     result->snapshot.n = seen.n;
+    result->crossed = count_crossed(snapshot);
     result->spacing = (result->exact.hi - result->exact.lo) / (double)seen.n;
     result->snapshot.time = result->time = seen.time;
     return STATUS_OK;

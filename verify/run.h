@@ -54,6 +54,7 @@ struct run_result {
     double time, window[2];
     struct norms errors[FIELDS]; /* at time; NaN where no particle is in the window */
     double binned_density_l1;
+    size_t crossed; /* neighbours of the start that are not next to each other any more */
     double spacing, h;             /* box/n; mean smoothing length in the window, by volume */
     struct budget budget;          /* L1 by regions of a Riemann problem */
     double mass, momentum, energy; /* conservation: relative, >= 0; see CONSERVATION in run.c */

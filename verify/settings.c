@@ -26,7 +26,10 @@ const struct family kind_family = {
     2};
 const struct family lattice_family = {
     "lattices", "where particles start",
-    MEMBERS(MEMBER("uniform", "the centre of each particle's share of the gas", "")), 1};
+    MEMBERS(MEMBER("uniform", "the centre of each particle's share of the gas", ""),
+            MEMBER("clustered", "in pairs, a tenth of the spacing apart", ""),
+            MEMBER("coincident", "in pairs at one place", "")),
+    3};
 const struct family skip_family = {
     "skips", "work left out",
     MEMBERS(MEMBER("auto", "what no signal has reached, where the result allows it", ""),
@@ -183,6 +186,7 @@ bool settings_foreign(const struct settings *settings, enum setting key)
     case SETTING_right:
     case SETTING_grade:
     case SETTING_grade_ratio:
+    case SETTING_mass_ratio:
         return wave;
     case SETTING_background:
     case SETTING_amplitude:

@@ -48,7 +48,7 @@ struct settings {
 };
 
 enum kind { KIND_RIEMANN, KIND_SOUND_WAVE };
-enum lattice { LATTICE_UNIFORM };
+enum lattice { LATTICE_UNIFORM, LATTICE_CLUSTERED, LATTICE_COINCIDENT };
 enum skip { SKIP_AUTO, SKIP_NONE };
 extern const struct family kind_family, lattice_family, skip_family;
 

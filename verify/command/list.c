@@ -10,6 +10,7 @@
 #include "operator.h"
 #include "result.h"
 #include "settings.h"
+#include "stress.h"
 #include "suite.h"
 #include "table.h"
 #include "text.h"
@@ -76,6 +77,17 @@ static const struct family *mutants(void)
     return &made.family;
 }
 
+static const struct family *stress(void)
+{
+    static struct made made = {.family = {"stress", "groups of `sphproof stress`", NULL, 0}};
+    made.family.n = 0;
+    for (size_t i = 0; i < stress_group_count; i++) {
+        const struct member *member = &stress_groups[i].member;
+        made_add(&made, member->name, member->label, member->paper);
+    }
+    return &made.family;
+}
+
 static const struct family *kernels(void)
 {
     return &kernel_family;
@@ -113,6 +125,7 @@ static const struct family *(*const lists[])(void) = {cases,
                                                       norm_list,
                                                       checks,
                                                       mutants,
+                                                      stress,
                                                       keys};
 enum { LISTS = sizeof lists / sizeof *lists };
 

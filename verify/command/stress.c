@@ -1,0 +1,155 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * sphproof stress: what survives, where it breaks and how. */
+#include "stress.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "command.h"
+#include "progress.h"
+#include "result.h"
+#include "table.h"
+#include "text.h"
+
+enum { JOBS_MAX = 1024, SHOWN = 12 };
+
+static void show_progress(void *context, const char *what, size_t done, size_t total, double share)
+{
+    struct progress *progress = context;
+    progress->what = what;
+    progress_share(progress, done, total, share);
+}
+
+static const char *text_of(const json_t *entry, const char *name)
+{
+    const char *text = json_string_value(json_object_get(entry, name));
+    return text ? text : "";
+}
+
+static const char *style_of(const struct table_style *style, const char *outcome)
+{
+    return !strcmp(outcome, "ok") ? style->good : !strcmp(outcome, "broke_down") ? style->bad : "";
+}
+
+/* "ok 3.6e-3", "broke down", ... of one cell, in 12 columns. */
+static void print_cell(const json_t *entry, const struct table_style *style)
+{
+    const char *outcome = text_of(entry, "outcome");
+    const json_t *measured = json_object_get(entry, "measured"),
+                 *predicted = json_object_get(entry, "predicted");
+    char text[40] = "";
+    if (json_is_number(measured) && json_is_number(predicted))
+        snprintf(text, sizeof text, "%.3f/%.3f", json_number_value(measured),
+                 json_number_value(predicted));
+    else if (json_is_number(measured) || json_is_number(predicted))
+        snprintf(text, sizeof text, "%s%.3g", strcmp(outcome, "ok") ? "~" : "",
+                 json_number_value(json_is_number(measured) ? measured : predicted));
+    else
+        snprintf(text, sizeof text, "%s", strcmp(outcome, "broke_down") ? outcome : "broke");
+    printf(" %s%12.12s%s", style_of(style, outcome), text, style->end);
+}
+
+static void print_group(const json_t *group, const json_t *cells, const struct table_style *style)
+{
+    const json_t *rows = json_object_get(group, "rows"),
+                 *columns = json_object_get(group, "columns"), *entry;
+    const char *name = text_of(group, "name");
+    size_t i, shown = 0;
+    printf("\n%s%s%s: %s\n%-24s", style->bold, name, style->end, text_of(group, "title"),
+           text_of(group, "column_title"));
+    for (i = 0; i < json_array_size(columns); i++)
+        printf(" %12.12s", json_string_value(json_array_get(columns, i)));
+    for (size_t r = 0; r < json_array_size(rows); r++) {
+        const char *row = json_string_value(json_array_get(rows, r));
+        printf("\n%-24.24s", row);
+        json_array_foreach(cells, i, entry) if (!strcmp(text_of(entry, "group"), name) &&
+                                                !strcmp(text_of(entry, "row"), row))
+            print_cell(entry, style);
+    }
+    printf("\n");
+    json_array_foreach(cells, i, entry)
+    {
+        if (strcmp(text_of(entry, "group"), name) || !strcmp(text_of(entry, "outcome"), "ok"))
+            continue;
+        if (shown++ == SHOWN) break;
+        printf("  %s%s, %s: %s%s\n    %s\n", style->faint, text_of(entry, "row"),
+               text_of(entry, "column"), text_of(entry, "reason"), style->end,
+               text_of(entry, "command"));
+    }
+    if (shown > SHOWN) printf("  ... all of them with --json\n");
+}
+
+static void print_all(const json_t *document, size_t wrong, const struct options *options)
+{
+    const struct table_style style = table_style(options);
+    const json_t *groups = json_object_get(document, "groups"), *group, *value;
+    const json_t *comparison = json_object_get(document, "comparison");
+    size_t i;
+    const char *name;
+    json_array_foreach(groups, i, group)
+        print_group(group, json_object_get(document, "cells"), &style);
+    printf("\n%sdefault scheme against the seed program's method:%s", style.bold, style.end);
+    json_object_foreach((json_t *)comparison, name, value) if (json_is_integer(value))
+        printf(" %s %lld;", name, (long long)json_integer_value(value));
+    printf("\n%s%s%s: numbers are errors (density, relative), or measured/predicted limits; ~ is "
+           "inaccurate\n",
+           wrong ? style.bad : style.good, wrong ? "NOT WELL" : "all as it should be", style.end);
+}
+
+static enum status run(const struct options *options, int n, char **arguments, struct error *error)
+{
+    struct stress stress;
+    struct pool pool = {0};
+    struct progress progress;
+    const char *jobs_text = options_value(options, "jobs");
+    double jobs = options->threads;
+    if (jobs_text && (!text_real(jobs_text, &jobs) || !(jobs >= 1 && jobs <= JOBS_MAX)))
+        return error_set(error, STATUS_BAD_INPUT,
+                         "stress: --jobs %s: a number from 1 to %d is "
+                         "needed",
+                         jobs_text, JOBS_MAX);
+    const bool nightly = options_value(options, "nightly") != NULL;
+    enum status status = stress_plan(&stress, nightly, (size_t)n, arguments, &pool, error);
+    if (status) {
+        pool_free(&pool);
+        return status;
+    }
+    progress_begin(&progress, "stress", options);
+    const struct pool_settings settings = {
+        .jobs = (int)jobs, .progress = show_progress, .progress_context = &progress};
+    status = pool_run(&pool, &settings, error);
+    progress_end(&progress);
+    if (!status) {
+        json_t *document = result_new("stress");
+        const size_t wrong = stress_judge(&stress, &pool, document);
+        if (options->speak) print_all(document, wrong, options);
+        if (options->json) status = result_write(document, options->json, error);
+        if (!status && wrong) status = STATUS_CHECK_FAILED;
+        json_decref(document);
+    }
+    stress_free(&stress);
+    pool_free(&pool);
+    return status;
+}
+
+static const struct command_option own_options[] = {
+    {"quick", NULL, "under a minute (default)"},
+    {"nightly", NULL, "more cells, a million steps"},
+    {"jobs", "J", "cells side by side (default: --threads)"},
+    {NULL, NULL, NULL},
+};
+
+const struct command command_stress = {
+    .name = "stress",
+    .synopsis = "[GROUP ...]",
+    .help =
+        "numerical stability: what survives, where it breaks and how\n"
+        "Linear theory (limits of eta, time steps) with noise runs that confirm it, and hard\n"
+        "problems: each cell ends ok, inaccurate or broke_down, with a reason and the command\n"
+        "that does it again. Exit status 1: a prediction fails, a fault went unnoticed, or the\n"
+        "default scheme breaks down where the seed program's method does not.",
+    .run = run,
+    .options = own_options,
+    .examples = "sphproof stress\nsphproof stress limits shock\n"
+                "sphproof stress --nightly --json stress.json",
+};

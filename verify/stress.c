@@ -1,0 +1,395 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "stress.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "result.h"
+#include "run_job.h"
+
+enum { STEPS_QUICK = 30000, STEPS_NIGHTLY = 3000000 };
+
+/* --- the cells ---------------------------------------------------------------------------------
+ */
+
+/* Appends "KEY=VALUE;KEY=VALUE" to the cell's arguments. */
+static void add_keys(struct stress_cell *cell, const char *keys)
+{
+    while (*keys && cell->argument_count < STRESS_ARGUMENTS) {
+        const size_t length = strcspn(keys, ";");
+        snprintf(cell->arguments[cell->argument_count++], STRESS_TEXT, "%.*s", (int)length, keys);
+        keys += length + (keys[length] == ';');
+    }
+}
+
+static bool wanted(const struct stress_group *group, size_t count, char *const *names)
+{
+    for (size_t i = 0; i < count; i++)
+        if (!strcmp(names[i], group->member.name)) return true;
+    return count == 0;
+}
+
+static bool is_group(const char *name)
+{
+    for (size_t g = 0; g < stress_group_count; g++)
+        if (!strcmp(name, stress_groups[g].member.name)) return true;
+    return false;
+}
+
+static const struct stress_entry *rows_of(const struct stress_group *group)
+{
+    return group->rows ? group->rows : stress_schemes;
+}
+
+static void list_cells(struct stress *stress, size_t count, char *const *names)
+{
+    stress->count = 0;
+    for (size_t g = 0; g < stress_group_count; g++) {
+        const struct stress_group *group = &stress_groups[g];
+        if (!wanted(group, count, names)) continue;
+        for (const struct stress_entry *row = rows_of(group); row->label; row++)
+            for (const struct stress_entry *column = group->columns; column->label; column++) {
+                if ((row->nightly || column->nightly) && !stress->nightly) continue;
+                if (stress->cells)
+                    stress->cells[stress->count] =
+                        (struct stress_cell){.group = group, .row = row, .column = column};
+                stress->count++;
+            }
+    }
+}
+
+static enum status prepare(struct stress_cell *cell, bool nightly, struct error *error)
+{
+    char *arguments[STRESS_ARGUMENTS];
+    add_keys(cell, cell->group->keys);
+    add_keys(cell, cell->column->keys);
+    add_keys(cell, cell->row->keys);
+    for (size_t i = 0; i < cell->argument_count; i++) arguments[i] = cell->arguments[i];
+    cell->step_budget = nightly ? STEPS_NIGHTLY : STEPS_QUICK;
+    return run_prepare(&cell->settings, cell->group->case_name, (int)cell->argument_count,
+                       arguments, error);
+}
+
+void stress_command(const struct stress_cell *cell, char command[STRESS_COMMAND])
+{
+    int used = snprintf(command, STRESS_COMMAND, "sphproof run %s", cell->group->case_name);
+    for (size_t i = 0; i < cell->argument_count && used < STRESS_COMMAND; i++) {
+        const char *argument = cell->arguments[i], *quote = strchr(argument, ' ') ? "\"" : "";
+        const int key = (int)strcspn(argument, "=") + 1;
+        used += snprintf(command + used, (size_t)(STRESS_COMMAND - used), " %.*s%s%s%s", key,
+                         argument, quote, argument + key, quote);
+    }
+}
+
+json_t *stress_outcome(double predicted, double measured, const char *outcome, const char *reason)
+{
+    return json_pack("{s:o, s:o, s:s, s:s}", "predicted",
+                     isnan(predicted) ? json_null() : result_number(predicted), "measured",
+                     isnan(measured) ? json_null() : result_number(measured), "outcome", outcome,
+                     "reason", reason);
+}
+
+/* --- one run -----------------------------------------------------------------------------------
+ */
+
+/* Stops a run that has used up its steps. */
+struct watch {
+    uint64_t budget;
+    double first_step, last_step, last_time; /* mean time steps of the first and last 32 */
+    bool out_of_steps;
+};
+
+static bool watch_steps(void *context, double time, uint64_t steps)
+{
+    struct watch *watch = context;
+    watch->last_step = (time - watch->last_time) / 32;
+    if (watch->first_step <= 0) watch->first_step = watch->last_step;
+    watch->last_time = time;
+    watch->out_of_steps = steps >= watch->budget;
+    return !watch->out_of_steps;
+}
+
+static bool all_finite(const struct snapshot *s)
+{
+    const double *const fields[] = {s->x[0], s->v[0], s->rho, s->u, s->P, s->h, s->volume};
+    for (size_t f = 0; f < sizeof fields / sizeof *fields; f++)
+        for (size_t i = 0; i < s->n; i++)
+            if (!isfinite(fields[f][i])) return false;
+    return true;
+}
+
+/* Mean of the exact density over the window. */
+static double mean_density(const struct run_result *result)
+{
+    enum { POINTS = 200 };
+    double sum = 0;
+    for (int i = 0; i < POINTS; i++) {
+        double values[FIELDS];
+        const double x =
+            result->window[0] + (i + 0.5) / POINTS * (result->window[1] - result->window[0]);
+        exact_sample(&result->exact, x, result->time, values);
+        sum += values[FIELD_DENSITY] / POINTS;
+    }
+    return sum;
+}
+
+/* What a breakdown's message says happened. */
+static const char *kind_of_breakdown(const char *message)
+{
+    static const char *const kinds[][2] = {{"internal energy", "negative energy"},
+                                           {"smoothing length", "h without root"},
+                                           {"time step", "time step collapse"},
+                                           {"position", "NaN"},
+                                           {"crashed", "crash"}};
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
+        if (strstr(message, kinds[i][0])) return kinds[i][1];
+    return "broke down";
+}
+
+static json_t *judge_run(const struct stress_cell *cell, const struct run_result *result,
+                         const struct watch *watch)
+{
+    char reason[768] = "";
+    const bool drift = cell->group->kind == STRESS_DRIFT;
+    const double error = result->errors[FIELD_DENSITY].l1 / mean_density(result);
+    const double measured = drift ? result->energy : error;
+    const size_t crossed = result->crossed;
+    if (result->status == STATUS_BROKE_DOWN) {
+        snprintf(reason, sizeof reason, "%s: %s", kind_of_breakdown(result->message),
+                 result->message);
+        return stress_outcome(NAN, NAN, "broke_down", reason);
+    }
+    if (!all_finite(&result->snapshot))
+        return stress_outcome(NAN, NAN, "broke_down", "silent NaN: the run did not notice");
+    if (watch->out_of_steps) {
+        const bool collapse = watch->last_step < 1e-3 * watch->first_step;
+        snprintf(reason, sizeof reason,
+                 "%s: t = %.4g of %.4g after %llu steps, dt %.2g, first %.2g",
+                 collapse ? "time step collapse" : "budget", result->time,
+                 settings_real(&result->settings, SETTING_t_end),
+                 (unsigned long long)result->cost.steps, watch->last_step, watch->first_step);
+        return stress_outcome(NAN, measured, collapse ? "broke_down" : "inaccurate", reason);
+    }
+    const double momentum_bound = 1e-9, energy_bound = drift ? cell->group->bound : 0.05;
+    int used = 0;
+    if (!(measured <= cell->group->bound))
+        used += snprintf(reason + used, sizeof reason - (size_t)used, "%s %.2g above %.2g; ",
+                         drift ? "energy error" : "density error", measured, cell->group->bound);
+    if (!(result->energy <= energy_bound) && !drift)
+        used += snprintf(reason + used, sizeof reason - (size_t)used, "energy error %.2g; ",
+                         result->energy);
+    if (!(result->momentum <= momentum_bound))
+        used += snprintf(reason + used, sizeof reason - (size_t)used, "momentum error %.2g; ",
+                         result->momentum);
+    const bool good = used == 0;
+    if (crossed)
+        used += snprintf(reason + used, sizeof reason - (size_t)used,
+                         "%zu neighbours are no longer next to each other; ", crossed);
+    if (drift)
+        used += snprintf(reason + used, sizeof reason - (size_t)used,
+                         "momentum error %.2g, largest speed %.2g; ", result->momentum,
+                         result->errors[FIELD_VELOCITY].linf);
+    if (used) reason[used - 2] = '\0';
+    return stress_outcome(NAN, measured, good ? "ok" : "inaccurate", reason);
+}
+
+static enum status compute_run(const struct stress_cell *cell, json_t **document,
+                               struct error *error)
+{
+    struct run_settings settings = cell->settings;
+    struct run_result result;
+    struct watch watch = {.budget = cell->step_budget};
+    settings.progress = watch_steps;
+    settings.progress_context = &watch;
+    const enum status status = run_execute(&settings, &result, error);
+    if (status == STATUS_OK || status == STATUS_BROKE_DOWN) {
+        *document = judge_run(cell, &result, &watch);
+        run_free(&result);
+        return STATUS_OK;
+    }
+    if (status != STATUS_BAD_INPUT) return status;
+    *document = stress_outcome(NAN, NAN, "refused", error->message);
+    return STATUS_OK;
+}
+
+static enum status compute(const void *context, json_t **document, struct error *error)
+{
+    const struct stress_cell *cell = context;
+    const bool run = cell->group->kind == STRESS_RUN || cell->group->kind == STRESS_DRIFT;
+    return run ? compute_run(cell, document, error) : stress_linear(cell, document, error);
+}
+
+/* --- the pool ----------------------------------------------------------------------------------
+ */
+
+static enum status add_cell(struct stress_cell *cell, struct pool *pool, struct error *error)
+{
+    char command[STRESS_COMMAND], key[STRESS_COMMAND + 64], name[128];
+    stress_command(cell, command);
+    snprintf(key, sizeof key, "stress %s %s %s %llu %s", cell->group->member.name,
+             cell->column->label, cell->row->label, (unsigned long long)cell->step_budget, command);
+    snprintf(name, sizeof name, "stress %s", cell->group->member.name);
+    const double n = settings_real(&cell->settings.settings, SETTING_n);
+    cell->job = pool_add(pool, name, key, 0.02 + 1e-6 * n * n, compute, cell);
+    return cell->job == (size_t)-1 ? error_set(error, STATUS_ENVIRONMENT, "no memory for a cell")
+                                   : STATUS_OK;
+}
+
+enum status stress_plan(struct stress *stress, bool nightly, size_t group_count,
+                        char *const *groups, struct pool *pool, struct error *error)
+{
+    *stress = (struct stress){.nightly = nightly};
+    for (size_t i = 0; i < group_count; i++)
+        if (!is_group(groups[i])) {
+            char allowed[256];
+            int used = 0;
+            for (size_t g = 0; g < stress_group_count && used < (int)sizeof allowed; g++)
+                used += snprintf(allowed + used, sizeof allowed - (size_t)used, " %s",
+                                 stress_groups[g].member.name);
+            return error_set(error, STATUS_BAD_INPUT, "stress: no group '%.60s'; allowed:%s",
+                             groups[i], allowed);
+        }
+    list_cells(stress, group_count, groups);
+    stress->cells = malloc(stress->count * sizeof *stress->cells);
+    if (!stress->cells) return error_set(error, STATUS_ENVIRONMENT, "no memory for the cells");
+    list_cells(stress, group_count, groups);
+    for (size_t i = 0; i < stress->count; i++)
+        if (prepare(&stress->cells[i], nightly, error) ||
+            add_cell(&stress->cells[i], pool, error)) {
+            stress_free(stress);
+            return error->status;
+        }
+    return STATUS_OK;
+}
+
+void stress_free(struct stress *stress)
+{
+    free(stress->cells);
+    *stress = (struct stress){0};
+}
+
+/* --- judging -----------------------------------------------------------------------------------
+ */
+
+static json_t *cell_json(const struct stress_cell *cell, const struct pool_job *job)
+{
+    char command[STRESS_COMMAND];
+    json_t *settings = json_object(), *entry = json_object();
+    stress_command(cell, command);
+    json_object_set_new(settings, "case", json_string(cell->group->case_name));
+    for (size_t i = 0; i < cell->argument_count; i++) {
+        const char *argument = cell->arguments[i];
+        char key[STRESS_TEXT];
+        snprintf(key, sizeof key, "%.*s", (int)strcspn(argument, "="), argument);
+        json_object_set_new(settings, key, json_string(argument + strlen(key) + 1));
+    }
+    json_object_set_new(entry, "group", json_string(cell->group->member.name));
+    json_object_set_new(entry, "row", json_string(cell->row->label));
+    json_object_set_new(entry, "column", json_string(cell->column->label));
+    json_object_set_new(entry, "settings", settings);
+    if (job->document)
+        json_object_update(entry, job->document);
+    else {
+        char reason[640];
+        snprintf(reason, sizeof reason, "%s: %s", kind_of_breakdown(job->error.message),
+                 job->error.message);
+        json_t *outcome = stress_outcome(NAN, NAN, "broke_down", reason);
+        json_object_update(entry, outcome);
+        json_decref(outcome);
+    }
+    if (cell->group->kind == STRESS_PAIRING)
+        snprintf(command, sizeof command, "sphproof kernel %s --dim %s", cell->row->label,
+                 cell->column->label);
+    json_object_set_new(entry, "command", json_string(command));
+    return entry;
+}
+
+static json_t *labels_of(const struct stress_entry *entries, bool nightly)
+{
+    json_t *list = json_array();
+    for (; entries->label; entries++)
+        if (nightly || !entries->nightly) json_array_append_new(list, json_string(entries->label));
+    return list;
+}
+
+static json_t *group_json(const struct stress_group *group, bool nightly)
+{
+    return json_pack("{s:s, s:s, s:s, s:s, s:o, s:o, s:f}", "name", group->member.name, "title",
+                     group->member.label, "row_title",
+                     group->row_title ? group->row_title : "scheme", "column_title",
+                     group->column_title, "rows", labels_of(rows_of(group), nightly), "columns",
+                     labels_of(group->columns, nightly), "bound", group->bound);
+}
+
+static const char *outcome_of(const json_t *entry)
+{
+    return json_string_value(json_object_get(entry, "outcome"));
+}
+
+/* Something that no cell may be: a prediction that fails, or a fault nobody noticed. */
+static bool is_wrong(const struct stress_cell *cell, const json_t *entry)
+{
+    const char *outcome = outcome_of(entry),
+               *reason = json_string_value(json_object_get(entry, "reason"));
+    const bool theory = cell->group->kind == STRESS_LIMIT || cell->group->kind == STRESS_STEP;
+    return strncmp(reason, "silent NaN", 10) == 0 || strncmp(reason, "crash", 5) == 0 ||
+           strcmp(outcome, "refused") == 0 || (theory && strcmp(outcome, "ok") != 0);
+}
+
+/* Where the default scheme breaks down and the seed program's method does not. */
+static size_t compare(const struct stress *stress, const json_t *cells, json_t *document)
+{
+    json_t *lost = json_array();
+    size_t both = 0, only_default = 0, only_seed = 0, none = 0;
+    for (size_t i = 0; i < stress->count; i++) {
+        const struct stress_cell *cell = &stress->cells[i];
+        if (cell->row != &stress_schemes[0]) continue;
+        for (size_t j = i + 1; j < stress->count; j++) {
+            const struct stress_cell *other = &stress->cells[j];
+            if (other->row != &stress_schemes[1] || other->column != cell->column) continue;
+            const json_t *mine = json_array_get(cells, i), *theirs = json_array_get(cells, j);
+            const bool survives = strcmp(outcome_of(mine), "broke_down") != 0;
+            const bool seed_survives = strcmp(outcome_of(theirs), "broke_down") != 0;
+            if (!survives && seed_survives) json_array_append_new(lost, json_deep_copy(mine));
+            *(survives        ? seed_survives ? &both : &only_default
+              : seed_survives ? &only_seed
+                              : &none) += 1;
+        }
+    }
+    json_object_set_new(document, "comparison",
+                        json_pack("{s:I, s:I, s:I, s:I, s:o}", "both_survive", (json_int_t)both,
+                                  "only_default_survives", (json_int_t)only_default,
+                                  "only_seed_survives", (json_int_t)only_seed, "both_break",
+                                  (json_int_t)none, "lost", lost));
+    return only_seed;
+}
+
+size_t stress_judge(const struct stress *stress, const struct pool *pool, json_t *document)
+{
+    json_t *cells = json_array(), *groups = json_array(), *counts = json_object();
+    const struct stress_group *last = NULL;
+    size_t wrong = 0;
+    bool theory = false;
+    for (size_t i = 0; i < stress->count; i++) {
+        const struct stress_cell *cell = &stress->cells[i];
+        json_t *entry = cell_json(cell, &pool->jobs[cell->job]);
+        const char *outcome = outcome_of(entry);
+        const json_int_t count = json_integer_value(json_object_get(counts, outcome));
+        json_object_set_new(counts, outcome, json_integer(count + 1));
+        wrong += is_wrong(cell, entry);
+        theory = theory || cell->group->kind == STRESS_LIMIT;
+        if (cell->group != last)
+            json_array_append_new(groups, group_json(cell->group, stress->nightly));
+        last = cell->group;
+        json_array_append_new(cells, entry);
+    }
+    json_object_set_new(document, "cells", cells);
+    json_object_set_new(document, "groups", groups);
+    if (theory) json_object_set_new(document, "atlas", stress_atlas());
+    wrong += compare(stress, cells, document);
+    json_object_set_new(counts, "wrong", json_integer((json_int_t)wrong));
+    json_object_set_new(document, "summary", counts);
+    return wrong;
+}

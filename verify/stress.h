@@ -1,0 +1,90 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Numerical stability mapped: groups of cells, each a hard problem for a scheme or a prediction of
+ * linear theory that short runs confirm. Every cell ends as ok, inaccurate or broke_down with a
+ * reason, within a budget of steps; every cell names the command that does it again. */
+#ifndef SPHPROOF_STRESS_H
+#define SPHPROOF_STRESS_H
+
+#include <jansson.h>
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "pool.h"
+#include "run.h"
+
+/* A row or column of a group's map: a label and "KEY=VALUE;KEY=VALUE". */
+struct stress_entry {
+    const char *label, *keys;
+    bool nightly; /* not in the quick stress test */
+};
+
+/* What the cells of a group are. */
+enum stress_kind {
+    STRESS_RUN,     /* a run against its exact solution: error of density, relative to its mean */
+    STRESS_DRIFT,   /* many steps of a still box: drift of energy */
+    STRESS_LIMIT,   /* limits of eta: predicted, and found by noise runs */
+    STRESS_STEP,    /* largest c dt/dx of an integrator: the same */
+    STRESS_PAIRING, /* onset of pairing in 2D and 3D: predicted */
+};
+
+struct stress_group {
+    struct member member; /* name, what it does, paper */
+    enum stress_kind kind;
+    const char *case_name, *keys;         /* of all cells; the columns', then the rows' follow */
+    const char *row_title, *column_title; /* of the map */
+    const struct stress_entry *rows, *columns; /* end with a NULL label */
+    double bound;                              /* of what is measured: above it is inaccurate */
+};
+
+extern const struct stress_group stress_groups[];
+extern const size_t stress_group_count;
+
+/* Schemes that a group without rows of its own compares: the first is the default scheme, the
+ * second the seed program's method, corrected. */
+extern const struct stress_entry stress_schemes[];
+
+enum { STRESS_ARGUMENTS = 40, STRESS_TEXT = 64, STRESS_COMMAND = 1024 };
+
+struct stress_cell {
+    const struct stress_group *group;
+    const struct stress_entry *row, *column;
+    char arguments[STRESS_ARGUMENTS][STRESS_TEXT]; /* KEY=VALUE */
+    size_t argument_count;
+    struct run_settings settings;
+    uint64_t step_budget;
+    size_t job; /* in the pool */
+};
+
+struct stress {
+    struct stress_cell *cells;
+    size_t count;
+    bool nightly;
+};
+
+/* Lists the cells of the named groups (none: all) and adds them to a pool. STATUS_BAD_INPUT: no
+ * such group. The stress must outlive the pool's run; stress_free it. */
+enum status stress_plan(struct stress *stress, bool nightly, size_t group_count,
+                        char *const *groups, struct pool *pool, struct error *error);
+
+/* After pool_run: adds "cells", "groups" (titles of the maps), "atlas" (growth rates of linear
+ * theory), "comparison" (where the default scheme does not survive what the seed program's method
+ * does) and "summary" to a stress document. Returns the number of what is wrong: crashes, silent
+ * NaNs, predictions that are not confirmed, lost comparisons. */
+size_t stress_judge(const struct stress *stress, const struct pool *pool, json_t *document);
+
+void stress_free(struct stress *stress);
+
+/* "sphproof run CASE KEY=VALUE ..." of a cell. */
+void stress_command(const struct stress_cell *cell, char command[STRESS_COMMAND]);
+
+/* The cells of linear theory (stress_linear.c). */
+enum status stress_linear(const struct stress_cell *cell, json_t **document, struct error *error);
+
+/* {"predicted", "measured", "outcome", "reason"}; not a number: null. New reference. */
+json_t *stress_outcome(double predicted, double measured, const char *outcome, const char *reason);
+
+/* Growth rate of the fastest wave over eta, for every kernel and gradient: {"eta": [...], "rows":
+ * [{"kernel", "gradient", "growth": [...]}]}. New reference. */
+json_t *stress_atlas(void);
+
+#endif

@@ -1,0 +1,237 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Cells of linear theory: what the eigenvalues say (stability.h), and the same found once more by
+ * runs of the solver from a lattice with noise of 1e-6 spacings. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "measure.h"
+#include "result.h"
+#include "stability.h"
+#include "stress.h"
+
+#define ETA_MAX 9.5
+enum { WAVES = 64, ETAS = 86, BISECTIONS = 7 };
+
+/* --- noise runs --------------------------------------------------------------------------------
+ */
+
+static void set(struct run_settings *settings, enum setting key, double value)
+{
+    settings->settings.value[key].real[0] = value;
+    settings->settings.value[key].automatic = false;
+}
+
+static bool within_budget(void *context, double time, uint64_t steps)
+{
+    (void)time;
+    return (double)steps < *(const double *)context;
+}
+
+/* Root mean square speed over the sound speed after `time` spacings/c; INFINITY where it broke
+ * down, which noise that grows does in the end. */
+static double noise_after(struct run_settings settings, double time)
+{
+    struct run_result result;
+    struct error error;
+    const double gamma = settings_real(&settings.settings, SETTING_gamma), c = sqrt(gamma);
+    set(&settings, SETTING_t_end, time / c / settings_real(&settings.settings, SETTING_n));
+    /* time steps that collapse are growth, too */
+    double budget = 500 + 8 * time;
+    settings.progress = within_budget;
+    settings.progress_context = &budget;
+    const enum status status = run_execute(&settings, &result, &error);
+    const bool whole =
+        status == STATUS_OK && result.time >= settings_real(&settings.settings, SETTING_t_end);
+    const double noise = whole ? run_error(&result, FIELD_VELOCITY, NORM_L2) / c : (double)INFINITY;
+    if (status == STATUS_OK || status == STATUS_BROKE_DOWN) run_free(&result);
+    return noise;
+}
+
+enum { EARLY = 20 }; /* spacings/c: the noise has found its balance of motion and pressure */
+
+static bool noise_grows(const struct run_settings *settings, double time)
+{
+    return !(noise_after(*settings, time) <= 2 * noise_after(*settings, EARLY));
+}
+
+/* --- limits of eta -----------------------------------------------------------------------------
+ */
+
+static double growth_at(const struct scheme *scheme, double gamma, double eta)
+{
+    struct stability lattice;
+    struct scheme wider = *scheme;
+    struct error error;
+    wider.eta = eta;
+    if (stability_begin(&lattice, &wider, gamma, &error)) return NAN;
+    return fmax(0, stability_worst(&lattice, NULL));
+}
+
+static json_t *limit(const struct stress_cell *cell, const struct scheme *scheme)
+{
+    struct run_settings settings = cell->settings;
+    struct stability_interval stable[4];
+    char reason[256];
+    const double gamma = settings_real(&settings.settings, SETTING_gamma);
+    const int count = stability_intervals(scheme, gamma, ETA_MAX, stable, 4);
+    const double predicted = count ? stable[0].to : (double)NAN;
+    if (predicted >= ETA_MAX) {
+        set(&settings, SETTING_eta, ETA_MAX);
+        const bool grows = noise_grows(&settings, 600);
+        snprintf(reason, sizeof reason, "no limit up to eta = %g; noise there %s", ETA_MAX,
+                 grows ? "grows" : "does not grow");
+        return stress_outcome(NAN, grows ? ETA_MAX : (double)NAN, grows ? "inaccurate" : "ok",
+                              reason);
+    }
+    /* beyond the limit, but not in the next stable interval; long enough for the growth there */
+    const double next = count > 1 ? stable[1].from : ETA_MAX;
+    const double beyond = fmin(1.05 * predicted, 0.5 * (predicted + next));
+    const double theory = growth_at(scheme, gamma, beyond), half = 5 / theory;
+    const double slow = growth_at(scheme, gamma, 0.5 * (predicted + beyond));
+    const double time = fmin(fmax(10 / slow, 200), 4000);
+    double low = 0.9 * predicted, high = fmin(2 * beyond - predicted, 0.5 * (beyond + next));
+    for (int i = 0; i < BISECTIONS; i++) {
+        const double eta = 0.5 * (low + high);
+        set(&settings, SETTING_eta, eta);
+        *(noise_grows(&settings, time) ? &high : &low) = eta;
+    }
+    const double measured = 0.5 * (low + high);
+    set(&settings, SETTING_eta, beyond);
+    const double rate = log(noise_after(settings, 2 * half) / noise_after(settings, half)) / half;
+    int used = snprintf(reason, sizeof reason,
+                        "growth at eta = %.3f: %.4f c/dx by theory, %.4f of the noise", beyond,
+                        theory, rate);
+    for (int i = 1; i < count && used < (int)sizeof reason; i++)
+        used += snprintf(reason + used, sizeof reason - (size_t)used,
+                         "; stable again from %.2f to %.2f", stable[i].from, stable[i].to);
+    return stress_outcome(predicted, measured,
+                          fabs(measured / predicted - 1) <= 0.05 ? "ok" : "inaccurate", reason);
+}
+
+/* --- largest time steps ------------------------------------------------------------------------
+ */
+
+static double step_limit(struct stability *lattice, double approaching)
+{
+    lattice->approaching = approaching;
+    return stability_time_step(lattice, 5);
+}
+
+static json_t *time_step(const struct stress_cell *cell, const struct scheme *scheme,
+                         struct error *error)
+{
+    struct run_settings settings = cell->settings;
+    struct stability lattice;
+    char reason[256];
+    const double gamma = settings_real(&settings.settings, SETTING_gamma);
+    if (stability_begin(&lattice, scheme, gamma, error)) return NULL;
+    const double inviscid = step_limit(&lattice, 0), predicted = step_limit(&lattice, 0.5);
+    double low = 0, high = 1.5 * predicted;
+    for (int i = 0; i < BISECTIONS + 1; i++) {
+        const double step = 0.5 * (low + high);
+        set(&settings, SETTING_cfl, 2 * step / lattice.h);
+        *(noise_grows(&settings, 600) ? &high : &low) = step;
+    }
+    const double measured = 0.5 * (low + high);
+    snprintf(reason, sizeof reason,
+             "c dt/dx: theory %.3f with viscosity on half of the pairs, %.3f without; viscosity is "
+             "off in gas that expands, so runs may lie between",
+             predicted, inviscid);
+    const bool good = measured >= 0.95 * inviscid && measured <= 1.05 * predicted;
+    return stress_outcome(predicted, measured, good ? "ok" : "inaccurate", reason);
+}
+
+/* --- pairing -----------------------------------------------------------------------------------
+ */
+
+static json_t *pairing(const struct stress_cell *cell, const struct scheme *scheme)
+{
+    const int dim = cell->column->label[0] - '0';
+    const double onset = measure_pairing(&scheme->kernel, dim);
+    char reason[128];
+    if (isnan(onset))
+        snprintf(reason, sizeof reason, "none up to %d neighbours", MEASURE_NEIGHBOURS_MAX);
+    else
+        snprintf(reason, sizeof reason, "pairs have less energy from %.0f neighbours on", onset);
+    return stress_outcome(onset, NAN, "ok", reason);
+}
+
+enum status stress_linear(const struct stress_cell *cell, json_t **document, struct error *error)
+{
+    struct settings resolved = cell->settings.settings;
+    struct scheme scheme;
+    const enum status status = settings_resolve(&resolved, 1, &scheme, error);
+    if (status) return status;
+    if (cell->group->kind == STRESS_LIMIT)
+        *document = limit(cell, &scheme);
+    else if (cell->group->kind == STRESS_STEP)
+        *document = time_step(cell, &scheme, error);
+    else
+        *document = pairing(cell, &scheme);
+    return *document ? STATUS_OK : error->status;
+}
+
+/* --- the atlas ---------------------------------------------------------------------------------
+ */
+
+static struct scheme atlas_scheme(const char *kernel, enum gradient gradient, double eta)
+{
+    struct settings settings;
+    struct scheme scheme;
+    settings_init(&settings);
+    settings_resolve(&settings, 1, &scheme, NULL);
+    kernel_select(&scheme.kernel, kernel, 5, NULL);
+    scheme.gradient = gradient;
+    scheme.viscosity = VISCOSITY_NONE;
+    scheme.h_method = H_NEWTON;
+    scheme.eta = eta;
+    return scheme;
+}
+
+static json_t *growth_row(const char *kernel, enum gradient gradient)
+{
+    json_t *growth = json_array();
+    for (int i = 0; i < ETAS; i++) {
+        const struct scheme scheme = atlas_scheme(kernel, gradient, 1 + 0.1 * i);
+        const double rate = growth_at(&scheme, 1.4, scheme.eta);
+        json_array_append_new(growth, isnan(rate) ? json_null() : result_number(rate));
+    }
+    return json_pack("{s:s, s:s, s:o}", "kernel", kernel, "gradient",
+                     gradient_family.members[gradient]->name, "growth", growth);
+}
+
+static json_t *wave_row(const char *kernel, enum gradient gradient, double eta)
+{
+    const struct scheme scheme = atlas_scheme(kernel, gradient, eta);
+    struct stability lattice;
+    struct error error;
+    json_t *kappa = json_array(), *frequency = json_array(), *growth = json_array();
+    const enum status status = stability_begin(&lattice, &scheme, 1.4, &error);
+    for (int i = 1; i <= WAVES && !status; i++) {
+        double omega;
+        const double k = M_PI * i / WAVES, rate = stability_growth(&lattice, k, &omega);
+        json_array_append_new(kappa, result_number(k));
+        json_array_append_new(frequency, result_number(omega));
+        json_array_append_new(growth, result_number(fmax(0, rate)));
+    }
+    return json_pack("{s:s, s:s, s:f, s:o, s:o, s:o}", "kernel", kernel, "gradient",
+                     gradient_family.members[gradient]->name, "eta", eta, "kappa", kappa,
+                     "frequency", frequency, "growth", growth);
+}
+
+json_t *stress_atlas(void)
+{
+    json_t *eta = json_array(), *rows = json_array(), *waves = json_array();
+    for (int i = 0; i < ETAS; i++) json_array_append_new(eta, result_number(1 + 0.1 * i));
+    for (int g = 0; g < 2; g++)
+        for (size_t k = 0; k < kernel_family.n; k++)
+            json_array_append_new(rows,
+                                  growth_row(kernel_family.members[k]->name, (enum gradient)g));
+    json_array_append_new(waves, wave_row("quadratic_spline", GRADIENT_STANDARD, 1.5));
+    json_array_append_new(waves, wave_row("cubic_spline", GRADIENT_STANDARD, 4.8));
+    json_array_append_new(waves, wave_row("cubic_spline", GRADIENT_IA, 2));
+    json_array_append_new(waves, wave_row("cubic_spline", GRADIENT_IA, 4.2));
+    json_array_append_new(waves, wave_row("cubic_spline", GRADIENT_IA, 4.8));
+    return json_pack("{s:o, s:o, s:o}", "eta", eta, "rows", rows, "waves", waves);
+}
