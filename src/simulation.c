@@ -48,6 +48,23 @@ static enum status check_scene(const struct scene *scene, struct error *error)
     return scheme_check(&scene->scheme, scene->dim, error);
 }
 
+/* Particles at one place exert no force on each other, and a narrow kernel has no root h for them:
+ * they are moved apart by a thousandth of their spacing. Sorted positions. */
+static void separate(struct particles *a, double eta)
+{
+    for (ptrdiff_t first = 0, end; first < a->n; first = end) {
+        for (end = first + 1; end < a->n && a->x[end] == a->x[first];) end++;
+        const ptrdiff_t count = end - first;
+        if (count == 1) continue;
+        const double before = first > 0 ? a->x[first - 1] : a->x[a->n - 1] - a->period;
+        const double after = end < a->n ? a->x[end] : a->x[0] + a->period;
+        const double room = fmin(a->x[first] - before, after - a->x[first]);
+        const double gap = fmin(1e-3 * a->h[first] / eta, 0.5 * room / (double)count);
+        for (ptrdiff_t k = 0; k < count; k++)
+            a->x[first + k] += ((double)k - 0.5 * (double)(count - 1)) * gap;
+    }
+}
+
 /* The state of the scene, sorted by position, with a first guess of h. */
 static void set_particles(struct simulation *simulation, const struct scene *scene)
 {
@@ -69,6 +86,7 @@ static void set_particles(struct simulation *simulation, const struct scene *sce
         a->h[i] = scheme->eta * m / rho;
     }
     particles_sort(a);
+    separate(a, scheme->eta);
 }
 
 static enum status allocate(struct simulation *simulation, struct error *error)
@@ -143,6 +161,17 @@ static void stop_clocks(struct simulation *simulation)
     simulation->cost.cpu_s = seconds(CLOCK_PROCESS_CPUTIME_ID) - simulation->cpu_start;
 }
 
+/* Signal speeds know velocities, and so nothing of light particles at rest beside a high pressure:
+ * the first step is no longer than 2 cfl sqrt(h/a). */
+static double first_time_step(const struct simulation *simulation)
+{
+    const struct particles *a = &simulation->particles;
+    double pull = 0; /* a/h */
+    for (ptrdiff_t i = 0; i < a->n; i++)
+        pull = fmax(pull, fabs(a->F[i]) * a->m_inverse[i] * a->h_inverse[i]);
+    return fmin(simulation->time_step, 2 * simulation->scheme.cfl / sqrt(pull));
+}
+
 /* The particle that limits the time step. */
 static ptrdiff_t limiting_particle(const struct simulation *simulation)
 {
@@ -161,7 +190,7 @@ enum status simulation_run(struct simulation *simulation, double t_end,
     while (simulation->time < t_end && !stopped) {
         /* t_end is met exactly: the last step is cut, and the last two are made equal */
         const double left = t_end - simulation->time;
-        double dt = simulation->time_step;
+        double dt = simulation->last_dt > 0 ? simulation->time_step : first_time_step(simulation);
         const bool last = dt >= left;
         if (last)
             dt = left;

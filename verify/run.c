@@ -188,14 +188,30 @@ static enum status finish(struct run_result *result, const struct outcome *outco
     return status ? status : measure_errors(result, error);
 }
 
+/* A state without density or smoothing length: there is nothing to measure. */
+static enum status broke_down_at_start(struct run_result *result, const struct error *reason)
+{
+    result->status = STATUS_BROKE_DOWN;
+    snprintf(result->message, sizeof result->message, "%s", reason->message);
+    result->binned_density_l1 = result->mass = result->momentum = result->energy = (double)NAN;
+    for (int field = 0; field < FIELDS; field++)
+        result->errors[field] =
+            (struct norms){.l1 = NAN, .l2 = NAN, .linf = NAN, .particle_mean = NAN};
+    return STATUS_OK;
+}
+
 static enum status simulate(const struct run_settings *settings, struct run_result *result,
                             const struct initial *initial, struct error *error)
 {
     struct simulation *simulation = NULL;
     struct outcome outcome = {0};
     const struct scene scene = scene_of(settings, result, initial);
-    enum status status = simulation_create(&scene, &simulation, error);
-    if (status) return status;
+    enum status status = simulation_create(&scene, &simulation, &outcome.reason);
+    if (status == STATUS_BROKE_DOWN) return broke_down_at_start(result, &outcome.reason);
+    if (status) {
+        *error = outcome.reason;
+        return status;
+    }
     simulation_conservation(simulation, &outcome.start);
     outcome.status = simulation_run(simulation, scene.t_end, settings->progress,
                                     settings->progress_context, &outcome.reason);

@@ -131,6 +131,8 @@ COMMANDS = [
     ["riemann", "1", "0", "1", "0.125", "0", "0.1", "--sample", "-1:1:5", "--time", "0.1"],
     ["riemann", "1", "-5", "0.4", "1", "5", "0.4"],
     ["kernel", "cubic_spline", "--dim", "2", "--at", "0.5"],
+    ["stress", "few", "leblanc"],
+    ["stress", "steps"],
 ]
 
 
