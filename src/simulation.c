@@ -48,18 +48,19 @@ static enum status check_scene(const struct scene *scene, struct error *error)
     return scheme_check(&scene->scheme, scene->dim, error);
 }
 
-/* Particles at one place exert no force on each other, and a narrow kernel has no root h for them:
+/* Particles at one place whose own terms alone exceed what a narrow kernel allows have no root h:
  * they are moved apart by a thousandth of their spacing. Sorted positions. */
-static void separate(struct particles *a, double eta)
+static void separate(struct particles *a, const struct scheme *scheme)
 {
+    const double least_eta = kernel_least_eta(&scheme->kernel, 1);
     for (ptrdiff_t first = 0, end; first < a->n; first = end) {
         for (end = first + 1; end < a->n && a->x[end] == a->x[first];) end++;
         const ptrdiff_t count = end - first;
-        if (count == 1) continue;
+        if (count == 1 || (double)count * least_eta < scheme->eta) continue;
         const double before = first > 0 ? a->x[first - 1] : a->x[a->n - 1] - a->period;
         const double after = end < a->n ? a->x[end] : a->x[0] + a->period;
         const double room = fmin(a->x[first] - before, after - a->x[first]);
-        const double gap = fmin(1e-3 * a->h[first] / eta, 0.5 * room / (double)count);
+        const double gap = fmin(1e-3 * a->h[first] / scheme->eta, 0.5 * room / (double)count);
         for (ptrdiff_t k = 0; k < count; k++)
             a->x[first + k] += ((double)k - 0.5 * (double)(count - 1)) * gap;
     }
@@ -86,7 +87,7 @@ static void set_particles(struct simulation *simulation, const struct scene *sce
         a->h[i] = scheme->eta * m / rho;
     }
     particles_sort(a);
-    separate(a, scheme->eta);
+    separate(a, scheme);
 }
 
 static enum status allocate(struct simulation *simulation, struct error *error)

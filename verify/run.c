@@ -195,8 +195,10 @@ static enum status broke_down_at_start(struct run_result *result, const struct e
     snprintf(result->message, sizeof result->message, "%s", reason->message);
     result->binned_density_l1 = result->mass = result->momentum = result->energy = (double)NAN;
     for (int field = 0; field < FIELDS; field++)
-        result->errors[field] =
-            (struct norms){.l1 = NAN, .l2 = NAN, .linf = NAN, .particle_mean = NAN};
+        result->errors[field] = (struct norms){.l1 = (double)NAN,
+                                               .l2 = (double)NAN,
+                                               .linf = (double)NAN,
+                                               .particle_mean = (double)NAN};
     return STATUS_OK;
 }
 

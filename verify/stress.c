@@ -159,10 +159,11 @@ static json_t *judge_run(const struct stress_cell *cell, const struct run_result
     if (result->status == STATUS_BROKE_DOWN) {
         snprintf(reason, sizeof reason, "%s: %s", kind_of_breakdown(result->message),
                  result->message);
-        return stress_outcome(NAN, NAN, "broke_down", reason);
+        return stress_outcome((double)NAN, (double)NAN, "broke_down", reason);
     }
     if (!all_finite(&result->snapshot))
-        return stress_outcome(NAN, NAN, "broke_down", "silent NaN: the run did not notice");
+        return stress_outcome((double)NAN, (double)NAN, "broke_down",
+                              "silent NaN: the run did not notice");
     if (watch->out_of_steps) {
         const bool collapse = watch->last_step < 1e-3 * watch->first_step;
         snprintf(reason, sizeof reason,
@@ -170,7 +171,8 @@ static json_t *judge_run(const struct stress_cell *cell, const struct run_result
                  collapse ? "time step collapse" : "budget", result->time,
                  settings_real(&result->settings, SETTING_t_end),
                  (unsigned long long)result->cost.steps, watch->last_step, watch->first_step);
-        return stress_outcome(NAN, measured, collapse ? "broke_down" : "inaccurate", reason);
+        return stress_outcome((double)NAN, measured, collapse ? "broke_down" : "inaccurate",
+                              reason);
     }
     const double momentum_bound = 1e-9, energy_bound = drift ? cell->group->bound : 0.05;
     int used = 0;
@@ -193,7 +195,7 @@ static json_t *judge_run(const struct stress_cell *cell, const struct run_result
                          "momentum error %.2g, largest speed %.2g; ", result->momentum,
                          result->errors[FIELD_VELOCITY].linf);
     if (used) reason[used - 2] = '\0';
-    return stress_outcome(NAN, measured, good ? "ok" : "inaccurate", reason);
+    return stress_outcome((double)NAN, measured, good ? "ok" : "inaccurate", reason);
 }
 
 static enum status compute_run(const struct stress_cell *cell, json_t **document,
@@ -211,7 +213,7 @@ static enum status compute_run(const struct stress_cell *cell, json_t **document
         return STATUS_OK;
     }
     if (status != STATUS_BAD_INPUT) return status;
-    *document = stress_outcome(NAN, NAN, "refused", error->message);
+    *document = stress_outcome((double)NAN, (double)NAN, "refused", error->message);
     return STATUS_OK;
 }
 
@@ -296,7 +298,7 @@ static json_t *cell_json(const struct stress_cell *cell, const struct pool_job *
         char reason[640];
         snprintf(reason, sizeof reason, "%s: %s", kind_of_breakdown(job->error.message),
                  job->error.message);
-        json_t *outcome = stress_outcome(NAN, NAN, "broke_down", reason);
+        json_t *outcome = stress_outcome((double)NAN, (double)NAN, "broke_down", reason);
         json_object_update(entry, outcome);
         json_decref(outcome);
     }

@@ -64,7 +64,7 @@ static double growth_at(const struct scheme *scheme, double gamma, double eta)
     struct scheme wider = *scheme;
     struct error error;
     wider.eta = eta;
-    if (stability_begin(&lattice, &wider, gamma, &error)) return NAN;
+    if (stability_begin(&lattice, &wider, gamma, &error)) return (double)NAN;
     return fmax(0, stability_worst(&lattice, NULL));
 }
 
@@ -81,8 +81,8 @@ static json_t *limit(const struct stress_cell *cell, const struct scheme *scheme
         const bool grows = noise_grows(&settings, 600);
         snprintf(reason, sizeof reason, "no limit up to eta = %g; noise there %s", ETA_MAX,
                  grows ? "grows" : "does not grow");
-        return stress_outcome(NAN, grows ? ETA_MAX : (double)NAN, grows ? "inaccurate" : "ok",
-                              reason);
+        return stress_outcome((double)NAN, grows ? ETA_MAX : (double)NAN,
+                              grows ? "inaccurate" : "ok", reason);
     }
     /* beyond the limit, but not in the next stable interval; long enough for the growth there */
     const double next = count > 1 ? stable[1].from : ETA_MAX;
@@ -154,7 +154,7 @@ static json_t *pairing(const struct stress_cell *cell, const struct scheme *sche
         snprintf(reason, sizeof reason, "none up to %d neighbours", MEASURE_NEIGHBOURS_MAX);
     else
         snprintf(reason, sizeof reason, "pairs have less energy from %.0f neighbours on", onset);
-    return stress_outcome(onset, NAN, "ok", reason);
+    return stress_outcome(onset, (double)NAN, "ok", reason);
 }
 
 enum status stress_linear(const struct stress_cell *cell, json_t **document, struct error *error)
