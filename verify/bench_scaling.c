@@ -10,7 +10,10 @@
 
 /* A step's time is that of a longer run less that of a shorter one: the set-up cancels. The solver
  * asks every 32 steps whether to go on. */
-enum { STEPS_SHORT = 32, STEPS_LONG = 96 };
+enum { STEPS_SHORT = 32, STEPS_LONG = 160 };
+/* Where threads are compared, wall time counts, which other people's load disturbs most: no
+ * difference of two times, but a run long enough that its set-up matters little. */
+enum { STEPS_THREADS = 320 };
 enum { RUN_N_MAX = 10000 }; /* whole runs cost as n^2 */
 static const size_t thread_n[] = {800, 6400, 20000, 100000};
 enum { THREAD_LEVELS = sizeof thread_n / sizeof *thread_n };
@@ -67,7 +70,7 @@ static enum status prepare(struct job *job, const struct run_settings *settings,
 
 struct bench {
     struct scaling *scaling;
-    struct job *jobs; /* PARTS a level, then two a thread level and part */
+    struct job *jobs; /* PARTS a level, then two a thread level: one thread, more */
     struct bench_subject *subjects;
     size_t count;
 };
@@ -123,8 +126,9 @@ static void read_level(struct bench *bench, size_t i, size_t first)
     const struct job *jobs = &bench->jobs[first];
     const double brief = parts[PART_SHORT].time.cpu_s, longer = parts[PART_LONG].time.cpu_s;
     level->n = jobs[PART_LONG].last.n;
-    level->step_cpu_s = (longer - brief) / (STEPS_LONG - STEPS_SHORT);
-    level->set_up_cpu_s = fmax(brief - STEPS_SHORT * level->step_cpu_s, 0);
+    const double step = (longer - brief) / (STEPS_LONG - STEPS_SHORT);
+    level->step_cpu_s = step > 0 ? step : (double)NAN; /* lost in the machine's noise */
+    level->set_up_cpu_s = fmax(brief - STEPS_SHORT * step, 0);
     level->spread = fmax(parts[PART_SHORT].time.spread, parts[PART_LONG].time.spread);
     level->peak_rss = jobs[PART_LONG].peak_rss;
     level->run_cpu_s = level->error = (double)NAN;
@@ -140,21 +144,16 @@ static void read_level(struct bench *bench, size_t i, size_t first)
 
 static void read_threads(struct bench *bench, size_t i, size_t first, int threads)
 {
-    struct scaling_threads *level = &bench->scaling->threads[i];
-    const struct bench_subject *parts = &bench->subjects[first]; /* short, long; one thread, more */
-    const struct job *jobs = &bench->jobs[first];
-    double step[2];
-    for (int k = 0; k < 2; k++)
-        step[k] =
-            (parts[2 * k + 1].time.wall_s - parts[2 * k].time.wall_s) / (STEPS_LONG - STEPS_SHORT);
-    const struct exact *exact = &jobs[1].last.exact;
-    *level = (struct scaling_threads){
-        .n = jobs[1].last.n,
+    const struct bench_subject *one = &bench->subjects[first], *more = one + 1;
+    const struct run_result *last = &bench->jobs[first].last,
+                            *with_more = &bench->jobs[first + 1].last;
+    bench->scaling->threads[i] = (struct scaling_threads){
+        .n = last->n,
         .threads = threads,
-        .wall_s = step[1],
-        .gain = step[0] / step[1],
-        .same_bits = !(bench_skips_difference(&jobs[1].last.snapshot, &jobs[3].last.snapshot,
-                                              exact->hi - exact->lo) > 0)};
+        .wall_s = more->time.wall_s / STEPS_THREADS,
+        .gain = one->time.wall_s / more->time.wall_s,
+        .same_bits = !(bench_skips_difference(&last->snapshot, &with_more->snapshot,
+                                              last->exact.hi - last->exact.lo) > 0)};
 }
 
 enum status bench_scaling_measure(const struct run_settings *settings, const size_t *ladder,
@@ -163,7 +162,7 @@ enum status bench_scaling_measure(const struct run_settings *settings, const siz
                                   struct error *error)
 {
     *scaling = (struct scaling){.settings = settings, .level_count = count};
-    const size_t most = PARTS * count + 4 * THREAD_LEVELS;
+    const size_t most = PARTS * count + 2 * THREAD_LEVELS;
     size_t first[CASE_LADDER_MAX + THREAD_LEVELS];
     struct bench bench = {.scaling = scaling,
                           .jobs = calloc(most, sizeof *bench.jobs),
@@ -181,9 +180,10 @@ enum status bench_scaling_measure(const struct run_settings *settings, const siz
         scaling->thread_count++;
     for (size_t i = 0; i < scaling->thread_count && !status; i++) {
         first[count + i] = bench.count;
-        for (int k = 0; k < 4 && !status; k++)
-            status = add(&bench, thread_n[i], k % 2 ? STEPS_LONG : STEPS_SHORT, k < 2 ? 1 : threads,
-                         error);
+        for (int k = 0; k < 2 && !status; k++) {
+            status = add(&bench, thread_n[i], STEPS_THREADS, k ? threads : 1, error);
+            bench.jobs[bench.count - 1].keep = true;
+        }
     }
     if (!status)
         status = bench_measure(bench.subjects, bench.count, rules, progress, context, error);

@@ -15,7 +15,8 @@ enum { SCALING_THREADS_MAX = 8 };
 
 struct scaling_level {
     size_t n;
-    double step_cpu_s, set_up_cpu_s; /* one step with all particles awake; all before the first */
+    double step_cpu_s, set_up_cpu_s; /* one step with all particles awake; all before the first;
+                                      * NaN: lost in noise */
     double spread;
     double peak_rss;                     /* bytes, of the process, after this level (they rise) */
     double run_cpu_s;                    /* whole run as given; NaN where it would take too long */
@@ -28,7 +29,7 @@ struct scaling_level {
 struct scaling_threads {
     size_t n;
     int threads;
-    double wall_s, gain; /* of a step; the same with one thread over it */
+    double wall_s, gain; /* of a step with its share of the set-up; one thread over it */
     bool same_bits;
 };
 

@@ -306,6 +306,8 @@ static void test_difference_of_states(void **state)
     assert_true(isinf(bench_skips_difference(&a, &b, 2)));
     b.n = 2;
     assert_true(isinf(bench_skips_difference(&a, &b, 2)));
+    const struct snapshot nothing = {0};
+    assert_true(isinf(bench_skips_difference(&nothing, &nothing, 2)));
 }
 
 static void test_promises_are_kept_or_seen_broken(void **state)
