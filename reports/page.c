@@ -27,15 +27,18 @@ static void keep(struct page *page, struct buffer *failed, const char *name, con
 void page_plot(struct page_writer *writer, const struct plot *plot, const char *caption)
 {
     struct buffer *to = &writer->to;
-    char *svg, message[512] = "", *script, *data;
+    char *svg = NULL, message[512] = "", *script, *data;
     buffer_add(to, "<figure>");
-    if (plot_svg(plot, &svg, message, sizeof message) == PLOT_OK) {
+    enum plot_status status = PLOT_NO_GNUPLOT;
+    if (!writer->no_gnuplot) status = plot_svg(plot, &svg, message, sizeof message);
+    if (status == PLOT_OK) {
         buffer_add(to, svg);
     } else {
         if (!writer->page->plots_missing++)
             snprintf(writer->page->message, sizeof writer->page->message, "%s", message);
         buffer_add(to, "<p class=\"missing\">");
-        buffer_escape(to, message);
+        buffer_escape(to, writer->no_gnuplot ? writer->page->message : message);
+        writer->no_gnuplot |= status == PLOT_NO_GNUPLOT;
         buffer_add(to, "</p>");
     }
     free(svg);

@@ -12,6 +12,7 @@ enum { PAGE_SCHEMES = PLOT_COLORS }; /* of one case, at most */
 struct page_writer {
     struct buffer to;
     struct page *page;
+    bool no_gnuplot; /* found out; it is not asked again */
 };
 
 /* Draws and inlines a plot as <figure>; keeps its sources for beside the page. */

@@ -11,7 +11,7 @@
 #include "script.h"
 #include "svg.h"
 
-enum { PATIENCE = 60 }; /* seconds for one plot */
+enum { PATIENCE = 30 }; /* seconds for one plot */
 
 static bool usable_name(const char *name)
 {
@@ -42,8 +42,9 @@ static enum plot_status draw(const struct plot *plot, enum script_terminal termi
     enum process_status status =
         process_filter(arguments, bytes, strlen(bytes), PATIENCE, picture, words, sizeof words);
     free(bytes);
-    if (status == PROCESS_NOT_FOUND) {
-        snprintf(message, n, "no plot: %s (Debian, Ubuntu: package gnuplot-nox)", words);
+    if (status == PROCESS_NOT_FOUND || status == PROCESS_TOO_SLOW) {
+        snprintf(message, n, "no plot: %s%s", words,
+                 status == PROCESS_NOT_FOUND ? " (Debian, Ubuntu: package gnuplot-nox)" : "");
         return PLOT_NO_GNUPLOT;
     }
     if (status != PROCESS_OK || !picture->size) {

@@ -9,7 +9,7 @@
 
 enum plot_status {
     PLOT_OK,
-    PLOT_NO_GNUPLOT, /* gnuplot is not installed */
+    PLOT_NO_GNUPLOT, /* gnuplot is not installed, or hangs: no use asking again */
     PLOT_FAILED,     /* gnuplot failed, or no memory */
 };
 

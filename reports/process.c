@@ -145,11 +145,12 @@ static enum process_status finish(struct child *child, const char *program, bool
     else if (WIFSIGNALED(status))
         snprintf(message, n, "%s was ended by signal %d: %s", program, WTERMSIG(status), words);
     else if (WEXITSTATUS(status) == 127)
-        snprintf(message, n, "%s cannot be run", program);
+        snprintf(message, n, "%s cannot be run%s%s", program, *words ? ": " : "", words);
     else if (WEXITSTATUS(status))
         snprintf(message, n, "%s ended with status %d: %s", program, WEXITSTATUS(status), words);
     else
         return PROCESS_OK;
+    if (!timely) return PROCESS_TOO_SLOW;
     return WIFEXITED(status) && WEXITSTATUS(status) == 127 ? PROCESS_NOT_FOUND : PROCESS_FAILED;
 }
 

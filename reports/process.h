@@ -8,7 +8,8 @@
 enum process_status {
     PROCESS_OK,
     PROCESS_NOT_FOUND, /* no such program on the PATH */
-    PROCESS_FAILED     /* message says how: exit status, signal, its last words, time out */
+    PROCESS_TOO_SLOW,  /* stopped */
+    PROCESS_FAILED     /* message says how: exit status, signal, its last words */
 };
 
 /* Feeds input to the program (argv[0], found on the PATH) and collects what it writes to standard

@@ -27,11 +27,9 @@ static size_t printable(const unsigned char *text)
     return 0;
 }
 
-/* Messages quote what strangers typed and files say: no escape sequence shall reach a terminal, and
- * JSON takes valid UTF-8 only. */
-static void clean(char *message)
+void status_clean(char *text)
 {
-    for (char *c = message; *c;) {
+    for (char *c = text; *c;) {
         const size_t length = printable((unsigned char *)c);
         if (!length) *c = *c == '\n' ? ' ' : '?';
         c += length ? length : 1;
@@ -45,7 +43,7 @@ enum status error_set(struct error *error, enum status status, const char *forma
         va_start(arguments, format);
         vsnprintf(error->message, sizeof error->message, format, arguments);
         va_end(arguments);
-        clean(error->message);
+        status_clean(error->message);
         error->status = status;
     }
     return status;

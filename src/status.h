@@ -22,9 +22,12 @@ struct error {
     char message[512];
 };
 
+/* Makes one line of valid UTF-8 of text that a stranger wrote: what cannot be printed becomes '?'.
+ * No escape sequence shall reach a terminal, and JSON takes nothing else. */
+void status_clean(char *text);
+
 /* Formats the message, sets the status and returns it: `return error_set(error, STATUS_X, ...)`.
- * error may be NULL (the message is dropped). The message is one line of valid UTF-8: what cannot be
- * printed becomes '?'. */
+ * error may be NULL (the message is dropped). The message is cleaned. */
 enum status error_set(struct error *error, enum status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 

@@ -351,6 +351,7 @@ enum status case_parse(struct case_file *file, const char *path, const char *tex
     *file = (struct case_file){.fields = {true, true, true, true}};
     snprintf(file->name, sizeof file->name, "%.*s", dot ? (int)(dot - base) : (int)strlen(base),
              base);
+    status_clean(file->name);
     settings_init(&file->settings);
     if (length == 0)
         return error_set(error, STATUS_BAD_INPUT, "%.200s: the case file is empty", path);

@@ -9,6 +9,7 @@
 
 #include "output.h"
 #include "text.h"
+#include "threads.h"
 #include "version.h"
 
 #define COMMAND(name) extern const struct command command_##name;
@@ -236,6 +237,7 @@ static enum status execute(struct line *line, int argc, char **argv, struct erro
                          "no command given; `sphproof --help` lists the commands");
     resolve_streams(line);
     if (options->json && (status = output_probe(options->json, error))) return status;
+    if ((status = threads_check(options->threads, error))) return status;
     return options->command->run(options, line->n, line->arguments, error);
 }
 

@@ -78,6 +78,15 @@ static char *next_value(const struct reader *reader, char **rest, size_t *charac
     return value;
 }
 
+/* JSON takes no other names. */
+static bool is_utf8(const char *name)
+{
+    char copy[CSV_LINE_MAX + 1];
+    strcpy(copy, name);
+    status_clean(copy);
+    return strcmp(copy, name) == 0;
+}
+
 static enum status read_names(struct reader *reader, struct csv *csv)
 {
     const char *mark = "\xef\xbb\xbf";
@@ -87,6 +96,9 @@ static enum status read_names(struct reader *reader, struct csv *csv)
         double number;
         const char *name = next_value(reader, &rest, &character);
         if (!*name) return fail(reader, character, "column %zu has no name", csv->columns + 1);
+        if (!is_utf8(name))
+            return fail(reader, character, "the name of column %zu is not UTF-8 text",
+                        csv->columns + 1);
         if (text_real(name, &number))
             return fail(reader, character,
                         "'%.40s' is a number; the first line must hold the names of the columns",

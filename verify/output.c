@@ -109,6 +109,9 @@ enum status output_close(struct output *output, struct error *error)
         return reason && reason != EPIPE ? cannot_write("standard output", reason, error)
                                          : STATUS_OK;
     }
+    /* a write within a long one failed and nobody kept the reason: the next write says it again */
+    if (reason == EIO && output->temporary && write(fileno(output->stream), "", 1) < 0)
+        reason = errno;
     if (fclose(output->stream) && !reason) reason = errno;
     if (!reason && output->temporary && rename(output->temporary, output->path)) reason = errno;
     if (reason && output->temporary) unlink(output->temporary);

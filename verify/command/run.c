@@ -218,18 +218,24 @@ static enum status present(const struct options *options, const struct run_setti
     const char *plot = options_value(options, "plot");
     const char *snapshot = options_value(options, "snapshot");
     const struct table_style style = table_style(options);
-    enum status status = STATUS_OK;
-    if (plot) status = draw(settings, result, plot, error);
-    if (!status && snapshot) status = run_write_snapshot(result, snapshot, error);
-    if (!status) status = write_json(options, settings, result, error);
-    if (status) return status;
     remark(options, result->warnings);
     remark(options, result->suspicion);
-    if (!options->speak || result->status == STATUS_BROKE_DOWN) return STATUS_OK;
-    print_head(settings, result, &style);
-    printf("n=%zu t=%g\n", result->n, result->time);
-    print_errors(settings, result, &style);
-    print_rest(result, &style);
+    if (options->speak && result->status != STATUS_BROKE_DOWN) {
+        print_head(settings, result, &style);
+        printf("n=%zu t=%g\n", result->n, result->time);
+        print_errors(settings, result, &style);
+        print_rest(result, &style);
+    }
+    /* what cannot be written takes nothing else with it; the first trouble is told */
+    struct error trouble[3] = {0};
+    write_json(options, settings, result, &trouble[0]);
+    if (snapshot) run_write_snapshot(result, snapshot, &trouble[1]);
+    if (plot) draw(settings, result, plot, &trouble[2]);
+    for (size_t i = 0; i < sizeof trouble / sizeof *trouble; i++)
+        if (trouble[i].status) {
+            *error = trouble[i];
+            return error->status;
+        }
     return STATUS_OK;
 }
 

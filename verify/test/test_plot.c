@@ -171,7 +171,7 @@ static void processes(void **state)
     assert_non_null(strstr(message, "signal 9"));
     time_t before = time(NULL);
     assert_int_equal(shell("exec sleep 50", input, size, 1, &output, message, sizeof message),
-                     PROCESS_FAILED);
+                     PROCESS_TOO_SLOW);
     assert_true(time(NULL) - before < 20);
     assert_non_null(strstr(message, "no answer"));
     char missing[] = "no-such-program-anywhere";

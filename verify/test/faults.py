@@ -1,0 +1,358 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""faults.py SPHPROOF FOLDER [KILLS]: what the world does to the program, and what comes of it.
+
+Each fault: exit status, words of the message, and that nothing is lost: files that were there are
+as they were, files that are new are whole, no temporary stays. Prints a table. KILLS (default 0):
+so many reports are killed at random moments as well."""
+import contextlib
+import json
+import os
+import random
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import xml.etree.ElementTree as xml
+
+program, folder = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
+kills = int(sys.argv[3]) if len(sys.argv) > 3 else 0
+root = os.geteuid() == 0
+faults, rows = [], []
+OLD = "what was there before\n"
+RUN = ["run", "sod", "n=200", "t_end=0.02"]
+
+
+def sphproof(*arguments, limits=(), nobody=False, **options):
+    """Runs the program; limits: pairs of a resource and its value."""
+    def prepare():
+        for what, value in limits:
+            resource.setrlimit(what, (value, value))
+        if nobody:
+            os.setgroups([])
+            os.setgid(65534)
+            os.setuid(65534)
+    options = {"capture_output": True, "text": True, "errors": "replace", "cwd": folder,
+               "stdin": subprocess.DEVNULL, "timeout": 120, **options}
+    try:
+        return subprocess.run([program, *arguments], preexec_fn=prepare, **options)
+    except subprocess.TimeoutExpired as late:
+        return subprocess.CompletedProcess(late.cmd, -9, "", "no end in %g s" % late.timeout)
+
+
+def shell(line):
+    """A line for bash; $SPHPROOF is the program."""
+    return subprocess.run(["bash", "-c", "set -o pipefail; " + line], capture_output=True, text=True,
+                          cwd=folder, stdin=subprocess.DEVNULL, timeout=300, errors="replace",
+                          env={**os.environ, "SPHPROOF": program})
+
+
+def row(fault, done, status, *words, also=(), says=""):
+    """One line of the table; also: pairs of a condition and what it means."""
+    allowed = status if isinstance(status, tuple) else (status,)
+    wrong = []
+    if done.returncode not in allowed:
+        wrong.append("exit %d, not %s" % (done.returncode, "/".join(map(str, allowed))))
+    wrong += ["no %r in the message" % word for word in words if word not in (done.stderr or "")]
+    wrong += [text for well, text in also if not well]
+    left = [name for path, _, files in os.walk(folder) for name in files if ".part" in name]
+    if left:
+        wrong.append("left behind: %s" % left)
+        for path, _, files in os.walk(folder):
+            for name in files:
+                if ".part" in name:
+                    os.unlink(os.path.join(path, name))
+    message = says or (done.stderr or "").strip().split("\n")[-1]
+    rows.append((fault, done.returncode, "WRONG: " + "; ".join(wrong) if wrong else "as it should be",
+                 message))
+    if wrong:
+        faults.append(fault)
+
+
+def put(name, text=OLD):
+    with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
+        file.write(text)
+    return os.path.join(folder, name)
+
+
+def get(name, mode="r"):
+    try:
+        with open(os.path.join(folder, name), mode) as file:
+            return file.read()
+    except FileNotFoundError:
+        return None
+
+
+def same(name, text=OLD):
+    return (get(name) == text, "%s is not as it was" % name)
+
+
+def absent(name):
+    return (not os.path.exists(os.path.join(folder, name)), "%s is there" % name)
+
+
+def tool(name, script):
+    """A folder to put on the PATH, with an impostor of name in it."""
+    place = os.path.join(folder, "tools " + name + str(len(os.listdir(folder))))
+    os.mkdir(place)
+    path = os.path.join(place, name)
+    with open(path, "w", encoding="utf-8") as file:
+        file.write("#!/bin/sh\n" + script + "\n")
+    os.chmod(path, 0o755)
+    return {**os.environ, "PATH": place + os.pathsep + os.environ["PATH"]}
+
+
+@contextlib.contextmanager
+def small_disk(fault, kibi):
+    """A folder on a disk of its own, or None where one cannot be made."""
+    place = "small disk"
+    os.makedirs(os.path.join(folder, place), exist_ok=True)
+    mount = ["mount", "-t", "tmpfs", "-o", "size=%dk" % kibi, "tmpfs", os.path.join(folder, place)]
+    if not root or subprocess.run(mount, capture_output=True).returncode:
+        rows.append((fault, "-", "not tried", "no disk can be mounted here"))
+        yield None
+        return
+    try:
+        yield place
+    finally:
+        subprocess.run(["umount", os.path.join(folder, place)], check=True)
+
+
+def disk():
+    for option, name in (("--json", "r.json"), ("--snapshot", "s.csv"), ("--plot", "p.svg")):
+        put(name)
+        done = sphproof(*RUN, option, name, limits=[(resource.RLIMIT_FSIZE, 1024)])
+        row("no file above 1 KiB, %s" % option, done, 4, name, "File too large", also=[same(name)])
+        os.unlink(os.path.join(folder, name))
+    row("full device, table", shell("$SPHPROOF run sod n=50 > /dev/full"), 4, "standard output",
+        "No space left")
+    row("full device, --json", sphproof(*RUN, "--json", "/dev/full"), 4, "/dev/full",
+        "No space left")
+    with small_disk("full disk, --snapshot", 64) as place:
+        if place:
+            put(place + "/s.csv")
+            done = sphproof(*RUN, "n=2000", "--snapshot", place + "/s.csv")
+            row("full disk, --snapshot", done, 4, "s.csv", "No space left",
+                also=[same(place + "/s.csv")])
+
+
+def permissions():
+    shut = os.path.join(folder, "shut")
+    os.mkdir(shut)
+    put("shut/r.json")
+    os.chmod(os.path.join(shut, "r.json"), 0o444)
+    os.chmod(shut, 0o555)
+    os.chmod(folder, 0o755)
+    for what in ("shut/r.json", "shut/new.json"):
+        done = sphproof(*RUN, "--json", what, nobody=root)
+        row("read-only %s" % what, done, 4, what, "Permission denied", also=[same("shut/r.json"),
+                                                                             absent("shut/new.json")])
+    row("read-only folder, report", sphproof("report", "--out", "shut/report", nobody=root), 4,
+        "shut/report", "Permission denied")
+    os.chmod(shut, 0o755)
+
+
+def drawing():
+    for what, script, word in (("fails", "echo out of ink >&2; exit 1", "out of ink"),
+                               ("is killed", "kill -9 $$", "signal 9"),
+                               ("draws nothing", "cat >/dev/null", "gnuplot"),
+                               ("draws nonsense", "cat >/dev/null; echo no picture", "gnuplot"),
+                               ("does not read", "exec <&-; sleep 1; exit 1", "gnuplot")):
+        put("p.svg")
+        done = sphproof(*RUN, "--plot", "p.svg", "--json", "r.json", env=tool("gnuplot", script))
+        row("gnuplot %s" % what, done, 4, word, "gnuplot", also=[
+            same("p.svg"), ("density" in done.stdout, "the table is lost"),
+            ("errors" in json.loads(get("r.json") or "{}"), "the results are lost")])
+    done = sphproof(*RUN, "--plot", "p.svg", env={**os.environ, "PATH": "/nowhere"})
+    row("gnuplot is missing", done, 4, "gnuplot-nox", also=[same("p.svg")])
+    began = time.time()
+    done = sphproof(*RUN, "--plot", "p.svg", env=tool("gnuplot", "exec sleep 1000"))
+    row("gnuplot hangs", done, 4, "no answer", also=[same("p.svg"),
+                                                     (time.time() - began < 120, "waited too long")])
+
+
+def decimal_comma():
+    places = os.path.join(folder, "locales")
+    os.mkdir(places)
+    made = shutil.which("localedef") and subprocess.run(
+        ["localedef", "-i", "de_DE", "-f", "UTF-8", os.path.join(places, "de_DE.UTF-8")],
+        capture_output=True).returncode in (0, 1) and os.listdir(places)
+    sphproof(*RUN, "--snapshot", "plain.csv", env={**os.environ, "LC_ALL": "C"})
+    for name in (["de_DE.UTF-8"] if made else []) + ["C", "C.UTF-8", "xx_XX"]:
+        environment = {**os.environ, "LC_ALL": name, "LOCPATH": places if name[0] == "d" else ""}
+        done = sphproof(*RUN, "--snapshot", "s.csv", "--plot", "p.svg", env=environment)
+        row("LC_ALL=%s" % name, done, 0, also=[
+            (get("s.csv") == get("plain.csv"), "another snapshot"),
+            ("<svg" in (get("p.svg") or ""), "no plot")])
+    if not made:
+        rows.append(("decimal comma", "-", "not tried", "localedef cannot make de_DE.UTF-8 here"))
+
+
+def paths():
+    strange = os.path.join(folder, "a b", "\u00e9t\u00e9 'q' \"d\" $HOME `x` %s")
+    os.makedirs(strange)
+    shutil.copy(os.path.join(folder, "good.ini"), os.path.join(strange, "l'\u00e9t\u00e9.ini"))
+    for locale in "C", "C.UTF-8":
+        done = sphproof("run", os.path.join(strange, "l'\u00e9t\u00e9.ini"), "--json", "r \u00e9.json", "--snapshot",
+                        "%s.csv", "--plot", "p q.svg", cwd=strange,
+                        env={**os.environ, "LC_ALL": locale})
+        inside = sorted(os.listdir(strange))
+        row("blanks, quotes, \u00e9 in paths, %s" % locale, done, 0, also=[
+            (inside == ["%s.csv", "l'\u00e9t\u00e9.ini", "p q.svg", "r \u00e9.json"], inside)])
+    raw = os.path.join(os.fsencode(folder), b"raw \xff\xfe.ini")
+    shutil.copy(os.path.join(folder, "good.ini"), raw)
+    row("path that is not UTF-8", sphproof("run", raw, "--json", "raw.json"), 0,
+        also=[("case" in json.loads(get("raw.json") or "{}"), "no results")])
+    gone = os.path.join(folder, "gone")
+    os.mkdir(gone)
+    done = shell("cd gone && rmdir ../gone && $SPHPROOF run sod n=50 --json r.json")
+    row("the working folder is gone", done, 4, "r.json", "No such file")
+
+
+def streams():
+    row("list | head -1", shell("$SPHPROOF list | head -1"), 0)
+    row("--help | true", shell("$SPHPROOF --help | true"), 0)
+    row("run --json - | head -c 10", shell("$SPHPROOF run sod n=50 --json - | head -c 10"), 0)
+    row("stdout closed", shell("$SPHPROOF list >&-"), 4, "standard output")
+    done = shell("$SPHPROOF run sod n=50 --json r.json >&-")
+    row("stdout closed, --json FILE", done, 4, "standard output",
+        also=[("errors" in json.loads(get("r.json") or "{}"), "the results are lost")])
+    row("stdout closed, --quiet", shell("$SPHPROOF run sod n=50 --quiet >&-"), 0)
+    row("stderr closed", shell("$SPHPROOF run nope 2>&-"), 2)
+    row("stdin closed", shell("$SPHPROOF run sod n=50 --plot p.svg <&-"), 0)
+    row("all closed", shell("$SPHPROOF run sod n=50 --json r.json --plot p.svg <&- >&- 2>&-"), 4,
+        also=[("errors" in json.loads(get("r.json") or "{}"), "the results are lost")])
+    row("empty environment", subprocess.run(["env", "-i", program, "run", "sod", "n=50"], cwd=folder,
+                                            capture_output=True, text=True), 0)
+
+
+def interrupts():
+    for number in signal.SIGINT, signal.SIGTERM, signal.SIGHUP:
+        put("r.json")
+        child = subprocess.Popen([program, "run", "sod", "n=20000", "--json", "r.json", "--snapshot",
+                                  "new.csv"], cwd=folder, stdout=subprocess.PIPE, text=True,
+                                 stderr=subprocess.PIPE)
+        time.sleep(0.3)
+        child.send_signal(number)
+        child.stdout, child.stderr, _ = *child.communicate(timeout=60), None
+        row(number.name, child, -number, also=[same("r.json"), absent("new.csv")])
+
+
+def memory():
+    mebi = 1 << 20
+    done = sphproof("run", "sod", "n=10000000", limits=[(resource.RLIMIT_AS, 256 * mebi)])
+    row("no memory: run of 1e7 particles", done, 4, "no memory")
+    worst, status = None, set()
+    for size in list(range(8, 40, 4)) + list(range(40, 200, 16)):
+        done = sphproof("run", "sod", "n=200000", "t_end=1e-5", "--snapshot", "s.csv",
+                        limits=[(resource.RLIMIT_AS, size * mebi)])
+        if "shared libraries" in done.stderr or done.returncode == 127:
+            continue # not even started
+        status.add(done.returncode)
+        if done.returncode not in (0, 4) or (done.returncode == 4 and "memory" not in done.stderr):
+            worst = done
+    done = worst or done
+    row("no memory: runs within 8 to 200 MiB", done, (0, 4), says="exit status %s" % sorted(status))
+    done = sphproof("run", "sod", "n=20000", "t_end=0.001", "--threads", "64",
+                    limits=[(resource.RLIMIT_AS, 200 * mebi)])
+    row("no memory for 64 threads", done, (0, 4), *(["threads"] if done.returncode else []))
+
+
+def threads():
+    row("one thread", sphproof("run", "sod", "n=5000", "t_end=0.001", "--snapshot", "1.csv"), 0)
+    done = sphproof("run", "sod", "n=5000", "t_end=0.001", "--snapshot", "many.csv", "--threads",
+                    "%d" % (8 * os.cpu_count()))
+    row("threads: 8 times the cores", done, 0, also=[
+        (get("1.csv") == get("many.csv"), "other results")])
+    if root: # limits on processes do not bind root
+        done = sphproof("run", "sod", "n=5000", "t_end=0.001", "--threads", "64", nobody=True,
+                        limits=[(resource.RLIMIT_NPROC, 8)])
+        row("eight processes, 64 threads", done, 4, "threads")
+
+
+def whole(out):
+    """What a killed report left: each file is whole or not there."""
+    page, results = get(os.path.join(out, "index.html")), get(os.path.join(out, "results.json"))
+    if page is not None:
+        xml.fromstring(page.replace("<!DOCTYPE html>", ""))
+    if results is not None:
+        json.loads(results)
+    return page
+
+
+def kill_reports():
+    generator, at = random.Random(20240229), []
+    done = None
+    for number in range(kills):
+        child = subprocess.Popen([program, "report", "--quiet", "--out", "killed", "--jobs", "2"],
+                                 cwd=folder, start_new_session=True, stderr=subprocess.DEVNULL)
+        moment = generator.uniform(0, 6) if number % 4 else generator.uniform(0, 0.3)
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            child.wait(moment)
+        # sometimes only the parent: its workers must not go on for long
+        (os.kill if number % 2 else os.killpg)(child.pid, signal.SIGKILL)
+        child.wait()
+        whole("killed")
+        at.append(moment)
+    for path, _, files in os.walk(os.path.join(folder, "killed")):
+        for name in files:
+            if ".part" in name: # what a kill leaves; one half-written file each at most
+                os.unlink(os.path.join(path, name))
+    done = sphproof("report", "--out", "killed", "--jobs", "2", timeout=900)
+    results = json.loads(get("killed/results.json") or "{}")
+    found = results.get("found", 0)
+    again = []
+    for run in generator.sample(results.get("runs", []), min(3, len(results.get("runs", [])))):
+        rerun = sphproof(*run["reproduce"].split()[1:], "--json", "-")
+        again.append(json.loads(rerun.stdout)["errors"] == run["errors"])
+    row("kill -9, %d times" % kills, done, 0, also=[
+        (whole("killed"), "no page"), (kills < 5 or found > 0, "nothing was kept"),
+        (again and all(again), "other results than a run of its own")],
+        says="%d of %d computations were kept over the kills" % (found,
+                                                              results.get("computations", 0)))
+    cached_reports(os.path.join(folder, "killed", "cache"))
+
+
+def cached_reports(cache):
+    """Faults of a report that has nothing left to compute."""
+    size = sum(-(-os.path.getsize(os.path.join(cache, name)) // 4096) * 4 for name in os.listdir(cache))
+    with small_disk("full disk, report", size + 200) as place:
+        if place:
+            shutil.copytree(cache, os.path.join(folder, place, "report", "cache"))
+            done = sphproof("report", "--out", place + "/report", "--jobs", "2")
+            row("full disk, report", done, 4, place, "No space left",
+                also=[absent(place + "/report/index.html")])
+    for fault, limit, word in (("six open files, report", (resource.RLIMIT_NOFILE, 6), "open files"),
+                               ("64 MiB, report", (resource.RLIMIT_AS, 64 << 20), "")):
+        out = os.path.join(folder, fault)
+        shutil.copytree(cache, os.path.join(out, "cache"))
+        row(fault, sphproof("report", "--out", out, "--jobs", "2", limits=[limit]), 4, word)
+    for fault, script, word in (("gnuplot fails, report", "exit 1", "gnuplot"),
+                                ("gnuplot hangs, report", "exec sleep 1000", "no answer")):
+        done = sphproof("report", "--out", "killed", "--jobs", "2", env=tool("gnuplot", script))
+        row(fault, done, 4, word, also=[(whole("killed"), "no page"),
+                                        ("All is well" in get("killed/index.html"), "no verdict")])
+
+
+def main():
+    shutil.rmtree(folder, ignore_errors=True)
+    os.makedirs(folder)
+    shutil.copy(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "cases",
+                             "sod.ini"), os.path.join(folder, "good.ini"))
+    for part in (disk, permissions, drawing, decimal_comma, paths, streams, interrupts, memory,
+                 threads) + ((kill_reports,) if kills else ()):
+        part()
+    print("%-38s %4s  %-15s %s" % ("fault", "exit", "outcome", "message"))
+    for fault, status, outcome, message in rows:
+        print("%-38s %4s  %-15s %s" % (fault, status, outcome, message[:150]))
+    print("%d faults, %d answered wrongly" % (len(rows), len(faults)))
+    return bool(faults)
+
+
+if __name__ == "__main__":
+    with tempfile.TemporaryDirectory() as temporary: # a place that others may enter, for `nobody`
+        os.chmod(temporary, 0o755)
+        folder = os.path.join(temporary, "faults")
+        sys.exit(main())
