@@ -177,6 +177,7 @@ int page_make(struct page *page, const json_t *results)
     const json_t *history = json_object_get(results, "history");
     const json_t *kernels = json_object_get(results, "kernels");
     const json_t *gradients = json_object_get(results, "gradients");
+    const json_t *stress = json_object_get(results, "stress");
     const json_t *bench = json_object_get(results, "bench");
     head(to, results, verdict);
     buffer_add(to, "<nav>");
@@ -185,6 +186,7 @@ int page_make(struct page *page, const json_t *results)
     buffer_add(to, "<a href=\"#cases\">Cases</a>");
     if (json_array_size(bench)) buffer_add(to, " <a href=\"#cost\">Cost</a>");
     if (gradients) buffer_add(to, " <a href=\"#gradients\">Gradients</a>");
+    if (stress) buffer_add(to, " <a href=\"#stability\">Stability</a>");
     if (kernels) buffer_add(to, " <a href=\"#kernels\">Kernels</a>");
     if (verify)
         buffer_add(to, " <a href=\"#checks\">Checks</a>"
@@ -196,6 +198,7 @@ int page_make(struct page *page, const json_t *results)
     page_cases(&writer, results);
     page_bench(&writer, bench);
     if (gradients) page_gradients(&writer, gradients);
+    if (stress) page_stress(&writer, stress);
     if (kernels) page_kernels(&writer, kernels);
     if (verify) page_checks(&writer, verify);
     if (verify) page_detection(&writer, verify);

@@ -159,6 +159,13 @@ static void judge_study(struct tally *tally, const json_t *study)
     }
 }
 
+static void judge_stress(struct tally *tally, const json_t *failure)
+{
+    struct buffer detail = {0};
+    buffer_add(&detail, html_string(failure, "detail"));
+    fail(tally, "stress", html_string(failure, "name"), &detail, html_string(failure, "command"));
+}
+
 static void headline(struct buffer *to, bool checked, size_t failures)
 {
     if (failures)
@@ -179,6 +186,10 @@ json_t *verdict_make(const json_t *results)
     json_array_foreach(json_object_get(results, "studies"), i, entry) judge_study(&tally, entry);
     json_array_foreach(json_object_get(results, "trouble"), i, entry) judge_trouble(&tally, entry);
     judge_verify(&tally, json_object_get(results, "verify"));
+    json_array_foreach(json_object_get(json_object_get(results, "stress"), "failures"), i, entry)
+    {
+        judge_stress(&tally, entry);
+    }
 
     struct buffer words = {0};
     bool checked = tally.figures_passed + tally.gates_passed + tally.runs > 0;

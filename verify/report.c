@@ -11,6 +11,7 @@
 #include "pool.h"
 #include "report_piece.h"
 #include "result.h"
+#include "stress.h"
 #include "study.h"
 #include "suite.h"
 #include "verdict.h"
@@ -45,6 +46,7 @@ struct report {
     struct study studies[CASES][SCHEMES];
     struct report_piece pieces[PIECES_MAX];
     size_t piece_count;
+    struct stress stress;
     char more[CASES][256]; /* what the command line of a study has beside its keys */
 };
 
@@ -125,7 +127,7 @@ static enum status add_all(struct report *report, struct error *error)
                           error))
                 return error->status;
         }
-    return STATUS_OK;
+    return stress_plan(&report->stress, report->nightly, 0, NULL, &report->pool, error);
 }
 
 /* ---- what has come out ---- */
@@ -233,6 +235,9 @@ static json_t *collect(struct report *report, double seconds)
     }
     json_object_set_new(results, "studies", studies);
     add_documents(report, results);
+    json_t *stress = result_new("stress");
+    stress_judge(&report->stress, &report->pool, stress);
+    json_object_set_new(results, "stress", stress);
     json_object_set_new(results, "verdict", verdict_make(results));
     return results;
 }
@@ -280,6 +285,7 @@ enum status report_compute(const struct report_settings *settings, json_t **resu
     }
     for (int k = 0; k < CASES * SCHEMES; k++)
         study_free(&report->studies[k / SCHEMES][k % SCHEMES]);
+    stress_free(&report->stress);
     pool_free(&report->pool);
     free(report);
     return status;

@@ -341,8 +341,22 @@ static bool is_wrong(const struct stress_cell *cell, const json_t *entry)
            strcmp(outcome, "refused") == 0 || (theory && strcmp(outcome, "ok") != 0);
 }
 
+static void add_failure(json_t *document, const json_t *entry, const char *detail)
+{
+    json_t *list = json_object_get(document, "failures");
+    json_array_append_new(
+        list,
+        json_pack("{s:o, s:o, s:O}", "name",
+                  json_sprintf("%s: %s, %s", json_string_value(json_object_get(entry, "group")),
+                               json_string_value(json_object_get(entry, "row")),
+                               json_string_value(json_object_get(entry, "column"))),
+                  "detail",
+                  json_sprintf("%s%s", detail, json_string_value(json_object_get(entry, "reason"))),
+                  "command", json_object_get(entry, "command")));
+}
+
 /* Where the default scheme breaks down and the seed program's method does not. */
-static size_t compare(const struct stress *stress, const json_t *cells, json_t *document)
+static void compare(const struct stress *stress, const json_t *cells, json_t *document)
 {
     json_t *lost = json_array();
     size_t both = 0, only_default = 0, only_seed = 0, none = 0;
@@ -355,7 +369,10 @@ static size_t compare(const struct stress *stress, const json_t *cells, json_t *
             const json_t *mine = json_array_get(cells, i), *theirs = json_array_get(cells, j);
             const bool survives = strcmp(outcome_of(mine), "broke_down") != 0;
             const bool seed_survives = strcmp(outcome_of(theirs), "broke_down") != 0;
-            if (!survives && seed_survives) json_array_append_new(lost, json_deep_copy(mine));
+            if (!survives && seed_survives) {
+                json_array_append_new(lost, json_deep_copy(mine));
+                add_failure(document, mine, "the seed program's method survives this; ");
+            }
             *(survives        ? seed_survives ? &both : &only_default
               : seed_survives ? &only_seed
                               : &none) += 1;
@@ -366,22 +383,21 @@ static size_t compare(const struct stress *stress, const json_t *cells, json_t *
                                   "only_default_survives", (json_int_t)only_default,
                                   "only_seed_survives", (json_int_t)only_seed, "both_break",
                                   (json_int_t)none, "lost", lost));
-    return only_seed;
 }
 
 size_t stress_judge(const struct stress *stress, const struct pool *pool, json_t *document)
 {
     json_t *cells = json_array(), *groups = json_array(), *counts = json_object();
     const struct stress_group *last = NULL;
-    size_t wrong = 0;
     bool theory = false;
+    json_object_set_new(document, "failures", json_array());
     for (size_t i = 0; i < stress->count; i++) {
         const struct stress_cell *cell = &stress->cells[i];
         json_t *entry = cell_json(cell, &pool->jobs[cell->job]);
         const char *outcome = outcome_of(entry);
         const json_int_t count = json_integer_value(json_object_get(counts, outcome));
         json_object_set_new(counts, outcome, json_integer(count + 1));
-        wrong += is_wrong(cell, entry);
+        if (is_wrong(cell, entry)) add_failure(document, entry, "");
         theory = theory || cell->group->kind == STRESS_LIMIT;
         if (cell->group != last)
             json_array_append_new(groups, group_json(cell->group, stress->nightly));
@@ -391,7 +407,8 @@ size_t stress_judge(const struct stress *stress, const struct pool *pool, json_t
     json_object_set_new(document, "cells", cells);
     json_object_set_new(document, "groups", groups);
     if (theory) json_object_set_new(document, "atlas", stress_atlas());
-    wrong += compare(stress, cells, document);
+    compare(stress, cells, document);
+    const size_t wrong = json_array_size(json_object_get(document, "failures"));
     json_object_set_new(counts, "wrong", json_integer((json_int_t)wrong));
     json_object_set_new(document, "summary", counts);
     return wrong;

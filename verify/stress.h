@@ -68,8 +68,8 @@ enum status stress_plan(struct stress *stress, bool nightly, size_t group_count,
 
 /* After pool_run: adds "cells", "groups" (titles of the maps), "atlas" (growth rates of linear
  * theory), "comparison" (where the default scheme does not survive what the seed program's method
- * does) and "summary" to a stress document. Returns the number of what is wrong: crashes, silent
- * NaNs, predictions that are not confirmed, lost comparisons. */
+ * does), "summary" and "failures" to a stress document. Failures are crashes, silent NaNs,
+ * predictions that are not confirmed, lost comparisons; returns their number. */
 size_t stress_judge(const struct stress *stress, const struct pool *pool, json_t *document);
 
 void stress_free(struct stress *stress);

@@ -220,6 +220,31 @@ static json_t *wave_row(const char *kernel, enum gradient gradient, double eta)
                      "frequency", frequency, "growth", growth);
 }
 
+/* Growth over eta and wavenumber, row by row of the wavenumber. */
+static json_t *map_of(const char *kernel, enum gradient gradient)
+{
+    enum { NX = 41, NY = 32 };
+    json_t *eta = json_array(), *kappa = json_array(), *growth = json_array();
+    double rates[NX][NY];
+    for (int i = 0; i < NX; i++) {
+        const struct scheme scheme = atlas_scheme(kernel, gradient, 2 + 0.1 * i);
+        struct stability lattice;
+        struct error error;
+        const bool sound = !stability_begin(&lattice, &scheme, 1.4, &error);
+        for (int j = 0; j < NY; j++)
+            rates[i][j] = sound ? stability_growth(&lattice, M_PI * (j + 1) / NY, NULL) : 0;
+        json_array_append_new(eta, result_number(scheme.eta));
+    }
+    for (int j = 0; j < NY; j++) {
+        json_array_append_new(kappa, result_number(M_PI * (j + 1) / NY));
+        for (int i = 0; i < NX; i++)
+            json_array_append_new(growth, result_number(fmax(0, rates[i][j])));
+    }
+    return json_pack("{s:s, s:s, s:o, s:o, s:o}", "kernel", kernel, "gradient",
+                     gradient_family.members[gradient]->name, "eta", eta, "kappa", kappa, "growth",
+                     growth);
+}
+
 json_t *stress_atlas(void)
 {
     json_t *eta = json_array(), *rows = json_array(), *waves = json_array();
@@ -233,5 +258,6 @@ json_t *stress_atlas(void)
     json_array_append_new(waves, wave_row("cubic_spline", GRADIENT_IA, 2));
     json_array_append_new(waves, wave_row("cubic_spline", GRADIENT_IA, 4.2));
     json_array_append_new(waves, wave_row("cubic_spline", GRADIENT_IA, 4.8));
-    return json_pack("{s:o, s:o, s:o}", "eta", eta, "rows", rows, "waves", waves);
+    return json_pack("{s:o, s:o, s:o, s:o}", "eta", eta, "rows", rows, "waves", waves, "map",
+                     map_of("cubic_spline", GRADIENT_IA));
 }

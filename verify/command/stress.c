@@ -2,6 +2,7 @@
  * sphproof stress: what survives, where it breaks and how. */
 #include "stress.h"
 
+#include <gsl/gsl_errno.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -114,6 +115,7 @@ static enum status run(const struct options *options, int n, char **arguments, s
         pool_free(&pool);
         return status;
     }
+    gsl_set_error_handler_off();
     progress_begin(&progress, "stress", options);
     const struct pool_settings settings = {
         .jobs = (int)jobs, .progress = show_progress, .progress_context = &progress};
