@@ -207,7 +207,8 @@ static enum status add_solver(struct bench *bench, const char *kernel, const cha
         *step[v].run = *run;
         step[v].run->unstamped = v == UNSTAMPED;
     }
-    const unsigned all = 1u << PASS_DENSITY | 1u << PASS_MATRIX | 1u << PASS_FORCE;
+    const unsigned all =
+        1u << PASS_STATE | 1u << PASS_DENSITY | 1u << PASS_MATRIX | 1u << PASS_FORCE;
     if (prepare_loops(&step[LIMIT], &scheme, true, all, error)) return error->status;
     for (size_t l = 0; l < sizeof loops / sizeof *loops; l++) {
         if (loops[l].ia != ia && !loops[l].both) continue;
@@ -393,11 +394,12 @@ void bench_kernels_print(const struct bench_kernels *result, const struct table_
         if (row->on_cloud) printf(" %10.2e", row->error);
         printf("\n");
     }
-    printf("%sns: CPU time of one thread. step: whole steps of the 1D solver (sound wave, n = %d), "
-           "its limit the same\nloops with neighbours known; density, matrix, force: these loops "
-           "one by one. Others: gradient operators on\n4096 jittered points, search included, "
-           "h = 2.4 spacings; their limit is the same arithmetic on one\ncontiguous array. "
-           "unstamped: every choice and the kernel behind a pointer. error: rms of a smooth\n"
-           "field's gradient error, times h/max|f|.%s\n",
-           style->faint, PARTICLES, style->end);
+    printf(
+        "%sns: CPU time of one thread. step: whole steps of the 1D solver (sound wave, n = %d), "
+        "its limit the same\narithmetic with neighbours known; density, matrix, force: these loops "
+        "one by one. Others: gradient operators on\n4096 jittered points, search included, "
+        "h = 2.4 spacings; their limit is the same arithmetic on one\ncontiguous array. "
+        "unstamped: every choice and the kernel behind a pointer. error: rms of a smooth\n"
+        "field's gradient error, times h/max|f|.%s\n",
+        style->faint, PARTICLES, style->end);
 }

@@ -4,6 +4,10 @@
 #include <gsl/gsl_rng.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
+
+#include "loop.h"
+#include "range.h"
 
 enum { GHOSTS = 64 };
 static const double jitter = 0.02, gamma_gas = 1.4;
@@ -20,10 +24,12 @@ static void fill(struct bench_loops *loops)
         a->m[i] = a->V[i] = a->m_inverse[i] = a->rho[i] = 1;
         a->v[i] = 0.1 * sin(phase);
         a->U[i] = 2.5 * (1 + 0.1 * cos(phase));
+        a->p[i] = a->m[i] * a->v[i];
+        a->e[i] = a->U[i] + 0.5 * a->p[i] * a->v[i];
         a->P[i] = (gamma_gas - 1) * a->U[i];
         a->c[i] = sqrt(gamma_gas * a->P[i]);
         a->h[i] = scheme->eta;
-        a->h_inverse[i] = 1 / scheme->eta;
+        a->h_inverse[i] = a->h_inverse_found[i] = a->h_inverse_old[i] = 1 / scheme->eta;
         a->alpha[i] = scheme->alpha;
         a->b[i] = a->P[i];
         a->g[i] = C_1 * a->h_inverse[i] * a->h_inverse[i];
@@ -37,32 +43,78 @@ static void fill(struct bench_loops *loops)
     particles_fill_ghosts(a, a->x, a->ghosts, a->period);
 }
 
-static void run(struct bench_loops *loops, unsigned passes)
+/* As predicted_midpoint moves particles to the middle of a step and, from there, to its end. */
+CLONES static void predict(const struct particles *a, ptrdiff_t n, double dt)
+{
+    double *restrict x = a->x, *restrict x_old = a->x_old, *restrict v = a->v, *restrict U = a->U;
+    const double *restrict F = a->F, *restrict de = a->de, *restrict m_inverse = a->m_inverse,
+                           *restrict p = a->p, *restrict e = a->e;
+#pragma omp simd
+    for (ptrdiff_t i = 0; i < n; i++) {
+        const double v_now = p[i] * m_inverse[i], p_half = p[i] + F[i] * dt;
+        x_old[i] = x[i];
+        x[i] += v_now * dt;
+        v[i] = p_half * m_inverse[i];
+        U[i] = largest(e[i] + de[i] * dt - 0.5 * p_half * v[i], 0.5 * (e[i] - 0.5 * p[i] * v_now));
+    }
+}
+
+CLONES static void advance(const struct particles *a, ptrdiff_t n, double dt)
+{
+    double *restrict x = a->x, *restrict p = a->p, *restrict e = a->e;
+    const double *restrict F = a->F, *restrict de = a->de, *restrict m_inverse = a->m_inverse,
+                           *restrict x_old = a->x_old;
+#pragma omp simd
+    for (ptrdiff_t i = 0; i < n; i++) {
+        const double p_new = p[i] + F[i] * dt;
+        x[i] = x_old[i] + 0.5 * (p[i] + p_new) * m_inverse[i] * dt;
+        p[i] = p_new;
+        e[i] += de[i] * dt;
+    }
+}
+
+static void run_range(struct bench_loops *loops, ptrdiff_t first, int len)
 {
     const struct particles *a = &loops->particles;
     const struct kernel *kernel = &loops->scheme.kernel;
+    const unsigned passes = loops->passes;
+    const bool state = passes & 1u << PASS_STATE;
     struct density_sums sums;
-    for (ptrdiff_t first = 0; first < a->n; first += RANGE_MAX) {
-        const int len = (int)(a->n - first < RANGE_MAX ? a->n - first : RANGE_MAX);
-        if (passes & 1u << PASS_DENSITY) {
-            loops->loops.density(kernel, a, first, len, loops->reach, a->h_inverse + first, &sums);
-            for (int i = 0; i < len; i++) a->h_inverse_found[first + i] = sums.m[i];
-        }
-        if (passes & 1u << PASS_MATRIX) loops->loops.matrix(kernel, a, first, len, loops->reach);
+    if (state) range_predict_width(a, first, len, 1);
+    if (passes & 1u << PASS_DENSITY) {
+        loops->loops.density(kernel, a, first, len, loops->reach, a->h_inverse + first, &sums);
+        const struct gas gas = {gamma_gas, kernel->constant[1], loops->scheme.eta};
+        if (state)
+            range_close(a, first, len, &loops->plan, &gas, &sums);
+        else
+            memcpy(a->h_inverse_found + first, sums.m, (size_t)len * sizeof(double));
     }
+    if (passes & 1u << PASS_MATRIX) loops->loops.matrix(kernel, a, first, len, loops->reach);
+}
+
+static void run(struct bench_loops *loops)
+{
+    const struct particles *a = &loops->particles;
+    const bool state = loops->passes & 1u << PASS_STATE;
+    if (state) predict(a, a->n, loops->dt);
+    for (ptrdiff_t first = 0; first < a->n; first += RANGE_MAX)
+        run_range(loops, first, (int)(a->n - first < RANGE_MAX ? a->n - first : RANGE_MAX));
     for (ptrdiff_t first = 0; first < a->n; first += RANGE_MAX) {
         const int len = (int)(a->n - first < RANGE_MAX ? a->n - first : RANGE_MAX);
-        if (passes & 1u << PASS_FORCE)
+        if (loops->passes & 1u << PASS_FORCE)
             loops->loops.force(&loops->loops, &loops->numbers, a, first, len, loops->reach,
                                loops->scratch);
-        if (passes & 1u << PASS_SIGNAL) loops_signal(a, first, len, loops->reach);
+        if (loops->passes & 1u << PASS_SIGNAL) loops_signal(a, first, len, loops->reach);
+        if (state) loops->rate = fmax(loops->rate, range_rate(a, first, len));
     }
+    if (state) advance(a, a->n, loops->dt);
 }
 
 enum status bench_loops_create(struct bench_loops *loops, const struct scheme *scheme, size_t n,
                                bool stamped, unsigned passes, struct error *error)
 {
     *loops = (struct bench_loops){.scheme = *scheme, .passes = passes};
+    loops->plan = plan_make(&loops->scheme, false);
     loops_choose(&loops->scheme, stamped, &loops->loops, &loops->numbers);
     if (!loops->loops.matrix) loops->passes &= ~(1u << PASS_MATRIX);
     loops->reach = (ptrdiff_t)ceil(scheme->eta) - 1;
@@ -73,9 +125,12 @@ enum status bench_loops_create(struct bench_loops *loops, const struct scheme *s
     loops->scratch = malloc(force_scratch(loops->reach) * sizeof(double));
     if (!loops->scratch) return error_set(error, STATUS_ENVIRONMENT, "no memory");
     fill(loops);
-    static const uint64_t directed[] = {
-        [PASS_DENSITY] = 2, [PASS_MATRIX] = 2, [PASS_FORCE] = 1, [PASS_SIGNAL] = 2};
-    for (unsigned pass = PASS_DENSITY; pass <= PASS_SIGNAL; pass++)
+    static const uint64_t directed[] = {[PASS_STATE] = 0,
+                                        [PASS_DENSITY] = 2,
+                                        [PASS_MATRIX] = 2,
+                                        [PASS_FORCE] = 1,
+                                        [PASS_SIGNAL] = 2};
+    for (unsigned pass = PASS_STATE; pass <= PASS_SIGNAL; pass++)
         if (loops->passes & 1u << pass) loops->pairs += directed[pass] * n * (size_t)loops->reach;
     return STATUS_OK;
 }
@@ -93,7 +148,7 @@ enum status bench_loops_work(void *context, uint64_t times, struct bench_taken *
     struct bench_loops *loops = context;
     (void)error;
     const struct bench_taken start = bench_now();
-    for (uint64_t i = 0; i < times; i++) run(loops, loops->passes);
+    for (uint64_t i = 0; i < times; i++) run(loops);
     bench_add(taken, &start);
     return STATUS_OK;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The solver's 1D pair loops by themselves: a state of particles that stands still, neighbour
- * offsets known, arrays contiguous, nothing searched. What a whole step costs beyond this is
- * search, bookkeeping and memory. */
+ * The solver's 1D loops by themselves: a state of particles that stands still, neighbour offsets
+ * known, arrays contiguous, nothing searched. What a whole step costs beyond this is search,
+ * bookkeeping and memory. */
 #ifndef SPHPROOF_BENCH_LOOPS_H
 #define SPHPROOF_BENCH_LOOPS_H
 
@@ -9,19 +9,24 @@
 
 #include "bench.h"
 #include "loops.h"
+#include "plan.h"
 
 struct bench_loops {
     struct scheme scheme;
     struct loops loops;
     struct pair_numbers numbers; /* points into scheme: do not move the struct */
+    struct plan plan;
     struct particles particles;
     ptrdiff_t reach; /* offsets that the widths cover */
     double *scratch;
+    double dt, rate; /* 0, as only the program knows, not the compiler; result of PASS_STATE */
     unsigned passes; /* what bench_loops_work runs: 1 << enum bench_pass */
     uint64_t pairs;  /* of one run of these passes, counted as the solver counts */
 };
 
-enum bench_pass { PASS_DENSITY, PASS_MATRIX, PASS_FORCE, PASS_SIGNAL };
+/* PASS_STATE: the arithmetic of a step without pairs, as predicted_midpoint with predicted h has
+ * it: motion, widths, equation of state, time step. */
+enum bench_pass { PASS_STATE, PASS_DENSITY, PASS_MATRIX, PASS_FORCE, PASS_SIGNAL };
 
 /* A slightly disordered lattice of n particles, with every array that the scheme's loops read;
  * passes that the scheme does not have are left out. stamped: as in loops_choose.

@@ -12,6 +12,7 @@
 
 #include "bench.h"
 #include "bench_limit.h"
+#include "bench_loops.h"
 #include "bench_scaling.h"
 #include "bench_skips.h"
 #include "near.h"
@@ -204,6 +205,41 @@ static void test_limit_does_the_same_arithmetic(void **state)
             for (int dim = 1; dim <= 3; dim++)
                 compare_limit(&kernel, (const struct operator_form *)operator_family.members[o],
                               dim);
+    }
+}
+
+/* However often the loops are repeated, they work on ordinary numbers: no overflow, nothing that
+ * settles at zero and becomes cheap. */
+static void test_loops_stand_still(void **state)
+{
+    (void)state;
+    static char *const keys[][2] = {{"kernel=quadratic_spline", "gradient=standard"},
+                                    {"kernel=quintic_spline", "gradient=ia"}};
+    for (size_t k = 0; k < 2; k++) {
+        static struct run_settings settings;
+        struct bench_loops loops;
+        struct scheme scheme;
+        struct error error = {0};
+        struct bench_taken taken = {0};
+        assert_int_equal(run_prepare(&settings, "sod", 2, keys[k], &error), 0);
+        assert_int_equal(settings_resolve(&settings.settings, 1, &scheme, &error), 0);
+        const unsigned all = 1u << PASS_STATE | 1u << PASS_DENSITY | 1u << PASS_MATRIX |
+                             1u << PASS_FORCE | 1u << PASS_SIGNAL;
+        assert_int_equal(bench_loops_create(&loops, &scheme, 200, true, all, &error), 0);
+        assert_int_equal(bench_loops_work(&loops, 300, &taken, &error), 0);
+        const struct particles *a = &loops.particles;
+        double force = 0;
+        for (ptrdiff_t i = 0; i < a->n; i++) {
+            near_relative(a->h[i], scheme.eta, 0.1);
+            near_relative(a->rho[i], 1, 0.1);
+            near_inside(a->U[i], 2, 3);
+            near_inside(a->x[i] - (double)i, -0.03, 0.03);
+            near_below(fabs(a->F[i]), 1);
+            force = fmax(force, fabs(a->F[i]));
+        }
+        near_inside(force, 1e-3, 1);
+        assert_true(loops.rate > 0);
+        bench_loops_free(&loops);
     }
 }
 
@@ -407,6 +443,7 @@ int main(void)
         cmocka_unit_test(test_front),
         cmocka_unit_test(test_cost_of_an_error),
         cmocka_unit_test(test_limit_does_the_same_arithmetic),
+        cmocka_unit_test(test_loops_stand_still),
         cmocka_unit_test(test_plain_is_the_solver),
         cmocka_unit_test(test_plain_refuses_other_schemes),
         cmocka_unit_test(test_difference_of_states),
