@@ -49,11 +49,18 @@ static const char *path_of(const struct difference *d)
     return d->new ? d->new->path : d->old->path;
 }
 
+static bool is_timing(const struct difference *d)
+{
+    return d->new && d->new->kind == READING_TIMING;
+}
+
 static int worst_first(const void *a, const void *b)
 {
     const struct difference *x = a, *y = b;
     const int i = severity(x), j = severity(y);
     if (i != j) return i - j;
+    const bool a_time = is_timing(x), b_time = is_timing(y);
+    if (a_time != b_time) return a_time ? 1 : -1;
     const bool a_head = x->new && x->new->headline, b_head = y->new && y->new->headline;
     if (a_head != b_head) return a_head ? -1 : 1;
     if (x->amount != y->amount) return x->amount > y->amount ? -1 : 1;

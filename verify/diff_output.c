@@ -130,7 +130,7 @@ void diff_print(const struct diff *diff, double threshold, bool exact,
            diff->regressions, 100 * threshold, diff->verdicts[VERDICT_BETTER],
            diff->verdicts[VERDICT_SAME], diff->verdicts[VERDICT_INCOMPARABLE]);
     printf("%snoise: errors 0.1 %%, orders their 95 %% intervals, figures of checks a factor of 3 "
-           "or ten floors,\ntimings a factor of 1.5; timings and counts of work are never "
-           "regressions%s\n",
+           "or ten floors,\nCPU times a factor of 1.5, wall clock 3; timings and counts of work "
+           "are never regressions%s\n",
            style.faint, style.end);
 }

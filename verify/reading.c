@@ -11,8 +11,8 @@
 
 enum { PATH_MAX_LENGTH = 1024, NAME_MAX_LENGTH = 512 };
 
-/* Timings below this are noise, and so is a ratio below that. */
-static const double timing_least = 0.02, timing_ratio = 1.5;
+/* Timings below this are noise. */
+static const double timing_least = 0.02;
 /* A check's value: a factor that means nothing, and as many floors. */
 static const double check_factor = 3, check_floors = 10;
 
@@ -28,12 +28,14 @@ static const struct rule {
     enum reading_kind kind;
     double noise, floor;
 } rules[] = {
-    {"cheapest", "*", SKIP, 0, 0, 0}, /* which scheme that is depends on timings */
-    {"", "*_s", 0, READING_TIMING, 0, 0},
-    {"", "seconds", 0, READING_TIMING, 0, 0},
-    {"", "ns_*", 0, READING_TIMING, 0, 0},
-    {"", "figure_of_merit", 0, READING_TIMING, 0, 0},
-    {"", "peak_rss_bytes", 0, READING_TIMING, 0, 0},
+    {"cheapest", "*", SKIP, 0, 0, 0},        /* which scheme that is depends on timings */
+    {"checks", "seconds", SKIP, 0, 0, 0},    /* of thousands some are always slow */
+    {"", "wall_s", 0, READING_TIMING, 3, 0}, /* what else runs counts */
+    {"", "*_s", 0, READING_TIMING, 1.5, 0},
+    {"", "seconds", 0, READING_TIMING, 3, 0},
+    {"", "ns_*", 0, READING_TIMING, 1.5, 0},
+    {"", "figure_of_merit", 0, READING_TIMING, 1.5, 0},
+    {"", "peak_rss_bytes", 0, READING_TIMING, 1.5, 0},
     {"", "steps", 0, READING_COUNT, 0.01, 0},
     {"", "particle_updates", 0, READING_COUNT, 0.01, 0},
     {"", "pair_interactions", 0, READING_COUNT, 0.01, 0},
@@ -426,8 +428,7 @@ static enum reading_verdict judge_number(const struct reading *old, const struct
     case READING_PART:
         return judge_less(a, b, noise, floor, amount);
     case READING_TIMING:
-        if (fabs(b - a) < timing_least || (b < timing_ratio * a && a < timing_ratio * b))
-            return VERDICT_SAME;
+        if (fabs(b - a) < timing_least || (b < noise * a && a < noise * b)) return VERDICT_SAME;
         *amount = b > a ? b / a - 1 : 0;
         return b > a ? VERDICT_WORSE : VERDICT_BETTER;
     case READING_ORDER:

@@ -19,7 +19,7 @@ enum reading_kind {
     READING_PART,    /* less is better, but what it is a part of is judged itself: never a fault */
     READING_EXACT,   /* nearer `exact` is better; noise is relative, of the distance */
     READING_COUNT,   /* of work: less is better, never a fault; noise is relative */
-    READING_TIMING,  /* less is better, judged as a ratio, never a fault */
+    READING_TIMING,  /* less is better, never a fault; noise is a ratio */
     READING_STATUS,  /* a word */
     READING_NEUTRAL, /* neither more nor less is better */
 };
