@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""studies.py SPHPROOF: `sphproof converge` with a cache from outside: any number of jobs, a second
+time, damaged entries, kill -9 in the middle, two at once; its progress in a log and on a terminal."""
+import json
+import os
+import pty
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+program = os.path.abspath(sys.argv[1])
+faults = []
+QUICK = ["converge", "sod", "--n", "40,60,80,120", "t_end=0.1", "--vary", "gradient"]
+# long enough to be killed in the middle: half a second a run and more
+LONG = ["converge", "sod", "--n", "100,140,200,6400", "t_end=0.1", "kernel=wendland_c6", "eta=9", "skip=none",
+        "integrator=rk3", "volume_element=energy"]
+
+
+def expect(what, well, got=""):
+    if not well:
+        faults.append("%s: %s" % (what, got))
+
+
+def study(*words):
+    done = subprocess.run([program, *words, "--json", "-"], capture_output=True, text=True, timeout=300)
+    document = json.loads(done.stdout) if done.stdout else {}
+    document.pop("date", None)
+    return done.returncode, document, done.stderr
+
+
+def without_times(document):
+    for level in document.get("levels", ()):
+        level.pop("cpu_s", None)
+    return document
+
+
+def entries():
+    return [os.path.join("cache", name) for name in os.listdir("cache")] if os.path.isdir("cache") else []
+
+
+def test_cache():
+    _, alone, _ = study(*QUICK)
+    _, first, _ = study(*QUICK, "--cache", "cache", "--jobs", "2")
+    expect("entries", len(entries()) == 8, entries())
+    before = {name: os.stat(name).st_mtime_ns for name in entries()}
+    inodes = {name: os.stat(name).st_ino for name in entries()}
+    _, second, _ = study(*QUICK, "--cache", "cache")
+    expect("a second time, times and all", first == second)
+    expect("written again", inodes == {name: os.stat(name).st_ino for name in entries()}, before)
+    expect("jobs and cache", without_times(alone) == without_times(first))
+    for damage in (lambda text: text[: len(text) // 2], lambda text: text[:-1], lambda text: b"",
+                   lambda text: text.replace(b'"l1":', b'"l1": ', 1),
+                   lambda text: text[:300] + bytes([text[300] ^ 1]) + text[301:]):
+        name = entries()[3]
+        with open(name, "rb") as file:
+            text = file.read()
+        with open(name, "wb") as file:
+            file.write(damage(text))
+        _, again, stderr = study(*QUICK, "--cache", "cache", "--jobs", "3")
+        expect("a damaged entry", without_times(again) == without_times(alone), stderr)
+        with open(name, "rb") as file:
+            expect("a damaged entry, mended", len(file.read()) > 300)
+    status, _, stderr = study(*QUICK, "--cache", "/dev/null/cache")
+    expect("no place for a cache", status == 4 and "/dev/null" in stderr, stderr)
+
+
+def test_kill():
+    for name in entries():
+        os.remove(name)
+    running = subprocess.Popen([program, *LONG, "--cache", "cache", "--quiet", "--jobs", "2"], start_new_session=True)
+    for _ in range(1000):
+        if len([name for name in entries() if name.endswith(".entry")]) >= 3 or running.poll() is not None:
+            break
+        time.sleep(0.01)
+    expect("nothing to kill", running.poll() is None)
+    os.killpg(running.pid, signal.SIGKILL)
+    running.wait()
+    whole = [name for name in entries() if name.endswith(".entry")]
+    expect("entries after kill -9", len(whole) == 3, entries())
+    inodes = {name: os.stat(name).st_ino for name in whole}
+    status, resumed, stderr = study(*LONG, "--cache", "cache")
+    expect("resumed", status in (0, 1) and len(resumed["levels"]) == 4, stderr)
+    expect("computed twice", inodes == {name: os.stat(name).st_ino for name in whole})
+    _, alone, _ = study(*LONG, "--jobs", "2")
+    expect("resumed, other results", without_times(resumed) == without_times(alone))
+
+
+def test_two_at_once():
+    for name in entries():
+        os.remove(name)
+    both = [subprocess.Popen([program, *QUICK, "--cache", "cache", "--jobs", "2", "--json", "%d.json" % i],
+                             stdout=subprocess.DEVNULL) for i in range(2)]
+    for one in both:
+        one.wait()
+    _, alone, _ = study(*QUICK)
+    for i in range(2):
+        with open("%d.json" % i, encoding="utf-8") as file:
+            document = json.load(file)
+        document.pop("date", None)
+        expect("two at once", without_times(document) == without_times(dict(alone)))
+    expect("two at once, entries", len(entries()) == 8 and all(n.endswith(".entry") for n in entries()),
+           entries())
+
+
+def test_progress():
+    shown = ["--vary", "alpha=0.5,1,1.5"]
+    done = subprocess.run([program, *LONG, "--json", os.devnull], stderr=subprocess.PIPE,
+                          stdout=subprocess.DEVNULL, text=True)
+    expect("progress in a log", "\r" not in done.stderr and "\033" not in done.stderr, done.stderr)
+    lead, follow = pty.openpty()
+    running = subprocess.Popen([program, *LONG, *shown], stderr=follow, stdout=subprocess.DEVNULL)
+    os.close(follow)
+    text = ""
+    try:
+        while part := os.read(lead, 1 << 12):
+            text += part.decode()
+    except OSError:  # the other side is closed
+        pass
+    os.close(lead)
+    running.wait()
+    expect("progress on a terminal", "\rsod, n = " in text and " of 12 (" in text and " s left" in text
+           and "\n" not in text and text.endswith("\r\033[K"), repr(text[-300:]))
+    quiet = subprocess.run([program, *QUICK, "--quiet"], stderr=subprocess.PIPE, text=True)
+    expect("quiet", not quiet.stderr, quiet.stderr)
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        test_cache()
+        test_kill()
+        test_two_at_once()
+        test_progress()
+        os.chdir("/")
+    print("\n".join(faults) or "studies are kept, found and resumed")
+    return bool(faults)
+
+
+sys.exit(main())
