@@ -126,6 +126,8 @@ static enum status run(const struct options *options, int n, char **arguments, s
     status = report_compute(&settings, &results, error);
     progress_end(&progress);
     if (status) return status;
+    const char *note = json_string_value(json_object_get(results, "note"));
+    if (note && !options->quiet) fprintf(stderr, "sphproof: note: %s\n", note);
     json_t *told;
     if ((status = history_tell(results, history, &told, error))) {
         json_decref(results);
