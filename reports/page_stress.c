@@ -33,8 +33,8 @@ static void label_of(char label[64], const json_t *row, bool eta)
     struct buffer words = {0};
     html_words(&words, html_string(row, "kernel"));
     if (eta)
-        buffer_format(&words, ", %s, eta %g", html_string(row, "gradient"),
-                      html_member(row, "eta"));
+        buffer_format(&words, ", %s, eta %g%s", html_string(row, "gradient"),
+                      html_member(row, "eta"), html_member(row, "alpha") > 0 ? ", viscous" : "");
     snprintf(label, 64, "%s", words.data ? words.data : "");
     buffer_free(&words);
 }
@@ -131,9 +131,11 @@ static void plot_waves(struct page_writer *writer, const json_t *waves)
                               .panels = panels,
                               .panel_count = 2};
     if (count)
-        page_plot(writer, &plot,
-                  "Waves on a uniform lattice; sound would be the straight line frequency = k. "
-                  "Where the frequency falls to zero, the wave grows.");
+        page_plot(
+            writer, &plot,
+            "Waves on a uniform lattice; sound would be the straight line frequency = k. "
+            "Where the frequency falls to zero, the wave grows; viscosity (alpha = 1, on half "
+            "of the pairs) damps it and hides a slow growth.");
     free(curves);
 }
 

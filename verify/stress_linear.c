@@ -201,9 +201,12 @@ static json_t *growth_row(const char *kernel, enum gradient gradient)
                      gradient_family.members[gradient]->name, "growth", growth);
 }
 
-static json_t *wave_row(const char *kernel, enum gradient gradient, double eta)
+/* alpha > 0: viscosity on half of the pairs, and negative growth is damping. */
+static json_t *wave_row(const char *kernel, enum gradient gradient, double eta, double alpha)
 {
-    const struct scheme scheme = atlas_scheme(kernel, gradient, eta);
+    struct scheme scheme = atlas_scheme(kernel, gradient, eta);
+    scheme.viscosity = alpha > 0 ? VISCOSITY_CONSTANT : VISCOSITY_NONE;
+    scheme.alpha = alpha;
     struct stability lattice;
     struct error error;
     json_t *kappa = json_array(), *frequency = json_array(), *growth = json_array();
@@ -213,11 +216,11 @@ static json_t *wave_row(const char *kernel, enum gradient gradient, double eta)
         const double k = M_PI * i / WAVES, rate = stability_growth(&lattice, k, &omega);
         json_array_append_new(kappa, result_number(k));
         json_array_append_new(frequency, result_number(omega));
-        json_array_append_new(growth, result_number(fmax(0, rate)));
+        json_array_append_new(growth, result_number(rate));
     }
-    return json_pack("{s:s, s:s, s:f, s:o, s:o, s:o}", "kernel", kernel, "gradient",
-                     gradient_family.members[gradient]->name, "eta", eta, "kappa", kappa,
-                     "frequency", frequency, "growth", growth);
+    return json_pack("{s:s, s:s, s:f, s:f, s:o, s:o, s:o}", "kernel", kernel, "gradient",
+                     gradient_family.members[gradient]->name, "eta", eta, "alpha", alpha, "kappa",
+                     kappa, "frequency", frequency, "growth", growth);
 }
 
 /* Growth over eta and wavenumber, row by row of the wavenumber. */
@@ -253,11 +256,12 @@ json_t *stress_atlas(void)
         for (size_t k = 0; k < kernel_family.n; k++)
             json_array_append_new(rows,
                                   growth_row(kernel_family.members[k]->name, (enum gradient)g));
-    json_array_append_new(waves, wave_row("quadratic_spline", GRADIENT_STANDARD, 1.5));
-    json_array_append_new(waves, wave_row("cubic_spline", GRADIENT_STANDARD, 4.8));
-    json_array_append_new(waves, wave_row("cubic_spline", GRADIENT_IA, 2));
-    json_array_append_new(waves, wave_row("cubic_spline", GRADIENT_IA, 4.2));
-    json_array_append_new(waves, wave_row("cubic_spline", GRADIENT_IA, 4.8));
+    json_array_append_new(waves, wave_row("quadratic_spline", GRADIENT_STANDARD, 1.5, 0));
+    json_array_append_new(waves, wave_row("cubic_spline", GRADIENT_STANDARD, 4.8, 0));
+    json_array_append_new(waves, wave_row("cubic_spline", GRADIENT_IA, 2, 0));
+    json_array_append_new(waves, wave_row("cubic_spline", GRADIENT_IA, 4.2, 0));
+    json_array_append_new(waves, wave_row("cubic_spline", GRADIENT_IA, 4.8, 0));
+    json_array_append_new(waves, wave_row("cubic_spline", GRADIENT_IA, 4.8, 1));
     return json_pack("{s:o, s:o, s:o, s:o}", "eta", eta, "rows", rows, "waves", waves, "map",
                      map_of("cubic_spline", GRADIENT_IA));
 }

@@ -1,0 +1,118 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * How the solver starts from states that are hard at once: particles at one place, and light
+ * particles at rest beside a high pressure. */
+#include <math.h>
+
+#include "check.h"
+#include "hydro_scene.h"
+#include "simulation.h"
+
+enum { PARTICLES = 24 };
+
+/* What is put in place of the right values: widths of the two kernels, mass of a light particle. */
+struct start {
+    double narrow, wide, light;
+};
+
+static const struct start right = {1.5, 4.8, 1e-3};
+
+static struct scheme scheme_of(const char *kernel, double eta)
+{
+    struct scheme scheme = hydro_scheme();
+    hydro_set_kernel(&scheme, kernel);
+    scheme.eta = eta;
+    return scheme;
+}
+
+/* Pairs at one place, two spacings apart. */
+static void coincident(struct hydro_state *state)
+{
+    *state = (struct hydro_state){.n = PARTICLES, .hi = PARTICLES, .gamma = 1.4};
+    for (int i = 0; i < PARTICLES; i++) {
+        state->x[i] = i / 2 * 2 + 1;
+        state->m[i] = 1;
+        state->u[i] = 1;
+    }
+}
+
+/* Distance between the two of a pair, the same for all pairs, in units of a thousandth of the
+ * spacing; NaN where the solver did not start. */
+static double distance(const struct scheme *scheme)
+{
+    static struct hydro_state state;
+    struct simulation *simulation;
+    struct snapshot s;
+    struct error error;
+    coincident(&state);
+    const struct scene scene = hydro_scene(&state, scheme);
+    if (simulation_create(&scene, &simulation, &error)) return (double)NAN;
+    simulation_snapshot(simulation, &s);
+    double least = HUGE_VAL, most = 0;
+    for (size_t i = 0; i < s.n; i += 2) {
+        least = fmin(least, s.x[0][i + 1] - s.x[0][i]);
+        most = fmax(most, s.x[0][i + 1] - s.x[0][i]);
+    }
+    simulation_destroy(simulation);
+    return most - least <= 1e-9 ? 1e3 * least : (double)NAN;
+}
+
+/* Steps to 1.5 times 2 cfl sqrt(h/a), from rest, of a tube 1e9 in pressure. */
+static double steps_to(double light)
+{
+    static struct hydro_state state;
+    const struct scheme scheme = scheme_of("cubic_spline", 2);
+    struct simulation *simulation;
+    struct snapshot s;
+    struct rates rates;
+    struct simulation_cost cost;
+    struct error error;
+    state = (struct hydro_state){.n = PARTICLES, .hi = PARTICLES, .gamma = 1.4};
+    for (int i = 0; i < PARTICLES; i++) {
+        state.x[i] = i + 0.5;
+        state.m[i] = i < PARTICLES / 2 ? 1 : light;
+        state.u[i] = i < PARTICLES / 2 || light >= 1 ? 1 : 1e-6;
+    }
+    const struct scene scene = hydro_scene(&state, &scheme);
+    if (simulation_create(&scene, &simulation, &error)) return (double)NAN;
+    simulation_snapshot(simulation, &s);
+    simulation_rates(simulation, &rates);
+    double pull = 0;
+    for (size_t i = 0; i < s.n; i++) pull = fmax(pull, fabs(rates.force[0][i]) / (s.m[i] * s.h[i]));
+    const double end = fmin(1.5 * 2 * scheme.cfl / sqrt(pull), rates.time_step);
+    simulation_run(simulation, end, NULL, NULL, &error);
+    simulation_cost(simulation, &cost);
+    simulation_destroy(simulation);
+    return (double)cost.steps;
+}
+
+static void measure(struct check_run *run, const void *subject)
+{
+    const struct start *start = subject ? subject : &right;
+    const struct scheme narrow = scheme_of("quadratic_spline", start->narrow),
+                        wide = scheme_of("cubic_spline", start->wide);
+    check_measure(run, fabs(distance(&narrow) - 1), 1e-9, 1e-12,
+                  "coincident pairs, quadratic eta %g: a thousandth of the spacing apart",
+                  start->narrow);
+    check_measure(run, distance(&wide), 0, 0, "coincident pairs, cubic eta %g: left where they are",
+                  start->wide);
+    check_measure(run, 2 / steps_to(start->light), 1, 0,
+                  "light particles (%g) at rest: steps to 3 cfl sqrt(h/a), two at least",
+                  start->light);
+    check_measure(run, steps_to(1), 1, 0, "equal particles: the first step is not cut");
+}
+
+static const struct start stays = {4.8, 4.8, 1e-3}, moves = {1.5, 1.5, 1e-3}, heavy = {1.5, 4.8, 1};
+static const struct check_mutant mutants[] = {
+    {"start_not_separated", "coincident particles stay although they have no h", &stays},
+    {"start_separated", "coincident particles are moved although they have an h", &moves},
+    {"start_full_step", "a first step that does not know accelerations", &heavy},
+    {0},
+};
+
+const struct check check_stability_start = {
+    .group = "stability",
+    .name = "start",
+    .property = "coincident particles get an h; the first step is at most 2 cfl sqrt(h/a)",
+    .measure = measure,
+    .mutants = mutants,
+};
