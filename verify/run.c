@@ -107,9 +107,14 @@ static enum status keep_snapshot(struct run_result *result, const struct snapsho
     enum { ARRAYS = sizeof from / sizeof *from };
     result->storage = malloc(ARRAYS * seen.n * sizeof(double));
     if (!result->storage) return error_set(error, STATUS_ENVIRONMENT, "no memory for a snapshot");
+    /* particles that were carried through the end of the box come last: positions shall rise */
+    size_t first = 0;
+    for (size_t i = 1; i < seen.n; i++)
+        if (seen.x[0][i] < seen.x[0][i - 1]) first = i;
     for (size_t i = 0; i < ARRAYS; i++) {
         double *copy = result->storage + i * seen.n;
-        memcpy(copy, from[i], seen.n * sizeof(double));
+        memcpy(copy, from[i] + first, (seen.n - first) * sizeof(double));
+        memcpy(copy + seen.n - first, from[i], first * sizeof(double));
         *to[i] = copy;
     }
     result->snapshot.n = seen.n;
