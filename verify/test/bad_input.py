@@ -158,7 +158,6 @@ BAD = [
     ("run sod --snapshot nowhere/s.csv", 4, "nowhere/s.csv", "No such file"),
     ("run sod --snapshot folder", 4, "folder", "directory"),
     ("run sod --json nowhere/r.json", 4, "nowhere/r.json", "No such file"),
-    ("run sod --json /dev/full", 4, "/dev/full", "space"),
     ("run sod cfl=50", 3, "particle", "t ="),
     ("converge sod --n 100", 2, "--n", "at least 4"),
     ("converge sod --n 100,100,100,100", 2, "--n", "1 distinct", "at least 4"),

@@ -1,0 +1,159 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The table of keys: every key reads what it writes, refuses what is out of range; `auto` stands
+ * for what the documentation says; case files in good and bad shape. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "cases.h"
+#include "integrator.h"
+#include "near.h"
+#include "settings.h"
+
+static void resolve(struct settings *settings, struct scheme *scheme, int n, ...)
+{
+    char *arguments[16];
+    struct error error = {0};
+    va_list list;
+    va_start(list, n);
+    for (int i = 0; i < n; i++) arguments[i] = va_arg(list, char *);
+    va_end(list);
+    settings_init(settings);
+    assert_int_equal(settings_apply(settings, n, arguments, &error), STATUS_OK);
+    assert_int_equal(settings_resolve(settings, 1, scheme, &error), STATUS_OK);
+}
+
+static void defaults_are_the_fastest_scheme(void **state)
+{
+    struct settings settings;
+    struct scheme s;
+    (void)state;
+    resolve(&settings, &s, 0);
+    assert_string_equal(s.kernel.member.name, "quadratic_spline");
+    assert_string_equal(s.integrator->member.name, "predicted_midpoint");
+    near_relative(s.eta, 1.5, 1e-15);
+    near_relative(s.cfl, 0.8 / 1.5, 1e-15);
+    near_relative(s.alpha, 0.75, 1e-15);
+    near_relative(s.beta, 1.5, 1e-15);
+    assert_int_equal(s.energy, ENERGY_TOTAL);
+    assert_int_equal(s.pair_width, PAIR_MAX);
+    assert_int_equal(s.h_method, H_PREDICTED);
+    resolve(&settings, &s, 2, "gradient=ia", "viscosity=reconstructed");
+    assert_int_equal(s.pair_width, PAIR_HARMONIC);
+    resolve(&settings, &s, 1, "formulation=lagrangian");
+    assert_int_equal(s.pair_width, PAIR_MEAN);
+}
+
+static void textbook_scheme_has_no_surprises(void **state)
+{
+    struct settings settings;
+    struct scheme s;
+    (void)state;
+    resolve(&settings, &s, 3, "integrator=modified_leapfrog", "kernel=cubic_spline", "eta=4.8");
+    near_relative(s.cfl, s.integrator->cfl, 1e-15);
+    near_relative(s.alpha, 1, 1e-15);
+    near_relative(s.beta, 2, 1e-15);
+    assert_int_equal(s.energy, ENERGY_INTERNAL);
+    assert_int_equal(s.pair_width, PAIR_MEAN);
+    assert_int_equal(s.h_method, H_NEWTON);
+    resolve(&settings, &s, 2, "alpha=1.5", "alpha=0.5"); /* the last one counts */
+    near_relative(s.beta, 1, 1e-15);
+}
+
+static void keys_read_what_they_write(void **state)
+{
+    struct settings settings, again;
+    struct scheme scheme;
+    struct error error;
+    char text[SETTING_TEXT_MAX];
+    (void)state;
+    resolve(&settings, &scheme, 3, "eta=2.3849999999999998", "gamma=1.6666666666666667", "n=1e5");
+    settings_init(&again);
+    for (int i = 0; i < SETTINGS; i++) {
+        settings_text(&settings, (enum setting)i, text);
+        assert_int_equal(settings_set(&again, (enum setting)i, text, SOURCE_USER, NULL, &error),
+                         STATUS_OK);
+        assert_int_equal(again.value[i].choice, settings.value[i].choice);
+        assert_memory_equal(again.value[i].real, settings.value[i].real,
+                            sizeof again.value[i].real);
+    }
+}
+
+static void keys_refuse_the_rest(void **state)
+{
+    static const char *const never[] = {"", " ", "nan", "inf", "1e3x", "0x1", "1e300", "-1e300"};
+    (void)state;
+    for (int i = 0; i < SETTINGS; i++)
+        for (size_t j = 0; j < sizeof never / sizeof *never; j++) {
+            struct settings settings;
+            struct error error = {0};
+            settings_init(&settings);
+            const struct setting_value before = settings.value[i];
+            assert_int_equal(
+                settings_set(&settings, (enum setting)i, never[j], SOURCE_USER, "f:7", &error),
+                STATUS_BAD_INPUT);
+            assert_memory_equal(&before, &settings.value[i], sizeof before);
+            assert_ptr_equal(strstr(error.message, "f:7"), error.message);
+            assert_non_null(strstr(error.message, setting_keys[i].name));
+            assert_non_null(strstr(error.message, "allowed"));
+        }
+}
+
+static void built_in_cases_are_sound(void **state)
+{
+    struct case_file file;
+    struct error error;
+    size_t n = 0;
+    (void)state;
+    for (const struct case_builtin *b = case_builtins; b->name; b++, n++) {
+        assert_int_equal(case_load(&file, b->name, &error), STATUS_OK);
+        assert_string_equal(file.name, b->name);
+        assert_true(file.ladder_count >= 4 && file.gate_count >= 1);
+    }
+    assert_true(n >= 6);
+}
+
+/* Damaged case files: never a crash, always OK or a message. */
+static void damaged_cases_are_survived(void **state)
+{
+    static const char noise[] = "\n[]=;:# \t\r0aZ.,-\"";
+    unsigned random = 2385;
+    (void)state;
+    for (int round = 0; round < 4000; round++) {
+        const struct case_builtin *builtin = &case_builtins[round % 6];
+        const size_t length = strlen(builtin->text);
+        char *text = strdup(builtin->text);
+        assert_non_null(text);
+        for (int k = 0; k < 1 + round % 5; k++) {
+            random = random * 1664525u + 1013904223u;
+            const size_t at = (random >> 8) % length;
+            text[at] =
+                random >> 30 ? noise[(random >> 4) % (sizeof noise - 1)] : (char)(random >> 5);
+        }
+        struct case_file file;
+        struct error error = {0};
+        const enum status status =
+            case_parse(&file, "damaged.ini", text, length - (size_t)(round % 7 ? 0 : 40), &error);
+        assert_true(status == STATUS_OK || status == STATUS_BAD_INPUT);
+        if (status) assert_ptr_equal(strstr(error.message, "damaged.ini"), error.message);
+        free(text);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(defaults_are_the_fastest_scheme),
+        cmocka_unit_test(textbook_scheme_has_no_surprises),
+        cmocka_unit_test(keys_read_what_they_write),
+        cmocka_unit_test(keys_refuse_the_rest),
+        cmocka_unit_test(built_in_cases_are_sound),
+        cmocka_unit_test(damaged_cases_are_survived),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

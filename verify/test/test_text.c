@@ -1,0 +1,151 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Words and numbers as people type them, and files that appear whole. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+#include "near.h"
+#include "output.h"
+#include "text.h"
+
+static void numbers_are_strict(void **state)
+{
+    static const char *const good[] = {"1", "-1", "+1", "1e3", ".5", "5.", "1E-3", "-0", "2.385"};
+    static const char *const bad[] = {"",    " ",     " 1",    "1 ",  "1e3x",    "0x10", "nan",
+                                      "inf", "-inf",  "1e999", "1,5", "--1",     "e3",   "1e",
+                                      ".",   "1.2.3", "1\n",   "1_0", "infinity"};
+    double value;
+    (void)state;
+    for (size_t i = 0; i < sizeof good / sizeof *good; i++) assert_true(text_real(good[i], &value));
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        value = 2.385;
+        assert_false(text_real(bad[i], &value));
+        near_relative(value, 2.385, 1e-16);
+    }
+    assert_true(text_integer("1e3", &value));
+    near_relative(value, 1000, 1e-16);
+    assert_false(text_integer("1.0", &value));
+    assert_false(text_integer("1e-3", &value));
+}
+
+static void lists_have_their_length(void **state)
+{
+    double v[3];
+    (void)state;
+    assert_true(text_reals("1 -2  0.4", " \t,", 3, v));
+    near_relative(v[1], -2, 1e-16);
+    near_relative(v[2], 0.4, 1e-16);
+    assert_true(text_reals(" 1,2,3 ", " \t,", 3, v));
+    assert_true(text_reals("-1:1:11", ":", 3, v));
+    near_relative(v[2], 11, 1e-16);
+    assert_false(text_reals("1 2", " \t,", 3, v));
+    assert_false(text_reals("1 2 3 4", " \t,", 3, v));
+    assert_false(text_reals("1 2 x", " \t,", 3, v));
+    assert_false(text_reals("1:2:", ":", 3, v));
+    assert_false(text_reals("", " \t,", 1, v));
+}
+
+static void distances(void **state)
+{
+    (void)state;
+    assert_int_equal(text_distance("", ""), 0);
+    assert_int_equal(text_distance("abc", ""), 3);
+    assert_int_equal(text_distance("kitten", "sitting"), 3);
+    assert_int_equal(text_distance("kernal", "kernel"), 1);
+    assert_int_equal(text_distance("lsit", "list"), 1);
+    assert_int_equal(text_distance("SOD", "sod"), 0);
+}
+
+static void near_misses(void **state)
+{
+    static const char *const names[] = {"quadratic_spline", "cubic_spline", "wendland_c2", "sinc"};
+    (void)state;
+    assert_string_equal(text_nearest("cubic", names, 4), "cubic_spline");
+    assert_string_equal(text_nearest("Cubic_Spline", names, 4), "cubic_spline");
+    assert_string_equal(text_nearest("wendlandc2", names, 4), "wendland_c2");
+    assert_string_equal(text_nearest("sink", names, 4), "sinc");
+    assert_null(text_nearest("frobnicate", names, 4));
+    assert_null(text_nearest("", names, 4));
+}
+
+static void messages_are_printable(void **state)
+{
+    static const char *const names[] = {"one", "two"};
+    struct error error;
+    (void)state;
+    assert_int_equal(text_unknown(&error, "f:3", "key", "t\nw\x80o", names, 2), STATUS_BAD_INPUT);
+    for (const char *c = error.message; *c; c++) assert_in_range(*c, ' ', '~');
+    assert_non_null(strstr(error.message, "f:3"));
+    assert_non_null(strstr(error.message, "one two"));
+}
+
+static void write_text(const char *path, const char *text)
+{
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs(text, file);
+    fclose(file);
+}
+
+static void expect_text(const char *path, const char *text)
+{
+    char got[64] = "";
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    got[fread(got, 1, sizeof got - 1, file)] = '\0';
+    fclose(file);
+    assert_string_equal(got, text);
+}
+
+static void files_appear_whole(void **state)
+{
+    char folder[] = "/tmp/sphproof-test-XXXXXX", path[64], link[64];
+    struct output output;
+    struct error error;
+    (void)state;
+    assert_non_null(mkdtemp(folder));
+    snprintf(path, sizeof path, "%s/file", folder);
+    snprintf(link, sizeof link, "%s/link", folder);
+    write_text(path, "old");
+    assert_int_equal(symlink(path, link), 0);
+
+    assert_int_equal(output_open(&output, path, &error), STATUS_OK);
+    fputs("new", output.stream);
+    fflush(output.stream);
+    expect_text(path, "old");
+    output_discard(&output);
+    expect_text(path, "old");
+
+    assert_int_equal(output_open(&output, link, &error), STATUS_OK);
+    fputs("new", output.stream);
+    assert_int_equal(output_close(&output, &error), STATUS_OK);
+    expect_text(path, "new"); /* the link still leads there */
+    assert_int_equal(unlink(link), 0);
+
+    assert_int_equal(output_probe(path, &error), STATUS_OK);
+    assert_int_equal(output_open(&output, folder, &error), STATUS_ENVIRONMENT);
+    assert_int_equal(output_open(&output, "/dev/full", &error), STATUS_OK);
+    fputs("new", output.stream);
+    assert_int_equal(output_close(&output, &error), STATUS_ENVIRONMENT);
+    assert_int_equal(unlink(path), 0);
+    assert_int_equal(rmdir(folder), 0); /* nothing else is left in it */
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(numbers_are_strict),
+        cmocka_unit_test(lists_have_their_length),
+        cmocka_unit_test(distances),
+        cmocka_unit_test(near_misses),
+        cmocka_unit_test(messages_are_printable),
+        cmocka_unit_test(files_appear_whole),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
