@@ -4,6 +4,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
+#include <poll.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
@@ -97,6 +98,16 @@ enum status output_open(struct output *output, const char *path, struct error *e
     return STATUS_OK;
 }
 
+/* Why writing to standard output failed. Where the write that failed was in the midst of others,
+ * its errno is gone; that a reader has left can still be seen, and the next write fails again. */
+static int stdout_reason(int reason)
+{
+    struct pollfd polled = {.fd = STDOUT_FILENO, .events = POLLOUT};
+    if (reason && reason != EIO) return reason;
+    if (poll(&polled, 1, 0) == 1 && (polled.revents & POLLERR)) return EPIPE;
+    return write(STDOUT_FILENO, "\n", 1) < 0 ? errno : EIO;
+}
+
 enum status output_close(struct output *output, struct error *error)
 {
     if (!output->stream) return STATUS_OK;
@@ -105,6 +116,7 @@ enum status output_close(struct output *output, struct error *error)
     if (fflush(output->stream) || ferror(output->stream)) reason = errno ? errno : EIO;
     if (output->stream == stdout) {
         output->stream = NULL;
+        if (reason) reason = stdout_reason(reason);
         /* a reader that left is none of our errors; see output_finish_process */
         return reason && reason != EPIPE ? cannot_write("standard output", reason, error)
                                          : STATUS_OK;
@@ -179,7 +191,8 @@ void output_prepare_process(void)
 enum status output_finish_process(struct error *error)
 {
     errno = 0;
-    const int failed = fflush(stdout) || ferror(stdout);
-    if (!failed || errno == EPIPE) return STATUS_OK;
-    return cannot_write("standard output", errno ? errno : EIO, error);
+    errno = 0;
+    if (!fflush(stdout) && !ferror(stdout)) return STATUS_OK;
+    const int reason = stdout_reason(errno);
+    return reason == EPIPE ? STATUS_OK : cannot_write("standard output", reason, error);
 }

@@ -5,7 +5,7 @@
 
 #include "simulation.h"
 
-enum { HYDRO_MAX = 2000, HYDRO_TEXT = 160 };
+enum { HYDRO_MAX = 2200, HYDRO_TEXT = 160 };
 
 struct hydro_state {
     size_t n;

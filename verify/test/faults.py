@@ -128,6 +128,8 @@ def disk():
         os.unlink(os.path.join(folder, name))
     row("full device, table", shell("$SPHPROOF run sod n=50 > /dev/full"), 4, "standard output",
         "No space left")
+    row("full device, --json -", shell("$SPHPROOF run sod n=50 --json - > /dev/full"), 4,
+        "No space left")
     row("full device, --json", sphproof(*RUN, "--json", "/dev/full"), 4, "/dev/full",
         "No space left")
     with small_disk("full disk, --snapshot", 64) as place:
