@@ -59,6 +59,9 @@ static int worst_first(const void *a, const void *b)
     const struct difference *x = a, *y = b;
     const int i = severity(x), j = severity(y);
     if (i != j) return i - j;
+    /* a check names the cause, what breaks down in a run is its consequence */
+    const bool a_check = strstr(path_of(x), "checks["), b_check = strstr(path_of(y), "checks[");
+    if (i == 0 && a_check != b_check) return a_check ? -1 : 1;
     const bool a_time = is_timing(x), b_time = is_timing(y);
     if (a_time != b_time) return a_time ? 1 : -1;
     const bool a_head = x->new && x->new->headline, b_head = y->new && y->new->headline;

@@ -141,7 +141,7 @@ static json_t *since_last(const json_t *nights, const struct readings *now)
     size_t verdicts[4] = {0};
     for (size_t i = 0; i < now->count; i++) {
         const struct reading *new = &now->list[i];
-        if (!new->headline) continue;
+        if (!new->headline || new->kind == READING_TIMING) continue;
         const json_t *value = json_object_get(figures, new->path);
         struct reading old = *new;
         double amount;
@@ -151,7 +151,7 @@ static json_t *since_last(const json_t *nights, const struct readings *now)
         const enum reading_verdict verdict =
             reading_judge(value ? &old : NULL, new, &amount, &fault);
         verdicts[verdict]++;
-        if (verdict == VERDICT_SAME || new->kind == READING_TIMING) continue;
+        if (verdict == VERDICT_SAME) continue;
         const double ratio = new->word || !value ? (double)NAN : new->value / old.value;
         json_array_append_new(moved, json_pack("{s:s, s:o, s:o, s:o, s:s}", "path", new->path,
                                                "old", value ? value_of(&old) : json_null(), "new",

@@ -17,7 +17,8 @@ enum { HISTORY_NIGHTS_MAX = 120 };
  *   "nights"      [{"date", "git"}], oldest first; the last is this one
  *   "unreadable"  lines
  *   "since"       against the night before: {"date", "git", "worse", "better", "same",
- *                 "incomparable", "figures": as in a diff, what is not the same}, or null
+ *                 "incomparable", "figures": as in a diff, what is not the same}, timings left
+ *                 out; or null
  *   "trends"      [{"case", "label", "error": [...], "order": [...]}]: of L1(density), per night
  *   "changes"     [{"path", "date", "git", "git_before", "before", "after", "ratio", "verdict"}],
  *                 newest first: change points of errors and orders
