@@ -98,11 +98,14 @@ enum status result_write(const json_t *document, const char *path, struct error 
     struct output output;
     enum status status = output_open(&output, path, error);
     if (status) return status;
+    errno = 0;
     if (json_dumpf(document, output.stream, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) ||
         fputc('\n', output.stream) == EOF) {
+        const int reason = errno ? errno : ENOSPC;
         if (output.stream == stdout) return output_close(&output, error);
         output_discard(&output);
-        return error_set(error, STATUS_ENVIRONMENT, "cannot write '%s': no space?", path);
+        return error_set(error, STATUS_ENVIRONMENT, "cannot write '%s': %s", path,
+                         strerror(reason));
     }
     return output_close(&output, error);
 }
