@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The results as JUnit XML: a suite for the runs, one for the orders of convergence, one for each
- * group of checks and one for the deliberate faults. */
+ * group of checks, one for the deliberate faults and one for those of the world around. */
 #include <string.h>
 
 #include "html.h"
@@ -104,12 +104,27 @@ static void checks(struct buffer *to, const json_t *verify)
     suite_end(to, "deliberate faults", &suite);
 }
 
+static void faults(struct buffer *to, const json_t *faults)
+{
+    struct suite_writer suite = {0};
+    size_t i;
+    const json_t *entry;
+    json_array_foreach(json_object_get(faults, "faults"), i, entry)
+    {
+        const char *status = html_string(entry, "status");
+        test_case(&suite, html_string(entry, "part"), html_string(entry, "fault"), status,
+                  html_string(entry, strcmp(status, "fail") ? "message" : "detail"));
+    }
+    suite_end(to, "faults around it", &suite);
+}
+
 char *page_junit(const json_t *results)
 {
     struct buffer to = {0};
     buffer_add(&to, "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<testsuites name=\"sphproof\">\n");
     runs(&to, results);
     checks(&to, json_object_get(results, "verify"));
+    faults(&to, json_object_get(results, "faults"));
     buffer_add(&to, "</testsuites>\n");
     return buffer_take(&to);
 }

@@ -105,6 +105,8 @@ static void head(struct buffer *to, const json_t *results, const json_t *verdict
     tile(to, "runs sound", runs - html_member(verdict, "broke_down"), runs, "cases");
     tile(to, "deliberate faults caught", html_member(verdict, "mutants_detected"),
          html_member(verdict, "mutants"), "detection");
+    tile(to, "faults around it answered rightly", html_member(verdict, "faults_right"),
+         html_member(verdict, "faults"), "faults");
     buffer_add(to, "</p></header>\n");
 }
 
@@ -187,6 +189,7 @@ int page_make(struct page *page, const json_t *results)
     if (json_array_size(bench)) buffer_add(to, " <a href=\"#cost\">Cost</a>");
     if (gradients) buffer_add(to, " <a href=\"#gradients\">Gradients</a>");
     if (stress) buffer_add(to, " <a href=\"#stability\">Stability</a>");
+    if (json_object_get(results, "faults")) buffer_add(to, " <a href=\"#faults\">Faults</a>");
     if (kernels) buffer_add(to, " <a href=\"#kernels\">Kernels</a>");
     if (verify)
         buffer_add(to, " <a href=\"#checks\">Checks</a>"
@@ -199,6 +202,7 @@ int page_make(struct page *page, const json_t *results)
     page_bench(&writer, bench);
     if (gradients) page_gradients(&writer, gradients);
     if (stress) page_stress(&writer, stress);
+    if (json_object_get(results, "faults")) page_faults(&writer, results);
     if (kernels) page_kernels(&writer, kernels);
     if (verify) page_checks(&writer, verify);
     if (verify) page_detection(&writer, verify);

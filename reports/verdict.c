@@ -14,6 +14,7 @@ struct tally {
     int mutants, detected;
     int gates_passed, gates_failed;
     int runs, broke_down;
+    int faults, faults_right;
 };
 
 /* Takes detail. */
@@ -166,6 +167,18 @@ static void judge_stress(struct tally *tally, const json_t *failure)
     fail(tally, "stress", html_string(failure, "name"), &detail, html_string(failure, "command"));
 }
 
+/* What the world did to the program; a fault that could not be brought about does not count. */
+static void judge_fault(struct tally *tally, const json_t *fault)
+{
+    const char *status = html_string(fault, "status");
+    tally->faults += strcmp(status, "skip") != 0;
+    tally->faults_right += !strcmp(status, "pass");
+    if (strcmp(status, "fail")) return;
+    struct buffer detail = {0};
+    buffer_add(&detail, html_string(fault, "detail"));
+    fail(tally, "fault", html_string(fault, "fault"), &detail, html_string(fault, "command"));
+}
+
 static void headline(struct buffer *to, bool checked, size_t failures)
 {
     if (failures)
@@ -190,6 +203,10 @@ json_t *verdict_make(const json_t *results)
     {
         judge_stress(&tally, entry);
     }
+    json_array_foreach(json_object_get(json_object_get(results, "faults"), "faults"), i, entry)
+    {
+        judge_fault(&tally, entry);
+    }
 
     struct buffer words = {0};
     bool checked = tally.figures_passed + tally.gates_passed + tally.runs > 0;
@@ -197,12 +214,13 @@ json_t *verdict_make(const json_t *results)
     headline(&words, checked, count);
     char *line = buffer_take(&words);
     json_t *verdict = json_pack(
-        "{s:s, s:s, s:i, s:i, s:i, s:i, s:i, s:i, s:i, s:i, s:i, s:o}", "status",
+        "{s:s, s:s, s:i, s:i, s:i, s:i, s:i, s:i, s:i, s:i, s:i, s:i, s:i, s:o}", "status",
         count || !checked ? "fail" : "pass", "headline", line ? line : "", "figures_passed",
         tally.figures_passed, "figures_failed", tally.figures_failed, "figures_skipped",
         tally.figures_skipped, "mutants", tally.mutants, "mutants_detected", tally.detected,
         "gates_passed", tally.gates_passed, "gates_failed", tally.gates_failed, "runs", tally.runs,
-        "broke_down", tally.broke_down, "failures", tally.failures);
+        "broke_down", tally.broke_down, "faults", tally.faults, "faults_right", tally.faults_right,
+        "failures", tally.failures);
     free(line);
     return verdict;
 }

@@ -14,6 +14,9 @@
  *   kernels         [kernel documents, and "reproduce"]
  *   bench           [bench documents, and "reproduce"]
  *   gradients       {"rows": [{flat: operator, ...}], "reproduce"}
+ *   faults          what verify/test/faults.py wrote: "date", "git", "faults": [{"fault", "part",
+ *                   "exit", "status": "pass", "fail" or "skip", "detail", "message",
+ *                   "command"}]
  *   history         what verify/history.h tells: nights, since, trends, changes
  *   verdict         what verdict_make returned */
 #ifndef SPHPROOF_VERDICT_H
@@ -22,7 +25,7 @@
 #include <jansson.h>
 
 /* {"status": "pass" or "fail", "headline", "figures_passed", "figures_failed", "mutants",
- * "mutants_detected", "gates_passed", "gates_failed", "runs", "broke_down",
+ * "mutants_detected", "gates_passed", "gates_failed", "runs", "broke_down", "faults", "faults_right",
  * "failures": [{"area", "name", "detail", "command"}]}. New reference, NULL: no memory. */
 json_t *verdict_make(const json_t *results);
 

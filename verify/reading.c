@@ -39,6 +39,8 @@ static const struct rule {
     {"", "steps", 0, READING_COUNT, 0.01, 0},
     {"", "particle_updates", 0, READING_COUNT, 0.01, 0},
     {"", "pair_interactions", 0, READING_COUNT, 0.01, 0},
+    {"faults", "status", 0, READING_STATUS, 0, 0},
+    {"faults", "*", SKIP, 0, 0, 0},
     {"", "status", 0, READING_STATUS, 0, 0},
     {"", "detected", 0, READING_STATUS, 0, 0},
     {"", "suspicion", 0, READING_STATUS, 0, 0},
@@ -91,10 +93,10 @@ static const char *const closed[] = {"machine", "profile",  "plan",    "settings
                                      "spread",  "pairwise", "history", "failures", "excluded"};
 
 /* Members that say what an entry of a list is about, in this order. */
-static const char *const names[] = {"case", "label",   "scheme", "group",    "check",
-                                    "name", "subject", "mutant", "kernel",   "operator",
-                                    "dim",  "field",   "norm",   "region",   "eta",
-                                    "n",    "q",       "target", "reference"};
+static const char *const names[] = {"case",     "label",   "scheme", "group",  "check",
+                                    "name",     "subject", "fault",  "mutant", "kernel",
+                                    "operator", "dim",     "field",  "norm",   "region",
+                                    "eta",      "n",       "q",      "target", "reference"};
 
 static bool one_of(const char *word, const char *const *list, size_t n)
 {

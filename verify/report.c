@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
+#include <unistd.h>
 
 #include "check.h"
 #include "pool.h"
@@ -169,14 +170,12 @@ static void suspect_same(const struct report *report, int c, json_t *documents[S
     }
 }
 
-/* A piece whose process crashed. */
-static void add_trouble(json_t *results, const struct report_piece *piece,
-                        const struct pool_job *job)
+/* What gave no result: a piece whose process crashed. */
+static void add_trouble(json_t *results, const char *name, const char *message)
 {
     json_t *list = json_object_get(results, "trouble");
     if (!list) json_object_set_new(results, "trouble", list = json_array());
-    json_array_append_new(
-        list, json_pack("{s:s, s:s}", "name", piece->where, "message", job->error.message));
+    json_array_append_new(list, json_pack("{s:s, s:s}", "name", name, "message", message));
 }
 
 /* Runs are listed by case and scheme, as they were added. */
@@ -190,7 +189,7 @@ static void add_documents(struct report *report, json_t *results)
         const int c = (int)(run / SCHEMES), s = (int)(run % SCHEMES);
         run += piece->kind == REPORT_RUN;
         if (!job->document) {
-            add_trouble(results, piece, job);
+            add_trouble(results, piece->where, job->error.message);
             continue;
         }
         switch (piece->kind) {
@@ -218,7 +217,19 @@ static void add_documents(struct report *report, json_t *results)
     json_object_set_new(results, "bench", bench);
 }
 
-static json_t *collect(struct report *report, double seconds)
+/* The table of faults, if somebody has written one. */
+static void add_faults(json_t *results, const char *path)
+{
+    struct error error;
+    json_t *faults;
+    if (!path || access(path, F_OK)) return;
+    if (!result_load(&faults, path, &error))
+        json_object_set_new(results, "faults", faults);
+    else
+        add_trouble(results, "faults", error.message);
+}
+
+static json_t *collect(struct report *report, const char *faults, double seconds)
 {
     json_t *results = result_new("report"), *studies = json_array();
     json_object_set_new(results, "mode", json_string(report->nightly ? "nightly" : "quick"));
@@ -238,6 +249,7 @@ static json_t *collect(struct report *report, double seconds)
     json_t *stress = result_new("stress");
     stress_judge(&report->stress, &report->pool, stress);
     json_object_set_new(results, "stress", stress);
+    add_faults(results, faults);
     json_object_set_new(results, "verdict", verdict_make(results));
     return results;
 }
@@ -279,7 +291,7 @@ enum status report_compute(const struct report_settings *settings, json_t **resu
     for (int k = 0; k < CASES * SCHEMES && !status; k++)
         status = study_judge(&report->studies[k / SCHEMES][k % SCHEMES], &report->pool, error);
     if (!status) {
-        *results = collect(report, now() - began);
+        *results = collect(report, settings->faults, now() - began);
         if (report->pool.note[0])
             json_object_set_new(*results, "note", json_string(report->pool.note));
     }

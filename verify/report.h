@@ -18,6 +18,7 @@ struct report_settings {
     const struct cache *cache; /* what is computed is kept there and not repeated; NULL: none */
     pool_progress *progress;   /* may be NULL */
     void *context;
+    const char *faults; /* what verify/test/faults.py wrote, shown if it is there; NULL: nowhere */
 };
 
 /* Computes all and judges it: *results is a document of command "report" with its verdict (see

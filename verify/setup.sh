@@ -2,6 +2,7 @@
 # Sourced by verify/run and reports/run: installs what is missing, configures, builds. Needs neither
 # network nor root where everything is there.
 #   root   the source tree          build  the build folder (BUILD=DIR, else build/ in the tree)
+#   out    the report's folder, after setup_report
 set -eu
 root=$(CDPATH='' cd -- "$(dirname -- "$0")/.." && pwd -P)
 mkdir -p -- "${BUILD:-$root/build}"
@@ -63,6 +64,13 @@ setup_packages() {
     if [ "${1:-}" = nightly ] && ! setup_compiles clang -fsanitize=thread; then
         setup_install "libclang-rt-$(clang -dumpversion | cut -d. -f1)-dev"
     fi
+}
+
+# setup_report: out, the folder of the report.
+setup_report() {
+    out=$root/reports/out
+    mkdir -p "$out" 2>/dev/null && [ -w "$out" ] || out=$build/report
+    mkdir -p "$out"
 }
 
 # setup_build DIR [meson options]: configures DIR unless that was done, and builds. Quiet while all

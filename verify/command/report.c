@@ -100,7 +100,7 @@ static enum status run(const struct options *options, int n, char **arguments, s
 {
     struct report_settings settings = {.progress = show_progress};
     struct cache cache;
-    char plots[PATH_LENGTH], kept[PATH_LENGTH], nights[PATH_LENGTH];
+    char plots[PATH_LENGTH], kept[PATH_LENGTH], nights[PATH_LENGTH], faults[PATH_LENGTH];
     const char *history = options_value(options, "history"),
                *folder = options_value(options, "out");
     if (!folder) folder = "reports/out";
@@ -118,6 +118,8 @@ static enum status run(const struct options *options, int n, char **arguments, s
     if (!status) status = output_probe(history, error);
     if (status) return status;
     settings.cache = &cache;
+    snprintf(faults, sizeof faults, "%.*s/faults.json", PATH_LENGTH - 64, folder);
+    settings.faults = faults;
 
     json_t *results;
     struct progress progress;
@@ -171,7 +173,8 @@ const struct command command_report = {
             "Writes index.html (self-contained), results.json, junit.xml, summary.md and the data\n"
             "and script of each plot. Exit status 1 if anything on the page is not well.\n"
             "Each finished computation is kept at once: after an interruption, or in a night in "
-            "which\nnothing has changed, only what is missing is computed.",
+            "which\nnothing has changed, only what is missing is computed.\n"
+            "DIR/faults.json, which verify/test/faults.py --json writes, is shown if it is there.",
     .run = run,
     .options = report_options,
     .examples = "sphproof report\nsphproof report --nightly --out /tmp/report --jobs 2",

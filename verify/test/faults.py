@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""faults.py SPHPROOF FOLDER [KILLS]: what the world does to the program, and what comes of it.
+"""faults.py SPHPROOF [PART ...] [--kills N] [--json FILE]: what the world does to the program, and
+what comes of it.
 
 Each fault: exit status, words of the message, and that nothing is lost: files that were there are
-as they were, files that are new are whole, no temporary stays. Prints a table. KILLS (default 0):
-so many reports are killed at random moments as well."""
+as they were, files that are new are whole, no temporary stays. Prints a table, and writes it as a
+result document. PART: only these (default: all); N (default 0): so many reports are killed at
+random moments as well, which takes some minutes."""
+import argparse
 import contextlib
 import json
 import os
@@ -17,12 +20,17 @@ import tempfile
 import time
 import xml.etree.ElementTree as xml
 
-program, folder = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
-kills = int(sys.argv[3]) if len(sys.argv) > 3 else 0
+sys.dont_write_bytecode = True  # the source tree may be read-only, and stays clean
+import kills
+import schema
+
 root = os.geteuid() == 0
-faults, rows = [], []
+here = os.path.dirname(os.path.abspath(__file__))
+program = folder = part = None
+rows = []
 OLD = "what was there before\n"
 RUN = ["run", "sod", "n=200", "t_end=0.02"]
+STUDY_KILLS = 16
 
 
 def sphproof(*arguments, limits=(), nobody=False, **options):
@@ -49,6 +57,16 @@ def shell(line):
                           env={**os.environ, "SPHPROOF": program})
 
 
+def add(fault, expected, ended, status, message, detail=""):
+    rows.append({"fault": fault, "part": part, "expected": expected, "exit": ended, "status": status,
+                 "detail": detail.replace(folder + "/", ""), "message": message.replace(folder + "/", ""),
+                 "command": "python3 verify/test/faults.py build/sphproof " + part})
+
+
+def not_tried(fault, why):
+    add(fault, [], None, "skip", why)
+
+
 def row(fault, done, status, *words, also=(), says=""):
     """One line of the table; also: pairs of a condition and what it means."""
     allowed = status if isinstance(status, tuple) else (status,)
@@ -56,19 +74,23 @@ def row(fault, done, status, *words, also=(), says=""):
     if done.returncode not in allowed:
         wrong.append("exit %d, not %s" % (done.returncode, "/".join(map(str, allowed))))
     wrong += ["no %r in the message" % word for word in words if word not in (done.stderr or "")]
-    wrong += [text for well, text in also if not well]
-    left = [name for path, _, files in os.walk(folder) for name in files if ".part" in name]
+    wrong += [str(text) for well, text in also if not well]
+    left = parts(folder)
     if left:
         wrong.append("left behind: %s" % left)
-        for path, _, files in os.walk(folder):
-            for name in files:
-                if ".part" in name:
-                    os.unlink(os.path.join(path, name))
+        sweep(left)
     message = says or (done.stderr or "").strip().split("\n")[-1]
-    rows.append((fault, done.returncode, "WRONG: " + "; ".join(wrong) if wrong else "as it should be",
-                 message))
-    if wrong:
-        faults.append(fault)
+    add(fault, list(allowed), done.returncode, "fail" if wrong else "pass", message, "; ".join(wrong))
+
+
+def parts(place):
+    """Temporaries that are there."""
+    return [os.path.join(path, name) for path, _, files in os.walk(place) for name in files if ".part" in name]
+
+
+def sweep(files):
+    for name in files:
+        os.unlink(name)
 
 
 def put(name, text=OLD):
@@ -111,7 +133,7 @@ def small_disk(fault, kibi):
     os.makedirs(os.path.join(folder, place), exist_ok=True)
     mount = ["mount", "-t", "tmpfs", "-o", "size=%dk" % kibi, "tmpfs", os.path.join(folder, place)]
     if not root or subprocess.run(mount, capture_output=True).returncode:
-        rows.append((fault, "-", "not tried", "no disk can be mounted here"))
+        not_tried(fault, "no disk can be mounted here")
         yield None
         return
     try:
@@ -189,7 +211,7 @@ def decimal_comma():
             (get("s.csv") == get("plain.csv"), "another snapshot"),
             ("<svg" in (get("p.svg") or ""), "no plot")])
     if not made:
-        rows.append(("decimal comma", "-", "not tried", "localedef cannot make de_DE.UTF-8 here"))
+        not_tried("decimal comma", "localedef cannot make de_DE.UTF-8 here")
 
 
 def paths():
@@ -284,37 +306,47 @@ def whole(out):
     return page
 
 
-def kill_reports():
-    generator, at = random.Random(20240229), []
-    done = None
-    for number in range(kills):
-        child = subprocess.Popen([program, "report", "--quiet", "--out", "killed", "--jobs", "2"],
-                                 cwd=folder, start_new_session=True, stderr=subprocess.DEVNULL)
-        moment = generator.uniform(0, 6) if number % 4 else generator.uniform(0, 0.3)
-        with contextlib.suppress(subprocess.TimeoutExpired):
-            child.wait(moment)
-        # sometimes only the parent: its workers must not go on for long
-        (os.kill if number % 2 else os.killpg)(child.pid, signal.SIGKILL)
-        child.wait()
-        whole("killed")
-        at.append(moment)
-    for path, _, files in os.walk(os.path.join(folder, "killed")):
-        for name in files:
-            if ".part" in name: # what a kill leaves; one half-written file each at most
-                os.unlink(os.path.join(path, name))
-    done = sphproof("report", "--out", "killed", "--jobs", "2", timeout=900)
+def killed(fault, done, count, final, before, cache, also=()):
+    """A row for a command that was killed again and again, and then left to end."""
+    row(fault, final, 0, also=[
+        (not done.wrong, "; ".join(done.wrong[:3])),
+        (not kills.lost(before, kills.entries(cache)), "computed again, or lost, after the last kill"),
+        *also],
+        says="%d kills, %d with computations finished, %d in all: each was kept" % (
+            done.kills, done.halfway, done.kept))
+
+
+def kill_studies(count=STUDY_KILLS):
+    study = ["converge", "sod", "--n", "200,400,600,800", "--vary", "kernel,gradient", "--jobs", "2"]
+    cache = os.path.join(folder, "studies")
+    done, before = kills.kill([program, *study, "--cache", cache, "--quiet"], cache, count, 0.4,
+                              fine=(0, 1), cwd=folder)
+    sweep(parts(cache))  # a half-written file for each kill at most
+    final = sphproof(*study, "--cache", "studies", "--json", "kept.json")
+    fresh = sphproof(*study, "--json", "fresh.json")
+    kept, new = (json.loads(get(name) or "{}").get("orders") for name in ("kept.json", "fresh.json"))
+    final.returncode = 0 if final.returncode == fresh.returncode else final.returncode
+    killed("kill -9, study, %d times" % count, done, count, final, before, cache,
+           also=[(kept and kept == new, "other results than without kills")])
+
+
+def kill_reports(count):
+    generator, cache = random.Random(20240229), os.path.join(folder, "killed", "cache")
+    done, before = kills.kill([program, "report", "--quiet", "--out", "killed", "--jobs", "2"], cache,
+                              count, 3, look=lambda: whole("killed"), cwd=folder)
+    sweep(parts(folder))
+    final = sphproof("report", "--out", "killed", "--jobs", "2", timeout=900)
     results = json.loads(get("killed/results.json") or "{}")
-    found = results.get("found", 0)
     again = []
     for run in generator.sample(results.get("runs", []), min(3, len(results.get("runs", [])))):
         rerun = sphproof(*run["reproduce"].split()[1:], "--json", "-")
         again.append(json.loads(rerun.stdout)["errors"] == run["errors"])
-    row("kill -9, %d times" % kills, done, 0, also=[
-        (whole("killed"), "no page"), (kills < 5 or found > 0, "nothing was kept"),
-        (again and all(again), "other results than a run of its own")],
-        says="%d of %d computations were kept over the kills" % (found,
-                                                              results.get("computations", 0)))
-    cached_reports(os.path.join(folder, "killed", "cache"))
+    killed("kill -9, report, %d times" % count, done, count, final, before, cache, also=[
+        (whole("killed"), "no page"),
+        (results.get("found") == len(before), "%s computations were found of %d that were kept" % (
+            results.get("found"), len(before))),
+        (again and all(again), "other results than a run of its own")])
+    cached_reports(cache)
 
 
 def cached_reports(cache):
@@ -338,23 +370,61 @@ def cached_reports(cache):
                                         ("All is well" in get("killed/index.html"), "no verdict")])
 
 
-def main():
-    shutil.rmtree(folder, ignore_errors=True)
+PARTS = {"disk": disk, "permissions": permissions, "gnuplot": drawing, "locale": decimal_comma,
+         "paths": paths, "streams": streams, "interrupts": interrupts, "memory": memory, "threads": threads,
+         "studies": kill_studies, "reports": kill_reports}
+
+
+def document(seconds):
+    """A result document; its head is the one that the program writes."""
+    document = json.loads(sphproof("list", "kernels", "--json", "-").stdout)
+    del document["families"]
+    counts = {counted: sum(r["status"] == status for r in rows)
+              for counted, status in (("passed", "pass"), ("failed", "fail"), ("skipped", "skip"))}
+    result = {**document, "command": "faults", "faults": rows, "summary": counts, "seconds": seconds}
+    with open(os.path.join(here, "..", "schema", "sphproof-1.schema.json"), encoding="ascii") as file:
+        rules = json.load(file)
+    wrong = list(schema.Validator(rules).faults(result, rules))
+    assert not wrong, wrong
+    return result
+
+
+def main(arguments):
+    global part
+    began = time.monotonic()
     os.makedirs(folder)
-    shutil.copy(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "cases",
-                             "sod.ini"), os.path.join(folder, "good.ini"))
-    for part in (disk, permissions, drawing, decimal_comma, paths, streams, interrupts, memory,
-                 threads) + ((kill_reports,) if kills else ()):
-        part()
-    print("%-38s %4s  %-15s %s" % ("fault", "exit", "outcome", "message"))
-    for fault, status, outcome, message in rows:
-        print("%-38s %4s  %-15s %s" % (fault, status, outcome, message[:150]))
-    print("%d faults, %d answered wrongly" % (len(rows), len(faults)))
-    return bool(faults)
+    shutil.copy(os.path.join(here, "..", "..", "cases", "sod.ini"), os.path.join(folder, "good.ini"))
+    for part, try_all in PARTS.items():
+        if part == "reports" and arguments.kills:
+            try_all(arguments.kills)
+            for r in rows:
+                r["command"] += " --kills %d" % arguments.kills if r["part"] == part else ""
+        elif part != "reports" and part in (arguments.part or PARTS):
+            try_all()
+    result = document(time.monotonic() - began)
+    if arguments.json:
+        with open(arguments.json + ".new", "w", encoding="utf-8") as file:
+            json.dump(result, file, indent=1)
+        os.replace(arguments.json + ".new", arguments.json)
+    print("%-38s %4s  %-6s %s" % ("fault", "exit", "status", "message"))
+    for r in rows:
+        print("%-38s %4s  %-6s %s" % (r["fault"], "-" if r["exit"] is None else r["exit"], r["status"],
+                                      r["detail"] or r["message"][:150]))
+    print("%d faults, %d answered wrongly" % (len(rows), result["summary"]["failed"]))
+    return result["summary"]["failed"] > 0
 
 
 if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("sphproof")
+    parser.add_argument("part", nargs="*", metavar="PART", help=" ".join(PARTS))
+    parser.add_argument("--kills", type=int, default=0)
+    parser.add_argument("--json")
+    given = parser.parse_intermixed_args()
+    if set(given.part) - set(PARTS):
+        parser.error("no part %s; allowed: %s" % (" ".join(set(given.part) - set(PARTS)), " ".join(PARTS)))
+    program = os.path.abspath(given.sphproof)
     with tempfile.TemporaryDirectory() as temporary: # a place that others may enter, for `nobody`
         os.chmod(temporary, 0o755)
         folder = os.path.join(temporary, "faults")
-        sys.exit(main())
+        sys.exit(main(given))

@@ -38,7 +38,11 @@ static const char *const results_text =
     "'verify': {'checks': [{'group': 'kernels', 'name': 'sign', 'subject': 'q < 1 & more',"
     " 'property': 'W >= 0', 'value': 1e-16, 'bound': 1e-15, 'floor': 0, 'status': 'pass',"
     " 'seconds': 0.1}], 'mutants': [{'group': 'kernels', 'check': 'sign', 'mutant': 'minus',"
-    " 'value': 1, 'bound': 1e-15, 'detected': true}], 'summary': {'mutants': 1, 'detected': 1}}}";
+    " 'value': 1, 'bound': 1e-15, 'detected': true}], 'summary': {'mutants': 1, 'detected': 1}},"
+    "'faults': {'git': 'abc', 'date': '2001-02-03', 'faults': [{'fault': 'list | <head', 'part':"
+    " 'streams', 'exit': 0, 'status': 'pass', 'detail': '', 'message': 'said so', 'command':"
+    " 'faults.py streams'}, {'fault': 'full disk', 'part': 'disk', 'exit': null, 'status': 'skip',"
+    " 'detail': '', 'message': 'no disk', 'command': 'faults.py disk'}]}}";
 
 /* With its verdict. */
 static json_t *judged(json_t *results)
@@ -71,6 +75,7 @@ static json_t *unsound(void)
 {
     json_t *results = sound(), *run = first(results, "runs"), *study = first(results, "studies");
     json_t *verify = json_object_get(results, "verify");
+    json_t *faults = json_object_get(results, "faults");
     json_object_set_new(run, "status", json_string("broke_down"));
     json_object_set_new(run, "message", json_string("particle 7 <negative u>"));
     json_object_set_new(first(study, "orders"), "status", json_string("fail"));
@@ -78,6 +83,9 @@ static json_t *unsound(void)
     json_object_set_new(first(verify, "checks"), "status", json_string("fail"));
     json_object_set_new(first(verify, "checks"), "value", json_string("nan"));
     json_object_set_new(first(verify, "mutants"), "detected", json_false());
+    json_object_set_new(first(faults, "faults"), "status", json_string("fail"));
+    json_object_set_new(first(faults, "faults"), "detail", json_string("exit 1, not 0"));
+    json_object_set_new(faults, "git", json_string("def"));
     return judged(results);
 }
 
@@ -104,6 +112,9 @@ static void good_page(void **state)
                                     "sphproof run sod",
                                     "sphproof converge sod",
                                     "cubic spline, ia",
+                                    "<b>1</b><span> of 1</span><br/>faults around it",
+                                    "list | &lt;head",
+                                    "faults.py disk",
                                     "4.61e-3"};
     judge_page(sound(), contents, sizeof contents / sizeof *contents);
 }
@@ -111,9 +122,10 @@ static void good_page(void **state)
 static void bad_page(void **state)
 {
     (void)state;
-    const char *const contents[] = {"<h1>4 failures</h1>", "particle 7 &lt;negative u&gt;",
+    const char *const contents[] = {"<h1>5 failures</h1>", "particle 7 &lt;negative u&gt;",
                                     "is too low",          "nan is not &lt;= 1.00e-15",
-                                    "&#39;minus&#39;",     "sphproof verify --mutants"};
+                                    "&#39;minus&#39;",     "sphproof verify --mutants",
+                                    "exit 1, not 0",       "with another build (git def)"};
     judge_page(unsound(), contents, sizeof contents / sizeof *contents);
 }
 
@@ -159,9 +171,9 @@ static void junit(void **state)
     char *passes = page_junit(good), *fails = page_junit(bad);
     if (!markup_well_formed(passes, fault, sizeof fault)) fail_msg("%s", fault);
     if (!markup_well_formed(fails, fault, sizeof fault)) fail_msg("%s", fault);
-    assert_int_equal(occurrences(passes, "<testcase "), 4);
+    assert_int_equal(occurrences(passes, "<testcase "), 6);
     assert_int_equal(occurrences(passes, "<failure "), 0);
-    assert_int_equal(occurrences(fails, "<failure "), 4);
+    assert_int_equal(occurrences(fails, "<failure "), 5);
     free(passes);
     free(fails);
     json_decref(good);
@@ -175,8 +187,8 @@ static void summary(void **state)
     char *passes = page_summary(good), *fails = page_summary(bad);
     assert_non_null(strstr(passes, "All is well"));
     assert_non_null(strstr(passes, "| sod | ia | 1.00 | 0.90 to 1.10 |"));
-    assert_non_null(strstr(fails, "4 failures"));
-    assert_int_equal(occurrences(fails, "\n- **"), 4);
+    assert_non_null(strstr(fails, "5 failures"));
+    assert_int_equal(occurrences(fails, "\n- **"), 5);
     free(passes);
     free(fails);
     json_decref(good);

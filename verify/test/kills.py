@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""kill -9 at random moments of a command that keeps what it has finished in a cache: what was
+finished at a kill is there after it, and is never computed again.
+
+A kill that comes before anything is finished shows nothing. So every second kill waits for one more
+finished computation than there was before, however slow the machine, and a command that ends before
+its kill begins anew from nothing."""
+import contextlib
+import os
+import random
+import shutil
+import signal
+import subprocess
+import time
+
+PATIENCE = 300  # seconds until one more computation must be finished
+
+
+class Killed:
+    def __init__(self):
+        self.kills = 0    # the command was still running
+        self.halfway = 0  # and some of its computations were finished, but not all
+        self.kept = 0     # finished computations, summed over the kills
+        self.whole = 0    # times that the command ended well before its kill
+        self.wrong = []
+
+
+def entries(cache):
+    """What is finished; an entry that is written again is another file."""
+    names = os.listdir(cache) if os.path.isdir(cache) else []
+    return {name: os.stat(os.path.join(cache, name)).st_ino for name in names if name.endswith(".entry")}
+
+
+def lost(before, now):
+    return ["%s was %s" % (name, "computed again" if name in now else "lost")
+            for name, file in before.items() if now.get(name) != file]
+
+
+def wait(child, cache, least, moment):
+    """Until so many computations are finished, then for a moment; whether there is something to kill."""
+    until = time.monotonic() + PATIENCE
+    while child.poll() is None and len(entries(cache)) < least and time.monotonic() < until:
+        time.sleep(0.01)
+    with contextlib.suppress(subprocess.TimeoutExpired):
+        child.wait(moment)
+    return child.poll() is None
+
+
+def kill(command, cache, count, longest, look=lambda: None, fine=(0,), **options):
+    """Kills the command `count` times, a random time up to `longest` seconds each; look() is called
+    after each kill. cache: what the command keeps; it is emptied at the start."""
+    done, generator, before = Killed(), random.Random(20240229), {}
+    shutil.rmtree(cache, ignore_errors=True)
+    while done.kills < count and done.whole < 4 * count and not done.wrong:
+        at_random = (done.kills + done.whole) % 2
+        child = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                                 stderr=subprocess.PIPE, start_new_session=True, **options)
+        alive = wait(child, cache, 0 if at_random else len(before) + 1, generator.uniform(0, longest))
+        if alive:  # sometimes only the parent: what its workers finish counts, too
+            (os.kill if generator.random() < 0.3 else os.killpg)(child.pid, signal.SIGKILL)
+        said = child.stderr.read().decode(errors="replace")  # ends with the last of the workers
+        child.stderr.close()
+        child.wait()
+        now = entries(cache)
+        done.wrong += lost(before, now)
+        look()
+        if alive:
+            done.kills += 1
+            done.kept += len(now)
+            done.halfway += bool(now)
+            before = now
+            continue
+        done.whole += 1
+        if child.returncode not in fine:
+            done.wrong.append("exit %d: %s" % (child.returncode, said.strip()[-200:]))
+        shutil.rmtree(cache, ignore_errors=True)
+        before = {}
+    if done.kills < count and not done.wrong:
+        done.wrong.append("only %d kills of %d" % (done.kills, count))
+    if not done.halfway:
+        done.wrong.append("no kill came between two computations")
+    return done, before
