@@ -197,7 +197,8 @@ static void close_range(struct simulation *simulation, const struct range *range
                         const struct density_sums *sums)
 {
     const struct gas gas = {simulation->gamma, simulation->scheme.kernel.constant[1],
-                            simulation->scheme.eta};
+                            simulation->scheme.eta,
+                            range->predicted ? simulation->scheme.integrator->follow : 0};
     range_close(&simulation->particles, range->first, range->len, &simulation->plan, &gas, sums);
 }
 

@@ -16,6 +16,9 @@ struct integrator {
     int evaluations;    /* of the rates, a step */
     double cfl;         /* default of the key cfl, in support radii; see the member's comment */
     bool cfl_per_width; /* the default is cfl / eta: in particle spacings */
+    /* where h is predicted: P = P(rho, U) (1 - follow (gamma - 1)(V/V_predicted - 1)), 0 for none;
+     * see predicted_midpoint.h */
+    double follow;
     bool signal_pass;   /* velocities change after the last rates: time step by a pass of its own */
     bool ends_evaluated; /* the derived fields at the end of a step belong to its state */
     /* Advances the state (x, p, e, alpha) by dt; rates of the state are there when it begins. */

@@ -87,6 +87,7 @@ ALWAYS_INLINE void close_body(const struct particles *particles, ptrdiff_t first
                      *restrict rho = particles->rho + first, *restrict P = particles->P + first,
                      *restrict c = particles->c + first, *restrict g = particles->g + first;
     const double constant = gas->constant, eta_inverse = 1 / gas->eta, gamma_1 = gas->gamma - 1;
+    const double follow = gas->follow * gamma_1;
 #pragma omp simd
     for (int i = 0; i < len; i++) {
         const double scale = constant * h_inverse[i], sum = scale * sums->m[i];
@@ -101,8 +102,8 @@ ALWAYS_INLINE void close_body(const struct particles *particles, ptrdiff_t first
         } else {
             V[i] = m[i] / sum;
             rho[i] = sum;
-            P[i] = gamma_1 * sum * u;
             h[i] = gas->eta * V[i];
+            P[i] = gamma_1 * sum * u * largest(0.5, 1 + follow * (1 - h[i] * h_inverse[i]));
         }
         c[i] = sqrt(gas->gamma * gamma_1 * u);
         if (own_gradient) g[i] = scale * h_inverse[i];

@@ -21,9 +21,10 @@ double range_inside(const struct particles *particles, ptrdiff_t first, int len,
 /* 1/h for the next density sum: as last found, extrapolated by ratio times its last change. */
 void range_predict_width(const struct particles *particles, ptrdiff_t first, int len, double ratio);
 
-/* The numbers of the equation of state: constant = C_1 of the kernel. */
+/* The numbers of the equation of state: constant = C_1 of the kernel; follow = how strongly the
+ * pressure follows a volume that was predicted too small or too large (integrator.h). */
 struct gas {
-    double gamma, constant, eta;
+    double gamma, constant, eta, follow;
 };
 
 /* Equation of state and what the pair sums need of it; h as the sum of mass has found it. */

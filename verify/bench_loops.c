@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "integrator.h"
 #include "loop.h"
 #include "range.h"
 
@@ -83,7 +84,8 @@ static void run_range(struct bench_loops *loops, ptrdiff_t first, int len)
     if (state) range_predict_width(a, first, len, 1);
     if (passes & 1u << PASS_DENSITY) {
         loops->loops.density(kernel, a, first, len, loops->reach, a->h_inverse + first, &sums);
-        const struct gas gas = {gamma_gas, kernel->constant[1], loops->scheme.eta};
+        const struct gas gas = {gamma_gas, kernel->constant[1], loops->scheme.eta,
+                                loops->scheme.integrator->follow};
         if (state)
             range_close(a, first, len, &loops->plan, &gas, &sums);
         else

@@ -116,10 +116,34 @@ static enum status solve_h(struct oracle *oracle, size_t i, struct error *error)
     return error_set(error, STATUS_BROKE_DOWN, "oracle: particle %zu has no smoothing length", i);
 }
 
+/* h_method predicted: one sum at 1/h extrapolated from the last two, kept within a factor of 2. The
+ * sums and gradients keep that width, h itself is what the sum asks for. */
+static void predict_h(struct oracle *oracle, size_t i)
+{
+    struct oracle_particle *a = &oracle->particles[i];
+    long double drho, dy, next = a->found + oracle->ahead * (a->found - a->found_before);
+    if (next < a->found / 2) next = a->found / 2;
+    if (next > a->found * 2) next = a->found * 2;
+    a->found_before = a->found;
+    a->width = 1 / next;
+    sum_density(oracle, i, a->width, &a->rho_sum, &drho, &a->y, &dy);
+    a->grad_h_rho = a->width / a->rho_sum * drho;
+    a->grad_h_y = a->width / a->rho_sum * dy;
+    a->h = oracle->scheme.eta * a->m / a->rho_sum;
+}
+
+/* The pressure follows a volume that was predicted wrong. */
+static long double follow(const struct oracle *oracle, const struct oracle_particle *a)
+{
+    const long double weight = oracle->scheme.integrator->follow * (oracle->gamma - 1);
+    return larger(1 - weight * (a->h / a->width - 1), 0.5L);
+}
+
 static enum status find_state(struct oracle *oracle, struct error *error)
 {
     const bool total = oracle->scheme.energy == ENERGY_TOTAL;
     const bool energy = oracle->scheme.volume_element == VOLUME_ENERGY;
+    const bool predicted = oracle->scheme.h_method == H_PREDICTED && oracle->last_dt > 0;
     for (size_t i = 0; i < oracle->n; i++) {
         struct oracle_particle *a = &oracle->particles[i];
         a->v = a->p / a->m;
@@ -129,12 +153,20 @@ static enum status find_state(struct oracle *oracle, struct error *error)
     }
     for (size_t i = 0; i < oracle->n; i++) {
         struct oracle_particle *a = &oracle->particles[i];
-        const enum status status = solve_h(oracle, i, error);
-        if (status) return status;
+        if (predicted) {
+            predict_h(oracle, i);
+        } else {
+            const enum status status = solve_h(oracle, i, error);
+            if (status) return status;
+            a->width = a->h;
+            a->found_before = 1 / a->h;
+        }
+        a->found = 1 / a->h;
         a->V = (energy ? a->U : a->m) / a->y;
         a->rho = energy ? a->m * a->y / a->U : a->rho_sum;
         a->P = (oracle->gamma - 1) * (energy ? a->y : a->rho * a->U / a->m);
         a->c = sqrtl(oracle->gamma * a->P / a->rho);
+        if (predicted && !energy) a->P *= follow(oracle, a);
     }
     for (size_t i = 0; i < oracle->n; i++) {
         struct oracle_particle *a = &oracle->particles[i];
@@ -142,7 +174,7 @@ static enum status find_state(struct oracle *oracle, struct error *error)
         for (size_t j = 0; j < oracle->n; j++)
             for (int k = -1; k <= 1; k++) {
                 const struct oracle_particle *b = &oracle->particles[j];
-                const long double x = separation(oracle, i, j, k), w = W(oracle, x, a->h);
+                const long double x = separation(oracle, i, j, k), w = W(oracle, x, a->width);
                 tau += b->V * x * x * w;
                 slope += b->V * (b->v - a->v) * x * w;
             }
@@ -165,7 +197,7 @@ static long double gradient(const struct oracle *oracle, long double x, long dou
 static long double single_gradient(const struct oracle *oracle, const struct oracle_particle *a,
                                    const struct oracle_particle *b, long double x, long double h)
 {
-    return gradient(oracle, x, h, (a->C / a->h + b->C / b->h) / 2 * h);
+    return gradient(oracle, x, h, (a->C / a->width + b->C / b->width) / 2 * h);
 }
 
 static long double mean_gradient(const struct oracle *oracle, const struct oracle_particle *a,
@@ -173,11 +205,11 @@ static long double mean_gradient(const struct oracle *oracle, const struct oracl
 {
     switch (oracle->scheme.pair_width) {
     case PAIR_MAX:
-        return single_gradient(oracle, a, b, x, larger(a->h, b->h));
+        return single_gradient(oracle, a, b, x, larger(a->width, b->width));
     case PAIR_HARMONIC:
-        return single_gradient(oracle, a, b, x, 2 * a->h * b->h / (a->h + b->h));
+        return single_gradient(oracle, a, b, x, 2 * a->width * b->width / (a->width + b->width));
     default:
-        return (gradient(oracle, x, a->h, a->C) + gradient(oracle, x, b->h, b->C)) / 2;
+        return (gradient(oracle, x, a->width, a->C) + gradient(oracle, x, b->width, b->C)) / 2;
     }
 }
 
@@ -192,7 +224,8 @@ static long double viscous_velocity(const struct oracle *oracle, const struct or
     const long double sum = a->slope + b->slope;
     long double phi = sum == 0 ? 0 : 4 * a->slope * b->slope / (sum * sum);
     phi = phi < 0 ? 0 : phi > 1 ? 1 : phi;
-    const long double q = fabsl(x) / larger(a->h, b->h), near = 1 / (long double)oracle->scheme.eta;
+    const long double q = fabsl(x) / larger(a->width, b->width),
+                      near = 1 / (long double)oracle->scheme.eta;
     if (q < near) phi *= expl(-((q - near) / 0.2L) * ((q - near) / 0.2L));
     return v_ij + phi / 2 * sum * x;
 }
@@ -232,8 +265,8 @@ static void add_pair(struct oracle *oracle, struct oracle_particle *a,
         a->F -= Zi * Zj * (a->P + b->P) / (a->y * b->y) * G;
         a->dU += a->P * Zi * Zj / (a->y * b->y) * v_ij * G;
     } else {
-        const long double Gi = gradient(oracle, x, a->h, a->C);
-        const long double Gj = gradient(oracle, x, b->h, b->C);
+        const long double Gi = gradient(oracle, x, a->width, a->C);
+        const long double Gj = gradient(oracle, x, b->width, b->C);
         const long double fi = grad_h_factor(oracle, a, b), fj = grad_h_factor(oracle, b, a);
         a->F -= Zi * Zj * (fi * a->P / (a->y * a->y) * Gi + fj * b->P / (b->y * b->y) * Gj);
         a->dU += fi * a->P / (a->y * a->y) * Zi * Zj * v_ij * Gi;

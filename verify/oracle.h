@@ -12,7 +12,8 @@ struct oracle_particle {
     /* state: position (unwrapped), mass, momentum, energy (U or E as the scheme says), viscosity */
     long double x, m, p, e, alpha;
     /* of the state */
-    long double v, U, h, rho_sum, y, V, rho, P, c;
+    long double v, U, h, width, rho_sum, y, V, rho, P, c;
+    long double found, found_before;  /* 1/h of the last two density sums */
     long double grad_h_rho, grad_h_y; /* h/rho_sum times d rho_sum/dh, dy/dh */
     long double C;                    /* 1/sum V x^2 W */
     long double slope;                /* linear_exact gradient of v */
@@ -24,6 +25,7 @@ struct oracle {
     struct scheme scheme;
     struct oracle_kernel kernel;
     long double lo, period, gamma, time;
+    long double last_dt, ahead; /* h_method predicted: by how many last changes of 1/h */
     size_t n, steps;
     struct oracle_particle *particles; /* in the scene's order */
     struct oracle_particle *start;     /* n, workspace of the integrators */

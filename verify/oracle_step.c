@@ -163,6 +163,9 @@ enum status oracle_step(struct oracle *oracle, long double dt, struct error *err
         {"predicted_midpoint", predicted_midpoint},
     };
     const char *name = oracle->scheme.integrator->member.name;
+    /* density sums stand in the middle of the steps */
+    oracle->ahead = oracle->last_dt > 0 ? (oracle->last_dt + dt) / (2 * oracle->last_dt) : 0;
+    oracle->last_dt = dt;
     for (size_t i = 0; i < sizeof table / sizeof *table; i++)
         if (strcmp(name, table[i].name) == 0) {
             const enum status status = table[i].step(oracle, dt, error);
@@ -178,7 +181,7 @@ long double oracle_time_step(const struct oracle *oracle)
     long double least = INFINITY;
     for (size_t i = 0; i < oracle->n; i++) {
         const struct oracle_particle *a = &oracle->particles[i];
-        least = fminl(least, a->h / a->signal);
+        least = fminl(least, a->width / a->signal);
     }
     return oracle->scheme.cfl * least;
 }

@@ -258,7 +258,6 @@ enum status settings_resolve(struct settings *settings, int dim, struct scheme *
     const bool standard = CHOICE_OF(gradient) == GRADIENT_STANDARD;
     const bool reconstructed = CHOICE_OF(viscosity) == VISCOSITY_RECONSTRUCTED;
     fill(settings, SETTING_eta, kernel.default_eta, 0);
-    fill(settings, SETTING_cfl, predicted ? 0.8 / REAL_OF(eta) : integrator->cfl, 0);
     fill(settings, SETTING_energy, 0, predicted ? ENERGY_TOTAL : ENERGY_INTERNAL);
     fill(settings, SETTING_alpha, quadratic && predicted ? 0.75 : 1, 0);
     fill(settings, SETTING_beta, 2 * REAL_OF(alpha), 0);
@@ -268,6 +267,16 @@ enum status settings_resolve(struct settings *settings, int dim, struct scheme *
          : reconstructed         ? PAIR_HARMONIC
          : quadratic && standard ? PAIR_MAX
                                  : PAIR_MEAN);
+    /* steps that are stable with this much viscosity, and not needed without */
+    const int viscosity = CHOICE_OF(viscosity);
+    const double most_alpha =
+        viscosity == VISCOSITY_TIME_DEPENDENT ? REAL_OF(alpha_max) : REAL_OF(alpha);
+    const bool long_steps = quadratic && standard && REAL_OF(eta) == kernel.default_eta &&
+                            viscosity != VISCOSITY_NONE && most_alpha <= 0.75 &&
+                            CHOICE_OF(h_method) == H_PREDICTED &&
+                            CHOICE_OF(volume_element) == VOLUME_MASS;
+    fill(settings, SETTING_cfl,
+         predicted ? (long_steps ? 1.1 : integrator->cfl) / REAL_OF(eta) : integrator->cfl, 0);
     *scheme = (struct scheme){
         .kernel = kernel,
         .gradient = (enum gradient)CHOICE_OF(gradient),

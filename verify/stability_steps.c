@@ -18,20 +18,23 @@ struct wave_step {
     struct stability_response r;
     double h, dt, s[STATES];
     bool predicted;
-    double ratio; /* how far the next width is extrapolated: 1; 0 in the first step */
+    double follow; /* dU for a volume that was predicted wrong, over h times the error of 1/h */
+    double ratio;  /* how far the next width is extrapolated: 1; 0 in the first step */
 };
 
 static void evaluate(struct wave_step *w)
 {
-    double *s = w->s, H;
+    double *s = w->s, H, U = s[E];
     if (w->predicted) {
-        H = -w->h * w->h * (s[FOUND] + w->ratio * (s[FOUND] - s[LAST]));
+        const double expected = s[FOUND] + w->ratio * (s[FOUND] - s[LAST]);
+        H = -w->h * w->h * expected;
         s[LAST] = s[FOUND];
         s[FOUND] = w->r.found_x * s[X] + w->r.found_h * H;
+        U += w->follow * w->h * (s[FOUND] - expected);
     } else {
         H = -w->r.found_x * s[X] / (1 / (w->h * w->h) + w->r.found_h);
     }
-    s[FORCE] = w->r.force_x * s[X] + w->r.force_v * s[V] + w->r.force_u * s[E] + w->r.force_h * H;
+    s[FORCE] = w->r.force_x * s[X] + w->r.force_v * s[V] + w->r.force_u * U + w->r.force_h * H;
     s[HEAT] = w->r.energy_v * s[V];
 }
 
@@ -152,6 +155,10 @@ static struct wave_step begin(const struct stability *lattice, double dt)
     return (struct wave_step){.h = lattice->h,
                               .dt = dt,
                               .ratio = 1,
+                              .follow = lattice->scheme.volume_element == VOLUME_MASS
+                                            ? lattice->scheme.integrator->follow *
+                                                  (lattice->gamma - 1) * lattice->u
+                                            : 0,
                               .predicted = lattice->scheme.h_method == H_PREDICTED};
 }
 

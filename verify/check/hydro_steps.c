@@ -28,13 +28,19 @@ static size_t subject_count(void)
 {
     if (subject_total) return subject_total;
     for (size_t i = 0; i < integrator_family.n; i++)
-        for (int c = 0; c < 7; c++) {
+        for (int c = 0; c < 9; c++) {
             struct scheme s = hydro_scheme();
             s.integrator = (const struct integrator *)integrator_family.members[i];
             s.cfl = s.integrator->cfl_per_width ? 0.4 : s.integrator->cfl;
             s.viscosity = c % 3 == 0 ? VISCOSITY_TIME_DEPENDENT : VISCOSITY_CONSTANT;
             s.energy = c % 2 ? ENERGY_TOTAL : ENERGY_INTERNAL;
             if (c == 2 || c == 3) s.gradient = GRADIENT_IA;
+            if (c >= 7) { /* widths that are predicted, once as by default */
+                s.h_method = H_PREDICTED;
+                s.pair_width = c == 7 ? PAIR_MAX : PAIR_HARMONIC;
+                if (c == 7) hydro_set_kernel(&s, "quadratic_spline");
+                if (c == 8) s.gradient = GRADIENT_IA, s.viscosity = VISCOSITY_RECONSTRUCTED;
+            }
             if (c == 6) s.viscosity = VISCOSITY_NONE, s.eta = 4.8; /* coincident ones have an h */
             if (c == 4 || c == 5) {
                 s.formulation = FORMULATION_LAGRANGIAN;

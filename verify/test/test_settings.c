@@ -37,7 +37,7 @@ static void defaults_are_the_fastest_scheme(void **state)
     assert_string_equal(s.kernel.member.name, "quadratic_spline");
     assert_string_equal(s.integrator->member.name, "predicted_midpoint");
     near_relative(s.eta, 1.5, 1e-15);
-    near_relative(s.cfl, 0.8 / 1.5, 1e-15);
+    near_relative(s.cfl, 1.1 / 1.5, 1e-15);
     near_relative(s.alpha, 0.75, 1e-15);
     near_relative(s.beta, 1.5, 1e-15);
     assert_int_equal(s.energy, ENERGY_TOTAL);
