@@ -13,7 +13,7 @@
 #include <omp.h>
 #endif
 
-enum { NEWTON_MAX = 200, NO_GHOSTS = -2 };
+enum { NEWTON_MAX = 200, NO_GHOSTS = -2, RESERVE = 8 };
 
 static int thread_number(void)
 {
@@ -403,6 +403,17 @@ enum status evaluate_rates_of_primitives(struct simulation *simulation, struct e
     limit_time_step(simulation);
     count_work(simulation);
     return STATUS_OK;
+}
+
+enum status evaluate_reserve(struct simulation *simulation, struct error *error)
+{
+    const ptrdiff_t reach = RESERVE * find_force_reach(simulation);
+    if (reach + 8 > simulation->particles.ghosts) {
+        const enum status status = particles_grow_ghosts(&simulation->particles, reach + 8, error);
+        if (status) return status;
+        simulation->ghosts_filled = 0;
+    }
+    return reserve_scratch(simulation, reach, error);
 }
 
 void evaluate_signal(struct simulation *simulation)

@@ -135,6 +135,8 @@ enum status simulation_create(const struct scene *scene, struct simulation **res
     set_particles(simulation, scene);
     status = evaluate_rates(simulation, error);
     if (status) goto failed;
+    status = evaluate_reserve(simulation, error);
+    if (status) goto failed;
     status = sleep_begin(simulation, simulation->plan.sleep, error);
     if (status) goto failed;
     *result = simulation;

@@ -70,6 +70,8 @@ size_t plan_explain(const struct scene *scene, struct plan_line *lines, size_t m
 
 struct simulation;
 
+/* Allocates all that a run needs; simulation_run asks for more only where neighbours get eight
+ * times as far apart in the order of positions as they are at the start. */
 enum status simulation_create(const struct scene *scene, struct simulation **simulation,
                               struct error *error);
 /* Called now and then with the current time; return false to stop (STATUS_OK, time < t_end). */

@@ -59,6 +59,11 @@ enum status evaluate_rates_of_primitives(struct simulation *simulation, struct e
 /* The time-step limit alone, where velocities have changed since the last rates. */
 void evaluate_signal(struct simulation *simulation);
 
+/* After the first rates: sets memory aside for neighbours eight times as far apart in the order as
+ * they are then, which is more than a shock brings. Only where they get beyond that does a step
+ * ask for memory, each time for half as much again at least. */
+enum status evaluate_reserve(struct simulation *simulation, struct error *error);
+
 /* A breakdown at particle i: quantity = value, at the current time. Returns STATUS_BROKE_DOWN. */
 enum status broke_down(const struct simulation *simulation, ptrdiff_t i, const char *quantity,
                        double value, struct error *error);

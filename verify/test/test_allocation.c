@@ -1,0 +1,141 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * No memory is asked for or given back while a simulation steps. The linker's --wrap brings every
+ * such call of the project, and every simulation_run, here first: calls inside of it are counted.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "run.h"
+
+static atomic_bool stepping;
+static atomic_int calls;
+
+static void count(void)
+{
+    if (stepping) calls++;
+}
+
+/* WRAP(type, name, parameters, arguments): the name that the linker gives to calls of name. */
+#define WRAP(type, name, parameters, arguments)                                                    \
+    type __real_##name parameters;                                                                 \
+    type __wrap_##name parameters;                                                                 \
+    type __wrap_##name parameters                                                                  \
+    {                                                                                              \
+        count();                                                                                   \
+        return __real_##name arguments;                                                            \
+    }
+WRAP(void *, malloc, (size_t size), (size))
+WRAP(void *, calloc, (size_t n, size_t size), (n, size))
+WRAP(void *, realloc, (void *memory, size_t size), (memory, size))
+WRAP(void *, aligned_alloc, (size_t alignment, size_t size), (alignment, size))
+
+void __real_free(void *memory);
+void __wrap_free(void *memory);
+void __wrap_free(void *memory)
+{
+    count();
+    __real_free(memory);
+}
+
+enum status __real_simulation_run(struct simulation *simulation, double t_end,
+                                  simulation_progress *progress, void *context,
+                                  struct error *error);
+enum status __wrap_simulation_run(struct simulation *simulation, double t_end,
+                                  simulation_progress *progress, void *context,
+                                  struct error *error);
+enum status __wrap_simulation_run(struct simulation *simulation, double t_end,
+                                  simulation_progress *progress, void *context, struct error *error)
+{
+    stepping = true;
+    const enum status status = __real_simulation_run(simulation, t_end, progress, context, error);
+    stepping = false;
+    return status;
+}
+
+/* Calls while a case with these keys (words, separated by spaces) steps. */
+static int calls_in(const char *case_name, const char *keys, int threads,
+                    simulation_progress *progress)
+{
+    char text[256], *words[16];
+    int n = 0;
+    struct run_settings settings;
+    struct run_result result;
+    struct error error;
+    assert_true(strlen(keys) < sizeof text);
+    strcpy(text, keys);
+    for (char *word = strtok(text, " "); word; word = strtok(NULL, " ")) words[n++] = word;
+    if (run_prepare(&settings, case_name, n, words, &error)) fail_msg("%s", error.message);
+    settings.threads = threads;
+    settings.progress = progress;
+    calls = 0;
+    const enum status status = run_execute(&settings, &result, &error);
+    if (status) fail_msg("%s %s: %s", case_name, keys, error.message);
+    assert_true(result.cost.steps > 0);
+    run_free(&result);
+    return calls;
+}
+
+/* A report of progress, which a simulation asks for while it steps, that takes memory. */
+static bool waste(void *context, double time, uint64_t steps)
+{
+    (void)context, (void)time, (void)steps;
+    char *volatile memory = malloc(100);
+    free(memory);
+    return true;
+}
+
+static void test_counts(void **state)
+{
+    (void)state;
+    if (calls_in("sod", "n=200", 1, waste) < 2) {
+        print_message("this linker does not wrap: allocations cannot be counted here\n");
+        skip();
+    }
+}
+
+static void test_no_calls(void **state)
+{
+    (void)state;
+    static const char *const schemes[] = {
+        "",
+        "skip=none lattice=clustered jitter=0.3",
+        "kernel=cubic_spline gradient=ia viscosity=reconstructed",
+        "kernel=cubic_spline eta=4.8 integrator=modified_leapfrog",
+        "kernel=quintic_spline eta=6 integrator=rk3 formulation=lagrangian volume_element=energy",
+        "kernel=wendland_c6 eta=16 integrator=vl2 viscosity=time_dependent gradient=ia",
+    };
+    for (const struct case_builtin *file = case_builtins; file->name; file++)
+        for (size_t s = 0; s < sizeof schemes / sizeof *schemes; s++) {
+            char keys[256] = "n=100 ";
+            strcat(keys, schemes[s]);
+            if (calls_in(file->name, keys, 1, NULL))
+                fail_msg("%s %s: %d calls of malloc, calloc, realloc, aligned_alloc or free",
+                         file->name, keys, calls);
+        }
+    assert_int_equal(calls_in("sod", "n=3000 t_end=0.01 skip=none", 2, NULL), 0);
+}
+
+/* Widths of half the box, whose neighbours are images of images: room is made now and then. */
+static void test_room_is_made_rarely(void **state)
+{
+    (void)state;
+    const int found = calls_in("two_rarefactions", "n=100 kernel=cubic_spline eta=40", 1, NULL);
+    assert_in_range(found, 0, 8);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_counts),
+        cmocka_unit_test(test_no_calls),
+        cmocka_unit_test(test_room_is_made_rarely),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
