@@ -104,6 +104,24 @@ static void checks(struct buffer *to, const json_t *verify)
     suite_end(to, "deliberate faults", &suite);
 }
 
+/* What the verdict has found beside what is a test case above or below. */
+static void others(struct buffer *to, const json_t *verdict)
+{
+    static const char *const areas[] = {"suspicion", "harness", "budget", "study", "stress"};
+    struct suite_writer suite = {0};
+    size_t i;
+    const json_t *failure;
+    json_array_foreach(json_object_get(verdict, "failures"), i, failure)
+    {
+        const char *area = html_string(failure, "area");
+        for (size_t k = 0; k < sizeof areas / sizeof *areas; k++)
+            if (!strcmp(area, areas[k]))
+                test_case(&suite, area, html_string(failure, "name"), "fail",
+                          html_string(failure, "detail"));
+    }
+    suite_end(to, "report", &suite);
+}
+
 static void faults(struct buffer *to, const json_t *faults)
 {
     struct suite_writer suite = {0};
@@ -124,6 +142,7 @@ char *page_junit(const json_t *results)
     buffer_add(&to, "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<testsuites name=\"sphproof\">\n");
     runs(&to, results);
     checks(&to, json_object_get(results, "verify"));
+    others(&to, json_object_get(results, "verdict"));
     faults(&to, json_object_get(results, "faults"));
     buffer_add(&to, "</testsuites>\n");
     return buffer_take(&to);

@@ -6,10 +6,11 @@
 #include <string.h>
 
 #include "buffer.h"
+#include "failure.h"
 #include "html.h"
 
 struct tally {
-    json_t *failures;
+    struct failure_list failures;
     int figures_passed, figures_failed, figures_skipped;
     int mutants, detected;
     int gates_passed, gates_failed;
@@ -22,9 +23,7 @@ static void fail(struct tally *tally, const char *area, const char *name, struct
                  const char *command)
 {
     char *text = buffer_take(detail);
-    json_array_append_new(tally->failures,
-                          json_pack("{s:s, s:s, s:s, s:s}", "area", area, "name", name, "detail",
-                                    text ? text : "", "command", command));
+    failure_add(&tally->failures, area, name, text, command);
     free(text);
 }
 
@@ -48,7 +47,10 @@ static void judge_figure(struct tally *tally, const json_t *figure)
     }
     buffer_format(&name, "%s: %s", html_string(figure, "group"), html_string(figure, "name"));
     buffer_format(&command, "sphproof verify %s", html_string(figure, "group"));
-    if (!name.failed && !command.failed) fail(tally, "check", name.data, &detail, command.data);
+    double excess = isfinite(value) && bound > 0 ? value / bound : (double)INFINITY;
+    failure_add_check(&tally->failures, html_string(figure, "group"), excess, name.data,
+                      detail.data, command.data);
+    buffer_free(&detail);
     buffer_free(&name);
     buffer_free(&command);
 }
@@ -97,8 +99,7 @@ static void judge_still_gas(struct tally *tally, const json_t *study, const json
     html_number(&detail, html_member(still, "value"));
     buffer_add(&detail, " of its sound speed, allowed is ");
     html_number(&detail, html_member(still, "bound"));
-    if (!name.failed)
-        fail(tally, "convergence", name.data, &detail, html_string(study, "reproduce"));
+    if (!name.failed) fail(tally, "budget", name.data, &detail, html_string(study, "reproduce"));
     buffer_free(&name);
 }
 
@@ -155,8 +156,7 @@ static void judge_study(struct tally *tally, const json_t *study)
     if (!strcmp(html_string(study, "status"), "broke_down")) {
         struct buffer detail = {0};
         buffer_format(&detail, "broke down: %s", html_string(study, "message"));
-        fail(tally, "convergence", html_string(study, "case"), &detail,
-             html_string(study, "reproduce"));
+        fail(tally, "study", html_string(study, "case"), &detail, html_string(study, "reproduce"));
     }
 }
 
@@ -179,10 +179,16 @@ static void judge_fault(struct tally *tally, const json_t *fault)
     fail(tally, "fault", html_string(fault, "fault"), &detail, html_string(fault, "command"));
 }
 
-static void headline(struct buffer *to, bool checked, size_t failures)
+static void headline(struct buffer *to, bool checked, const json_t *failures)
 {
-    if (failures)
-        buffer_format(to, "%zu %s", failures, failures == 1 ? "failure" : "failures");
+    size_t count = json_array_size(failures);
+    const json_t *first = json_array_get(failures, 0);
+    const char *area = html_string(first, "area");
+    bool check = !strcmp(area, "check"); /* its name begins with its group */
+    if (count)
+        buffer_format(to, "%zu %s%s%s%s", count,
+                      count == 1 ? "failure: " : "failures; look first at ", check ? "" : area,
+                      check ? "" : " ", html_string(first, "name"));
     else if (checked)
         buffer_add(to, "All is well");
     else
@@ -191,8 +197,7 @@ static void headline(struct buffer *to, bool checked, size_t failures)
 
 json_t *verdict_make(const json_t *results)
 {
-    struct tally tally = {.failures = json_array()};
-    if (!tally.failures) return NULL;
+    struct tally tally = {.runs = 0};
     size_t i;
     const json_t *entry;
     json_array_foreach(json_object_get(results, "runs"), i, entry) judge_run(&tally, entry);
@@ -210,8 +215,10 @@ json_t *verdict_make(const json_t *results)
 
     struct buffer words = {0};
     bool checked = tally.figures_passed + tally.gates_passed + tally.runs > 0;
-    size_t count = json_array_size(tally.failures);
-    headline(&words, checked, count);
+    json_t *failures = failure_take(&tally.failures);
+    if (!failures) return NULL;
+    size_t count = json_array_size(failures);
+    headline(&words, checked, failures);
     char *line = buffer_take(&words);
     json_t *verdict = json_pack(
         "{s:s, s:s, s:i, s:i, s:i, s:i, s:i, s:i, s:i, s:i, s:i, s:i, s:i, s:o}", "status",
@@ -220,7 +227,7 @@ json_t *verdict_make(const json_t *results)
         tally.figures_skipped, "mutants", tally.mutants, "mutants_detected", tally.detected,
         "gates_passed", tally.gates_passed, "gates_failed", tally.gates_failed, "runs", tally.runs,
         "broke_down", tally.broke_down, "faults", tally.faults, "faults_right", tally.faults_right,
-        "failures", tally.failures);
+        "failures", failures);
     free(line);
     return verdict;
 }

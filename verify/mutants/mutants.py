@@ -69,9 +69,28 @@ def read_list():
     return mutants
 
 
+def same(a, b):
+    with open(a, "rb") as x, open(b, "rb") as y:
+        return x.read() == y.read()
+
+
 def copy_tree(source, tree):
-    shutil.rmtree(tree, ignore_errors=True)
-    shutil.copytree(source, tree, ignore=shutil.ignore_patterns("build*", ".git", "out"))
+    """Makes tree like source. What is alike already stays untouched, what is not gets a new date:
+    a build of the tree then makes again just what an earlier fault, or an edit, has changed."""
+    ignore = shutil.ignore_patterns("build*", ".git", "out", "__pycache__")
+    os.makedirs(tree, exist_ok=True)
+    names = os.listdir(source)
+    names = set(names) - ignore(source, names)
+    for name in set(os.listdir(tree)) - names:
+        path = os.path.join(tree, name)
+        shutil.rmtree(path) if os.path.isdir(path) else os.remove(path)
+    for name in names:
+        old, new = os.path.join(source, name), os.path.join(tree, name)
+        if os.path.isdir(old):
+            copy_tree(old, new)
+        elif not (os.path.exists(new) and same(old, new)):
+            shutil.copyfile(old, new)
+            shutil.copymode(old, new)
 
 
 def quietly(command, **more):

@@ -122,10 +122,14 @@ static void good_page(void **state)
 static void bad_page(void **state)
 {
     (void)state;
-    const char *const contents[] = {"<h1>5 failures</h1>", "particle 7 &lt;negative u&gt;",
-                                    "is too low",          "nan is not &lt;= 1.00e-15",
-                                    "&#39;minus&#39;",     "sphproof verify --mutants",
-                                    "exit 1, not 0",       "with another build (git def)"};
+    const char *const contents[] = {"<h1>5 failures; look first at kernels: sign</h1>",
+                                    "particle 7 &lt;negative u&gt;",
+                                    "is too low",
+                                    "nan is not &lt;= 1.00e-15",
+                                    "&#39;minus&#39;",
+                                    "sphproof verify --mutants",
+                                    "exit 1, not 0",
+                                    "with another build (git def)"};
     judge_page(unsound(), contents, sizeof contents / sizeof *contents);
 }
 
@@ -187,7 +191,7 @@ static void summary(void **state)
     char *passes = page_summary(good), *fails = page_summary(bad);
     assert_non_null(strstr(passes, "All is well"));
     assert_non_null(strstr(passes, "| sod | ia | 1.00 | 0.90 to 1.10 |"));
-    assert_non_null(strstr(fails, "5 failures"));
+    assert_non_null(strstr(fails, "5 failures; look first at kernels: sign"));
     assert_int_equal(occurrences(fails, "\n- **"), 5);
     free(passes);
     free(fails);
@@ -195,12 +199,62 @@ static void summary(void **state)
     json_decref(bad);
 }
 
+static void add_figure(json_t *checks, const char *group, const char *name, const char *subject,
+                       double value)
+{
+    json_array_append_new(checks,
+                          json_pack("{s:s, s:s, s:s, s:f, s:f, s:s}", "group", group, "name", name,
+                                    "subject", subject, "value", value, "bound", 0.5, "status",
+                                    value <= 0.5 ? "pass" : "fail"));
+}
+
+/* A wrong kernel: its own check leads, by its worst figure; what follows from it comes after. */
+static void cause_first(void **state)
+{
+    (void)state;
+    json_t *results = sound(),
+           *checks = json_object_get(json_object_get(results, "verify"), "checks");
+    json_t *run = first(results, "runs"), *study = first(results, "studies");
+    json_object_set_new(run, "status", json_string("broke_down"));
+    json_object_set_new(study, "suspicion", json_string("the same error twice"));
+    json_object_set_new(first(study, "orders"), "status", json_string("fail"));
+    add_figure(checks, "hydro", "rates", "cubic", 5e9);
+    add_figure(checks, "kernels", "sign", "well", 0.1);
+    add_figure(checks, "kernels", "sign", "mild", 1);
+    add_figure(checks, "kernels", "slope", "steep", 40);
+    add_figure(checks, "kernels", "sign", "worst", 20);
+    add_figure(checks, "kernels", "sign", "middle", 2);
+    static const struct {
+        const char *name, *detail;
+    } expected[] = {{"kernels: slope", "steep: "},
+                    {"kernels: sign", "worst: "},
+                    {"hydro: rates", "cubic: "},
+                    {"sod", "too good to be true: the same error twice"},
+                    {"sod, ia: order of l1(density)", "1"},
+                    {"sod", "broke down: "}};
+    const json_t *failures =
+        json_object_get(json_object_get(judged(results), "verdict"), "failures");
+    assert_int_equal(json_array_size(failures), sizeof expected / sizeof *expected);
+    for (size_t k = 0; k < sizeof expected / sizeof *expected; k++) {
+        const json_t *failure = json_array_get(failures, k);
+        const char *detail = json_string_value(json_object_get(failure, "detail"));
+        assert_string_equal(json_string_value(json_object_get(failure, "name")), expected[k].name);
+        if (strncmp(detail, expected[k].detail, strlen(expected[k].detail))) fail_msg("%s", detail);
+        assert_int_equal(strstr(detail, "2 more figures") != NULL, k == 1);
+    }
+    char *junit_text = page_junit(results);
+    assert_non_null(strstr(junit_text, "the same error twice"));
+    free(junit_text);
+    json_decref(results);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(good_page),  cmocka_unit_test(bad_page),
-        cmocka_unit_test(empty_page), cmocka_unit_test(page_without_gnuplot),
-        cmocka_unit_test(junit),      cmocka_unit_test(summary),
+        cmocka_unit_test(good_page),   cmocka_unit_test(bad_page),
+        cmocka_unit_test(empty_page),  cmocka_unit_test(page_without_gnuplot),
+        cmocka_unit_test(junit),       cmocka_unit_test(summary),
+        cmocka_unit_test(cause_first),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
