@@ -19,6 +19,7 @@ struct integrator {
     /* where h is predicted: P = P(rho, U) (1 - follow (gamma - 1)(V/V_predicted - 1)), 0 for none;
      * see predicted_midpoint.h */
     double follow;
+    double first_step; /* length of the first step over the usual one; 0: 1 */
     bool signal_pass;   /* velocities change after the last rates: time step by a pass of its own */
     bool ends_evaluated; /* the derived fields at the end of a step belong to its state */
     /* Advances the state (x, p, e, alpha) by dt; rates of the state are there when it begins. */

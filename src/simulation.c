@@ -169,10 +169,12 @@ static void stop_clocks(struct simulation *simulation)
 static double first_time_step(const struct simulation *simulation)
 {
     const struct particles *a = &simulation->particles;
+    const double part = simulation->scheme.integrator->first_step;
     double pull = 0; /* a/h */
     for (ptrdiff_t i = 0; i < a->n; i++)
         pull = fmax(pull, fabs(a->F[i]) * a->m_inverse[i] * a->h_inverse[i]);
-    return fmin(simulation->time_step, 2 * simulation->scheme.cfl / sqrt(pull));
+    return fmin((part > 0 ? part : 1) * simulation->time_step,
+                2 * simulation->scheme.cfl / sqrt(pull));
 }
 
 /* The particle that limits the time step. */

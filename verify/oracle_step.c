@@ -192,6 +192,8 @@ enum status oracle_run(struct oracle *oracle, long double t_end, struct error *e
     while (!status && oracle->time < t_end) {
         const long double left = t_end - oracle->time;
         long double dt = oracle_time_step(oracle);
+        const double part = oracle->scheme.integrator->first_step;
+        if (oracle->steps == 0 && part > 0) dt *= part;
         if (dt >= left)
             dt = left;
         else if (2 * dt >= left)

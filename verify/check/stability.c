@@ -246,7 +246,9 @@ static void measure_steps(struct check_run *run, const void *subject)
             struct stability lattice;
             struct error error = {0};
             double dt = 0, x = 0, v = 0, x_theory, v_theory;
-            scheme.integrator = (const struct integrator *)integrator_family.members[k];
+            struct integrator even = *(const struct integrator *)integrator_family.members[k];
+            even.first_step = 0; /* steps of one length, as the theory's */
+            scheme.integrator = &even;
             scheme.eta = 3.37;
             scheme.viscosity = VISCOSITY_NONE;
             scheme.h_method = predicted ? H_PREDICTED : H_NEWTON;
