@@ -25,7 +25,9 @@ struct precision_point {
     struct error failure;
 };
 
-enum precision_reference { REFERENCE_NONE, REFERENCE_SEED, REFERENCE_SEED_PLAIN };
+/* Curves for comparison, never on the front: the seed program's method by the solver and as plain
+ * C; the user's own keys with masses graded towards the jump, where all else has equal masses. */
+enum precision_reference { REFERENCE_NONE, REFERENCE_GRADED, REFERENCE_SEED, REFERENCE_SEED_PLAIN };
 
 struct precision_scheme {
     char label[SWEEP_LABEL]; /* "kernel=cubic_spline gradient=ia" */

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "integrator.h"
+#include "riemann.h"
 #include "text.h"
 
 #define MEMBERS(...)                                                                               \
@@ -232,6 +233,18 @@ static enum status check_together(const struct settings *settings, struct error 
     return STATUS_OK;
 }
 
+/* Right over left so that spacings are equal either side of the contact, within limits: beyond, one
+ * side is resolved at the other's cost (measured on sod, sod_standard, lax and strong_shock). */
+static double mass_ratio_at_contact(const struct settings *settings)
+{
+    const double *l = settings->value[SETTING_left].real, *r = settings->value[SETTING_right].real;
+    const struct riemann_state left = {l[0], l[1], l[2]}, right = {r[0], r[1], r[2]};
+    struct riemann_solution tube;
+    if (riemann_solve(settings_real(settings, SETTING_gamma), &left, &right, &tube) || tube.vacuum)
+        return 1;
+    return fmin(fmax(tube.rho_star_right / tube.rho_star_left, 0.5), 1.5);
+}
+
 static void fill(struct settings *settings, enum setting key, double real, int choice)
 {
     struct setting_value *value = &settings->value[key];
@@ -257,6 +270,8 @@ enum status settings_resolve(struct settings *settings, int dim, struct scheme *
     const bool vanilla = CHOICE_OF(formulation) == FORMULATION_VANILLA_ICE;
     const bool standard = CHOICE_OF(gradient) == GRADIENT_STANDARD;
     const bool reconstructed = CHOICE_OF(viscosity) == VISCOSITY_RECONSTRUCTED;
+    const bool graded = CHOICE_OF(kind) == KIND_RIEMANN && REAL_OF(grade) < 1;
+    fill(settings, SETTING_mass_ratio, graded ? mass_ratio_at_contact(settings) : 1, 0);
     fill(settings, SETTING_eta, kernel.default_eta, 0);
     fill(settings, SETTING_energy, 0, predicted ? ENERGY_TOTAL : ENERGY_INTERNAL);
     fill(settings, SETTING_alpha, quadratic && predicted ? 0.75 : 1, 0);

@@ -406,9 +406,9 @@ static void test_study(void **state)
                      0);
     assert_int_equal(
         precision_measure(&settings, &sweep, ladder, 2, &brief, NULL, NULL, &precision, &error), 0);
-    assert_int_equal(precision.scheme_count, 6);
+    assert_int_equal(precision.scheme_count, 7);
     /* eta = 1.1 is below the existence limit of either kernel: excluded */
-    assert_int_equal(precision.point_count, 8);
+    assert_int_equal(precision.point_count, 10);
     near_relative(precision.mean_density, 0.5625, 1e-6);
     size_t on_front = 0;
     for (size_t i = 0; i < precision.point_count; i++) {
@@ -419,16 +419,21 @@ static void test_study(void **state)
         near_inside(p->error, 1e-4, 0.1);
         near_relative(p->relative, p->error / 0.5625, 1e-6);
         on_front += p->on_front;
+        assert_false(p->on_front && precision.schemes[p->scheme].reference);
     }
     assert_true(on_front >= 1);
     for (size_t i = 0; i < precision.scheme_count; i++) {
         const struct precision_scheme *scheme = &precision.schemes[i];
         assert_int_equal(scheme->count, scheme->excluded[0] ? 0 : 2);
     }
+    /* lighter particles where the jump is */
+    assert_int_equal(precision.schemes[4].reference, REFERENCE_GRADED);
+    near_inside(precision.points[5].error, 1e-4, 0.8 * precision.points[1].error);
+    near_inside(precision.points[5].settings.value[SETTING_mass_ratio].real[0], 0.622, 0.624);
     /* both references compute the same */
-    const struct precision_point *seed = &precision.points[4], *plain = &precision.points[6];
+    const struct precision_point *seed = &precision.points[6], *plain = &precision.points[8];
     for (size_t l = 0; l < 2; l++) near_relative(plain[l].error, seed[l].error, 1e-8);
-    near_relative(precision.schemes[5].gain, 1, 1e-12);
+    near_relative(precision.schemes[6].gain, 1, 1e-12);
     precision_free(&precision);
 }
 
