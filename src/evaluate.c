@@ -354,10 +354,10 @@ static void matrix_pass(struct simulation *simulation, struct range *range, int 
 static void force_pass(struct simulation *simulation, struct range *range, int thread)
 {
     double *scratch = simulation->scratch + simulation->scratch_size * (size_t)thread;
-    simulation->loops.force(&simulation->loops, &simulation->numbers, &simulation->particles,
-                            range->first, range->len, range->force_reach, scratch);
+    range->rate =
+        simulation->loops.force(&simulation->loops, &simulation->numbers, &simulation->particles,
+                                range->first, range->len, range->force_reach, scratch);
     if (simulation->plan.alpha) range_dalpha(simulation, range);
-    range->rate = range_rate(&simulation->particles, range->first, range->len);
     if (simulation->cost.steps % 8 == 0) tighten(simulation, range);
 }
 

@@ -77,8 +77,9 @@ struct pair_numbers {
 
 struct loops;
 
-/* scratch: force_scratch(D) doubles of the thread. */
-typedef void force_loop(const struct loops *loops, const struct pair_numbers *numbers,
+/* Returns the largest signal speed / h among the pairs of the range (of either particle) and of
+ * the range's particles alone. scratch: force_scratch(D) doubles of the thread. */
+typedef double force_loop(const struct loops *loops, const struct pair_numbers *numbers,
                         const struct particles *particles, ptrdiff_t first, int len, ptrdiff_t D,
                         double *scratch);
 size_t force_scratch(ptrdiff_t D);
@@ -99,7 +100,7 @@ struct loops {
 void loops_choose(const struct scheme *scheme, bool stamped, struct loops *loops,
                   struct pair_numbers *numbers);
 
-/* The signal speed alone, for integrators that change velocities after the last force. */
+/* The signal speed of each particle of the range, where it is asked for by itself. */
 void loops_signal(const struct particles *particles, ptrdiff_t first, int len, ptrdiff_t D);
 
 #endif

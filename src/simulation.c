@@ -182,9 +182,37 @@ static ptrdiff_t limiting_particle(const struct simulation *simulation)
 {
     const struct particles *a = &simulation->particles;
     ptrdiff_t limiting = 0;
+    for (ptrdiff_t b = 0; b < simulation->range_count; b++) {
+        const struct range *range = &simulation->ranges[b];
+        loops_signal(a, range->first, range->len, range->force_reach);
+    }
     for (ptrdiff_t i = 1; i < a->n; i++)
         if (a->h[i] * a->signal[limiting] < a->h[limiting] * a->signal[i]) limiting = i;
     return limiting;
+}
+
+double simulation_time_after(const struct simulation *simulation, double dt)
+{
+    return dt >= simulation->t_end - simulation->time ? simulation->t_end : simulation->time + dt;
+}
+
+/* t_end is met exactly: the last step is cut, and the last two are made equal. */
+double simulation_next_step(const struct simulation *simulation, double time)
+{
+    const double left = simulation->t_end - time;
+    const double dt = simulation->last_dt > 0 ? simulation->time_step : first_time_step(simulation);
+    if (dt >= left) return fmax(left, 0);
+    return 2 * dt > left ? 0.5 * left : dt;
+}
+
+/* Back from the middle of a step that does not follow. */
+static void undo_prediction(struct simulation *simulation)
+{
+    const struct particles *a = &simulation->particles;
+    if (simulation->ahead <= 0) return;
+    memcpy(a->x, a->x_old, (size_t)a->n * sizeof(double));
+    if (simulation->plan.alpha) memcpy(a->alpha, a->alpha_old, (size_t)a->n * sizeof(double));
+    simulation->ahead = 0;
 }
 
 enum status simulation_run(struct simulation *simulation, double t_end,
@@ -192,15 +220,9 @@ enum status simulation_run(struct simulation *simulation, double t_end,
 {
     enum status status = STATUS_OK;
     bool stopped = false;
+    simulation->t_end = t_end;
     while (simulation->time < t_end && !stopped) {
-        /* t_end is met exactly: the last step is cut, and the last two are made equal */
-        const double left = t_end - simulation->time;
-        double dt = simulation->last_dt > 0 ? simulation->time_step : first_time_step(simulation);
-        const bool last = dt >= left;
-        if (last)
-            dt = left;
-        else if (2 * dt > left)
-            dt = 0.5 * left;
+        const double dt = simulation_next_step(simulation, simulation->time);
         if (!(simulation->time + dt > simulation->time)) {
             const ptrdiff_t i = limiting_particle(simulation);
             status = broke_down(simulation, i, "signal speed (no time step is left)",
@@ -213,7 +235,7 @@ enum status simulation_run(struct simulation *simulation, double t_end,
         simulation->last_dt = dt;
         status = simulation->scheme.integrator->step(simulation, dt, error);
         if (status) break;
-        simulation->time = last ? t_end : simulation->time + dt;
+        simulation->time = simulation_time_after(simulation, dt);
         sleep_update(simulation);
         simulation->cost.steps++;
         simulation->cost.particle_updates += (uint64_t)simulation->sleep.awake_count;
@@ -223,6 +245,7 @@ enum status simulation_run(struct simulation *simulation, double t_end,
         if (progress && simulation->cost.steps % 32 == 0)
             stopped = !progress(context, simulation->time, simulation->cost.steps);
     }
+    undo_prediction(simulation);
     if (!status && !simulation->scheme.integrator->ends_evaluated)
         status = evaluate_state(simulation, error);
     stop_clocks(simulation);

@@ -83,11 +83,12 @@ static void lay_out(struct simulation *simulation)
 }
 
 /* A group falls asleep: it has no rates, and a limit of the time step that stays. */
-static void fall_asleep(struct simulation *simulation, ptrdiff_t group)
+static void fall_asleep(struct simulation *simulation, ptrdiff_t group, ptrdiff_t reach)
 {
     const struct particles *a = &simulation->particles;
     const ptrdiff_t first = group * SLEEP_GROUP;
     const int len = group_len(simulation, group);
+    loops_signal(a, first, len, reach);
     simulation->sleep.group_rate[group] = range_rate(a, first, len);
     for (ptrdiff_t i = first; i < first + len; i++) {
         a->F[i] = a->de[i] = a->dalpha[i] = 0;
@@ -117,7 +118,7 @@ enum status sleep_begin(struct simulation *simulation, bool allowed, struct erro
     for (ptrdiff_t group = 0; group < sleep->groups; group++)
         if (group_disturbed(simulation, group)) wake(sleep, group, margin(reach));
     for (ptrdiff_t group = 0; group < sleep->groups; group++)
-        if (!sleep->awake[group]) fall_asleep(simulation, group);
+        if (!sleep->awake[group]) fall_asleep(simulation, group, reach);
     lay_out(simulation);
     return STATUS_OK;
 }

@@ -35,6 +35,7 @@ struct simulation {
     double lo, period, gamma, time, t_end;
     double time_step;     /* limit found by the last signal speeds */
     double last_dt;       /* of the last step, 0 before the first */
+    double ahead;         /* the step whose middle x, v, U and alpha are at already; 0: none */
     double predict_ratio; /* of the prediction of h: this interval / the last one */
     int threads;
     struct sleep sleep;
@@ -63,6 +64,13 @@ void evaluate_signal(struct simulation *simulation);
  * they are then, which is more than a shock brings. Only where they get beyond that does a step
  * ask for memory, each time for half as much again at least. */
 enum status evaluate_reserve(struct simulation *simulation, struct error *error);
+
+/* --- the time step (simulation.c) ------------------------------------------------------------- */
+
+/* The step that begins at time, from the last limit; 0 where none is to follow. */
+double simulation_next_step(const struct simulation *simulation, double time);
+/* The time after a step dt from the present time. */
+double simulation_time_after(const struct simulation *simulation, double dt);
 
 /* A breakdown at particle i: quantity = value, at the current time. Returns STATUS_BROKE_DOWN. */
 enum status broke_down(const struct simulation *simulation, ptrdiff_t i, const char *quantity,

@@ -17,63 +17,66 @@
 #ifndef INTEGRATOR_PREDICTED_MIDPOINT_H
 #define INTEGRATOR_PREDICTED_MIDPOINT_H
 
-/* The predicted x, v and U go where the evaluation reads them; p and e stay those of the state. */
-CLONES static double predict_midpoint(const struct simulation *simulation, const struct span *span,
-                                      double dt)
+/* Advances the state by dt from its middle, predicts it for the first half of the step ahead, or
+ * both in one walk over memory. Predicted x, v and U go where the evaluation reads them, x_old is
+ * the position of the state; p and e stay those of the state. Returns how many particles are left
+ * without internal energy. */
+ALWAYS_INLINE double move_body(bool advance, bool predict, const struct simulation *simulation,
+                               const struct span *span, double dt, double ahead)
 {
     const struct particles *a = &simulation->particles;
     const ptrdiff_t end = span->first + span->len;
-    const double half = 0.5 * dt;
+    const double half = 0.5 * ahead;
     const double kinetic = simulation->scheme.energy == ENERGY_TOTAL ? 0.5 : 0;
-    double *restrict x = a->x, *restrict x_old = a->x_old, *restrict v = a->v, *restrict U = a->U;
-    const double *restrict F = a->F, *restrict de = a->de, *restrict m_inverse = a->m_inverse,
-                           *restrict p = a->p, *restrict e = a->e;
-#pragma omp simd
-    for (ptrdiff_t i = span->first; i < end; i++) {
-        const double v_now = p[i] * m_inverse[i];
-        const double U_now = e[i] - kinetic * p[i] * v_now;
-        const double p_half = p[i] + F[i] * half, v_half = p_half * m_inverse[i];
-        x_old[i] = x[i];
-        x[i] += v_now * half;
-        v[i] = v_half;
-        U[i] = largest(e[i] + de[i] * half - kinetic * p_half * v_half, 0.5 * U_now);
-    }
-    for (ptrdiff_t i = span->first; simulation->plan.alpha && i < end; i++) {
-        a->alpha_old[i] = a->alpha[i];
-        a->alpha[i] += a->dalpha[i] * half;
-    }
-    return 0;
-}
-
-/* Returns how many particles are left without internal energy. */
-CLONES static double advance_from_midpoint(const struct simulation *simulation,
-                                           const struct span *span, double dt)
-{
-    const struct particles *a = &simulation->particles;
-    const ptrdiff_t end = span->first + span->len;
-    const double kinetic = simulation->scheme.energy == ENERGY_TOTAL ? 0.5 : 0;
-    double *restrict x = a->x, *restrict p = a->p, *restrict e = a->e;
-    const double *restrict F = a->F, *restrict de = a->de, *restrict m_inverse = a->m_inverse,
-                           *restrict x_old = a->x_old;
+    double *restrict x = a->x, *restrict x_old = a->x_old, *restrict v = a->v, *restrict U = a->U,
+                     *restrict p = a->p, *restrict e = a->e;
+    const double *restrict F = a->F, *restrict de = a->de, *restrict m_inverse = a->m_inverse;
     double unsound = 0;
 #pragma omp simd reduction(+ : unsound)
     for (ptrdiff_t i = span->first; i < end; i++) {
-        const double p_new = p[i] + F[i] * dt;
-        x[i] = x_old[i] + 0.5 * (p[i] + p_new) * m_inverse[i] * dt;
-        p[i] = p_new;
-        e[i] += de[i] * dt;
-        unsound += e[i] - kinetic * p_new * p_new * m_inverse[i] > 0 ? 0. : 1.;
+        double p_now = p[i], e_now = e[i], x_now = x[i];
+        if (advance) {
+            p_now += F[i] * dt;
+            e_now += de[i] * dt;
+            x_now = x_old[i] + 0.5 * (p[i] + p_now) * m_inverse[i] * dt;
+            p[i] = p_now;
+            e[i] = e_now;
+        }
+        const double v_now = p_now * m_inverse[i], U_now = e_now - kinetic * p_now * v_now;
+        unsound += U_now > 0 ? 0. : 1.;
+        if (predict) {
+            const double p_half = p_now + F[i] * half, v_half = p_half * m_inverse[i];
+            x_old[i] = x_now;
+            v[i] = v_half;
+            U[i] = largest(e_now + de[i] * half - kinetic * p_half * v_half, 0.5 * U_now);
+            x_now += v_now * half;
+        }
+        x[i] = x_now;
     }
-    if (simulation->plan.alpha)
-        for (ptrdiff_t i = span->first; i < end; i++)
-            a->alpha[i] = a->alpha_old[i] + a->dalpha[i] * dt;
+    for (ptrdiff_t i = span->first; simulation->plan.alpha && i < end; i++) {
+        if (advance) a->alpha[i] = a->alpha_old[i] + a->dalpha[i] * dt;
+        a->alpha_old[i] = a->alpha[i];
+        if (predict) a->alpha[i] += a->dalpha[i] * half;
+    }
     return unsound;
 }
 
-/* One of the two above over all that moves: sleepers in moving gas drift, those at rest are left
+typedef double move(const struct simulation *simulation, const struct span *span, double dt,
+                    double ahead);
+
+#define MOVE(name, advance, predict)                                                               \
+    CLONES static double name(const struct simulation *simulation, const struct span *span,        \
+                              double dt, double ahead)                                             \
+    {                                                                                              \
+        return move_body(advance, predict, simulation, span, dt, ahead);                           \
+    }
+MOVE(predict_midpoint, false, true)
+MOVE(advance_from_midpoint, true, false)
+MOVE(advance_and_predict, true, true)
+
+/* One of them over all that moves: sleepers in moving gas drift, those at rest are left
  * alone. A count of particles: its sum does not depend on the order. */
-static double move_all(const struct simulation *simulation, double dt,
-                       double (*move)(const struct simulation *, const struct span *, double))
+static double move_all(const struct simulation *simulation, move *walk, double dt, double ahead)
 {
     const struct sleep *sleep = &simulation->sleep;
     const struct span all = {0, simulation->particles.n};
@@ -83,13 +86,13 @@ static double move_all(const struct simulation *simulation, double dt,
         const struct span *span = spans ? &sleep->spans[s] : &all;
         const ptrdiff_t parts = span->len >= WORTH_A_THREAD * RANGE_MAX ? simulation->threads : 1;
         if (parts == 1) {
-            count += move(simulation, span, dt);
+            count += walk(simulation, span, dt, ahead);
             continue;
         }
 #pragma omp parallel for num_threads((int)parts) reduction(+ : count)
         for (ptrdiff_t k = 0; k < parts; k++) {
             const ptrdiff_t begin = span->len * k / parts, end = span->len * (k + 1) / parts;
-            count += move(simulation, &(struct span){span->first + begin, end - begin}, dt);
+            count += walk(simulation, &(struct span){span->first + begin, end - begin}, dt, ahead);
         }
     }
     return count;
@@ -105,15 +108,19 @@ static enum status name_unsound(const struct simulation *simulation, struct erro
     }
 }
 
-/* Should all wake in between, because particles have crossed: those who slept have x_old = x and no
- * rates, which is what the prediction would have left. */
+/* While steps follow each other, the end of one is joined with the prediction of the next. Should
+ * all wake in between, because particles have crossed: those who slept have x_old = x and no rates,
+ * which is what the prediction would have left. */
 static enum status predicted_midpoint_step(struct simulation *simulation, double dt,
                                            struct error *error)
 {
-    move_all(simulation, dt, predict_midpoint);
+    if (simulation->ahead <= 0) move_all(simulation, predict_midpoint, 0, dt);
     const enum status status = evaluate_rates_of_primitives(simulation, error);
     if (status) return status;
-    const double unsound = move_all(simulation, dt, advance_from_midpoint);
+    const double ahead = simulation_next_step(simulation, simulation_time_after(simulation, dt));
+    const double unsound =
+        move_all(simulation, ahead > 0 ? advance_and_predict : advance_from_midpoint, dt, ahead);
+    simulation->ahead = ahead;
     return unsound > 0 ? name_unsound(simulation, error) : STATUS_OK;
 }
 
