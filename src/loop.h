@@ -39,4 +39,17 @@ ALWAYS_INLINE double least(double a, double b)
     return a < b ? a : b;
 }
 
+/* The largest of count = whole vectors of positive values, by lanes: clang does not vectorise
+ * reduction(max). */
+ALWAYS_INLINE double largest_of(const double *restrict values, ptrdiff_t count)
+{
+    double lane[8] = {0};
+    for (ptrdiff_t i = 0; i < count; i += 8)
+#pragma omp simd
+        for (int l = 0; l < 8; l++) lane[l] = largest(lane[l], values[i + l]);
+    for (int half = 4; half > 0; half /= 2)
+        for (int l = 0; l < half; l++) lane[l] = largest(lane[l], lane[l + half]);
+    return lane[0];
+}
+
 #endif

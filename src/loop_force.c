@@ -55,19 +55,6 @@ ALWAYS_INLINE void gather(bool add, enum energy energy, int count, ptrdiff_t d,
     }
 }
 
-/* The largest of count = whole vectors values, by lanes: clang does not vectorise reduction(max).
- */
-ALWAYS_INLINE double largest_of(const double *restrict values, int count)
-{
-    double lane[8] = {0};
-    for (int i = 0; i < count; i += 8)
-#pragma omp simd
-        for (int l = 0; l < 8; l++) lane[l] = largest(lane[l], values[i + l]);
-    for (int half = 4; half > 0; half /= 2)
-        for (int l = 0; l < half; l++) lane[l] = largest(lane[l], lane[l + half]);
-    return lane[0];
-}
-
 struct sums {
     double F[RANGE_MAX], de[RANGE_MAX], div_v[RANGE_MAX];
 };

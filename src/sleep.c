@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "loop.h"
 #include "range.h"
 #include "solver.h"
 
@@ -43,34 +44,48 @@ static ptrdiff_t margin(ptrdiff_t reach)
     return (2 * reach + 2 + SLEEP_GROUP - 1) / SLEEP_GROUP;
 }
 
+static void wake_groups(struct sleep *sleep, ptrdiff_t first, ptrdiff_t count)
+{
+    memset(sleep->awake + first, 1, (size_t)count);
+    memset(sleep->group_rate + first, 0, (size_t)count * sizeof *sleep->group_rate);
+}
+
+/* A group and its neighbours, across the ends of the box. */
 static void wake(struct sleep *sleep, ptrdiff_t group, ptrdiff_t reach)
 {
-    if (2 * reach + 1 >= sleep->groups) {
-        memset(sleep->awake, 1, (size_t)sleep->groups);
+    const ptrdiff_t count = 2 * reach + 1;
+    if (count >= sleep->groups) {
+        wake_groups(sleep, 0, sleep->groups);
         return;
     }
-    for (ptrdiff_t k = -reach; k <= reach; k++)
-        sleep->awake[(group + k + sleep->groups) % sleep->groups] = 1;
+    const ptrdiff_t first = (group - reach + sleep->groups) % sleep->groups;
+    const ptrdiff_t before_end = sleep->groups - first < count ? sleep->groups - first : count;
+    wake_groups(sleep, first, before_end);
+    wake_groups(sleep, 0, count - before_end);
+}
+
+/* The next group from the given one on that is awake, or asleep; their number where there is none.
+ */
+static ptrdiff_t find_group(const struct sleep *sleep, ptrdiff_t from, bool awake)
+{
+    const unsigned char *found = memchr(sleep->awake + from, awake, (size_t)(sleep->groups - from));
+    return found ? found - sleep->awake : sleep->groups;
 }
 
 /* Spans from the groups, ranges from the spans. */
 static void lay_out(struct simulation *simulation)
 {
     struct sleep *sleep = &simulation->sleep;
+    const ptrdiff_t n = simulation->particles.n;
     sleep->span_count = sleep->awake_count = simulation->range_count = 0;
-    double rate = 0;
-    for (ptrdiff_t group = 0; group < sleep->groups;) {
-        const ptrdiff_t begin = group;
-        for (; group < sleep->groups && !sleep->awake[group]; group++)
-            rate = sleep->group_rate[group] > rate ? sleep->group_rate[group] : rate;
-        if (group > begin) continue;
-        while (group < sleep->groups && sleep->awake[group]) group++;
-        const ptrdiff_t first = begin * SLEEP_GROUP, n = simulation->particles.n;
-        const ptrdiff_t end = group * SLEEP_GROUP < n ? group * SLEEP_GROUP : n;
-        sleep->spans[sleep->span_count++] = (struct span){first, end - first};
-        sleep->awake_count += end - first;
+    sleep->rate = largest_of(sleep->group_rate, (sleep->groups + 7) / 8 * 8);
+    for (ptrdiff_t begin, end = 0; (begin = find_group(sleep, end, true)) < sleep->groups;) {
+        end = find_group(sleep, begin, false);
+        const ptrdiff_t first = begin * SLEEP_GROUP;
+        const ptrdiff_t last = end * SLEEP_GROUP < n ? end * SLEEP_GROUP : n;
+        sleep->spans[sleep->span_count++] = (struct span){first, last - first};
+        sleep->awake_count += last - first;
     }
-    sleep->rate = rate;
     for (ptrdiff_t s = 0; s < sleep->span_count; s++)
         for (ptrdiff_t done = 0; done < sleep->spans[s].len; done += RANGE_MAX) {
             const ptrdiff_t left = sleep->spans[s].len - done;
@@ -103,7 +118,8 @@ enum status sleep_begin(struct simulation *simulation, bool allowed, struct erro
     sleep->groups = (a->n + SLEEP_GROUP - 1) / SLEEP_GROUP;
     sleep->awake = malloc((size_t)sleep->groups);
     sleep->spans = malloc((size_t)(sleep->groups / 2 + 1) * sizeof *sleep->spans);
-    sleep->group_rate = malloc((size_t)sleep->groups * sizeof *sleep->group_rate);
+    /* whole vectors; 0 of those who are awake */
+    sleep->group_rate = calloc((size_t)(sleep->groups + 7), sizeof *sleep->group_rate);
     if (!sleep->awake || !sleep->spans || !sleep->group_rate)
         return error_set(error, STATUS_ENVIRONMENT, "no memory for %td particles", a->n);
     sleep->at_rest = true;
@@ -125,7 +141,7 @@ enum status sleep_begin(struct simulation *simulation, bool allowed, struct erro
 
 void sleep_end(struct simulation *simulation)
 {
-    memset(simulation->sleep.awake, 1, (size_t)simulation->sleep.groups);
+    wake_groups(&simulation->sleep, 0, simulation->sleep.groups);
     lay_out(simulation);
 }
 
