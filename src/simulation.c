@@ -63,6 +63,7 @@ static void separate(struct particles *a, const struct scheme *scheme)
         const double gap = fmin(1e-3 * a->h[first] / scheme->eta, 0.5 * room / (double)count);
         for (ptrdiff_t k = 0; k < count; k++)
             a->x[first + k] += ((double)k - 0.5 * (double)(count - 1)) * gap;
+        for (ptrdiff_t i = first; i < end; i++) a->x_old[i] = a->x[i];
     }
 }
 
@@ -82,7 +83,7 @@ static void set_particles(struct simulation *simulation, const struct scene *sce
         a->m_inverse[i] = 1 / m;
         a->p[i] = m * v;
         a->e[i] = m * u + (scheme->energy == ENERGY_TOTAL ? 0.5 * m * v * v : 0);
-        a->alpha[i] =
+        a->alpha[i] = a->alpha_old[i] =
             scheme->viscosity == VISCOSITY_TIME_DEPENDENT ? scheme->alpha_min : scheme->alpha;
         a->h[i] = scheme->eta * m / rho;
     }

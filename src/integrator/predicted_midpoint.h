@@ -109,8 +109,8 @@ static enum status name_unsound(const struct simulation *simulation, struct erro
 }
 
 /* While steps follow each other, the end of one is joined with the prediction of the next. Should
- * all wake in between, because particles have crossed: those who slept have x_old = x and no rates,
- * which is what the prediction would have left. */
+ * somebody wake in between: those who slept have x_old = x, alpha_old = alpha
+ * and no rates, which is what the prediction would have left. */
 static enum status predicted_midpoint_step(struct simulation *simulation, double dt,
                                            struct error *error)
 {

@@ -6,9 +6,28 @@
 #include "hydro_scene.h"
 #include "integrator.h"
 
-/* Two scenes, run for the same time; the largest difference of any state variable, relative to the
- * largest value of it. */
-static double difference(const struct scene *a, const struct scene *b, double t_end,
+static bool stop(void *context, double time, uint64_t steps)
+{
+    (void)context, (void)time, (void)steps;
+    return false;
+}
+
+/* To t_end, at one go or stopping wherever a run can be stopped. */
+static enum status run_on(struct simulation *simulation, double t_end, bool stops,
+                          struct error *error)
+{
+    struct snapshot now = {0};
+    enum status status = STATUS_OK;
+    while (!status && now.time < t_end) {
+        status = simulation_run(simulation, t_end, stops ? stop : NULL, NULL, error);
+        simulation_snapshot(simulation, &now);
+    }
+    return status;
+}
+
+/* Two scenes, run for the same time, the second one perhaps with stops; the largest difference of
+ * any state variable, relative to the largest value of it. */
+static double difference(const struct scene *a, const struct scene *b, bool stops, double t_end,
                          struct error *error)
 {
     const struct scene *scenes[] = {a, b};
@@ -18,7 +37,7 @@ static double difference(const struct scene *a, const struct scene *b, double t_
     double worst = (double)NAN;
     for (int k = 0; k < 2; k++) {
         if (simulation_create(scenes[k], &simulations[k], error)) goto done;
-        if (simulation_run(simulations[k], t_end, NULL, NULL, error)) goto done;
+        if (run_on(simulations[k], t_end, k && stops, error)) goto done;
         simulation_snapshot(simulations[k], &s[k]);
         simulation_rates(simulations[k], &r[k]);
     }
@@ -102,8 +121,8 @@ static void compare(struct check_run *run, const struct same_subject *subject,
     second.skip = skip;
     if (subject) subject->spoil(&second, &other);
     hydro_describe(scheme, where);
-    check_measure(run, difference(&first, &second, t_end, &error), bound, 0, "%s, %s%s%s", what,
-                  where, error.message[0] ? ": " : "", error.message);
+    check_measure(run, difference(&first, &second, false, t_end, &error), bound, 0, "%s, %s%s%s",
+                  what, where, error.message[0] ? ": " : "", error.message);
 }
 
 static void measure_threads(struct check_run *run, const void *subject)
@@ -177,7 +196,7 @@ static void measure_skip(struct check_run *run, const void *subject)
             scheme.h_method = H_PREDICTED;
             scheme.pair_width = PAIR_MAX;
         }
-        if (c == 4) scheme.viscosity = VISCOSITY_TIME_DEPENDENT;
+        if (c == 4 || c == 6) scheme.viscosity = VISCOSITY_TIME_DEPENDENT;
         if (c == 5) {
             scheme.gradient = GRADIENT_IA;
             scheme.viscosity = VISCOSITY_RECONSTRUCTED;
@@ -200,6 +219,41 @@ const struct check check_hydro_skip = {
     .property = "the same answer, to round-off, with and without leaving out idle particles",
     .measure = measure_skip,
     .mutants = skip_mutants,
+};
+
+/* A stop solves for h once more, so bits may differ. */
+static void measure_stops(struct check_run *run, const void *subject)
+{
+    static struct hydro_state state, other;
+    struct error error = {0};
+    char where[HYDRO_TEXT];
+    for (size_t k = 0; k < integrator_family.n; k++) {
+        struct scheme scheme = hydro_scheme();
+        scheme.integrator = (const struct integrator *)integrator_family.members[k];
+        scheme.viscosity = VISCOSITY_TIME_DEPENDENT;
+        hydro_tube(&state, 200);
+        other = state;
+        const struct scene first = hydro_scene(&state, &scheme);
+        struct scene second = hydro_scene(&other, &scheme);
+        if (subject) ((const struct same_subject *)subject)->spoil(&second, &other);
+        hydro_describe(&scheme, where);
+        check_measure(run, difference(&first, &second, true, 0.1, &error), 1e-10, 0, "%s%s%s",
+                      where, error.message[0] ? ": " : "", error.message);
+    }
+}
+
+static const struct check_mutant stops_mutants[] = {
+    {"stops_change_gradient", "another gradient in the run that stops", &with_other_gradient},
+    {0},
+};
+
+const struct check check_hydro_stops = {
+    .group = "hydro",
+    .name = "stops",
+    .property =
+        "the same answer, to the tolerance of h, whether a run is stopped in between or not",
+    .measure = measure_stops,
+    .mutants = stops_mutants,
 };
 
 /* Every entry of the tables of stamped loops: kernel x gradient x form, formulation x viscosity x
