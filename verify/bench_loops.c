@@ -21,7 +21,7 @@ static void fill(struct bench_loops *loops)
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
     for (ptrdiff_t i = 0; i < a->n; i++) {
         const double phase = 2 * M_PI * (double)i / (double)a->n;
-        a->x[i] = (double)i + jitter * (2 * gsl_rng_uniform(rng) - 1);
+        a->x[i] = a->x_old[i] = (double)i + jitter * (2 * gsl_rng_uniform(rng) - 1);
         a->m[i] = a->V[i] = a->m_inverse[i] = a->rho[i] = 1;
         a->v[i] = 0.1 * sin(phase);
         a->U[i] = 2.5 * (1 + 0.1 * cos(phase));
@@ -44,34 +44,32 @@ static void fill(struct bench_loops *loops)
     particles_fill_ghosts(a, a->x, a->ghosts, a->period);
 }
 
-/* As predicted_midpoint moves particles to the middle of a step and, from there, to its end. */
-CLONES static void predict(const struct particles *a, ptrdiff_t n, double dt)
+/* As predicted_midpoint moves particles: to the end of a step and on to the middle of the next. */
+CLONES static void move(const struct particles *a, ptrdiff_t n, double dt)
 {
-    double *restrict x = a->x, *restrict x_old = a->x_old, *restrict v = a->v, *restrict U = a->U;
-    const double *restrict F = a->F, *restrict de = a->de, *restrict m_inverse = a->m_inverse,
-                           *restrict p = a->p, *restrict e = a->e;
+    double *restrict x = a->x, *restrict x_old = a->x_old, *restrict v = a->v, *restrict U = a->U,
+                     *restrict p = a->p, *restrict e = a->e;
+    const double *restrict F = a->F, *restrict de = a->de, *restrict m_inverse = a->m_inverse;
 #pragma omp simd
     for (ptrdiff_t i = 0; i < n; i++) {
-        const double v_now = p[i] * m_inverse[i], p_half = p[i] + F[i] * dt;
-        x_old[i] = x[i];
-        x[i] += v_now * dt;
-        v[i] = p_half * m_inverse[i];
-        U[i] = largest(e[i] + de[i] * dt - 0.5 * p_half * v[i], 0.5 * (e[i] - 0.5 * p[i] * v_now));
+        const double p_now = p[i] + F[i] * dt, e_now = e[i] + de[i] * dt;
+        const double x_now = x_old[i] + 0.5 * (p[i] + p_now) * m_inverse[i] * dt;
+        const double v_now = p_now * m_inverse[i], U_now = e_now - 0.5 * p_now * v_now;
+        const double p_half = p_now + F[i] * dt, v_half = p_half * m_inverse[i];
+        p[i] = p_now;
+        e[i] = e_now;
+        x_old[i] = x_now;
+        x[i] = x_now + v_now * dt;
+        v[i] = v_half;
+        U[i] = largest(e_now + de[i] * dt - 0.5 * p_half * v_half, 0.5 * U_now);
     }
 }
 
-CLONES static void advance(const struct particles *a, ptrdiff_t n, double dt)
+static double search(const struct particles *a, ptrdiff_t first, int len)
 {
-    double *restrict x = a->x, *restrict p = a->p, *restrict e = a->e;
-    const double *restrict F = a->F, *restrict de = a->de, *restrict m_inverse = a->m_inverse,
-                           *restrict x_old = a->x_old;
-#pragma omp simd
-    for (ptrdiff_t i = 0; i < n; i++) {
-        const double p_new = p[i] + F[i] * dt;
-        x[i] = x_old[i] + 0.5 * (p[i] + p_new) * m_inverse[i] * dt;
-        p[i] = p_new;
-        e[i] += de[i] * dt;
-    }
+    ptrdiff_t reach = 1;
+    while (range_inside(a, first, len, reach + 1) > 0) reach++;
+    return (double)reach;
 }
 
 static void run_range(struct bench_loops *loops, ptrdiff_t first, int len)
@@ -81,6 +79,8 @@ static void run_range(struct bench_loops *loops, ptrdiff_t first, int len)
     const unsigned passes = loops->passes;
     const bool state = passes & 1u << PASS_STATE;
     struct density_sums sums;
+    if (passes & 1u << PASS_REACH) loops->rate += range_inside(a, first, len, loops->reach + 1);
+    if (passes & 1u << PASS_SEARCH) loops->rate += search(a, first, len);
     if (state) range_predict_width(a, first, len, 1);
     if (passes & 1u << PASS_DENSITY) {
         loops->loops.density(kernel, a, first, len, loops->reach, a->h_inverse + first, &sums);
@@ -97,19 +97,18 @@ static void run_range(struct bench_loops *loops, ptrdiff_t first, int len)
 static void run(struct bench_loops *loops)
 {
     const struct particles *a = &loops->particles;
-    const bool state = loops->passes & 1u << PASS_STATE;
-    if (state) predict(a, a->n, loops->dt);
+    if (loops->passes & 1u << PASS_STATE) move(a, a->n, loops->dt);
+    if (loops->passes & 1u << PASS_ORDER) loops->rate += range_crossings(a, 0, a->n - 1);
+    if (loops->passes & 1u << PASS_SORT) loops->rate += particles_sort(&loops->particles);
     for (ptrdiff_t first = 0; first < a->n; first += RANGE_MAX)
         run_range(loops, first, (int)(a->n - first < RANGE_MAX ? a->n - first : RANGE_MAX));
     for (ptrdiff_t first = 0; first < a->n; first += RANGE_MAX) {
         const int len = (int)(a->n - first < RANGE_MAX ? a->n - first : RANGE_MAX);
         if (loops->passes & 1u << PASS_FORCE)
-            loops->loops.force(&loops->loops, &loops->numbers, a, first, len, loops->reach,
-                               loops->scratch);
+            loops->rate += loops->loops.force(&loops->loops, &loops->numbers, a, first, len,
+                                              loops->reach, loops->scratch);
         if (loops->passes & 1u << PASS_SIGNAL) loops_signal(a, first, len, loops->reach);
-        if (state) loops->rate = fmax(loops->rate, range_rate(a, first, len));
     }
-    if (state) advance(a, a->n, loops->dt);
 }
 
 enum status bench_loops_create(struct bench_loops *loops, const struct scheme *scheme, size_t n,

@@ -19,14 +19,27 @@ struct bench_loops {
     struct particles particles;
     ptrdiff_t reach; /* offsets that the widths cover */
     double *scratch;
-    double dt, rate; /* 0, as only the program knows, not the compiler; result of PASS_STATE */
+    double dt;       /* 0, as only the program knows, not the compiler */
+    double rate;     /* what is found, so that no pass is without effect */
     unsigned passes; /* what bench_loops_work runs: 1 << enum bench_pass */
     uint64_t pairs;  /* of one run of these passes, counted as the solver counts */
 };
 
 /* PASS_STATE: the arithmetic of a step without pairs, as predicted_midpoint with predicted h has
- * it: motion, widths, equation of state, time step. */
-enum bench_pass { PASS_STATE, PASS_DENSITY, PASS_MATRIX, PASS_FORCE, PASS_SIGNAL };
+ * it: motion, widths, equation of state. PASS_ORDER, PASS_REACH: the tests that order and neighbour
+ * ranges are still good; PASS_SORT, PASS_SEARCH: making them anew. */
+enum bench_pass {
+    PASS_STATE,
+    PASS_DENSITY,
+    PASS_MATRIX,
+    PASS_FORCE,
+    PASS_SIGNAL,
+    PASS_ORDER,
+    PASS_REACH,
+    PASS_SORT,
+    PASS_SEARCH,
+    PASS_NONE
+};
 
 /* A slightly disordered lattice of n particles, with every array that the scheme's loops read;
  * passes that the scheme does not have are left out. stamped: as in loops_choose.

@@ -14,8 +14,8 @@
 /* What is promised about the answer with and without the work. */
 #define BENCH_PROMISE_LIST(PROMISE)                                                                \
     PROMISE(BITS, "same bits")                                                                     \
-    PROMISE(ROUND_OFF, "same to round-off")   /* largest difference of a field, relative */        \
-    PROMISE(ERROR, "same error")              /* |L1 of density/L1 - 1| */                         \
+    PROMISE(ROUND_OFF, "same to round-off") /* largest difference of a field, relative */          \
+    PROMISE(ERROR, "no larger error") /* L1 of density without the work over that with it, - 1 */  \
     PROMISE(UNUSED, "result would be unused") /* nothing to compare */
 
 enum bench_promise {
