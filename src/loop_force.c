@@ -40,6 +40,11 @@ ALWAYS_INLINE double closing_at_midpoint(double v_ij, double slope_i, double slo
     return v_ij > 0 && closing * *scale > 0 ? closing : 0;
 }
 
+/* Viscosity fading: the linear term sees the speed of sound only where a pair closes faster than
+ * this part of it, and a proportionally smaller one below: smooth flow is left alone, to second
+ * order, while shocks (0.1 c and more a pair) do not notice. */
+static const double fade_below = 0.01;
+
 /* What a particle gathers at offset d: its pair to the left is strip[i], to the right strip[i + d].
  * The first offset sets the sums, the others add to them. */
 ALWAYS_INLINE void gather(bool add, enum energy energy, int count, ptrdiff_t d,
@@ -114,8 +119,10 @@ ALWAYS_INLINE double pairs_at(ptrdiff_t d, enum formulation formulation,
             const bool varying = viscosity == PAIR_VARYING;
             const double alpha_half = varying ? 0.25 * (alpha[i] + alpha[j]) : 0.5 * alpha_0;
             const double beta_bar = varying ? 2 * beta_ratio * alpha_half : beta_0;
+            const double c_seen =
+                viscosity == PAIR_FADING ? least(c_sum, closing * (2 / fade_below)) : c_sum;
             const double half_K = m[i] * m[j] * G_bar * t *
-                                  (alpha_half * c_sum * D2 + beta_bar * t) /
+                                  (alpha_half * c_seen * D2 + beta_bar * t) /
                                   (D2 * D2 * (rho[i] + rho[j]));
             a_i += half_K;
             a_j += half_K;
@@ -167,7 +174,8 @@ ALWAYS_INLINE double force_body(enum formulation formulation, enum pair_viscosit
 #define ENERGIES(X, f, v) X(f, v, ENERGY_INTERNAL) X(f, v, ENERGY_TOTAL)
 #define VISCOSITIES(X, f)                                                                          \
     ENERGIES(X, f, PAIR_INVISCID)                                                                  \
-    ENERGIES(X, f, PAIR_UNIFORM) ENERGIES(X, f, PAIR_VARYING) ENERGIES(X, f, PAIR_RECONSTRUCTED)
+    ENERGIES(X, f, PAIR_UNIFORM)                                                                   \
+    ENERGIES(X, f, PAIR_VARYING) ENERGIES(X, f, PAIR_RECONSTRUCTED) ENERGIES(X, f, PAIR_FADING)
 #define ALL(X) VISCOSITIES(X, FORMULATION_VANILLA_ICE) VISCOSITIES(X, FORMULATION_LAGRANGIAN)
 
 #define BODY(function, formulation, viscosity, energy, attributes)                                 \
@@ -182,7 +190,7 @@ ALWAYS_INLINE double force_body(enum formulation formulation, enum pair_viscosit
 ALL(STAMP)
 
 #define ENTRY(f, v, e) [f][v][e] = force_##f##_##v##_##e,
-static force_loop *const stamped[2][4][2] = {ALL(ENTRY)};
+static force_loop *const stamped[2][PAIR_VISCOSITIES][2] = {ALL(ENTRY)};
 
 /* The unstamped body: every choice is looked up at run time. */
 static double unstamped(const struct loops *loops, const struct pair_numbers *numbers,

@@ -23,8 +23,8 @@ void loops_choose(const struct scheme *scheme, bool stamped, struct loops *loops
     const bool varies = scheme->viscosity == VISCOSITY_TIME_DEPENDENT;
     static const enum pair_gradient form_of_width[] = {PAIR_GRADIENT_MEAN, PAIR_GRADIENT_MAX,
                                                        PAIR_GRADIENT_HARMONIC};
-    static const enum pair_viscosity form_of_viscosity[] = {PAIR_INVISCID, PAIR_UNIFORM,
-                                                            PAIR_VARYING, PAIR_RECONSTRUCTED};
+    static const enum pair_viscosity form_of_viscosity[] = {
+        PAIR_INVISCID, PAIR_UNIFORM, PAIR_VARYING, PAIR_RECONSTRUCTED, PAIR_FADING};
     *numbers = (struct pair_numbers){
         .kernel = &scheme->kernel,
         .formulation = scheme->formulation,

@@ -61,7 +61,14 @@ typedef void gradient_loop(const struct kernel *kernel, const struct particles *
 /* --- dp/dt, de/dt, signal speed, div v ------------------------------------------------------- */
 
 /* Kinds of viscosity that stand inside the pair expression. */
-enum pair_viscosity { PAIR_INVISCID, PAIR_UNIFORM, PAIR_VARYING, PAIR_RECONSTRUCTED };
+enum pair_viscosity {
+    PAIR_INVISCID,
+    PAIR_UNIFORM,
+    PAIR_VARYING,
+    PAIR_RECONSTRUCTED,
+    PAIR_FADING,
+    PAIR_VISCOSITIES
+};
 
 struct pair_numbers {
     const struct kernel *kernel;
@@ -70,7 +77,7 @@ struct pair_numbers {
     enum energy energy;
     bool energy_element; /* Z = U, else Z = m */
     bool want_div_v;     /* time-dependent viscosity */
-    double alpha, beta;  /* PAIR_UNIFORM, PAIR_RECONSTRUCTED */
+    double alpha, beta;  /* not of PAIR_VARYING */
     double beta_ratio;   /* PAIR_VARYING: beta/alpha, alpha the mean of the pair */
     double near;         /* reconstruction: 1/eta, pairs closer than near * h are damped */
 };
@@ -80,8 +87,8 @@ struct loops;
 /* Returns the largest signal speed / h among the pairs of the range (of either particle) and of
  * the range's particles alone. scratch: force_scratch(D) doubles of the thread. */
 typedef double force_loop(const struct loops *loops, const struct pair_numbers *numbers,
-                        const struct particles *particles, ptrdiff_t first, int len, ptrdiff_t D,
-                        double *scratch);
+                          const struct particles *particles, ptrdiff_t first, int len, ptrdiff_t D,
+                          double *scratch);
 size_t force_scratch(ptrdiff_t D);
 
 /* --- choosing ------------------------------------------------------------------------------- */

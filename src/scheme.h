@@ -13,7 +13,8 @@ enum viscosity {
     VISCOSITY_NONE,
     VISCOSITY_CONSTANT,
     VISCOSITY_TIME_DEPENDENT,
-    VISCOSITY_RECONSTRUCTED
+    VISCOSITY_RECONSTRUCTED,
+    VISCOSITY_FADING
 };
 enum energy { ENERGY_INTERNAL, ENERGY_TOTAL };
 /* The width at which a pair's gradient is taken: the mean of both particles' gradients, or one

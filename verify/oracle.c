@@ -238,8 +238,12 @@ static long double viscous_pressure(const struct oracle *oracle, const struct or
     /* r_ij = -x */
     const long double approach = -viscous_velocity(oracle, a, b, x) * x;
     if (approach >= 0) return 0;
-    const long double h = (a->h + b->h) / 4, c = (a->c + b->c) / 2, rho = (a->rho + b->rho) / 2;
+    const long double h = (a->h + b->h) / 4, rho = (a->rho + b->rho) / 2;
     const long double mu = h * approach / (x * x + 0.01L * h * h);
+    long double c = (a->c + b->c) / 2;
+    /* fading: no more than 100 times the speed at which the pair closes */
+    if (scheme->viscosity == VISCOSITY_FADING && c > 100 * -approach / fabsl(x))
+        c = 100 * -approach / fabsl(x);
     const bool switched = scheme->viscosity == VISCOSITY_TIME_DEPENDENT;
     const long double alpha = (a->alpha + b->alpha) / 2;
     const long double beta =

@@ -77,25 +77,32 @@ static enum status compute_league(json_t **document, struct error *error)
     return status;
 }
 
-/* Schemes that answer the two first questions: which kernel, which gradient. */
-#define BENCH_VARY "kernel=quadratic_spline,cubic_spline,quartic_spline,gradient"
+/* Schemes that answer the first two questions: which kernel, and at shocks which gradient, in
+ * smooth flow which viscosity. */
+static const char *vary(const struct settings *settings)
+{
+    return settings_choice(settings, SETTING_kind) == KIND_SOUND_WAVE
+               ? "kernel=quadratic_spline,cubic_spline,viscosity=none,constant,reconstructed,fading"
+               : "kernel=quadratic_spline,cubic_spline,quartic_spline,gradient";
+}
 
 static enum status compute_bench(const struct report_piece *piece, json_t **document,
                                  struct error *error)
 {
     const struct bench_rules rules = {.least_s = 0.01, .most_s = 1, .samples = 3};
     const struct case_file *file = &piece->settings.file;
+    const char *varied = vary(&piece->settings.settings);
     struct precision precision = {0};
     struct sweep *sweep = calloc(1, sizeof *sweep);
     if (!sweep) return error_set(error, STATUS_ENVIRONMENT, "no memory for a bench");
-    enum status status = sweep_parse(sweep, BENCH_VARY, error);
+    enum status status = sweep_parse(sweep, varied, error);
     if (!status)
         status = precision_measure(&piece->settings, sweep, file->ladder, file->ladder_count,
                                    &rules, NULL, NULL, &precision, error);
     if (!status) {
         char reproduce[256];
         snprintf(reproduce, sizeof reproduce, "sphproof bench %s --vary %s --time %g --samples %d",
-                 piece->where, BENCH_VARY, rules.least_s, rules.samples);
+                 piece->where, varied, rules.least_s, rules.samples);
         *document = result_new("bench");
         precision_add_json(&precision, *document);
         json_object_set_new(*document, "reproduce", json_string(reproduce));

@@ -10,7 +10,7 @@
 #include "order.h"
 #include "solver.h" /* the state as an integrator sees it: for mutants only */
 
-enum { TUBE = 99, COMBINATIONS = 2 * 2 * 2 * 2 * 4 };
+enum { TUBE = 99, COMBINATIONS = 2 * 2 * 2 * 2 * 5 };
 
 /* NULL, or what the mutant does to the rates: a wrapped integrator. */
 struct drift_subject {

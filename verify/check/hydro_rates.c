@@ -17,7 +17,7 @@ struct rates_subject {
     void (*spoil)(struct scene *scene);
 };
 
-enum { SUBJECTS_MAX = 160 };
+enum { SUBJECTS_MAX = 180 };
 static struct rates_subject subjects[SUBJECTS_MAX];
 static size_t subject_total;
 
@@ -34,7 +34,7 @@ static size_t subject_count(void)
 {
     if (subject_total) return subject_total;
     struct scheme s = hydro_scheme();
-    for (int c = 0; c < 64; c++) {
+    for (int c = 0; c < 16 * (int)viscosity_family.n; c++) {
         s.gradient = c & 1 ? GRADIENT_IA : GRADIENT_STANDARD;
         s.formulation = c & 2 ? FORMULATION_LAGRANGIAN : FORMULATION_VANILLA_ICE;
         s.volume_element = c & 4 ? VOLUME_ENERGY : VOLUME_MASS;

@@ -264,7 +264,8 @@ static void measure_stamped(struct check_run *run, const void *subject)
     struct error error;
     hydro_disordered(&state, 150);
     for (size_t k = 0; k < kernel_family.n; k++)
-        for (int c = 0; c < 2 * 2 * 2 * 2 * 3 * 4 && !check_decided(run); c++) {
+        for (int c = 0; c < 2 * 2 * 2 * 2 * 3 * (int)viscosity_family.n && !check_decided(run);
+             c++) {
             struct scheme s = hydro_scheme();
             s.h_tolerance = 1e-10;
             hydro_set_kernel(&s, kernel_family.members[k]->name);
