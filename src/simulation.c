@@ -10,6 +10,9 @@
 
 enum { GHOSTS_AT_START = 64 };
 
+/* A time step that is so much shorter than another of the same run will not get it anywhere. */
+static const double collapse = 1e-9;
+
 static double seconds(clockid_t clock)
 {
     struct timespec now;
@@ -136,6 +139,9 @@ enum status simulation_create(const struct scene *scene, struct simulation **res
     set_particles(simulation, scene);
     status = evaluate_rates(simulation, error);
     if (status) goto failed;
+    struct conservation start;
+    simulation_conservation(simulation, &start);
+    simulation->start_energy = start.energy;
     status = evaluate_reserve(simulation, error);
     if (status) goto failed;
     status = sleep_begin(simulation, simulation->plan.sleep, error);
@@ -216,6 +222,19 @@ static void undo_prediction(struct simulation *simulation)
     simulation->ahead = 0;
 }
 
+/* Energy is kept to the order of the integrator; where half of it has come or gone, an instability
+ * has run away with it. */
+static enum status check_energy(const struct simulation *simulation, struct error *error)
+{
+    struct conservation sums;
+    simulation_conservation(simulation, &sums);
+    if (fabs(sums.energy - simulation->start_energy) <= 0.5 * simulation->start_energy)
+        return STATUS_OK;
+    return error_set(error, STATUS_BROKE_DOWN,
+                     "broke down at t = %.9g: total energy is %.9g, at the start it was %.9g",
+                     simulation->time, sums.energy, simulation->start_energy);
+}
+
 enum status simulation_run(struct simulation *simulation, double t_end,
                            simulation_progress *progress, void *context, struct error *error)
 {
@@ -224,10 +243,13 @@ enum status simulation_run(struct simulation *simulation, double t_end,
     simulation->t_end = t_end;
     while (simulation->time < t_end && !stopped) {
         const double dt = simulation_next_step(simulation, simulation->time);
-        if (!(simulation->time + dt > simulation->time)) {
-            const ptrdiff_t i = limiting_particle(simulation);
-            status = broke_down(simulation, i, "signal speed (no time step is left)",
-                                simulation->particles.signal[i], error);
+        const bool last = simulation_time_after(simulation, dt) >= t_end;
+        simulation->largest_dt = fmax(simulation->largest_dt, dt);
+        /* in the last step t_end alone decides, however near it is */
+        if (!last &&
+            !(dt > collapse * simulation->largest_dt && simulation->time + dt > simulation->time)) {
+            status = broke_down(simulation, limiting_particle(simulation), "collapsed time step",
+                                dt, error);
             break;
         }
         /* the interval to the next density sum, against the last one: half a step each side */
@@ -249,6 +271,7 @@ enum status simulation_run(struct simulation *simulation, double t_end,
     undo_prediction(simulation);
     if (!status && !simulation->scheme.integrator->ends_evaluated)
         status = evaluate_state(simulation, error);
+    if (!status) status = check_energy(simulation, error);
     stop_clocks(simulation);
     return status;
 }

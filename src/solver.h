@@ -35,6 +35,8 @@ struct simulation {
     double lo, period, gamma, time, t_end;
     double time_step;     /* limit found by the last signal speeds */
     double last_dt;       /* of the last step, 0 before the first */
+    double largest_dt;    /* of all steps */
+    double start_energy;  /* total */
     double ahead;         /* the step whose middle x, v, U and alpha are at already; 0: none */
     double predict_ratio; /* of the prediction of h: this interval / the last one */
     int threads;

@@ -1,0 +1,215 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""properties.py SPHPROOF COUNT [FIRST]: what holds for any valid settings.
+
+COUNT runs with settings drawn at random (draw number FIRST, FIRST + 1, ...; the same ones every
+time). Each must end well, with finite numbers that conserve what the scheme conserves, or break
+down with exit status 3 and a reason; soon, and without a crash. The command of a run that does not
+is printed: it says it all."""
+import csv
+import json
+import math
+import random
+import re
+import shlex
+import subprocess
+import sys
+import tempfile
+
+SECONDS = 60  # of a run; nearly all take hundredths
+# Relative bounds. Momentum: to sum |p| + sum m c. Forces are antisymmetric to the last bit but for
+# pairs across the ends of the box, whose distance is rounded (to eps box/distance of itself): runs
+# that press particles together there are the few that may have more than round-off.
+MOMENTUM, MOMENTUM_FEW, FEW = 1e-12, 1e-6, 0.02
+# Total energy: round-off where it is what is integrated; else to the integrator's order, which is
+# a small number only for a stable run.
+ENERGY, ENERGY_TAME, ENERGY_ANY = 1e-11, 0.05, 0.5
+# Some draws are refused: the message says what is allowed, and that must be allowed.
+ADVICE = [(r"unless (eta) > (\S*)", 1.05), (r"allowed: (t_end) <= ([^,]*),", 1),
+          (r"(t_end)=.* breaks at (\S*) and", 0.9)]
+RIEMANN = ["sod", "sod_standard", "strong_shock", "lax", "two_rarefactions"]
+
+
+def names(program, family):
+    return [line.split()[0] for line in subprocess.run(
+        [program, "list", family], capture_output=True, text=True, check=True).stdout.splitlines()
+        if line.startswith("  ")]
+
+
+class Program:
+    def __init__(self, path):
+        self.path = path
+        self.choices = {key: names(path, family) for key, family in (
+            ("kernel", "kernels"), ("gradient", "gradients"), ("formulation", "formulations"),
+            ("volume_element", "volume_elements"), ("integrator", "integrators"),
+            ("viscosity", "viscosities"))}
+        self.cases = names(path, "cases")
+
+
+def log_uniform(rng, low, high):
+    return float("%.4g" % math.exp(rng.uniform(math.log(low), math.log(high))))
+
+
+def state(rng):
+    return "%g %g %g" % (log_uniform(rng, 1e-2, 10), round(rng.uniform(-1.5, 1.5), 3),
+                         log_uniform(rng, 1e-3, 10))
+
+
+def draw(program, number):
+    """Case, keys and threads of one run."""
+    rng = random.Random(number)
+    case = rng.choice(program.cases)
+    keys = {key: rng.choice(values) for key, values in program.choices.items()}
+    maybe = lambda chance, key, value: keys.update({key: value}) if rng.random() < chance else None
+    keys["eta"] = log_uniform(rng, 1.8, 20 if rng.random() < 0.1 else 7)
+    maybe(0.3, "eta", "auto")
+    maybe(0.5, "cfl", log_uniform(rng, 0.03, 1.5))
+    maybe(0.5, "energy", rng.choice(["internal", "total"]))
+    maybe(0.4, "h_method", rng.choice(["newton", "predicted"]))
+    widths = ["mean"] if keys["formulation"] == "lagrangian" else ["mean", "max", "harmonic"]
+    maybe(0.4, "pair_width", rng.choice(widths))
+    maybe(0.2, "alpha", round(rng.uniform(0, 3), 2))
+    maybe(0.1, "beta", round(rng.uniform(0, 6), 2))
+    maybe(0.2, "gamma", round(rng.uniform(1.05, 3), 2))
+    maybe(0.3, "jitter", round(rng.uniform(0, 0.49), 2))
+    maybe(0.1, "lattice", rng.choice(["clustered", "coincident"]))
+    maybe(0.3, "skip", "none")
+    maybe(0.1, "h_tolerance", log_uniform(rng, 1e-14, 1e-3))
+    maybe(0.3, "sinc_n", rng.randint(3, 12))
+    if case in RIEMANN:
+        maybe(0.2, "grade", round(rng.uniform(0.05, 1), 2))
+        maybe(0.1, "mass_ratio", log_uniform(rng, 0.05, 20))
+        if rng.random() < 0.2:
+            keys.update(left=state(rng), right=state(rng), t_end=0.05)
+    else:
+        maybe(0.5, "amplitude", log_uniform(rng, 1e-8, 0.2))
+        maybe(0.3, "waves", rng.randint(1, 5))
+        maybe(0.8, "t_end", round(rng.uniform(0.01, 0.3), 3))
+    keys["n"] = rng.randint(4, 30) if rng.random() < 0.2 else rng.randint(30, 200)
+    keys["seed"] = rng.randint(0, 4294967295)
+    return case, keys, rng.randint(1, 3)
+
+
+def wrong_numbers(value, path=""):
+    """Paths of what is not finite in a document."""
+    if isinstance(value, dict):
+        return [w for k, v in value.items() for w in wrong_numbers(v, path + "/" + k)]
+    if isinstance(value, list):
+        return [w for i, v in enumerate(value) for w in wrong_numbers(v, path + "/%d" % i)]
+    bad = value in ("nan", "inf", "-inf") or (isinstance(value, float) and not math.isfinite(value))
+    return [path] if bad else []
+
+
+def read_particles(path):
+    with open(path, newline="", encoding="utf-8") as file:
+        return [{k: float(v) for k, v in row.items()} for row in csv.DictReader(file)]
+
+
+def check_particles(rows):
+    for i, row in enumerate(rows):
+        for name, value in row.items():
+            if not math.isfinite(value) or (name in ("m", "rho", "u", "P", "h") and value <= 0):
+                return "%s of particle %d is %r" % (name, i, value)
+        if i and row["x"] < rows[i - 1]["x"]:
+            return "particle %d is out of order" % i
+    return None
+
+
+def tame(keys):
+    """Time step and scheme are those that a newcomer would get, and the start is orderly."""
+    return not {"cfl", "alpha", "beta", "jitter", "lattice", "pair_width"} & set(keys) and (
+        keys["eta"] == "auto" and keys["viscosity"] == "constant")
+
+
+def check_document(document, rows, keys):
+    """What a run that ended well owes; None if all is well."""
+    wrong = wrong_numbers({k: document[k] for k in ("conservation", "cost", "time")})
+    low, high = document["window"]
+    if any(low <= row["x"] <= high for row in rows):
+        wrong += wrong_numbers(document["errors"])
+    if wrong:
+        return "not finite: " + ", ".join(wrong)
+    kept, settings = document["conservation"], document["settings"]
+    if kept["mass"] > 1e-15:
+        return "mass error %g" % kept["mass"]
+    bound = (ENERGY if settings["energy"] == "total" else
+             ENERGY_TAME if tame(keys) else ENERGY_ANY)
+    if not kept["energy"] <= bound:
+        return "energy error %g above %g" % (kept["energy"], bound)
+    if not document["momentum_error"] <= MOMENTUM_FEW:
+        return "momentum error %g" % document["momentum_error"]
+    return None
+
+
+def momentum_error(document, rows):
+    """Relative to sum |p| + sum m c: the document's is relative to sum |p|, however small."""
+    p = sum(row["m"] * abs(row["vx"]) for row in rows)
+    sound = sum(row["m"] * math.sqrt(document["settings"]["gamma"] * row["P"] / row["rho"])
+                for row in rows)
+    return document["conservation"]["momentum"] * (p if p > 1e-12 * sound else sound) / (p + sound)
+
+
+def execute(program, case, keys, threads, snapshot):
+    command = ["run", case, *("%s=%s" % item for item in keys.items()), "--threads", str(threads)]
+    try:
+        done = subprocess.run([program, *command, "--json", "-", "--snapshot", snapshot],
+                              capture_output=True, text=True, timeout=SECONDS)
+    except subprocess.TimeoutExpired:
+        done = None
+    return done, shlex.join(["sphproof", *command])
+
+
+def check_run(program, case, keys, threads, folder):
+    """What is wrong with a run (None if nothing), its command, its document."""
+    snapshot = folder + "/end.csv"
+    done, command = execute(program, case, keys, threads, snapshot)
+    for pattern, factor in ADVICE:
+        advice = done and done.returncode == 2 and re.search(pattern, done.stderr)
+        if advice:
+            keys[advice.group(1)] = factor * float(advice.group(2))
+            done, command = execute(program, case, keys, threads, snapshot)
+    if not done:
+        return "more than %d s" % SECONDS, command, None
+    if done.returncode not in (0, 3):
+        return "exit status %d: %s" % (done.returncode, done.stderr.strip()), command, None
+    document = json.loads(done.stdout)
+    if done.returncode == 3:
+        well = document["status"] == "broke_down" and "broke down at t = " in done.stderr
+        return None if well else "no reason: " + done.stderr, command, document
+    if document["status"] != "ok":
+        return "status %s" % document["status"], command, document
+    rows = read_particles(snapshot)
+    if len(rows) != document["n"]:
+        return "%d particles of %d" % (len(rows), document["n"]), command, document
+    document["momentum_error"] = momentum_error(document, rows)
+    return check_particles(rows) or check_document(document, rows, keys), command, document
+
+
+def main():
+    program = Program(sys.argv[1])
+    count, first = int(sys.argv[2]), int(sys.argv[3]) if len(sys.argv) > 3 else 1
+    ended, broken, failed, drifting = 0, 0, 0, []
+    with tempfile.TemporaryDirectory() as folder:
+        for number in range(first, first + count):
+            wrong, command, document = check_run(program.path, *draw(program, number), folder)
+            if wrong:
+                failed += 1
+                print("draw %d: %s\n    %s" % (number, wrong, command))
+            elif document["status"] == "broke_down":
+                broken += 1
+            else:
+                ended += 1
+                if document["momentum_error"] > MOMENTUM:
+                    drifting.append("momentum error %g\n    %s" % (document["momentum_error"],
+                                                                   command))
+    if len(drifting) > FEW * count + 1:
+        failed += 1
+        print("\n".join(["too many with momentum errors beyond round-off:"] + drifting))
+    if ended < count / 2 and count > 20:
+        failed += 1
+        print("only %d of %d runs ended well" % (ended, count))
+    print("%d runs: %d ended, %d broke down, %d beyond round-off in momentum, %d wrong" %
+          (count, ended, broken, len(drifting), failed))
+    sys.exit(failed > 0)
+
+
+main()
