@@ -57,6 +57,11 @@ ALWAYS_INLINE void gather(bool add, enum energy energy, int count, ptrdiff_t d,
     }
 }
 
+size_t force_scratch(ptrdiff_t D)
+{
+    return STRIPS * (size_t)(RANGE_MAX + D + 8); /* and the rest of a vector */
+}
+
 struct sums {
     double F[RANGE_MAX], de[RANGE_MAX], div_v[RANGE_MAX];
 };

@@ -53,11 +53,6 @@ void loops_choose(const struct scheme *scheme, bool stamped, struct loops *loops
     loops->force = loop_force(kernel >= 0, scheme->formulation, numbers->viscosity, scheme->energy);
 }
 
-size_t force_scratch(ptrdiff_t D)
-{
-    return STRIPS * (size_t)(RANGE_MAX + D + 8); /* and the rest of a vector */
-}
-
 void loops_signal(const struct particles *particles, ptrdiff_t first, int len, ptrdiff_t D)
 {
     const double *x = particles->x + first, *v = particles->v + first, *c = particles->c + first,
