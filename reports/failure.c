@@ -15,25 +15,32 @@ static const char *const causes[] = {
 };
 enum { CAUSES = sizeof causes / sizeof *causes };
 
+/* Checks of one formula each: before the others of their group, which follow from several. */
+static const char *const elementary[] = {
+    "normalisation", "radial_derivative", "width_derivative", "brute_force",
+    "antisymmetry",  "star_states",       "error_norms",      "riemann_setup",
+    "rates",         "h_residual",        "time_stepping",
+};
+enum { ELEMENTARY = sizeof elementary / sizeof *elementary };
+
 struct failure {
     json_t *entry;
-    size_t cause, number;
+    size_t cause, check, number; /* of the lists above; in the order of coming */
     double excess;
     size_t more; /* other figures of the same check */
 };
 
-static size_t cause_of(const char *name, const char *otherwise)
+/* Where in a list; at its end where it is not. */
+static size_t place(const char *name, const char *const *list, size_t n)
 {
-    size_t other = CAUSES;
-    for (size_t k = 0; k < CAUSES; k++) {
-        if (!strcmp(causes[k], name)) return k;
-        if (!strcmp(causes[k], otherwise)) other = k;
-    }
-    return other;
+    size_t k = 0;
+    while (k < n && strcmp(list[k], name)) k++;
+    return k;
 }
 
 /* Takes entry. */
-static void keep(struct failure_list *failures, size_t cause, double excess, json_t *entry)
+static void keep(struct failure_list *failures, size_t cause, size_t check, double excess,
+                 json_t *entry)
 {
     if (failures->count == failures->room) {
         size_t room = 2 * failures->room + 16;
@@ -45,35 +52,31 @@ static void keep(struct failure_list *failures, size_t cause, double excess, jso
         json_decref(entry);
         return;
     }
-    failures->list[failures->count] = (struct failure){entry, cause, failures->count, excess, 0};
+    failures->list[failures->count] =
+        (struct failure){entry, cause, check, failures->count, excess, 0};
     failures->count++;
-}
-
-static json_t *entry_of(const char *area, const char *name, const char *detail, const char *command)
-{
-    return json_pack("{s:s, s:s, s:s, s:s}", "area", area, "name", name, "detail", detail,
-                     "command", command);
 }
 
 void failure_add(struct failure_list *failures, const char *area, const char *name,
                  const char *detail, const char *command)
 {
-    keep(failures, cause_of(area, area), 0, entry_of(area, name, detail, command));
+    keep(failures, place(area, causes, CAUSES), 0, 0,
+         json_pack("{s:s, s:s, s:s, s:s}", "area", area, "name", name, "detail", detail, "command",
+                   command));
 }
 
-static bool is_check(const json_t *entry, const char *name)
+void failure_add_check(struct failure_list *failures, const json_t *figure, double excess,
+                       const char *detail, const char *command)
 {
-    return name && !strcmp(html_string(entry, "area"), "check") &&
-           !strcmp(html_string(entry, "name"), name);
-}
-
-void failure_add_check(struct failure_list *failures, const char *group, double excess,
-                       const char *name, const char *detail, const char *command)
-{
-    json_t *entry = entry_of("check", name, detail, command);
-    for (size_t k = failures->count; k-- > 0;) {
+    const char *group = html_string(figure, "group"), *check = html_string(figure, "name");
+    json_t *entry =
+        json_pack("{s:s, s:s++, s:s, s:s, s:s}", "area", "check", "name", group, ": ", check,
+                  "subject", html_string(figure, "subject"), "detail", detail, "command", command);
+    for (size_t k = failures->count; entry && k-- > 0;) {
         struct failure *known = &failures->list[k];
-        if (!entry || !is_check(known->entry, name)) continue;
+        if (!json_equal(json_object_get(entry, "area"), json_object_get(known->entry, "area")) ||
+            !json_equal(json_object_get(entry, "name"), json_object_get(known->entry, "name")))
+            continue;
         known->more++;
         if (excess > known->excess) {
             json_decref(known->entry);
@@ -83,13 +86,16 @@ void failure_add_check(struct failure_list *failures, const char *group, double 
         json_decref(entry);
         return;
     }
-    keep(failures, cause_of(group, "check"), excess, entry);
+    size_t cause = place(group, causes, CAUSES);
+    if (cause == CAUSES) cause = place("check", causes, CAUSES);
+    keep(failures, cause, place(check, elementary, ELEMENTARY), excess, entry);
 }
 
 static int most_specific_first(const void *a, const void *b)
 {
     const struct failure *x = a, *y = b;
     if (x->cause != y->cause) return x->cause < y->cause ? -1 : 1;
+    if (x->check != y->check) return x->check < y->check ? -1 : 1;
     if (x->excess != y->excess) return x->excess > y->excess ? -1 : 1;
     return x->number < y->number ? -1 : 1;
 }
@@ -97,8 +103,9 @@ static int most_specific_first(const void *a, const void *b)
 static void tell_more(struct failure_list *failures, const struct failure *failure)
 {
     struct buffer detail = {0};
-    buffer_format(&detail, "%s; and %zu more figures of this check",
-                  html_string(failure->entry, "detail"), failure->more);
+    buffer_format(&detail, "%s; and %zu more %s of this check",
+                  html_string(failure->entry, "detail"), failure->more,
+                  failure->more == 1 ? "figure" : "figures");
     if (detail.failed || json_object_set_new(failure->entry, "detail", json_string(detail.data)))
         failures->failed = true;
     buffer_free(&detail);

@@ -21,11 +21,12 @@ void failure_add(struct failure_list *failures, const char *area, const char *na
                  const char *detail, const char *command);
 
 /* A figure of a check. A check is listed once, by the figure farthest beyond its bound (excess:
- * value over bound); the others are counted. */
-void failure_add_check(struct failure_list *failures, const char *group, double excess,
-                       const char *name, const char *detail, const char *command);
+ * value over bound); the others are counted. Its name in the list is "group: check". */
+void failure_add_check(struct failure_list *failures, const json_t *figure, double excess,
+                       const char *detail, const char *command);
 
-/* [{"area", "name", "detail", "command"}], a new reference; frees the list. */
+/* [{"area", "name", "detail", "command"}], checks with their "subject": a new reference; frees the
+ * list. */
 json_t *failure_take(struct failure_list *failures);
 
 #endif

@@ -34,7 +34,7 @@ static void judge_figure(struct tally *tally, const json_t *figure)
     if (!strcmp(status, "skip")) tally->figures_skipped++;
     if (strcmp(status, "fail")) return;
     tally->figures_failed++;
-    struct buffer detail = {0}, name = {0}, command = {0};
+    struct buffer detail = {0}, command = {0};
     double value = html_member(figure, "value"), bound = html_member(figure, "bound");
     buffer_format(&detail, "%s: ", html_string(figure, "subject"));
     html_number(&detail, value);
@@ -45,13 +45,10 @@ static void judge_figure(struct tally *tally, const json_t *figure)
         html_number(&detail, value / bound);
         buffer_add(&detail, " times the bound)");
     }
-    buffer_format(&name, "%s: %s", html_string(figure, "group"), html_string(figure, "name"));
     buffer_format(&command, "sphproof verify %s", html_string(figure, "group"));
     double excess = isfinite(value) && bound > 0 ? value / bound : (double)INFINITY;
-    failure_add_check(&tally->failures, html_string(figure, "group"), excess, name.data,
-                      detail.data, command.data);
+    failure_add_check(&tally->failures, figure, excess, detail.data, command.data);
     buffer_free(&detail);
-    buffer_free(&name);
     buffer_free(&command);
 }
 
@@ -155,6 +152,7 @@ static void judge_study(struct tally *tally, const json_t *study)
     }
     if (!strcmp(html_string(study, "status"), "broke_down")) {
         struct buffer detail = {0};
+        tally->gates_failed++;
         buffer_format(&detail, "broke down: %s", html_string(study, "message"));
         fail(tally, "study", html_string(study, "case"), &detail, html_string(study, "reproduce"));
     }
@@ -179,20 +177,22 @@ static void judge_fault(struct tally *tally, const json_t *fault)
     fail(tally, "fault", html_string(fault, "fault"), &detail, html_string(fault, "command"));
 }
 
+/* The failures' number and the first one: what it is and, of a check, of whom. */
 static void headline(struct buffer *to, bool checked, const json_t *failures)
 {
     size_t count = json_array_size(failures);
     const json_t *first = json_array_get(failures, 0);
-    const char *area = html_string(first, "area");
+    const char *area = html_string(first, "area"), *subject = html_string(first, "subject");
     bool check = !strcmp(area, "check"); /* its name begins with its group */
-    if (count)
-        buffer_format(to, "%zu %s%s%s%s", count,
-                      count == 1 ? "failure: " : "failures; look first at ", check ? "" : area,
-                      check ? "" : " ", html_string(first, "name"));
-    else if (checked)
-        buffer_add(to, "All is well");
-    else
-        buffer_add(to, "Nothing was checked");
+    if (!count) {
+        buffer_add(to, checked ? "All is well" : "Nothing was checked");
+        return;
+    }
+    buffer_format(to, "%zu %s%s%s%s", count, count == 1 ? "failure: " : "failures; look first at ",
+                  check ? "" : area, check ? "" : " ", html_string(first, "name"));
+    int length = (int)strcspn(subject, ",:"); /* what follows is in the list */
+    bool named = length > 0 && length < 48 && !strstr(subject, "broke down");
+    if (named) buffer_format(to, " of %.*s", length, subject);
 }
 
 json_t *verdict_make(const json_t *results)

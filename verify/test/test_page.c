@@ -122,14 +122,15 @@ static void good_page(void **state)
 static void bad_page(void **state)
 {
     (void)state;
-    const char *const contents[] = {"<h1>5 failures; look first at kernels: sign</h1>",
-                                    "particle 7 &lt;negative u&gt;",
-                                    "is too low",
-                                    "nan is not &lt;= 1.00e-15",
-                                    "&#39;minus&#39;",
-                                    "sphproof verify --mutants",
-                                    "exit 1, not 0",
-                                    "with another build (git def)"};
+    const char *const contents[] = {
+        "<h1>5 failures; look first at kernels: sign of q &lt; 1 &amp; more</h1>",
+        "particle 7 &lt;negative u&gt;",
+        "is too low",
+        "nan is not &lt;= 1.00e-15",
+        "&#39;minus&#39;",
+        "sphproof verify --mutants",
+        "exit 1, not 0",
+        "with another build (git def)"};
     judge_page(unsound(), contents, sizeof contents / sizeof *contents);
 }
 
@@ -224,9 +225,11 @@ static void cause_first(void **state)
     add_figure(checks, "kernels", "slope", "steep", 40);
     add_figure(checks, "kernels", "sign", "worst", 20);
     add_figure(checks, "kernels", "sign", "middle", 2);
+    add_figure(checks, "kernels", "normalisation", "one formula", 2);
     static const struct {
         const char *name, *detail;
-    } expected[] = {{"kernels: slope", "steep: "},
+    } expected[] = {{"kernels: normalisation", "one formula"},
+                    {"kernels: slope", "steep: "},
                     {"kernels: sign", "worst: "},
                     {"hydro: rates", "cubic: "},
                     {"sod", "too good to be true: the same error twice"},
@@ -240,7 +243,7 @@ static void cause_first(void **state)
         const char *detail = json_string_value(json_object_get(failure, "detail"));
         assert_string_equal(json_string_value(json_object_get(failure, "name")), expected[k].name);
         if (strncmp(detail, expected[k].detail, strlen(expected[k].detail))) fail_msg("%s", detail);
-        assert_int_equal(strstr(detail, "2 more figures") != NULL, k == 1);
+        assert_int_equal(strstr(detail, "2 more figures") != NULL, k == 2);
     }
     char *junit_text = page_junit(results);
     assert_non_null(strstr(junit_text, "the same error twice"));
