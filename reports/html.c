@@ -21,6 +21,14 @@ double html_real(const json_t *value)
     return (double)NAN;
 }
 
+size_t html_numbers(const json_t *array, double *values, size_t most)
+{
+    size_t i, n = 0;
+    const json_t *value;
+    json_array_foreach(array, i, value) if (n < most) values[n++] = html_real(value);
+    return n;
+}
+
 double html_member(const json_t *object, const char *name)
 {
     return html_real(json_object_get(object, name));

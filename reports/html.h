@@ -16,6 +16,9 @@ double html_member(const json_t *object, const char *name);
 /* The member of an object within an object. */
 double html_member2(const json_t *object, const char *outer, const char *name);
 
+/* The first numbers of an array, at most `most`; returns how many. */
+size_t html_numbers(const json_t *array, double *values, size_t most);
+
 /* Three significant digits, the way people write: 0.00461 is 4.61e-3, 12 is 12. */
 void html_number(struct buffer *to, double value);
 

@@ -201,10 +201,14 @@ static void one_case(struct page_writer *writer, const json_t *results, const ch
         buffer_add(to, "<h4>Errors, conservation and cost of the runs above</h4>\n");
         run_table(to, runs, run_count);
     }
+    buffer_add(to, "<div class=\"figures\">\n");
+    page_time(writer, name, runs, run_count);
+    buffer_add(to, "<div>");
     for (i = 0; i < run_count; i++)
         html_command(to, html_string(runs[i], "label"), html_string(runs[i], "reproduce"));
     for (i = 0; i < study_count; i++)
         html_command(to, "convergence", html_string(studies[i], "reproduce"));
+    buffer_add(to, "</div></div>\n");
     free_curves(&curves);
 }
 

@@ -21,6 +21,10 @@ void page_plot(struct page_writer *writer, const struct plot *plot, const char *
 /* "CASE-WHAT" as a plot's name: what is not allowed there becomes '_'. */
 void page_plot_name(char *name, size_t size, const char *case_name, const char *what);
 
+/* What the runs of one case have changed of what is conserved, through time. */
+void page_time(struct page_writer *writer, const char *case_name, const json_t *const *runs,
+               size_t count);
+
 /* The entry of a converge document for a field and a norm, or NULL. */
 const json_t *page_order(const json_t *study, const char *field, const char *norm);
 

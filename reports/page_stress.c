@@ -12,14 +12,6 @@
 
 enum { POINTS = 128, CURVES = 8, MAP_MAX = 64 * 64 };
 
-static size_t read_numbers(const json_t *array, double *values, size_t most)
-{
-    size_t i, n = 0;
-    const json_t *value;
-    json_array_foreach(array, i, value) if (n < most) values[n++] = html_real(value);
-    return n;
-}
-
 /* --- linear theory -----------------------------------------------------------------------------
  */
 
@@ -51,8 +43,8 @@ static void plot_growth(struct page_writer *writer, const json_t *atlas, const c
     {
         if (!curves || count == CURVES || strcmp(html_string(row, "gradient"), gradient)) continue;
         struct curve *curve = &curves[count];
-        const size_t n = read_numbers(json_object_get(atlas, "eta"), curve->x, POINTS);
-        read_numbers(json_object_get(row, "growth"), curve->y, POINTS);
+        const size_t n = html_numbers(json_object_get(atlas, "eta"), curve->x, POINTS);
+        html_numbers(json_object_get(row, "growth"), curve->y, POINTS);
         bool seen = false;
         for (size_t k = 0; k < n; k++) {
             if (!(curve->y[k] >= least)) curve->y[k] = (double)NAN;
@@ -104,8 +96,8 @@ static void plot_waves(struct page_writer *writer, const json_t *waves)
         static const char *const what[] = {"frequency", "growth"};
         for (int k = 0; k < 2; k++) {
             struct curve *curve = &curves[2 * count + (size_t)k];
-            const size_t n = read_numbers(json_object_get(row, "kappa"), curve->x, POINTS);
-            read_numbers(json_object_get(row, what[k]), curve->y, POINTS);
+            const size_t n = html_numbers(json_object_get(row, "kappa"), curve->x, POINTS);
+            html_numbers(json_object_get(row, what[k]), curve->y, POINTS);
             label_of(curve->label, row, true);
             series[k][count] = (struct plot_series){.label = k ? NULL : curve->label,
                                                     .kind = PLOT_LINES,
@@ -145,9 +137,9 @@ static void plot_map(struct page_writer *writer, const json_t *map)
     double *eta = malloc((2 * POINTS + MAP_MAX) * sizeof *eta);
     if (!eta) return;
     double *kappa = eta + POINTS, *growth = kappa + POINTS;
-    const size_t nx = read_numbers(json_object_get(map, "eta"), eta, POINTS);
-    const size_t ny = read_numbers(json_object_get(map, "kappa"), kappa, POINTS);
-    const size_t n = read_numbers(json_object_get(map, "growth"), growth, MAP_MAX);
+    const size_t nx = html_numbers(json_object_get(map, "eta"), eta, POINTS);
+    const size_t ny = html_numbers(json_object_get(map, "kappa"), kappa, POINTS);
+    const size_t n = html_numbers(json_object_get(map, "growth"), growth, MAP_MAX);
     for (size_t k = 0; k < n; k++)
         if (!(growth[k] > 1e-4)) growth[k] = (double)NAN;
     const struct plot_heat heat = {

@@ -190,9 +190,13 @@ static void headline(struct buffer *to, bool checked, const json_t *failures)
     }
     buffer_format(to, "%zu %s%s%s%s", count, count == 1 ? "failure: " : "failures; look first at ",
                   check ? "" : area, check ? "" : " ", html_string(first, "name"));
-    int length = (int)strcspn(subject, ",:"); /* what follows is in the list */
-    bool named = length > 0 && length < 48 && !strstr(subject, "broke down");
-    if (named) buffer_format(to, " of %.*s", length, subject);
+    if (strstr(subject, "broke down")) return; /* it says where, not of what */
+    enum { LONGEST = 64 };
+    size_t length = strlen(subject), whole = length;
+    if (length > LONGEST) /* to the end of a word */
+        for (length = LONGEST; length && subject[length] != ' ';) length--;
+    if (length && subject[length - 1] == ',') length--;
+    if (length) buffer_format(to, " of %.*s%s", (int)length, subject, length < whole ? " …" : "");
 }
 
 json_t *verdict_make(const json_t *results)

@@ -7,7 +7,8 @@
  *   mode            "quick" or "nightly"
  *   runs            [run documents, and "label", "reproduce", "profile": {"x", "density",
  *                   "velocity", "pressure", "exact_density", ... at the particles of the window,
- *                   "exact": {"x", "density", "velocity", "pressure"}}]
+ *                   "exact": {"x", "density", "velocity", "pressure"}}, "through_time": {"time",
+ *                   "mass", "momentum", "energy"}: what has changed since the start, relative]
  *   studies         [converge documents, and "label", "reproduce"]
  *   verify          verify document
  *   trouble         [{"name", "message"}]: what gave no result, its process having crashed

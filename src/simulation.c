@@ -265,8 +265,7 @@ enum status simulation_run(struct simulation *simulation, double t_end,
         simulation->cost.skipped_particle_updates +=
             (uint64_t)(simulation->particles.n - simulation->sleep.awake_count);
         if (simulation->plan.signal_pass && simulation->time < t_end) evaluate_signal(simulation);
-        if (progress && simulation->cost.steps % 32 == 0)
-            stopped = !progress(context, simulation->time, simulation->cost.steps);
+        if (progress) stopped = !progress(context, simulation->time, simulation->cost.steps);
     }
     undo_prediction(simulation);
     if (!status && !simulation->scheme.integrator->ends_evaluated)

@@ -74,7 +74,7 @@ struct simulation;
  * times as far apart in the order of positions as they are at the start. */
 enum status simulation_create(const struct scene *scene, struct simulation **simulation,
                               struct error *error);
-/* Called now and then with the current time; return false to stop (STATUS_OK, time < t_end). */
+/* Called after each step with the current time; return false to stop (STATUS_OK, time < t_end). */
 typedef bool simulation_progress(void *context, double time, uint64_t steps);
 
 /* Steps to t_end exactly. STATUS_BROKE_DOWN: the message names particle, time and quantity; the

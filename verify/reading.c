@@ -89,8 +89,9 @@ static const struct rule {
 };
 
 /* Members that hold no figures: what was asked for, how it was drawn. */
-static const char *const closed[] = {"machine", "profile",  "plan",    "settings", "gate",
-                                     "spread",  "pairwise", "history", "failures", "excluded"};
+static const char *const closed[] = {"machine",  "profile",  "plan",        "settings",
+                                     "gate",     "spread",   "pairwise",    "history",
+                                     "failures", "excluded", "through_time"};
 
 /* Members that say what an entry of a list is about, in this order. */
 static const char *const names[] = {"case",     "label",   "scheme", "group",  "check",

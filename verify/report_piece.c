@@ -19,11 +19,15 @@ static enum status compute_run(const struct report_piece *piece, json_t **docume
                                struct error *error)
 {
     struct run_result result;
-    const enum status status = run_execute(&piece->settings, &result, error);
+    struct run_settings settings = piece->settings;
+    struct trace trace = {0};
+    settings.trace = &trace;
+    const enum status status = run_execute(&settings, &result, error);
     if (status != STATUS_OK && status != STATUS_BROKE_DOWN) return status;
     *document = result_new("run");
     run_add_json(&piece->settings, &result, *document);
     if (status == STATUS_OK) json_object_set_new(*document, "profile", profile_json(&result));
+    json_object_set_new(*document, "through_time", trace_json(&trace));
     run_free(&result);
     return status;
 }

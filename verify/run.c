@@ -159,16 +159,14 @@ static enum status measure_errors(struct run_result *result, struct error *error
     return STATUS_OK;
 }
 
-/* Sums at the end against t = 0; momentum in units of sum |p|, where that vanishes of mass times
- * sound speed. */
+/* Sums at the end against t = 0. */
 static void measure_conservation(struct run_result *result, const struct conservation *start,
                                  const struct conservation *end)
 {
-    const double tiny = 1e-12 * end->sound_scale;
-    const double scale = end->momentum_scale > tiny ? end->momentum_scale : end->sound_scale;
-    result->mass = fabs(end->mass - start->mass) / start->mass;
-    result->momentum = fabs(end->momentum[0] - start->momentum[0]) / scale;
-    result->energy = fabs(end->energy - start->energy) / fabs(start->energy);
+    const struct trace_drift drift = trace_drift(start, end, end);
+    result->mass = drift.mass;
+    result->momentum = drift.momentum;
+    result->energy = drift.energy;
 }
 
 /* What a solver leaves behind; the snapshot's arrays are still the solver's. */
@@ -207,6 +205,28 @@ static enum status broke_down_at_start(struct run_result *result, const struct e
     return STATUS_OK;
 }
 
+struct watch {
+    const struct run_settings *settings;
+    const struct simulation *simulation;
+};
+
+static void keep_trace(const struct watch *watch, double time)
+{
+    struct conservation sums;
+    simulation_conservation(watch->simulation, &sums);
+    trace_add(watch->settings->trace, time, &sums);
+}
+
+static bool after_step(void *context, double time, uint64_t steps)
+{
+    enum { STEPS_BETWEEN = 32 };
+    const struct watch *watch = context;
+    const struct run_settings *settings = watch->settings;
+    if (settings->trace && trace_wants(settings->trace, steps)) keep_trace(watch, time);
+    if (steps % STEPS_BETWEEN || !settings->progress) return true;
+    return settings->progress(settings->progress_context, time, steps);
+}
+
 static enum status simulate(const struct run_settings *settings, struct run_result *result,
                             const struct initial *initial, struct error *error)
 {
@@ -219,12 +239,16 @@ static enum status simulate(const struct run_settings *settings, struct run_resu
         *error = outcome.reason;
         return status;
     }
+    struct watch watch = {settings, simulation};
     simulation_conservation(simulation, &outcome.start);
-    outcome.status = simulation_run(simulation, scene.t_end, settings->progress,
-                                    settings->progress_context, &outcome.reason);
+    if (settings->trace) keep_trace(&watch, 0);
+    outcome.status = simulation_run(simulation, scene.t_end,
+                                    settings->progress || settings->trace ? after_step : NULL,
+                                    &watch, &outcome.reason);
     simulation_cost(simulation, &result->cost);
     simulation_conservation(simulation, &outcome.end);
     simulation_snapshot(simulation, &outcome.snapshot);
+    if (settings->trace) trace_add(settings->trace, outcome.snapshot.time, &outcome.end);
     status = finish(result, &outcome, error);
     simulation_destroy(simulation);
     return status;

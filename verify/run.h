@@ -13,6 +13,7 @@
 #include "settings.h"
 #include "simulation.h"
 #include "suspicion.h"
+#include "trace.h"
 
 enum { RUN_PLAN_MAX = 32, RUN_FUNCTIONALS_MAX = 4 };
 
@@ -34,8 +35,9 @@ struct run_settings {
     bool any_window;               /* run also where the mirrored tube reaches the window */
     bool unstamped;                /* by the loops that look every choice up */
     bool plain;                    /* by plain.c, not by the solver: the baseline of bench */
-    simulation_progress *progress; /* may be NULL */
+    simulation_progress *progress; /* called every 32 steps; may be NULL */
     void *progress_context;
+    struct trace *trace; /* {0}: gets conservation through time; NULL: nobody asks */
 };
 
 /* A scalar of the final state, for extrapolation where no exact value is at hand. */
@@ -54,9 +56,9 @@ struct run_result {
     double time, window[2];
     struct norms errors[FIELDS]; /* at time; NaN where no particle is in the window */
     double binned_density_l1;
-    size_t crossed; /* neighbours of the start that are not next to each other any more */
-    double spacing, h;             /* box/n; mean smoothing length in the window, by volume */
-    struct budget budget;          /* L1 by regions of a Riemann problem */
+    size_t crossed;       /* neighbours of the start that are not next to each other any more */
+    double spacing, h;    /* box/n; mean smoothing length in the window, by volume */
+    struct budget budget; /* L1 by regions of a Riemann problem */
     double mass, momentum, energy; /* conservation: relative, >= 0; see CONSERVATION in run.c */
     struct simulation_cost cost;
     double peak_rss; /* bytes, of the process so far */

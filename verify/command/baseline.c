@@ -58,7 +58,11 @@ static json_t *figures_of(const json_t *results)
     json_t *copy = json_deep_copy(results), *run;
     size_t i;
     json_object_del(copy, "history");
-    json_array_foreach(json_object_get(copy, "runs"), i, run) json_object_del(run, "profile");
+    json_array_foreach(json_object_get(copy, "runs"), i, run)
+    {
+        json_object_del(run, "profile");
+        json_object_del(run, "through_time");
+    }
     return copy;
 }
 

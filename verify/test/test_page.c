@@ -14,7 +14,9 @@
 static const char *const results_text =
     "{'schema': 'sphproof/1', 'command': 'report', 'mode': 'quick', 'version': '1', 'git': 'abc',"
     "'compiler': 'gcc', 'flags': '-O3', 'date': '2001-02-03', 'machine': {'cores': 2},"
-    "'runs': [{'case': 'sod', 'title': 'a <b> & c', 'label': 'ia', 'reproduce': 'sphproof run sod',"
+    "'runs': [{'through_time': {'time': [0, 0.1, 0.2], 'momentum': [0, 1e-16, 2e-16], 'energy': [0,"
+    " 0, 1e-9]}, 'case': 'sod', 'title': 'a <b> & c', 'label': 'ia', 'reproduce': 'sphproof run "
+    "sod',"
     " 'n': 4, 'status': 'ok', 'errors': {'density': {'l1': 0.00461}}, 'profile': {'x': [0, 1, 2],"
     " 'density': [1, 1, 2], 'velocity': [0, 0, 'nan'], 'pressure': [1, 1, 1], 'exact_density':"
     " [1, 1, 1], 'exact_velocity': [0, 0, 0], 'exact_pressure': [1, 1, 1], 'exact': {'x': [0, 2],"
@@ -98,7 +100,7 @@ static void judge_page(json_t *results, const char *const *contents, size_t n)
     assert_null(markup_network(page.html));
     for (size_t k = 0; k < n; k++)
         if (!strstr(page.html, contents[k])) fail_msg("the page lacks: %s", contents[k]);
-    assert_int_equal(page.file_count, json_array_size(json_object_get(results, "runs")) ? 10 : 0);
+    assert_int_equal(page.file_count, json_array_size(json_object_get(results, "runs")) ? 12 : 0);
     page_free(&page);
     json_decref(results);
 }
@@ -153,7 +155,7 @@ static void page_without_gnuplot(void **state)
     setenv("PATH", path, 1);
     free(path);
     assert_true(made);
-    assert_int_equal(page.plots_missing, 5);
+    assert_int_equal(page.plots_missing, 6);
     assert_non_null(strstr(page.message, "gnuplot"));
     assert_null(strstr(page.html, "<svg"));
     assert_non_null(strstr(page.html, "4.61e-3"));

@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "trace.h"
+
+#include <math.h>
+
+#include "result.h"
+
+bool trace_wants(const struct trace *trace, uint64_t step)
+{
+    return trace->stride == 0 || step % trace->stride == 0;
+}
+
+/* Every second entry: the start stays. */
+static void thin(struct trace *trace)
+{
+    size_t kept = 0;
+    for (size_t k = 0; k < trace->count; k += 2) {
+        trace->time[kept] = trace->time[k];
+        trace->sums[kept++] = trace->sums[k];
+    }
+    trace->count = kept;
+    trace->stride *= 2;
+}
+
+void trace_add(struct trace *trace, double time, const struct conservation *sums)
+{
+    if (trace->stride == 0) trace->stride = 1;
+    /* the end of a run comes by itself: it may be an entry already */
+    if (trace->count && trace->time[trace->count - 1] == time) trace->count--;
+    trace->time[trace->count] = time;
+    trace->sums[trace->count++] = *sums;
+    if (trace->count > TRACE_MAX) thin(trace);
+}
+
+struct trace_drift trace_drift(const struct conservation *start, const struct conservation *now,
+                               const struct conservation *end)
+{
+    const double tiny = 1e-12 * end->sound_scale;
+    const double scale = end->momentum_scale > tiny ? end->momentum_scale : end->sound_scale;
+    return (struct trace_drift){
+        .mass = fabs(now->mass - start->mass) / start->mass,
+        .momentum = fabs(now->momentum[0] - start->momentum[0]) / scale,
+        .energy = fabs(now->energy - start->energy) / fabs(start->energy),
+    };
+}
+
+json_t *trace_json(const struct trace *trace)
+{
+    json_t *time = json_array(), *mass = json_array(), *momentum = json_array(),
+           *energy = json_array();
+    for (size_t k = 0; k < trace->count; k++) {
+        const struct trace_drift drift =
+            trace_drift(&trace->sums[0], &trace->sums[k], &trace->sums[trace->count - 1]);
+        json_array_append_new(time, result_number(trace->time[k]));
+        json_array_append_new(mass, result_number(drift.mass));
+        json_array_append_new(momentum, result_number(drift.momentum));
+        json_array_append_new(energy, result_number(drift.energy));
+    }
+    return json_pack("{s:o, s:o, s:o, s:o}", "time", time, "mass", mass, "momentum", momentum,
+                     "energy", energy);
+}
