@@ -95,6 +95,14 @@ void html_cell_number(struct buffer *to, double value)
     buffer_add(to, "</td>");
 }
 
+void html_cell_digits(struct buffer *to, double value)
+{
+    if (isfinite(value))
+        buffer_format(to, "<td class=\"n\">%.8g</td>", value);
+    else
+        html_cell_number(to, value);
+}
+
 void html_cell_code(struct buffer *to, const char *string)
 {
     buffer_add(to, "<td><code>");

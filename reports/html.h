@@ -28,6 +28,8 @@ void html_table(struct buffer *to, const char *class, const char *columns);
 void html_table_end(struct buffer *to);
 void html_cell(struct buffer *to, const char *string);
 void html_cell_number(struct buffer *to, double value);
+/* With eight digits, for what differs in the last ones. */
+void html_cell_digits(struct buffer *to, double value);
 void html_cell_code(struct buffer *to, const char *string);
 
 /* <p class="command"><code>$ command</code></p>, with what it does before it. */

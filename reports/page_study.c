@@ -204,6 +204,50 @@ static void order_table(struct buffer *to, const struct study *studies, size_t c
     buffer_add(to, "</details>\n");
 }
 
+static void percent_cell(struct buffer *to, double part)
+{
+    buffer_add(to, "<td class=\"n\">");
+    if (isfinite(part)) html_number(to, 100 * part);
+    buffer_add(to, isfinite(part) ? " %</td>" : "—</td>");
+}
+
+/* Scalars of the final state: what they tend to, and how sure that is. */
+static void functional_table(struct buffer *to, const struct study *studies, size_t count)
+{
+    size_t k, i, all = 0;
+    const json_t *entry;
+    for (k = 0; k < count; k++)
+        all += json_array_size(json_object_get(studies[k].document, "functionals"));
+    if (!all) return;
+    buffer_add(to, "<details><summary>Scalars extrapolated, with their grid convergence index"
+                   "</summary>\n");
+    html_table(to, "functionals",
+               "scheme|scalar|#finest level|#extrapolated|#exact|#order|#GCI, finest|#GCI, "
+               "next|convergence");
+    for (k = 0; k < count; k++)
+        json_array_foreach(json_object_get(studies[k].document, "functionals"), i, entry)
+        {
+            const json_t *values = json_object_get(entry, "values");
+            buffer_add(to, "<tr>");
+            html_cell(to, html_string(studies[k].document, "label"));
+            buffer_add(to, "<td>");
+            html_words(to, html_string(entry, "name"));
+            buffer_add(to, "</td>");
+            html_cell_digits(to, html_real(json_array_get(values, json_array_size(values) - 1)));
+            html_cell_digits(to, html_member(entry, "extrapolated"));
+            html_cell_digits(to, html_member(entry, "exact"));
+            html_cell_number(to, html_member(entry, "order"));
+            percent_cell(to, html_member(entry, "gci"));
+            percent_cell(to, html_member(entry, "gci_coarse"));
+            html_cell(to, html_string(entry, "class"));
+            buffer_add(to, "</tr>\n");
+        }
+    html_table_end(to);
+    buffer_add(to, "<p class=\"note\">Richardson's extrapolation and Roache's grid convergence "
+                   "index (GCI: 1.25 times the estimated relative error) of the finest levels; "
+                   "only where convergence is asymptotic.</p></details>\n");
+}
+
 void page_convergence(struct page_writer *writer, const char *case_name,
                       const json_t *const *documents, size_t count)
 {
@@ -220,6 +264,7 @@ void page_convergence(struct page_writer *writer, const char *case_name,
     error_table(to, studies, count);
     buffer_add(to, "</div></div>\n");
     order_table(to, studies, count);
+    functional_table(to, studies, count);
     page_budget(writer, documents, count);
     free(studies);
 }

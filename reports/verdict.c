@@ -196,7 +196,7 @@ static void headline(struct buffer *to, bool checked, const json_t *failures)
     if (length > LONGEST) /* to the end of a word */
         for (length = LONGEST; length && subject[length] != ' ';) length--;
     if (length && subject[length - 1] == ',') length--;
-    if (length) buffer_format(to, " of %.*s%s", (int)length, subject, length < whole ? " …" : "");
+    if (length) buffer_format(to, " (%.*s%s)", (int)length, subject, length < whole ? " …" : "");
 }
 
 json_t *verdict_make(const json_t *results)

@@ -25,7 +25,9 @@ static const char *const results_text =
     " 'levels': [{'n': 100, 'errors': {'density': {'l1': 0.01}}}, {'n': 200, 'errors': {'density':"
     " {'l1': 0.005}}}], 'orders': [{'field': 'density', 'norm': 'l1', 'order': 1.0, 'low': 0.9,"
     " 'high': 1.1, 'pairwise': [1.0], 'gate': {'low': 0.9, 'high': 1.1, 'bound': 0.02},"
-    " 'status': 'pass'}]}],"
+    " 'status': 'pass'}], 'functionals': [{'name': 'mean_pressure', 'values': [0.97050, 0.96854,"
+    " 0.96178], 'extrapolated': 0.9713003, 'gci': 0.00103083, 'gci_coarse': 0.00356249,"
+    " 'order': 1.786170, 'class': 'asymptotic', 'exact': 'nan'}]}],"
     "'kernels': [{'kernel': 'cubic_spline', 'dim': 1, 'class': 2, 'normalisation': 1e-16,"
     " 'fourier': {'min': 0, 'first_negative_k': null}, 'checks': [], 'reproduce': 'x'}],"
     "'bench': [{'case': 'sod', 'title': 'Sod', 'reproduce': 'sphproof bench sod', 'schemes':"
@@ -114,6 +116,8 @@ static void good_page(void **state)
                                     "sphproof run sod",
                                     "sphproof converge sod",
                                     "cubic spline, ia",
+                                    "0.9713003",
+                                    "0.1031 %",
                                     "<b>1</b><span> of 1</span><br/>faults around it",
                                     "list | &lt;head",
                                     "faults.py disk",
@@ -125,7 +129,7 @@ static void bad_page(void **state)
 {
     (void)state;
     const char *const contents[] = {
-        "<h1>5 failures; look first at kernels: sign of q &lt; 1 &amp; more</h1>",
+        "<h1>5 failures; look first at kernels: sign (q &lt; 1 &amp; more)</h1>",
         "particle 7 &lt;negative u&gt;",
         "is too low",
         "nan is not &lt;= 1.00e-15",
