@@ -12,16 +12,22 @@
 
 enum { SHOWN = 16, NIGHTS = 128, MARKS = 6, REVISION = 12 };
 
-static void value_cell(struct buffer *to, const json_t *value)
+static void value(struct buffer *to, const json_t *value)
 {
     const char *word = json_string_value(value);
-    if (word && strcmp(word, "nan") && strcmp(word, "inf") && strcmp(word, "-inf")) {
-        html_cell(to, word);
-    } else if (json_is_null(value)) {
-        html_cell(to, "–");
-    } else {
-        html_cell_number(to, html_real(value));
-    }
+    if (word && strcmp(word, "nan") && strcmp(word, "inf") && strcmp(word, "-inf"))
+        buffer_escape(to, word);
+    else if (json_is_null(value))
+        buffer_add(to, "–");
+    else
+        html_number(to, html_real(value));
+}
+
+static void value_cell(struct buffer *to, const json_t *of)
+{
+    buffer_add(to, json_is_string(of) || json_is_null(of) ? "<td>" : "<td class=\"n\">");
+    value(to, of);
+    buffer_add(to, "</td>");
 }
 
 static void ratio_cell(struct buffer *to, double ratio)
@@ -111,6 +117,11 @@ static void since_rows(struct buffer *to, const json_t *figures, const char *ver
 
 static void since_words(struct buffer *to, const json_t *since)
 {
+    if (!json_array_size(json_object_get(since, "figures"))) {
+        buffer_format(to, "nothing has changed, %.0f figures are the same",
+                      html_member(since, "same"));
+        return;
+    }
     buffer_format(to, "%.0f worse, %.0f better, %.0f the same", html_member(since, "worse"),
                   html_member(since, "better"), html_member(since, "same"));
     if (html_member(since, "incomparable") > 0)
@@ -127,6 +138,17 @@ static void revision(struct buffer *to, const char *git)
     buffer_add(to, "</code>");
 }
 
+static const json_t *first_worse(const json_t *figures)
+{
+    size_t i;
+    const json_t *figure;
+    json_array_foreach(figures, i, figure)
+    {
+        if (!strcmp(html_string(figure, "verdict"), "worse")) return figure;
+    }
+    return NULL;
+}
+
 void page_since(struct buffer *to, const json_t *results)
 {
     const json_t *since = json_object_get(json_object_get(results, "history"), "since");
@@ -135,6 +157,16 @@ void page_since(struct buffer *to, const json_t *results)
     revision(to, html_string(since, "git"));
     buffer_add(to, "): ");
     since_words(to, since);
+    const json_t *worst = first_worse(json_object_get(since, "figures"));
+    if (worst) {
+        buffer_add(to, "; most: ");
+        buffer_escape(to, html_string(worst, "path"));
+        buffer_add(to, " <b>");
+        value(to, json_object_get(worst, "old"));
+        buffer_add(to, " → ");
+        value(to, json_object_get(worst, "new"));
+        buffer_add(to, "</b>");
+    }
     buffer_add(to, "</p>\n");
 }
 

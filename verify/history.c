@@ -9,6 +9,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "diff.h"
 #include "reading.h"
 #include "result.h"
 #include "trend.h"
@@ -131,6 +132,41 @@ static enum status read_nights(const char *path, const char *mode, json_t *night
     return STATUS_OK;
 }
 
+/* ---- order ---- */
+
+/* How far a figure has moved, up or down; a word, or one that was not finite: farther than any. */
+static double distance(const json_t *entry)
+{
+    const double ratio = result_real(json_object_get(entry, "ratio"));
+    return ratio > 0 ? fabs(log(ratio)) : (double)INFINITY;
+}
+
+/* What fails a diff, then what has moved most; counts of work after figures of quality. */
+static int worst_first(const void *a, const void *b)
+{
+    static const char *const keys[] = {"fault", "work"};
+    const json_t *x = *(json_t *const *)a, *y = *(json_t *const *)b;
+    for (int k = 0; k < 2; k++) {
+        const bool i = json_is_true(json_object_get(x, keys[k])),
+                   j = json_is_true(json_object_get(y, keys[k]));
+        if (i != j) return i == (k == 0) ? -1 : 1;
+    }
+    const double i = distance(x), j = distance(y);
+    return i != j ? (i > j ? -1 : 1) : strcmp(string_of(x, "path"), string_of(y, "path"));
+}
+
+static json_t *sorted(json_t *list, int compare(const void *, const void *))
+{
+    const size_t n = json_array_size(list);
+    json_t **items = malloc((n + 1) * sizeof(json_t *)), *result = json_array();
+    for (size_t i = 0; items && i < n; i++) items[i] = json_array_get(list, i);
+    if (items) qsort(items, n, sizeof(json_t *), compare);
+    for (size_t i = 0; items && i < n; i++) json_array_append(result, items[i]);
+    free(items);
+    json_decref(list);
+    return result;
+}
+
 static json_t *since_last(const json_t *nights, const struct readings *now)
 {
     const size_t count = json_array_size(nights);
@@ -153,14 +189,15 @@ static json_t *since_last(const json_t *nights, const struct readings *now)
         verdicts[verdict]++;
         if (verdict == VERDICT_SAME) continue;
         const double ratio = new->word || !value ? (double)NAN : new->value / old.value;
-        json_array_append_new(moved, json_pack("{s:s, s:o, s:o, s:o, s:s}", "path", new->path,
-                                               "old", value ? value_of(&old) : json_null(), "new",
-                                               value_of(new), "ratio",
-                                               isfinite(ratio) ? result_number(ratio) : json_null(),
-                                               "verdict", reading_verdicts[verdict]));
+        json_array_append_new(
+            moved, json_pack("{s:s, s:o, s:o, s:o, s:s, s:b, s:b}", "path", new->path, "old",
+                             value ? value_of(&old) : json_null(), "new", value_of(new), "ratio",
+                             isfinite(ratio) ? result_number(ratio) : json_null(), "verdict",
+                             reading_verdicts[verdict], "fault", fault && amount > DIFF_THRESHOLD,
+                             "work", new->kind == READING_COUNT));
     }
     json_t *since = json_pack("{s:s, s:s, s:o}", "date", string_of(last, "date"), "git",
-                              string_of(last, "git"), "figures", moved);
+                              string_of(last, "git"), "figures", sorted(moved, worst_first));
     for (int v = 0; v < 4; v++)
         json_object_set_new(since, reading_verdicts[v], json_integer((json_int_t)verdicts[v]));
     return since;
@@ -244,21 +281,8 @@ static int newest_first(const void *a, const void *b)
     const double i = result_real(json_object_get(x, "night")),
                  j = result_real(json_object_get(y, "night"));
     if (i != j) return i > j ? -1 : 1;
-    const double p = fabs(log(result_real(json_object_get(x, "ratio")))),
-                 q = fabs(log(result_real(json_object_get(y, "ratio"))));
+    const double p = distance(x), q = distance(y);
     return p != q ? (p > q ? -1 : 1) : strcmp(string_of(x, "path"), string_of(y, "path"));
-}
-
-static json_t *sorted(json_t *list)
-{
-    const size_t n = json_array_size(list);
-    json_t **items = malloc((n + 1) * sizeof(json_t *)), *result = json_array();
-    for (size_t i = 0; items && i < n; i++) items[i] = json_array_get(list, i);
-    if (items) qsort(items, n, sizeof(json_t *), newest_first);
-    for (size_t i = 0; items && i < n; i++) json_array_append(result, items[i]);
-    free(items);
-    json_decref(list);
-    return result;
 }
 
 static json_t *heads(const json_t *nights)
@@ -290,9 +314,10 @@ enum status history_tell(const json_t *results, const char *path, json_t **histo
                 (reading->kind == READING_ERROR || reading->kind == READING_ORDER))
                 add_changes(reading, nights, changes);
         }
-        *history = json_pack("{s:o, s:I, s:o, s:o, s:o}", "nights", heads(nights), "unreadable",
-                             (json_int_t)unreadable, "since", since_last(nights, &readings),
-                             "trends", trends(nights, results), "changes", sorted(changes));
+        *history =
+            json_pack("{s:o, s:I, s:o, s:o, s:o}", "nights", heads(nights), "unreadable",
+                      (json_int_t)unreadable, "since", since_last(nights, &readings), "trends",
+                      trends(nights, results), "changes", sorted(changes, newest_first));
         changes = NULL;
         reading_free(&readings);
         if (!*history) status = error_set(error, STATUS_ENVIRONMENT, "no memory for the history");
