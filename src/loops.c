@@ -42,8 +42,9 @@ void loops_choose(const struct scheme *scheme, bool stamped, struct loops *loops
     *loops = (struct loops){0};
     loops->density_newton =
         loop_density(kernel, energy_element ? DENSITY_ENERGY : DENSITY_DERIVATIVE);
-    loops->density =
-        energy_element || grad_h ? loops->density_newton : loop_density(kernel, DENSITY_VALUE);
+    loops->density = energy_element || grad_h || scheme->h_method == H_CORRECTED
+                         ? loops->density_newton
+                         : loop_density(kernel, DENSITY_VALUE);
     if (scheme->gradient == GRADIENT_IA)
         loops->matrix = loop_matrix(kernel, reconstruct ? MATRIX_BOTH : MATRIX_MOMENT);
     else if (reconstruct)

@@ -13,6 +13,7 @@ struct plan plan_make(const struct scheme *scheme, bool skip)
 {
     return (struct plan){
         .newton = scheme->h_method == H_NEWTON,
+        .correct = scheme->h_method == H_CORRECTED,
         .energy_sum = scheme->volume_element == VOLUME_ENERGY,
         .grad_h = scheme->formulation == FORMULATION_LAGRANGIAN,
         .matrix = scheme->gradient == GRADIENT_IA,
@@ -91,7 +92,9 @@ size_t plan_explain(const struct scene *scene, struct plan_line *lines, size_t m
     line(&writer, "ghost copies", true, "periodic images, so that no loop knows of a boundary", "");
     line(&writer, "smoothing length by Newton", plan.newton,
          "h = eta m/rho to h_tolerance at every evaluation",
-         "h_method=predicted: 1/h extrapolated from the last two density sums");
+         plan.correct ? "h_method=corrected: 1/h extrapolated from the last two density sums, each "
+                        "with a Newton step"
+                      : "h_method=predicted: 1/h extrapolated from the last two density sums");
     line(&writer, "density sum", true, plan.newton ? "inside the Newton iteration" : "one a step",
          "");
     line(&writer, "energy sum", plan.energy_sum, "volume_element=energy: P from the sum of U",

@@ -10,6 +10,7 @@
 
 struct plan {
     bool newton;       /* h by Newton at every evaluation; else predicted */
+    bool correct;      /* predicted h with a Newton step */
     bool energy_sum;   /* second kernel sum, of U */
     bool grad_h;       /* grad-h factors */
     bool matrix;       /* moment matrix of the Integral Approach */

@@ -110,6 +110,19 @@ ALWAYS_INLINE void close_body(const struct particles *particles, ptrdiff_t first
     }
 }
 
+/* 1/h as a Newton step from the width of the sums finds it. */
+CLONES static void correct_width(const struct particles *particles, ptrdiff_t first, int len,
+                                 const struct density_sums *restrict sums)
+{
+    const double *restrict h_inverse = particles->h_inverse + first;
+    double *restrict found = particles->h_inverse_found + first;
+#pragma omp simd
+    for (int i = 0; i < len; i++) {
+        const double at = h_inverse[i] * sums->m[i];
+        found[i] = h_inverse[i] + (found[i] - h_inverse[i]) * at / (at - found[i] * sums->m_dh[i]);
+    }
+}
+
 /* Nearly all ranges are full: a constant trip count has no remainder loop. */
 #define BODY(function, energy_sum, own_gradient)                                                   \
     CLONES static void function(const struct particles *particles, ptrdiff_t first, int len,       \
@@ -133,6 +146,7 @@ void range_close(const struct particles *particles, ptrdiff_t first, int len,
                                                                     sums);
     else
         (plan->own_gradient ? close_mass_gradient : close_mass)(particles, first, len, gas, sums);
+    if (plan->correct) correct_width(particles, first, len, sums);
     if (!plan->grad_h) return;
     double *restrict factor = particles->grad_h + first, *restrict b = particles->b + first;
     const double *restrict V = particles->V + first, *restrict P = particles->P + first,

@@ -21,8 +21,10 @@ enum energy { ENERGY_INTERNAL, ENERGY_TOTAL };
  * gradient at max(h_i, h_j) or at the harmonic mean of h_i and h_j. */
 enum pair_width { PAIR_MEAN, PAIR_MAX, PAIR_HARMONIC };
 /* How h is found: by Newton to h_tolerance at every evaluation, or predicted from the last steps
- * with a single density sum. */
-enum h_method { H_NEWTON, H_PREDICTED };
+ * with a single density sum; corrected: what that sum asks for goes through a Newton step before
+ * it predicts. At a jump of density that is needed with wide kernels: the error of 1/h is mapped by
+ * s = -(h/rho) drho/dh from prediction to sum, and extrapolation is unstable where s < -1/3. */
+enum h_method { H_NEWTON, H_PREDICTED, H_CORRECTED };
 
 /* Families whose members have no functions of their own: a plain list; position = enum. */
 extern const struct family gradient_family, formulation_family, volume_element_family,

@@ -26,7 +26,7 @@ static const struct {
      ALWAYS,
      PROMISE_ROUND_OFF,
      1e-8},
-    {"h by Newton", {"h_method=predicted", "h_method=newton"}, PREDICTED, PROMISE_ERROR, 0.05},
+    {"h by Newton", {"", "h_method=newton"}, PREDICTED, PROMISE_ERROR, 0.05},
     {"viscosity of none", {"", "viscosity=constant alpha=0 beta=0"}, INVISCID, PROMISE_BITS, 0},
     {"evolution of alpha",
      {"", "viscosity=time_dependent alpha_min=ALPHA alpha_max=ALPHA"},
@@ -137,7 +137,7 @@ static bool applies(enum when when, const struct scheme *scheme)
 {
     switch (when) {
     case PREDICTED:
-        return scheme->h_method == H_PREDICTED;
+        return scheme->h_method != H_NEWTON;
     case INVISCID:
         return scheme->viscosity == VISCOSITY_NONE;
     case UNIFORM:

@@ -116,8 +116,8 @@ static enum status solve_h(struct oracle *oracle, size_t i, struct error *error)
     return error_set(error, STATUS_BROKE_DOWN, "oracle: particle %zu has no smoothing length", i);
 }
 
-/* h_method predicted: one sum at 1/h extrapolated from the last two, kept within a factor of 2. The
- * sums and gradients keep that width, h itself is what the sum asks for. */
+/* h_method predicted, corrected: one sum at 1/h extrapolated from the last two, kept within a
+ * factor of 2. The sums and gradients keep that width, h itself is what the sum asks for. */
 static void predict_h(struct oracle *oracle, size_t i)
 {
     struct oracle_particle *a = &oracle->particles[i];
@@ -130,6 +130,11 @@ static void predict_h(struct oracle *oracle, size_t i)
     a->grad_h_rho = a->width / a->rho_sum * drho;
     a->grad_h_y = a->width / a->rho_sum * dy;
     a->h = oracle->scheme.eta * a->m / a->rho_sum;
+    a->found = 1 / a->h;
+    if (oracle->scheme.h_method != H_CORRECTED) return;
+    /* f(1/h) = 1/h - rho(h)/(eta m): df/d(1/h) = 1 + h^2 drho/dh/(eta m) */
+    const long double slope = 1 + a->width * a->width * drho / (oracle->scheme.eta * a->m);
+    a->found = next + (a->found - next) / slope;
 }
 
 /* The pressure follows a volume that was predicted wrong. */
@@ -143,7 +148,7 @@ static enum status find_state(struct oracle *oracle, struct error *error)
 {
     const bool total = oracle->scheme.energy == ENERGY_TOTAL;
     const bool energy = oracle->scheme.volume_element == VOLUME_ENERGY;
-    const bool predicted = oracle->scheme.h_method == H_PREDICTED && oracle->last_dt > 0;
+    const bool predicted = oracle->scheme.h_method != H_NEWTON && oracle->last_dt > 0;
     for (size_t i = 0; i < oracle->n; i++) {
         struct oracle_particle *a = &oracle->particles[i];
         a->v = a->p / a->m;
@@ -159,9 +164,8 @@ static enum status find_state(struct oracle *oracle, struct error *error)
             const enum status status = solve_h(oracle, i, error);
             if (status) return status;
             a->width = a->h;
-            a->found_before = 1 / a->h;
+            a->found = a->found_before = 1 / a->h;
         }
-        a->found = 1 / a->h;
         a->V = (energy ? a->U : a->m) / a->y;
         a->rho = energy ? a->m * a->y / a->U : a->rho_sum;
         a->P = (oracle->gamma - 1) * (energy ? a->y : a->rho * a->U / a->m);

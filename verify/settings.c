@@ -276,7 +276,10 @@ enum status settings_resolve(struct settings *settings, int dim, struct scheme *
     fill(settings, SETTING_energy, 0, predicted ? ENERGY_TOTAL : ENERGY_INTERNAL);
     fill(settings, SETTING_alpha, quadratic && predicted ? 0.75 : 1, 0);
     fill(settings, SETTING_beta, 2 * REAL_OF(alpha), 0);
-    fill(settings, SETTING_h_method, 0, predicted && vanilla ? H_PREDICTED : H_NEWTON);
+    fill(settings, SETTING_h_method, 0,
+         !predicted || !vanilla ? H_NEWTON
+         : quadratic            ? H_PREDICTED
+                                : H_CORRECTED);
     fill(settings, SETTING_pair_width, 0,
          !vanilla || !predicted  ? PAIR_MEAN
          : reconstructed         ? PAIR_HARMONIC

@@ -17,7 +17,7 @@ enum { WAVES = 64 };
 struct wave_step {
     struct stability_response r;
     double h, dt, s[STATES];
-    bool predicted;
+    bool predicted, corrected;
     double follow; /* dU for a volume that was predicted wrong, over h times the error of 1/h */
     double ratio;  /* how far the next width is extrapolated: 1; 0 in the first step */
 };
@@ -31,6 +31,8 @@ static void evaluate(struct wave_step *w)
         s[LAST] = s[FOUND];
         s[FOUND] = w->r.found_x * s[X] + w->r.found_h * H;
         U += w->follow * w->h * (s[FOUND] - expected);
+        if (w->corrected)
+            s[FOUND] = expected + (s[FOUND] - expected) / (1 + w->r.found_h * w->h * w->h);
     } else {
         H = -w->r.found_x * s[X] / (1 / (w->h * w->h) + w->r.found_h);
     }
@@ -155,11 +157,12 @@ static struct wave_step begin(const struct stability *lattice, double dt)
     return (struct wave_step){.h = lattice->h,
                               .dt = dt,
                               .ratio = 1,
+                              .corrected = lattice->scheme.h_method == H_CORRECTED,
                               .follow = lattice->scheme.volume_element == VOLUME_MASS
                                             ? lattice->scheme.integrator->follow *
                                                   (lattice->gamma - 1) * lattice->u
                                             : 0,
-                              .predicted = lattice->scheme.h_method == H_PREDICTED};
+                              .predicted = lattice->scheme.h_method != H_NEWTON};
 }
 
 void stability_follow(const struct stability *lattice, double kappa, double dt, int count,
@@ -173,7 +176,7 @@ void stability_follow(const struct stability *lattice, double kappa, double dt, 
     w.s[FOUND] = w.s[LAST] = w.r.found_x / (1 + w.h * w.h * w.r.found_h);
     w.predicted = false;
     evaluate(&w);
-    w.predicted = lattice->scheme.h_method == H_PREDICTED;
+    w.predicted = lattice->scheme.h_method != H_NEWTON;
     for (int i = 0; step && i < count; i++) {
         w.ratio = i > 0;
         step(&w);

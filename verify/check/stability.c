@@ -241,7 +241,7 @@ static void measure_steps(struct check_run *run, const void *subject)
     static const struct stepping right;
     const struct stepping *stepping = subject ? subject : &right;
     for (size_t k = 0; k < integrator_family.n; k++)
-        for (int predicted = 0; predicted <= 1; predicted++) {
+        for (size_t method = 0; method < h_method_family.n; method++) {
             struct scheme scheme = hydro_scheme();
             struct stability lattice;
             struct error error = {0};
@@ -251,7 +251,7 @@ static void measure_steps(struct check_run *run, const void *subject)
             scheme.integrator = &even;
             scheme.eta = 3.37;
             scheme.viscosity = VISCOSITY_NONE;
-            scheme.h_method = predicted ? H_PREDICTED : H_NEWTON;
+            scheme.h_method = (enum h_method)method;
             scheme.cfl = 0.3;
             const double kappa = 2 * M_PI * 5 / PARTICLES;
             enum status status = stability_begin(&lattice, &scheme, 1.4, &error);
@@ -263,7 +263,7 @@ static void measure_steps(struct check_run *run, const void *subject)
             const double size = hypot(x_theory, v_theory);
             check_measure(run, status ? 1 : hypot(x - x_theory, v - v_theory) / size, 1e-4, 1e-5,
                           "%s, h %s, c dt/dx %.3f", scheme.integrator->member.name,
-                          predicted ? "predicted" : "newton", dt);
+                          h_method_family.members[method]->name, dt);
         }
 }
 

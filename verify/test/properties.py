@@ -64,7 +64,7 @@ def draw(program, number):
     maybe(0.3, "eta", "auto")
     maybe(0.5, "cfl", log_uniform(rng, 0.03, 1.5))
     maybe(0.5, "energy", rng.choice(["internal", "total"]))
-    maybe(0.4, "h_method", rng.choice(["newton", "predicted"]))
+    maybe(0.4, "h_method", rng.choice(["newton", "predicted", "corrected"]))
     widths = ["mean"] if keys["formulation"] == "lagrangian" else ["mean", "max", "harmonic"]
     maybe(0.4, "pair_width", rng.choice(widths))
     maybe(0.2, "alpha", round(rng.uniform(0, 3), 2))
