@@ -173,6 +173,8 @@ static void cell(struct buffer *to, const json_t *entry)
     const char *outcome = html_string(entry, "outcome");
     buffer_format(to, "<td class=\"%s\" title=\"", outcome);
     buffer_escape(to, html_string(entry, "reason"));
+    buffer_add(to, *html_string(entry, "reason") ? ": " : "");
+    buffer_escape(to, html_string(entry, "command"));
     buffer_add(to, "\">");
     const bool measured = is_number(entry, "measured"), predicted = is_number(entry, "predicted");
     if (measured) html_number(to, html_member(entry, "measured"));
@@ -241,6 +243,7 @@ static void map(struct buffer *to, const json_t *group, const json_t *cells)
         buffer_add(to, "</tr>\n");
     }
     buffer_add(to, "</tbody></table></div>\n");
+    html_command(to, "see it again:", html_string(group, "reproduce"));
     reasons(to, name, cells);
 }
 
@@ -278,12 +281,13 @@ void page_stress(struct page_writer *writer, const json_t *stress)
                "drift of energy; <code>limits</code>, <code>steps</code>: measured of "
                "predicted); a colour is the outcome: <span class=\"map\"><span class=\"ok\"> ok "
                "</span> <span class=\"inaccurate\"> inaccurate </span> <span "
-               "class=\"broke_down\"> broke down </span></span>.</p>\n");
+               "class=\"broke_down\"> broke down </span></span>. A pointer resting on a cell shows "
+               "its reason and its "
+               "command.</p>\n");
     survivors(to, json_object_get(stress, "comparison"));
     json_array_foreach(json_object_get(stress, "groups"), i, group)
     {
         map(to, group, json_object_get(stress, "cells"));
     }
-    html_command(to, "see it again:", "sphproof stress");
     buffer_add(to, "</section>\n");
 }

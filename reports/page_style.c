@@ -76,7 +76,7 @@ const char *const page_styles[] = {
     "#3a2f12}}.map td{padding:4px 10px;border:2px solid var(--paper);text-align:right}"
     ".map td:first-child{text-align:left;white-space:nowrap;padding-left:0}.map th{padding:4px "
     "10px;"
-    "text-align:right}.map th:first-child{text-align:left}td span{color:var(--dim)}"
+    "text-align:right}.map th:first-child{text-align:left;padding-left:0}td span{color:var(--dim)}"
     ".map .ok{background:var(--good-card)}.map .inaccurate{background:var(--warn-card)}"
     ".map .broke_down,.map .refused{background:var(--bad-card);color:var(--bad)}"
     ".note{color:var(--dim);font-size:.9rem}"

@@ -302,6 +302,8 @@ static json_t *cell_json(const struct stress_cell *cell, const struct pool_job *
         json_object_update(entry, outcome);
         json_decref(outcome);
     }
+    if (cell->group->kind == STRESS_LIMIT || cell->group->kind == STRESS_STEP)
+        snprintf(command, sizeof command, "sphproof stress %s", cell->group->member.name);
     if (cell->group->kind == STRESS_PAIRING)
         snprintf(command, sizeof command, "sphproof kernel %s --dim %s", cell->row->label,
                  cell->column->label);
@@ -319,11 +321,13 @@ static json_t *labels_of(const struct stress_entry *entries, bool nightly)
 
 static json_t *group_json(const struct stress_group *group, bool nightly)
 {
-    return json_pack("{s:s, s:s, s:s, s:s, s:o, s:o, s:f}", "name", group->member.name, "title",
-                     group->member.label, "row_title",
-                     group->row_title ? group->row_title : "scheme", "column_title",
-                     group->column_title, "rows", labels_of(rows_of(group), nightly), "columns",
-                     labels_of(group->columns, nightly), "bound", group->bound);
+    json_t *reproduce =
+        json_sprintf("sphproof stress %s%s", group->member.name, nightly ? " --nightly" : "");
+    return json_pack(
+        "{s:s, s:s, s:s, s:s, s:o, s:o, s:f, s:o}", "name", group->member.name, "title",
+        group->member.label, "row_title", group->row_title ? group->row_title : "scheme",
+        "column_title", group->column_title, "rows", labels_of(rows_of(group), nightly), "columns",
+        labels_of(group->columns, nightly), "bound", group->bound, "reproduce", reproduce);
 }
 
 static const char *outcome_of(const json_t *entry)
