@@ -193,13 +193,14 @@ static enum status fill_density_ghosts(struct simulation *simulation, ptrdiff_t 
     return STATUS_OK;
 }
 
-static void close_range(struct simulation *simulation, const struct range *range,
-                        const struct density_sums *sums)
+static double close_range(struct simulation *simulation, const struct range *range,
+                          const struct density_sums *sums)
 {
     const struct gas gas = {simulation->gamma, simulation->scheme.kernel.constant[1],
                             simulation->scheme.eta,
                             range->predicted ? simulation->scheme.integrator->follow : 0};
-    range_close(&simulation->particles, range->first, range->len, &simulation->plan, &gas, sums);
+    return range_close(&simulation->particles, range->first, range->len, &simulation->plan, &gas,
+                       sums);
 }
 
 static void newton_pass(struct simulation *simulation, struct range *range, int thread)
@@ -212,14 +213,19 @@ static void newton_pass(struct simulation *simulation, struct range *range, int 
     if (range->done) close_range(simulation, range, &sums);
 }
 
+/* h -> eta m/rho(h) is no contraction where the density changes by orders of magnitude within a
+ * width: predictions there diverge. A range in which one has failed looks for the roots. */
 static void predicted_pass(struct simulation *simulation, struct range *range, int thread)
 {
-    (void)thread;
     struct density_sums sums;
     if (range->done) return;
-    range->result = sum_range(simulation, range, &sums);
-    range->done = range->result == -1;
-    if (range->done) close_range(simulation, range, &sums);
+    if (!range->surprised) {
+        range->result = sum_range(simulation, range, &sums);
+        if (range->result != -1) return;
+        range->surprised = close_range(simulation, range, &sums) > 0;
+        range->done = !range->surprised;
+    }
+    newton_pass(simulation, range, thread);
 }
 
 /* Repeats the pass over ranges that were short of ghosts. */
@@ -229,7 +235,7 @@ static enum status find_density(struct simulation *simulation, range_pass *pass,
     struct range *ranges = simulation->ranges;
     ptrdiff_t ghosts = simulation->ghosts_filled > 8 ? simulation->ghosts_filled : 8;
     for (ptrdiff_t b = 0; b < simulation->range_count; b++) {
-        ranges[b].done = ranges[b].predicted = false;
+        ranges[b].done = ranges[b].predicted = ranges[b].surprised = false;
         if (ranges[b].reach + 2 > ghosts) ghosts = ranges[b].reach + 2;
     }
     for (;;) {

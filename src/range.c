@@ -75,9 +75,17 @@ CLONES static void predict_stamped(const struct particles *particles, ptrdiff_t 
         predict_width(particles, first, len, ratio);
 }
 
-ALWAYS_INLINE void close_body(const struct particles *particles, ptrdiff_t first, int len,
-                              bool energy_sum, bool own_gradient, const struct gas *gas,
-                              const struct density_sums *restrict sums)
+ALWAYS_INLINE double off_by(double ratio)
+{
+    return largest(ratio - 1, 1 - ratio);
+}
+
+/* A predicted width may be off by this part. */
+static const double surprise_max = 0.3;
+
+ALWAYS_INLINE double close_body(const struct particles *particles, ptrdiff_t first, int len,
+                                bool energy_sum, bool own_gradient, const struct gas *gas,
+                                const struct density_sums *restrict sums)
 {
     const double *restrict m = particles->m + first, *restrict U = particles->U + first,
                            *restrict h_inverse = particles->h_inverse + first,
@@ -88,7 +96,8 @@ ALWAYS_INLINE void close_body(const struct particles *particles, ptrdiff_t first
                      *restrict c = particles->c + first, *restrict g = particles->g + first;
     const double constant = gas->constant, eta_inverse = 1 / gas->eta, gamma_1 = gas->gamma - 1;
     const double follow = gas->follow * gamma_1;
-#pragma omp simd
+    double surprised = 0;
+#pragma omp simd reduction(+ : surprised)
     for (int i = 0; i < len; i++) {
         const double scale = constant * h_inverse[i], sum = scale * sums->m[i];
         const double u = U[i] * m_inverse[i];
@@ -105,9 +114,11 @@ ALWAYS_INLINE void close_body(const struct particles *particles, ptrdiff_t first
             h[i] = gas->eta * V[i];
             P[i] = gamma_1 * sum * u * largest(0.5, 1 + follow * (1 - h[i] * h_inverse[i]));
         }
+        surprised += off_by(h[i] * h_inverse[i]) > surprise_max ? 1. : 0.;
         c[i] = sqrt(gas->gamma * gamma_1 * u);
         if (own_gradient) g[i] = scale * h_inverse[i];
     }
+    return surprised;
 }
 
 /* 1/h as a Newton step from the width of the sums finds it. */
@@ -125,29 +136,28 @@ CLONES static void correct_width(const struct particles *particles, ptrdiff_t fi
 
 /* Nearly all ranges are full: a constant trip count has no remainder loop. */
 #define BODY(function, energy_sum, own_gradient)                                                   \
-    CLONES static void function(const struct particles *particles, ptrdiff_t first, int len,       \
-                                const struct gas *gas, const struct density_sums *sums)            \
+    CLONES static double function(const struct particles *particles, ptrdiff_t first, int len,     \
+                                  const struct gas *gas, const struct density_sums *sums)          \
     {                                                                                              \
         if (len == RANGE_MAX)                                                                      \
-            close_body(particles, first, RANGE_MAX, energy_sum, own_gradient, gas, sums);          \
-        else                                                                                       \
-            close_body(particles, first, len, energy_sum, own_gradient, gas, sums);                \
+            return close_body(particles, first, RANGE_MAX, energy_sum, own_gradient, gas, sums);   \
+        return close_body(particles, first, len, energy_sum, own_gradient, gas, sums);             \
     }
 BODY(close_mass, false, false)
 BODY(close_mass_gradient, false, true)
 BODY(close_energy, true, false)
 BODY(close_energy_gradient, true, true)
 
-void range_close(const struct particles *particles, ptrdiff_t first, int len,
-                 const struct plan *plan, const struct gas *gas, const struct density_sums *sums)
+double range_close(const struct particles *particles, ptrdiff_t first, int len,
+                   const struct plan *plan, const struct gas *gas, const struct density_sums *sums)
 {
-    if (plan->energy_sum)
-        (plan->own_gradient ? close_energy_gradient : close_energy)(particles, first, len, gas,
-                                                                    sums);
-    else
-        (plan->own_gradient ? close_mass_gradient : close_mass)(particles, first, len, gas, sums);
+    const double surprised =
+        plan->energy_sum ? (plan->own_gradient ? close_energy_gradient
+                                               : close_energy)(particles, first, len, gas, sums)
+                         : (plan->own_gradient ? close_mass_gradient : close_mass)(particles, first,
+                                                                                   len, gas, sums);
     if (plan->correct) correct_width(particles, first, len, sums);
-    if (!plan->grad_h) return;
+    if (!plan->grad_h) return surprised;
     double *restrict factor = particles->grad_h + first, *restrict b = particles->b + first;
     const double *restrict V = particles->V + first, *restrict P = particles->P + first,
                            *restrict Z = (plan->energy_sum ? particles->U : particles->m) + first;
@@ -158,6 +168,7 @@ void range_close(const struct particles *particles, ptrdiff_t first, int len,
         factor[i] = -dh / (sums->m[i] - sums->m_dh[i]);
         b[i] = P[i] * (V[i] * V[i] / Z[i]);
     }
+    return surprised;
 }
 
 CLONES static double rate(const struct particles *particles, ptrdiff_t first, int len)

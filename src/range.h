@@ -27,8 +27,9 @@ struct gas {
     double gamma, constant, eta, follow;
 };
 
-/* Equation of state and what the pair sums need of it; h as the sum of mass has found it. */
-void range_close(const struct particles *particles, ptrdiff_t first, int len,
+/* Equation of state and what the pair sums need of it; h as the sum of mass has found it. Returns how
+ * many widths that were predicted are far from those. */
+double range_close(const struct particles *particles, ptrdiff_t first, int len,
                  const struct plan *plan, const struct gas *gas, const struct density_sums *sums);
 
 /* The largest signal speed / h. */

@@ -9,7 +9,8 @@
 #include "result.h"
 #include "run_job.h"
 
-enum { STEPS_QUICK = 30000, STEPS_NIGHTLY = 3000000 };
+/* Steps of a run, and at night of one particle: about as many seconds for any number of them. */
+enum { STEPS_QUICK = 30000, STEPS_NIGHTLY = 3000000, UPDATES_NIGHTLY = 200000000 };
 
 /* --- the cells ---------------------------------------------------------------------------------
  */
@@ -67,9 +68,12 @@ static enum status prepare(struct stress_cell *cell, bool nightly, struct error 
     add_keys(cell, cell->column->keys);
     add_keys(cell, cell->row->keys);
     for (size_t i = 0; i < cell->argument_count; i++) arguments[i] = cell->arguments[i];
-    cell->step_budget = nightly ? STEPS_NIGHTLY : STEPS_QUICK;
-    return run_prepare(&cell->settings, cell->group->case_name, (int)cell->argument_count,
-                       arguments, error);
+    if (run_prepare(&cell->settings, cell->group->case_name, (int)cell->argument_count, arguments,
+                    error))
+        return error->status;
+    const double n = settings_real(&cell->settings.settings, SETTING_n);
+    cell->step_budget = nightly ? (uint64_t)fmin(STEPS_NIGHTLY, UPDATES_NIGHTLY / n) : STEPS_QUICK;
+    return STATUS_OK;
 }
 
 void stress_command(const struct stress_cell *cell, char command[STRESS_COMMAND])

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * How the solver starts from states that are hard at once: particles at one place, and light
- * particles at rest beside a high pressure. */
+ * How the solver starts from states that are hard at once: particles at one place, light particles
+ * at rest beside a high pressure, and a density that falls within a width. */
 #include <math.h>
 
 #include "check.h"
@@ -85,6 +85,39 @@ static double steps_to(double light)
     return (double)cost.steps;
 }
 
+/* Where the density falls 200 times within a width, h -> eta m/rho(h) runs away from its root:
+ * speed of the first particle beyond, after some steps with predicted widths, against that with
+ * roots. */
+static double lost_push(void)
+{
+    enum { DENSE = 400, THIN = 4 };
+    static struct hydro_state state;
+    double speed[2] = {NAN, NAN};
+    for (int method = 0; method < 2; method++) {
+        struct scheme scheme = scheme_of("quadratic_spline", 1.5);
+        struct simulation *simulation;
+        struct snapshot s;
+        struct error error;
+        scheme.integrator = hydro_integrator("predicted_midpoint");
+        scheme.cfl = 0.5;
+        scheme.h_method = method ? H_PREDICTED : H_NEWTON;
+        state = (struct hydro_state){.n = DENSE + THIN, .hi = 4, .gamma = 5. / 3};
+        for (int i = 0; i < DENSE + THIN; i++) {
+            state.x[i] = i < DENSE ? 2 * (i + 0.5) / DENSE : 2 + 0.5 * (i - DENSE + 0.5);
+            state.m[i] = 2. / DENSE;
+            state.u[i] = i < DENSE ? 0.1 : 1e-4;
+        }
+        const struct scene scene = hydro_scene(&state, &scheme);
+        if (simulation_create(&scene, &simulation, &error)) return (double)NAN;
+        if (!simulation_run(simulation, 0.2, NULL, NULL, &error)) {
+            simulation_snapshot(simulation, &s);
+            speed[method] = s.v[0][DENSE];
+        }
+        simulation_destroy(simulation);
+    }
+    return fabs(speed[1] / speed[0] - 1);
+}
+
 static void measure(struct check_run *run, const void *subject)
 {
     const struct start *start = subject ? subject : &right;
@@ -99,6 +132,8 @@ static void measure(struct check_run *run, const void *subject)
                   "light particles (%g) at rest: steps to 3 cfl sqrt(h/a), two at least",
                   start->light);
     check_measure(run, steps_to(1), 1, 0, "equal particles: the first step is not cut");
+    check_measure(run, lost_push(), 0.2, 1e-6,
+                  "density falls 200 times within a width: speed beyond, h predicted");
 }
 
 static const struct start stays = {4.8, 4.8, 1e-3}, moves = {1.5, 1.5, 1e-3}, heavy = {1.5, 4.8, 1};
@@ -112,7 +147,8 @@ static const struct check_mutant mutants[] = {
 const struct check check_stability_start = {
     .group = "stability",
     .name = "start",
-    .property = "coincident particles get an h; the first step is at most 2 cfl sqrt(h/a)",
+    .property =
+        "coincident particles get an h; the first step is at most 2 cfl sqrt(h/a); h stays a root",
     .measure = measure,
     .mutants = mutants,
 };
