@@ -33,7 +33,9 @@ static void value_cell(struct buffer *to, const json_t *of)
 static void ratio_cell(struct buffer *to, double ratio)
 {
     buffer_add(to, "<td class=\"n\">");
-    if (isfinite(ratio) && fabs(ratio - 1) < 1)
+    if (isfinite(ratio) && fabs(ratio - 1) < 0.001)
+        buffer_format(to, "%+.1g %%", 100 * (ratio - 1));
+    else if (isfinite(ratio) && fabs(ratio - 1) < 1)
         buffer_format(to, "%+.1f %%", 100 * (ratio - 1));
     else if (isfinite(ratio))
         buffer_format(to, "× %.3g", ratio);
