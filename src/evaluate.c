@@ -13,7 +13,7 @@
 #include <omp.h>
 #endif
 
-enum { NEWTON_MAX = 200, NO_GHOSTS = -2, RESERVE = 8 };
+enum { NEWTON_MAX = 200, NO_GHOSTS = -2, MOST_GHOSTS = 1000, RESERVE = 8 };
 
 static int thread_number(void)
 {
@@ -228,6 +228,16 @@ static void predicted_pass(struct simulation *simulation, struct range *range, i
     newton_pass(simulation, range, thread);
 }
 
+/* A width that covers the box many times over has run away. */
+static enum status too_wide(const struct simulation *simulation, struct error *error)
+{
+    const struct particles *a = &simulation->particles;
+    ptrdiff_t widest = 0;
+    for (ptrdiff_t i = 1; i < a->n; i++)
+        if (!(a->h_inverse[i] >= a->h_inverse[widest])) widest = i;
+    return broke_down(simulation, widest, "smoothing length", 1 / a->h_inverse[widest], error);
+}
+
 /* Repeats the pass over ranges that were short of ghosts. */
 static enum status find_density(struct simulation *simulation, range_pass *pass,
                                 struct error *error)
@@ -251,6 +261,7 @@ static enum status find_density(struct simulation *simulation, range_pass *pass,
             short_of_ghosts |= ranges[b].result == NO_GHOSTS;
         }
         if (!short_of_ghosts) return STATUS_OK;
+        if (ghosts > MOST_GHOSTS * simulation->particles.n) return too_wide(simulation, error);
         ghosts *= 2;
     }
 }

@@ -121,7 +121,8 @@ ALWAYS_INLINE double close_body(const struct particles *particles, ptrdiff_t fir
     return surprised;
 }
 
-/* 1/h as a Newton step from the width of the sums finds it. */
+/* 1/h as a Newton step from the width of the sums finds it, no further than a factor of 2 away:
+ * close to the existence limit of h the step has no length. */
 CLONES static void correct_width(const struct particles *particles, ptrdiff_t first, int len,
                                  const struct density_sums *restrict sums)
 {
@@ -130,7 +131,9 @@ CLONES static void correct_width(const struct particles *particles, ptrdiff_t fi
 #pragma omp simd
     for (int i = 0; i < len; i++) {
         const double at = h_inverse[i] * sums->m[i];
-        found[i] = h_inverse[i] + (found[i] - h_inverse[i]) * at / (at - found[i] * sums->m_dh[i]);
+        const double root =
+            h_inverse[i] + (found[i] - h_inverse[i]) * at / (at - found[i] * sums->m_dh[i]);
+        found[i] = largest(least(root, 2 * h_inverse[i]), 0.5 * h_inverse[i]);
     }
 }
 

@@ -135,6 +135,8 @@ static void predict_h(struct oracle *oracle, size_t i)
     /* f(1/h) = 1/h - rho(h)/(eta m): df/d(1/h) = 1 + h^2 drho/dh/(eta m) */
     const long double slope = 1 + a->width * a->width * drho / (oracle->scheme.eta * a->m);
     a->found = next + (a->found - next) / slope;
+    if (a->found < next / 2) a->found = next / 2;
+    if (a->found > next * 2) a->found = next * 2;
 }
 
 /* The pressure follows a volume that was predicted wrong. */
