@@ -146,7 +146,8 @@ class Worker:
 def run(source, work, names):
     mutants = [m for m in read_list() if not names or m.name in names or m.group in names]
     began, outcomes, waiting = time.time(), {}, queue.Queue()
-    for m in mutants:
+    # those of one file follow each other: taking one back and putting the next in is one compilation
+    for m in sorted(mutants, key=lambda m: m.file):
         waiting.put(m)
     workers = [Worker(source, os.path.join(work, "worker%d" % i))
                for i in range(min(WORKERS, len(mutants)))]
