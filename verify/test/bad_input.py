@@ -185,7 +185,7 @@ def words(line):
 
 def call(program, line, folder):
     return subprocess.run([program, *words(line)], capture_output=True, text=True, cwd=folder,
-                          stdin=subprocess.DEVNULL, timeout=20, errors="replace")
+                          stdin=subprocess.DEVNULL, timeout=60, errors="replace")
 
 
 def judge(program, folder, line, status, needed):
