@@ -131,6 +131,12 @@ void html_status(struct buffer *to, const char *status)
     buffer_add(to, "</b>");
 }
 
+const char *html_verify(const json_t *verify)
+{
+    const char *command = html_string(verify, "reproduce");
+    return *command ? command : "sphproof verify";
+}
+
 void html_words(struct buffer *to, const char *name)
 {
     char copy[2] = "";

@@ -38,6 +38,9 @@ void html_command(struct buffer *to, const char *what, const char *command);
 /* pass, fail or skip as a coloured word. */
 void html_status(struct buffer *to, const char *status);
 
+/* The command that computes a verify document again, without its groups. */
+const char *html_verify(const json_t *verify);
+
 /* A name of the results for people: "internal_energy" is "internal energy". */
 void html_words(struct buffer *to, const char *name);
 

@@ -108,6 +108,9 @@ static void environment(struct buffer *to, const json_t *results)
             "L∞ = max |q − q_exact|; the particle mean is L1 with equal weights. An order is the "
             "least-squares slope of log(error) against log(1/n), with its 95 % interval. "
             "Conservation compares t_end with t = 0. All quantities are in code units.</p>\n"
+            "<p>Each line can be seen again: the commands are for a shell in the project's folder, "
+            "after <code>reports/run</code> has built the program there and <code>export "
+            "PATH=$PWD/build:$PATH</code>.</p>\n"
             "<p>Everything on this page is in <a href=\"results.json\">results.json</a>; each "
             "plot's data and gnuplot script are in the folder <code>plots</code>.</p></section>\n");
 }

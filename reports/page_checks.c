@@ -137,7 +137,7 @@ void page_checks(struct page_writer *writer, const json_t *verify)
             i = span.end;
         }
         html_table_end(to);
-        buffer_format(&command, "sphproof verify %s", group);
+        buffer_format(&command, "%s %s", html_verify(verify), group);
         if (command.data) html_command(to, "see it again:", command.data);
         buffer_free(&command);
     }
@@ -189,6 +189,9 @@ void page_detection(struct page_writer *writer, const json_t *verify)
     }
     html_table_end(to);
     buffer_add(to, "</details>");
-    html_command(to, "see it again:", "sphproof verify --mutants");
+    struct buffer command = {0};
+    buffer_format(&command, "%s --mutants", html_verify(verify));
+    if (command.data) html_command(to, "see it again:", command.data);
+    buffer_free(&command);
     buffer_add(to, "</section>\n");
 }

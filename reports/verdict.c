@@ -27,7 +27,7 @@ static void fail(struct tally *tally, const char *area, const char *name, struct
     free(text);
 }
 
-static void judge_figure(struct tally *tally, const json_t *figure)
+static void judge_figure(struct tally *tally, const json_t *figure, const char *verify)
 {
     const char *status = html_string(figure, "status");
     if (!strcmp(status, "pass")) tally->figures_passed++;
@@ -45,7 +45,7 @@ static void judge_figure(struct tally *tally, const json_t *figure)
         html_number(&detail, value / bound);
         buffer_add(&detail, " times the bound)");
     }
-    buffer_format(&command, "sphproof verify %s", html_string(figure, "group"));
+    buffer_format(&command, "%s %s", verify, html_string(figure, "group"));
     double excess = isfinite(value) && bound > 0 ? value / bound : (double)INFINITY;
     failure_add_check(&tally->failures, figure, excess, detail.data, command.data);
     buffer_free(&detail);
@@ -59,17 +59,21 @@ static void judge_verify(struct tally *tally, const json_t *verify)
     tally->detected = (int)json_integer_value(json_object_get(summary, "detected"));
     size_t i;
     const json_t *entry;
-    json_array_foreach(json_object_get(verify, "checks"), i, entry) judge_figure(tally, entry);
+    json_array_foreach(json_object_get(verify, "checks"), i, entry)
+        judge_figure(tally, entry, html_verify(verify));
     json_array_foreach(json_object_get(verify, "mutants"), i, entry)
     {
         if (json_is_true(json_object_get(entry, "detected"))) continue;
-        struct buffer detail = {0};
+        struct buffer detail = {0}, command = {0};
+        buffer_format(&command, "%s --mutants", html_verify(verify));
         buffer_format(&detail, "the wrong variant '%s' passes: value ",
                       html_string(entry, "mutant"));
         html_number(&detail, html_member(entry, "value"));
         buffer_add(&detail, ", bound ");
         html_number(&detail, html_member(entry, "bound"));
-        fail(tally, "detection", html_string(entry, "check"), &detail, "sphproof verify --mutants");
+        if (command.data)
+            fail(tally, "detection", html_string(entry, "check"), &detail, command.data);
+        buffer_free(&command);
     }
 }
 

@@ -207,7 +207,12 @@ static void add_documents(struct report *report, json_t *results)
             json_array_append(bench, job->document);
             break;
         case REPORT_CHECKS:
-            if (!verify) json_object_set_new(results, "verify", verify = result_new("verify"));
+            if (!verify) {
+                json_object_set_new(results, "verify", verify = result_new("verify"));
+                json_object_set_new(
+                    verify, "reproduce",
+                    json_string(report->nightly ? "sphproof verify --slow" : "sphproof verify"));
+            }
             report_piece_join(verify, job->document);
             break;
         }

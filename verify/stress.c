@@ -9,8 +9,9 @@
 #include "result.h"
 #include "run_job.h"
 
-/* Steps of a run, and at night of one particle: about as many seconds for any number of them. */
-enum { STEPS_QUICK = 30000, STEPS_NIGHTLY = 3000000, UPDATES_NIGHTLY = 200000000 };
+enum { STEPS_QUICK = 30000, STEPS_NIGHTLY = 3000000 };
+/* Steps times n^2, which is what they cost where few particles see all: about a minute. */
+static const double work_nightly = 1e11;
 
 /* --- the cells ---------------------------------------------------------------------------------
  */
@@ -72,7 +73,7 @@ static enum status prepare(struct stress_cell *cell, bool nightly, struct error 
                     error))
         return error->status;
     const double n = settings_real(&cell->settings.settings, SETTING_n);
-    cell->step_budget = nightly ? (uint64_t)fmin(STEPS_NIGHTLY, UPDATES_NIGHTLY / n) : STEPS_QUICK;
+    cell->step_budget = nightly ? (uint64_t)fmin(STEPS_NIGHTLY, work_nightly / (n * n)) : STEPS_QUICK;
     return STATUS_OK;
 }
 
