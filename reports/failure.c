@@ -38,6 +38,17 @@ static size_t place(const char *name, const char *const *list, size_t n)
     return k;
 }
 
+static size_t cause_of_check(const char *group)
+{
+    size_t cause = place(group, causes, CAUSES);
+    return cause < CAUSES ? cause : place("check", causes, CAUSES);
+}
+
+size_t failure_rank(const char *group, const char *check)
+{
+    return cause_of_check(group) * (ELEMENTARY + 1) + place(check, elementary, ELEMENTARY);
+}
+
 /* Takes entry. */
 static void keep(struct failure_list *failures, size_t cause, size_t check, double excess,
                  json_t *entry)
@@ -86,9 +97,7 @@ void failure_add_check(struct failure_list *failures, const json_t *figure, doub
         json_decref(entry);
         return;
     }
-    size_t cause = place(group, causes, CAUSES);
-    if (cause == CAUSES) cause = place("check", causes, CAUSES);
-    keep(failures, cause, place(check, elementary, ELEMENTARY), excess, entry);
+    keep(failures, cause_of_check(group), place(check, elementary, ELEMENTARY), excess, entry);
 }
 
 static int most_specific_first(const void *a, const void *b)

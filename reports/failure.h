@@ -9,6 +9,9 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+/* Where a check stands in this order: less is shown first. */
+size_t failure_rank(const char *group, const char *check);
+
 /* Begins as {0}; failure_take ends it. No memory: failed is set, failure_take returns NULL. */
 struct failure_list {
     struct failure *list;

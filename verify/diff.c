@@ -2,9 +2,12 @@
 #include "diff.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "failure.h"
 
 /* Settings that make another problem of a case; the others are what one wants to compare. */
 static const char *const problem_keys[] = {"kind",   "left",   "right", "background", "amplitude",
@@ -54,14 +57,23 @@ static bool is_timing(const struct difference *d)
     return d->new && d->new->kind == READING_TIMING;
 }
 
+/* Of a path with "checks[GROUP, NAME, ...]": its place in a report's list of failures; last
+ * without. A check names the cause, what breaks down in a run is its consequence. */
+static size_t cause_of(const char *path)
+{
+    char group[64], check[64];
+    const char *entry = strstr(path, "checks[");
+    if (!entry || sscanf(entry, "checks[%63[^,], %63[^],]", group, check) != 2) return SIZE_MAX;
+    return failure_rank(group, check);
+}
+
 static int worst_first(const void *a, const void *b)
 {
     const struct difference *x = a, *y = b;
     const int i = severity(x), j = severity(y);
     if (i != j) return i - j;
-    /* a check names the cause, what breaks down in a run is its consequence */
-    const bool a_check = strstr(path_of(x), "checks["), b_check = strstr(path_of(y), "checks[");
-    if (i == 0 && a_check != b_check) return a_check ? -1 : 1;
+    const size_t a_cause = cause_of(path_of(x)), b_cause = cause_of(path_of(y));
+    if (i == 0 && a_cause != b_cause) return a_cause < b_cause ? -1 : 1;
     const bool a_time = is_timing(x), b_time = is_timing(y);
     if (a_time != b_time) return a_time ? 1 : -1;
     const bool a_head = x->new && x->new->headline, b_head = y->new && y->new->headline;
