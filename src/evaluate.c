@@ -3,6 +3,7 @@
  * a particle's sums are gathered by its own range in a fixed order, so results do not depend on
  * the number of threads. */
 #include <math.h>
+#include <string.h>
 #include <stdlib.h>
 
 #include "loop.h"
@@ -214,18 +215,46 @@ static void newton_pass(struct simulation *simulation, struct range *range, int 
 }
 
 /* h -> eta m/rho(h) is no contraction where the density changes by orders of magnitude within a
- * width: predictions there diverge. A range in which one has failed looks for the roots. */
+ * width: predictions there diverge. A range in which one has failed looks for the roots, from the
+ * predicted widths on; the pressure follows what U was predicted with all the same. A root twice as
+ * far away or more (particles that all but meet in a first half step) is none to jump to. */
+static void solve_surprised(struct simulation *simulation, struct range *range)
+{
+    const struct particles *a = &simulation->particles;
+    const double follow = simulation->scheme.integrator->follow * (simulation->gamma - 1);
+    double *h = a->h + range->first, *h_inverse = a->h_inverse + range->first;
+    struct density_sums sums;
+    double predicted[RANGE_MAX];
+    for (int i = 0; i < range->len; i++) {
+        predicted[i] = h_inverse[i];
+        h[i] = 1 / predicted[i];
+    }
+    range->result = solve_range(simulation, range, &sums);
+    bool near = range->result == -1;
+    for (int i = 0; i < range->len && near; i++)
+        near = h[i] * predicted[i] > 0.5 && h[i] * predicted[i] < 2;
+    if (!near) memcpy(h_inverse, predicted, (size_t)range->len * sizeof *h_inverse);
+    if (!near && range->result != NO_GHOSTS) range->result = sum_range(simulation, range, &sums);
+    range->done = range->result == -1;
+    if (range->done) close_range(simulation, range, &sums);
+    for (int i = 0; i < range->len && near; i++) {
+        const double factor = largest(0.5, 1 + follow * (1 - h[i] * predicted[i]));
+        a->h_inverse_old[range->first + i] = a->h_inverse_found[range->first + i];
+        if (!simulation->plan.energy_sum) a->P[range->first + i] *= factor;
+        if (!simulation->plan.energy_sum && simulation->plan.grad_h)
+            a->b[range->first + i] *= factor;
+    }
+}
+
 static void predicted_pass(struct simulation *simulation, struct range *range, int thread)
 {
+    (void)thread;
     struct density_sums sums;
     if (range->done) return;
-    if (!range->surprised) {
-        range->result = sum_range(simulation, range, &sums);
-        if (range->result != -1) return;
-        range->surprised = close_range(simulation, range, &sums) > 0;
-        range->done = !range->surprised;
-    }
-    newton_pass(simulation, range, thread);
+    range->result = sum_range(simulation, range, &sums);
+    range->done = range->result == -1;
+    if (range->done && close_range(simulation, range, &sums) > 0)
+        solve_surprised(simulation, range);
 }
 
 /* A width that covers the box many times over has run away. */
@@ -245,7 +274,7 @@ static enum status find_density(struct simulation *simulation, range_pass *pass,
     struct range *ranges = simulation->ranges;
     ptrdiff_t ghosts = simulation->ghosts_filled > 8 ? simulation->ghosts_filled : 8;
     for (ptrdiff_t b = 0; b < simulation->range_count; b++) {
-        ranges[b].done = ranges[b].predicted = ranges[b].surprised = false;
+        ranges[b].done = ranges[b].predicted = false;
         if (ranges[b].reach + 2 > ghosts) ghosts = ranges[b].reach + 2;
     }
     for (;;) {

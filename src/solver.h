@@ -22,7 +22,6 @@ struct range {
     ptrdiff_t force_reach; /* and for pairs within max(h_i, h_j) */
     bool done;             /* density is found in this evaluation */
     bool predicted;        /* widths of this evaluation are predicted */
-    bool surprised;        /* and wrong: they are looked for */
     ptrdiff_t result;      /* of its density pass: -1, the particle without a root, or NO_GHOSTS */
     double rate;           /* largest signal speed / h */
 };
