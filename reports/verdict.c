@@ -187,13 +187,14 @@ static void headline(struct buffer *to, bool checked, const json_t *failures)
     size_t count = json_array_size(failures);
     const json_t *first = json_array_get(failures, 0);
     const char *area = html_string(first, "area"), *subject = html_string(first, "subject");
-    bool check = !strcmp(area, "check"); /* its name begins with its group */
+    /* these names say what they are about */
+    bool plain = !strcmp(area, "check") || !strcmp(area, "convergence") || !strcmp(area, "budget");
     if (!count) {
         buffer_add(to, checked ? "All is well" : "Nothing was checked");
         return;
     }
     buffer_format(to, "%zu %s%s%s%s", count, count == 1 ? "failure: " : "failures; look first at ",
-                  check ? "" : area, check ? "" : " ", html_string(first, "name"));
+                  plain ? "" : area, plain ? "" : " ", html_string(first, "name"));
     if (strstr(subject, "broke down")) return; /* it says where, not of what */
     enum { LONGEST = 64 };
     size_t length = strlen(subject), whole = length;
