@@ -215,35 +215,48 @@ static void newton_pass(struct simulation *simulation, struct range *range, int 
 }
 
 /* h -> eta m/rho(h) is no contraction where the density changes by orders of magnitude within a
- * width: predictions there diverge. A range in which one has failed looks for the roots, from the
- * predicted widths on; the pressure follows what U was predicted with all the same. A root twice as
- * far away or more (particles that all but meet in a first half step) is none to jump to. */
-static void solve_surprised(struct simulation *simulation, struct range *range)
+ * width: predictions there diverge. Where one has failed the root is looked for, from the predicted
+ * width on; the pressure follows what U was predicted with all the same. A root twice as far away
+ * or more (particles that all but meet in a first half step) is none to jump to. Each particle
+ * decides for itself, so that nothing depends on its range. Returns as solve_range does. */
+static ptrdiff_t solve_surprised(struct simulation *simulation, struct range *range,
+                                 struct density_sums *sums)
 {
     const struct particles *a = &simulation->particles;
+    const ptrdiff_t first = range->first;
     const double follow = simulation->scheme.integrator->follow * (simulation->gamma - 1);
-    double *h = a->h + range->first, *h_inverse = a->h_inverse + range->first;
-    struct density_sums sums;
+    struct density_sums roots;
     double predicted[RANGE_MAX];
+    bool jumps[RANGE_MAX];
     for (int i = 0; i < range->len; i++) {
-        predicted[i] = h_inverse[i];
-        h[i] = 1 / predicted[i];
+        predicted[i] = a->h_inverse[first + i];
+        jumps[i] = range_surprised(a, first + i);
+        a->h[first + i] = 1 / predicted[i];
     }
-    range->result = solve_range(simulation, range, &sums);
-    bool near = range->result == -1;
-    for (int i = 0; i < range->len && near; i++)
-        near = h[i] * predicted[i] > 0.5 && h[i] * predicted[i] < 2;
-    if (!near) memcpy(h_inverse, predicted, (size_t)range->len * sizeof *h_inverse);
-    if (!near && range->result != NO_GHOSTS) range->result = sum_range(simulation, range, &sums);
-    range->done = range->result == -1;
-    if (range->done) close_range(simulation, range, &sums);
-    for (int i = 0; i < range->len && near; i++) {
-        const double factor = largest(0.5, 1 + follow * (1 - h[i] * predicted[i]));
-        a->h_inverse_old[range->first + i] = a->h_inverse_found[range->first + i];
-        if (!simulation->plan.energy_sum) a->P[range->first + i] *= factor;
-        if (!simulation->plan.energy_sum && simulation->plan.grad_h)
-            a->b[range->first + i] *= factor;
+    const ptrdiff_t result = solve_range(simulation, range, &roots);
+    for (int i = 0; i < range->len; i++) {
+        const double ratio = a->h[first + i] * predicted[i];
+        jumps[i] &= result == -1 && ratio > 0.5 && ratio < 2;
+        if (!jumps[i]) {
+            a->h_inverse[first + i] = predicted[i];
+            continue;
+        }
+        sums->m[i] = roots.m[i];
+        sums->m_dh[i] = roots.m_dh[i];
+        sums->Z[i] = roots.Z[i];
+        sums->Z_dh[i] = roots.Z_dh[i];
     }
+    if (result == NO_GHOSTS) return result;
+    close_range(simulation, range, sums);
+    for (ptrdiff_t i = first; i < first + range->len; i++) {
+        if (!jumps[i - first]) continue;
+        const double factor = largest(0.5, 1 + follow * (1 - a->h[i] * predicted[i - first]));
+        a->h_inverse_old[i] = a->h_inverse_found[i];
+        if (simulation->plan.energy_sum) continue;
+        a->P[i] *= factor;
+        if (simulation->plan.grad_h) a->b[i] *= factor;
+    }
+    return -1;
 }
 
 static void predicted_pass(struct simulation *simulation, struct range *range, int thread)
@@ -252,9 +265,9 @@ static void predicted_pass(struct simulation *simulation, struct range *range, i
     struct density_sums sums;
     if (range->done) return;
     range->result = sum_range(simulation, range, &sums);
+    if (range->result == -1 && close_range(simulation, range, &sums) > 0)
+        range->result = solve_surprised(simulation, range, &sums);
     range->done = range->result == -1;
-    if (range->done && close_range(simulation, range, &sums) > 0)
-        solve_surprised(simulation, range);
 }
 
 /* A width that covers the box many times over has run away. */

@@ -174,6 +174,11 @@ double range_close(const struct particles *particles, ptrdiff_t first, int len,
     return surprised;
 }
 
+bool range_surprised(const struct particles *particles, ptrdiff_t i)
+{
+    return off_by(particles->h[i] * particles->h_inverse[i]) > surprise_max;
+}
+
 CLONES static double rate(const struct particles *particles, ptrdiff_t first, int len)
 {
     const double *restrict signal = particles->signal + first, *restrict h_inverse =

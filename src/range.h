@@ -32,6 +32,9 @@ struct gas {
 double range_close(const struct particles *particles, ptrdiff_t first, int len,
                  const struct plan *plan, const struct gas *gas, const struct density_sums *sums);
 
+/* Is the width of particle i that was predicted far from the one that the sum has found? */
+bool range_surprised(const struct particles *particles, ptrdiff_t i);
+
 /* The largest signal speed / h. */
 double range_rate(const struct particles *particles, ptrdiff_t first, int len);
 
