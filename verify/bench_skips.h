@@ -29,7 +29,7 @@ struct bench_skip {
     const char *name; /* of the work left out */
     const char *keys; /* that bring it back, or the pass by itself */
     enum bench_promise promise;
-    double bound;      /* of the difference; 0 for bits */
+    double bound; /* of the difference; 0 for bits; round-off: wider where the case amplifies it */
     double difference; /* as the promise defines it; NaN where there is nothing to compare */
     double l1[2];      /* of density: left out, done */
     double cpu_s[2];   /* left out, done: of a run, or of a particle's update */
