@@ -76,7 +76,8 @@ static void find_warnings(const struct scheme *scheme, char *text, size_t size)
             eta, limit, scheme->kernel.member.name,
             gradient_family.members[scheme->gradient]->name);
     if (scheme->energy == ENERGY_TOTAL && scheme->viscosity == VISCOSITY_NONE)
-        warn(text, size, "energy=total in cold flow (u << v^2): U = E - p^2/2m loses digits");
+        warn(text, size,
+             "energy=total: should the flow get cold (u << v^2), U = E - p^2/2m loses digits");
 }
 
 size_t plan_explain(const struct scene *scene, struct plan_line *lines, size_t max, char *warnings,
