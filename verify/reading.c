@@ -233,6 +233,27 @@ static void take(struct readings *readings, const struct place *at, const json_t
     add(readings, reading, path);
 }
 
+/* Numbers of five digits and more behind the point say where something was found ("q 0.564762"),
+ * and that moves with what was found: they are no part of a name. */
+static void leave_out_places(char *name)
+{
+    char *to = name;
+    for (const char *from = name; *from;) {
+        const size_t whole = strspn(from, "0123456789");
+        const size_t places = from[whole] == '.' ? strspn(from + whole + 1, "0123456789") : 0;
+        size_t length = whole + (places ? places + 1 : 0);
+        if (places >= 5) {
+            *to++ = '~';
+        } else {
+            length += length == 0;
+            memmove(to, from, length);
+            to += length;
+        }
+        from += length;
+    }
+    *to = '\0';
+}
+
 /* "sod, default" of an entry; its number where nothing names it. */
 static void name_entry(const json_t *entry, size_t number, char name[NAME_MAX_LENGTH])
 {
@@ -243,10 +264,14 @@ static void name_entry(const json_t *entry, size_t number, char name[NAME_MAX_LE
     for (size_t i = 0; i < sizeof names / sizeof *names && used < NAME_MAX_LENGTH; i++) {
         value = json_object_get(entry, names[i]);
         const char *comma = used ? ", " : "";
-        if (json_is_string(value))
+        if (json_is_string(value)) {
+            const size_t begin = used;
             used += (size_t)snprintf(name + used, NAME_MAX_LENGTH - used, "%s%s", comma,
                                      json_string_value(value));
-        else if (json_is_number(value))
+            if (strcmp(names[i], "subject") != 0 || used >= NAME_MAX_LENGTH) continue;
+            leave_out_places(name + begin);
+            used = strlen(name);
+        } else if (json_is_number(value))
             used += (size_t)snprintf(name + used, NAME_MAX_LENGTH - used, "%s%s %.10g", comma,
                                      names[i], json_number_value(value));
     }

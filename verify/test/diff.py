@@ -131,6 +131,11 @@ def test_checks(verify):
     verdict("a check's value", verify, value, name + ".value", lambda v: 1e3 * check["bound"], 0, "worse")
     verdict("a check's failure", verify, ["checks", figure, "status"], name + ".status",
             lambda v: "fail", 1, "worse")
+    there, elsewhere = (moved(verify, ["checks", figure, "subject"], lambda s: s + place)
+                        for place in (", q 0.333333", ", q 0.564762"))
+    _, figures, _ = diff(there, elsewhere)
+    missing = [p for p, f in figures.items() if f["verdict"] != "same"]
+    expect("the same figure, found at another place", not missing, missing)
 
 
 def test_kinds():
