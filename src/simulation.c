@@ -265,6 +265,9 @@ enum status simulation_run(struct simulation *simulation, double t_end,
         simulation->cost.skipped_particle_updates +=
             (uint64_t)(simulation->particles.n - simulation->sleep.awake_count);
         if (simulation->plan.signal_pass && simulation->time < t_end) evaluate_signal(simulation);
+        if (simulation->scheme.energy == ENERGY_INTERNAL && simulation->cost.steps % 128 == 0 &&
+            (status = check_energy(simulation, error)))
+            break;
         if (progress) stopped = !progress(context, simulation->time, simulation->cost.steps);
     }
     undo_prediction(simulation);

@@ -41,7 +41,7 @@ class Program:
         self.choices = {key: names(path, family) for key, family in (
             ("kernel", "kernels"), ("gradient", "gradients"), ("formulation", "formulations"),
             ("volume_element", "volume_elements"), ("integrator", "integrators"),
-            ("viscosity", "viscosities"))}
+            ("viscosity", "viscosities"), ("h_method", "h_methods"))}
         self.cases = names(path, "cases")
 
 
@@ -64,7 +64,7 @@ def draw(program, number):
     maybe(0.3, "eta", "auto")
     maybe(0.5, "cfl", log_uniform(rng, 0.03, 1.5))
     maybe(0.5, "energy", rng.choice(["internal", "total"]))
-    maybe(0.4, "h_method", rng.choice(["newton", "predicted", "corrected"]))
+    maybe(0.6, "h_method", "auto")
     widths = ["mean"] if keys["formulation"] == "lagrangian" else ["mean", "max", "harmonic"]
     maybe(0.4, "pair_width", rng.choice(widths))
     maybe(0.2, "alpha", round(rng.uniform(0, 3), 2))
@@ -116,7 +116,7 @@ def check_particles(rows):
 
 def tame(keys):
     """Time step and scheme are those that a newcomer would get, and the start is orderly."""
-    return not {"cfl", "alpha", "beta", "jitter", "lattice", "pair_width"} & set(keys) and (
+    return keys["n"] >= 30 and not {"cfl", "alpha", "beta", "jitter", "lattice", "pair_width"} & set(keys) and (
         keys["eta"] == "auto" and keys["viscosity"] == "constant")
 
 
