@@ -7,38 +7,11 @@
 #include <stdlib.h>
 
 #include "loop.h"
+#include "pass.h"
 #include "range.h"
 #include "solver.h"
 
-#ifdef _OPENMP
-#include <omp.h>
-#endif
-
 enum { NEWTON_MAX = 200, NO_GHOSTS = -2, MOST_GHOSTS = 1000, RESERVE = 8 };
-
-static int thread_number(void)
-{
-#ifdef _OPENMP
-    return omp_get_thread_num();
-#else
-    return 0;
-#endif
-}
-
-/* Work on one range; thread: number of the thread that does it. */
-typedef void range_pass(struct simulation *simulation, struct range *range, int thread);
-
-/* A pass over all ranges. What it finds goes into the ranges themselves. */
-static void for_ranges(struct simulation *simulation, range_pass *pass)
-{
-    const ptrdiff_t count = simulation->range_count;
-    if (simulation->threads == 1 || count < WORTH_A_THREAD) {
-        for (ptrdiff_t b = 0; b < count; b++) pass(simulation, &simulation->ranges[b], 0);
-        return;
-    }
-#pragma omp parallel for schedule(static) num_threads(simulation->threads)
-    for (ptrdiff_t b = 0; b < count; b++) pass(simulation, &simulation->ranges[b], thread_number());
-}
 
 enum status broke_down(const struct simulation *simulation, ptrdiff_t i, const char *quantity,
                        double value, struct error *error)
@@ -51,20 +24,23 @@ enum status broke_down(const struct simulation *simulation, ptrdiff_t i, const c
 
 /* --- order and the primitive state ------------------------------------------------------------ */
 
-/* Only what moves can get out of order; the end of each span is held against its neighbour. */
-static bool in_order(const struct simulation *simulation)
+/* Neighbours in a range, the end of the one before included. */
+static void order_pass(struct simulation *simulation, struct range *range, struct tally *tally)
+{
+    const struct particles *a = &simulation->particles;
+    const ptrdiff_t first = range->first > 0 ? range->first - 1 : 0;
+    const ptrdiff_t end = range->first + range->len;
+    tally->crossings += range_crossings(a, first, (end < a->n ? end : a->n - 1) - first);
+}
+
+/* Only what moves can get out of order. */
+static bool in_order(struct simulation *simulation)
 {
     const struct particles *a = &simulation->particles;
     const struct sleep *sleep = &simulation->sleep;
     if (!(a->x[a->n - 1] <= a->x[0] + a->period)) return false;
-    if (!sleep->on || !sleep->at_rest) return range_crossings(a, 0, a->n - 1) <= 0;
-    double crossings = 0;
-    for (ptrdiff_t s = 0; s < sleep->span_count; s++) {
-        const ptrdiff_t first = sleep->spans[s].first, end = first + sleep->spans[s].len;
-        const ptrdiff_t begin = first > 0 ? first - 1 : 0;
-        crossings += range_crossings(a, begin, (end < a->n ? end : a->n - 1) - begin);
-    }
-    return crossings <= 0;
+    if (sleep->on && !sleep->at_rest) return range_crossings(a, 0, a->n - 1) <= 0;
+    return pass_all(simulation, order_pass).crossings <= 0;
 }
 
 static enum status restore_order(struct simulation *simulation, struct error *error)
@@ -168,10 +144,11 @@ static ptrdiff_t sum_range(struct simulation *simulation, struct range *range,
 {
     const struct particles *a = &simulation->particles;
     const struct scheme *scheme = &simulation->scheme;
-    if (!range->predicted)
+    if (range->predicted != simulation->density_passes)
         range_predict_width(a, range->first, range->len, simulation->predict_ratio);
-    range->predicted = true;
+    range->predicted = simulation->density_passes;
     if (!cover(simulation, range)) return NO_GHOSTS;
+    if (simulation->cost.steps % 8 == 0) tighten(simulation, range);
     simulation->loops.density(&scheme->kernel, a, range->first, range->len, range->reach,
                               a->h_inverse + range->first, sums);
     return -1;
@@ -197,21 +174,33 @@ static enum status fill_density_ghosts(struct simulation *simulation, ptrdiff_t 
 static double close_range(struct simulation *simulation, const struct range *range,
                           const struct density_sums *sums)
 {
-    const struct gas gas = {simulation->gamma, simulation->scheme.kernel.constant[1],
-                            simulation->scheme.eta,
-                            range->predicted ? simulation->scheme.integrator->follow : 0};
+    const struct gas gas = {
+        simulation->gamma, simulation->scheme.kernel.constant[1], simulation->scheme.eta,
+        range->predicted == simulation->density_passes ? simulation->scheme.integrator->follow : 0};
     return range_close(&simulation->particles, range->first, range->len, &simulation->plan, &gas,
                        sums);
 }
 
-static void newton_pass(struct simulation *simulation, struct range *range, int thread)
+/* What has become of a range's widths, as solve_range returns it. */
+static void conclude(const struct simulation *simulation, struct range *range, ptrdiff_t result,
+                     struct tally *tally)
 {
-    (void)thread;
+    if (result == -1) range->done = simulation->density_passes;
+    if (result == NO_GHOSTS) tally->short_of_ghosts = true;
+    if (result >= 0 && result < tally->without_root) tally->without_root = result;
+    if (range->reach > tally->reach) tally->reach = range->reach;
+}
+
+static void newton_pass(struct simulation *simulation, struct range *range, struct tally *tally)
+{
     struct density_sums sums;
-    if (range->done) return;
-    range->result = solve_range(simulation, range, &sums);
-    range->done = range->result == -1;
-    if (range->done) close_range(simulation, range, &sums);
+    ptrdiff_t result = -1;
+    if (range->done != simulation->density_passes) {
+        result = solve_range(simulation, range, &sums);
+        if (result == -1) close_range(simulation, range, &sums);
+        if (result == -1 && simulation->cost.steps % 8 == 0) tighten(simulation, range);
+    }
+    conclude(simulation, range, result, tally);
 }
 
 /* h -> eta m/rho(h) is no contraction where the density changes by orders of magnitude within a
@@ -259,15 +248,16 @@ static ptrdiff_t solve_surprised(struct simulation *simulation, struct range *ra
     return -1;
 }
 
-static void predicted_pass(struct simulation *simulation, struct range *range, int thread)
+static void predicted_pass(struct simulation *simulation, struct range *range, struct tally *tally)
 {
-    (void)thread;
     struct density_sums sums;
-    if (range->done) return;
-    range->result = sum_range(simulation, range, &sums);
-    if (range->result == -1 && close_range(simulation, range, &sums) > 0)
-        range->result = solve_surprised(simulation, range, &sums);
-    range->done = range->result == -1;
+    ptrdiff_t result = -1;
+    if (range->done != simulation->density_passes) {
+        result = sum_range(simulation, range, &sums);
+        if (result == -1 && close_range(simulation, range, &sums) > 0)
+            result = solve_surprised(simulation, range, &sums);
+    }
+    conclude(simulation, range, result, tally);
 }
 
 /* A width that covers the box many times over has run away. */
@@ -284,25 +274,19 @@ static enum status too_wide(const struct simulation *simulation, struct error *e
 static enum status find_density(struct simulation *simulation, range_pass *pass,
                                 struct error *error)
 {
-    struct range *ranges = simulation->ranges;
     ptrdiff_t ghosts = simulation->ghosts_filled > 8 ? simulation->ghosts_filled : 8;
-    for (ptrdiff_t b = 0; b < simulation->range_count; b++) {
-        ranges[b].done = ranges[b].predicted = false;
-        if (ranges[b].reach + 2 > ghosts) ghosts = ranges[b].reach + 2;
-    }
+    if (simulation->reach + 2 > ghosts) ghosts = simulation->reach + 2;
+    simulation->density_passes++;
     for (;;) {
         const enum status status = fill_density_ghosts(simulation, ghosts, error);
         if (status) return status;
-        for_ranges(simulation, pass);
-        bool short_of_ghosts = false;
-        for (ptrdiff_t b = 0; b < simulation->range_count; b++) {
-            if (ranges[b].result >= 0)
-                return broke_down(simulation, ranges[b].result,
-                                  "smoothing length (no root was found)",
-                                  simulation->particles.h[ranges[b].result], error);
-            short_of_ghosts |= ranges[b].result == NO_GHOSTS;
-        }
-        if (!short_of_ghosts) return STATUS_OK;
+        const struct tally found = pass_all(simulation, pass);
+        if (found.without_root < PTRDIFF_MAX)
+            return broke_down(simulation, found.without_root,
+                              "smoothing length (no root was found)",
+                              simulation->particles.h[found.without_root], error);
+        simulation->reach = found.reach;
+        if (!found.short_of_ghosts) return STATUS_OK;
         if (ghosts > MOST_GHOSTS * simulation->particles.n) return too_wide(simulation, error);
         ghosts *= 2;
     }
@@ -322,43 +306,24 @@ static enum status reserve_scratch(struct simulation *simulation, ptrdiff_t reac
     return error_set(error, STATUS_ENVIRONMENT, "no memory for pairs %td apart", reach);
 }
 
-/* Pairs visited: both sides of every sum in the own-width sums, each pair once in the forces. */
-static void count_work(struct simulation *simulation)
-{
-    uint64_t pairs = 0;
-    const int sums = 1 + (simulation->loops.matrix != NULL);
-    for (ptrdiff_t b = 0; b < simulation->range_count; b++) {
-        const struct range *range = &simulation->ranges[b];
-        pairs += (uint64_t)(range->len * (2 * sums * range->reach + range->force_reach));
-    }
-    simulation->cost.pair_interactions += pairs;
-}
-
 /* --- the evaluations -------------------------------------------------------------------------- */
 
 /* Pairs reach as far as the wider of the two: the reach of a range for forces is the largest of all
  * ranges whose own reach touches it. */
-static ptrdiff_t find_force_reach(struct simulation *simulation)
+static ptrdiff_t force_reach(const struct simulation *simulation, const struct range *range)
 {
-    struct range *ranges = simulation->ranges;
-    const ptrdiff_t count = simulation->range_count, n = simulation->particles.n;
-    ptrdiff_t widest = 0;
-    for (ptrdiff_t b = 0; b < count; b++) {
-        ranges[b].force_reach = ranges[b].reach;
-        if (ranges[b].reach > widest) widest = ranges[b].reach;
+    const struct range *ranges = simulation->ranges;
+    const ptrdiff_t count = simulation->range_count, n = simulation->particles.n,
+                    b = range - ranges;
+    ptrdiff_t reach = range->reach, gap = 0; /* particles between the two ranges */
+    for (ptrdiff_t k = 1; k < count && gap < simulation->reach && gap < n; k++) {
+        const struct range *right = &ranges[(b + k) % count],
+                           *left = &ranges[(b - k + count) % count];
+        if (gap < right->reach && right->reach > reach) reach = right->reach;
+        if (gap < left->reach && left->reach > reach) reach = left->reach;
+        gap += right->len < left->len ? right->len : left->len;
     }
-    for (ptrdiff_t b = 0; b < count; b++) {
-        const ptrdiff_t reach = ranges[b].reach;
-        ptrdiff_t gap = 0; /* particles between the two ranges */
-        for (ptrdiff_t k = 1; k < count && gap < reach && gap < n; k++) {
-            struct range *right = &ranges[(b + k) % count];
-            struct range *left = &ranges[(b - k + count) % count];
-            if (right->force_reach < reach) right->force_reach = reach;
-            if (left->force_reach < reach) left->force_reach = reach;
-            gap += right->len < left->len ? right->len : left->len;
-        }
-    }
-    return widest;
+    return reach;
 }
 
 static enum status prepare(struct simulation *simulation, bool newton, struct error *error)
@@ -403,36 +368,37 @@ static void range_dalpha(const struct simulation *simulation, const struct range
     }
 }
 
-static void matrix_pass(struct simulation *simulation, struct range *range, int thread)
+static void matrix_pass(struct simulation *simulation, struct range *range, struct tally *tally)
 {
-    (void)thread;
+    (void)tally;
     simulation->loops.matrix(&simulation->scheme.kernel, &simulation->particles, range->first,
                              range->len, range->reach);
 }
 
-static void force_pass(struct simulation *simulation, struct range *range, int thread)
+static void force_pass(struct simulation *simulation, struct range *range, struct tally *tally)
 {
-    double *scratch = simulation->scratch + simulation->scratch_size * (size_t)thread;
-    range->rate =
+    double *scratch = simulation->scratch + simulation->scratch_size * (size_t)tally->thread;
+    range->force_reach = force_reach(simulation, range);
+    const double rate =
         simulation->loops.force(&simulation->loops, &simulation->numbers, &simulation->particles,
                                 range->first, range->len, range->force_reach, scratch);
+    tally->rate = largest(tally->rate, rate);
+    /* visited: both sides of every sum in the own-width sums, each pair once in the forces */
+    const int sums = 1 + (simulation->loops.matrix != NULL);
+    tally->pairs += (uint64_t)(range->len * (2 * sums * range->reach + range->force_reach));
     if (simulation->plan.alpha) range_dalpha(simulation, range);
-    if (simulation->cost.steps % 8 == 0) tighten(simulation, range);
 }
 
-static void signal_pass(struct simulation *simulation, struct range *range, int thread)
+static void signal_pass(struct simulation *simulation, struct range *range, struct tally *tally)
 {
-    (void)thread;
     loops_signal(&simulation->particles, range->first, range->len, range->force_reach);
-    range->rate = range_rate(&simulation->particles, range->first, range->len);
+    const double rate = range_rate(&simulation->particles, range->first, range->len);
+    tally->rate = largest(tally->rate, rate);
 }
 
-static void limit_time_step(struct simulation *simulation)
+static void limit_time_step(struct simulation *simulation, const struct tally *found)
 {
-    double rate = simulation->sleep.rate;
-    for (ptrdiff_t b = 0; b < simulation->range_count; b++)
-        rate = largest(simulation->ranges[b].rate, rate);
-    simulation->time_step = simulation->scheme.cfl / rate;
+    simulation->time_step = simulation->scheme.cfl / largest(found->rate, simulation->sleep.rate);
 }
 
 enum status evaluate_rates(struct simulation *simulation, struct error *error)
@@ -449,24 +415,24 @@ enum status evaluate_rates_of_primitives(struct simulation *simulation, struct e
     const struct particles *a = &simulation->particles;
     if (newton && !simulation->plan.newton)
         for (ptrdiff_t i = 0; i < a->n; i++) a->h_inverse_old[i] = a->h_inverse_found[i];
-    const ptrdiff_t reach = find_force_reach(simulation);
+    const ptrdiff_t reach = simulation->reach;
     fill_rate_ghosts(simulation, reach + 1);
     if (simulation->loops.matrix) {
-        for_ranges(simulation, matrix_pass);
+        pass_all(simulation, matrix_pass);
         particles_fill_ghosts(a, a->g, reach + 1, 0);
         if (simulation->plan.slope) particles_fill_ghosts(a, a->dv, reach + 1, 0);
     }
     status = reserve_scratch(simulation, reach, error);
     if (status) return status;
-    for_ranges(simulation, force_pass);
-    limit_time_step(simulation);
-    count_work(simulation);
+    const struct tally found = pass_all(simulation, force_pass);
+    limit_time_step(simulation, &found);
+    simulation->cost.pair_interactions += found.pairs;
     return STATUS_OK;
 }
 
 enum status evaluate_reserve(struct simulation *simulation, struct error *error)
 {
-    const ptrdiff_t reach = RESERVE * find_force_reach(simulation);
+    const ptrdiff_t reach = RESERVE * simulation->reach;
     if (reach + 8 > simulation->particles.ghosts) {
         const enum status status = particles_grow_ghosts(&simulation->particles, reach + 8, error);
         if (status) return status;
@@ -479,8 +445,7 @@ void evaluate_signal(struct simulation *simulation)
 {
     const struct particles *a = &simulation->particles;
     for (ptrdiff_t i = 0; i < a->n; i++) a->v[i] = a->p[i] * a->m_inverse[i];
-    const ptrdiff_t reach = find_force_reach(simulation);
-    particles_fill_ghosts(a, a->v, reach + 1, 0);
-    for_ranges(simulation, signal_pass);
-    limit_time_step(simulation);
+    particles_fill_ghosts(a, a->v, simulation->reach + 1, 0);
+    const struct tally found = pass_all(simulation, signal_pass);
+    limit_time_step(simulation, &found);
 }

@@ -259,12 +259,12 @@ enum status simulation_run(struct simulation *simulation, double t_end,
         status = simulation->scheme.integrator->step(simulation, dt, error);
         if (status) break;
         simulation->time = simulation_time_after(simulation, dt);
-        sleep_update(simulation);
+        if (simulation->plan.signal_pass && simulation->time < t_end) evaluate_signal(simulation);
+        sleep_update(simulation); /* makes new ranges, of which no reach is known yet */
         simulation->cost.steps++;
         simulation->cost.particle_updates += (uint64_t)simulation->sleep.awake_count;
         simulation->cost.skipped_particle_updates +=
             (uint64_t)(simulation->particles.n - simulation->sleep.awake_count);
-        if (simulation->plan.signal_pass && simulation->time < t_end) evaluate_signal(simulation);
         if (simulation->scheme.energy == ENERGY_INTERNAL && simulation->cost.steps % 128 == 0 &&
             (status = check_energy(simulation, error)))
             break;

@@ -20,10 +20,8 @@ struct range {
     int len;
     ptrdiff_t reach;       /* neighbour offsets that suffice for the particles' own h */
     ptrdiff_t force_reach; /* and for pairs within max(h_i, h_j) */
-    bool done;             /* density is found in this evaluation */
-    bool predicted;        /* widths of this evaluation are predicted */
-    ptrdiff_t result;      /* of its density pass: -1, the particle without a root, or NO_GHOSTS */
-    double rate;           /* largest signal speed / h */
+    uint64_t done;         /* the density pass in which the widths were found */
+    uint64_t predicted;    /* the one in which they were predicted */
 };
 
 struct simulation {
@@ -44,7 +42,9 @@ struct simulation {
     struct range *ranges; /* of the awake particles */
     ptrdiff_t range_count;
     ptrdiff_t ghosts_filled;
-    double *scratch; /* threads * scratch_size */
+    ptrdiff_t reach;         /* largest of the ranges */
+    uint64_t density_passes; /* so far; ranges know by it what belongs to this one */
+    double *scratch;         /* threads * scratch_size */
     size_t scratch_size;
     struct simulation_cost cost;
     double wall_start, cpu_start;

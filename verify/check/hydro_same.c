@@ -197,6 +197,10 @@ static void measure_skip(struct check_run *run, const void *subject)
             scheme.pair_width = PAIR_MAX;
         }
         if (c == 4 || c == 6) scheme.viscosity = VISCOSITY_TIME_DEPENDENT;
+        if (c == 4) { /* wide, and with a pass of its own for the time step */
+            hydro_set_kernel(&scheme, "wendland_c4");
+            scheme.integrator = hydro_integrator("leapfrog");
+        }
         if (c == 5) {
             scheme.gradient = GRADIENT_IA;
             scheme.viscosity = VISCOSITY_RECONSTRUCTED;

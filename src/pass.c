@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "pass.h"
+
+#include "loop.h"
+#include "solver.h"
+
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+static int thread_number(void)
+{
+#ifdef _OPENMP
+    return omp_get_thread_num();
+#else
+    return 0;
+#endif
+}
+
+static void tally_add(struct tally *all, const struct tally *own)
+{
+    if (own->without_root < all->without_root) all->without_root = own->without_root;
+    if (own->reach > all->reach) all->reach = own->reach;
+    all->short_of_ghosts |= own->short_of_ghosts;
+    all->crossings += own->crossings;
+    all->rate = largest(all->rate, own->rate);
+    all->pairs += own->pairs;
+}
+
+struct tally pass_all(struct simulation *simulation, range_pass *pass)
+{
+    const ptrdiff_t count = simulation->range_count;
+    struct tally all = {.without_root = PTRDIFF_MAX};
+    if (simulation->threads == 1 || count < WORTH_A_THREAD) {
+        for (ptrdiff_t b = 0; b < count; b++) pass(simulation, &simulation->ranges[b], &all);
+        return all;
+    }
+#pragma omp parallel num_threads(simulation->threads)
+    {
+        struct tally own = {.thread = thread_number(), .without_root = PTRDIFF_MAX};
+#pragma omp for schedule(static) nowait
+        for (ptrdiff_t b = 0; b < count; b++) pass(simulation, &simulation->ranges[b], &own);
+#pragma omp critical(tally)
+        tally_add(&all, &own);
+    }
+    return all;
+}
