@@ -18,7 +18,7 @@
  *   faults          what verify/test/faults.py wrote: "date", "git", "faults": [{"fault", "part",
  *                   "exit", "status": "pass", "fail" or "skip", "detail", "message",
  *                   "command"}]
- *   history         what verify/history.h tells: nights, since, trends, changes
+ *   history         what verify/report/history.h tells: nights, since, trends, changes
  *   verdict         what verdict_make returned */
 #ifndef SPHPROOF_VERDICT_H
 #define SPHPROOF_VERDICT_H
