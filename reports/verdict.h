@@ -26,8 +26,9 @@
 #include <jansson.h>
 
 /* {"status": "pass" or "fail", "headline", "figures_passed", "figures_failed", "mutants",
- * "mutants_detected", "gates_passed", "gates_failed", "runs", "broke_down", "faults", "faults_right",
- * "failures": [{"area", "name", "detail", "command"}]}. New reference, NULL: no memory. */
+ * "mutants_detected", "gates_passed", "gates_failed", "runs", "broke_down", "faults",
+ * "faults_right", "failures": [{"area", "name", "detail", "command"}]}. New reference, NULL: no
+ * memory. */
 json_t *verdict_make(const json_t *results);
 
 #endif

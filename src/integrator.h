@@ -20,7 +20,7 @@ struct integrator {
      * see predicted_midpoint.h */
     double follow;
     double first_step; /* length of the first step over the usual one; 0: 1 */
-    bool signal_pass;   /* velocities change after the last rates: time step by a pass of its own */
+    bool signal_pass;  /* velocities change after the last rates: time step by a pass of its own */
     bool ends_evaluated; /* the derived fields at the end of a step belong to its state */
     /* Advances the state (x, p, e, alpha) by dt; rates of the state are there when it begins. */
     enum status (*step)(struct simulation *simulation, double dt, struct error *error);

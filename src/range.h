@@ -27,10 +27,10 @@ struct gas {
     double gamma, constant, eta, follow;
 };
 
-/* Equation of state and what the pair sums need of it; h as the sum of mass has found it. Returns how
- * many widths that were predicted are far from those. */
+/* Equation of state and what the pair sums need of it; h as the sum of mass has found it. Returns
+ * how many widths that were predicted are far from those. */
 double range_close(const struct particles *particles, ptrdiff_t first, int len,
-                 const struct plan *plan, const struct gas *gas, const struct density_sums *sums);
+                   const struct plan *plan, const struct gas *gas, const struct density_sums *sums);
 
 /* Is the width of particle i that was predicted far from the one that the sum has found? */
 bool range_surprised(const struct particles *particles, ptrdiff_t i);

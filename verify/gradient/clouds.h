@@ -42,7 +42,8 @@ enum status clouds_make(const struct clouds_settings *settings, struct clouds_cl
                         struct error *error);
 void clouds_free(struct clouds_cloud *cloud);
 
-/* Replaces volumes and h by those of the kernel sum, with the exact volume as the mass of each point. */
+/* Replaces volumes and h by those of the kernel sum, with the exact volume as the mass of each
+ * point. */
 enum status clouds_sum_volumes(const struct clouds_settings *settings, const struct kernel *kernel,
                                struct clouds_cloud *cloud, struct error *error);
 

@@ -73,7 +73,8 @@ static enum status prepare(struct stress_cell *cell, bool nightly, struct error 
                     error))
         return error->status;
     const double n = settings_real(&cell->settings.settings, SETTING_n);
-    cell->step_budget = nightly ? (uint64_t)fmin(STEPS_NIGHTLY, work_nightly / (n * n)) : STEPS_QUICK;
+    cell->step_budget =
+        nightly ? (uint64_t)fmin(STEPS_NIGHTLY, work_nightly / (n * n)) : STEPS_QUICK;
     return STATUS_OK;
 }
 
