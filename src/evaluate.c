@@ -11,7 +11,7 @@
 #include "range.h"
 #include "solver.h"
 
-enum { NEWTON_MAX = 200, NO_GHOSTS = -2, MOST_GHOSTS = 1000, RESERVE = 8 };
+enum { NEWTON_MAX = 200, NO_GHOSTS = -2, RESERVE = 8 };
 
 enum status broke_down(const struct simulation *simulation, ptrdiff_t i, const char *quantity,
                        double value, struct error *error)
@@ -260,7 +260,7 @@ static void predicted_pass(struct simulation *simulation, struct range *range, s
     conclude(simulation, range, result, tally);
 }
 
-/* A width that covers the box many times over has run away. */
+/* A width that covers more of the box's images than any root would has run away. */
 static enum status too_wide(const struct simulation *simulation, struct error *error)
 {
     const struct particles *a = &simulation->particles;
@@ -276,6 +276,8 @@ static enum status find_density(struct simulation *simulation, range_pass *pass,
 {
     ptrdiff_t ghosts = simulation->ghosts_filled > 8 ? simulation->ghosts_filled : 8;
     if (simulation->reach + 2 > ghosts) ghosts = simulation->reach + 2;
+    /* no root lies beyond eta times the box; a search may go twice as far */
+    const double most = 64 + (2 * simulation->scheme.eta + 2) * (double)simulation->particles.n;
     simulation->density_passes++;
     for (;;) {
         const enum status status = fill_density_ghosts(simulation, ghosts, error);
@@ -287,7 +289,7 @@ static enum status find_density(struct simulation *simulation, range_pass *pass,
                               simulation->particles.h[found.without_root], error);
         simulation->reach = found.reach;
         if (!found.short_of_ghosts) return STATUS_OK;
-        if (ghosts > MOST_GHOSTS * simulation->particles.n) return too_wide(simulation, error);
+        if ((double)ghosts > most) return too_wide(simulation, error);
         ghosts *= 2;
     }
 }

@@ -10,8 +10,18 @@
 
 enum { GHOSTS_AT_START = 64 };
 
-/* A time step that is so much shorter than another of the same run will not get it anywhere. */
-static const double collapse = 1e-9;
+/* A time step that is so much shorter than another of the same run will not get it anywhere; nor
+ * will a run that has visited so many more pairs than its particles would in steps of that length:
+ * they have clumped, and steps have become short, for ever. */
+static const double collapse = 1e-9, pairs_at_least = 1e7, pairs_each = 1000;
+
+static bool collapsed(const struct simulation *simulation, double dt)
+{
+    const double largest = simulation->largest_dt, n = (double)simulation->particles.n;
+    return !(dt > collapse * largest && simulation->time + dt > simulation->time) ||
+           (double)simulation->cost.pair_interactions >
+               pairs_at_least + pairs_each * n * simulation->t_end / largest;
+}
 
 static double seconds(clockid_t clock)
 {
@@ -246,8 +256,7 @@ enum status simulation_run(struct simulation *simulation, double t_end,
         const bool last = simulation_time_after(simulation, dt) >= t_end;
         simulation->largest_dt = fmax(simulation->largest_dt, dt);
         /* in the last step t_end alone decides, however near it is */
-        if (!last &&
-            !(dt > collapse * simulation->largest_dt && simulation->time + dt > simulation->time)) {
+        if (!last && collapsed(simulation, dt)) {
             status = broke_down(simulation, limiting_particle(simulation), "collapsed time step",
                                 dt, error);
             break;
