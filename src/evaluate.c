@@ -382,8 +382,8 @@ static void force_pass(struct simulation *simulation, struct range *range, struc
     double *scratch = simulation->scratch + simulation->scratch_size * (size_t)tally->thread;
     range->force_reach = force_reach(simulation, range);
     const double rate =
-        simulation->loops.force(&simulation->loops, &simulation->numbers, &simulation->particles,
-                                range->first, range->len, range->force_reach, scratch);
+        simulation->loops.force(&simulation->loops, &simulation->particles, range->first,
+                                range->len, range->force_reach, scratch);
     tally->rate = largest(tally->rate, rate);
     /* visited: both sides of every sum in the own-width sums, each pair once in the forces */
     const int sums = 1 + (simulation->loops.matrix != NULL);

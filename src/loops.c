@@ -13,8 +13,7 @@ static int stamp_of(const struct kernel *kernel)
     return same ? family_index(&kernel_family, kernel->member.name) : -1;
 }
 
-void loops_choose(const struct scheme *scheme, bool stamped, struct loops *loops,
-                  struct pair_numbers *numbers)
+void loops_choose(const struct scheme *scheme, bool stamped, struct loops *loops)
 {
     const int kernel = stamped ? stamp_of(&scheme->kernel) : -1;
     const bool grad_h = scheme->formulation == FORMULATION_LAGRANGIAN;
@@ -25,21 +24,20 @@ void loops_choose(const struct scheme *scheme, bool stamped, struct loops *loops
                                                        PAIR_GRADIENT_HARMONIC};
     static const enum pair_viscosity form_of_viscosity[] = {
         PAIR_INVISCID, PAIR_UNIFORM, PAIR_VARYING, PAIR_RECONSTRUCTED, PAIR_FADING};
-    *numbers = (struct pair_numbers){
+    *loops = (struct loops){
         .kernel = &scheme->kernel,
         .formulation = scheme->formulation,
         .viscosity = form_of_viscosity[scheme->viscosity],
         .energy = scheme->energy,
         .energy_element = energy_element,
         .want_div_v = varies,
-        .alpha = scheme->alpha,
-        .beta = scheme->beta,
-        .beta_ratio = !varies             ? 0
-                      : scheme->alpha > 0 ? scheme->beta / scheme->alpha
-                                          : 2,
-        .near = 1 / scheme->eta,
+        .numbers = {.alpha = scheme->alpha,
+                    .beta = scheme->beta,
+                    .beta_ratio = !varies             ? 0
+                                  : scheme->alpha > 0 ? scheme->beta / scheme->alpha
+                                                      : 2,
+                    .near = 1 / scheme->eta},
     };
-    *loops = (struct loops){0};
     loops->density_newton =
         loop_density(kernel, energy_element ? DENSITY_ENERGY : DENSITY_DERIVATIVE);
     loops->density = energy_element || grad_h || scheme->h_method == H_CORRECTED
@@ -51,7 +49,7 @@ void loops_choose(const struct scheme *scheme, bool stamped, struct loops *loops
         loops->matrix = loop_matrix(kernel, MATRIX_SLOPE);
     loops->gradient = loop_gradient(
         kernel, scheme->gradient, grad_h ? PAIR_GRADIENT_BOTH : form_of_width[scheme->pair_width]);
-    loops->force = loop_force(kernel >= 0, scheme->formulation, numbers->viscosity, scheme->energy);
+    loops->force = loop_force(kernel >= 0, scheme->formulation, loops->viscosity, scheme->energy);
 }
 
 void loops_signal(const struct particles *particles, ptrdiff_t first, int len, ptrdiff_t D)
@@ -62,8 +60,8 @@ void loops_signal(const struct particles *particles, ptrdiff_t first, int len, p
     for (int i = 0; i < len; i++) signal[i] = 2 * c[i];
     for (ptrdiff_t d = 1; d <= D; d++)
         for (int i = 0; i < len; i++) {
-            const double right = c[i] + c[i + d] + 3 * largest(v[i] - v[i + d], 0);
-            const double left = c[i] + c[i - d] + 3 * largest(v[i - d] - v[i], 0);
+            const double right = pair_signal_speed(c[i], c[i + d], v[i] - v[i + d]);
+            const double left = pair_signal_speed(c[i], c[i - d], v[i - d] - v[i]);
             if (x[i + d] - x[i] < largest(h[i], h[i + d])) signal[i] = largest(signal[i], right);
             if (x[i] - x[i - d] < largest(h[i], h[i - d])) signal[i] = largest(signal[i], left);
         }

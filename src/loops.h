@@ -9,6 +9,7 @@
 
 #include <stdbool.h>
 
+#include "pair.h"
 #include "particles.h"
 #include "scheme.h"
 
@@ -60,35 +61,12 @@ typedef void gradient_loop(const struct kernel *kernel, const struct particles *
 
 /* --- dp/dt, de/dt, signal speed, div v ------------------------------------------------------- */
 
-/* Kinds of viscosity that stand inside the pair expression. */
-enum pair_viscosity {
-    PAIR_INVISCID,
-    PAIR_UNIFORM,
-    PAIR_VARYING,
-    PAIR_RECONSTRUCTED,
-    PAIR_FADING,
-    PAIR_VISCOSITIES
-};
-
-struct pair_numbers {
-    const struct kernel *kernel;
-    enum formulation formulation;
-    enum pair_viscosity viscosity;
-    enum energy energy;
-    bool energy_element; /* Z = U, else Z = m */
-    bool want_div_v;     /* time-dependent viscosity */
-    double alpha, beta;  /* not of PAIR_VARYING */
-    double beta_ratio;   /* PAIR_VARYING: beta/alpha, alpha the mean of the pair */
-    double near;         /* reconstruction: 1/eta, pairs closer than near * h are damped */
-};
-
 struct loops;
 
 /* Returns the largest signal speed / h among the pairs of the range (of either particle) and of
  * the range's particles alone. scratch: force_scratch(D) doubles of the thread. */
-typedef double force_loop(const struct loops *loops, const struct pair_numbers *numbers,
-                          const struct particles *particles, ptrdiff_t first, int len, ptrdiff_t D,
-                          double *scratch);
+typedef double force_loop(const struct loops *loops, const struct particles *particles,
+                          ptrdiff_t first, int len, ptrdiff_t D, double *scratch);
 size_t force_scratch(ptrdiff_t D);
 
 /* --- choosing ------------------------------------------------------------------------------- */
@@ -99,13 +77,19 @@ struct loops {
     matrix_loop *matrix;          /* NULL where nothing needs it */
     gradient_loop *gradient;
     force_loop *force;
+    /* what the pair forces read beside the particles */
+    const struct kernel *kernel;
+    enum formulation formulation;
+    enum pair_viscosity viscosity;
+    enum energy energy;
+    bool energy_element; /* Z = U, else Z = m */
+    bool want_div_v;     /* time-dependent viscosity */
+    struct pair_numbers numbers;
 };
 
 /* Chooses through the tables, once per simulation; stamped = false asks for the unstamped bodies
- * (always so for a plug-in kernel). numbers is filled for the force loop; it keeps a pointer to
- * the scheme's kernel. */
-void loops_choose(const struct scheme *scheme, bool stamped, struct loops *loops,
-                  struct pair_numbers *numbers);
+ * (always so for a plug-in kernel). The loops keep a pointer to the scheme's kernel. */
+void loops_choose(const struct scheme *scheme, bool stamped, struct loops *loops);
 
 /* The signal speed of each particle of the range, where it is asked for by itself. */
 void loops_signal(const struct particles *particles, ptrdiff_t first, int len, ptrdiff_t D);

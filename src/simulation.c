@@ -136,7 +136,7 @@ enum status simulation_create(const struct scene *scene, struct simulation **res
     simulation->cpu_start = seconds(CLOCK_PROCESS_CPUTIME_ID);
     simulation->scheme = scene->scheme;
     simulation->plan = plan_make(&scene->scheme, scene->skip);
-    loops_choose(&simulation->scheme, !scene->unstamped, &simulation->loops, &simulation->numbers);
+    loops_choose(&simulation->scheme, !scene->unstamped, &simulation->loops);
     simulation->lo = scene->lo[0];
     simulation->period = scene->hi[0] - scene->lo[0];
     simulation->gamma = scene->gamma;

@@ -28,7 +28,6 @@ struct simulation {
     struct scheme scheme;
     struct plan plan;
     struct loops loops;
-    struct pair_numbers numbers;
     struct particles particles;
     double lo, period, gamma, time, t_end;
     double time_step;     /* limit found by the last signal speeds */

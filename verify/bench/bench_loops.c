@@ -105,7 +105,7 @@ static void run(struct bench_loops *loops)
     for (ptrdiff_t first = 0; first < a->n; first += RANGE_MAX) {
         const int len = (int)(a->n - first < RANGE_MAX ? a->n - first : RANGE_MAX);
         if (loops->passes & 1u << PASS_FORCE)
-            loops->rate += loops->loops.force(&loops->loops, &loops->numbers, a, first, len,
+            loops->rate += loops->loops.force(&loops->loops, a, first, len,
                                               loops->reach, loops->scratch);
         if (loops->passes & 1u << PASS_SIGNAL) loops_signal(a, first, len, loops->reach);
     }
@@ -116,7 +116,7 @@ enum status bench_loops_create(struct bench_loops *loops, const struct scheme *s
 {
     *loops = (struct bench_loops){.scheme = *scheme, .passes = passes};
     loops->plan = plan_make(&loops->scheme, false);
-    loops_choose(&loops->scheme, stamped, &loops->loops, &loops->numbers);
+    loops_choose(&loops->scheme, stamped, &loops->loops);
     if (!loops->loops.matrix) loops->passes &= ~(1u << PASS_MATRIX);
     loops->reach = (ptrdiff_t)ceil(scheme->eta) - 1;
     if (loops->reach < 1) loops->reach = 1;

@@ -13,8 +13,7 @@
 
 struct bench_loops {
     struct scheme scheme;
-    struct loops loops;
-    struct pair_numbers numbers; /* points into scheme: do not move the struct */
+    struct loops loops; /* points into scheme: do not move the struct */
     struct plan plan;
     struct particles particles;
     ptrdiff_t reach; /* offsets that the widths cover */

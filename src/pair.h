@@ -1,0 +1,170 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The physics of one pair of particles, for every dimension. Geometry comes in as scalars:
+ *
+ *   r        distance |x_i - x_j|
+ *   closing  -v_ij . e_ij with e_ij = (x_i - x_j)/r: positive where the pair approaches
+ *   G        size of the pair gradient. With the gradient in use grad_i W = -G e_ij (standard; in
+ *            1D also ia, where G > 0 as well) the terms below are forces along e_ij. Where the
+ *            gradient is a vector of its own (ia in 2D and 3D), pass 1 and multiply by the vector.
+ *
+ * Terms come as a_i, a_j: what either particle contributes to the pair,
+ *   m_i dv_i/dt = sum_j (a_i + a_j) e_ij,   dU_i/dt = sum_j a_i closing,
+ * so that forces are antisymmetric and what leaves the kinetic energy arrives as heat. */
+#ifndef SPHPROOF_PAIR_H
+#define SPHPROOF_PAIR_H
+
+#include "scheme.h"
+#include "stamp.h"
+
+/* What one particle brings into a pair; a term reads what it needs, and what none reads costs
+ * nothing, as everything here is inlined. */
+struct pair_side {
+    double m, Z;         /* mass; what the density sum adds up: m, or U with the energy element */
+    double V;            /* volume Z/y */
+    double h, h_inverse; /* support radius, and 1/h */
+    double P, rho, c;    /* pressure, density of the equation of state, sound speed */
+    double alpha;        /* viscosity of the particle: PAIR_VARYING */
+    double b, grad_h;    /* lagrangian: Z P/y^2 and 1 - f */
+    double slope;        /* PAIR_RECONSTRUCTED: e . (grad v) e along the pair; in 1D dv/dx */
+};
+
+struct pair_terms {
+    double i, j;
+};
+
+/* Kinds of viscosity that stand inside the pair expression. */
+enum pair_viscosity {
+    PAIR_INVISCID,
+    PAIR_UNIFORM,
+    PAIR_VARYING,
+    PAIR_RECONSTRUCTED,
+    PAIR_FADING,
+    PAIR_VISCOSITIES
+};
+
+/* The numbers of the viscosity, the same for all pairs. */
+struct pair_numbers {
+    double alpha, beta; /* not of PAIR_VARYING */
+    double beta_ratio;  /* PAIR_VARYING: beta/alpha, alpha the mean of the pair */
+    double near;        /* PAIR_RECONSTRUCTED: 1/eta, pairs closer than near * h are damped */
+};
+
+/* --- pressure --------------------------------------------------------------------------------- */
+
+/* vanilla_ice (Wadsley, Keller & Quinn 2017, lambda = 1):
+ * m_i dv_i/dt = -sum_j Z_i Z_j (P_i + P_j)/(y_i y_j) Gbar_ij, and Z/y = V. G: mean of both. */
+ALWAYS_INLINE struct pair_terms pair_pressure_vanilla_ice(const struct pair_side *i,
+                                                          const struct pair_side *j, double G)
+{
+    const double A = i->V * j->V * G;
+    return (struct pair_terms){A * i->P, A * j->P};
+}
+
+/* lagrangian (Springel & Hernquist 2002; f_ij of Hopkins 2013):
+ * m_i dv_i/dt = -sum_j Z_i Z_j (f_ij P_i/y_i^2 G_ij(h_i) + f_ji P_j/y_j^2 G_ij(h_j)) with
+ * f_ij = 1 - (m_j/Z_j)(1 - f_i), b = Z P/y^2. */
+ALWAYS_INLINE struct pair_terms pair_pressure_lagrangian(const struct pair_side *i,
+                                                         const struct pair_side *j, double G_i,
+                                                         double G_j)
+{
+    return (struct pair_terms){i->b * (j->Z - j->m * i->grad_h) * G_i,
+                               j->b * (i->Z - i->m * j->grad_h) * G_j};
+}
+
+/* Either of them; vanilla_ice has one gradient, G_i. */
+ALWAYS_INLINE struct pair_terms pair_pressure(enum formulation formulation,
+                                              const struct pair_side *i, const struct pair_side *j,
+                                              double G_i, double G_j)
+{
+    return formulation == FORMULATION_VANILLA_ICE ? pair_pressure_vanilla_ice(i, j, G_i)
+                                                  : pair_pressure_lagrangian(i, j, G_i, G_j);
+}
+
+/* --- viscosity -------------------------------------------------------------------------------- */
+
+/* exp(-z) for 0 <= z <= 7, to 8e-7 relative: (exp(-z/16))^16 by the series, in pairs of terms, as
+ * the length of the chain of operations is what costs. */
+ALWAYS_INLINE double pair_damping(double z)
+{
+    const double t = -0.0625 * z, t2 = t * t;
+    const double low = (1 + t) + t2 * (1. / 2 + t * (1. / 6));
+    const double high = (1. / 24 + t * (1. / 120)) + t2 * (1. / 720 + t * (1. / 5040));
+    double s = low + t2 * t2 * high;
+    s *= s;
+    s *= s;
+    s *= s;
+    return s * s;
+}
+
+/* Closing speed of a pair extrapolated to its midpoint with a limited slope (Frontiere, Raskin &
+ * Owen 2017; Rosswog 2020, MAGMA2 eqs. 18-22): closing + phi/2 (s_i + s_j) r with the limiter
+ * phi = max(0, 4 s_i s_j/(s_i + s_j)^2) exp(-((q - near)/0.2)^2 where q = r/max(h_i, h_j) < near).
+ * Returned as a numerator over *scale, so that the pair needs one division. Zero where the pair
+ * itself recedes: the heating uses v_ij, and viscosity never cools. */
+ALWAYS_INLINE double pair_closing_at_midpoint(const struct pair_side *i, const struct pair_side *j,
+                                              double r, double closing, double near, double *scale)
+{
+    const double sum = i->slope + j->slope, product = i->slope * j->slope;
+    const double q = r * least(i->h_inverse, j->h_inverse);
+    const double z = q < near ? least((near - q) * 5, 2.6) : 0;
+    const double one_sided = product > 0 ? 2 * r * product * pair_damping(z * z) : 0;
+    *scale = product > 0 ? sum : 1;
+    const double at_midpoint = closing * *scale + one_sided;
+    return closing > 0 && at_midpoint * *scale > 0 ? at_midpoint : 0;
+}
+
+/* Viscosity fading: the linear term sees the speed of sound only where a pair closes faster than
+ * this part of it, and a proportionally smaller one below: smooth flow is left alone, to second
+ * order, while shocks (0.1 c and more a pair) do not notice. */
+static const double pair_fade_below = 0.01;
+
+/* The term m_i m_j PI G/2 that viscosity adds to a_i and to a_j alike (heat in halves), in the form
+ * of Monaghan 1992: PI = (-alpha cbar mu + beta mu^2)/rhobar, mu = -hbar closing r/(r^2 + 0.01
+ * hbar^2), hbar = (h_i + h_j)/4, 0 where the pair recedes. G: mean of both gradients. */
+ALWAYS_INLINE double pair_viscous(enum pair_viscosity viscosity, const struct pair_numbers *numbers,
+                                  const struct pair_side *i, const struct pair_side *j, double r,
+                                  double closing, double G)
+{
+    double scale = 1;
+    const double w = viscosity == PAIR_RECONSTRUCTED
+                         ? pair_closing_at_midpoint(i, j, r, closing, numbers->near, &scale)
+                         : largest(closing, 0);
+    /* mu = -t/D2; cbar and rhobar are halves of sums: alpha_half goes with the sum of c, and the
+     * 1/2 of the heating with the sum of rho */
+    const double h_bar = 0.25 * (i->h + j->h), c_sum = i->c + j->c;
+    const double t = h_bar * r * w, D2 = (r * r + 0.01 * (h_bar * h_bar)) * scale;
+    const bool varying = viscosity == PAIR_VARYING;
+    const double alpha_half = varying ? 0.25 * (i->alpha + j->alpha) : 0.5 * numbers->alpha;
+    const double beta = varying ? 2 * numbers->beta_ratio * alpha_half : numbers->beta;
+    const double c_seen =
+        viscosity == PAIR_FADING ? least(c_sum, w * (2 / pair_fade_below)) : c_sum;
+    return i->m * j->m * G * t * (alpha_half * c_seen * D2 + beta * t) /
+           (D2 * D2 * (i->rho + j->rho));
+}
+
+/* --- energy ----------------------------------------------------------------------------------- */
+
+/* Heating of either particle: dU_i/dt = sum_j a_i closing (a_i = f_i P_i V_i V_j G and half of the
+ * viscosity). */
+ALWAYS_INLINE struct pair_terms pair_heating(struct pair_terms a, double closing)
+{
+    return (struct pair_terms){a.i * closing, a.j * closing};
+}
+
+/* Total energy that passes from i to j along one axis (v_i, v_j: velocities along it, a: terms
+ * along it): the pressure of each with the velocity of the other, so that
+ * dE_i = -dE_j = v_i . dp_i + dU_i. */
+ALWAYS_INLINE double pair_energy_flux(struct pair_terms a, double v_i, double v_j)
+{
+    return a.j * v_i + a.i * v_j;
+}
+
+/* --- time step -------------------------------------------------------------------------------- */
+
+/* Signal speed c_i + c_j + 3 max(closing, 0) (Monaghan 1997; Springel 2005). */
+ALWAYS_INLINE double pair_signal_speed(double c_i, double c_j, double closing)
+{
+    return c_i + c_j + 3 * largest(closing, 0);
+}
+
+#endif
