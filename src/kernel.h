@@ -29,7 +29,7 @@ struct kernel {
      * vanilla_ice, gamma 1.4, with the standard and the ia gradient; 0: no limit was found. */
     double stable_eta[2];
     int order; /* n of sinc_n; 0 for the others */
-    /* A plug-in's own functions (see verify/plugin.h); NULL for the built-in kernels. */
+    /* A plug-in's own functions (see verify/kernel/plugin.h); NULL for the built-in kernels. */
     double (*plugin_w)(double q, int dim);
     double (*plugin_dw)(double q, int dim);
     double (*plugin_dw_dh)(double r, double h, int dim);

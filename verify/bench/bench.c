@@ -5,37 +5,17 @@
 #include <gsl/gsl_statistics_double.h>
 #include <stdbool.h>
 #include <stdlib.h>
-#include <time.h>
 
 const struct bench_rules bench_usual = {.least_s = 0.02, .most_s = 5, .samples = 5};
 
 enum { DOUBLINGS_MAX = 30 };
-
-static double seconds(clockid_t clock)
-{
-    struct timespec now;
-    clock_gettime(clock, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
-struct bench_taken bench_now(void)
-{
-    return (struct bench_taken){seconds(CLOCK_MONOTONIC), seconds(CLOCK_PROCESS_CPUTIME_ID)};
-}
-
-void bench_add(struct bench_taken *taken, const struct bench_taken *start)
-{
-    const struct bench_taken now = bench_now();
-    taken->wall_s += now.wall_s - start->wall_s;
-    taken->cpu_s += now.cpu_s - start->cpu_s;
-}
 
 struct samples {
     double wall_s[BENCH_SAMPLES_MAX], cpu_s[BENCH_SAMPLES_MAX], total;
 };
 
 static void keep(struct bench_subject *subject, struct samples *samples,
-                 const struct bench_taken *taken)
+                 const struct clock_taken *taken)
 {
     const double times = (double)subject->time.times;
     samples->wall_s[subject->time.samples] = taken->wall_s / times;
@@ -55,7 +35,7 @@ static enum status fail(struct bench_subject *subject, struct error *error)
 static enum status calibrate(struct bench_subject *subject, const struct bench_rules *rules,
                              struct samples *samples, struct error *error)
 {
-    struct bench_taken taken = {0};
+    struct clock_taken taken = {0};
     subject->failure = (struct error){0};
     subject->time = (struct bench_time){.times = 1};
     if (subject->work(subject->context, 1, &taken, &subject->failure)) return fail(subject, error);
@@ -63,7 +43,7 @@ static enum status calibrate(struct bench_subject *subject, const struct bench_r
     for (int doubling = 0; !warm || taken.cpu_s < rules->least_s; doubling++) {
         if (warm) subject->time.times *= 2;
         warm = true;
-        taken = (struct bench_taken){0};
+        taken = (struct clock_taken){0};
         if (subject->work(subject->context, subject->time.times, &taken, &subject->failure))
             return fail(subject, error);
         if (doubling == DOUBLINGS_MAX) break;
@@ -102,7 +82,7 @@ enum status bench_measure(struct bench_subject *subjects, size_t count,
     for (int round = 0; round < rules->samples; round++)
         for (size_t i = 0; i < count; i++) {
             struct bench_subject *subject = &subjects[i];
-            struct bench_taken taken = {0};
+            struct clock_taken taken = {0};
             if (round == 0) {
                 status = calibrate(subject, rules, &samples[i], error);
             } else if (!enough(subject, rules, &samples[i])) {

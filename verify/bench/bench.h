@@ -9,14 +9,11 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "clock.h"
 #include "status.h"
 
-struct bench_taken {
-    double wall_s, cpu_s; /* cpu_s: of all threads of the process */
-};
-
 /* Does the work `times` times and adds what it took, and nothing else, to *taken. */
-typedef enum status bench_work(void *context, uint64_t times, struct bench_taken *taken,
+typedef enum status bench_work(void *context, uint64_t times, struct clock_taken *taken,
                                struct error *error);
 
 struct bench_time {
@@ -49,9 +46,5 @@ typedef void bench_progress(void *context, double done, double total);
 enum status bench_measure(struct bench_subject *subjects, size_t count,
                           const struct bench_rules *rules, bench_progress *progress, void *context,
                           struct error *error);
-
-/* Clocks: from `start`, taken before, to now. */
-struct bench_taken bench_now(void);
-void bench_add(struct bench_taken *taken, const struct bench_taken *start);
 
 #endif

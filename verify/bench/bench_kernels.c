@@ -45,7 +45,7 @@ struct bench {
 
 /* --- the work --------------------------------------------------------------------------------- */
 
-static enum status step_work(struct job *job, uint64_t times, struct bench_taken *taken,
+static enum status step_work(struct job *job, uint64_t times, struct clock_taken *taken,
                              struct error *error)
 {
     for (uint64_t i = 0; i < times; i++) {
@@ -63,14 +63,14 @@ static enum status step_work(struct job *job, uint64_t times, struct bench_taken
     return STATUS_OK;
 }
 
-static enum status work(void *context, uint64_t times, struct bench_taken *taken,
+static enum status work(void *context, uint64_t times, struct clock_taken *taken,
                         struct error *error)
 {
     struct job *job = context;
     if (job->kind == JOB_LOOPS) return bench_loops_work(&job->loops, times, taken, error);
     if (job->kind == JOB_STEP) return step_work(job, times, taken, error);
     enum status status = STATUS_OK;
-    const struct bench_taken start = bench_now();
+    const struct clock_taken start = clock_now();
     for (uint64_t i = 0; i < times && !status; i++) {
         double sums[BENCH_LIMIT_SUMS];
         uint64_t pairs;
@@ -82,7 +82,7 @@ static enum status work(void *context, uint64_t times, struct bench_taken *taken
             job->pairs = (double)pairs;
         }
     }
-    bench_add(taken, &start);
+    clock_add(taken, &start);
     return status;
 }
 

@@ -143,13 +143,13 @@ void bench_loops_free(struct bench_loops *loops)
     loops->scratch = NULL;
 }
 
-enum status bench_loops_work(void *context, uint64_t times, struct bench_taken *taken,
+enum status bench_loops_work(void *context, uint64_t times, struct clock_taken *taken,
                              struct error *error)
 {
     struct bench_loops *loops = context;
     (void)error;
-    const struct bench_taken start = bench_now();
+    const struct clock_taken start = clock_now();
     for (uint64_t i = 0; i < times; i++) run(loops);
-    bench_add(taken, &start);
+    clock_add(taken, &start);
     return STATUS_OK;
 }

@@ -48,7 +48,7 @@ enum status bench_loops_create(struct bench_loops *loops, const struct scheme *s
 void bench_loops_free(struct bench_loops *loops);
 
 /* A bench_work; context: struct bench_loops. */
-enum status bench_loops_work(void *context, uint64_t times, struct bench_taken *taken,
+enum status bench_loops_work(void *context, uint64_t times, struct clock_taken *taken,
                              struct error *error);
 
 #endif

@@ -35,7 +35,7 @@ static bool go_on(void *context, double time, uint64_t steps)
     return job->most_steps == 0 || steps < job->most_steps;
 }
 
-static enum status work(void *context, uint64_t times, struct bench_taken *taken,
+static enum status work(void *context, uint64_t times, struct clock_taken *taken,
                         struct error *error)
 {
     struct job *job = context;

@@ -92,7 +92,7 @@ struct job {
     struct run_result last; /* of the run */
 };
 
-static enum status work(void *context, uint64_t times, struct bench_taken *taken,
+static enum status work(void *context, uint64_t times, struct clock_taken *taken,
                         struct error *error)
 {
     struct job *job = context;

@@ -66,7 +66,7 @@ struct job {
     struct precision_point *point;
 };
 
-static enum status execute(void *context, uint64_t times, struct bench_taken *taken,
+static enum status execute(void *context, uint64_t times, struct clock_taken *taken,
                            struct error *error)
 {
     struct job *job = context;

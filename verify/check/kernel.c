@@ -6,7 +6,7 @@
 #include <stdio.h>
 
 #include "check.h"
-#include "check/kernel_mutants.h"
+#include "kernel_mutants.h"
 #include "property.h"
 
 /* The sinc family at its default and its ends. */

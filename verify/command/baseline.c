@@ -123,7 +123,7 @@ static enum status run(const struct options *options, int n, char **arguments, s
         json_decref(old);
     }
     if (status == STATUS_OK || status == STATUS_CHECK_FAILED) {
-        if (options->speak && baseline) diff_print(&diff, DIFF_THRESHOLD, true, options);
+        if (options->speak && baseline) diff_print(&diff, DIFF_THRESHOLD, true, options->color);
         if (options->speak && !baseline) printf("a first baseline: %zu figures\n", diff.count);
         struct error trouble;
         json_t *document = options->json ? result_new("baseline") : NULL;

@@ -100,7 +100,7 @@ static enum status work_precision(struct request *request, struct error *error)
         take_ladder(request, &settings, ladder, &count, error) ||
         (plot && picture_probe(plot, error)))
         return error->status;
-    progress_begin(&request->progress, "bench", request->options);
+    progress_begin(&request->progress, "bench", request->options->quiet);
     enum status status = precision_measure(&settings, &sweep, ladder, count, &request->rules,
                                            show_progress, &request->progress, &precision, error);
     progress_end(&request->progress);
@@ -112,7 +112,7 @@ static enum status work_precision(struct request *request, struct error *error)
         json_decref(document);
     }
     if (!status && request->options->speak) {
-        const struct table_style style = table_style(request->options);
+        const struct table_style style = table_style(request->options->color);
         precision_print(&precision, &style);
     }
     precision_free(&precision);
@@ -145,7 +145,7 @@ static enum status kernels(struct request *request, struct error *error)
         refuse_option(request, "--kernels", "plot", error) ||
         sweep_parse(&sweep, options_value(request->options, "vary"), error))
         return error->status;
-    progress_begin(&request->progress, "bench --kernels", request->options);
+    progress_begin(&request->progress, "bench --kernels", request->options->quiet);
     enum status status = bench_kernels_measure(&sweep, &request->rules, show_progress,
                                                &request->progress, &result, error);
     progress_end(&request->progress);
@@ -157,7 +157,7 @@ static enum status kernels(struct request *request, struct error *error)
         json_decref(document);
     }
     if (!status && request->options->speak) {
-        const struct table_style style = table_style(request->options);
+        const struct table_style style = table_style(request->options->color);
         bench_kernels_print(&result, &style);
     }
     bench_kernels_free(&result);
@@ -197,7 +197,7 @@ static enum status skips(struct request *request, struct error *error)
         return error->status;
     struct run_settings *cases = all_cases(request, &count, error);
     if (!cases) return error->status;
-    progress_begin(&request->progress, "bench --skips", request->options);
+    progress_begin(&request->progress, "bench --skips", request->options->quiet);
     enum status status = bench_skips_measure(cases, count, &request->rules, show_progress,
                                              &request->progress, &result, error);
     progress_end(&request->progress);
@@ -210,7 +210,7 @@ static enum status skips(struct request *request, struct error *error)
         json_decref(document);
     }
     if (!status && request->options->speak) {
-        const struct table_style style = table_style(request->options);
+        const struct table_style style = table_style(request->options->color);
         bench_skips_print(&result, &style);
     }
     bench_skips_free(&result);
@@ -235,7 +235,7 @@ static enum status scaling(struct request *request, struct error *error)
         sweep_ladder(sizes ? sizes : usual_sizes, 1, ladder, &count, error) ||
         (plot && picture_probe(plot, error)))
         return error->status;
-    progress_begin(&request->progress, "bench --scaling", request->options);
+    progress_begin(&request->progress, "bench --scaling", request->options->quiet);
     enum status status = bench_scaling_measure(&settings, ladder, count, threads, &request->rules,
                                                show_progress, &request->progress, &result, error);
     progress_end(&request->progress);
@@ -247,7 +247,7 @@ static enum status scaling(struct request *request, struct error *error)
         json_decref(document);
     }
     if (!status && request->options->speak) {
-        const struct table_style style = table_style(request->options);
+        const struct table_style style = table_style(request->options->color);
         bench_scaling_print(&result, &style);
     }
     return status;

@@ -127,7 +127,7 @@ static void print_budget(const struct study_result *result, const struct table_s
 static void print_study(const struct case_file *file, const struct study_result *result,
                         const char *label, const struct options *options)
 {
-    const struct table_style style = table_style(options);
+    const struct table_style style = table_style(options->color);
     printf("%s%s%s: %s%s%s\n", style.bold, file->name, style.end, file->title, *label ? ", " : "",
            label);
     print_ladder(file, result, &style);
@@ -158,7 +158,7 @@ static void print_all(const struct study *study, const struct options *options)
         else
             print_study(&study->settings.file, result, label, options);
     }
-    const struct table_style style = table_style(options);
+    const struct table_style style = table_style(options->color);
     if (study->suspicion[0]) printf("%ssuspicious: %s%s\n", style.bad, study->suspicion, style.end);
 }
 
@@ -221,7 +221,7 @@ static enum status carry_out(struct study *study, const struct options *options,
 {
     struct pool pool = {0};
     struct progress progress;
-    progress_begin(&progress, study->settings.file.name, options);
+    progress_begin(&progress, study->settings.file.name, options->quiet);
     settings->progress = show_progress;
     settings->progress_context = &progress;
     enum status status = study_plan(study, &pool, error);

@@ -63,7 +63,7 @@ static enum status run(const struct options *options, int n, char **arguments, s
         if (options->speak) {
             print_head("old", arguments[0], old);
             print_head("new", arguments[1], new);
-            diff_print(&diff, threshold, false, options);
+            diff_print(&diff, threshold, false, options->color);
         }
         json_t *document = options->json ? diff_json(&diff, old, new, threshold) : NULL;
         if (document && result_write(document, options->json, &trouble)) {

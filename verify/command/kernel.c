@@ -192,9 +192,10 @@ static const struct command_option own_options[] = {
 const struct command command_kernel = {
     .name = "kernel",
     .synopsis = "NAME|F.so --dim D",
-    .help = "the certificate of a kernel: everything that makes it a right one, measured\n"
-            "F.so is a kernel of your own: the header verify/plugin.h says how to write it.\n"
-            "Exit status 1 if a property does not hold.",
+    .help =
+        "the certificate of a kernel: everything that makes it a right one, measured\n"
+        "F.so is a kernel of your own: the header verify/kernel/plugin.h says how to write it.\n"
+        "Exit status 1 if a property does not hold.",
     .run = run,
     .options = own_options,
     .examples = "sphproof kernel cubic_spline --dim 3\n"

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "cases.h"
+#include "check_registry.h"
 #include "command.h"
 #include "integrator.h"
 #include "kernel.h"
@@ -193,7 +194,7 @@ static enum status choose(const char *word, const struct family **chosen, struct
 static enum status run(const struct options *options, int n, char **arguments, struct error *error)
 {
     const struct family *chosen = NULL;
-    const struct table_style style = table_style(options);
+    const struct table_style style = table_style(options->color);
     const bool markdown = options_value(options, "markdown");
     if (n > 1) return command_usage(options, error, "one family at a time");
     if (n == 1 && choose(arguments[0], &chosen, error)) return error->status;

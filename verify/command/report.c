@@ -124,7 +124,7 @@ static enum status run(const struct options *options, int n, char **arguments, s
     json_t *results;
     struct progress progress;
     settings.context = &progress;
-    progress_begin(&progress, "report", options);
+    progress_begin(&progress, "report", options->quiet);
     status = report_compute(&settings, &results, error);
     progress_end(&progress);
     if (status) return status;

@@ -195,7 +195,7 @@ static enum status explain(const struct options *options, const struct run_setti
                            struct error *error)
 {
     struct run_result result;
-    const struct table_style style = table_style(options);
+    const struct table_style style = table_style(options->color);
     enum status status = run_explain(settings, &result, error);
     if (status) return status;
     remark(options, result.warnings);
@@ -217,7 +217,7 @@ static enum status present(const struct options *options, const struct run_setti
 {
     const char *plot = options_value(options, "plot");
     const char *snapshot = options_value(options, "snapshot");
-    const struct table_style style = table_style(options);
+    const struct table_style style = table_style(options->color);
     remark(options, result->warnings);
     remark(options, result->suspicion);
     if (options->speak && result->status != STATUS_BROKE_DOWN) {
@@ -254,7 +254,7 @@ static enum status run(const struct options *options, int n, char **arguments, s
     if (check_files(options, error)) return error->status;
 
     struct progress_of_run of_run = {.t_end = settings_real(&resolved, SETTING_t_end)};
-    progress_begin(&of_run.progress, settings.file.name, options);
+    progress_begin(&of_run.progress, settings.file.name, options->quiet);
     settings.progress = show_progress;
     settings.progress_context = &of_run;
     enum status status = run_execute(&settings, &result, error);

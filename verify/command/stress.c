@@ -82,7 +82,7 @@ static void print_group(const json_t *group, const json_t *cells, const struct t
 
 static void print_all(const json_t *document, size_t wrong, const struct options *options)
 {
-    const struct table_style style = table_style(options);
+    const struct table_style style = table_style(options->color);
     const json_t *groups = json_object_get(document, "groups"), *group, *value;
     const json_t *comparison = json_object_get(document, "comparison");
     size_t i;
@@ -116,7 +116,7 @@ static enum status run(const struct options *options, int n, char **arguments, s
         return status;
     }
     gsl_set_error_handler_off();
-    progress_begin(&progress, "stress", options);
+    progress_begin(&progress, "stress", options->quiet);
     const struct pool_settings settings = {
         .jobs = (int)jobs, .progress = show_progress, .progress_context = &progress};
     status = pool_run(&pool, &settings, error);

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "check.h"
+#include "check_registry.h"
 #include "command.h"
 #include "output.h"
 #include "progress.h"
@@ -106,7 +106,7 @@ static enum status run(const struct options *options, int n, char **arguments, s
     const char *plugin = options_value(options, "kernel-plugin");
     if (plugin && user_kernel_load(&user, plugin, 0, error)) return error->status;
     check_kernel_plugin = plugin ? &user.kernel : NULL;
-    progress_begin(&progress, "checks", options);
+    progress_begin(&progress, "checks", options->quiet);
     status = suite_run(&suite, check_registry, check_registry_count, &choice, error);
     progress_end(&progress);
     check_kernel_plugin = NULL;

@@ -2,35 +2,29 @@
 #include "progress.h"
 
 #include <stdio.h>
-#include <time.h>
 #include <unistd.h>
+
+#include "clock.h"
 
 /* seconds: nothing before, then so often on a terminal and in a log */
 static const double patience = 1, interval_terminal = 0.2, interval_log = 10;
 
-static double now(void)
+void progress_begin(struct progress *progress, const char *what, bool quiet)
 {
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
-
-void progress_begin(struct progress *progress, const char *what, const struct options *options)
-{
-    *progress = (struct progress){.what = what, .silent = options->quiet, .began = now()};
+    *progress = (struct progress){.what = what, .silent = quiet, .began = clock_wall()};
     progress->terminal = isatty(STDERR_FILENO);
 }
 
 /* Is it time to say something? */
-static int due(struct progress *progress, double time)
+static bool due(struct progress *progress, double time)
 {
     const double wait = progress->spoke > 0  ? progress->spoke
                         : progress->terminal ? progress->began + patience - interval_terminal
                                              : progress->began;
     if (progress->silent || time - wait < (progress->terminal ? interval_terminal : interval_log))
-        return 0;
+        return false;
     progress->spoke = time;
-    return 1;
+    return true;
 }
 
 static void say(const struct progress *progress, double time, const char *count, double share)
@@ -44,7 +38,7 @@ static void say(const struct progress *progress, double time, const char *count,
 
 void progress_update(struct progress *progress, double done, double total)
 {
-    const double time = now();
+    const double time = clock_wall();
     char count[80];
     if (!due(progress, time)) return;
     snprintf(count, sizeof count, "%.3g of %.3g (%.0f %%)", done, total, 100 * done / total);
@@ -53,7 +47,7 @@ void progress_update(struct progress *progress, double done, double total)
 
 void progress_share(struct progress *progress, size_t done, size_t total, double share)
 {
-    const double time = now();
+    const double time = clock_wall();
     char count[80];
     if (!due(progress, time)) return;
     snprintf(count, sizeof count, "%zu of %zu (%.0f %%)", done, total, 100 * share);

@@ -4,17 +4,17 @@
 #ifndef SPHPROOF_PROGRESS_H
 #define SPHPROOF_PROGRESS_H
 
+#include <stdbool.h>
 #include <stddef.h>
-
-#include "command.h"
 
 struct progress {
     const char *what; /* one or two words; belongs to the caller */
     double began, spoke;
-    int silent, terminal;
+    bool silent, terminal;
 };
 
-void progress_begin(struct progress *progress, const char *what, const struct options *options);
+/* quiet: nothing is ever said. */
+void progress_begin(struct progress *progress, const char *what, bool quiet);
 /* done of total, in any unit; cheap enough to be called every step. */
 void progress_update(struct progress *progress, double done, double total);
 /* done of total pieces of unequal size: share of the work, 0..1, tells the time that is left. */

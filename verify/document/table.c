@@ -4,12 +4,12 @@
 #include <stdio.h>
 #include <string.h>
 
-struct table_style table_style(const struct options *options)
+struct table_style table_style(bool color)
 {
     static const struct table_style plain = {"", "", "", "", ""};
     static const struct table_style coloured = {"\033[1m", "\033[2m", "\033[32m", "\033[31m",
                                                 "\033[0m"};
-    return options->color ? coloured : plain;
+    return color ? coloured : plain;
 }
 
 void table_wrap(const char *indentation, const char *text)

@@ -3,13 +3,13 @@
 #ifndef SPHPROOF_TABLE_H
 #define SPHPROOF_TABLE_H
 
-#include "command.h"
+#include <stdbool.h>
 
-/* Escape sequences, "" where standard output is not coloured. */
+/* Escape sequences, "" without colour. */
 struct table_style {
     const char *bold, *faint, *good, *bad, *end;
 };
-struct table_style table_style(const struct options *options);
+struct table_style table_style(bool color);
 
 /* Prints text wrapped at 100 columns, each line after the indentation. */
 void table_wrap(const char *indentation, const char *text);

@@ -3,8 +3,8 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <time.h>
 
+#include "clock.h"
 #include "gradient_study.h"
 #include "order.h"
 #include "pair_forces.h"
@@ -67,13 +67,6 @@ static enum status order_of(const struct gradient_subject *subject, const struct
     return status;
 }
 
-static double now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 /* Least CPU time of some repeats of a whole call. */
 static enum status cost_of(const struct operator_form *form, const struct kernel *kernel,
                            struct clouds_settings settings, struct league_row *row,
@@ -90,9 +83,9 @@ static enum status cost_of(const struct operator_form *form, const struct kernel
     const struct operator_settings how = {form, kernel, false, 1};
     if (!status && !g) status = error_set(error, STATUS_ENVIRONMENT, "no memory for a cloud");
     for (int k = 0; !status && k < REPEATS; k++) {
-        const double begin = now();
+        const double begin = clock_thread();
         status = operator_apply(&how, &cloud.cloud, 1, fields, gradient, NULL, &pairs, error);
-        best = fmin(best, now() - begin);
+        best = fmin(best, clock_thread() - begin);
     }
     row->ns_per_point = 1e9 * best / (double)n;
     row->ns_per_pair = 1e9 * best / (double)pairs;

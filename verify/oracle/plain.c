@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bench.h"
+#include "clock.h"
 #include "integrator.h"
 
 struct plain_particle {
@@ -278,7 +278,7 @@ static enum status set_up(struct plain *plain, const struct scene *scene, struct
 
 enum status plain_run(struct plain *plain, const struct scene *scene, struct error *error)
 {
-    const struct bench_taken start = bench_now();
+    const struct clock_taken start = clock_now();
     enum status status = set_up(plain, scene, error);
     if (!status) status = evaluate(plain, error);
     if (status) return status;
@@ -297,8 +297,8 @@ enum status plain_run(struct plain *plain, const struct scene *scene, struct err
         plain->time = last ? scene->t_end : plain->time + dt;
         plain->cost.steps++;
     }
-    struct bench_taken taken = {0};
-    bench_add(&taken, &start);
+    struct clock_taken taken = {0};
+    clock_add(&taken, &start);
     plain->cost.wall_s = taken.wall_s;
     plain->cost.cpu_s = taken.cpu_s;
     sum_up(plain, &plain->end);

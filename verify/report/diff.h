@@ -4,7 +4,6 @@
 #ifndef SPHPROOF_DIFF_H
 #define SPHPROOF_DIFF_H
 
-#include "command.h"
 #include "reading.h"
 
 /* Worse by more than this part of the old value is a regression (of an order: beyond its interval;
@@ -44,7 +43,6 @@ json_t *diff_figures_json(const struct diff *diff, size_t most);
 void diff_add_json(const struct diff *diff, json_t *document);
 
 /* Table of everything that is not the same, on standard output; exact: with that column. */
-void diff_print(const struct diff *diff, double threshold, bool exact,
-                const struct options *options);
+void diff_print(const struct diff *diff, double threshold, bool exact, bool color);
 
 #endif

@@ -110,10 +110,9 @@ static void print_difference(const struct difference *d, bool exact,
     printf("  %s\n", path_of(d));
 }
 
-void diff_print(const struct diff *diff, double threshold, bool exact,
-                const struct options *options)
+void diff_print(const struct diff *diff, double threshold, bool exact, bool color)
 {
-    const struct table_style style = table_style(options);
+    const struct table_style style = table_style(color);
     const size_t shown = diff->problem[0] ? 0 : diff->count - diff->verdicts[VERDICT_SAME];
     if (shown) {
         printf("%s%-12s %13s %13s", style.bold, "verdict", "old", "new");

@@ -5,10 +5,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
-#include "check.h"
+#include "check_registry.h"
+#include "clock.h"
 #include "pool.h"
 #include "report_piece.h"
 #include "result.h"
@@ -261,13 +261,6 @@ static json_t *collect(struct report *report, const char *faults, double seconds
     return results;
 }
 
-static double now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 /* What is no result: no memory, no process. A crash is one, see add_trouble. */
 static enum status sound(const struct pool *pool, struct error *error)
 {
@@ -283,7 +276,7 @@ enum status report_compute(const struct report_settings *settings, json_t **resu
                            struct error *error)
 {
     *results = NULL;
-    const double began = now();
+    const double began = clock_wall();
     const struct pool_settings how = {.jobs = settings->jobs,
                                       .cache = settings->cache,
                                       .progress = settings->progress,
@@ -298,7 +291,7 @@ enum status report_compute(const struct report_settings *settings, json_t **resu
     for (int k = 0; k < CASES * SCHEMES && !status; k++)
         status = study_judge(&report->studies[k / SCHEMES][k % SCHEMES], &report->pool, error);
     if (!status) {
-        *results = collect(report, settings->faults, now() - began);
+        *results = collect(report, settings->faults, clock_wall() - began);
         if (report->pool.note[0])
             json_object_set_new(*results, "note", json_string(report->pool.note));
     }

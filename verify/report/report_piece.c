@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "certificate.h"
-#include "check.h"
+#include "check_registry.h"
 #include "league.h"
 #include "precision.h"
 #include "profile.h"

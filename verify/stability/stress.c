@@ -6,8 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "result.h"
 #include "run_job.h"
+#include "stress_linear.h"
+#include "stress_outcome.h"
 
 enum { STEPS_QUICK = 30000, STEPS_NIGHTLY = 3000000 };
 /* Steps times n^2, which is what they cost where few particles see all: about a minute. */
@@ -89,14 +90,6 @@ void stress_command(const struct stress_cell *cell, char command[STRESS_COMMAND]
     }
 }
 
-json_t *stress_outcome(double predicted, double measured, const char *outcome, const char *reason)
-{
-    return json_pack("{s:o, s:o, s:s, s:s}", "predicted",
-                     isnan(predicted) ? json_null() : result_number(predicted), "measured",
-                     isnan(measured) ? json_null() : result_number(measured), "outcome", outcome,
-                     "reason", reason);
-}
-
 /* --- one run -----------------------------------------------------------------------------------
  */
 
@@ -141,19 +134,6 @@ static double mean_density(const struct run_result *result)
     return sum;
 }
 
-/* What a breakdown's message says happened. */
-static const char *kind_of_breakdown(const char *message)
-{
-    static const char *const kinds[][2] = {{"internal energy", "negative energy"},
-                                           {"smoothing length", "h without root"},
-                                           {"time step", "time step collapse"},
-                                           {"position", "NaN"},
-                                           {"crashed", "crash"}};
-    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
-        if (strstr(message, kinds[i][0])) return kinds[i][1];
-    return "broke down";
-}
-
 static json_t *judge_run(const struct stress_cell *cell, const struct run_result *result,
                          const struct watch *watch)
 {
@@ -163,7 +143,7 @@ static json_t *judge_run(const struct stress_cell *cell, const struct run_result
     const double measured = drift ? result->energy : error;
     const size_t crossed = result->crossed;
     if (result->status == STATUS_BROKE_DOWN) {
-        snprintf(reason, sizeof reason, "%s: %s", kind_of_breakdown(result->message),
+        snprintf(reason, sizeof reason, "%s: %s", stress_outcome_breakdown(result->message),
                  result->message);
         return stress_outcome((double)NAN, (double)NAN, "broke_down", reason);
     }
@@ -302,7 +282,7 @@ static json_t *cell_json(const struct stress_cell *cell, const struct pool_job *
         json_object_update(entry, job->document);
     else {
         char reason[640];
-        snprintf(reason, sizeof reason, "%s: %s", kind_of_breakdown(job->error.message),
+        snprintf(reason, sizeof reason, "%s: %s", stress_outcome_breakdown(job->error.message),
                  job->error.message);
         json_t *outcome = stress_outcome((double)NAN, (double)NAN, "broke_down", reason);
         json_object_update(entry, outcome);
@@ -416,7 +396,7 @@ size_t stress_judge(const struct stress *stress, const struct pool *pool, json_t
     }
     json_object_set_new(document, "cells", cells);
     json_object_set_new(document, "groups", groups);
-    if (theory) json_object_set_new(document, "atlas", stress_atlas());
+    if (theory) json_object_set_new(document, "atlas", stress_linear_atlas());
     compare(stress, cells, document);
     const size_t wrong = json_array_size(json_object_get(document, "failures"));
     json_object_set_new(counts, "wrong", json_integer((json_int_t)wrong));

@@ -77,14 +77,4 @@ void stress_free(struct stress *stress);
 /* "sphproof run CASE KEY=VALUE ..." of a cell. */
 void stress_command(const struct stress_cell *cell, char command[STRESS_COMMAND]);
 
-/* The cells of linear theory (stress_linear.c). */
-enum status stress_linear(const struct stress_cell *cell, json_t **document, struct error *error);
-
-/* {"predicted", "measured", "outcome", "reason"}; not a number: null. New reference. */
-json_t *stress_outcome(double predicted, double measured, const char *outcome, const char *reason);
-
-/* Growth rate of the fastest wave over eta, for every kernel and gradient: {"eta": [...], "rows":
- * [{"kernel", "gradient", "growth": [...]}]}. New reference. */
-json_t *stress_atlas(void);
-
 #endif

@@ -1,6 +1,6 @@
-/* SPDX-License-Identifier: GPL-3.0-or-later
- * Cells of linear theory: what the eigenvalues say (stability.h), and the same found once more by
- * runs of the solver from a lattice with noise of 1e-6 spacings. */
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "stress_linear.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -8,7 +8,7 @@
 #include "measure.h"
 #include "result.h"
 #include "stability.h"
-#include "stress.h"
+#include "stress_outcome.h"
 
 #define ETA_MAX 9.5
 enum { WAVES = 64, ETAS = 86, BISECTIONS = 7 };
@@ -255,7 +255,7 @@ static json_t *map_of(const char *kernel, enum gradient gradient)
                      growth);
 }
 
-json_t *stress_atlas(void)
+json_t *stress_linear_atlas(void)
 {
     json_t *eta = json_array(), *rows = json_array(), *waves = json_array();
     for (int i = 0; i < ETAS; i++) json_array_append_new(eta, result_number(1 + 0.1 * i));

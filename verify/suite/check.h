@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * A check: a property, measured on subjects (kernels, operators, solvers, norms ...), each figure
  * against a bound with the noise floor beside it; and the mutants, wrong subjects that the same
- * code must reject. Adding a check: one file in check/ and one line in checks.def. */
+ * code must reject. Adding a check: one file and one line in checks.def, both in check/. */
 #ifndef SPHPROOF_CHECK_H
 #define SPHPROOF_CHECK_H
 
@@ -48,9 +48,5 @@ struct check {
     void (*measure)(struct check_run *run, const void *subject);
     const struct check_mutant *mutants; /* ends with a NULL name; must not be empty */
 };
-
-/* All checks, in the order of checks.def. */
-extern const struct check *const check_registry[];
-extern const size_t check_registry_count;
 
 #endif

@@ -6,20 +6,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
+
+#include "clock.h"
 
 const struct kernel *check_kernel_plugin;
-
-#define CHECK(name) extern const struct check check_##name;
-#include "checks.def"
-#undef CHECK
-
-const struct check *const check_registry[] = {
-#define CHECK(name) &check_##name,
-#include "checks.def"
-#undef CHECK
-};
-const size_t check_registry_count = sizeof check_registry / sizeof *check_registry;
 
 struct check_run {
     const struct check *check;
@@ -30,13 +20,6 @@ struct check_run {
     bool no_memory;
     bool mutant, rejected;
 };
-
-static double clock_now(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 double suite_ratio(double value, double bound)
 {
@@ -57,7 +40,7 @@ static bool grow(void *list, size_t count, size_t size)
 
 static void add_figure(struct check_run *run, struct figure figure)
 {
-    const double now = clock_now();
+    const double now = clock_wall();
     figure.check = run->check;
     figure.seconds = now - run->began;
     run->began = now;
@@ -175,10 +158,10 @@ static void free_run(struct check_run *run)
 
 static bool run_subjects(struct suite *suite, const struct check *check)
 {
-    struct check_run run = {.check = check, .began = clock_now()};
+    struct check_run run = {.check = check, .began = clock_wall()};
     const size_t subjects = check->subject_count ? check->subject_count() : 1;
     for (size_t i = 0; i < subjects; i++) {
-        run.began = clock_now();
+        run.began = clock_wall();
         check->measure(&run, check->subject_count ? check->subject(i) : NULL);
     }
     if (run.figure_count == 0)
@@ -210,7 +193,7 @@ static bool run_mutants(struct suite *suite, const struct check *check)
     bool any = false, sound = true;
     for (const struct check_mutant *mutant = check->mutants; sound && mutant && mutant->name;
          mutant++) {
-        struct check_run run = {.check = check, .began = clock_now(), .mutant = true};
+        struct check_run run = {.check = check, .began = clock_wall(), .mutant = true};
         check->measure(&run, mutant->subject);
         const struct mutant_outcome outcome = judge_mutant(&run, mutant);
         any = any || outcome.detected;
@@ -219,7 +202,7 @@ static bool run_mutants(struct suite *suite, const struct check *check)
         free_run(&run);
     }
     if (sound && !any) {
-        struct check_run run = {.check = check, .began = clock_now()};
+        struct check_run run = {.check = check, .began = clock_wall()};
         check_measure(&run, 1, 0, 0, "harness: the check is vacuous, it rejects no mutant");
         sound = !run.no_memory && take_figures(suite, &run);
         free_run(&run);
@@ -254,7 +237,7 @@ static bool chosen(const struct check *check, const struct suite_choice *choice)
 enum status suite_run(struct suite *suite, const struct check *const *checks, size_t count,
                       const struct suite_choice *choice, struct error *error)
 {
-    const double began = clock_now();
+    const double began = clock_wall();
     bool sound = true;
     *suite = (struct suite){0};
     for (size_t i = 0; i < count && sound && !(choice->first && suite->failed); i++) {
@@ -268,7 +251,7 @@ enum status suite_run(struct suite *suite, const struct check *const *checks, si
         return error_set(error, STATUS_ENVIRONMENT, "verify: no memory");
     }
     count_mutants(suite);
-    suite->seconds = clock_now() - began;
+    suite->seconds = clock_wall() - began;
     return suite->failed || suite->mutants_detected < suite->mutants ? STATUS_CHECK_FAILED
                                                                      : STATUS_OK;
 }

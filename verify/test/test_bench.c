@@ -28,7 +28,7 @@ struct fake {
     enum status status;
 };
 
-static enum status fake_work(void *context, uint64_t times, struct bench_taken *taken,
+static enum status fake_work(void *context, uint64_t times, struct clock_taken *taken,
                              struct error *error)
 {
     struct fake *fake = context;
@@ -220,7 +220,7 @@ static void test_loops_stand_still(void **state)
         struct bench_loops loops;
         struct scheme scheme;
         struct error error = {0};
-        struct bench_taken taken = {0};
+        struct clock_taken taken = {0};
         assert_int_equal(run_prepare(&settings, "sod", 2, keys[k], &error), 0);
         assert_int_equal(settings_resolve(&settings.settings, 1, &scheme, &error), 0);
         const unsigned all = 1u << PASS_STATE | 1u << PASS_DENSITY | 1u << PASS_MATRIX |

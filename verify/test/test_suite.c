@@ -11,6 +11,7 @@
 #include <unistd.h>
 #include <cmocka.h>
 
+#include "check_registry.h"
 #include "suite.h"
 #include "suite_output.h"
 

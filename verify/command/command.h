@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Commands: one file in command/ and one line in commands.def each. */
+ * Commands: one file and one line in commands.def each. */
 #ifndef SPHPROOF_COMMAND_H
 #define SPHPROOF_COMMAND_H
 

@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "stress_outcome.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "result.h"
+
+json_t *stress_outcome(double predicted, double measured, const char *outcome, const char *reason)
+{
+    return json_pack("{s:o, s:o, s:s, s:s}", "predicted",
+                     isnan(predicted) ? json_null() : result_number(predicted), "measured",
+                     isnan(measured) ? json_null() : result_number(measured), "outcome", outcome,
+                     "reason", reason);
+}
+
+const char *stress_outcome_breakdown(const char *message)
+{
+    static const char *const kinds[][2] = {{"internal energy", "negative energy"},
+                                           {"smoothing length", "h without root"},
+                                           {"time step", "time step collapse"},
+                                           {"position", "NaN"},
+                                           {"crashed", "crash"}};
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
+        if (strstr(message, kinds[i][0])) return kinds[i][1];
+    return "broke down";
+}
