@@ -105,8 +105,8 @@ static void run(struct bench_loops *loops)
     for (ptrdiff_t first = 0; first < a->n; first += RANGE_MAX) {
         const int len = (int)(a->n - first < RANGE_MAX ? a->n - first : RANGE_MAX);
         if (loops->passes & 1u << PASS_FORCE)
-            loops->rate += loops->loops.force(&loops->loops, a, first, len,
-                                              loops->reach, loops->scratch);
+            loops->rate +=
+                loops->loops.force(&loops->loops, a, first, len, loops->reach, loops->scratch);
         if (loops->passes & 1u << PASS_SIGNAL) loops_signal(a, first, len, loops->reach);
     }
 }
