@@ -10,6 +10,8 @@
 
 struct simulation;
 
+extern const struct family integrator_family;
+
 struct integrator {
     struct member member;
     int order;

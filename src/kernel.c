@@ -91,6 +91,15 @@ enum status kernel_select(struct kernel *kernel, const char *name, int sinc_orde
     return STATUS_OK;
 }
 
+int kernel_stamp(const struct kernel *kernel)
+{
+    for (size_t i = 0; i < kernel_family.n; i++) {
+        const struct kernel *built_in = (const struct kernel *)kernel_family.members[i];
+        if (built_in->w == kernel->w && built_in->dw == kernel->dw) return (int)i;
+    }
+    return -1;
+}
+
 double kernel_value(const struct kernel *kernel, double r, double h, int dim)
 {
     return kernel->constant[dim] / power(h, dim) * kernel->w(kernel, r / h, dim);

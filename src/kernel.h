@@ -43,6 +43,10 @@ extern const struct family kernel_family;
 enum status kernel_select(struct kernel *kernel, const char *name, int sinc_order,
                           struct error *error);
 
+/* Position in kernels.def of the built-in kernel whose shape functions this kernel has, and with it
+ * the place of its stamped loops in every table of them; -1: none has them (a plug-in). */
+int kernel_stamp(const struct kernel *kernel);
+
 /* W(r,h), dW/dr and dW/dh in dim dimensions; r >= 0, h > 0. */
 double kernel_value(const struct kernel *kernel, double r, double h, int dim);
 double kernel_dr(const struct kernel *kernel, double r, double h, int dim);

@@ -46,23 +46,21 @@ ALWAYS_INLINE void sum_pairs(const struct kernel *kernel, kernel_shape *w, kerne
         sum_pairs(kernel, w, dw, terms, particles, first, len, D, h_inverse, sums);                \
     }
 
-#define KERNEL(name, ...)                                                                          \
-    BODY(name##_value, name##_w, name##_dw, DENSITY_VALUE, CLONES)                                 \
-    BODY(name##_derivative, name##_w, name##_dw, DENSITY_DERIVATIVE, CLONES)                       \
-    BODY(name##_energy, name##_w, name##_dw, DENSITY_ENERGY, CLONES)
+#define STAMP(terms, k)   BODY(k##_##terms, k##_w, k##_dw, terms, CLONES)
+#define KERNEL(name, ...) DENSITY_LIST(STAMP, name)
 #include "kernels.def"
 #undef KERNEL
 
-BODY(any_value, kernel->w, kernel->dw, DENSITY_VALUE, )
-BODY(any_derivative, kernel->w, kernel->dw, DENSITY_DERIVATIVE, )
-BODY(any_energy, kernel->w, kernel->dw, DENSITY_ENERGY, )
+#define UNSTAMPED(terms, k) BODY(k##_##terms, kernel->w, kernel->dw, terms, )
+DENSITY_LIST(UNSTAMPED, any)
 
-static density_loop *const stamped[][3] = {
-#define KERNEL(name, ...) {name##_value, name##_derivative, name##_energy},
+#define ENTRY(terms, k) [terms] = k##_##terms,
+static density_loop *const stamped[][DENSITY_TERMS] = {
+#define KERNEL(name, ...) {DENSITY_LIST(ENTRY, name)},
 #include "kernels.def"
 #undef KERNEL
 };
-static density_loop *const unstamped[3] = {any_value, any_derivative, any_energy};
+static density_loop *const unstamped[DENSITY_TERMS] = {DENSITY_LIST(ENTRY, any)};
 
 density_loop *loop_density(int kernel, enum density_terms terms)
 {

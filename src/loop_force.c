@@ -50,11 +50,10 @@ ALWAYS_INLINE struct pair_side side_of(const struct particles *a, const double *
 }
 
 /* The pairs at one offset. Returns their largest speed / h. */
-ALWAYS_INLINE double pairs_at(ptrdiff_t d, enum formulation formulation,
-                              enum pair_viscosity viscosity, enum energy energy,
-                              const struct loops *loops, const struct particles *particles,
-                              ptrdiff_t first, int len, ptrdiff_t strip, double *scratch,
-                              struct force_sums *sums)
+ALWAYS_INLINE double pairs_at(ptrdiff_t d, enum formulation formulation, enum viscosity viscosity,
+                              enum energy energy, const struct loops *loops,
+                              const struct particles *particles, ptrdiff_t first, int len,
+                              ptrdiff_t strip, double *scratch, struct force_sums *sums)
 {
     double *restrict f = scratch, *restrict e_i = scratch + strip,
                      *restrict e_j = scratch + 2 * strip, *restrict s = scratch + 3 * strip,
@@ -74,7 +73,7 @@ ALWAYS_INLINE double pairs_at(ptrdiff_t d, enum formulation formulation,
                                right = side_of(particles, Z, o + i + d);
         const double r = x[i + d] - x[i], closing = v[i] - v[i + d];
         struct pair_terms a = pair_pressure(formulation, &left, &right, G[i], G_j[i]);
-        if (viscosity != PAIR_INVISCID) {
+        if (viscosity != VISCOSITY_NONE) {
             const double G_bar =
                 formulation == FORMULATION_VANILLA_ICE ? G[i] : 0.5 * (G[i] + G_j[i]);
             const double half = pair_viscous(viscosity, &numbers, &left, &right, r, closing, G_bar);
@@ -105,7 +104,7 @@ ALWAYS_INLINE double pairs_at(ptrdiff_t d, enum formulation formulation,
     return largest_of(s, pair_count);
 }
 
-ALWAYS_INLINE double force_body(enum formulation formulation, enum pair_viscosity viscosity,
+ALWAYS_INLINE double force_body(enum formulation formulation, enum viscosity viscosity,
                                 enum energy energy, const struct loops *loops,
                                 const struct particles *particles, ptrdiff_t first, int len,
                                 ptrdiff_t D, double *scratch)
@@ -127,12 +126,11 @@ ALWAYS_INLINE double force_body(enum formulation formulation, enum pair_viscosit
     return rate;
 }
 
-#define ENERGIES(X, f, v) X(f, v, ENERGY_INTERNAL) X(f, v, ENERGY_TOTAL)
-#define VISCOSITIES(X, f)                                                                          \
-    ENERGIES(X, f, PAIR_INVISCID)                                                                  \
-    ENERGIES(X, f, PAIR_UNIFORM)                                                                   \
-    ENERGIES(X, f, PAIR_VARYING) ENERGIES(X, f, PAIR_RECONSTRUCTED) ENERGIES(X, f, PAIR_FADING)
-#define ALL(X) VISCOSITIES(X, FORMULATION_VANILLA_ICE) VISCOSITIES(X, FORMULATION_LAGRANGIAN)
+/* Every formulation with every viscosity and every energy. */
+#define OVER_VISCOSITIES(f, name, label, paper, X)   VISCOSITY_LIST(OVER_ENERGIES, X, f)
+#define OVER_ENERGIES(v, name, label, paper, X, f)   ENERGY_LIST(OVER_NOTHING, X, f, v)
+#define OVER_NOTHING(e, name, label, paper, X, f, v) X(f, v, e)
+#define ALL(X)                                       FORMULATION_LIST(OVER_VISCOSITIES, X)
 
 #define BODY(function, formulation, viscosity, energy, attributes)                                 \
     attributes static double function(const struct loops *loops,                                   \
@@ -146,7 +144,7 @@ ALWAYS_INLINE double force_body(enum formulation formulation, enum pair_viscosit
 ALL(STAMP)
 
 #define ENTRY(f, v, e) [f][v][e] = force_##f##_##v##_##e,
-static force_loop *const stamped[2][PAIR_VISCOSITIES][2] = {ALL(ENTRY)};
+static force_loop *const stamped[FORMULATIONS][VISCOSITIES][ENERGIES] = {ALL(ENTRY)};
 
 /* The unstamped body: every choice is looked up at run time. */
 static double unstamped(const struct loops *loops, const struct particles *particles,
@@ -156,8 +154,8 @@ static double unstamped(const struct loops *loops, const struct particles *parti
                       len, D, scratch);
 }
 
-force_loop *loop_force(bool want_stamped, enum formulation formulation,
-                       enum pair_viscosity viscosity, enum energy energy)
+force_loop *loop_force(bool want_stamped, enum formulation formulation, enum viscosity viscosity,
+                       enum energy energy)
 {
     return want_stamped ? stamped[formulation][viscosity][energy] : unstamped;
 }

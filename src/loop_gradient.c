@@ -14,10 +14,9 @@ ALWAYS_INLINE double own_gradient(const struct kernel *kernel, kernel_shape *w, 
 }
 
 ALWAYS_INLINE void gradients_of_pairs(const struct kernel *kernel, kernel_shape *w,
-                                      kernel_shape *dw, enum gradient gradient,
-                                      enum pair_gradient form, const struct particles *particles,
-                                      ptrdiff_t first, int pairs, ptrdiff_t d, double *restrict G,
-                                      double *restrict G_j)
+                                      kernel_shape *dw, enum gradient gradient, int width,
+                                      const struct particles *particles, ptrdiff_t first, int pairs,
+                                      ptrdiff_t d, double *restrict G, double *restrict G_j)
 {
     const double *restrict x = particles->x + first, *restrict g = particles->g + first,
                            *restrict h_inverse = particles->h_inverse + first;
@@ -27,18 +26,18 @@ ALWAYS_INLINE void gradients_of_pairs(const struct kernel *kernel, kernel_shape 
     for (int i = 0; i < count; i++) {
         const ptrdiff_t j = i + d;
         const double r = x[j] - x[i];
-        if (form == PAIR_GRADIENT_MEAN || form == PAIR_GRADIENT_BOTH) {
+        if (width == PAIR_WIDTH_MEAN || width == PAIR_WIDTH_OWN) {
             const double at_i = own_gradient(kernel, w, dw, gradient, g[i], r, h_inverse[i]);
             const double at_j = own_gradient(kernel, w, dw, gradient, g[j], r, h_inverse[j]);
-            if (form == PAIR_GRADIENT_BOTH) {
+            if (width == PAIR_WIDTH_OWN) {
                 G[i] = at_i;
                 G_j[i] = at_j;
             } else {
                 G[i] = 0.5 * (at_i + at_j);
             }
         } else {
-            const double inverse = form == PAIR_GRADIENT_MAX ? least(h_inverse[i], h_inverse[j])
-                                                             : 0.5 * (h_inverse[i] + h_inverse[j]);
+            const double inverse = width == PAIR_WIDTH_MAX ? least(h_inverse[i], h_inverse[j])
+                                                           : 0.5 * (h_inverse[i] + h_inverse[j]);
             const double scale =
                 gradient == GRADIENT_IA ? 0.5 * (g[i] + g[j]) : constant * (inverse * inverse);
             G[i] = own_gradient(kernel, w, dw, gradient, scale, r, inverse);
@@ -46,37 +45,37 @@ ALWAYS_INLINE void gradients_of_pairs(const struct kernel *kernel, kernel_shape 
     }
 }
 
-#define BODY(function, w, dw, gradient, form, attributes)                                          \
+#define BODY(function, w, dw, gradient, width, attributes)                                         \
     attributes static void function(const struct kernel *kernel,                                   \
                                     const struct particles *particles, ptrdiff_t first, int pairs, \
                                     ptrdiff_t d, double *G, double *G_j)                           \
     {                                                                                              \
-        gradients_of_pairs(kernel, w, dw, gradient, form, particles, first, pairs, d, G, G_j);     \
+        gradients_of_pairs(kernel, w, dw, gradient, width, particles, first, pairs, d, G, G_j);    \
     }
 
-/* Every gradient in every form, for one kernel. */
-#define FORMS(X, k, g)                                                                             \
-    X(k, g, PAIR_GRADIENT_MEAN)                                                                    \
-    X(k, g, PAIR_GRADIENT_MAX) X(k, g, PAIR_GRADIENT_HARMONIC) X(k, g, PAIR_GRADIENT_BOTH)
-#define ALL(X, k) FORMS(X, k, GRADIENT_STANDARD) FORMS(X, k, GRADIENT_IA)
+/* Every gradient at every width, for one kernel k. */
+#define AT_WIDTHS(g, name, label, paper, X, k)                                                     \
+    PAIR_WIDTH_LIST(AT_WIDTH, X, k, g) X(k, g, PAIR_WIDTH_OWN)
+#define AT_WIDTH(width, name, label, paper, X, k, g) X(k, g, width)
+#define ALL(X, k)                                    GRADIENT_LIST(AT_WIDTHS, X, k)
 
-#define STAMP(k, g, f)    BODY(k##_##g##_##f, k##_w, k##_dw, g, f, CLONES)
-#define KERNEL(name, ...) ALL(STAMP, name)
+#define STAMP(k, g, width) BODY(k##_##g##_##width, k##_w, k##_dw, g, width, CLONES)
+#define KERNEL(name, ...)  ALL(STAMP, name)
 #include "kernels.def"
 #undef KERNEL
 
-#define UNSTAMPED(k, g, f) BODY(k##_##g##_##f, kernel->w, kernel->dw, g, f, )
+#define UNSTAMPED(k, g, width) BODY(k##_##g##_##width, kernel->w, kernel->dw, g, width, )
 ALL(UNSTAMPED, any)
 
-#define ENTRY(k, g, f) [g][f] = k##_##g##_##f,
-static gradient_loop *const stamped[][2][4] = {
+#define ENTRY(k, g, width) [g][width] = k##_##g##_##width,
+static gradient_loop *const stamped[][GRADIENTS][PAIR_GRADIENTS] = {
 #define KERNEL(name, ...) {ALL(ENTRY, name)},
 #include "kernels.def"
 #undef KERNEL
 };
-static gradient_loop *const unstamped[2][4] = {ALL(ENTRY, any)};
+static gradient_loop *const unstamped[GRADIENTS][PAIR_GRADIENTS] = {ALL(ENTRY, any)};
 
-gradient_loop *loop_gradient(int kernel, enum gradient gradient, enum pair_gradient form)
+gradient_loop *loop_gradient(int kernel, enum gradient gradient, int width)
 {
-    return kernel < 0 ? unstamped[gradient][form] : stamped[kernel][gradient][form];
+    return kernel < 0 ? unstamped[gradient][width] : stamped[kernel][gradient][width];
 }

@@ -42,23 +42,21 @@ ALWAYS_INLINE void sum_moments(const struct kernel *kernel, kernel_shape *w,
         sum_moments(kernel, w, terms, particles, first, len, D);                                   \
     }
 
-#define KERNEL(name, ...)                                                                          \
-    BODY(name##_moment, name##_w, MATRIX_MOMENT, CLONES)                                           \
-    BODY(name##_both, name##_w, MATRIX_BOTH, CLONES)                                               \
-    BODY(name##_slope, name##_w, MATRIX_SLOPE, CLONES)
+#define STAMP(terms, k)   BODY(k##_##terms, k##_w, terms, CLONES)
+#define KERNEL(name, ...) MATRIX_LIST(STAMP, name)
 #include "kernels.def"
 #undef KERNEL
 
-BODY(any_moment, kernel->w, MATRIX_MOMENT, )
-BODY(any_both, kernel->w, MATRIX_BOTH, )
-BODY(any_slope, kernel->w, MATRIX_SLOPE, )
+#define UNSTAMPED(terms, k) BODY(k##_##terms, kernel->w, terms, )
+MATRIX_LIST(UNSTAMPED, any)
 
-static matrix_loop *const stamped[][3] = {
-#define KERNEL(name, ...) {name##_moment, name##_both, name##_slope},
+#define ENTRY(terms, k) [terms] = k##_##terms,
+static matrix_loop *const stamped[][MATRIX_TERMS] = {
+#define KERNEL(name, ...) {MATRIX_LIST(ENTRY, name)},
 #include "kernels.def"
 #undef KERNEL
 };
-static matrix_loop *const unstamped[3] = {any_moment, any_both, any_slope};
+static matrix_loop *const unstamped[MATRIX_TERMS] = {MATRIX_LIST(ENTRY, any)};
 
 matrix_loop *loop_matrix(int kernel, enum matrix_terms terms)
 {

@@ -3,31 +3,17 @@
 
 #include "loop.h"
 
-/* Position of the stamps that belong to a kernel; -1 for a plug-in, or anything that is not a
- * built-in kernel but carries its name. */
-static int stamp_of(const struct kernel *kernel)
-{
-    const struct member *member = family_find(&kernel_family, kernel->member.name);
-    const struct kernel *built_in = (const struct kernel *)member;
-    const bool same = member && built_in->w == kernel->w && built_in->dw == kernel->dw;
-    return same ? family_index(&kernel_family, kernel->member.name) : -1;
-}
-
 void loops_choose(const struct scheme *scheme, bool stamped, struct loops *loops)
 {
-    const int kernel = stamped ? stamp_of(&scheme->kernel) : -1;
+    const int kernel = stamped ? kernel_stamp(&scheme->kernel) : -1;
     const bool grad_h = scheme->formulation == FORMULATION_LAGRANGIAN;
     const bool energy_element = scheme->volume_element == VOLUME_ENERGY;
     const bool reconstruct = scheme->viscosity == VISCOSITY_RECONSTRUCTED;
     const bool varies = scheme->viscosity == VISCOSITY_TIME_DEPENDENT;
-    static const enum pair_gradient form_of_width[] = {PAIR_GRADIENT_MEAN, PAIR_GRADIENT_MAX,
-                                                       PAIR_GRADIENT_HARMONIC};
-    static const enum pair_viscosity form_of_viscosity[] = {
-        PAIR_INVISCID, PAIR_UNIFORM, PAIR_VARYING, PAIR_RECONSTRUCTED, PAIR_FADING};
     *loops = (struct loops){
         .kernel = &scheme->kernel,
         .formulation = scheme->formulation,
-        .viscosity = form_of_viscosity[scheme->viscosity],
+        .viscosity = scheme->viscosity,
         .energy = scheme->energy,
         .energy_element = energy_element,
         .want_div_v = varies,
@@ -47,8 +33,8 @@ void loops_choose(const struct scheme *scheme, bool stamped, struct loops *loops
         loops->matrix = loop_matrix(kernel, reconstruct ? MATRIX_BOTH : MATRIX_MOMENT);
     else if (reconstruct)
         loops->matrix = loop_matrix(kernel, MATRIX_SLOPE);
-    loops->gradient = loop_gradient(
-        kernel, scheme->gradient, grad_h ? PAIR_GRADIENT_BOTH : form_of_width[scheme->pair_width]);
+    loops->gradient =
+        loop_gradient(kernel, scheme->gradient, grad_h ? PAIR_WIDTH_OWN : (int)scheme->pair_width);
     loops->force = loop_force(kernel >= 0, scheme->formulation, loops->viscosity, scheme->energy);
 }
 

@@ -20,11 +20,13 @@ enum {
 
 /* --- kernel sums of one range, at width 1/h_inverse[i] -------------------------------------- */
 
-enum density_terms {
-    DENSITY_VALUE,      /* sum m w */
-    DENSITY_DERIVATIVE, /* and sum m (w + q w') */
-    DENSITY_ENERGY      /* and the same two with Z = U */
-};
+/* Like the lists of families.h: enum and table of stamps from one list. */
+#define DENSITY_LIST(TERMS, ...)                                                                   \
+    TERMS(DENSITY_VALUE, __VA_ARGS__)      /* sum m w */                                           \
+    TERMS(DENSITY_DERIVATIVE, __VA_ARGS__) /* and sum m (w + q w') */                              \
+    TERMS(DENSITY_ENERGY, __VA_ARGS__)     /* and the same two with Z = U */
+enum density_terms { DENSITY_LIST(FAMILY_SYMBOL, ) };
+enum { DENSITY_TERMS = 0 DENSITY_LIST(FAMILY_COUNTED, ) };
 
 /* Sums of a range, RANGE_MAX each, without the factor C/h. */
 struct density_sums {
@@ -38,23 +40,21 @@ typedef void density_loop(const struct kernel *kernel, const struct particles *p
 
 /* --- g = 1/sum V x^2 w and, for reconstruction, dv = g sum V (v_j - v_i) x w ------------------ */
 
-enum matrix_terms {
-    MATRIX_MOMENT, /* g */
-    MATRIX_BOTH,   /* g and dv */
-    MATRIX_SLOPE   /* dv alone: g belongs to the standard gradient */
-};
+#define MATRIX_LIST(TERMS, ...)                                                                    \
+    TERMS(MATRIX_MOMENT, __VA_ARGS__) /* g */                                                      \
+    TERMS(MATRIX_BOTH, __VA_ARGS__)   /* g and dv */                                               \
+    TERMS(MATRIX_SLOPE, __VA_ARGS__)  /* dv alone: g belongs to the standard gradient */
+enum matrix_terms { MATRIX_LIST(FAMILY_SYMBOL, ) };
+enum { MATRIX_TERMS = 0 MATRIX_LIST(FAMILY_COUNTED, ) };
 
 typedef void matrix_loop(const struct kernel *kernel, const struct particles *particles,
                          ptrdiff_t first, int len, ptrdiff_t D);
 
 /* --- gradients of the pairs (i, i+d), i = first .. first+pairs-1 ------------------------------ */
 
-enum pair_gradient {
-    PAIR_GRADIENT_MEAN,     /* mean of the gradients at h_i and h_j */
-    PAIR_GRADIENT_MAX,      /* one gradient at max(h_i, h_j) */
-    PAIR_GRADIENT_HARMONIC, /* one gradient at the harmonic mean of h_i and h_j */
-    PAIR_GRADIENT_BOTH      /* the gradients at h_i, in G, and at h_j, in G_j */
-};
+/* What a gradient loop finds: one gradient of the pair, in G, at a width of enum pair_width; or the
+ * gradients at each particle's own width, at h_i in G and at h_j in G_j (lagrangian). */
+enum { PAIR_WIDTH_OWN = PAIR_WIDTHS, PAIR_GRADIENTS };
 
 typedef void gradient_loop(const struct kernel *kernel, const struct particles *particles,
                            ptrdiff_t first, int pairs, ptrdiff_t d, double *G, double *G_j);
@@ -80,7 +80,7 @@ struct loops {
     /* what the pair forces read beside the particles */
     const struct kernel *kernel;
     enum formulation formulation;
-    enum pair_viscosity viscosity;
+    enum viscosity viscosity;
     enum energy energy;
     bool energy_element; /* Z = U, else Z = m */
     bool want_div_v;     /* time-dependent viscosity */

@@ -23,30 +23,20 @@ struct pair_side {
     double V;            /* volume Z/y */
     double h, h_inverse; /* support radius, and 1/h */
     double P, rho, c;    /* pressure, density of the equation of state, sound speed */
-    double alpha;        /* viscosity of the particle: PAIR_VARYING */
+    double alpha;        /* viscosity of the particle: time_dependent */
     double b, grad_h;    /* lagrangian: Z P/y^2 and 1 - f */
-    double slope;        /* PAIR_RECONSTRUCTED: e . (grad v) e along the pair; in 1D dv/dx */
+    double slope;        /* reconstructed: e . (grad v) e along the pair; in 1D dv/dx */
 };
 
 struct pair_terms {
     double i, j;
 };
 
-/* Kinds of viscosity that stand inside the pair expression. */
-enum pair_viscosity {
-    PAIR_INVISCID,
-    PAIR_UNIFORM,
-    PAIR_VARYING,
-    PAIR_RECONSTRUCTED,
-    PAIR_FADING,
-    PAIR_VISCOSITIES
-};
-
 /* The numbers of the viscosity, the same for all pairs. */
 struct pair_numbers {
-    double alpha, beta; /* not of PAIR_VARYING */
-    double beta_ratio;  /* PAIR_VARYING: beta/alpha, alpha the mean of the pair */
-    double near;        /* PAIR_RECONSTRUCTED: 1/eta, pairs closer than near * h are damped */
+    double alpha, beta; /* not of time_dependent */
+    double beta_ratio;  /* time_dependent: beta/alpha, alpha the mean of the pair */
+    double near;        /* reconstructed: 1/eta, pairs closer than near * h are damped */
 };
 
 /* --- pressure --------------------------------------------------------------------------------- */
@@ -121,23 +111,23 @@ static const double pair_fade_below = 0.01;
 /* The term m_i m_j PI G/2 that viscosity adds to a_i and to a_j alike (heat in halves), in the form
  * of Monaghan 1992: PI = (-alpha cbar mu + beta mu^2)/rhobar, mu = -hbar closing r/(r^2 + 0.01
  * hbar^2), hbar = (h_i + h_j)/4, 0 where the pair recedes. G: mean of both gradients. */
-ALWAYS_INLINE double pair_viscous(enum pair_viscosity viscosity, const struct pair_numbers *numbers,
+ALWAYS_INLINE double pair_viscous(enum viscosity viscosity, const struct pair_numbers *numbers,
                                   const struct pair_side *i, const struct pair_side *j, double r,
                                   double closing, double G)
 {
     double scale = 1;
-    const double w = viscosity == PAIR_RECONSTRUCTED
+    const double w = viscosity == VISCOSITY_RECONSTRUCTED
                          ? pair_closing_at_midpoint(i, j, r, closing, numbers->near, &scale)
                          : largest(closing, 0);
     /* mu = -t/D2; cbar and rhobar are halves of sums: alpha_half goes with the sum of c, and the
      * 1/2 of the heating with the sum of rho */
     const double h_bar = 0.25 * (i->h + j->h), c_sum = i->c + j->c;
     const double t = h_bar * r * w, D2 = (r * r + 0.01 * (h_bar * h_bar)) * scale;
-    const bool varying = viscosity == PAIR_VARYING;
+    const bool varying = viscosity == VISCOSITY_TIME_DEPENDENT;
     const double alpha_half = varying ? 0.25 * (i->alpha + j->alpha) : 0.5 * numbers->alpha;
     const double beta = varying ? 2 * numbers->beta_ratio * alpha_half : numbers->beta;
     const double c_seen =
-        viscosity == PAIR_FADING ? least(c_sum, w * (2 / pair_fade_below)) : c_sum;
+        viscosity == VISCOSITY_FADING ? least(c_sum, w * (2 / pair_fade_below)) : c_sum;
     return i->m * j->m * G * t * (alpha_half * c_seen * D2 + beta * t) /
            (D2 * D2 * (i->rho + j->rho));
 }

@@ -17,9 +17,9 @@ struct plan plan_make(const struct scheme *scheme, bool skip)
         .energy_sum = scheme->volume_element == VOLUME_ENERGY,
         .grad_h = scheme->formulation == FORMULATION_LAGRANGIAN,
         .matrix = scheme->gradient == GRADIENT_IA,
-        .own_gradient =
-            scheme->gradient == GRADIENT_STANDARD &&
-            (scheme->pair_width == PAIR_MEAN || scheme->formulation == FORMULATION_LAGRANGIAN),
+        .own_gradient = scheme->gradient == GRADIENT_STANDARD &&
+                        (scheme->pair_width == PAIR_WIDTH_MEAN ||
+                         scheme->formulation == FORMULATION_LAGRANGIAN),
         .slope = scheme->viscosity == VISCOSITY_RECONSTRUCTED,
         .viscosity = scheme->viscosity != VISCOSITY_NONE,
         .alpha = scheme->viscosity == VISCOSITY_TIME_DEPENDENT,
@@ -74,7 +74,7 @@ static void find_warnings(const struct scheme *scheme, char *text, size_t size)
             "eta = %g is beyond %g, where %s with gradient=%s turns linearly unstable: noise grows "
             "unless viscosity hides it",
             eta, limit, scheme->kernel.member.name,
-            gradient_family.members[scheme->gradient]->name);
+            scheme_gradient_family.members[scheme->gradient]->name);
     if (scheme->energy == ENERGY_TOTAL && scheme->viscosity == VISCOSITY_NONE)
         warn(text, size,
              "energy=total: should the flow get cold (u << v^2), U = E - p^2/2m loses digits");

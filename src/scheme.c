@@ -5,16 +5,12 @@
 
 #include "integrator.h"
 
-#define FAMILY(name, key, title)                                                                   \
-    static const char name##_key[] = key, name##_title[] = title;                                  \
-    static const struct member *const name##_members[] = {
-#define CHOICE(key, label, paper) &(const struct member){key, label, paper},
-#define FAMILY_END(name)                                                                           \
-    }                                                                                              \
-    ;                                                                                              \
-    const struct family name##_family = {name##_key, name##_title, name##_members,                 \
-                                         sizeof name##_members / sizeof *name##_members};
-#include "families.def"
+#define DESCRIPTOR(symbol, key, label, paper, ...)                                                 \
+    [symbol] = &(const struct member){key, label, paper},
+#define FAMILY(name, LIST, count, plural, title)                                                   \
+    static const struct member *const name##_members[count] = {LIST(DESCRIPTOR, )};                \
+    const struct family scheme_##name##_family = {plural, title, name##_members, count};
+FAMILY_LIST(FAMILY)
 
 /* Reports a value that is not in (least, most]. */
 static enum status out_of_range(struct error *error, const char *key, double value,
@@ -45,10 +41,10 @@ enum status scheme_check(const struct scheme *scheme, int dim, struct error *err
         return error_set(error, STATUS_BAD_INPUT,
                          "alpha_min = %g, alpha_max = %g: 0 <= alpha_min <= alpha_max is needed",
                          scheme->alpha_min, scheme->alpha_max);
-    if (scheme->pair_width != PAIR_MEAN && scheme->formulation == FORMULATION_LAGRANGIAN)
+    if (scheme->pair_width != PAIR_WIDTH_MEAN && scheme->formulation == FORMULATION_LAGRANGIAN)
         return error_set(error, STATUS_BAD_INPUT,
                          "pair_width=%s and formulation=lagrangian exclude each other: the "
                          "lagrangian form needs both particles' own gradients",
-                         pair_width_family.members[scheme->pair_width]->name);
+                         scheme_pair_width_family.members[scheme->pair_width]->name);
     return STATUS_OK;
 }

@@ -132,7 +132,7 @@ static enum status make_clouds(struct bench *bench, struct error *error)
         for (size_t i = 0; i < n; i++) {
             double x[3] = {0}, gradient[3];
             for (int a = 0; a < dim; a++) x[a] = cloud->x[a][i];
-            field[i] = gradient_study_field(FIELD_SMOOTH, dim, x, gradient);
+            field[i] = gradient_study_field(FUNCTION_SMOOTH, dim, x, gradient);
         }
         make_list(bench, dim, rng);
         if (n > most) most = n;
@@ -230,7 +230,7 @@ static enum status add_operator(struct bench *bench, const struct kernel *kernel
     const struct clouds_cloud *cloud = &bench->clouds[dim - 1];
     struct gradient_errors errors;
     if (gradient_study_errors(&subject, kernel, &bench->cloud_settings[dim - 1], cloud,
-                              FIELD_SMOOTH, &errors, error))
+                              FUNCTION_SMOOTH, &errors, error))
         return error->status;
     row->error = errors.interior_rms;
     for (enum variant v = STAMPED; v <= LIMIT; v++) {
@@ -273,8 +273,9 @@ static enum status set_up(struct bench *bench, const struct sweep *sweep, struct
     if (choose_kernels(bench, sweep, error) || make_clouds(bench, error)) return error->status;
     for (size_t k = 0; k < bench->kernel_count; k++) {
         const struct kernel *kernel = &bench->kernels[k];
-        for (size_t g = 0; g < gradient_family.n; g++)
-            if (add_solver(bench, kernel->member.name, gradient_family.members[g]->name, error))
+        for (size_t g = 0; g < scheme_gradient_family.n; g++)
+            if (add_solver(bench, kernel->member.name, scheme_gradient_family.members[g]->name,
+                           error))
                 return error->status;
         for (int dim = 1; dim <= KERNEL_DIM_MAX; dim++)
             for (size_t o = 0; o < operator_family.n; o++)

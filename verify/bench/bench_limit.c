@@ -28,17 +28,17 @@ ALWAYS_INLINE void sum_up(const struct kernel *kernel, kernel_shape *w, kernel_s
                              : dim == 2 ? sqrt(x[0] * x[0] + x[1] * x[1])
                                         : sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
             const double V = volume[m], Vf = V * f[m];
-            const double shape = vector == PAIR_GRADIENT ? 0 : w(kernel, q, dim);
-            const double factor = vector == PAIR_POSITION ? shape
-                                  : q > 0                 ? -dw(kernel, q, dim) / q
-                                                          : 0;
+            const double shape = vector == VECTOR_GRADIENT ? 0 : w(kernel, q, dim);
+            const double factor = vector == VECTOR_POSITION ? shape
+                                  : q > 0                   ? -dw(kernel, q, dim) / q
+                                                            : 0;
             for (int a = 0; a < dim; a++) {
                 const double p = factor * x[a];
                 lane[PF + a][k] += Vf * p;
                 lane[P + a][k] += V * p;
                 for (int b = 0; b < dim && matrix; b++) lane[PX + 3 * a + b][k] += V * p * x[b];
             }
-            if (vector == PAIR_NORMALISED) {
+            if (vector == VECTOR_NORMALISED) {
                 lane[W][k] += V * shape;
                 lane[WF][k] += Vf * shape;
                 for (int a = 0; a < dim; a++) lane[WX + a][k] += V * shape * x[a];
@@ -60,9 +60,9 @@ ALWAYS_INLINE void sum_up(const struct kernel *kernel, kernel_shape *w, kernel_s
     X(name, tag, vector, matrix, 1) X(name, tag, vector, matrix, 2) X(name, tag, vector, matrix, 3)
 /* The kinds of sums that the five operators need. */
 #define KINDS(X, name)                                                                             \
-    DIMENSIONS(X, name, plain, PAIR_GRADIENT, false)                                               \
-    DIMENSIONS(X, name, position, PAIR_POSITION, true)                                             \
-    DIMENSIONS(X, name, normalised, PAIR_NORMALISED, true)
+    DIMENSIONS(X, name, plain, VECTOR_GRADIENT, false)                                             \
+    DIMENSIONS(X, name, position, VECTOR_POSITION, true)                                           \
+    DIMENSIONS(X, name, normalised, VECTOR_NORMALISED, true)
 
 #define KERNEL(name, ...) KINDS(BODY, name)
 #include "kernels.def"
@@ -84,7 +84,7 @@ bench_limit_loop *bench_limit_find(const struct kernel *kernel, const struct ope
 bool bench_limit_gradient(const struct kernel *kernel, const struct operator_form *form, int dim,
                           const double *sums, double f_0, double h, double *gradient)
 {
-    const bool normalised = form->pair_vector == PAIR_NORMALISED;
+    const bool normalised = form->pair_vector == VECTOR_NORMALISED;
     double pf[3] = {0}, matrix[9] = {0}, inverse[9];
     for (int a = 0; a < dim; a++) {
         const double mean = normalised ? sums[P + a] / sums[W] : 0;

@@ -14,10 +14,10 @@
 /* ---- rates ---- */
 
 static const struct pair_forces_subject right[] = {
-    {{&standard, NAIVE_NONE}, FORMULATION_VANILLA_ICE, PAIR_RIGHT},
-    {{&standard, NAIVE_NONE}, FORMULATION_LAGRANGIAN, PAIR_RIGHT},
-    {{&ia, NAIVE_NONE}, FORMULATION_VANILLA_ICE, PAIR_RIGHT},
-    {{&ia, NAIVE_NONE}, FORMULATION_LAGRANGIAN, PAIR_RIGHT},
+    {{&standard, NAIVE_NONE}, FORMULATION_VANILLA_ICE, FORCES_RIGHT},
+    {{&standard, NAIVE_NONE}, FORMULATION_LAGRANGIAN, FORCES_RIGHT},
+    {{&ia, NAIVE_NONE}, FORMULATION_VANILLA_ICE, FORCES_RIGHT},
+    {{&ia, NAIVE_NONE}, FORMULATION_LAGRANGIAN, FORCES_RIGHT},
 };
 
 static size_t right_count(void)
@@ -36,7 +36,7 @@ static const char *name_of(const struct pair_forces_subject *subject)
     static int turn;
     turn = !turn;
     snprintf(name[turn], sizeof *name, "%s, %s", subject->gradient.form->member.name,
-             formulation_family.members[subject->formulation]->name);
+             scheme_formulation_family.members[subject->formulation]->name);
     return name[turn];
 }
 
@@ -55,7 +55,7 @@ static void measure_rates(struct check_run *run, const void *subject)
 
 #define PAIRS(form, formulation, fault)                                                            \
     (&(const struct pair_forces_subject){                                                          \
-        {&(form), NAIVE_NONE}, FORMULATION_##formulation, PAIR_##fault})
+        {&(form), NAIVE_NONE}, FORMULATION_##formulation, FORCES_##fault})
 
 static const struct check_mutant rates_mutants[] = {
     {"pair_gather", "G(h_i) for the mean: gather for symmetric",
@@ -72,7 +72,7 @@ static const struct check_mutant rates_mutants[] = {
     {"pair_own_matrix", "V_i for V_j with G(h_j)", PAIRS(ia, VANILLA_ICE, OWN_MATRIX)},
     {"pair_linear_exact", "linear_exact in the place of ia",
      &(const struct pair_forces_subject){
-         {&linear_exact, NAIVE_NONE}, FORMULATION_VANILLA_ICE, PAIR_RIGHT}},
+         {&linear_exact, NAIVE_NONE}, FORMULATION_VANILLA_ICE, FORCES_RIGHT}},
     {0},
 };
 
@@ -111,8 +111,10 @@ static double antisymmetry(const struct pair_forces_subject *subject, int dim, d
             double size = 0, sum = 0;
             const size_t k = s->n - 1 - i, l = s->n - 1 - j;
             for (int a = 0; a < dim; a++) {
-                const double other = subject->fault == PAIR_GATHER ? s->G[i][j][a] : -s->G[j][i][a];
-                const double back = subject->fault == PAIR_GATHER ? t->G[l][k][a] : -t->G[k][l][a];
+                const double other =
+                    subject->fault == FORCES_GATHER ? s->G[i][j][a] : -s->G[j][i][a];
+                const double back =
+                    subject->fault == FORCES_GATHER ? t->G[l][k][a] : -t->G[k][l][a];
                 size = fmax(size, fabs(s->G[i][j][a]) + fabs(s->G[j][i][a]));
                 sum = fmax(sum, fabs((s->G[i][j][a] + other) - (t->G[l][k][a] + back)));
             }
@@ -161,7 +163,7 @@ const struct check check_conservation_antisymmetry = {
 static void measure_defects(struct check_run *run, const void *subject)
 {
     static const struct pair_forces_subject exact = {
-        {&linear_exact, NAIVE_NONE}, FORMULATION_VANILLA_ICE, PAIR_RIGHT};
+        {&linear_exact, NAIVE_NONE}, FORMULATION_VANILLA_ICE, FORCES_RIGHT};
     const struct pair_forces_subject *momentum = subject ? subject : &exact;
     const struct pair_forces_subject *angular = subject ? subject : &right[2];
     const double least = 1e-5;

@@ -54,7 +54,7 @@ static double departure(const struct gradient_subject *subject, const struct ker
     for (size_t i = 0; ok && i < n; i++) {
         double x[3] = {0}, unused[3];
         for (int a = 0; a < dim; a++) x[a] = cloud->x[a][i];
-        memory[i] = gradient_study_field(FIELD_CUBIC, dim, x, unused);
+        memory[i] = gradient_study_field(FUNCTION_CUBIC, dim, x, unused);
         largest = fmax(largest, fabs(memory[i]));
     }
     ok = ok && !gradient_study_apply(subject, kernel, &cloud->cloud, memory, gradient, point, NULL);
@@ -98,7 +98,7 @@ static void measure_brute_force(struct check_run *run, const void *subject)
 /* With both kinds of volumes the worse error counts; on a lattice only exact ones promise anything.
  */
 static enum status errors_of(const struct gradient_subject *subject, size_t kernel_index,
-                             enum clouds_kind kind, int dim, enum gradient_field field,
+                             enum clouds_kind kind, int dim, enum gradient_function field,
                              struct gradient_errors *worst)
 {
     const struct clouds_settings settings = gradient_study_cloud(kind, dim);
@@ -129,20 +129,20 @@ static void measure_exactness(struct check_run *run, const void *subject)
     size_t kernel = 0;
     for (int dim = 1; dim <= 3; dim++)
         for (int kind = 0; kind < CLOUDS_KINDS; kind++, kernel++)
-            for (int field = FIELD_CONSTANT; field <= FIELD_LINEAR; field++) {
+            for (int field = FUNCTION_CONSTANT; field <= FUNCTION_LINEAR; field++) {
                 const bool everywhere = field ? promise->linear : promise->constant;
                 const bool lattice = kind == CLOUDS_LATTICE &&
                                      (field ? promise->linear_lattice : promise->constant_lattice);
                 struct gradient_errors errors;
                 if (!everywhere && !lattice) continue;
-                if (errors_of(s, kernel, (enum clouds_kind)kind, dim, (enum gradient_field)field,
+                if (errors_of(s, kernel, (enum clouds_kind)kind, dim, (enum gradient_function)field,
                               &errors)) {
                     check_measure(run, (double)NAN, 0, 0, "no memory");
                     continue;
                 }
                 const double scale = fmax(errors.condition, 1);
                 const char *names[] = {s->form->member.name,
-                                       gradient_study_field_name((enum gradient_field)field),
+                                       gradient_study_field_name((enum gradient_function)field),
                                        clouds_name((enum clouds_kind)kind)};
                 if (errors.inside)
                     check_measure(run, errors.interior, 1e-12 * scale, 1e-14 * scale,
@@ -222,7 +222,7 @@ const struct check check_gradient_exactness = {
 static void measure_assumption(struct check_run *run, const void *subject)
 {
     static const struct gradient_subject right = {&ia, NAIVE_NONE};
-    static const struct operator_form moment = {{"moment", "", ""}, PAIR_POSITION, false, false};
+    static const struct operator_form moment = {{"moment", "", ""}, VECTOR_POSITION, false, false};
     static const struct gradient_subject moment_subject = {&moment, NAIVE_NONE};
     const struct gradient_subject *s = subject ? subject : &right;
     for (int dim = 1; dim <= 3; dim++)
@@ -245,7 +245,7 @@ static void measure_assumption(struct check_run *run, const void *subject)
             for (size_t i = 0; ok && i < n; i++) {
                 double x[3] = {0};
                 for (int a = 0; a < dim; a++) x[a] = cloud.x[a][i];
-                one[i] = 1, f[i] = gradient_study_field(FIELD_LINEAR, dim, x, slope);
+                one[i] = 1, f[i] = gradient_study_field(FUNCTION_LINEAR, dim, x, slope);
             }
             ok = ok && !gradient_study_apply(s, &kernel, &cloud.cloud, one, g1, point, NULL) &&
                  !gradient_study_apply(s, &kernel, &cloud.cloud, f, g, point, NULL) &&

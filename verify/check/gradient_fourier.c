@@ -75,7 +75,7 @@ static double symbol(const struct gradient_subject *subject, const struct kernel
                 const double x[3] = {i * spacing, j * spacing, l * spacing};
                 const double r = sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
                 if (!(r > 0)) continue;
-                const double size = (subject->form->pair_vector == PAIR_POSITION
+                const double size = (subject->form->pair_vector == VECTOR_POSITION
                                          ? kernel_value(kernel, r, h, dim)
                                          : -kernel_dr(kernel, r, h, dim) / r) *
                                     pow(spacing, dim);

@@ -36,7 +36,7 @@ static double moved_difference(const struct gradient_subject *subject, const str
     for (size_t i = 0; ok && i < n; i++) {
         double x[3] = {0}, unused[3];
         for (int a = 0; a < dim; a++) x[a] = cloud.x[a][i];
-        m[i] = gradient_study_field(FIELD_SMOOTH, dim, x, unused);
+        m[i] = gradient_study_field(FUNCTION_SMOOTH, dim, x, unused);
         largest = fmax(largest, fabs(m[i]));
     }
     ok = ok && !gradient_study_apply(subject, kernel, &cloud.cloud, m, before, point, NULL);

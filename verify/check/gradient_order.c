@@ -46,7 +46,7 @@ static double interior_error(const struct gradient_subject *subject, const struc
         with_seed.seed = 5 + 3 * (unsigned long)k;
         enum status status = clouds_make(&with_seed, &cloud, NULL);
         if (!status)
-            status = gradient_study_errors(subject, kernel, &with_seed, &cloud, FIELD_SMOOTH,
+            status = gradient_study_errors(subject, kernel, &with_seed, &cloud, FUNCTION_SMOOTH,
                                            &errors, NULL);
         sum += status ? (double)NAN
                       : errors.interior_rms * errors.interior_rms / (cloud.h[0] * cloud.h[0]);

@@ -34,7 +34,7 @@ static size_t subject_count(void)
 {
     if (subject_total) return subject_total;
     struct scheme s = hydro_scheme();
-    for (int c = 0; c < 16 * (int)viscosity_family.n; c++) {
+    for (int c = 0; c < 16 * (int)scheme_viscosity_family.n; c++) {
         s.gradient = c & 1 ? GRADIENT_IA : GRADIENT_STANDARD;
         s.formulation = c & 2 ? FORMULATION_LAGRANGIAN : FORMULATION_VANILLA_ICE;
         s.volume_element = c & 4 ? VOLUME_ENERGY : VOLUME_MASS;
@@ -200,7 +200,7 @@ static void other_gamma(struct scene *scene)
 
 static void other_width(struct scene *scene)
 {
-    scene->scheme.pair_width = PAIR_HARMONIC;
+    scene->scheme.pair_width = PAIR_WIDTH_HARMONIC;
 }
 
 /* The mutants need a scheme that cannot be written as a constant: filled at first use. */

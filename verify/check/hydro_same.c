@@ -95,7 +95,8 @@ static void swapped_forms(struct scene *scene, struct hydro_state *state)
 {
     (void)state;
     if (scene->scheme.formulation == FORMULATION_VANILLA_ICE)
-        scene->scheme.pair_width = scene->scheme.pair_width == PAIR_MAX ? PAIR_MEAN : PAIR_MAX;
+        scene->scheme.pair_width =
+            scene->scheme.pair_width == PAIR_WIDTH_MAX ? PAIR_WIDTH_MEAN : PAIR_WIDTH_MAX;
 }
 
 struct same_subject {
@@ -194,7 +195,7 @@ static void measure_skip(struct check_run *run, const void *subject)
             scheme.energy = ENERGY_TOTAL;
             scheme.cfl = 0.8 / scheme.eta;
             scheme.h_method = H_PREDICTED;
-            scheme.pair_width = PAIR_MAX;
+            scheme.pair_width = PAIR_WIDTH_MAX;
         }
         if (c == 4 || c == 6) scheme.viscosity = VISCOSITY_TIME_DEPENDENT;
         if (c == 4) { /* wide, and with a pass of its own for the time step */
@@ -268,8 +269,8 @@ static void measure_stamped(struct check_run *run, const void *subject)
     struct error error;
     hydro_disordered(&state, 150);
     for (size_t k = 0; k < kernel_family.n; k++)
-        for (int c = 0; c < 2 * 2 * 2 * 2 * 3 * (int)viscosity_family.n && !check_decided(run);
-             c++) {
+        for (int c = 0;
+             c < 2 * 2 * 2 * 2 * 3 * (int)scheme_viscosity_family.n && !check_decided(run); c++) {
             struct scheme s = hydro_scheme();
             s.h_tolerance = 1e-10;
             hydro_set_kernel(&s, kernel_family.members[k]->name);

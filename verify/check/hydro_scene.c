@@ -127,10 +127,11 @@ struct scheme hydro_scheme(void)
 void hydro_describe(const struct scheme *s, char text[HYDRO_TEXT])
 {
     snprintf(text, HYDRO_TEXT, "%s eta %g %s %s %s viscosity %s energy %s width %s h %s %s",
-             s->kernel.member.name, s->eta, gradient_family.members[s->gradient]->name,
-             formulation_family.members[s->formulation]->name,
-             volume_element_family.members[s->volume_element]->name,
-             viscosity_family.members[s->viscosity]->name, energy_family.members[s->energy]->name,
-             pair_width_family.members[s->pair_width]->name,
-             h_method_family.members[s->h_method]->name, s->integrator->member.name);
+             s->kernel.member.name, s->eta, scheme_gradient_family.members[s->gradient]->name,
+             scheme_formulation_family.members[s->formulation]->name,
+             scheme_volume_element_family.members[s->volume_element]->name,
+             scheme_viscosity_family.members[s->viscosity]->name,
+             scheme_energy_family.members[s->energy]->name,
+             scheme_pair_width_family.members[s->pair_width]->name,
+             scheme_h_method_family.members[s->h_method]->name, s->integrator->member.name);
 }

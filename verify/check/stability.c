@@ -241,7 +241,7 @@ static void measure_steps(struct check_run *run, const void *subject)
     static const struct stepping right;
     const struct stepping *stepping = subject ? subject : &right;
     for (size_t k = 0; k < integrator_family.n; k++)
-        for (size_t method = 0; method < h_method_family.n; method++) {
+        for (size_t method = 0; method < scheme_h_method_family.n; method++) {
             struct scheme scheme = hydro_scheme();
             struct stability lattice;
             struct error error = {0};
@@ -263,7 +263,7 @@ static void measure_steps(struct check_run *run, const void *subject)
             const double size = hypot(x_theory, v_theory);
             check_measure(run, status ? 1 : hypot(x - x_theory, v - v_theory) / size, 1e-4, 1e-5,
                           "%s, h %s, c dt/dx %.3f", scheme.integrator->member.name,
-                          h_method_family.members[method]->name, dt);
+                          scheme_h_method_family.members[method]->name, dt);
         }
 }
 
@@ -309,7 +309,7 @@ static void measure_limit(struct check_run *run, const struct limit *limit)
     /* limits are declared to three digits */
     check_measure(run, count > 0 ? fabs(intervals[0].to / want - 1) : 1, 2e-3, 0,
                   limit->eta > 0 ? "%s %s, unstable from eta = %g" : "%s %s, stable up to 9",
-                  limit->kernel, gradient_family.members[limit->gradient]->name, limit->eta);
+                  limit->kernel, scheme_gradient_family.members[limit->gradient]->name, limit->eta);
 }
 
 static void measure_limits(struct check_run *run, const void *subject)

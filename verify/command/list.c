@@ -94,22 +94,22 @@ static const struct family *kernels(void)
     return &kernel_family;
 }
 
-#define PLAIN(name)                                                                                \
+#define PLAIN(name, from)                                                                          \
     static const struct family *name##_list(void)                                                  \
     {                                                                                              \
-        return &name##_family;                                                                     \
+        return &from##_family;                                                                     \
     }
-PLAIN(gradient)
-PLAIN(formulation)
-PLAIN(volume_element)
-PLAIN(integrator)
-PLAIN(operator)
-PLAIN(viscosity)
-PLAIN(energy)
-PLAIN(pair_width)
-PLAIN(h_method)
-PLAIN(field)
-PLAIN(norm)
+PLAIN(gradient, scheme_gradient)
+PLAIN(formulation, scheme_formulation)
+PLAIN(volume_element, scheme_volume_element)
+PLAIN(integrator, integrator)
+PLAIN(operator, operator)
+PLAIN(viscosity, scheme_viscosity)
+PLAIN(energy, scheme_energy)
+PLAIN(pair_width, scheme_pair_width)
+PLAIN(h_method, scheme_h_method)
+PLAIN(field, field)
+PLAIN(norm, norm)
 
 static const struct family *(*const lists[])(void) = {cases,
                                                       kernels,

@@ -17,32 +17,33 @@ const void *gradient_study_subject(size_t i)
     return &subjects[i];
 }
 
-const char *gradient_study_field_name(enum gradient_field field)
+const char *gradient_study_field_name(enum gradient_function field)
 {
     static const char *const names[] = {"constant", "linear", "quadratic", "cubic", "smooth"};
     return names[field];
 }
 
 /* With s = k.x + 0.3: 2.385, then s, s^2 + x0 ..., s^3 + ..., each with all mixed terms. */
-double gradient_study_field(enum gradient_field field, int dim, const double *x, double *gradient)
+double gradient_study_field(enum gradient_function field, int dim, const double *x,
+                            double *gradient)
 {
     static const double k[3] = {1.8137, -0.7213, 1.2391}, l[3] = {-0.4729, 1.1213, 0.6173};
     double s = 0.3191, t = -0.2713, f = 0, ds = 0, dt = 0;
     for (int a = 0; a < dim; a++) s += k[a] * x[a], t += l[a] * x[a];
     switch (field) {
-    case FIELD_CONSTANT:
+    case FUNCTION_CONSTANT:
         f = 2.385;
         break;
-    case FIELD_LINEAR:
+    case FUNCTION_LINEAR:
         f = 2.385 + s, ds = 1;
         break;
-    case FIELD_QUADRATIC:
+    case FUNCTION_QUADRATIC:
         f = 2.385 + s * t + 0.37 * s * s, ds = t + 0.74 * s, dt = s;
         break;
-    case FIELD_CUBIC:
+    case FUNCTION_CUBIC:
         f = 2.385 + s * s * t + 0.23 * t * t * t, ds = 2 * s * t, dt = s * s + 0.69 * t * t;
         break;
-    case FIELD_SMOOTH:
+    case FUNCTION_SMOOTH:
         f = 2.385 + sin(s) * exp(t), ds = cos(s) * exp(t), dt = sin(s) * exp(t);
     }
     for (int a = 0; a < dim; a++) gradient[a] = ds * k[a] + dt * l[a];
@@ -69,7 +70,7 @@ enum status gradient_study_apply(const struct gradient_subject *subject,
 enum status gradient_study_errors(const struct gradient_subject *subject,
                                   const struct kernel *kernel,
                                   const struct clouds_settings *settings,
-                                  const struct clouds_cloud *cloud, enum gradient_field field,
+                                  const struct clouds_cloud *cloud, enum gradient_function field,
                                   struct gradient_errors *errors, struct error *error)
 {
     const size_t n = cloud->cloud.points.n;

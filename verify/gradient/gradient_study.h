@@ -17,9 +17,16 @@ size_t gradient_study_subject_count(void);
 const void *gradient_study_subject(size_t i);
 
 /* Fields of high entropy: mixed polynomials of full degree 0..3 and smooth ones. */
-enum gradient_field { FIELD_CONSTANT, FIELD_LINEAR, FIELD_QUADRATIC, FIELD_CUBIC, FIELD_SMOOTH };
-double gradient_study_field(enum gradient_field field, int dim, const double *x, double *gradient);
-const char *gradient_study_field_name(enum gradient_field field);
+enum gradient_function {
+    FUNCTION_CONSTANT,
+    FUNCTION_LINEAR,
+    FUNCTION_QUADRATIC,
+    FUNCTION_CUBIC,
+    FUNCTION_SMOOTH
+};
+double gradient_study_field(enum gradient_function field, int dim, const double *x,
+                            double *gradient);
+const char *gradient_study_field_name(enum gradient_function field);
 
 struct gradient_errors {
     double interior, edge; /* largest |gradient - exact| h / max|f|; NaN where a gradient is */
@@ -39,7 +46,7 @@ enum status gradient_study_apply(const struct gradient_subject *subject,
 enum status gradient_study_errors(const struct gradient_subject *subject,
                                   const struct kernel *kernel,
                                   const struct clouds_settings *settings,
-                                  const struct clouds_cloud *cloud, enum gradient_field field,
+                                  const struct clouds_cloud *cloud, enum gradient_function field,
                                   struct gradient_errors *errors, struct error *error);
 
 /* Points along an axis in the quick checks, and the settings of a quick cloud. */

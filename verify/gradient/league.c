@@ -22,7 +22,7 @@ static const struct {
             {2.4, {10, 12, 14, 17}, 22}};
 
 static enum status errors_on(const struct gradient_subject *subject, const struct kernel *kernel,
-                             struct clouds_settings settings, enum gradient_field field,
+                             struct clouds_settings settings, enum gradient_function field,
                              struct gradient_errors *errors, struct error *error)
 {
     struct clouds_cloud cloud;
@@ -39,9 +39,9 @@ static enum status degree_of(const struct gradient_subject *subject, const struc
                              struct error *error)
 {
     struct gradient_errors errors;
-    for (*degree = -1; *degree < FIELD_CUBIC; ++*degree) {
+    for (*degree = -1; *degree < FUNCTION_CUBIC; ++*degree) {
         const enum status status = errors_on(subject, kernel, *settings,
-                                             (enum gradient_field)(*degree + 1), &errors, error);
+                                             (enum gradient_function)(*degree + 1), &errors, error);
         if (status) return status;
         if (!(errors.interior <= 1e-12 * fmax(errors.condition, 1))) break;
     }
@@ -58,7 +58,7 @@ static enum status order_of(const struct gradient_subject *subject, const struct
         settings.side = plan[settings.dim].side[l];
         spacing[l] = 1 / (double)settings.side;
         const enum status status =
-            errors_on(subject, kernel, settings, FIELD_SMOOTH, &errors, error);
+            errors_on(subject, kernel, settings, FUNCTION_SMOOTH, &errors, error);
         if (status) return status;
         value[l] = errors.interior_rms / spacing[l]; /* was in units of max|f|/h */
     }
@@ -99,7 +99,7 @@ static enum status measure(const struct operator_form *form, int dim, struct lea
                            struct error *error)
 {
     const struct gradient_subject subject = {form, NAIVE_NONE};
-    const struct pair_forces_subject forces = {subject, FORMULATION_VANILLA_ICE, PAIR_RIGHT};
+    const struct pair_forces_subject forces = {subject, FORMULATION_VANILLA_ICE, FORCES_RIGHT};
     struct clouds_settings lattice = {CLOUDS_LATTICE, dim, plan[dim].side[1], 0.2,
                                       plan[dim].eta,  3};
     struct clouds_settings disordered = lattice;
@@ -113,7 +113,7 @@ static enum status measure(const struct operator_form *form, int dim, struct lea
     if (!status) status = degree_of(&subject, &kernel, &disordered, &row->degree_disordered, error);
     if (!status) status = order_of(&subject, &kernel, lattice, &row->order_lattice, error);
     if (!status) status = order_of(&subject, &kernel, disordered, &row->order_disordered, error);
-    if (!status) status = errors_on(&subject, &kernel, disordered, FIELD_SMOOTH, &errors, error);
+    if (!status) status = errors_on(&subject, &kernel, disordered, FUNCTION_SMOOTH, &errors, error);
     if (!status) status = cost_of(form, &kernel, disordered, row, error);
     if (!status && !pair_forces_rates(&forces, dim, 47, &rates))
         status = error_set(error, STATUS_ENVIRONMENT, "no memory for a state");

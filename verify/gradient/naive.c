@@ -90,7 +90,8 @@ void naive_gradient(const struct operator_form *form, const struct kernel *kerne
                     double *gradient)
 {
     const int dim = cloud->points.dim;
-    const bool normalised = form->pair_vector == PAIR_NORMALISED && fault != NAIVE_NO_NORMALISATION;
+    const bool normalised =
+        form->pair_vector == VECTOR_NORMALISED && fault != NAIVE_NO_NORMALISATION;
     const bool corrected = form->corrected && fault != NAIVE_NO_GRADIENT_CORRECTION;
     struct pair pair;
     real S = 0, K[3] = {0};
@@ -108,7 +109,7 @@ void naive_gradient(const struct operator_form *form, const struct kernel *kerne
         const real value = pair.f - (subtracted && fault != NAIVE_NO_SUBTRACTION ? f[i] : 0);
         for (int a = 0; a < dim; a++) {
             const real slope = pair.r > 0 ? -pair.x[a] / pair.r * pair.dW : 0;
-            real p = form->pair_vector == PAIR_POSITION ? pair.x[a] * pair.W : slope;
+            real p = form->pair_vector == VECTOR_POSITION ? pair.x[a] * pair.W : slope;
             if (normalised) p = (slope - pair.W / S * K[a]) / S;
             if (fault == NAIVE_SIGN) p = -p;
             sum[a] += pair.V * value * p;

@@ -44,10 +44,9 @@ bool pair_forces_state(struct pair_forces_state *s, const struct kernel *kernel,
 bool pair_forces_gradients(struct pair_forces_state *s, const struct gradient_subject *subject,
                            const struct kernel *kernel)
 {
-    struct operator_point point[PAIR_FORCES_MAX];
+    struct operator_point point[FORCES_MAX];
     for (size_t j = 0; j < s->n; j++) {
-        double unit[PAIR_FORCES_MAX] = {0},
-               g[3][PAIR_FORCES_MAX], *const gradient[3] = {g[0], g[1], g[2]};
+        double unit[FORCES_MAX] = {0}, g[3][FORCES_MAX], *const gradient[3] = {g[0], g[1], g[2]};
         unit[j] = 1 / s->cloud.volume[j];
         if (gradient_study_apply(subject, kernel, &s->cloud.cloud, unit, gradient, point, NULL))
             return false;
@@ -72,20 +71,20 @@ static void pair_force(const struct pair_forces_state *s, const struct pair_forc
     for (int a = 0; a < s->dim; a++) {
         const double own = s->G[i][j][a];
         double other = -s->G[j][i][a], v = s->v[a][i] - s->v[a][j];
-        if (fault == PAIR_PLUS) other = -other;
-        if (fault == PAIR_GATHER) other = own;
-        if (fault == PAIR_OWN_MATRIX) other *= s->cloud.volume[j] / s->cloud.volume[i];
-        if (fault == PAIR_HEATING_SIGN && i % 10 == 3) v = -v;
+        if (fault == FORCES_PLUS) other = -other;
+        if (fault == FORCES_GATHER) other = own;
+        if (fault == FORCES_OWN_MATRIX) other *= s->cloud.volume[j] / s->cloud.volume[i];
+        if (fault == FORCES_HEATING_SIGN && i % 10 == 3) v = -v;
         const double mean = 0.5 * (own + other);
         if (lagrangian) {
-            const double fi = s->f[i], fj = fault == PAIR_OWN_F ? fi : s->f[j];
+            const double fi = s->f[i], fj = fault == FORCES_OWN_F ? fi : s->f[j];
             const double A = fi * P[i] / (rho[i] * rho[i]), B = fj * P[j] / (rho[j] * rho[j]);
             force[a] = -mm * (A * own + B * other);
-            *heating += mm * (fault == PAIR_NO_F ? A / fi : A) * v * own;
+            *heating += mm * (fault == FORCES_NO_F ? A / fi : A) * v * own;
         } else {
-            const double pressure = P[i] + (fault == PAIR_OWN_PRESSURE ? P[i] : P[j]);
+            const double pressure = P[i] + (fault == FORCES_OWN_PRESSURE ? P[i] : P[j]);
             force[a] = -mm * pressure / (rho[i] * rho[j]) *
-                       (fault == PAIR_HALF_IN_FORCE ? 2 * mean : mean);
+                       (fault == FORCES_HALF_IN_FORCE ? 2 * mean : mean);
             *heating += mm * P[i] / (rho[i] * rho[j]) * v * mean;
         }
     }

@@ -9,15 +9,15 @@
 #include "scheme.h"
 
 enum pair_fault {
-    PAIR_RIGHT,
-    PAIR_GATHER,        /* G(h_i) for the mean */
-    PAIR_HALF_IN_FORCE, /* mean without the 1/2 in the force, with it in the heating */
-    PAIR_PLUS,          /* difference for sum of the two gradients */
-    PAIR_OWN_F,         /* f_i in both terms of the Lagrangian force */
-    PAIR_NO_F,          /* no f in the heating */
-    PAIR_OWN_PRESSURE,  /* P_i for P_i + P_j */
-    PAIR_HEATING_SIGN,  /* v_j - v_i in the heating of one of ten points */
-    PAIR_OWN_MATRIX,    /* G(h_j) of particle j divided by the volume of i */
+    FORCES_RIGHT,
+    FORCES_GATHER,        /* G(h_i) for the mean */
+    FORCES_HALF_IN_FORCE, /* mean without the 1/2 in the force, with it in the heating */
+    FORCES_PLUS,          /* difference for sum of the two gradients */
+    FORCES_OWN_F,         /* f_i in both terms of the Lagrangian force */
+    FORCES_NO_F,          /* no f in the heating */
+    FORCES_OWN_PRESSURE,  /* P_i for P_i + P_j */
+    FORCES_HEATING_SIGN,  /* v_j - v_i in the heating of one of ten points */
+    FORCES_OWN_MATRIX,    /* G(h_j) of particle j divided by the volume of i */
 };
 
 struct pair_forces_subject {
@@ -26,23 +26,23 @@ struct pair_forces_subject {
     enum pair_fault fault;
 };
 
-enum { PAIR_FORCES_MAX = 64 };
+enum { FORCES_MAX = 64 };
 
 struct pair_forces_state {
     int dim;
     size_t n;
     struct clouds_cloud cloud; /* volume = m/rho, h = eta volume^(1/dim) */
-    double m[PAIR_FORCES_MAX], v[3][PAIR_FORCES_MAX], P[PAIR_FORCES_MAX], rho[PAIR_FORCES_MAX];
-    double f[PAIR_FORCES_MAX];                     /* grad-h factors */
-    double G[PAIR_FORCES_MAX][PAIR_FORCES_MAX][3]; /* G_ij(h_i) */
-    double condition;                              /* largest */
+    double m[FORCES_MAX], v[3][FORCES_MAX], P[FORCES_MAX], rho[FORCES_MAX];
+    double f[FORCES_MAX];                /* grad-h factors */
+    double G[FORCES_MAX][FORCES_MAX][3]; /* G_ij(h_i) */
+    double condition;                    /* largest */
 };
 
 struct pair_forces_rates { /* of total momentum, angular momentum, energy, over sums of |terms| */
     double momentum, angular, energy;
 };
 
-/* A jittered cloud of at most PAIR_FORCES_MAX points with random masses, pressures and velocities;
+/* A jittered cloud of at most FORCES_MAX points with random masses, pressures and velocities;
  * free its cloud with clouds_free. False: no memory. */
 bool pair_forces_state(struct pair_forces_state *state, const struct kernel *kernel, int dim,
                        unsigned long seed);

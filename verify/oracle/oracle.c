@@ -210,9 +210,9 @@ static long double mean_gradient(const struct oracle *oracle, const struct oracl
                                  const struct oracle_particle *b, long double x)
 {
     switch (oracle->scheme.pair_width) {
-    case PAIR_MAX:
+    case PAIR_WIDTH_MAX:
         return single_gradient(oracle, a, b, x, larger(a->width, b->width));
-    case PAIR_HARMONIC:
+    case PAIR_WIDTH_HARMONIC:
         return single_gradient(oracle, a, b, x, 2 * a->width * b->width / (a->width + b->width));
     default:
         return (gradient(oracle, x, a->width, a->C) + gradient(oracle, x, b->width, b->C)) / 2;

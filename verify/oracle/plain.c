@@ -222,8 +222,8 @@ static enum status check(const struct scene *scene, struct error *error)
     if (scene->dim == 1 && strcmp(s->kernel.member.name, "cubic_spline") == 0 &&
         s->gradient == GRADIENT_STANDARD && s->formulation == FORMULATION_VANILLA_ICE &&
         s->volume_element == VOLUME_MASS && s->viscosity <= VISCOSITY_CONSTANT &&
-        s->energy == ENERGY_INTERNAL && s->pair_width == PAIR_MEAN && s->h_method == H_NEWTON &&
-        strcmp(s->integrator->member.name, "modified_leapfrog") == 0)
+        s->energy == ENERGY_INTERNAL && s->pair_width == PAIR_WIDTH_MEAN &&
+        s->h_method == H_NEWTON && strcmp(s->integrator->member.name, "modified_leapfrog") == 0)
         return STATUS_OK;
     return error_set(error, STATUS_BAD_INPUT,
                      "plain: only cubic_spline standard vanilla_ice mass, viscosity none or "

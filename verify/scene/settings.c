@@ -281,10 +281,10 @@ enum status settings_resolve(struct settings *settings, int dim, struct scheme *
          : quadratic            ? H_PREDICTED
                                 : H_CORRECTED);
     fill(settings, SETTING_pair_width, 0,
-         !vanilla || !predicted  ? PAIR_MEAN
-         : reconstructed         ? PAIR_HARMONIC
-         : quadratic && standard ? PAIR_MAX
-                                 : PAIR_MEAN);
+         !vanilla || !predicted  ? PAIR_WIDTH_MEAN
+         : reconstructed         ? PAIR_WIDTH_HARMONIC
+         : quadratic && standard ? PAIR_WIDTH_MAX
+                                 : PAIR_WIDTH_MEAN);
     /* steps that are stable with this much viscosity, and not needed without */
     const int viscosity = CHOICE_OF(viscosity);
     const double most_alpha =

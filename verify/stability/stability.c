@@ -82,7 +82,7 @@ enum status stability_begin(struct stability *lattice, const struct scheme *sche
     if (scheme->viscosity != VISCOSITY_NONE && scheme->viscosity != VISCOSITY_CONSTANT)
         return error_set(error, STATUS_BAD_INPUT,
                          "linear stability: viscosity %s is not linear; allowed: none constant",
-                         viscosity_family.members[scheme->viscosity]->name);
+                         scheme_viscosity_family.members[scheme->viscosity]->name);
     if (!find_width(scheme, &lattice->h) || lattice->h > STABILITY_REACH_MAX)
         return error_set(error, STATUS_BAD_INPUT, "linear stability: eta = %g is too wide",
                          scheme->eta);

@@ -205,7 +205,7 @@ static json_t *growth_row(const char *kernel, enum gradient gradient)
         json_array_append_new(growth, isnan(rate) ? json_null() : result_number(rate));
     }
     return json_pack("{s:s, s:s, s:o}", "kernel", kernel, "gradient",
-                     gradient_family.members[gradient]->name, "growth", growth);
+                     scheme_gradient_family.members[gradient]->name, "growth", growth);
 }
 
 /* alpha > 0: viscosity on half of the pairs, and negative growth is damping. */
@@ -226,8 +226,8 @@ static json_t *wave_row(const char *kernel, enum gradient gradient, double eta, 
         json_array_append_new(growth, result_number(rate));
     }
     return json_pack("{s:s, s:s, s:f, s:f, s:o, s:o, s:o}", "kernel", kernel, "gradient",
-                     gradient_family.members[gradient]->name, "eta", eta, "alpha", alpha, "kappa",
-                     kappa, "frequency", frequency, "growth", growth);
+                     scheme_gradient_family.members[gradient]->name, "eta", eta, "alpha", alpha,
+                     "kappa", kappa, "frequency", frequency, "growth", growth);
 }
 
 /* Growth over eta and wavenumber, row by row of the wavenumber. */
@@ -251,8 +251,8 @@ static json_t *map_of(const char *kernel, enum gradient gradient)
             json_array_append_new(growth, result_number(fmax(0, rates[i][j])));
     }
     return json_pack("{s:s, s:s, s:o, s:o, s:o}", "kernel", kernel, "gradient",
-                     gradient_family.members[gradient]->name, "eta", eta, "kappa", kappa, "growth",
-                     growth);
+                     scheme_gradient_family.members[gradient]->name, "eta", eta, "kappa", kappa,
+                     "growth", growth);
 }
 
 json_t *stress_linear_atlas(void)

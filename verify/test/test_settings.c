@@ -41,12 +41,12 @@ static void defaults_are_the_fastest_scheme(void **state)
     near_relative(s.alpha, 0.75, 1e-15);
     near_relative(s.beta, 1.5, 1e-15);
     assert_int_equal(s.energy, ENERGY_TOTAL);
-    assert_int_equal(s.pair_width, PAIR_MAX);
+    assert_int_equal(s.pair_width, PAIR_WIDTH_MAX);
     assert_int_equal(s.h_method, H_PREDICTED);
     resolve(&settings, &s, 2, "gradient=ia", "viscosity=reconstructed");
-    assert_int_equal(s.pair_width, PAIR_HARMONIC);
+    assert_int_equal(s.pair_width, PAIR_WIDTH_HARMONIC);
     resolve(&settings, &s, 1, "formulation=lagrangian");
-    assert_int_equal(s.pair_width, PAIR_MEAN);
+    assert_int_equal(s.pair_width, PAIR_WIDTH_MEAN);
 }
 
 static void textbook_scheme_has_no_surprises(void **state)
@@ -59,7 +59,7 @@ static void textbook_scheme_has_no_surprises(void **state)
     near_relative(s.alpha, 1, 1e-15);
     near_relative(s.beta, 2, 1e-15);
     assert_int_equal(s.energy, ENERGY_INTERNAL);
-    assert_int_equal(s.pair_width, PAIR_MEAN);
+    assert_int_equal(s.pair_width, PAIR_WIDTH_MEAN);
     assert_int_equal(s.h_method, H_NEWTON);
     resolve(&settings, &s, 2, "alpha=1.5", "alpha=0.5"); /* the last one counts */
     near_relative(s.beta, 1, 1e-15);

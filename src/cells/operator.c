@@ -5,8 +5,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "kernel_loop.h"
-#include "loop.h"
+#include "shapes.h"
+#include "stamp.h"
 #include "matrix.h"
 
 #define OPERATOR(name, vectors, difference, corrected, label, paper)                               \
@@ -51,7 +51,7 @@ enum { WORK_ARRAYS = 12 };
 struct task {
     const struct operator_settings *settings;
     const struct neighbours *neighbours;
-    struct kernel_loops loops;
+    struct shapes shapes;
     size_t fields;
     double *sorted;           /* (2 + fields) * n: volume, h, fields, in sorted order */
     const double *volume, *h; /* into sorted */
@@ -267,27 +267,28 @@ ALWAYS_INLINE uint32_t point_gradient(int dim, const struct task *task, struct w
     const size_t n = select_neighbours(dim, task, work, at, h, (uint32_t)s, &inside);
     double matrix[9], inverse[9] = {0};
 
-    if (form->pair_vector != PAIR_GRADIENT || diagnosed) task->loops.w(kernel, n, work->q, work->w);
+    if (form->pair_vector != VECTOR_GRADIENT || diagnosed)
+        task->shapes.w(kernel, n, work->q, work->w);
     if (diagnosed && !form->corrected) {
         position_vectors(dim, n, work);
         sum_matrix(dim, n, work->p, work->x, matrix);
     }
-    if (form->pair_vector == PAIR_POSITION) {
+    if (form->pair_vector == VECTOR_POSITION) {
         position_vectors(dim, n, work);
     } else {
-        task->loops.dw(kernel, n, work->q, work->dw);
+        task->shapes.dw(kernel, n, work->q, work->dw);
         gradient_vectors(dim, n, work);
-        if (form->pair_vector == PAIR_NORMALISED) normalise_vectors(dim, n, work);
+        if (form->pair_vector == VECTOR_NORMALISED) normalise_vectors(dim, n, work);
     }
     double factor = 1 / h;
     bool invertible = true;
     if (form->corrected) {
         sum_matrix(dim, n, work->p, work->x, matrix);
         invertible = matrix_invert(dim, matrix, inverse);
-    } else if (form->pair_vector != PAIR_NORMALISED) { /* W = C h^-d w; x is in units of h */
+    } else if (form->pair_vector != VECTOR_NORMALISED) { /* W = C h^-d w; x is in units of h */
         factor *= kernel->constant[dim];
         for (int a = 0; a < dim; a++) factor /= h;
-        if (form->pair_vector == PAIR_POSITION) factor *= h * h;
+        if (form->pair_vector == VECTOR_POSITION) factor *= h * h;
     }
 
     const size_t i = nb->order[s];
@@ -408,7 +409,7 @@ enum status operator_apply(const struct operator_settings *settings, const struc
     const size_t n = nb->n;
     struct task task = {.settings = settings,
                         .neighbours = nb,
-                        .loops = kernel_loop_find(settings->kernel, nb->dim, !settings->unstamped),
+                        .shapes = shapes_of(settings->kernel, nb->dim, !settings->unstamped),
                         .fields = fields,
                         .sorted = malloc((2 + fields) * (n + 1) * sizeof(double)),
                         .gradient = gradient,

@@ -20,9 +20,9 @@
 #include "neighbours.h"
 
 enum pair_vector {
-    PAIR_GRADIENT,   /* grad_i W = -(x/|x|) dW/dr */
-    PAIR_POSITION,   /* x W */
-    PAIR_NORMALISED, /* (grad_i W - (W/S) sum_k V_k grad_i W_k)/S */
+    VECTOR_GRADIENT,   /* grad_i W = -(x/|x|) dW/dr */
+    VECTOR_POSITION,   /* x W */
+    VECTOR_NORMALISED, /* (grad_i W - (W/S) sum_k V_k grad_i W_k)/S */
 };
 
 struct operator_form {

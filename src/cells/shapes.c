@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "kernel_loop.h"
+#include "shapes.h"
 
 #include <math.h>
 
-#include "loop.h"
+#include "stamp.h"
 
 #define BODY(function, shape, dim, attributes)                                                     \
     attributes static void function(const struct kernel *kernel, size_t n,                         \
@@ -36,18 +36,15 @@ BODY(any_dw_3, kernel->dw, 3, )
             name##_w_3, name##_dw_3                                                                \
         }                                                                                          \
     }
-static const struct kernel_loops any[KERNEL_DIM_MAX] = LOOPS(any);
-static const struct kernel_loops stamps[][KERNEL_DIM_MAX] = {
+static const struct shapes any[KERNEL_DIM_MAX] = LOOPS(any);
+static const struct shapes stamps[][KERNEL_DIM_MAX] = {
 #define KERNEL(name, ...) LOOPS(name),
 #include "kernels.def"
 #undef KERNEL
 };
 
-struct kernel_loops kernel_loop_find(const struct kernel *kernel, int dim, bool stamped)
+struct shapes shapes_of(const struct kernel *kernel, int dim, bool stamped)
 {
-    for (size_t i = 0; stamped && i < kernel_family.n; i++) {
-        const struct kernel *built_in = (const struct kernel *)kernel_family.members[i];
-        if (built_in->w == kernel->w && built_in->dw == kernel->dw) return stamps[i][dim - 1];
-    }
-    return any[dim - 1];
+    const int stamp = stamped ? kernel_stamp(kernel) : -1;
+    return stamp < 0 ? any[dim - 1] : stamps[stamp][dim - 1];
 }

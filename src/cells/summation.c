@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "kernel_loop.h"
+#include "shapes.h"
 
 enum { ITERATIONS_MAX = 200, REACHES_MAX = 200 };
 
@@ -17,7 +17,7 @@ struct work {
 struct task {
     const struct summation *of;
     const struct neighbours *neighbours;
-    struct kernel_loops loops;
+    struct shapes shapes;
     double *h, *rho;
 };
 
@@ -58,9 +58,9 @@ static double mass_inside(const struct task *task, struct work *work, size_t n, 
     const double constant = kernel->constant[task->neighbours->dim];
     double sum = 0, derivative = 0;
     for (size_t k = 0; k < n; k++) work->q[k] = work->r[k] / h;
-    task->loops.w(kernel, n, work->q, work->value);
+    task->shapes.w(kernel, n, work->q, work->value);
     for (size_t k = 0; k < n; k++) sum += work->m[k] * work->value[k];
-    task->loops.dw(kernel, n, work->q, work->value);
+    task->shapes.dw(kernel, n, work->q, work->value);
     for (size_t k = 0; k < n; k++) derivative -= work->m[k] * work->value[k] * work->q[k];
     *slope = constant * derivative;
     return constant * sum;
@@ -180,7 +180,7 @@ enum status summation_solve(const struct summation *summation, double *h, double
     if (status) return status;
     if ((status = neighbours_create(&summation->points, &nb, error))) return status;
     task.neighbours = nb;
-    task.loops = kernel_loop_find(summation->kernel, nb->dim, true);
+    task.shapes = shapes_of(summation->kernel, nb->dim, true);
     const ptrdiff_t blocks = (ptrdiff_t)nb->blocks;
 #pragma omp parallel num_threads(summation->threads)
     {

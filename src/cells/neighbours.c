@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "loop.h"
+#include "stamp.h"
 
 enum { BLOCK = NEIGHBOURS_BLOCK, FAN = 8, IMAGES_MAX = 8 };
 

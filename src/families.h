@@ -1,0 +1,82 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Families whose members are choices in the equations, not functions of their own. The list of a
+ * family is read for its enum (here), its descriptors (scheme.c) and its axis in the tables of
+ * stamped loops: a member cannot be forgotten in one of them, nor stand at another's place.
+ *
+ * A member: CHOICE(symbol, name, label, paper); a list hands on what follows the first argument, so
+ * that lists nest: FORMULATION_LIST(F, a) makes F(symbol, name, label, paper, a) of each member. */
+#ifndef SPHPROOF_FAMILIES_H
+#define SPHPROOF_FAMILIES_H
+
+#define GRADIENT_LIST(CHOICE, ...)                                                                 \
+    CHOICE(GRADIENT_STANDARD, "standard", "derivative of the kernel, e_ij dW/dr", "Monaghan 1992", \
+           __VA_ARGS__)                                                                            \
+    CHOICE(GRADIENT_IA, "ia", "Integral Approach, conservative form, C x W",                       \
+           "Garcia-Senz, Cabezon & Escartin 2012", __VA_ARGS__)
+
+#define FORMULATION_LIST(CHOICE, ...)                                                              \
+    CHOICE(FORMULATION_VANILLA_ICE, "vanilla_ice", "(P_i + P_j)/(rho_i rho_j), lambda = 1",        \
+           "Wadsley, Keller & Quinn 2017", __VA_ARGS__)                                            \
+    CHOICE(FORMULATION_LAGRANGIAN, "lagrangian", "f_i P_i/rho_i^2 + f_j P_j/rho_j^2 with grad-h",  \
+           "Springel & Hernquist 2002", __VA_ARGS__)
+
+#define VOLUME_ELEMENT_LIST(CHOICE, ...)                                                           \
+    CHOICE(VOLUME_MASS, "mass", "Z = m: density, standard SPH", "Monaghan 1992", __VA_ARGS__)      \
+    CHOICE(VOLUME_ENERGY, "energy", "Z = U: energy density, density-independent SPH",              \
+           "Saitoh & Makino 2013", __VA_ARGS__)
+
+#define VISCOSITY_LIST(CHOICE, ...)                                                                \
+    CHOICE(VISCOSITY_NONE, "none", "none", "", __VA_ARGS__)                                        \
+    CHOICE(VISCOSITY_CONSTANT, "constant", "fixed alpha and beta", "Monaghan 1992", __VA_ARGS__)   \
+    CHOICE(VISCOSITY_TIME_DEPENDENT, "time_dependent",                                             \
+           "alpha grows in compression, decays behind", "Morris & Monaghan 1997", __VA_ARGS__)     \
+    CHOICE(VISCOSITY_RECONSTRUCTED, "reconstructed",                                               \
+           "velocities extrapolated to the midpoint, limited", "Rosswog 2020", __VA_ARGS__)        \
+    CHOICE(VISCOSITY_FADING, "fading",                                                             \
+           "constant, but quadratic in compression below 0.01 c a pair",                           \
+           "von Neumann & Richtmyer 1950", __VA_ARGS__)
+
+#define ENERGY_LIST(CHOICE, ...)                                                                   \
+    CHOICE(ENERGY_INTERNAL, "internal", "U = m u", "", __VA_ARGS__)                                \
+    CHOICE(ENERGY_TOTAL, "total", "E = U + p^2/2m: conserved to round-off", "", __VA_ARGS__)
+
+/* The width at which a pair's gradient is taken. */
+#define PAIR_WIDTH_LIST(CHOICE, ...)                                                               \
+    CHOICE(PAIR_WIDTH_MEAN, "mean", "mean of the gradients at h_i and h_j", "", __VA_ARGS__)       \
+    CHOICE(PAIR_WIDTH_MAX, "max", "one gradient at max(h_i, h_j)", "", __VA_ARGS__)                \
+    CHOICE(PAIR_WIDTH_HARMONIC, "harmonic", "one gradient at the harmonic mean of h_i and h_j",    \
+           "", __VA_ARGS__)
+
+/* How h is found: by Newton to h_tolerance at every evaluation, or predicted from the last steps
+ * with a single density sum; corrected: what that sum asks for goes through a Newton step before
+ * it predicts. At a jump of density that is needed with wide kernels: the error of 1/h is mapped by
+ * s = -(h/rho) drho/dh from prediction to sum, and extrapolation is unstable where s < -1/3. */
+#define H_METHOD_LIST(CHOICE, ...)                                                                 \
+    CHOICE(H_NEWTON, "newton", "root of h = eta (m/rho)^(1/d) at every evaluation", "",            \
+           __VA_ARGS__)                                                                            \
+    CHOICE(H_PREDICTED, "predicted", "extrapolated from the last steps, one density sum", "",      \
+           __VA_ARGS__)                                                                            \
+    CHOICE(H_CORRECTED, "corrected",                                                               \
+           "the same, with a Newton step from that sum for the next ones", "", __VA_ARGS__)
+
+/* FAMILY(name, list, number of members, plural, title): enum name, scheme_name_family. */
+#define FAMILY_LIST(FAMILY)                                                                        \
+    FAMILY(gradient, GRADIENT_LIST, GRADIENTS, "gradients",                                        \
+           "gradients of the equations of motion")                                                 \
+    FAMILY(formulation, FORMULATION_LIST, FORMULATIONS, "formulations", "equations of motion")     \
+    FAMILY(volume_element, VOLUME_ELEMENT_LIST, VOLUME_ELEMENTS, "volume_elements",                \
+           "what the kernel sum adds up")                                                          \
+    FAMILY(viscosity, VISCOSITY_LIST, VISCOSITIES, "viscosities", "artificial viscosities")        \
+    FAMILY(energy, ENERGY_LIST, ENERGIES, "energies", "the energy that is integrated")             \
+    FAMILY(pair_width, PAIR_WIDTH_LIST, PAIR_WIDTHS, "pair_widths",                                \
+           "width at which a pair's gradient is taken")                                            \
+    FAMILY(h_method, H_METHOD_LIST, H_METHODS, "h_methods", "how the smoothing length is found")
+
+#define FAMILY_SYMBOL(symbol, ...) symbol,
+#define FAMILY_COUNTED(...)        +1
+#define FAMILY_ENUM(name, LIST, count, ...)                                                        \
+    enum name { LIST(FAMILY_SYMBOL, ) };                                                           \
+    enum { count = 0 LIST(FAMILY_COUNTED, ) };
+FAMILY_LIST(FAMILY_ENUM)
+
+#endif
