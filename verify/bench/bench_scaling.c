@@ -153,7 +153,7 @@ static void read_threads(struct bench *bench, size_t i, size_t first, int thread
         .wall_s = more->time.wall_s / STEPS_THREADS,
         .gain = one->time.wall_s / more->time.wall_s,
         .same_bits = !(bench_skips_difference(&last->snapshot, &with_more->snapshot,
-                                              last->exact.hi - last->exact.lo) > 0)};
+                                              domain_length(&last->problem.domain, 0)) > 0)};
 }
 
 enum status bench_scaling_measure(const struct run_settings *settings, const size_t *ladder,

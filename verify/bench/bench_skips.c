@@ -275,7 +275,7 @@ static double sensitivity(const struct job *job)
         snprintf(cfl, sizeof cfl, "cfl=%.17g", scheme.cfl * (1 + 1e-11));
         if (!apply(nudged, cfl, 0, &ignored) && !run_execute(nudged, &result, &ignored))
             difference = bench_skips_difference(&job->last.snapshot, &result.snapshot,
-                                                job->last.exact.hi - job->last.exact.lo);
+                                                domain_length(&job->last.problem.domain, 0));
         run_free(&result);
     }
     free(nudged);
@@ -290,10 +290,10 @@ static void judge(struct bench_skip *skip, const struct job *job)
     if (a->cost.skipped_particle_updates)
         skip->skipped = (double)a->cost.skipped_particle_updates /
                         (double)(a->cost.skipped_particle_updates + a->cost.particle_updates);
-    skip->difference =
-        skip->promise == PROMISE_ERROR
-            ? skip->l1[WITHOUT] / skip->l1[WITH] - 1
-            : bench_skips_difference(&a->snapshot, &b->snapshot, a->exact.hi - a->exact.lo);
+    skip->difference = skip->promise == PROMISE_ERROR
+                           ? skip->l1[WITHOUT] / skip->l1[WITH] - 1
+                           : bench_skips_difference(&a->snapshot, &b->snapshot,
+                                                    domain_length(&a->problem.domain, 0));
     if (skip->promise == PROMISE_ROUND_OFF && skip->difference > skip->bound)
         skip->bound = fmax(skip->bound, 10 * sensitivity(&job[WITH]));
     skip->kept = skip->difference <= skip->bound;

@@ -93,13 +93,13 @@ static enum status find_mean_density(const struct run_settings *settings, double
 {
     struct settings resolved = settings->settings;
     struct scheme scheme;
-    struct exact exact;
+    struct prepared problem;
     double means[NORM_BINS];
     if (settings_resolve(&resolved, settings->file.dimension, &scheme, error) ||
-        exact_prepare(&exact, &resolved, error))
+        problem_prepare(&problem, &resolved, settings->file.dimension, error))
         return error->status;
-    exact_means(&exact, FIELD_DENSITY, settings_real(&resolved, SETTING_t_end),
-                resolved.value[SETTING_window].real, NORM_BINS, means);
+    problem_means(&problem, FIELD_DENSITY, settings_real(&resolved, SETTING_t_end), NORM_BINS,
+                  means);
     *mean = gsl_stats_mean(means, 1, NORM_BINS);
     return STATUS_OK;
 }
@@ -127,8 +127,7 @@ static bool want_graded(const struct run_settings *settings, const struct sweep 
     const struct settings *keys = &settings->settings;
     for (size_t k = 0; k < sweep->key_count; k++)
         if (sweep->keys[k].key == SETTING_grade) return false;
-    return settings_choice(keys, SETTING_kind) == KIND_RIEMANN &&
-           settings_real(keys, SETTING_grade) == 1;
+    return !settings_foreign(keys, SETTING_grade) && settings_real(keys, SETTING_grade) == 1;
 }
 
 /* Sets the scheme's keys; why it cannot be goes into scheme->excluded. */

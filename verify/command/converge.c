@@ -101,14 +101,15 @@ static void print_functionals(const struct study_result *result, const struct ta
 static void print_budget(const struct study_result *result, const struct table_style *style)
 {
     const struct study_level *finest = &result->levels[result->level_count - 1];
-    if (!finest->budget.known) return;
+    const struct regions *regions = finest->budget.regions;
+    if (!regions) return;
     printf("%s%-22s %12s %7s  %s%s\n", style->bold, "L1 of density from", "finest", "share",
            "order, 95 % interval", style->end);
-    for (int r = 0; r < REGIONS; r++) {
+    for (size_t r = 0; regions->names[r]; r++) {
         const double part = finest->budget.l1[r][FIELD_DENSITY];
         const struct order_fit *fit = &result->regions[r];
         if (part == 0) continue;
-        printf("%-22s %12.4e %6.1f%%", budget_regions[r], part,
+        printf("%-22s %12.4e %6.1f%%", regions->names[r], part,
                100 * part / finest->errors[FIELD_DENSITY][NORM_L1]);
         if (fit->n) printf("  %.3f [%6.3f, %6.3f]", fit->order, fit->low, fit->high);
         printf("\n");

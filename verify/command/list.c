@@ -99,6 +99,7 @@ static const struct family *kernels(void)
     {                                                                                              \
         return &from##_family;                                                                     \
     }
+PLAIN(problem, problem)
 PLAIN(gradient, scheme_gradient)
 PLAIN(formulation, scheme_formulation)
 PLAIN(volume_element, scheme_volume_element)
@@ -112,6 +113,7 @@ PLAIN(field, field)
 PLAIN(norm, norm)
 
 static const struct family *(*const lists[])(void) = {cases,
+                                                      problem_list,
                                                       kernels,
                                                       gradient_list,
                                                       operator_list,
@@ -231,8 +233,8 @@ const struct command command_list = {
     .name = "list",
     .synopsis = "[FAMILY]",
     .help = "the names of cases, kernels, gradients, keys ..., one line each\n"
-            "FAMILY: cases kernels gradients formulations volume_elements integrators viscosities\n"
-            "energies pair_widths h_methods fields norms checks mutants keys",
+            "FAMILY: cases problems kernels gradients formulations volume_elements integrators\n"
+            "viscosities energies pair_widths h_methods fields norms checks mutants keys",
     .run = run,
     .options = own_options,
     .examples = "sphproof list\nsphproof list kernels\nsphproof list keys",

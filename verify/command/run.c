@@ -39,6 +39,7 @@ static void print_errors(const struct run_settings *settings, const struct run_r
 {
     static const char *const units[FIELDS] = {"mass/length", "length/time", "mass/(length time^2)",
                                               "(length/time)^2"};
+    const struct window *window = &result->problem.window;
     printf("\n%s%-16s %12s %12s %12s %14s  %s%s\n", style->bold, "error", "L1", "L2", "Linf",
            "particle mean", "unit", style->end);
     for (int field = 0; field < FIELDS; field++) {
@@ -52,7 +53,7 @@ static void print_errors(const struct run_settings *settings, const struct run_r
     printf("%sL1 = sum V|q - exact|/sum V, L2 = sqrt(sum V (q - exact)^2/sum V), Linf = max "
            "|q - exact|,\nparticle mean = sum |q - exact|/N: over the %zu particles in [%g, %g] at "
            "t = %g; V = volume; code units%s\n",
-           style->faint, result->errors[0].n, result->window[0], result->window[1], result->time,
+           style->faint, result->errors[0].n, window->lo[0], window->hi[0], result->time,
            style->end);
 }
 
@@ -84,9 +85,10 @@ struct profile {
     double *storage;
 };
 
-static bool profile_fill(struct profile *profile, const struct run_result *result, int field)
+static bool profile_fill(struct profile *profile, const struct run_result *result, enum field field)
 {
     const struct snapshot *s = &result->snapshot;
+    const struct window *window = &result->problem.window;
     const double *const values[FIELDS] = {s->rho, s->v[0], s->P, s->u};
     const size_t exact_n = PLOT_POINTS_EXACT;
     profile->storage = malloc(2 * (exact_n + s->n) * sizeof(double));
@@ -94,15 +96,15 @@ static bool profile_fill(struct profile *profile, const struct run_result *resul
     double *exact_x = profile->storage, *exact_y = exact_x + exact_n, *x = exact_y + exact_n,
            *y = x + s->n;
     for (size_t i = 0; i < exact_n; i++) {
-        double all[FIELDS];
-        exact_x[i] = result->window[0] +
-                     (result->window[1] - result->window[0]) * (double)i / (double)(exact_n - 1);
-        exact_sample(&result->exact, exact_x[i], result->time, all);
-        exact_y[i] = all[field];
+        struct problem_state state;
+        exact_x[i] =
+            window->lo[0] + (window->hi[0] - window->lo[0]) * (double)i / (double)(exact_n - 1);
+        problem_sample(&result->problem, (double[3]){exact_x[i]}, result->time, &state);
+        exact_y[i] = problem_field(&state, field);
     }
     size_t n = 0;
     for (size_t i = 0; i < s->n; i++)
-        if (s->x[0][i] >= result->window[0] && s->x[0][i] <= result->window[1]) {
+        if (window_contains(window, (double[3]){s->x[0][i]})) {
             x[n] = s->x[0][i];
             y[n++] = values[field][i];
         }

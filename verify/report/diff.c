@@ -8,31 +8,50 @@
 #include <string.h>
 
 #include "failure.h"
+#include "problem.h"
 
-/* Settings that make another problem of a case; the others are what one wants to compare. */
-static const char *const problem_keys[] = {"kind",   "left",   "right", "background", "amplitude",
-                                           "waves",  "gamma",  "t_end", "lo",         "hi",
-                                           "window", "jitter", "seed"};
+/* Settings that make another problem of a case, beside a problem's own; the others are what one
+ * wants to compare. */
+static const enum setting problem_keys[] = {SETTING_kind,   SETTING_gamma, SETTING_t_end,
+                                            SETTING_lo,     SETTING_hi,    SETTING_window,
+                                            SETTING_jitter, SETTING_seed};
 
 static bool differs(const json_t *a, const json_t *b)
 {
     return a && b && !json_equal(a, b);
 }
 
+/* The name of the key if two documents' settings differ in it, else NULL. */
+static const char *differing(const json_t *old, const json_t *new, enum setting key)
+{
+    const char *name = setting_keys[key].name;
+    const json_t *before = json_object_get(json_object_get(old, "settings"), name);
+    return differs(before, json_object_get(json_object_get(new, "settings"), name)) ? name : NULL;
+}
+
+static const char *differing_problem(const json_t *old, const json_t *new)
+{
+    const char *what = NULL;
+    for (size_t i = 0; i < problem_family.n && !what; i++) {
+        const struct problem *problem = (const struct problem *)problem_family.members[i];
+        for (size_t k = 0; k < problem->key_count && !what; k++)
+            if (problem->keys[k].role != ROLE_PARTICLES)
+                what = differing(old, new, problem->keys[k].key);
+    }
+    for (size_t i = 0; i < sizeof problem_keys / sizeof *problem_keys && !what; i++)
+        what = differing(old, new, problem_keys[i]);
+    return what;
+}
+
 /* Are two documents about one problem? Where they do not say, yes. */
 static void compare_problems(const json_t *old, const json_t *new, struct diff *diff)
 {
-    const json_t *before = json_object_get(old, "settings"),
-                 *after = json_object_get(new, "settings");
     static const char *const tops[] = {"case", "n", "kernel", "dim", "h"};
     const char *what = NULL, *command = json_string_value(json_object_get(new, "command"));
     const bool kernel = command && strcmp(command, "kernel") == 0;
     for (size_t i = 0; i < (kernel ? 5 : 2) && !what; i++)
         if (differs(json_object_get(old, tops[i]), json_object_get(new, tops[i]))) what = tops[i];
-    for (size_t i = 0; i < sizeof problem_keys / sizeof *problem_keys && !what; i++)
-        if (differs(json_object_get(before, problem_keys[i]),
-                    json_object_get(after, problem_keys[i])))
-            what = problem_keys[i];
+    if (!what) what = differing_problem(old, new);
     if (what)
         snprintf(diff->problem, sizeof diff->problem,
                  "the documents differ in %s: two problems, whose figures say nothing about each "

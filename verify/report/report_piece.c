@@ -85,7 +85,7 @@ static enum status compute_league(json_t **document, struct error *error)
  * smooth flow which viscosity. */
 static const char *vary(const struct settings *settings)
 {
-    return settings_choice(settings, SETTING_kind) == KIND_SOUND_WAVE
+    return problem_of(settings)->smooth
                ? "kernel=quadratic_spline,cubic_spline,viscosity=none,constant,reconstructed,fading"
                : "kernel=quadratic_spline,cubic_spline,quartic_spline,gradient";
 }

@@ -12,37 +12,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "problem.h"
 #include "text.h"
 
 enum { SIZE_MAX_FILE = 65536, LINE_LENGTH_MAX = 180, WORDS_MAX = 64 };
-
-#define MEMBERS(...)                                                                               \
-    (const struct member *const[])                                                                 \
-    {                                                                                              \
-        __VA_ARGS__                                                                                \
-    }
-#define MEMBER(name, label)                                                                        \
-    &(const struct member)                                                                         \
-    {                                                                                              \
-        name, label, ""                                                                            \
-    }
-
-const struct family field_family = {"fields", "fields whose errors are measured",
-                                    MEMBERS(MEMBER("density", "rho"), MEMBER("velocity", "v"),
-                                            MEMBER("pressure", "P"),
-                                            MEMBER("internal_energy", "u = P/((gamma - 1) rho)")),
-                                    FIELDS};
-const struct family norm_family = {
-    "norms", "error norms over the measure window",
-    MEMBERS(MEMBER("l1", "sum V |q - exact| / sum V"),
-            MEMBER("l2", "sqrt(sum V (q - exact)^2 / sum V)"), MEMBER("linf", "max |q - exact|"),
-            MEMBER("particle_mean", "sum |q - exact| / number of particles")),
-    NORMS};
-static const struct family reference_family = {
-    "references", "exact solutions",
-    MEMBERS(MEMBER("riemann", "ideal-gas Riemann problem"),
-            MEMBER("simple_wave", "simple wave to the right")),
-    2}; /* in the order of enum kind */
 
 /* Keys of a case file beside settings_keys. */
 enum extra {
@@ -66,7 +39,7 @@ struct parser {
     const char *path;
     const char *text, *end; /* what is left to read */
     int line;
-    int reference;
+    char reference[64];
     int seen_settings[SETTINGS], seen_extras[EXTRAS], seen_gates[CASE_GATES_MAX]; /* lines */
     struct error *error;
     bool failed;
@@ -138,10 +111,27 @@ static void set_ladder(struct parser *parser, const char *value)
         fail_value(parser, "n", value, "rising numbers of particles, at least four");
 }
 
+static void set_reference(struct parser *parser, const char *value)
+{
+    char where[256];
+    const char *names[WORDS_MAX];
+    size_t n = 0;
+    for (size_t i = 0; i < problem_family.n && n < WORDS_MAX; i++) {
+        const char *name = ((const struct problem *)problem_family.members[i])->reference;
+        if (strcmp(name, value) == 0) {
+            snprintf(parser->reference, sizeof parser->reference, "%s", value);
+            return;
+        }
+        names[n++] = name;
+    }
+    snprintf(where, sizeof where, "%.200s:%d", parser->path, parser->line);
+    text_unknown(parser->error, where, "reference", value, names, n);
+    parser->failed = true;
+}
+
 static void set_extra(struct parser *parser, enum extra extra, const char *value)
 {
     struct case_file *file = parser->file;
-    char where[256];
     if (!first_time(parser, &parser->seen_extras[extra], extras[extra].name)) return;
     switch (extra) {
     case EXTRA_title:
@@ -153,11 +143,7 @@ static void set_extra(struct parser *parser, enum extra extra, const char *value
         file->dimension = 1;
         return;
     case EXTRA_reference:
-        snprintf(where, sizeof where, "%.200s:%d", parser->path, parser->line);
-        parser->reference = family_index(&reference_family, value);
-        if (parser->reference >= 0) return;
-        text_unknown_member(parser->error, where, "reference", value, &reference_family);
-        parser->failed = true;
+        set_reference(parser, value);
         return;
     case EXTRA_fields:
         set_fields(parser, "fields", value, parser->file->fields);
@@ -311,34 +297,43 @@ static enum status missing(struct parser *parser, const char *section, const cha
                      parser->path, name, section);
 }
 
-static enum status check_complete(struct parser *parser)
+static enum status missing_key(struct parser *parser, enum setting key)
 {
+    return missing(parser, setting_keys[key].section, setting_keys[key].name);
+}
+
+/* Keys that every case has to give, those that its problem needs, and none that another one does.
+ */
+static enum status check_keys(struct parser *parser)
+{
+    static const enum setting always[] = {SETTING_kind, SETTING_t_end, SETTING_window};
     const struct settings *settings = &parser->file->settings;
-    const enum setting always[] = {SETTING_kind, SETTING_t_end, SETTING_window};
-    const enum setting own[2][2] = {{SETTING_left, SETTING_right},
-                                    {SETTING_background, SETTING_amplitude}};
-    const int kind = settings_choice(settings, SETTING_kind);
+    const struct problem *problem = problem_of(settings);
     for (int i = 0; i < EXTRA_fields; i++)
         if (!parser->seen_extras[i]) return missing(parser, extras[i].section, extras[i].name);
-    for (size_t i = 0; i < 5; i++) {
-        const enum setting key = i < 3 ? always[i] : own[kind][i - 3];
-        if (!parser->seen_settings[key])
-            return missing(parser, setting_keys[key].section, setting_keys[key].name);
-    }
+    for (size_t i = 0; i < sizeof always / sizeof *always; i++)
+        if (!parser->seen_settings[always[i]]) return missing_key(parser, always[i]);
+    for (size_t i = 0; i < problem->key_count; i++)
+        if (problem->keys[i].role == ROLE_NEEDED && !parser->seen_settings[problem->keys[i].key])
+            return missing_key(parser, problem->keys[i].key);
     for (int i = 0; i < SETTINGS; i++)
         if (parser->seen_settings[i] && settings_foreign(settings, (enum setting)i)) {
             char what[120];
             snprintf(what, sizeof what, "key %s and kind = %s exclude each other",
-                     setting_keys[i].name, kind_family.members[kind]->name);
+                     setting_keys[i].name, problem->member.name);
             parser->line = parser->seen_settings[i];
             return fail(parser, what, "");
         }
-    if (parser->reference != kind) {
-        parser->line = parser->seen_extras[EXTRA_reference];
-        return fail_value(parser, "reference", reference_family.members[parser->reference]->name,
-                          reference_family.members[kind]->name);
-    }
     return STATUS_OK;
+}
+
+static enum status check_complete(struct parser *parser)
+{
+    if (check_keys(parser)) return parser->error->status;
+    const char *reference = problem_of(&parser->file->settings)->reference;
+    if (strcmp(parser->reference, reference) == 0) return STATUS_OK;
+    parser->line = parser->seen_extras[EXTRA_reference];
+    return fail_value(parser, "reference", parser->reference, reference);
 }
 
 enum status case_parse(struct case_file *file, const char *path, const char *text, size_t length,

@@ -7,13 +7,10 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "field.h"
 #include "order.h"
 #include "settings.h"
 #include "status.h"
-
-enum field { FIELD_DENSITY, FIELD_VELOCITY, FIELD_PRESSURE, FIELD_INTERNAL_ENERGY, FIELDS };
-enum norm { NORM_L1, NORM_L2, NORM_LINF, NORM_PARTICLE_MEAN, NORMS };
-extern const struct family field_family, norm_family;
 
 enum { CASE_LADDER_MAX = ORDER_LEVELS_MAX, CASE_GATES_MAX = FIELDS * NORMS };
 

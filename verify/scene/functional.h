@@ -1,12 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Scalars of a run's final state, each with its exact value: means over the window, the place of a
- * shock, the amplitude of a mode. What Richardson's extrapolation is for. */
+ * Functionals (problem.h) that several problems have, and the list of all. */
 #ifndef SPHPROOF_FUNCTIONAL_H
 #define SPHPROOF_FUNCTIONAL_H
 
-#include "run.h"
+#include "problem.h"
 
-/* Fills result->functionals and result->h from the snapshot. */
-void functional_measure(struct run_result *result);
+/* Means over the window, weighted with volume. */
+extern const struct functional functional_mean_internal_energy, functional_mean_pressure;
+
+/* Mean of a field of the particles over the window, weighted with volume. */
+double functional_window_mean(const struct prepared *p, const struct snapshot *s,
+                              const double *field);
+
+/* The name itself, static, where a problem has a functional called so; else NULL. */
+const char *functional_name(const char *name);
 
 #endif

@@ -1,25 +1,34 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Particles of a run at t = 0. Riemann problems: equal masses, cell-centred on each side, or graded
- * towards the jumps. Sound wave: equal masses whose positions carry the density exactly. */
+ * Particles of a run at t = 0: those of its problem, then disturbed as the settings say. */
 #ifndef SPHPROOF_INITIAL_H
 #define SPHPROOF_INITIAL_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
-#include "exact.h"
 #include "settings.h"
 #include "status.h"
 
+struct prepared;
+
 struct initial {
+    int dim;
     size_t n;
-    double *x, *v, *m, *u, *rho; /* n each, rising x; code units */
+    double *x[3], *v[3]; /* n each where d < dim, else NULL; in 1D x rises; code units */
+    double *m, *u, *rho; /* n each */
     double *storage;
 };
 
-/* settings: resolved. STATUS_BAD_INPUT: they leave a side without particles; STATUS_ENVIRONMENT: no
- * memory. */
-enum status initial_create(struct initial *initial, const struct settings *settings,
-                           const struct exact *exact, struct error *error);
+/* Room for n particles, for a problem's fill. STATUS_ENVIRONMENT: no memory. */
+enum status initial_allocate(struct initial *initial, int dim, size_t n, struct error *error);
+
+/* The particles of a prepared problem, moved as the keys lattice and jitter ask; settings:
+ * resolved. STATUS_BAD_INPUT: the problem cannot fill its domain with them. */
+enum status initial_create(struct initial *initial, const struct prepared *p,
+                           const struct settings *settings, struct error *error);
 void initial_free(struct initial *initial);
+
+/* Are particles moved at random? Then the seed makes a difference. */
+bool initial_is_shaken(const struct settings *settings);
 
 #endif

@@ -23,16 +23,24 @@ static void append(json_t *object, const char *name, double value)
     json_array_append_new(array, result_number(value));
 }
 
+static void sample_at(const struct run_result *result, double x, double values[FIELDS])
+{
+    struct problem_state state;
+    problem_sample(&result->problem, (double[3]){x}, result->time, &state);
+    for (int f = 0; f < FIELDS; f++) values[f] = problem_field(&state, (enum field)f);
+}
+
 /* The exact curve; points on a straight line between their neighbours are left out. */
 static json_t *exact_profile(const struct run_result *result)
 {
     json_t *profile = json_object();
-    double lo = result->window[0], step = (result->window[1] - lo) / (EXACT_POINTS - 1);
+    const struct window *window = &result->problem.window;
+    const double lo = window->lo[0], step = (window->hi[0] - lo) / (EXACT_POINTS - 1);
     double kept[FIELDS], now[FIELDS], next[FIELDS];
-    exact_sample(&result->exact, lo, result->time, now);
+    sample_at(result, lo, now);
     memcpy(kept, now, sizeof kept);
     for (int i = 0; i < EXACT_POINTS; i++) {
-        exact_sample(&result->exact, lo + (i + 1) * step, result->time, next);
+        sample_at(result, lo + (i + 1) * step, next);
         bool bend = i == 0 || i == EXACT_POINTS - 1;
         for (int f = 0; f < FIELDS; f++)
             bend = bend ||
@@ -53,12 +61,13 @@ json_t *profile_json(const struct run_result *result)
     const struct snapshot *s = &result->snapshot;
     json_t *particles = json_object();
     for (size_t i = 0; i < s->n; i++) {
-        const double x = s->x[0][i];
-        if (!(x >= result->window[0] && x <= result->window[1])) continue;
+        double x[3];
+        problem_place(&result->problem, s, i, x);
+        if (!window_contains(&result->problem.window, x)) continue;
         const double value[PROFILE_FIELDS] = {s->rho[i], s->v[0][i], s->P[i]};
         double exact[FIELDS];
-        exact_sample(&result->exact, x, result->time, exact);
-        append(particles, "x", x);
+        sample_at(result, x[0], exact);
+        append(particles, "x", x[0]);
         for (int f = 0; f < PROFILE_FIELDS; f++) {
             char name[64];
             snprintf(name, sizeof name, "exact_%s", profile_fields[f]);

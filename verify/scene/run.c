@@ -34,15 +34,16 @@ static double peak_rss(void)
 static struct scene scene_of(const struct run_settings *settings, const struct run_result *result,
                              const struct initial *initial)
 {
+    const struct domain *domain = &result->problem.domain;
     return (struct scene){
-        .dim = settings->file.dimension,
-        .lo = {result->exact.lo},
-        .hi = {result->exact.hi},
-        .gamma = settings_real(&result->settings, SETTING_gamma),
+        .dim = domain->dim,
+        .lo = {domain->lo[0], domain->lo[1], domain->lo[2]},
+        .hi = {domain->hi[0], domain->hi[1], domain->hi[2]},
+        .gamma = result->problem.gamma,
         .t_end = settings_real(&result->settings, SETTING_t_end),
         .n = initial->n,
-        .x = {initial->x},
-        .v = {initial->v},
+        .x = {initial->x[0], initial->x[1], initial->x[2]},
+        .v = {initial->v[0], initial->v[1], initial->v[2]},
         .m = initial->m,
         .u = initial->u,
         .rho = initial->rho,
@@ -62,13 +63,13 @@ static enum status begin(const struct run_settings *settings, struct run_result 
     struct settings *resolved = &result->settings;
     enum status status =
         settings_resolve(resolved, settings->file.dimension, &result->scheme, error);
-    if (status || (status = exact_prepare(&result->exact, resolved, error))) return status;
-    memcpy(result->window, resolved->value[SETTING_window].real, sizeof result->window);
-    if (!settings->any_window &&
-        (status = exact_check_window(&result->exact, result->window,
-                                     settings_real(resolved, SETTING_t_end), error)))
+    if (status ||
+        (status = problem_prepare(&result->problem, resolved, settings->file.dimension, error)) ||
+        (!settings->any_window &&
+         (status = problem_check_time(&result->problem, settings_real(resolved, SETTING_t_end),
+                                      error))) ||
+        (status = initial_create(initial, &result->problem, resolved, error)))
         return status;
-    if ((status = initial_create(initial, resolved, &result->exact, error))) return status;
     const struct scene scene = scene_of(settings, result, initial);
     result->n = initial->n;
     result->plan_count =
@@ -119,44 +120,78 @@ static enum status keep_snapshot(struct run_result *result, const struct snapsho
     }
     result->snapshot.n = seen.n;
     result->crossed = count_crossed(snapshot);
-    result->spacing = (result->exact.hi - result->exact.lo) / (double)seen.n;
+    const struct domain *domain = &result->problem.domain;
+    result->spacing = (domain->hi[0] - domain->lo[0]) / (double)seen.n;
     result->snapshot.time = result->time = seen.time;
     return STATUS_OK;
+}
+
+/* The exact fields at the particles, field by field; malloced, NULL: no memory. */
+static double *exact_fields(const struct run_result *result)
+{
+    const struct snapshot *s = &result->snapshot;
+    struct problem_state state;
+    double x[3], *exact = malloc(FIELDS * s->n * sizeof *exact);
+    for (size_t i = 0; exact && i < s->n; i++) {
+        problem_place(&result->problem, s, i, x);
+        problem_sample(&result->problem, x, result->time, &state);
+        for (int field = 0; field < FIELDS; field++)
+            exact[(size_t)field * s->n + i] = problem_field(&state, (enum field)field);
+    }
+    return exact;
+}
+
+/* Is a field nearer another one's exact values than its own? Positions rise. */
+static void suspect(struct run_result *result, const double *const *measured,
+                    const double *const *exact)
+{
+    static const char *const names[] = {"density", "velocity", "pressure", "energy"};
+    const struct snapshot *s = &result->snapshot;
+    const struct window *window = &result->problem.window;
+    const double *inside[2][FIELDS];
+    size_t first = 0, end = s->n; /* the window's particles */
+    while (first < end && s->x[0][first] < window->lo[0]) first++;
+    while (end > first && s->x[0][end - 1] > window->hi[0]) end--;
+    for (size_t field = 0; field < FIELDS; field++) {
+        inside[0][field] = measured[field] + first;
+        inside[1][field] = exact[field] + first;
+    }
+    suspicion_swapped(FIELDS, names, end - first, s->volume + first, inside[0], inside[1],
+                      result->suspicion);
 }
 
 static enum status measure_errors(struct run_result *result, struct error *error)
 {
     const struct snapshot *s = &result->snapshot;
     const double *const measured[FIELDS] = {s->rho, s->v[0], s->P, s->u};
-    const double *inside[2][FIELDS], *volume;
-    double means[NORM_BINS], values[FIELDS];
-    double *exact = malloc(FIELDS * s->n * sizeof *exact);
-    if (!exact) return error_set(error, STATUS_ENVIRONMENT, "no memory for the errors");
-    for (size_t i = 0; i < s->n; i++) {
-        exact_sample(&result->exact, s->x[0][i], result->time, values);
-        for (int field = 0; field < FIELDS; field++)
-            exact[(size_t)field * s->n + i] = values[field];
-    }
+    const double window[2] = {result->problem.window.lo[0], result->problem.window.hi[0]};
+    double means[NORM_BINS];
+    double *values = exact_fields(result);
+    if (!values) return error_set(error, STATUS_ENVIRONMENT, "no memory for the errors");
+    const double *const exact[] = {values, values + s->n, values + 2 * s->n, values + 3 * s->n};
     for (int field = 0; field < FIELDS; field++)
-        result->errors[field] = norm_errors(s->n, s->x[0], result->window, s->volume,
-                                            measured[field], exact + (size_t)field * s->n);
-    size_t first = 0, end = s->n; /* the window's particles; positions rise */
-    while (first < end && s->x[0][first] < result->window[0]) first++;
-    while (end > first && s->x[0][end - 1] > result->window[1]) end--;
-    volume = s->volume + first;
-    for (size_t field = 0; field < FIELDS; field++) {
-        inside[0][field] = measured[field] + first;
-        inside[1][field] = exact + field * s->n + first;
-    }
-    suspicion_swapped(FIELDS, (const char *[]){"density", "velocity", "pressure", "energy"},
-                      end - first, volume, inside[0], inside[1], result->suspicion);
-    const double *const fields[] = {exact, exact + s->n, exact + 2 * s->n, exact + 3 * s->n};
-    budget_measure(&result->exact, result->window, s, fields, &result->budget);
-    free(exact);
-    exact_means(&result->exact, FIELD_DENSITY, result->time, result->window, NORM_BINS, means);
+        result->errors[field] =
+            norm_errors(s->n, s->x[0], window, s->volume, measured[field], exact[field]);
+    suspect(result, measured, exact);
+    budget_measure(&result->problem, s, exact, &result->budget);
+    free(values);
+    problem_means(&result->problem, FIELD_DENSITY, result->time, NORM_BINS, means);
     result->binned_density_l1 =
-        norm_binned_l1(s->n, s->x[0], result->window, s->volume, s->rho, NORM_BINS, means);
+        norm_binned_l1(s->n, s->x[0], window, s->volume, s->rho, NORM_BINS, means);
     return STATUS_OK;
+}
+
+static void measure_functionals(struct run_result *result)
+{
+    const struct prepared *p = &result->problem;
+    result->h = functional_window_mean(p, &result->snapshot, result->snapshot.h);
+    for (const struct functional *const *f = p->problem->functionals; *f; f++) {
+        if ((*f)->present && !(*f)->present(p)) continue;
+        result->functionals[result->functional_count++] = (struct run_functional){
+            .name = (*f)->name,
+            .value = (*f)->measure(p, &result->snapshot),
+            .exact = (*f)->exact ? (*f)->exact(p, result->time) : (double)NAN};
+    }
 }
 
 /* Sums at the end against t = 0. */
@@ -282,7 +317,7 @@ enum status run_execute(const struct run_settings *settings, struct run_result *
         run_free(result);
         return status;
     }
-    functional_measure(result);
+    measure_functionals(result);
     result->peak_rss = peak_rss();
     if (result->status == STATUS_BROKE_DOWN)
         error_set(error, STATUS_BROKE_DOWN, "%s", result->message);

@@ -8,25 +8,14 @@
 
 #include "budget.h"
 #include "cases.h"
-#include "exact.h"
 #include "norm.h"
+#include "problem.h"
 #include "settings.h"
 #include "simulation.h"
 #include "suspicion.h"
 #include "trace.h"
 
-enum { RUN_PLAN_MAX = 32, RUN_FUNCTIONALS_MAX = 4 };
-
-/* Every functional that a run may have. */
-#define RUN_FUNCTIONAL_LIST(F)                                                                     \
-    F(mean_internal_energy) F(mean_pressure) F(mode_amplitude) F(shock_position)
-enum run_functional_name {
-#define F(name) RUN_##name,
-    RUN_FUNCTIONAL_LIST(F)
-#undef F
-        RUN_FUNCTIONALS
-};
-extern const char *const run_functional_names[RUN_FUNCTIONALS];
+enum { RUN_PLAN_MAX = 32 };
 
 struct run_settings {
     struct case_file file;
@@ -51,14 +40,14 @@ struct run_result {
     char message[512];        /* how it broke down */
     struct settings settings; /* as used, resolved */
     struct scheme scheme;
-    struct exact exact;
+    struct prepared problem;
     size_t n;
-    double time, window[2];
+    double time;
     struct norms errors[FIELDS]; /* at time; NaN where no particle is in the window */
     double binned_density_l1;
     size_t crossed;       /* neighbours of the start that are not next to each other any more */
     double spacing, h;    /* box/n; mean smoothing length in the window, by volume */
-    struct budget budget; /* L1 by regions of a Riemann problem */
+    struct budget budget; /* L1 by regions of the problem */
     double mass, momentum, energy; /* conservation: relative, >= 0; see CONSERVATION in run.c */
     struct simulation_cost cost;
     double peak_rss; /* bytes, of the process so far */
@@ -66,7 +55,7 @@ struct run_result {
     size_t plan_count;
     char warnings[512];
     char suspicion[SUSPICION_TEXT]; /* "" unless the errors look wrong in themselves */
-    struct run_functional functionals[RUN_FUNCTIONALS_MAX];
+    struct run_functional functionals[PROBLEM_FUNCTIONALS_MAX];
     size_t functional_count;
     struct snapshot snapshot; /* owned by the result: see run_free */
     double *storage;

@@ -62,8 +62,7 @@ void run_add_plan(const struct run_settings *settings, const struct run_result *
     json_object_set_new(document, "title", json_string(settings->file.title));
     json_object_set_new(document, "settings", settings_json(&result->settings));
     json_object_set_new(document, "n", json_integer((json_int_t)result->n));
-    json_object_set_new(document, "window",
-                        json_pack("[f, f]", result->window[0], result->window[1]));
+    json_object_set_new(document, "window", window_json(&result->problem.window));
     json_object_set_new(document, "plan", plan_json(result));
     json_object_set_new(document, "warnings", json_string(result->warnings));
 }

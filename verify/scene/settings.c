@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "integrator.h"
-#include "riemann.h"
+#include "problem.h"
 #include "text.h"
 
 #define MEMBERS(...)                                                                               \
@@ -20,11 +20,6 @@
         name, label, paper                                                                         \
     }
 
-const struct family kind_family = {
-    "kinds", "initial states",
-    MEMBERS(MEMBER("riemann", "two uniform gases that meet in the middle of the box", "Toro 2009"),
-            MEMBER("sound_wave", "a simple wave that runs to the right", "Landau & Lifshitz 1987")),
-    2};
 const struct family lattice_family = {
     "lattices", "where particles start",
     MEMBERS(MEMBER("uniform", "the centre of each particle's share of the gas", ""),
@@ -181,68 +176,7 @@ int settings_choice(const struct settings *settings, enum setting key)
 
 bool settings_foreign(const struct settings *settings, enum setting key)
 {
-    const bool wave = settings_choice(settings, SETTING_kind) == KIND_SOUND_WAVE;
-    switch (key) {
-    case SETTING_left:
-    case SETTING_right:
-    case SETTING_grade:
-    case SETTING_grade_ratio:
-    case SETTING_mass_ratio:
-        return wave;
-    case SETTING_background:
-    case SETTING_amplitude:
-    case SETTING_waves:
-        return !wave;
-    default:
-        return false;
-    }
-}
-
-/* rho and P of a state that particles can have. */
-static enum status check_state(const struct settings *settings, enum setting key,
-                               struct error *error)
-{
-    const double *state = settings->value[key].real;
-    if (settings_foreign(settings, key) || (state[0] > 0 && state[2] > 0)) return STATUS_OK;
-    return error_set(error, STATUS_BAD_INPUT,
-                     "%s=\"%g %g %g\": rho v P with rho > 0 and P > 0 is needed%s",
-                     setting_keys[key].name, state[0], state[1], state[2],
-                     state[0] == 0 ? " (particles cannot fill a vacuum)" : "");
-}
-
-static enum status check_together(const struct settings *settings, struct error *error)
-{
-    const double lo = settings_real(settings, SETTING_lo), hi = settings_real(settings, SETTING_hi);
-    const double *window = settings->value[SETTING_window].real;
-    if (!(lo < hi))
-        return error_set(error, STATUS_BAD_INPUT, "lo=%g hi=%g: lo < hi is needed", lo, hi);
-    if (!(lo <= window[0] && window[0] < window[1] && window[1] <= hi))
-        return error_set(error, STATUS_BAD_INPUT,
-                         "window=\"%g %g\": two rising numbers in the box [%g, %g] are needed",
-                         window[0], window[1], lo, hi);
-    for (int i = 0; i < SETTINGS; i++)
-        if (settings->value[i].source == SOURCE_USER && settings_foreign(settings, (enum setting)i))
-            return error_set(error, STATUS_BAD_INPUT,
-                             "key %s and an initial state of kind %s exclude each other: it has "
-                             "no such thing",
-                             setting_keys[i].name,
-                             kind_family.members[settings_choice(settings, SETTING_kind)]->name);
-    if (check_state(settings, SETTING_left, error) || check_state(settings, SETTING_right, error) ||
-        check_state(settings, SETTING_background, error))
-        return error->status;
-    return STATUS_OK;
-}
-
-/* Right over left so that spacings are equal either side of the contact, within limits: beyond, one
- * side is resolved at the other's cost (measured on sod, sod_standard, lax and strong_shock). */
-static double mass_ratio_at_contact(const struct settings *settings)
-{
-    const double *l = settings->value[SETTING_left].real, *r = settings->value[SETTING_right].real;
-    const struct riemann_state left = {l[0], l[1], l[2]}, right = {r[0], r[1], r[2]};
-    struct riemann_solution tube;
-    if (riemann_solve(settings_real(settings, SETTING_gamma), &left, &right, &tube) || tube.vacuum)
-        return 1;
-    return fmin(fmax(tube.rho_star_right / tube.rho_star_left, 0.5), 1.5);
+    return !problem_reads(problem_of(settings), key);
 }
 
 static void fill(struct settings *settings, enum setting key, double real, int choice)
@@ -258,7 +192,8 @@ enum status settings_resolve(struct settings *settings, int dim, struct scheme *
 {
 #define REAL_OF(key)   settings_real(settings, SETTING_##key)
 #define CHOICE_OF(key) settings_choice(settings, SETTING_##key)
-    if (check_together(settings, error)) return error->status;
+    struct prepared problem;
+    if (problem_prepare(&problem, settings, dim, error)) return error->status;
     const struct integrator *integrator =
         (const struct integrator *)integrator_family.members[CHOICE_OF(integrator)];
     struct kernel kernel;
@@ -270,8 +205,6 @@ enum status settings_resolve(struct settings *settings, int dim, struct scheme *
     const bool vanilla = CHOICE_OF(formulation) == FORMULATION_VANILLA_ICE;
     const bool standard = CHOICE_OF(gradient) == GRADIENT_STANDARD;
     const bool reconstructed = CHOICE_OF(viscosity) == VISCOSITY_RECONSTRUCTED;
-    const bool graded = CHOICE_OF(kind) == KIND_RIEMANN && REAL_OF(grade) < 1;
-    fill(settings, SETTING_mass_ratio, graded ? mass_ratio_at_contact(settings) : 1, 0);
     fill(settings, SETTING_eta, kernel.default_eta, 0);
     fill(settings, SETTING_energy, 0, predicted ? ENERGY_TOTAL : ENERGY_INTERNAL);
     fill(settings, SETTING_alpha, quadratic && predicted ? 0.75 : 1, 0);

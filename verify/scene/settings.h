@@ -47,10 +47,9 @@ struct settings {
     struct setting_value value[SETTINGS];
 };
 
-enum kind { KIND_RIEMANN, KIND_SOUND_WAVE };
 enum lattice { LATTICE_UNIFORM, LATTICE_CLUSTERED, LATTICE_COINCIDENT };
 enum skip { SKIP_AUTO, SKIP_NONE };
-extern const struct family kind_family, lattice_family, skip_family;
+extern const struct family problem_family, lattice_family, skip_family;
 
 /* Position of the key called name, or -1. */
 int setting_find(const char *name);
@@ -80,11 +79,11 @@ int settings_choice(const struct settings *settings, enum setting key);
 /* The value as one would type it, full precision. */
 void settings_text(const struct settings *settings, enum setting key, char text[SETTING_TEXT_MAX]);
 
-/* All keys as used: numbers, names, "rho v P" as an array. Keys of another kind of initial state
- * are left out. New reference. */
+/* All keys as used: numbers, names, "rho v P" as an array. Keys of other problems are left out. New
+ * reference. */
 json_t *settings_json(const struct settings *settings);
 
-/* Is the key without meaning for this kind of initial state (left for a sound wave)? */
+/* Is the key without meaning for the problem (left for a sound wave)? */
 bool settings_foreign(const struct settings *settings, enum setting key);
 
 #endif

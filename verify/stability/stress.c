@@ -123,13 +123,13 @@ static bool all_finite(const struct snapshot *s)
 static double mean_density(const struct run_result *result)
 {
     enum { POINTS = 200 };
+    const struct window *window = &result->problem.window;
     double sum = 0;
     for (int i = 0; i < POINTS; i++) {
-        double values[FIELDS];
-        const double x =
-            result->window[0] + (i + 0.5) / POINTS * (result->window[1] - result->window[0]);
-        exact_sample(&result->exact, x, result->time, values);
-        sum += values[FIELD_DENSITY] / POINTS;
+        struct problem_state state;
+        const double x = window->lo[0] + (i + 0.5) / POINTS * (window->hi[0] - window->lo[0]);
+        problem_sample(&result->problem, (double[3]){x}, result->time, &state);
+        sum += state.rho / POINTS;
     }
     return sum;
 }

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "functional.h"
 #include "measure.h"
 #include "result.h"
 #include "run_job.h"
@@ -18,7 +19,7 @@ static const double variance_least = 0.1;
 
 bool study_is_random(const struct settings *settings)
 {
-    return settings_real(settings, SETTING_jitter) > 0;
+    return problem_of(settings)->random(settings);
 }
 
 /* ---- planning ---- */
@@ -136,10 +137,8 @@ static void read_functionals(struct study_result *result, struct study_level *le
     size_t i = 0;
     json_object_foreach(values, name, value)
     {
-        if (i == RUN_FUNCTIONALS_MAX) break;
-        for (size_t k = 0; k < RUN_FUNCTIONALS && !result->functional_names[i]; k++)
-            if (strcmp(run_functional_names[k], name) == 0)
-                result->functional_names[i] = run_functional_names[k];
+        if (i == PROBLEM_FUNCTIONALS_MAX) break;
+        result->functional_names[i] = functional_name(name);
         level->functionals[i] += weight * result_real(value);
         result->functional_exact[i] = number(json_object_get(run, "functionals_exact"), name);
         i++;
@@ -162,7 +161,8 @@ static void read_run(struct study_result *result, struct study_level *level, con
     level->binned_density_l1 +=
         weight * log(number(json_object_get(run, "errors"), "binned_density_l1"));
     level->cpu_s += weight * number(json_object_get(run, "cost"), "cpu_s");
-    budget_add(&level->budget, json_object_get(run, "budget"), weight);
+    budget_add(&level->budget, problem_of(&result->settings)->regions,
+               json_object_get(run, "budget"), weight);
     read_functionals(result, level, run, weight);
     const char *suspicion = json_string_value(json_object_get(run, "suspicion"));
     if (suspicion && *suspicion && !result->suspicion[0])
@@ -247,8 +247,9 @@ static enum status fit_orders(const struct study *study, struct study_result *re
                           error))
                 return error->status;
         }
-    for (int r = 0; r < REGIONS; r++) {
-        bool everywhere = result->levels[0].budget.known;
+    const struct regions *regions = result->levels[0].budget.regions;
+    for (size_t r = 0; regions && regions->names[r]; r++) {
+        bool everywhere = true;
         for (size_t l = 0; l < n; l++) {
             errors[l] = result->levels[l].budget.l1[r][FIELD_DENSITY];
             everywhere = everywhere && errors[l] > 0;
@@ -299,7 +300,7 @@ static void judge_stillness(struct study_result *result)
 {
     result->still = NAN;
     for (size_t l = 0; l < result->level_count; l++)
-        if (result->levels[l].budget.known)
+        if (result->levels[l].budget.regions)
             result->still = fmax(result->still, result->levels[l].budget.still);
     if (isnan(result->still) || study_is_random(&result->settings)) return;
     result->still_status = result->still <= STUDY_STILL_BOUND ? GATE_PASS : GATE_FAIL;

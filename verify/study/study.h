@@ -25,7 +25,7 @@ struct study_level {
     double spread[FIELDS][NORMS]; /* standard deviation of log(error) over the replicates */
     double cpu_s;
     struct budget budget;
-    double functionals[RUN_FUNCTIONALS_MAX];
+    double functionals[PROBLEM_FUNCTIONALS_MAX];
 };
 
 enum study_gate { GATE_NONE, GATE_PASS, GATE_FAIL };
@@ -47,10 +47,10 @@ struct study_result {
     size_t level_count, functional_count; /* levels that are sound, from the coarsest on */
     struct study_level levels[CASE_LADDER_MAX];
     struct study_order orders[FIELDS][NORMS];
-    struct order_fit regions[REGIONS]; /* of L1(density); n = 0: not in the window everywhere */
-    const char *functional_names[RUN_FUNCTIONALS_MAX];
-    double functional_exact[RUN_FUNCTIONALS_MAX];
-    struct order_extrapolation functionals[RUN_FUNCTIONALS_MAX]; /* of the three finest */
+    struct order_fit regions[PROBLEM_REGIONS_MAX]; /* of L1(density); n = 0: not everywhere there */
+    const char *functional_names[PROBLEM_FUNCTIONALS_MAX];
+    double functional_exact[PROBLEM_FUNCTIONALS_MAX];
+    struct order_extrapolation functionals[PROBLEM_FUNCTIONALS_MAX]; /* of the three finest */
     double floor_density, floor_gradient; /* lattice sums of kernel and eta, relative */
     bool floor_explains;                  /* a failed order is of the size of the floor */
     double still;                         /* largest of the levels' budgets; NaN: none */

@@ -82,12 +82,12 @@ static json_t *budget_orders_json(const struct study_result *result)
 {
     const struct study_level *finest = &result->levels[result->level_count - 1];
     json_t *regions = json_array();
-    for (int r = 0; r < REGIONS; r++) {
+    for (size_t r = 0; finest->budget.regions->names[r]; r++) {
         const struct order_fit *fit = &result->regions[r];
         const double part = finest->budget.l1[r][FIELD_DENSITY];
-        json_t *region =
-            json_pack("{s:s, s:o, s:o}", "region", budget_regions[r], "l1", result_number(part),
-                      "share", result_number(part / finest->errors[FIELD_DENSITY][NORM_L1]));
+        json_t *region = json_pack("{s:s, s:o, s:o}", "region", finest->budget.regions->names[r],
+                                   "l1", result_number(part), "share",
+                                   result_number(part / finest->errors[FIELD_DENSITY][NORM_L1]));
         if (fit->n) {
             set(region, "order", fit->order);
             set(region, "low", fit->low);
@@ -120,7 +120,7 @@ static void add_result(const struct study *study, const struct study_result *res
     for (size_t i = 0; i < result->functional_count; i++)
         add(document, "functionals", functional_json(result, i), varied);
     add(document, "floors", floor_json(result), varied);
-    if (result->levels[0].budget.known)
+    if (result->levels[0].budget.regions)
         add(document, "budgets", budget_orders_json(result), varied);
 }
 

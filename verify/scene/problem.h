@@ -1,0 +1,131 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Problems: what a run starts from and what it is judged by, in one, two and three dimensions. Each
+ * is one file in problem/ and one line in problems.def; nothing outside of problem/ asks which one
+ * a run has, only what its descriptor says. Code units throughout. */
+#ifndef SPHPROOF_PROBLEM_H
+#define SPHPROOF_PROBLEM_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "field.h"
+#include "initial.h"
+#include "settings.h"
+#include "simulation.h"
+#include "status.h"
+
+enum { PROBLEM_OWN_BYTES = 1024, PROBLEM_FUNCTIONALS_MAX = 4, PROBLEM_REGIONS_MAX = 8 };
+
+/* The gas at one place and time. */
+struct problem_state {
+    double rho, v[3], P, u;
+};
+
+/* A problem with the numbers of one run. Plain data: it may be copied, and nobody frees it. */
+struct prepared {
+    const struct problem *problem;
+    struct domain domain;
+    struct window window; /* where errors are measured */
+    double gamma;
+    /* What the problem works out once and then works with (solved jumps, an eigenmode ...). */
+    union {
+        max_align_t align;
+        unsigned char bytes[PROBLEM_OWN_BYTES];
+    } own;
+};
+
+/* What a key of a problem is for. */
+enum problem_role {
+    ROLE_NEEDED,   /* says which problem it is, and a case file has to give it */
+    ROLE_OPTIONAL, /* the same, with a fallback */
+    ROLE_PARTICLES /* how particles are laid: the same problem, solved otherwise */
+};
+
+/* A key that only those problems read that name it. */
+struct problem_key {
+    enum setting key;
+    enum problem_role role;
+};
+
+/* A scalar of a state, at any time of a run: a mean, the place of a shock, the amplitude of a mode.
+ * What Richardson's extrapolation is for. */
+struct functional {
+    const char *name;                          /* one in the program, also if problems share it */
+    bool (*present)(const struct prepared *p); /* NULL: with all settings */
+    double (*measure)(const struct prepared *p, const struct snapshot *s);
+    double (*exact)(const struct prepared *p, double t); /* or from a reference; NULL: unknown */
+};
+
+/* Parts of the exact solution, for an error budget. */
+struct regions {
+    const char *names[PROBLEM_REGIONS_MAX + 1]; /* ends with NULL */
+    /* Position among the names of what is at x; reach: numerical width of a wave there. */
+    size_t (*at)(const struct prepared *p, const double x[3], double reach, double t);
+    /* max |v - v0|/c in gas of the whole box that no wave has reached; NaN: too few particles. */
+    double (*still)(const struct prepared *p, const struct snapshot *s);
+};
+
+struct problem {
+    struct member member;  /* in cases: kind = NAME */
+    const char *reference; /* exact solution, as case files name it */
+    int least_dim, most_dim;
+    bool smooth;                    /* neither jumps nor shocks, for as long as it is solved */
+    const struct problem_key *keys; /* its own, beside those of every run */
+    size_t key_count;
+    /* Checks its own keys, gives those that are automatic a value, fills p->own; domain, window and
+     * gamma are there. STATUS_BAD_INPUT: what is wrong with them, or why nothing is exact. */
+    enum status (*prepare)(struct prepared *p, struct settings *settings, struct error *error);
+    /* The state at x and t: the initial one at t = 0, the exact one after that. Where the exact gas
+     * is a vacuum: rho, P and u 0, and a velocity that joins its edges. */
+    void (*sample)(const struct prepared *p, const double x[3], double t,
+                   struct problem_state *state);
+    /* Particles of the initial state, undisturbed: see initial_allocate. */
+    enum status (*fill)(const struct prepared *p, const struct settings *settings,
+                        struct initial *initial, struct error *error);
+    /* Is the sample at t exact in the whole window: no wave from an image of the domain has come
+     * in, none has broken? NULL: always. */
+    bool (*holds)(const struct prepared *p, double t);
+    /* Says why it does not; longest: the last time at which it does. */
+    enum status (*refuse)(const struct prepared *p, double t, double longest, struct error *error);
+    /* Does the start depend on the seed? */
+    bool (*random)(const struct settings *settings);
+    const struct functional *functionals[PROBLEM_FUNCTIONALS_MAX + 1]; /* ends with NULL */
+    const struct regions *regions;                                     /* NULL: none */
+};
+
+/* The problem that the settings name. */
+const struct problem *problem_of(const struct settings *settings);
+
+/* Does it read the key? True for keys that no problem calls its own. */
+bool problem_reads(const struct problem *problem, enum setting key);
+
+/* The problem of the settings in dim dimensions; automatic keys of the problem get their values.
+ * STATUS_BAD_INPUT: keys that cannot be together, or that the problem cannot be made of. */
+enum status problem_prepare(struct prepared *p, struct settings *settings, int dim,
+                            struct error *error);
+
+/* The same for a problem that need not be in the list. */
+enum status problem_prepare_as(struct prepared *p, const struct problem *problem,
+                               struct settings *settings, int dim, struct error *error);
+
+void problem_sample(const struct prepared *p, const double x[3], double t,
+                    struct problem_state *state);
+
+/* A field of a state; velocity: along x. */
+double problem_field(const struct problem_state *state, enum field field);
+
+/* Means of a field over each of bins equal parts of the window at t, to 1e-10 (dim = 1). */
+void problem_means(const struct prepared *p, enum field field, double t, size_t bins,
+                   double *means);
+
+/* STATUS_BAD_INPUT where the sample is not exact in the window at t: why, and up to when it is. */
+enum status problem_check_time(const struct prepared *p, double t, struct error *error);
+
+/* For a problem's prepare: is key, "rho v P", a state that particles can have? */
+enum status problem_check_state(const struct settings *settings, enum setting key,
+                                struct error *error);
+
+/* Position of particle i. */
+void problem_place(const struct prepared *p, const struct snapshot *s, size_t i, double x[3]);
+
+#endif

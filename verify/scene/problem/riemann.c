@@ -1,0 +1,340 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Two uniform gases that meet in the middle of the box (Toro 2009, ch. 4). The box is periodic, so
+ * a mirrored tube starts at its ends; the window has to stay clear of it. Particles have equal
+ * masses, cell-centred on each side, or are graded towards the jumps. */
+#include "riemann.h"
+
+#include <math.h>
+
+#include "functional.h"
+#include "problem.h"
+
+struct tube {
+    double x0; /* where the gases meet */
+    struct riemann_solution main, mirror;
+};
+_Static_assert(sizeof(struct tube) <= PROBLEM_OWN_BYTES, "a tube fits");
+
+static const struct tube *tube_of(const struct prepared *p)
+{
+    return (const struct tube *)p->own.bytes;
+}
+
+static enum status solve(struct riemann_solution *solution, double gamma, const double *left,
+                         const double *right, struct error *error)
+{
+    const struct riemann_state l = {left[0], left[1], left[2]}, r = {right[0], right[1], right[2]};
+    const char *fault = riemann_solve(gamma, &l, &r, solution);
+    return fault ? error_set(error, STATUS_BAD_INPUT, "no exact solution: %s", fault) : STATUS_OK;
+}
+
+/* Right over left so that spacings are equal either side of the contact, within limits: beyond, one
+ * side is resolved at the other's cost (measured on sod, sod_standard, lax and strong_shock). */
+static double mass_ratio_at_contact(const struct riemann_solution *tube)
+{
+    if (tube->vacuum) return 1;
+    return fmin(fmax(tube->rho_star_right / tube->rho_star_left, 0.5), 1.5);
+}
+
+static enum status prepare(struct prepared *p, struct settings *settings, struct error *error)
+{
+    struct tube *tube = (struct tube *)p->own.bytes;
+    const double *left = settings->value[SETTING_left].real;
+    const double *right = settings->value[SETTING_right].real;
+    struct setting_value *mass_ratio = &settings->value[SETTING_mass_ratio];
+    tube->x0 = 0.5 * (p->domain.lo[0] + p->domain.hi[0]);
+    if (problem_check_state(settings, SETTING_left, error) ||
+        problem_check_state(settings, SETTING_right, error) ||
+        solve(&tube->main, p->gamma, left, right, error) ||
+        solve(&tube->mirror, p->gamma, right, left, error))
+        return error->status;
+    if (mass_ratio->automatic)
+        mass_ratio->real[0] =
+            settings_real(settings, SETTING_grade) < 1 ? mass_ratio_at_contact(&tube->main) : 1;
+    return STATUS_OK;
+}
+
+static void sample(const struct prepared *p, const double x[3], double t,
+                   struct problem_state *state)
+{
+    const struct tube *tube = tube_of(p);
+    const struct riemann_state s = riemann_sample(&tube->main, x[0], tube->x0, t);
+    *state = (struct problem_state){.rho = s.rho,
+                                    .v = {s.rho > 0 ? s.v : (x[0] - tube->x0) / t},
+                                    .P = s.P,
+                                    .u = s.rho > 0 ? s.P / ((p->gamma - 1) * s.rho) : 0};
+}
+
+/* ---- particles ---- */
+
+/* Mass of particle i of n on one side over the usual one: min(1, g q^k), k counted from the nearer
+ * jump (the main one or the mirrored one). */
+struct grading {
+    double g, q;
+};
+
+static double grading_weight(const struct grading *grading, size_t i, size_t n)
+{
+    const size_t k = i < n - 1 - i ? i : n - 1 - i;
+    return grading->g < 1 ? fmin(1, grading->g * pow(grading->q, (double)k)) : 1;
+}
+
+/* The sum of all weights of a side of n particles. */
+static double grading_sum(const struct grading *grading, size_t n)
+{
+    double sum = 0;
+    size_t k = 0;
+    for (; 2 * k < n; k++) {
+        const double weight = grading_weight(grading, k, n);
+        if (weight == 1) break;
+        sum += 2 * k + 1 == n ? weight : 2 * weight;
+    }
+    return sum + (2 * k < n ? (double)(n - 2 * k) : 0);
+}
+
+/* Particles on the left so that the usual mass is nearly the same on both sides: round(n rho_L /
+ * (rho_L + rho_R)) for equal masses. */
+static size_t left_share(const struct grading *grading, size_t n, double rho_left, double rho_right)
+{
+    const double fraction = rho_left / (rho_left + rho_right);
+    size_t lo = 1, hi = n - 1;
+    if (grading->g == 1)
+        lo = (size_t)fmin(fmax(round((double)n * fraction), 1), (double)(n - 1));
+    else
+        while (lo < hi) { /* the share of the left side's weights rises with its number */
+            const size_t middle = (lo + hi) / 2;
+            const double left = grading_sum(grading, middle);
+            const double right = grading_sum(grading, n - middle);
+            const double next_left = grading_sum(grading, middle + 1);
+            const double next_right = grading_sum(grading, n - middle - 1);
+            const double here = left / (left + right), next = next_left / (next_left + next_right);
+            if (fabs(here - fraction) <= fabs(next - fraction))
+                hi = middle;
+            else
+                lo = middle + 1;
+        }
+    return lo;
+}
+
+/* A side of uniform gas: where it lies, its state, its particles (n from number `first` on). */
+struct side {
+    double lo, length;
+    const double *state;
+    size_t first, n;
+};
+
+static void fill_side(struct initial *initial, const struct side *side, double gamma,
+                      const struct grading *grading)
+{
+    const size_t n = side->n;
+    const double lo = side->lo, length = side->length, *state = side->state;
+    const double unit = state[0] * length / grading_sum(grading, n);
+    double edge = lo;
+    for (size_t i = 0; i < n; i++) {
+        const size_t at = side->first + i;
+        const double mass = unit * grading_weight(grading, i, n);
+        initial->m[at] = mass;
+        /* equal masses: no sum of rounded widths */
+        initial->x[0][at] = grading->g < 1 ? edge + 0.5 * mass / state[0]
+                                           : lo + ((double)i + 0.5) * (length / (double)n);
+        edge += mass / state[0];
+        initial->v[0][at] = state[1];
+        initial->u[at] = state[2] / ((gamma - 1) * state[0]);
+        initial->rho[at] = state[0];
+    }
+}
+
+static enum status fill(const struct prepared *p, const struct settings *settings,
+                        struct initial *initial, struct error *error)
+{
+    const double x0 = tube_of(p)->x0, lo = p->domain.lo[0], hi = p->domain.hi[0];
+    const double *left = settings->value[SETTING_left].real;
+    const double *right = settings->value[SETTING_right].real;
+    const struct grading grading = {settings_real(settings, SETTING_grade),
+                                    settings_real(settings, SETTING_grade_ratio)};
+    const size_t n = (size_t)settings_real(settings, SETTING_n);
+    const size_t n_left =
+        left_share(&grading, n, left[0], right[0] / settings_real(settings, SETTING_mass_ratio));
+    if (initial_allocate(initial, 1, n, error)) return error->status;
+    fill_side(initial, &(struct side){lo, x0 - lo, left, 0, n_left}, p->gamma, &grading);
+    fill_side(initial, &(struct side){x0, hi - x0, right, n_left, n - n_left}, p->gamma, &grading);
+    return STATUS_OK;
+}
+
+/* ---- how long the window stays free of the mirrored tube ---- */
+
+/* The greatest of v + mach c over a solution's constant states: no signal that is mach times as
+ * fast as sound where it enters overtakes this inside. */
+static double fastest(const struct riemann_solution *s, double mach, double sign)
+{
+    const struct riemann_state states[] = {s->left,
+                                           s->right,
+                                           {s->rho_star_left, s->v_star, s->p_star},
+                                           {s->rho_star_right, s->v_star, s->p_star}};
+    double speed = 0;
+    for (size_t i = 0; i < (s->vacuum ? 2 : 4); i++) {
+        const double c = sqrt(s->gamma * states[i].P / states[i].rho);
+        speed = fmax(speed, sign * states[i].v + mach * c);
+    }
+    /* an edge of vacuum runs ahead of all */
+    if (s->vacuum) speed = fmax(speed, sign > 0 ? s->right_tail : -s->left_tail);
+    return speed;
+}
+
+/* How far the mirrored tube's front has come at t, from the box's end towards the middle; gas: the
+ * state it runs into; sign: its direction. The bound is sharp until the front meets the waves of
+ * the main tube and safe from there on. */
+static double front(const struct prepared *p, double sign, double t)
+{
+    const struct riemann_solution *tube = &tube_of(p)->main, *mirror = &tube_of(p)->mirror;
+    const struct riemann_state *gas = sign > 0 ? &tube->left : &tube->right;
+    const double length = tube_of(p)->x0 - p->domain.lo[0];
+    const double c = sqrt(tube->gamma * gas->P / gas->rho);
+    const double head = sign > 0 ? mirror->right_head : -mirror->left_head;
+    const double ahead = sign > 0 ? -tube->left_head : tube->right_head;
+    const double speed = isnan(head) ? sign * gas->v + c : head;
+    const double other = isnan(ahead) ? c - sign * gas->v : ahead;
+    const double meet = speed + other > 0 ? length / (speed + other) : (double)INFINITY;
+    if (t <= meet) return speed * t;
+    const double mach = fmax(1, (speed - sign * gas->v) / c);
+    return speed * meet + fmax(speed, fastest(tube, mach, sign)) * (t - meet);
+}
+
+static bool holds(const struct prepared *p, double t)
+{
+    return p->domain.lo[0] + front(p, 1, t) <= p->window.lo[0] &&
+           p->domain.hi[0] - front(p, -1, t) >= p->window.hi[0];
+}
+
+static enum status refuse(const struct prepared *p, double t, double longest, struct error *error)
+{
+    return error_set(error, STATUS_BAD_INPUT,
+                     "t_end=%g: by then the mirrored tube at the ends of the periodic box has "
+                     "reached x = %.4g and %.4g, inside the window [%g, %g]; allowed: t_end <= "
+                     "%.4g, or a narrower window",
+                     t, p->domain.lo[0] + front(p, 1, t), p->domain.hi[0] - front(p, -1, t),
+                     p->window.lo[0], p->window.hi[0], longest);
+}
+
+/* ---- the place of the shock ---- */
+
+static bool shock_runs_right(const struct prepared *p)
+{
+    return tube_of(p)->main.right_wave == RIEMANN_SHOCK;
+}
+
+/* Where the pressure, seen from the right, first passes the mean of both sides of the shock. */
+static double shock_measured(const struct prepared *p, const struct snapshot *s)
+{
+    const struct riemann_solution *tube = &tube_of(p)->main;
+    const double level = 0.5 * (tube->p_star + tube->right.P);
+    for (size_t i = s->n; i-- > 1;) {
+        const double x0 = s->x[0][i - 1], x1 = s->x[0][i], p0 = s->P[i - 1], p1 = s->P[i];
+        if (x1 <= p->window.hi[0] && p0 >= level && p1 < level)
+            return x0 + (x1 - x0) * (p0 - level) / (p0 - p1);
+    }
+    return NAN;
+}
+
+static double shock_exact(const struct prepared *p, double t)
+{
+    return tube_of(p)->x0 + tube_of(p)->main.right_head * t;
+}
+
+static const struct functional shock_position = {"shock_position", shock_runs_right, shock_measured,
+                                                 shock_exact};
+
+/* ---- regions of the error budget ---- */
+
+enum { UNDISTURBED, FAN, PLATEAU, CONTACT, SHOCK };
+
+/* A wave that is nowhere has NaN for a place and is near nothing. */
+static bool near(double x, double place, double reach)
+{
+    return fabs(x - place) <= reach;
+}
+
+static size_t region_at(const struct prepared *p, const double place[3], double reach, double t)
+{
+    const struct riemann_solution *tube = &tube_of(p)->main;
+    const double x = place[0] - tube_of(p)->x0;
+    const double speeds[2][2] = {{tube->left_head, tube->left_tail},
+                                 {tube->right_tail, tube->right_head}};
+    const enum riemann_wave waves[2] = {tube->left_wave, tube->right_wave};
+    for (int side = 0; side < 2; side++)
+        if (waves[side] == RIEMANN_SHOCK && near(x, speeds[side][0] * t, reach)) return SHOCK;
+    if (near(x, tube->contact * t, reach)) return CONTACT;
+    for (int side = 0; side < 2; side++)
+        if (waves[side] == RIEMANN_RAREFACTION && x >= speeds[side][0] * t - reach &&
+            x <= speeds[side][1] * t + reach)
+            return FAN;
+    return x < tube->left_head * t || x > tube->right_head * t ? UNDISTURBED : PLATEAU;
+}
+
+/* Speed of the foremost edge that a solution sends to one side, sign 1 for the right. */
+static double edge(const struct riemann_solution *tube, double sign)
+{
+    return sign > 0 ? fmax(tube->right_head, tube->right_tail)
+                    : -fmin(tube->left_head, tube->left_tail);
+}
+
+/* Is a place so far ahead of a wave, which has run a way (backwards: < 0), that its gas has to be
+ * at rest? Counted in h (a shock's precursor falls tenfold from particle to particle), and as a
+ * part of the way that the wave has run (a fan's head is dispersed, over many h). */
+static bool far_ahead(double place, double way, double h)
+{
+    const double still_widths = 12, still_way = 0.25;
+    return place - way > fmax(still_widths * h, still_way * fabs(way));
+}
+
+/* Undisturbed gas lies between the main tube's wave and the one that comes from the box's end. */
+static double stillness(const struct prepared *p, const struct snapshot *s)
+{
+    const struct tube *tubes = tube_of(p);
+    const struct riemann_solution *tube = &tubes->main;
+    double moved = NAN;
+    for (size_t i = 0; i < s->n; i++) {
+        const double x = s->x[0][i], sign = x > tubes->x0 ? 1 : -1;
+        const struct riemann_state *gas = sign > 0 ? &tube->right : &tube->left;
+        const double from_end = sign > 0 ? p->domain.hi[0] - x : x - p->domain.lo[0];
+        if (!far_ahead(sign * (x - tubes->x0), edge(tube, sign) * s->time, s->h[i]) ||
+            !far_ahead(from_end, edge(&tubes->mirror, -sign) * s->time, s->h[i]))
+            continue;
+        const double c = sqrt(tube->gamma * gas->P / gas->rho);
+        moved = fmax(moved, fabs(s->v[0][i] - gas->v) / c);
+    }
+    return moved;
+}
+
+static const struct regions regions = {
+    .names = {[UNDISTURBED] = "undisturbed", /* no wave has been here */
+              [FAN] = "fan",                 /* inside a rarefaction, or within reach of its ends */
+              [PLATEAU] = "plateau",         /* constant states between the waves; vacuum */
+              [CONTACT] = "contact",         /* within reach of the contact */
+              [SHOCK] = "shock"},            /* within reach of a shock */
+    .at = region_at,
+    .still = stillness,
+};
+
+static const struct problem_key keys[] = {
+    {SETTING_left, ROLE_NEEDED},          {SETTING_right, ROLE_NEEDED},
+    {SETTING_grade, ROLE_PARTICLES},      {SETTING_grade_ratio, ROLE_PARTICLES},
+    {SETTING_mass_ratio, ROLE_PARTICLES},
+};
+
+const struct problem problem_riemann = {
+    .member = {"riemann", "two uniform gases that meet in the middle of the box", "Toro 2009"},
+    .reference = "riemann",
+    .least_dim = 1,
+    .most_dim = 1,
+    .keys = keys,
+    .key_count = sizeof keys / sizeof *keys,
+    .prepare = prepare,
+    .sample = sample,
+    .fill = fill,
+    .holds = holds,
+    .refuse = refuse,
+    .random = initial_is_shaken,
+    .functionals = {&functional_mean_internal_energy, &functional_mean_pressure, &shock_position},
+    .regions = &regions,
+};

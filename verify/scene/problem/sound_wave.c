@@ -1,0 +1,155 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * A simple wave that runs to the right through a uniform gas and is exact at any amplitude until it
+ * breaks (Landau & Lifshitz 1987, section 101): `waves` wavelengths in the box. Particles of equal
+ * masses, whose positions carry the density exactly. */
+#include "simple_wave.h"
+
+#include <math.h>
+
+#include "functional.h"
+#include "problem.h"
+
+_Static_assert(sizeof(struct simple_wave) <= PROBLEM_OWN_BYTES, "a wave fits");
+
+static const struct simple_wave *wave_of(const struct prepared *p)
+{
+    return (const struct simple_wave *)p->own.bytes;
+}
+
+static enum status prepare(struct prepared *p, struct settings *settings, struct error *error)
+{
+    struct simple_wave *wave = (struct simple_wave *)p->own.bytes;
+    const double *gas = settings->value[SETTING_background].real;
+    if (problem_check_state(settings, SETTING_background, error)) return error->status;
+    *wave = (struct simple_wave){.gamma = p->gamma,
+                                 .rho0 = gas[0],
+                                 .v0 = gas[1],
+                                 .P0 = gas[2],
+                                 .amplitude = settings_real(settings, SETTING_amplitude),
+                                 .length = (p->domain.hi[0] - p->domain.lo[0]) /
+                                           settings_real(settings, SETTING_waves)};
+    const char *fault = simple_wave_fault(wave);
+    return fault ? error_set(error, STATUS_BAD_INPUT, "no exact solution: %s", fault) : STATUS_OK;
+}
+
+static void sample(const struct prepared *p, const double x[3], double t,
+                   struct problem_state *state)
+{
+    const struct simple_wave_state s = simple_wave_sample(wave_of(p), x[0] - p->domain.lo[0], t);
+    *state = (struct problem_state){.rho = s.rho, .v = {s.v}, .P = s.P, .u = s.u};
+}
+
+/* Position x (from lo) with mass between lo and x equal to `mass`: Newton on
+ * rho0 (x + A (1 - cos k x)/k), which rises by at least rho0 (1 - A). */
+static double wave_position(const struct simple_wave *wave, double mass)
+{
+    const double k = 2 * M_PI / wave->length;
+    double x = mass / wave->rho0;
+    for (int i = 0; i < 50; i++) {
+        const double excess = x + wave->amplitude * (1 - cos(k * x)) / k - mass / wave->rho0;
+        const double step = excess / (1 + wave->amplitude * sin(k * x));
+        x -= step;
+        if (fabs(step) <= 1e-16 * wave->length) break;
+    }
+    return x;
+}
+
+static enum status fill(const struct prepared *p, const struct settings *settings,
+                        struct initial *initial, struct error *error)
+{
+    const struct simple_wave *wave = wave_of(p);
+    const size_t n = (size_t)settings_real(settings, SETTING_n);
+    const double lo = p->domain.lo[0], mass = wave->rho0 * (p->domain.hi[0] - lo) / (double)n;
+    if (initial_allocate(initial, 1, n, error)) return error->status;
+    for (size_t i = 0; i < n; i++) {
+        struct problem_state state;
+        initial->m[i] = mass;
+        initial->x[0][i] = lo + wave_position(wave, ((double)i + 0.5) * mass);
+        sample(p, (double[3]){initial->x[0][i]}, 0, &state);
+        initial->v[0][i] = state.v[0];
+        initial->u[i] = state.u;
+        initial->rho[i] = state.rho;
+    }
+    return STATUS_OK;
+}
+
+static bool holds(const struct prepared *p, double t)
+{
+    return t < simple_wave_breaking_time(wave_of(p));
+}
+
+static enum status refuse(const struct prepared *p, double t, double longest, struct error *error)
+{
+    (void)p;
+    return error_set(error, STATUS_BAD_INPUT,
+                     "t_end=%g: the wave breaks at %.6g and has no exact solution from there "
+                     "on; allowed: t_end below that",
+                     t, longest);
+}
+
+/* ---- amplitude of the density's first Fourier mode, relative to the background ---- */
+
+enum { MODE_POINTS = 1024 };
+
+/* Sums of a mode: cosine, sine, volume. */
+struct mode {
+    double a, b, volume;
+};
+
+static void mode_add(struct mode *mode, const struct prepared *p, double x, double volume,
+                     double rho)
+{
+    const struct simple_wave *wave = wave_of(p);
+    const double phase = 2 * M_PI * (x - p->domain.lo[0]) / wave->length;
+    mode->a += volume * (rho - wave->rho0) * cos(phase);
+    mode->b += volume * (rho - wave->rho0) * sin(phase);
+    mode->volume += volume;
+}
+
+static double mode_size(const struct mode *mode, const struct prepared *p)
+{
+    return 2 * hypot(mode->a, mode->b) / mode->volume / wave_of(p)->rho0;
+}
+
+static double mode_measured(const struct prepared *p, const struct snapshot *s)
+{
+    struct mode mode = {0};
+    for (size_t i = 0; i < s->n; i++) mode_add(&mode, p, s->x[0][i], s->volume[i], s->rho[i]);
+    return mode_size(&mode, p);
+}
+
+static double mode_exact(const struct prepared *p, double t)
+{
+    const double lo = p->domain.lo[0], step = (p->domain.hi[0] - lo) / MODE_POINTS;
+    struct mode mode = {0};
+    for (int i = 0; i < MODE_POINTS; i++) { /* smooth and periodic: converges at once */
+        const double x = lo + (i + 0.5) * step;
+        struct problem_state state;
+        sample(p, (double[3]){x}, t, &state);
+        mode_add(&mode, p, x, step, state.rho);
+    }
+    return mode_size(&mode, p);
+}
+
+static const struct functional mode_amplitude = {"mode_amplitude", NULL, mode_measured, mode_exact};
+
+static const struct problem_key keys[] = {{SETTING_background, ROLE_NEEDED},
+                                          {SETTING_amplitude, ROLE_NEEDED},
+                                          {SETTING_waves, ROLE_OPTIONAL}};
+
+const struct problem problem_sound_wave = {
+    .member = {"sound_wave", "a simple wave that runs to the right", "Landau & Lifshitz 1987"},
+    .reference = "simple_wave",
+    .least_dim = 1,
+    .most_dim = 1,
+    .smooth = true,
+    .keys = keys,
+    .key_count = sizeof keys / sizeof *keys,
+    .prepare = prepare,
+    .sample = sample,
+    .fill = fill,
+    .holds = holds,
+    .refuse = refuse,
+    .random = initial_is_shaken,
+    .functionals = {&functional_mean_internal_energy, &functional_mean_pressure, &mode_amplitude},
+};
