@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "buffer.h"
-#include "html.h"
+#include "value.h"
 
 /* Groups of checks and areas, in the order in which they are shown. */
 static const char *const causes[] = {
@@ -79,10 +79,10 @@ void failure_add(struct failure_list *failures, const char *area, const char *na
 void failure_add_check(struct failure_list *failures, const json_t *figure, double excess,
                        const char *detail, const char *command)
 {
-    const char *group = html_string(figure, "group"), *check = html_string(figure, "name");
+    const char *group = value_text(figure, "group"), *check = value_text(figure, "name");
     json_t *entry =
         json_pack("{s:s, s:s++, s:s, s:s, s:s}", "area", "check", "name", group, ": ", check,
-                  "subject", html_string(figure, "subject"), "detail", detail, "command", command);
+                  "subject", value_text(figure, "subject"), "detail", detail, "command", command);
     for (size_t k = failures->count; entry && k-- > 0;) {
         struct failure *known = &failures->list[k];
         if (!json_equal(json_object_get(entry, "area"), json_object_get(known->entry, "area")) ||
@@ -113,7 +113,7 @@ static void tell_more(struct failure_list *failures, const struct failure *failu
 {
     struct buffer detail = {0};
     buffer_format(&detail, "%s; and %zu more %s of this check",
-                  html_string(failure->entry, "detail"), failure->more,
+                  value_text(failure->entry, "detail"), failure->more,
                   failure->more == 1 ? "figure" : "figures");
     if (detail.failed || json_object_set_new(failure->entry, "detail", json_string(detail.data)))
         failures->failed = true;

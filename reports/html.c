@@ -6,39 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *html_string(const json_t *object, const char *name)
-{
-    const char *string = json_string_value(json_object_get(object, name));
-    return string ? string : "";
-}
-
-double html_real(const json_t *value)
-{
-    if (json_is_number(value)) return json_number_value(value);
-    const char *string = json_string_value(value);
-    if (string && !strcmp(string, "inf")) return (double)INFINITY;
-    if (string && !strcmp(string, "-inf")) return -(double)INFINITY;
-    return (double)NAN;
-}
-
-size_t html_numbers(const json_t *array, double *values, size_t most)
-{
-    size_t i, n = 0;
-    const json_t *value;
-    json_array_foreach(array, i, value) if (n < most) values[n++] = html_real(value);
-    return n;
-}
-
-double html_member(const json_t *object, const char *name)
-{
-    return html_real(json_object_get(object, name));
-}
-
-double html_member2(const json_t *object, const char *outer, const char *name)
-{
-    return html_member(json_object_get(object, outer), name);
-}
-
 void html_number(struct buffer *to, double value)
 {
     if (isnan(value)) {
@@ -129,12 +96,6 @@ void html_status(struct buffer *to, const char *status)
                                             : "fail");
     html_words(to, status);
     buffer_add(to, "</b>");
-}
-
-const char *html_verify(const json_t *verify)
-{
-    const char *command = html_string(verify, "reproduce");
-    return *command ? command : "sphproof verify";
 }
 
 void html_words(struct buffer *to, const char *name)

@@ -1,10 +1,10 @@
-/* SPDX-License-Identifier: GPL-3.0-or-later
- * The results as JUnit XML: a suite for the runs, one for the orders of convergence, one for each
- * group of checks, one for the deliberate faults and one for those of the world around. */
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "junit.h"
+
 #include <string.h>
 
 #include "html.h"
-#include "page.h"
+#include "value.h"
 
 struct suite_writer {
     struct buffer cases;
@@ -52,8 +52,8 @@ static void runs(struct buffer *to, const json_t *results)
     size_t i, j;
     const json_t *entry, *order;
     json_array_foreach(json_object_get(results, "runs"), i, entry)
-        test_case(&suite, html_string(entry, "case"), html_string(entry, "reproduce"),
-                  html_string(entry, "status"), html_string(entry, "message"));
+        test_case(&suite, value_text(entry, "case"), value_text(entry, "reproduce"),
+                  value_text(entry, "status"), value_text(entry, "message"));
     suite_end(to, "runs", &suite);
     json_array_foreach(json_object_get(results, "studies"), i, entry)
     {
@@ -61,14 +61,14 @@ static void runs(struct buffer *to, const json_t *results)
         {
             if (!json_is_object(json_object_get(order, "gate"))) continue;
             struct buffer name = {0}, message = {0};
-            buffer_format(&name, "%s: %s of %s", html_string(entry, "label"),
-                          html_string(order, "norm"), html_string(order, "field"));
+            buffer_format(&name, "%s: %s of %s", value_text(entry, "label"),
+                          value_text(order, "norm"), value_text(order, "field"));
             buffer_format(&message, "order %.3f, 95 %% interval %.3f to %.3f; %s",
-                          html_member(order, "order"), html_member(order, "low"),
-                          html_member(order, "high"), html_string(order, "why"));
+                          value_member(order, "order"), value_member(order, "low"),
+                          value_member(order, "high"), value_text(order, "why"));
             if (name.data && message.data)
-                test_case(&suite, html_string(entry, "case"), name.data,
-                          html_string(order, "status"), message.data);
+                test_case(&suite, value_text(entry, "case"), name.data, value_text(order, "status"),
+                          message.data);
             buffer_free(&name);
             buffer_free(&message);
         }
@@ -84,21 +84,21 @@ static void checks(struct buffer *to, const json_t *verify)
     const char *group = "";
     json_array_foreach(json_object_get(verify, "checks"), i, entry)
     {
-        if (strcmp(group, html_string(entry, "group"))) suite_end(to, group, &suite);
-        group = html_string(entry, "group");
+        if (strcmp(group, value_text(entry, "group"))) suite_end(to, group, &suite);
+        group = value_text(entry, "group");
         struct buffer message = {0};
         buffer_add(&message, "value ");
-        html_number(&message, html_member(entry, "value"));
+        html_number(&message, value_member(entry, "value"));
         buffer_add(&message, ", bound ");
-        html_number(&message, html_member(entry, "bound"));
+        html_number(&message, value_member(entry, "bound"));
         if (message.data)
-            test_case(&suite, html_string(entry, "name"), html_string(entry, "subject"),
-                      html_string(entry, "status"), message.data);
+            test_case(&suite, value_text(entry, "name"), value_text(entry, "subject"),
+                      value_text(entry, "status"), message.data);
         buffer_free(&message);
     }
     suite_end(to, group, &suite);
     json_array_foreach(json_object_get(verify, "mutants"), i, entry)
-        test_case(&suite, html_string(entry, "check"), html_string(entry, "mutant"),
+        test_case(&suite, value_text(entry, "check"), value_text(entry, "mutant"),
                   json_is_true(json_object_get(entry, "detected")) ? "pass" : "fail",
                   "this deliberate fault was not caught");
     suite_end(to, "deliberate faults", &suite);
@@ -113,11 +113,11 @@ static void others(struct buffer *to, const json_t *verdict)
     const json_t *failure;
     json_array_foreach(json_object_get(verdict, "failures"), i, failure)
     {
-        const char *area = html_string(failure, "area");
+        const char *area = value_text(failure, "area");
         for (size_t k = 0; k < sizeof areas / sizeof *areas; k++)
             if (!strcmp(area, areas[k]))
-                test_case(&suite, area, html_string(failure, "name"), "fail",
-                          html_string(failure, "detail"));
+                test_case(&suite, area, value_text(failure, "name"), "fail",
+                          value_text(failure, "detail"));
     }
     suite_end(to, "report", &suite);
 }
@@ -129,14 +129,14 @@ static void faults(struct buffer *to, const json_t *faults)
     const json_t *entry;
     json_array_foreach(json_object_get(faults, "faults"), i, entry)
     {
-        const char *status = html_string(entry, "status");
-        test_case(&suite, html_string(entry, "part"), html_string(entry, "fault"), status,
-                  html_string(entry, strcmp(status, "fail") ? "message" : "detail"));
+        const char *status = value_text(entry, "status");
+        test_case(&suite, value_text(entry, "part"), value_text(entry, "fault"), status,
+                  value_text(entry, strcmp(status, "fail") ? "message" : "detail"));
     }
     suite_end(to, "faults around it", &suite);
 }
 
-char *page_junit(const json_t *results)
+char *junit_text(const json_t *results)
 {
     struct buffer to = {0};
     buffer_add(&to, "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<testsuites name=\"sphproof\">\n");

@@ -7,6 +7,7 @@
 
 #include "html.h"
 #include "page_part.h"
+#include "value.h"
 
 static void tile(struct buffer *to, const char *label, double good, double all, const char *anchor)
 {
@@ -18,38 +19,38 @@ static void tile(struct buffer *to, const char *label, double good, double all, 
 
 static void head(struct buffer *to, const json_t *results, const json_t *verdict)
 {
-    bool well = !strcmp(html_string(verdict, "status"), "pass");
+    bool well = !strcmp(value_text(verdict, "status"), "pass");
     buffer_add(to, "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"/>"
                    "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>"
                    "<meta name=\"color-scheme\" content=\"light dark\"/><title>sphproof: ");
-    buffer_escape(to, html_string(verdict, "headline"));
+    buffer_escape(to, value_text(verdict, "headline"));
     buffer_add(to, "</title><style>");
     for (size_t k = 0; page_styles[k]; k++) buffer_add(to, page_styles[k]);
     buffer_format(to, "%s</style></head><body>\n", plot_css());
     buffer_format(to, "<header class=\"%s\"><p class=\"kind\">sphproof %s report</p><h1>",
-                  well ? "well" : "unwell", html_string(results, "mode"));
-    buffer_escape(to, html_string(verdict, "headline"));
+                  well ? "well" : "unwell", value_text(results, "mode"));
+    buffer_escape(to, value_text(verdict, "headline"));
     buffer_add(to, "</h1>\n<p class=\"facts\">");
-    buffer_escape(to, html_string(results, "date"));
+    buffer_escape(to, value_text(results, "date"));
     buffer_add(to, " · git ");
-    buffer_escape(to, html_string(results, "git"));
-    double seconds = html_member(results, "seconds");
+    buffer_escape(to, value_text(results, "git"));
+    double seconds = value_member(results, "seconds");
     if (seconds > 0) buffer_format(to, " · computed in %.0f s", seconds);
     buffer_add(to, "</p>\n");
     page_since(to, results);
     buffer_add(to, "<p class=\"tiles\">");
-    double passed = html_member(verdict, "figures_passed");
-    double gates = html_member(verdict, "gates_passed");
-    double runs = html_member(verdict, "runs");
-    tile(to, "figures within their bounds", passed, passed + html_member(verdict, "figures_failed"),
-         "checks");
+    double passed = value_member(verdict, "figures_passed");
+    double gates = value_member(verdict, "gates_passed");
+    double runs = value_member(verdict, "runs");
+    tile(to, "figures within their bounds", passed,
+         passed + value_member(verdict, "figures_failed"), "checks");
     tile(to, "orders of convergence as expected", gates,
-         gates + html_member(verdict, "gates_failed"), "cases");
-    tile(to, "runs sound", runs - html_member(verdict, "broke_down"), runs, "cases");
-    tile(to, "deliberate faults caught", html_member(verdict, "mutants_detected"),
-         html_member(verdict, "mutants"), "detection");
-    tile(to, "faults around it answered rightly", html_member(verdict, "faults_right"),
-         html_member(verdict, "faults"), "faults");
+         gates + value_member(verdict, "gates_failed"), "cases");
+    tile(to, "runs sound", runs - value_member(verdict, "broke_down"), runs, "cases");
+    tile(to, "deliberate faults caught", value_member(verdict, "mutants_detected"),
+         value_member(verdict, "mutants"), "detection");
+    tile(to, "faults around it answered rightly", value_member(verdict, "faults_right"),
+         value_member(verdict, "faults"), "faults");
     buffer_add(to, "</p></header>\n");
 }
 
@@ -64,13 +65,13 @@ static void failures(struct buffer *to, const json_t *verdict)
     {
         if (i == SHOWN) break;
         buffer_add(to, "<li><p><span class=\"area\">");
-        buffer_escape(to, html_string(entry, "area"));
+        buffer_escape(to, value_text(entry, "area"));
         buffer_add(to, "</span> <b>");
-        buffer_escape(to, html_string(entry, "name"));
+        buffer_escape(to, value_text(entry, "name"));
         buffer_add(to, "</b><br/>");
-        buffer_escape(to, html_string(entry, "detail"));
+        buffer_escape(to, value_text(entry, "detail"));
         buffer_add(to, "</p>");
-        html_command(to, "see it again:", html_string(entry, "command"));
+        html_command(to, "see it again:", value_text(entry, "command"));
         buffer_add(to, "</li>\n");
     }
     buffer_add(to, "</ol>");
@@ -93,15 +94,15 @@ static void environment(struct buffer *to, const json_t *results)
     const json_t *machine = json_object_get(results, "machine");
     buffer_add(to, "<section id=\"environment\"><h2>Environment and definitions</h2>"
                    "<div class=\"scroll\"><table class=\"facts\"><tbody>\n");
-    row(to, "program", html_string(results, "version"));
-    row(to, "git", html_string(results, "git"));
-    row(to, "compiler", html_string(results, "compiler"));
-    row(to, "flags", html_string(results, "flags"));
-    row(to, "system", html_string(machine, "system"));
-    row(to, "architecture", html_string(machine, "architecture"));
-    row(to, "processor", html_string(machine, "processor"));
+    row(to, "program", value_text(results, "version"));
+    row(to, "git", value_text(results, "git"));
+    row(to, "compiler", value_text(results, "compiler"));
+    row(to, "flags", value_text(results, "flags"));
+    row(to, "system", value_text(machine, "system"));
+    row(to, "architecture", value_text(machine, "architecture"));
+    row(to, "processor", value_text(machine, "processor"));
     buffer_format(to, "<tr><th>cores</th><td>%.0f</td></tr></tbody></table></div>\n",
-                  html_member(machine, "cores"));
+                  value_member(machine, "cores"));
     buffer_add(
         to, "<p>Norms over the particles i of a case's measure window, with volumes V: "
             "L1 = Σ V |q − q_exact| / Σ V, L2 = (Σ V (q − q_exact)² / Σ V)^½, "
@@ -115,10 +116,9 @@ static void environment(struct buffer *to, const json_t *results)
             "plot's data and gnuplot script are in the folder <code>plots</code>.</p></section>\n");
 }
 
-int page_make(struct page *page, const json_t *results)
+bool page_make(struct page *page, const json_t *results)
 {
-    *page = (struct page){0};
-    struct page_writer writer = {.page = page};
+    struct page_writer writer = {.to = {0}};
     struct buffer *to = &writer.to;
     const json_t *verdict = json_object_get(results, "verdict");
     const json_t *verify = json_object_get(results, "verify");
@@ -154,19 +154,15 @@ int page_make(struct page *page, const json_t *results)
     if (verify) page_detection(&writer, verify);
     environment(to, results);
     buffer_add(to, "</main></body></html>\n");
-    page->html = buffer_take(to);
-    if (page->html) return 1;
+    *page = (struct page){.html = buffer_take(to), .plots = writer.plots};
+    if (page->html) return true;
     page_free(page);
-    return 0;
+    return false;
 }
 
 void page_free(struct page *page)
 {
-    for (size_t k = 0; k < page->file_count; k++) {
-        free(page->files[k].name);
-        free(page->files[k].bytes);
-    }
-    free(page->files);
+    page_plots_free(&page->plots);
     free(page->html);
-    *page = (struct page){0};
+    page->html = NULL;
 }

@@ -7,6 +7,7 @@
 
 #include "html.h"
 #include "page_part.h"
+#include "value.h"
 
 enum { SHOWN = 12, POINTS = 64, NAME = 96 };
 
@@ -37,8 +38,8 @@ static void short_name(char name[NAME], const char *scheme)
 
 static int by_merit(const void *a, const void *b)
 {
-    double x = html_member(((const struct curve *)a)->scheme, "figure_of_merit");
-    double y = html_member(((const struct curve *)b)->scheme, "figure_of_merit");
+    double x = value_member(((const struct curve *)a)->scheme, "figure_of_merit");
+    double y = value_member(((const struct curve *)b)->scheme, "figure_of_merit");
     if (isnan(x) || isnan(y)) return isnan(x) - isnan(y);
     return (x > y) - (x < y);
 }
@@ -53,17 +54,17 @@ static size_t read_curves(const json_t *document, struct curve *curves, size_t m
         if (count == most) break;
         struct curve *curve = &curves[count++];
         *curve = (struct curve){.scheme = entry};
-        short_name(curve->name, html_string(entry, "scheme"));
+        short_name(curve->name, value_text(entry, "scheme"));
     }
     json_array_foreach(json_object_get(document, "points"), i, entry)
     {
         for (size_t k = 0; k < count; k++) {
             struct curve *curve = &curves[k];
-            if (strcmp(html_string(curve->scheme, "scheme"), html_string(entry, "scheme")) ||
+            if (strcmp(value_text(curve->scheme, "scheme"), value_text(entry, "scheme")) ||
                 curve->n == POINTS)
                 continue;
-            curve->cpu[curve->n] = html_member(entry, "cpu_s");
-            curve->error[curve->n++] = html_member(entry, "error");
+            curve->cpu[curve->n] = value_member(entry, "cpu_s");
+            curve->error[curve->n++] = value_member(entry, "error");
         }
     }
     qsort(curves, count, sizeof *curves, by_merit);
@@ -111,8 +112,8 @@ static void scheme_table(struct buffer *to, const struct curve *curves, size_t c
         html_cell(to, curve->name);
         html_cell_number(to, curve->n ? curve->error[curve->n - 1] : (double)NAN);
         html_cell_number(to, curve->n ? curve->cpu[curve->n - 1] : (double)NAN);
-        html_cell_number(to, html_member(curve->scheme, "figure_of_merit"));
-        html_cell_number(to, html_member(curve->scheme, "seed_plain_over_this"));
+        html_cell_number(to, value_member(curve->scheme, "figure_of_merit"));
+        html_cell_number(to, value_member(curve->scheme, "seed_plain_over_this"));
         buffer_add(to, "</tr>\n");
     }
     html_table_end(to);
@@ -127,10 +128,10 @@ static void cheapest_table(struct buffer *to, const json_t *ways)
     json_array_foreach(ways, i, way)
     {
         char name[NAME];
-        short_name(name, html_string(way, "scheme"));
-        buffer_format(to, "<tr><td>%g %%</td>", 100 * html_member(way, "target"));
+        short_name(name, value_text(way, "scheme"));
+        buffer_format(to, "<tr><td>%g %%</td>", 100 * value_member(way, "target"));
         if (*name)
-            html_cell_number(to, html_member(way, "cpu_s"));
+            html_cell_number(to, value_member(way, "cpu_s"));
         else
             buffer_add(to, "<td class=\"n\">—</td>");
         html_cell(to, *name ? name : "not reached at these resolutions");
@@ -159,16 +160,16 @@ void page_bench(struct page_writer *writer, const json_t *bench)
         }
         size_t count = read_curves(document, curves, most);
         buffer_add(to, "<h3><code>");
-        buffer_escape(to, html_string(document, "case"));
+        buffer_escape(to, value_text(document, "case"));
         buffer_add(to, "</code> <span>");
-        buffer_escape(to, html_string(document, "title"));
+        buffer_escape(to, value_text(document, "title"));
         buffer_add(to, "</span></h3>\n<div class=\"figures\">");
-        plot_curves(writer, html_string(document, "case"), curves, count);
+        plot_curves(writer, value_text(document, "case"), curves, count);
         buffer_add(to, "<div>");
         scheme_table(to, curves, count);
         cheapest_table(to, json_object_get(document, "cheapest"));
         buffer_add(to, "</div></div>\n");
-        html_command(to, "see it again:", html_string(document, "reproduce"));
+        html_command(to, "see it again:", value_text(document, "reproduce"));
         free(curves);
     }
     buffer_add(to, "</section>\n");

@@ -1,11 +1,11 @@
-/* SPDX-License-Identifier: GPL-3.0-or-later
- * Error budget of a Riemann problem: which region of the flow the L1 error of density comes from,
- * how fast each part falls, and whether still gas has stayed still. */
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "page_budget.h"
+
 #include <math.h>
 #include <string.h>
 
 #include "html.h"
-#include "page_part.h"
+#include "value.h"
 
 static const json_t *budget_of(const json_t *document)
 {
@@ -14,13 +14,13 @@ static const json_t *budget_of(const json_t *document)
 
 static void share_cell(struct buffer *to, const json_t *region)
 {
-    double share = html_member(region, "share"), order = html_member(region, "order");
+    double share = value_member(region, "share"), order = value_member(region, "order");
     buffer_add(to, "<td class=\"n\">");
     if (share > 0) buffer_format(to, "%.0f %%", 100 * share);
     buffer_add(to, "</td><td class=\"n\">");
     if (share > 0 && isfinite(order))
         buffer_format(to, "%.2f ± %.2f", order,
-                      (html_member(region, "high") - html_member(region, "low")) / 2);
+                      (value_member(region, "high") - value_member(region, "low")) / 2);
     buffer_add(to, "</td>");
 }
 
@@ -29,8 +29,8 @@ static void still_row(struct buffer *to, const json_t *const *documents, size_t 
     buffer_add(to, "<tr class=\"total\"><th>still gas moves at, of its sound speed</th>");
     for (size_t k = 0; k < count; k++) {
         const json_t *still = json_object_get(budget_of(documents[k]), "still_gas");
-        const char *status = html_string(still, "status");
-        html_cell_number(to, html_member(still, "value"));
+        const char *status = value_text(still, "status");
+        html_cell_number(to, value_member(still, "value"));
         buffer_add(to, "<td>");
         if (!strcmp(status, "pass") || !strcmp(status, "fail")) html_status(to, status);
         buffer_add(to, "</td>");
@@ -49,7 +49,7 @@ void page_budget(struct page_writer *writer, const json_t *const *documents, siz
     buffer_add(&columns, "region");
     for (size_t k = 0; k < count; k++) {
         buffer_add(&columns, "|#");
-        buffer_escape(&columns, html_string(documents[k], "label"));
+        buffer_escape(&columns, value_text(documents[k], "label"));
         buffer_add(&columns, "|#order");
     }
     buffer_add(to, "<details><summary>Where the error of density comes from, by region of the "
@@ -59,7 +59,7 @@ void page_budget(struct page_writer *writer, const json_t *const *documents, siz
     json_array_foreach(regions, i, region)
     {
         buffer_add(to, "<tr>");
-        html_cell(to, html_string(region, "region"));
+        html_cell(to, value_text(region, "region"));
         for (size_t k = 0; k < count; k++)
             share_cell(to, json_array_get(json_object_get(budget_of(documents[k]), "regions"), i));
         buffer_add(to, "</tr>\n");

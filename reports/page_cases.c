@@ -7,6 +7,9 @@
 
 #include "html.h"
 #include "page_part.h"
+#include "page_study.h"
+#include "page_time.h"
+#include "value.h"
 
 enum { QUANTITIES = 3 };
 
@@ -18,7 +21,7 @@ static double *numbers(const json_t *array, size_t *n)
 {
     size_t size = json_array_size(array);
     double *values = size ? malloc(size * sizeof *values) : NULL;
-    for (size_t i = 0; values && i < size; i++) values[i] = html_real(json_array_get(array, i));
+    for (size_t i = 0; values && i < size; i++) values[i] = value_real(json_array_get(array, i));
     *n = values ? size : 0;
     return values;
 }
@@ -37,7 +40,7 @@ static void add_curve(struct curves *curves, const json_t *run)
     const json_t *profile = json_object_get(run, "profile");
     size_t k = curves->runs, n = 0, length;
     if (!profile || k == PAGE_SCHEMES) return;
-    curves->label[k] = html_string(run, "label");
+    curves->label[k] = value_text(run, "label");
     curves->x[k] = numbers(json_object_get(profile, "x"), &n);
     curves->n[k] = n;
     for (int q = 0; q < QUANTITIES; q++) {
@@ -153,17 +156,17 @@ static void run_table(struct buffer *to, const json_t *const *runs, size_t count
     for (size_t k = 0; k < count; k++) {
         const json_t *errors = json_object_get(runs[k], "errors");
         buffer_add(to, "<tr>");
-        html_cell(to, html_string(runs[k], "label"));
-        html_cell_number(to, html_member(runs[k], "n"));
+        html_cell(to, value_text(runs[k], "label"));
+        html_cell_number(to, value_member(runs[k], "n"));
         for (int q = 0; q < QUANTITIES; q++)
-            html_cell_number(to, html_member2(errors, quantities[q], "l1"));
-        html_cell_number(to, html_member2(runs[k], "conservation", "mass"));
-        html_cell_number(to, html_member2(runs[k], "conservation", "momentum"));
-        html_cell_number(to, html_member2(runs[k], "conservation", "energy"));
-        html_cell_number(to, html_member2(runs[k], "cost", "steps"));
-        html_cell_number(to, html_member2(runs[k], "cost", "cpu_s"));
+            html_cell_number(to, value_inner(errors, quantities[q], "l1"));
+        html_cell_number(to, value_inner(runs[k], "conservation", "mass"));
+        html_cell_number(to, value_inner(runs[k], "conservation", "momentum"));
+        html_cell_number(to, value_inner(runs[k], "conservation", "energy"));
+        html_cell_number(to, value_inner(runs[k], "cost", "steps"));
+        html_cell_number(to, value_inner(runs[k], "cost", "cpu_s"));
         buffer_add(to, "<td>");
-        html_status(to, html_string(runs[k], "status"));
+        html_status(to, value_text(runs[k], "status"));
         buffer_add(to, "</td></tr>\n");
     }
     html_table_end(to);
@@ -178,14 +181,14 @@ static void one_case(struct page_writer *writer, const json_t *results, const ch
     size_t i, run_count = 0, study_count = 0;
     json_array_foreach(json_object_get(results, "runs"), i, entry)
     {
-        if (strcmp(html_string(entry, "case"), name) || run_count == PAGE_SCHEMES) continue;
+        if (strcmp(value_text(entry, "case"), name) || run_count == PAGE_SCHEMES) continue;
         runs[run_count++] = entry;
         add_curve(&curves, entry);
         if (!title) title = json_object_get(entry, "title");
     }
     json_array_foreach(json_object_get(results, "studies"), i, entry)
     {
-        if (strcmp(html_string(entry, "case"), name) || study_count == PAGE_SCHEMES) continue;
+        if (strcmp(value_text(entry, "case"), name) || study_count == PAGE_SCHEMES) continue;
         studies[study_count++] = entry;
     }
     buffer_format(to, "<h3 id=\"case-%s\"><code>", name);
@@ -196,7 +199,7 @@ static void one_case(struct page_writer *writer, const json_t *results, const ch
     if (curves.runs) plot_profiles(writer, name, &curves);
     if (curves.runs) plot_residuals(writer, name, &curves);
     buffer_add(to, "</div>\n");
-    if (study_count) page_convergence(writer, name, studies, study_count);
+    if (study_count) page_study(writer, name, studies, study_count);
     if (run_count) {
         buffer_add(to, "<h4>Errors, conservation and cost of the runs above</h4>\n");
         run_table(to, runs, run_count);
@@ -205,9 +208,9 @@ static void one_case(struct page_writer *writer, const json_t *results, const ch
     page_time(writer, name, runs, run_count);
     buffer_add(to, "<div>");
     for (i = 0; i < run_count; i++)
-        html_command(to, html_string(runs[i], "label"), html_string(runs[i], "reproduce"));
+        html_command(to, value_text(runs[i], "label"), value_text(runs[i], "reproduce"));
     for (i = 0; i < study_count; i++)
-        html_command(to, "convergence", html_string(studies[i], "reproduce"));
+        html_command(to, "convergence", value_text(studies[i], "reproduce"));
     buffer_add(to, "</div></div>\n");
     free_curves(&curves);
 }
@@ -215,7 +218,7 @@ static void one_case(struct page_writer *writer, const json_t *results, const ch
 static bool seen_before(const json_t *list, size_t before, const char *name)
 {
     for (size_t i = 0; i < before; i++)
-        if (!strcmp(html_string(json_array_get(list, i), "case"), name)) return true;
+        if (!strcmp(value_text(json_array_get(list, i), "case"), name)) return true;
     return false;
 }
 
@@ -228,12 +231,12 @@ void page_cases(struct page_writer *writer, const json_t *results)
     size_t i;
     json_array_foreach(runs, i, entry)
     {
-        const char *name = html_string(entry, "case");
+        const char *name = value_text(entry, "case");
         if (!seen_before(runs, i, name)) one_case(writer, results, name);
     }
     json_array_foreach(studies, i, entry)
     {
-        const char *name = html_string(entry, "case");
+        const char *name = value_text(entry, "case");
         if (!seen_before(studies, i, name) && !seen_before(runs, json_array_size(runs), name))
             one_case(writer, results, name);
     }

@@ -6,6 +6,7 @@
 
 #include "html.h"
 #include "page_part.h"
+#include "value.h"
 
 /* Figures [first, end) of one check. */
 struct span {
@@ -16,7 +17,7 @@ struct span {
 /* How much of its bound a figure uses; a figure that is not finite uses more than any other. */
 static double used(const json_t *figure)
 {
-    double value = html_member(figure, "value"), bound = html_member(figure, "bound");
+    double value = value_member(figure, "value"), bound = value_member(figure, "bound");
     if (isnan(value) || isnan(bound)) return (double)INFINITY;
     if (bound > 0) return fmax(0, value / bound);
     return value <= bound ? 0 : (double)INFINITY;
@@ -24,7 +25,7 @@ static double used(const json_t *figure)
 
 static bool same(const json_t *a, const json_t *b, const char *member)
 {
-    return !strcmp(html_string(a, member), html_string(b, member));
+    return !strcmp(value_text(a, member), value_text(b, member));
 }
 
 static struct span next_check(const json_t *figures, size_t first)
@@ -35,11 +36,11 @@ static struct span next_check(const json_t *figures, size_t first)
     for (size_t n = json_array_size(figures); span.end < n; span.end++) {
         const json_t *figure = json_array_get(figures, span.end);
         if (!same(figure, leader, "group") || !same(figure, leader, "name")) break;
-        const char *status = html_string(figure, "status");
+        const char *status = value_text(figure, "status");
         bool skipped = !strcmp(status, "skip");
         span.failed += !strcmp(status, "fail");
         span.skipped += skipped;
-        double seconds = html_member(figure, "seconds");
+        double seconds = value_member(figure, "seconds");
         if (seconds > 0) span.seconds += seconds;
         if (!skipped && used(figure) > most) {
             most = used(figure);
@@ -70,10 +71,10 @@ static void bar(struct buffer *to, double part)
 
 static void figure_cells(struct buffer *to, const json_t *figure)
 {
-    html_cell(to, html_string(figure, "subject"));
-    html_cell_number(to, html_member(figure, "value"));
-    html_cell_number(to, html_member(figure, "bound"));
-    html_cell_number(to, html_member(figure, "floor"));
+    html_cell(to, value_text(figure, "subject"));
+    html_cell_number(to, value_member(figure, "value"));
+    html_cell_number(to, value_member(figure, "bound"));
+    html_cell_number(to, value_member(figure, "floor"));
     bar(to, used(figure));
 }
 
@@ -84,9 +85,9 @@ static void check_row(struct buffer *to, const json_t *figures, const struct spa
     buffer_add(to, "<tr><td>");
     html_status(to, span->failed ? "fail" : judged ? "pass" : "skip");
     buffer_add(to, " <code>");
-    buffer_escape(to, html_string(leader, "name"));
+    buffer_escape(to, value_text(leader, "name"));
     buffer_add(to, "</code><br/><span class=\"note\">");
-    buffer_escape(to, html_string(leader, "property"));
+    buffer_escape(to, value_text(leader, "property"));
     buffer_format(to, "</span></td><td class=\"n\">%zu of %zu</td>", judged - span->failed, judged);
     if (judged)
         figure_cells(to, json_array_get(figures, span->worst));
@@ -101,7 +102,7 @@ static void failing_figures(struct buffer *to, const json_t *figures, const stru
     size_t shown = 0;
     for (size_t i = span->first; i < span->end && shown < SHOWN; i++) {
         const json_t *figure = json_array_get(figures, i);
-        if (strcmp(html_string(figure, "status"), "fail") || i == span->worst) continue;
+        if (strcmp(value_text(figure, "status"), "fail") || i == span->worst) continue;
         buffer_add(to, "<tr><td class=\"note\">… and</td><td></td>");
         figure_cells(to, figure);
         buffer_add(to, "</tr>\n");
@@ -124,7 +125,7 @@ void page_checks(struct page_writer *writer, const json_t *verify)
                    "which the figure means nothing.</p>\n");
     for (size_t i = 0; i < n;) {
         const json_t *leader = json_array_get(figures, i);
-        const char *group = html_string(leader, "group");
+        const char *group = value_text(leader, "group");
         struct buffer command = {0};
         buffer_add(to, "<h3>");
         html_words(to, group);
@@ -137,7 +138,8 @@ void page_checks(struct page_writer *writer, const json_t *verify)
             i = span.end;
         }
         html_table_end(to);
-        buffer_format(&command, "%s %s", html_verify(verify), group);
+        buffer_format(&command, "%s %s", value_text_or(verify, "reproduce", "sphproof verify"),
+                      group);
         if (command.data) html_command(to, "see it again:", command.data);
         buffer_free(&command);
     }
@@ -172,17 +174,17 @@ void page_detection(struct page_writer *writer, const json_t *verify)
             bool detected = json_is_true(json_object_get(entry, "detected"));
             if (detected != (round == 1)) continue;
             buffer_add(to, "<tr><td>");
-            const char *fault = html_string(entry, "fault");
-            html_words(to, html_string(entry, "mutant"));
+            const char *fault = value_text(entry, "fault");
+            html_words(to, value_text(entry, "mutant"));
             if (*fault) {
                 buffer_add(to, "<br/><span class=\"note\">");
                 buffer_escape(to, fault);
                 buffer_add(to, "</span>");
             }
             buffer_add(to, "</td>");
-            html_cell_code(to, html_string(entry, "check"));
-            html_cell_number(to, html_member(entry, "value"));
-            html_cell_number(to, html_member(entry, "bound"));
+            html_cell_code(to, value_text(entry, "check"));
+            html_cell_number(to, value_member(entry, "value"));
+            html_cell_number(to, value_member(entry, "bound"));
             buffer_format(to, "<td><b class=\"%s\">%s</b></td></tr>\n", detected ? "pass" : "fail",
                           detected ? "caught" : "missed");
         }
@@ -190,7 +192,7 @@ void page_detection(struct page_writer *writer, const json_t *verify)
     html_table_end(to);
     buffer_add(to, "</details>");
     struct buffer command = {0};
-    buffer_format(&command, "%s --mutants", html_verify(verify));
+    buffer_format(&command, "%s --mutants", value_text_or(verify, "reproduce", "sphproof verify"));
     if (command.data) html_command(to, "see it again:", command.data);
     buffer_free(&command);
     buffer_add(to, "</section>\n");

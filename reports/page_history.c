@@ -9,18 +9,18 @@
 
 #include "html.h"
 #include "page_part.h"
+#include "value.h"
 
 enum { SHOWN = 16, NIGHTS = 128, MARKS = 6, REVISION = 12 };
 
 static void value(struct buffer *to, const json_t *value)
 {
-    const char *word = json_string_value(value);
-    if (word && strcmp(word, "nan") && strcmp(word, "inf") && strcmp(word, "-inf"))
-        buffer_escape(to, word);
+    if (json_is_string(value) && !value_is_real(value))
+        buffer_escape(to, json_string_value(value));
     else if (json_is_null(value))
         buffer_add(to, "–");
     else
-        html_number(to, html_real(value));
+        html_number(to, value_real(value));
 }
 
 static void value_cell(struct buffer *to, const json_t *of)
@@ -61,17 +61,17 @@ static size_t subject_length(const char *path)
 /* Two entries that one row can stand for: of one subject, with one verdict, of one night. */
 static bool together(const json_t *a, const json_t *b)
 {
-    const char *p = html_string(a, "path"), *q = html_string(b, "path");
+    const char *p = value_text(a, "path"), *q = value_text(b, "path");
     const size_t length = subject_length(p);
     return length == subject_length(q) && !strncmp(p, q, length) &&
-           !strcmp(html_string(a, "verdict"), html_string(b, "verdict")) &&
-           !strcmp(html_string(a, "git"), html_string(b, "git")) &&
-           !strcmp(html_string(a, "date"), html_string(b, "date"));
+           !strcmp(value_text(a, "verdict"), value_text(b, "verdict")) &&
+           !strcmp(value_text(a, "git"), value_text(b, "git")) &&
+           !strcmp(value_text(a, "date"), value_text(b, "date"));
 }
 
 static double amount(const json_t *entry)
 {
-    const double ratio = html_member(entry, "ratio");
+    const double ratio = value_member(entry, "ratio");
     return ratio > 0 ? fabs(log(ratio)) : (double)INFINITY;
 }
 
@@ -103,16 +103,16 @@ static void since_rows(struct buffer *to, const json_t *figures, const char *ver
 {
     for (size_t i = 0; i < json_array_size(figures) && *rows < SHOWN; i++) {
         size_t others;
-        if (strcmp(html_string(json_array_get(figures, i), "verdict"), verdict)) continue;
+        if (strcmp(value_text(json_array_get(figures, i), "verdict"), verdict)) continue;
         const json_t *figure = spokesman(figures, i, &others);
         if (!figure) continue;
         ++*rows;
         buffer_add(to, "<tr>");
         verdict_cell(to, verdict);
-        path_cell(to, html_string(figure, "path"), others);
+        path_cell(to, value_text(figure, "path"), others);
         value_cell(to, json_object_get(figure, "old"));
         value_cell(to, json_object_get(figure, "new"));
-        ratio_cell(to, html_member(figure, "ratio"));
+        ratio_cell(to, value_member(figure, "ratio"));
         buffer_add(to, "</tr>\n");
     }
 }
@@ -121,13 +121,13 @@ static void since_words(struct buffer *to, const json_t *since)
 {
     if (!json_array_size(json_object_get(since, "figures"))) {
         buffer_format(to, "nothing has changed, %.0f figures are the same",
-                      html_member(since, "same"));
+                      value_member(since, "same"));
         return;
     }
-    buffer_format(to, "%.0f worse, %.0f better, %.0f the same", html_member(since, "worse"),
-                  html_member(since, "better"), html_member(since, "same"));
-    if (html_member(since, "incomparable") > 0)
-        buffer_format(to, ", %.0f that cannot be compared", html_member(since, "incomparable"));
+    buffer_format(to, "%.0f worse, %.0f better, %.0f the same", value_member(since, "worse"),
+                  value_member(since, "better"), value_member(since, "same"));
+    if (value_member(since, "incomparable") > 0)
+        buffer_format(to, ", %.0f that cannot be compared", value_member(since, "incomparable"));
 }
 
 static void revision(struct buffer *to, const char *git)
@@ -146,7 +146,7 @@ static const json_t *first_worse(const json_t *figures)
     const json_t *figure;
     json_array_foreach(figures, i, figure)
     {
-        if (!strcmp(html_string(figure, "verdict"), "worse")) return figure;
+        if (!strcmp(value_text(figure, "verdict"), "worse")) return figure;
     }
     return NULL;
 }
@@ -156,13 +156,13 @@ void page_since(struct buffer *to, const json_t *results)
     const json_t *since = json_object_get(json_object_get(results, "history"), "since");
     if (!json_is_object(since)) return;
     buffer_add(to, "<p class=\"facts\"><a href=\"#history\">Since last night</a> (git ");
-    revision(to, html_string(since, "git"));
+    revision(to, value_text(since, "git"));
     buffer_add(to, "): ");
     since_words(to, since);
     const json_t *worst = first_worse(json_object_get(since, "figures"));
     if (worst) {
         buffer_add(to, "; most: ");
-        buffer_escape(to, html_string(worst, "path"));
+        buffer_escape(to, value_text(worst, "path"));
         buffer_add(to, " <b>");
         value(to, json_object_get(worst, "old"));
         buffer_add(to, " → ");
@@ -178,9 +178,9 @@ static void since_section(struct buffer *to, const json_t *since)
     const json_t *figures = json_object_get(since, "figures");
     size_t rows = 0;
     buffer_add(to, "<h3>Since last night</h3><p>Against ");
-    buffer_escape(to, html_string(since, "date"));
+    buffer_escape(to, value_text(since, "date"));
     buffer_add(to, ", git ");
-    revision(to, html_string(since, "git"));
+    revision(to, value_text(since, "git"));
     buffer_add(to, ": ");
     since_words(to, since);
     buffer_add(to, ".</p>\n");
@@ -194,18 +194,18 @@ static void since_section(struct buffer *to, const json_t *since)
 static void change_row(struct buffer *to, const json_t *change, size_t others)
 {
     char date[11];
-    snprintf(date, sizeof date, "%.10s", html_string(change, "date"));
+    snprintf(date, sizeof date, "%.10s", value_text(change, "date"));
     buffer_add(to, "<tr>");
-    verdict_cell(to, html_string(change, "verdict"));
-    path_cell(to, html_string(change, "path"), others);
-    html_cell_number(to, html_member(change, "before"));
-    html_cell_number(to, html_member(change, "after"));
-    ratio_cell(to, html_member(change, "ratio"));
+    verdict_cell(to, value_text(change, "verdict"));
+    path_cell(to, value_text(change, "path"), others);
+    html_cell_number(to, value_member(change, "before"));
+    html_cell_number(to, value_member(change, "after"));
+    ratio_cell(to, value_member(change, "ratio"));
     html_cell(to, date);
     buffer_add(to, "<td>");
-    revision(to, html_string(change, "git_before"));
+    revision(to, value_text(change, "git_before"));
     buffer_add(to, " → ");
-    revision(to, html_string(change, "git"));
+    revision(to, value_text(change, "git"));
     buffer_add(to, "</td></tr>\n");
 }
 
@@ -242,10 +242,10 @@ static void read_curve(struct curves *curves, const json_t *trend)
 {
     const json_t *error = json_object_get(trend, "error"), *order = json_object_get(trend, "order");
     const size_t k = curves->count++;
-    curves->label[k] = html_string(trend, "label");
+    curves->label[k] = value_text(trend, "label");
     for (size_t i = 0; i < curves->nights; i++) {
-        curves->error[k][i] = html_real(json_array_get(error, i));
-        curves->order[k][i] = html_real(json_array_get(order, i));
+        curves->error[k][i] = value_real(json_array_get(error, i));
+        curves->order[k][i] = value_real(json_array_get(order, i));
     }
 }
 
@@ -256,8 +256,8 @@ static void read_marks(struct curves *curves, const json_t *changes, const char 
     const json_t *change;
     json_array_foreach(changes, i, change)
     {
-        const char *path = html_string(change, "path");
-        const double night = html_member(change, "night") + 1;
+        const char *path = value_text(change, "path");
+        const double night = value_member(change, "night") + 1;
         bool known = curves->mark_count == MARKS;
         for (size_t m = 0; m < curves->mark_count; m++)
             known = known || curves->marks[m].at == night;
@@ -265,7 +265,7 @@ static void read_marks(struct curves *curves, const json_t *changes, const char 
             path[8 + length] != ',')
             continue;
         char *name = curves->mark_names[curves->mark_count];
-        strncpy(name, html_string(change, "git"), 7);
+        strncpy(name, value_text(change, "git"), 7);
         name[7] = '\0';
         curves->marks[curves->mark_count++] = (struct plot_mark){.at = night, .label = name};
     }
@@ -321,7 +321,7 @@ static void plot_trends(struct page_writer *writer, const json_t *history, size_
     buffer_add(&writer->to, "<div class=\"figures\">\n");
     json_array_foreach(trends, i, trend)
     {
-        const char *own = html_string(trend, "case");
+        const char *own = value_text(trend, "case");
         if (strcmp(own, name)) {
             if (curves->count) plot_trend(writer, name, curves);
             *curves = (struct curves){.nights = nights};
@@ -349,8 +349,8 @@ void page_history(struct page_writer *writer, const json_t *history)
         change_table(to, json_object_get(history, "changes"));
         plot_trends(writer, history, nights);
     }
-    if (html_member(history, "unreadable") > 0)
+    if (value_member(history, "unreadable") > 0)
         buffer_format(to, "<p>%.0f lines of the history could not be read.</p>",
-                      html_member(history, "unreadable"));
+                      value_member(history, "unreadable"));
     buffer_add(to, "</section>\n");
 }

@@ -5,6 +5,8 @@
 
 #include "html.h"
 #include "page_part.h"
+#include "page_study.h"
+#include "value.h"
 
 /* The document in a list for a case and a scheme, or NULL. */
 static const json_t *find(const json_t *list, const char *case_name, const char *label)
@@ -13,8 +15,8 @@ static const json_t *find(const json_t *list, const char *case_name, const char 
     const json_t *entry;
     json_array_foreach(list, i, entry)
     {
-        if (!strcmp(html_string(entry, "case"), case_name) &&
-            !strcmp(html_string(entry, "label"), label))
+        if (!strcmp(value_text(entry, "case"), case_name) &&
+            !strcmp(value_text(entry, "label"), label))
             return entry;
     }
     return NULL;
@@ -27,7 +29,7 @@ static size_t schemes(const json_t *studies, const char **labels)
     const json_t *entry;
     json_array_foreach(studies, i, entry)
     {
-        const char *label = html_string(entry, "label");
+        const char *label = value_text(entry, "label");
         size_t k = 0;
         while (k < n && strcmp(labels[k], label)) k++;
         if (k == n && n < PAGE_SCHEMES) labels[n++] = label;
@@ -37,7 +39,7 @@ static size_t schemes(const json_t *studies, const char **labels)
 
 static const char *status_of(const json_t *study, const json_t *run)
 {
-    const char *judged = html_string(study, "status"), *ran = html_string(run, "status");
+    const char *judged = value_text(study, "status"), *ran = value_text(run, "status");
     if (!strcmp(judged, "fail") || !strcmp(judged, "broke_down")) return judged;
     return !strcmp(ran, "broke_down") ? ran : "ok";
 }
@@ -47,7 +49,7 @@ static void row(struct buffer *to, const json_t *results, const json_t *first,
 {
     const json_t *studies = json_object_get(results, "studies");
     const json_t *runs = json_object_get(results, "runs");
-    const char *name = html_string(first, "case");
+    const char *name = value_text(first, "case");
     const json_t *levels = json_object_get(first, "levels");
     const json_t *run = find(runs, name, labels[0]);
     buffer_add(to, "<tr><td><a href=\"#case-");
@@ -55,21 +57,21 @@ static void row(struct buffer *to, const json_t *results, const json_t *first,
     buffer_add(to, "\">");
     html_words(to, name);
     buffer_add(to, "</a></td>");
-    html_cell_number(to, html_member(json_array_get(levels, json_array_size(levels) - 1), "n"));
+    html_cell_number(to, value_member(json_array_get(levels, json_array_size(levels) - 1), "n"));
     const char *status = "ok";
     for (size_t k = 0; k < count; k++) {
         const json_t *study = find(studies, name, labels[k]);
         levels = json_object_get(study, "levels");
         const json_t *finest = json_array_get(levels, json_array_size(levels) - 1);
-        html_cell_number(to, html_member2(json_object_get(finest, "errors"), "density", "l1"));
+        html_cell_number(to, value_inner(json_object_get(finest, "errors"), "density", "l1"));
         const char *now = status_of(study, find(runs, name, labels[k]));
         if (strcmp(now, "ok")) status = now;
     }
-    const json_t *order = page_order(first, "density", "l1");
-    buffer_format(to, "<td class=\"n\">%.2f ± %.2f</td>", html_member(order, "order"),
-                  (html_member(order, "high") - html_member(order, "low")) / 2);
-    html_cell_number(to, html_member2(run, "conservation", "momentum"));
-    html_cell_number(to, html_member2(run, "conservation", "energy"));
+    const json_t *order = page_study_order(first, "density", "l1");
+    buffer_format(to, "<td class=\"n\">%.2f ± %.2f</td>", value_member(order, "order"),
+                  (value_member(order, "high") - value_member(order, "low")) / 2);
+    html_cell_number(to, value_inner(run, "conservation", "momentum"));
+    html_cell_number(to, value_inner(run, "conservation", "energy"));
     buffer_add(to, "<td>");
     html_status(to, status);
     buffer_add(to, "</td></tr>\n");
@@ -95,7 +97,7 @@ void page_overview(struct page_writer *writer, const json_t *results)
     buffer_free(&columns);
     json_array_foreach(studies, i, entry)
     {
-        if (!strcmp(html_string(entry, "label"), labels[0])) row(to, results, entry, labels, count);
+        if (!strcmp(value_text(entry, "label"), labels[0])) row(to, results, entry, labels, count);
     }
     html_table_end(to);
     buffer_add(to, "</section>\n");

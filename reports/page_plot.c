@@ -1,42 +1,41 @@
-/* SPDX-License-Identifier: GPL-3.0-or-later
- * A plot within the page, and its script and data for beside the page. */
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "page_plot.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "page_part.h"
-
-static void keep(struct page *page, struct buffer *failed, const char *name, const char *ending,
-                 char *bytes)
+static void keep(struct page_writer *writer, const char *name, const char *ending, char *bytes)
 {
+    struct page_plots *plots = &writer->plots;
     struct buffer file = {0};
     buffer_format(&file, "%s.%s", name, ending);
-    struct page_file *files = realloc(page->files, (page->file_count + 1) * sizeof *page->files);
-    if (files) page->files = files;
+    struct page_file *files = realloc(plots->files, (plots->file_count + 1) * sizeof *plots->files);
+    if (files) plots->files = files;
     if (!files || file.failed || !bytes) {
-        failed->failed = true;
+        writer->to.failed = true;
         buffer_free(&file);
         free(bytes);
         return;
     }
-    page->files[page->file_count++] = (struct page_file){buffer_take(&file), bytes};
+    plots->files[plots->file_count++] = (struct page_file){buffer_take(&file), bytes};
 }
 
 void page_plot(struct page_writer *writer, const struct plot *plot, const char *caption)
 {
     struct buffer *to = &writer->to;
+    struct page_plots *plots = &writer->plots;
     char *svg = NULL, message[512] = "", *script, *data;
     buffer_add(to, "<figure>");
     enum plot_status status = PLOT_NO_GNUPLOT;
-    if (!writer->no_gnuplot) status = plot_svg(plot, &svg, message, sizeof message);
+    if (!plots->no_gnuplot) status = plot_svg(plot, &svg, message, sizeof message);
     if (status == PLOT_OK) {
         buffer_add(to, svg);
     } else {
-        if (!writer->page->plots_missing++)
-            snprintf(writer->page->message, sizeof writer->page->message, "%s", message);
+        if (!plots->missing++) snprintf(plots->message, sizeof plots->message, "%s", message);
         buffer_add(to, "<p class=\"missing\">");
-        buffer_escape(to, writer->no_gnuplot ? writer->page->message : message);
-        writer->no_gnuplot |= status == PLOT_NO_GNUPLOT;
+        buffer_escape(to, plots->no_gnuplot ? plots->message : message);
+        plots->no_gnuplot |= status == PLOT_NO_GNUPLOT;
         buffer_add(to, "</p>");
     }
     free(svg);
@@ -50,8 +49,18 @@ void page_plot(struct page_writer *writer, const struct plot *plot, const char *
         to->failed = true;
         return;
     }
-    keep(writer->page, to, plot->name, "gp", script);
-    keep(writer->page, to, plot->name, "dat", data);
+    keep(writer, plot->name, "gp", script);
+    keep(writer, plot->name, "dat", data);
+}
+
+void page_plots_free(struct page_plots *plots)
+{
+    for (size_t k = 0; k < plots->file_count; k++) {
+        free(plots->files[k].name);
+        free(plots->files[k].bytes);
+    }
+    free(plots->files);
+    *plots = (struct page_plots){0};
 }
 
 void page_plot_name(char *name, size_t size, const char *case_name, const char *what)

@@ -9,6 +9,7 @@
 
 #include "html.h"
 #include "page_part.h"
+#include "value.h"
 
 enum { POINTS = 128, CURVES = 8, MAP_MAX = 64 * 64 };
 
@@ -23,10 +24,10 @@ struct curve {
 static void label_of(char label[64], const json_t *row, bool eta)
 {
     struct buffer words = {0};
-    html_words(&words, html_string(row, "kernel"));
+    html_words(&words, value_text(row, "kernel"));
     if (eta)
-        buffer_format(&words, ", %s, eta %g%s", html_string(row, "gradient"),
-                      html_member(row, "eta"), html_member(row, "alpha") > 0 ? ", viscous" : "");
+        buffer_format(&words, ", %s, eta %g%s", value_text(row, "gradient"),
+                      value_member(row, "eta"), value_member(row, "alpha") > 0 ? ", viscous" : "");
     snprintf(label, 64, "%s", words.data ? words.data : "");
     buffer_free(&words);
 }
@@ -41,10 +42,10 @@ static void plot_growth(struct page_writer *writer, const json_t *atlas, const c
     size_t i, count = 0;
     json_array_foreach(rows, i, row)
     {
-        if (!curves || count == CURVES || strcmp(html_string(row, "gradient"), gradient)) continue;
+        if (!curves || count == CURVES || strcmp(value_text(row, "gradient"), gradient)) continue;
         struct curve *curve = &curves[count];
-        const size_t n = html_numbers(json_object_get(atlas, "eta"), curve->x, POINTS);
-        html_numbers(json_object_get(row, "growth"), curve->y, POINTS);
+        const size_t n = value_reals(json_object_get(atlas, "eta"), curve->x, POINTS);
+        value_reals(json_object_get(row, "growth"), curve->y, POINTS);
         bool seen = false;
         for (size_t k = 0; k < n; k++) {
             if (!(curve->y[k] >= least)) curve->y[k] = (double)NAN;
@@ -96,8 +97,8 @@ static void plot_waves(struct page_writer *writer, const json_t *waves)
         static const char *const what[] = {"frequency", "growth"};
         for (int k = 0; k < 2; k++) {
             struct curve *curve = &curves[2 * count + (size_t)k];
-            const size_t n = html_numbers(json_object_get(row, "kappa"), curve->x, POINTS);
-            html_numbers(json_object_get(row, what[k]), curve->y, POINTS);
+            const size_t n = value_reals(json_object_get(row, "kappa"), curve->x, POINTS);
+            value_reals(json_object_get(row, what[k]), curve->y, POINTS);
             label_of(curve->label, row, true);
             series[k][count] = (struct plot_series){.label = k ? NULL : curve->label,
                                                     .kind = PLOT_LINES,
@@ -137,9 +138,9 @@ static void plot_map(struct page_writer *writer, const json_t *map)
     double *eta = malloc((2 * POINTS + MAP_MAX) * sizeof *eta);
     if (!eta) return;
     double *kappa = eta + POINTS, *growth = kappa + POINTS;
-    const size_t nx = html_numbers(json_object_get(map, "eta"), eta, POINTS);
-    const size_t ny = html_numbers(json_object_get(map, "kappa"), kappa, POINTS);
-    const size_t n = html_numbers(json_object_get(map, "growth"), growth, MAP_MAX);
+    const size_t nx = value_reals(json_object_get(map, "eta"), eta, POINTS);
+    const size_t ny = value_reals(json_object_get(map, "kappa"), kappa, POINTS);
+    const size_t n = value_reals(json_object_get(map, "growth"), growth, MAP_MAX);
     for (size_t k = 0; k < n; k++)
         if (!(growth[k] > 1e-4)) growth[k] = (double)NAN;
     const struct plot_heat heat = {
@@ -170,16 +171,16 @@ static bool is_number(const json_t *entry, const char *name)
 
 static void cell(struct buffer *to, const json_t *entry)
 {
-    const char *outcome = html_string(entry, "outcome");
+    const char *outcome = value_text(entry, "outcome");
     buffer_format(to, "<td class=\"%s\" title=\"", outcome);
-    buffer_escape(to, html_string(entry, "reason"));
-    buffer_add(to, *html_string(entry, "reason") ? ": " : "");
-    buffer_escape(to, html_string(entry, "command"));
+    buffer_escape(to, value_text(entry, "reason"));
+    buffer_add(to, *value_text(entry, "reason") ? ": " : "");
+    buffer_escape(to, value_text(entry, "command"));
     buffer_add(to, "\">");
     const bool measured = is_number(entry, "measured"), predicted = is_number(entry, "predicted");
-    if (measured) html_number(to, html_member(entry, "measured"));
+    if (measured) html_number(to, value_member(entry, "measured"));
     if (measured && predicted) buffer_add(to, " <span>of ");
-    if (predicted) html_number(to, html_member(entry, "predicted"));
+    if (predicted) html_number(to, value_member(entry, "predicted"));
     if (measured && predicted) buffer_add(to, "</span>");
     if (!measured && !predicted) html_words(to, strcmp(outcome, "ok") ? outcome : "none");
     buffer_add(to, "</td>");
@@ -187,8 +188,8 @@ static void cell(struct buffer *to, const json_t *entry)
 
 static bool belongs(const json_t *entry, const char *group, const char *row)
 {
-    return !strcmp(html_string(entry, "group"), group) &&
-           (!row || !strcmp(html_string(entry, "row"), row));
+    return !strcmp(value_text(entry, "group"), group) &&
+           (!row || !strcmp(value_text(entry, "row"), row));
 }
 
 /* What is not ok, with the command that does it again. */
@@ -197,21 +198,21 @@ static void reasons(struct buffer *to, const char *group, const json_t *cells)
     size_t i, count = 0;
     const json_t *entry;
     json_array_foreach(cells, i, entry) count +=
-        belongs(entry, group, NULL) && strcmp(html_string(entry, "outcome"), "ok");
+        belongs(entry, group, NULL) && strcmp(value_text(entry, "outcome"), "ok");
     if (!count) return;
     buffer_format(to, "<details><summary>%zu %s</summary>\n", count,
                   count == 1 ? "cell that is not ok" : "cells that are not ok");
     json_array_foreach(cells, i, entry)
     {
-        if (!belongs(entry, group, NULL) || !strcmp(html_string(entry, "outcome"), "ok")) continue;
+        if (!belongs(entry, group, NULL) || !strcmp(value_text(entry, "outcome"), "ok")) continue;
         buffer_add(to, "<p><b>");
-        buffer_escape(to, html_string(entry, "row"));
+        buffer_escape(to, value_text(entry, "row"));
         buffer_add(to, ", ");
-        buffer_escape(to, html_string(entry, "column"));
+        buffer_escape(to, value_text(entry, "column"));
         buffer_add(to, "</b>: ");
-        buffer_escape(to, html_string(entry, "reason"));
+        buffer_escape(to, value_text(entry, "reason"));
         buffer_add(to, "</p>");
-        html_command(to, "", html_string(entry, "command"));
+        html_command(to, "", value_text(entry, "command"));
     }
     buffer_add(to, "</details>\n");
 }
@@ -220,12 +221,12 @@ static void map(struct buffer *to, const json_t *group, const json_t *cells)
 {
     const json_t *rows = json_object_get(group, "rows"),
                  *columns = json_object_get(group, "columns"), *row, *column, *entry;
-    const char *name = html_string(group, "name");
+    const char *name = value_text(group, "name");
     size_t r, c, i;
     buffer_format(to, "<h3><code>%s</code> <span>", name);
-    buffer_escape(to, html_string(group, "title"));
+    buffer_escape(to, value_text(group, "title"));
     buffer_add(to, "</span></h3>\n<div class=\"scroll\"><table class=\"map\"><thead><tr><th>");
-    buffer_escape(to, html_string(group, "column_title"));
+    buffer_escape(to, value_text(group, "column_title"));
     buffer_add(to, "</th>");
     json_array_foreach(columns, c, column)
     {
@@ -243,7 +244,7 @@ static void map(struct buffer *to, const json_t *group, const json_t *cells)
         buffer_add(to, "</tr>\n");
     }
     buffer_add(to, "</tbody></table></div>\n");
-    html_command(to, "see it again:", html_string(group, "reproduce"));
+    html_command(to, "see it again:", value_text(group, "reproduce"));
     reasons(to, name, cells);
 }
 
@@ -254,8 +255,8 @@ static void survivors(struct buffer *to, const json_t *comparison)
         "<p>The default scheme and the seed program's method, corrected, on the same problems: "
         "both survive %.0f, only the default %.0f, only the seed program's %.0f, neither "
         "%.0f.</p>\n",
-        html_member(comparison, "both_survive"), html_member(comparison, "only_default_survives"),
-        html_member(comparison, "only_seed_survives"), html_member(comparison, "both_break"));
+        value_member(comparison, "both_survive"), value_member(comparison, "only_default_survives"),
+        value_member(comparison, "only_seed_survives"), value_member(comparison, "both_break"));
 }
 
 void page_stress(struct page_writer *writer, const json_t *stress)

@@ -1,12 +1,14 @@
-/* SPDX-License-Identifier: GPL-3.0-or-later
- * Convergence of one case: errors over n with fitted and reference slopes, orders and gates. */
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "page_study.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "html.h"
-#include "page_part.h"
+#include "page_budget.h"
+#include "value.h"
 
 enum { LEVELS = 64 };
 
@@ -17,14 +19,13 @@ struct study {
     double order;
 };
 
-const json_t *page_order(const json_t *study, const char *field, const char *norm)
+const json_t *page_study_order(const json_t *study, const char *field, const char *norm)
 {
     size_t i;
     const json_t *order;
     json_array_foreach(json_object_get(study, "orders"), i, order)
     {
-        if (!strcmp(html_string(order, "field"), field) &&
-            !strcmp(html_string(order, "norm"), norm))
+        if (!strcmp(value_text(order, "field"), field) && !strcmp(value_text(order, "norm"), norm))
             return order;
     }
     return NULL;
@@ -39,14 +40,14 @@ static void read_study(struct study *study, const json_t *document)
     json_array_foreach(json_object_get(document, "levels"), i, level)
     {
         if (study->levels == LEVELS) break;
-        double n = html_member(level, "n");
-        double error = html_member2(json_object_get(level, "errors"), "density", "l1");
+        double n = value_member(level, "n");
+        double error = value_inner(json_object_get(level, "errors"), "density", "l1");
         study->n[study->levels] = n;
         study->error[study->levels++] = error;
         sum_n += log(n);
         sum_error += log(error);
     }
-    study->order = html_member(page_order(document, "density", "l1"), "order");
+    study->order = value_member(page_study_order(document, "density", "l1"), "order");
     double count = (double)study->levels;
     for (i = 0; i < study->levels; i++)
         study->fit[i] = exp(sum_error / count - study->order * (log(study->n[i]) - sum_n / count));
@@ -60,7 +61,7 @@ static void plot_convergence(struct page_writer *writer, const char *case_name,
     double lowest = (double)INFINITY, slopes_at = (double)INFINITY;
     for (size_t k = 0; k < count; k++) {
         const struct study *study = &studies[k];
-        series[used++] = (struct plot_series){.label = html_string(study->document, "label"),
+        series[used++] = (struct plot_series){.label = value_text(study->document, "label"),
                                               .kind = PLOT_POINTS,
                                               .n = study->levels,
                                               .x = study->n,
@@ -109,7 +110,7 @@ static void error_table(struct buffer *to, const struct study *studies, size_t c
     buffer_add(&columns, "#n");
     for (size_t k = 0; k < count; k++) {
         buffer_add(&columns, "|#");
-        buffer_escape(&columns, html_string(studies[k].document, "label"));
+        buffer_escape(&columns, value_text(studies[k].document, "label"));
     }
     buffer_add(to, "<h4>L1 error of density over n</h4>\n");
     if (columns.data) html_table(to, "errors", columns.data);
@@ -125,9 +126,9 @@ static void error_table(struct buffer *to, const struct study *studies, size_t c
     }
     buffer_add(to, "<tr class=\"total\"><th>order</th>");
     for (size_t k = 0; k < count; k++) {
-        const json_t *order = page_order(studies[k].document, "density", "l1");
-        buffer_format(to, "<td class=\"n\">%.2f ± %.2f</td>", html_member(order, "order"),
-                      (html_member(order, "high") - html_member(order, "low")) / 2);
+        const json_t *order = page_study_order(studies[k].document, "density", "l1");
+        buffer_format(to, "<td class=\"n\">%.2f ± %.2f</td>", value_member(order, "order"),
+                      (value_member(order, "high") - value_member(order, "low")) / 2);
     }
     buffer_add(to, "</tr>\n");
     html_table_end(to);
@@ -137,10 +138,10 @@ static void gate_words(struct buffer *to, const json_t *gate)
 {
     buffer_add(to, "<td>");
     if (json_is_object(gate)) {
-        html_number(to, html_member(gate, "low"));
+        html_number(to, value_member(gate, "low"));
         buffer_add(to, " to ");
-        html_number(to, html_member(gate, "high"));
-        double bound = html_member(gate, "bound");
+        html_number(to, value_member(gate, "high"));
+        double bound = value_member(gate, "bound");
         if (isfinite(bound)) {
             buffer_add(to, ", finest ≤ ");
             html_number(to, bound);
@@ -164,20 +165,20 @@ static void order_rows(struct buffer *to, const struct study *study)
     const json_t *order, *pair;
     json_array_foreach(json_object_get(study->document, "orders"), i, order)
     {
-        const char *status = html_string(order, "status");
+        const char *status = value_text(order, "status");
         bool gated = json_is_object(json_object_get(order, "gate"));
-        bool shown = !strcmp(html_string(order, "norm"), "l1");
+        bool shown = !strcmp(value_text(order, "norm"), "l1");
         if (!gated && !shown && strcmp(status, "fail")) continue;
         buffer_add(to, "<tr>");
-        html_cell(to, html_string(study->document, "label"));
-        buffer_format(to, "<td>%s of ", norm_name(html_string(order, "norm")));
-        html_words(to, html_string(order, "field"));
+        html_cell(to, value_text(study->document, "label"));
+        buffer_format(to, "<td>%s of ", norm_name(value_text(order, "norm")));
+        html_words(to, value_text(order, "field"));
         buffer_add(to, "</td><td class=\"n\">");
-        buffer_format(to, "%.2f", html_member(order, "order"));
-        buffer_format(to, "</td><td class=\"n\">%.2f to %.2f</td><td>", html_member(order, "low"),
-                      html_member(order, "high"));
+        buffer_format(to, "%.2f", value_member(order, "order"));
+        buffer_format(to, "</td><td class=\"n\">%.2f to %.2f</td><td>", value_member(order, "low"),
+                      value_member(order, "high"));
         json_array_foreach(json_object_get(order, "pairwise"), j, pair)
-            buffer_format(to, "%s%.2f", j ? ", " : "", html_real(pair));
+            buffer_format(to, "%s%.2f", j ? ", " : "", value_real(pair));
         buffer_add(to, "</td>");
         gate_words(to, json_object_get(order, "gate"));
         buffer_add(to, "<td>");
@@ -193,7 +194,7 @@ static void order_table(struct buffer *to, const struct study *studies, size_t c
         size_t i;
         const json_t *order;
         json_array_foreach(json_object_get(studies[k].document, "orders"), i, order) failed =
-            failed || !strcmp(html_string(order, "status"), "fail");
+            failed || !strcmp(value_text(order, "status"), "fail");
     }
     buffer_format(to,
                   "<details%s><summary>Orders of all quantities, and what is expected</summary>\n",
@@ -229,17 +230,17 @@ static void functional_table(struct buffer *to, const struct study *studies, siz
         {
             const json_t *values = json_object_get(entry, "values");
             buffer_add(to, "<tr>");
-            html_cell(to, html_string(studies[k].document, "label"));
+            html_cell(to, value_text(studies[k].document, "label"));
             buffer_add(to, "<td>");
-            html_words(to, html_string(entry, "name"));
+            html_words(to, value_text(entry, "name"));
             buffer_add(to, "</td>");
-            html_cell_digits(to, html_real(json_array_get(values, json_array_size(values) - 1)));
-            html_cell_digits(to, html_member(entry, "extrapolated"));
-            html_cell_digits(to, html_member(entry, "exact"));
-            html_cell_number(to, html_member(entry, "order"));
-            percent_cell(to, html_member(entry, "gci"));
-            percent_cell(to, html_member(entry, "gci_coarse"));
-            html_cell(to, html_string(entry, "class"));
+            html_cell_digits(to, value_real(json_array_get(values, json_array_size(values) - 1)));
+            html_cell_digits(to, value_member(entry, "extrapolated"));
+            html_cell_digits(to, value_member(entry, "exact"));
+            html_cell_number(to, value_member(entry, "order"));
+            percent_cell(to, value_member(entry, "gci"));
+            percent_cell(to, value_member(entry, "gci_coarse"));
+            html_cell(to, value_text(entry, "class"));
             buffer_add(to, "</tr>\n");
         }
     html_table_end(to);
@@ -248,8 +249,8 @@ static void functional_table(struct buffer *to, const struct study *studies, siz
                    "only where convergence is asymptotic.</p></details>\n");
 }
 
-void page_convergence(struct page_writer *writer, const char *case_name,
-                      const json_t *const *documents, size_t count)
+void page_study(struct page_writer *writer, const char *case_name, const json_t *const *documents,
+                size_t count)
 {
     struct buffer *to = &writer->to;
     struct study *studies = calloc(count, sizeof *studies);

@@ -5,6 +5,7 @@
 
 #include "html.h"
 #include "page_part.h"
+#include "value.h"
 
 /* A row of any flat object: strings, numbers, and true or false as words. */
 static void flat_cell(struct buffer *to, const json_t *value)
@@ -13,13 +14,12 @@ static void flat_cell(struct buffer *to, const json_t *value)
         html_cell(to, json_is_true(value) ? "yes" : "no");
     } else if (json_is_null(value)) {
         html_cell(to, "—");
-    } else if (json_is_string(value) && isnan(html_real(value)) &&
-               strcmp(json_string_value(value), "nan")) {
+    } else if (json_is_string(value) && !value_is_real(value)) {
         buffer_add(to, "<td>");
         html_words(to, json_string_value(value));
         buffer_add(to, "</td>");
     } else {
-        html_cell_number(to, html_real(value));
+        html_cell_number(to, value_real(value));
     }
 }
 
@@ -62,7 +62,7 @@ static void league_row(struct buffer *to, const json_t *row)
     {
         if (!strcmp(name, "dim")) continue;
         if (is_degree(name))
-            degree_cell(to, html_real(value));
+            degree_cell(to, value_real(value));
         else
             flat_cell(to, value);
     }
@@ -79,7 +79,7 @@ static void plot_league(struct page_writer *writer, const json_t *rows)
     const json_t *row;
     json_array_foreach(rows, i, row)
     {
-        const char *name = html_string(row, "operator");
+        const char *name = value_text(row, "operator");
         size_t k = 0;
         while (k < count && strcmp(series[k].label, name)) k++;
         if (k == PAGE_SCHEMES) continue;
@@ -88,8 +88,8 @@ static void plot_league(struct page_writer *writer, const json_t *rows)
                 .label = name, .kind = PLOT_POINTS, .x = defect[k], .y = error[k]};
         size_t n = series[k].n;
         if (n == DIMENSIONS) continue;
-        defect[k][n] = fmax(html_member(row, "momentum_defect"), 1e-18);
-        error[k][n] = html_member(row, "error_disordered");
+        defect[k][n] = fmax(value_member(row, "momentum_defect"), 1e-18);
+        error[k][n] = value_member(row, "error_disordered");
         series[k].n++;
     }
     const struct plot_panel panel = {.x_label = "momentum defect of the pair forces",
@@ -126,7 +126,7 @@ void page_gradients(struct page_writer *writer, const json_t *gradients)
     double dim = 0;
     json_array_foreach(rows, i, row)
     {
-        double now = html_member(row, "dim");
+        double now = value_member(row, "dim");
         if (!(now >= dim && now <= dim)) {
             if (i) html_table_end(to);
             buffer_format(to, "<h3>%.0fD</h3>\n", now);
@@ -136,14 +136,14 @@ void page_gradients(struct page_writer *writer, const json_t *gradients)
         league_row(to, row);
     }
     if (json_array_size(rows)) html_table_end(to);
-    html_command(to, "see it again:", html_string(gradients, "reproduce"));
+    html_command(to, "see it again:", value_text(gradients, "reproduce"));
     buffer_add(to, "</section>\n");
 }
 
 static void cell_or_never(struct buffer *to, const json_t *number)
 {
     if (json_is_number(number))
-        html_cell_number(to, html_real(number));
+        html_cell_number(to, value_real(number));
     else
         buffer_add(to, "<td class=\"n\">never</td>");
 }
@@ -152,23 +152,23 @@ static void kernel_row(struct buffer *to, const json_t *kernel)
 {
     const json_t *checks = json_object_get(kernel, "checks"), *check;
     size_t i, failed = 0;
-    json_array_foreach(checks, i, check) failed += !strcmp(html_string(check, "status"), "fail");
+    json_array_foreach(checks, i, check) failed += !strcmp(value_text(check, "status"), "fail");
     buffer_add(to, "<tr><td>");
     html_status(to, failed ? "fail" : "pass");
     buffer_add(to, " <code>");
-    buffer_escape(to, html_string(kernel, "kernel"));
+    buffer_escape(to, value_text(kernel, "kernel"));
     buffer_add(to, "</code></td>");
-    html_cell_number(to, html_member(kernel, "dim"));
-    buffer_format(to, "<td>C%.0f</td>", html_member(kernel, "class"));
-    html_cell_number(to, fabs(1 - html_member(kernel, "normalisation")));
-    html_cell_number(to, html_member2(kernel, "moments", "sigma"));
+    html_cell_number(to, value_member(kernel, "dim"));
+    buffer_format(to, "<td>C%.0f</td>", value_member(kernel, "class"));
+    html_cell_number(to, fabs(1 - value_member(kernel, "normalisation")));
+    html_cell_number(to, value_inner(kernel, "moments", "sigma"));
     const json_t *fourier = json_object_get(kernel, "fourier");
-    html_cell_number(to, html_member(fourier, "min"));
+    html_cell_number(to, value_member(fourier, "min"));
     cell_or_never(to, json_object_get(fourier, "first_negative_k"));
     cell_or_never(to, json_object_get(kernel, "pairing_neighbours"));
     buffer_format(to, "<td class=\"n\">%zu of %zu</td>", json_array_size(checks) - failed,
                   json_array_size(checks));
-    html_cell_code(to, html_string(kernel, "reproduce"));
+    html_cell_code(to, value_text(kernel, "reproduce"));
     buffer_add(to, "</tr>\n");
 }
 

@@ -1,10 +1,11 @@
-/* SPDX-License-Identifier: GPL-3.0-or-later
- * Conservation through time: momentum and energy of the runs of a case against their start. */
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "page_time.h"
+
 #include <math.h>
 #include <stdlib.h>
 
 #include "html.h"
-#include "page_part.h"
+#include "value.h"
 
 enum { POINTS = 256, SUMS = 2 };
 
@@ -20,9 +21,9 @@ static bool read_line(struct line *line, const json_t *run)
 {
     static const char *const names[SUMS] = {"momentum", "energy"};
     const json_t *through = json_object_get(run, "through_time");
-    line->n = html_numbers(json_object_get(through, "time"), line->time, POINTS);
+    line->n = value_reals(json_object_get(through, "time"), line->time, POINTS);
     for (int s = 0; s < SUMS; s++) {
-        const size_t n = html_numbers(json_object_get(through, names[s]), line->drift[s], POINTS);
+        const size_t n = value_reals(json_object_get(through, names[s]), line->drift[s], POINTS);
         if (n < line->n) line->n = n;
         for (size_t i = 0; i < n; i++)
             if (line->drift[s][i] < bottom) line->drift[s][i] = bottom;
@@ -41,7 +42,7 @@ void page_time(struct page_writer *writer, const char *case_name, const json_t *
     for (size_t k = 0; lines && k < count && k < PAGE_SCHEMES; k++) {
         if (!read_line(&lines[k], runs[k])) continue;
         for (int s = 0; s < SUMS; s++)
-            series[s][n] = (struct plot_series){.label = html_string(runs[k], "label"),
+            series[s][n] = (struct plot_series){.label = value_text(runs[k], "label"),
                                                 .kind = PLOT_LINES,
                                                 .n = lines[k].n,
                                                 .x = lines[k].time,

@@ -1,9 +1,10 @@
-/* SPDX-License-Identifier: GPL-3.0-or-later
- * The results in a few lines of Markdown, for a pull request or a terminal. */
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "summary.h"
+
 #include <string.h>
 
 #include "html.h"
-#include "page.h"
+#include "value.h"
 
 static void failures(struct buffer *to, const json_t *list)
 {
@@ -16,8 +17,8 @@ static void failures(struct buffer *to, const json_t *list)
             buffer_format(to, "- … and %zu more\n", json_array_size(list) - SHOWN);
             break;
         }
-        buffer_format(to, "- **%s** %s (`%s`)\n", html_string(entry, "name"),
-                      html_string(entry, "detail"), html_string(entry, "command"));
+        buffer_format(to, "- **%s** %s (`%s`)\n", value_text(entry, "name"),
+                      value_text(entry, "detail"), value_text(entry, "command"));
     }
     if (json_array_size(list)) buffer_add(to, "\n");
 }
@@ -35,36 +36,36 @@ static void orders(struct buffer *to, const json_t *studies)
         const json_t *finest = json_array_get(levels, json_array_size(levels) - 1);
         json_array_foreach(json_object_get(study, "orders"), j, order)
         {
-            if (strcmp(html_string(order, "field"), "density") ||
-                strcmp(html_string(order, "norm"), "l1"))
+            if (strcmp(value_text(order, "field"), "density") ||
+                strcmp(value_text(order, "norm"), "l1"))
                 continue;
-            buffer_format(to, "| %s | %s | %.2f | %.2f to %.2f | ", html_string(study, "case"),
-                          html_string(study, "label"), html_member(order, "order"),
-                          html_member(order, "low"), html_member(order, "high"));
-            html_number(to, html_member2(json_object_get(finest, "errors"), "density", "l1"));
+            buffer_format(to, "| %s | %s | %.2f | %.2f to %.2f | ", value_text(study, "case"),
+                          value_text(study, "label"), value_member(order, "order"),
+                          value_member(order, "low"), value_member(order, "high"));
+            html_number(to, value_inner(json_object_get(finest, "errors"), "density", "l1"));
             buffer_add(to, " |\n");
         }
     }
     buffer_add(to, "\n");
 }
 
-char *page_summary(const json_t *results)
+char *summary_text(const json_t *results)
 {
     struct buffer to = {0};
     const json_t *verdict = json_object_get(results, "verdict");
-    buffer_format(&to, "## sphproof: %s\n\n", html_string(verdict, "headline"));
+    buffer_format(&to, "## sphproof: %s\n\n", value_text(verdict, "headline"));
     failures(&to, json_object_get(verdict, "failures"));
-    double passed = html_member(verdict, "figures_passed");
-    double gates = html_member(verdict, "gates_passed");
+    double passed = value_member(verdict, "figures_passed");
+    double gates = value_member(verdict, "gates_passed");
     buffer_format(
         &to,
         "%.0f of %.0f figures within bounds, %.0f of %.0f orders as expected, %.0f of %.0f "
         "deliberate faults caught, %.0f runs.\n\n",
-        passed, passed + html_member(verdict, "figures_failed"), gates,
-        gates + html_member(verdict, "gates_failed"), html_member(verdict, "mutants_detected"),
-        html_member(verdict, "mutants"), html_member(verdict, "runs"));
+        passed, passed + value_member(verdict, "figures_failed"), gates,
+        gates + value_member(verdict, "gates_failed"), value_member(verdict, "mutants_detected"),
+        value_member(verdict, "mutants"), value_member(verdict, "runs"));
     orders(&to, json_object_get(results, "studies"));
-    buffer_format(&to, "git %s, %s, %s\n", html_string(results, "git"),
-                  html_string(results, "compiler"), html_string(results, "date"));
+    buffer_format(&to, "git %s, %s, %s\n", value_text(results, "git"),
+                  value_text(results, "compiler"), value_text(results, "date"));
     return buffer_take(&to);
 }

@@ -8,6 +8,7 @@
 #include "buffer.h"
 #include "failure.h"
 #include "html.h"
+#include "value.h"
 
 struct tally {
     struct failure_list failures;
@@ -27,16 +28,39 @@ static void fail(struct tally *tally, const char *area, const char *name, struct
     free(text);
 }
 
+/* Where the results are not what a report holds, nothing may pass for well. */
+static void unreadable(struct tally *tally, const char *what, const char *message)
+{
+    struct buffer detail = {0};
+    buffer_format(&detail, "results that cannot be read: %s", message);
+    fail(tally, "harness", what, &detail, "sphproof report --force");
+}
+
+enum answer { FAIL, PASS, SKIP };
+
+/* The status of an entry; `skip` is its word for neither. One that is none of these is a failure
+ * of its own and counts as SKIP. */
+static enum answer answer_of(struct tally *tally, const json_t *entry, const char *skip,
+                             const char *what)
+{
+    const char *const words[] = {"fail", "pass", skip, NULL};
+    char message[VALUE_MESSAGE];
+    const int word = value_need_word(entry, "status", words, message);
+    if (word >= 0) return (enum answer)word;
+    unreadable(tally, what, message);
+    return SKIP;
+}
+
 static void judge_figure(struct tally *tally, const json_t *figure, const char *verify)
 {
-    const char *status = html_string(figure, "status");
-    if (!strcmp(status, "pass")) tally->figures_passed++;
-    if (!strcmp(status, "skip")) tally->figures_skipped++;
-    if (strcmp(status, "fail")) return;
-    tally->figures_failed++;
+    const enum answer answer = answer_of(tally, figure, "skip", value_text(figure, "name"));
+    tally->figures_passed += answer == PASS;
+    tally->figures_skipped += answer == SKIP;
+    tally->figures_failed += answer == FAIL;
+    if (answer != FAIL) return;
     struct buffer detail = {0}, command = {0};
-    double value = html_member(figure, "value"), bound = html_member(figure, "bound");
-    buffer_format(&detail, "%s: ", html_string(figure, "subject"));
+    double value = value_member(figure, "value"), bound = value_member(figure, "bound");
+    buffer_format(&detail, "%s: ", value_text(figure, "subject"));
     html_number(&detail, value);
     buffer_add(&detail, " is not <= ");
     html_number(&detail, bound);
@@ -45,7 +69,7 @@ static void judge_figure(struct tally *tally, const json_t *figure, const char *
         html_number(&detail, value / bound);
         buffer_add(&detail, " times the bound)");
     }
-    buffer_format(&command, "%s %s", verify, html_string(figure, "group"));
+    buffer_format(&command, "%s %s", verify, value_text(figure, "group"));
     double excess = isfinite(value) && bound > 0 ? value / bound : (double)INFINITY;
     failure_add_check(&tally->failures, figure, excess, detail.data, command.data);
     buffer_free(&detail);
@@ -60,47 +84,52 @@ static void judge_verify(struct tally *tally, const json_t *verify)
     size_t i;
     const json_t *entry;
     json_array_foreach(json_object_get(verify, "checks"), i, entry)
-        judge_figure(tally, entry, html_verify(verify));
+        judge_figure(tally, entry, value_text_or(verify, "reproduce", "sphproof verify"));
     json_array_foreach(json_object_get(verify, "mutants"), i, entry)
     {
         if (json_is_true(json_object_get(entry, "detected"))) continue;
         struct buffer detail = {0}, command = {0};
-        buffer_format(&command, "%s --mutants", html_verify(verify));
+        buffer_format(&command, "%s --mutants",
+                      value_text_or(verify, "reproduce", "sphproof verify"));
         buffer_format(&detail, "the wrong variant '%s' passes: value ",
-                      html_string(entry, "mutant"));
-        html_number(&detail, html_member(entry, "value"));
+                      value_text(entry, "mutant"));
+        html_number(&detail, value_member(entry, "value"));
         buffer_add(&detail, ", bound ");
-        html_number(&detail, html_member(entry, "bound"));
+        html_number(&detail, value_member(entry, "bound"));
         if (command.data)
-            fail(tally, "detection", html_string(entry, "check"), &detail, command.data);
+            fail(tally, "detection", value_text(entry, "check"), &detail, command.data);
         buffer_free(&command);
     }
 }
 
 static void judge_run(struct tally *tally, const json_t *run)
 {
+    static const char *const words[] = {"ok", "broke_down", NULL};
+    char message[VALUE_MESSAGE];
+    const int word = value_need_word(run, "status", words, message);
     tally->runs++;
-    if (strcmp(html_string(run, "status"), "broke_down")) return;
+    if (word < 0) unreadable(tally, value_text(run, "case"), message);
+    if (word != 1) return;
     tally->broke_down++;
     struct buffer detail = {0};
-    buffer_format(&detail, "broke down: %s", html_string(run, "message"));
-    fail(tally, "run", html_string(run, "case"), &detail, html_string(run, "reproduce"));
+    buffer_format(&detail, "broke down: %s", value_text(run, "message"));
+    fail(tally, "run", value_text(run, "case"), &detail, value_text(run, "reproduce"));
 }
 
 static void judge_still_gas(struct tally *tally, const json_t *study, const json_t *still)
 {
-    const char *status = html_string(still, "status");
-    if (!strcmp(status, "pass")) tally->gates_passed++;
-    if (strcmp(status, "fail")) return;
-    tally->gates_failed++;
+    const enum answer answer = answer_of(tally, still, "none", "still gas");
+    tally->gates_passed += answer == PASS;
+    tally->gates_failed += answer == FAIL;
+    if (answer != FAIL) return;
     struct buffer detail = {0}, name = {0};
-    buffer_format(&name, "%s, %s: still gas", html_string(study, "case"),
-                  html_string(study, "label"));
+    buffer_format(&name, "%s, %s: still gas", value_text(study, "case"),
+                  value_text(study, "label"));
     buffer_add(&detail, "gas that no wave has reached moves at ");
-    html_number(&detail, html_member(still, "value"));
+    html_number(&detail, value_member(still, "value"));
     buffer_add(&detail, " of its sound speed, allowed is ");
-    html_number(&detail, html_member(still, "bound"));
-    if (!name.failed) fail(tally, "budget", name.data, &detail, html_string(study, "reproduce"));
+    html_number(&detail, value_member(still, "bound"));
+    if (!name.failed) fail(tally, "budget", name.data, &detail, value_text(study, "reproduce"));
     buffer_free(&name);
 }
 
@@ -108,8 +137,8 @@ static void judge_still_gas(struct tally *tally, const json_t *study, const json
 static void judge_trouble(struct tally *tally, const json_t *trouble)
 {
     struct buffer detail = {0};
-    buffer_add(&detail, html_string(trouble, "message"));
-    fail(tally, "harness", html_string(trouble, "name"), &detail, "sphproof report --force");
+    buffer_add(&detail, value_text(trouble, "message"));
+    fail(tally, "harness", value_text(trouble, "name"), &detail, "sphproof report --force");
 }
 
 static void judge_study(struct tally *tally, const json_t *study)
@@ -118,67 +147,76 @@ static void judge_study(struct tally *tally, const json_t *study)
     const json_t *order;
     json_array_foreach(json_object_get(study, "orders"), i, order)
     {
-        const char *status = html_string(order, "status");
-        if (!strcmp(status, "pass")) tally->gates_passed++;
-        if (strcmp(status, "fail")) continue;
-        tally->gates_failed++;
+        const enum answer answer = answer_of(tally, order, "none", value_text(study, "case"));
+        tally->gates_passed += answer == PASS;
+        tally->gates_failed += answer == FAIL;
+        if (answer != FAIL) continue;
         struct buffer detail = {0}, name = {0};
-        buffer_format(&name, "%s, %s: order of %s(%s)", html_string(study, "case"),
-                      html_string(study, "label"), html_string(order, "norm"),
-                      html_string(order, "field"));
-        html_number(&detail, html_member(order, "order"));
+        buffer_format(&name, "%s, %s: order of %s(%s)", value_text(study, "case"),
+                      value_text(study, "label"), value_text(order, "norm"),
+                      value_text(order, "field"));
+        html_number(&detail, value_member(order, "order"));
         buffer_add(&detail, " (95 % interval ");
-        html_number(&detail, html_member(order, "low"));
+        html_number(&detail, value_member(order, "low"));
         buffer_add(&detail, " to ");
-        html_number(&detail, html_member(order, "high"));
-        buffer_format(&detail, ") %s", html_string(order, "why"));
+        html_number(&detail, value_member(order, "high"));
+        buffer_format(&detail, ") %s", value_text(order, "why"));
         if (!name.failed)
-            fail(tally, "convergence", name.data, &detail, html_string(study, "reproduce"));
+            fail(tally, "convergence", name.data, &detail, value_text(study, "reproduce"));
         buffer_free(&name);
     }
     json_array_foreach(json_object_get(study, "floors"), i, order)
     {
-        if (!*html_string(order, "suspicion")) continue;
+        if (!*value_text(order, "suspicion")) continue;
         struct buffer detail = {0};
-        buffer_format(&detail, "too good to be true: %s", html_string(order, "suspicion"));
-        fail(tally, "suspicion", html_string(study, "case"), &detail,
-             html_string(study, "reproduce"));
+        buffer_format(&detail, "too good to be true: %s", value_text(order, "suspicion"));
+        fail(tally, "suspicion", value_text(study, "case"), &detail,
+             value_text(study, "reproduce"));
     }
     json_array_foreach(json_object_get(study, "budgets"), i, order)
     {
         judge_still_gas(tally, study, json_object_get(order, "still_gas"));
     }
-    if (*html_string(study, "suspicion")) {
+    if (*value_text(study, "suspicion")) {
         struct buffer detail = {0};
-        buffer_format(&detail, "too good to be true: %s", html_string(study, "suspicion"));
-        fail(tally, "suspicion", html_string(study, "case"), &detail,
-             html_string(study, "reproduce"));
+        buffer_format(&detail, "too good to be true: %s", value_text(study, "suspicion"));
+        fail(tally, "suspicion", value_text(study, "case"), &detail,
+             value_text(study, "reproduce"));
     }
-    if (!strcmp(html_string(study, "status"), "broke_down")) {
+    if (!strcmp(value_text(study, "status"), "broke_down")) {
         struct buffer detail = {0};
         tally->gates_failed++;
-        buffer_format(&detail, "broke down: %s", html_string(study, "message"));
-        fail(tally, "study", html_string(study, "case"), &detail, html_string(study, "reproduce"));
+        buffer_format(&detail, "broke down: %s", value_text(study, "message"));
+        fail(tally, "study", value_text(study, "case"), &detail, value_text(study, "reproduce"));
     }
 }
 
 static void judge_stress(struct tally *tally, const json_t *failure)
 {
     struct buffer detail = {0};
-    buffer_add(&detail, html_string(failure, "detail"));
-    fail(tally, "stress", html_string(failure, "name"), &detail, html_string(failure, "command"));
+    buffer_add(&detail, value_text(failure, "detail"));
+    fail(tally, "stress", value_text(failure, "name"), &detail, value_text(failure, "command"));
 }
 
 /* What the world did to the program; a fault that could not be brought about does not count. */
 static void judge_fault(struct tally *tally, const json_t *fault)
 {
-    const char *status = html_string(fault, "status");
-    tally->faults += strcmp(status, "skip") != 0;
-    tally->faults_right += !strcmp(status, "pass");
-    if (strcmp(status, "fail")) return;
+    const enum answer answer = answer_of(tally, fault, "skip", "faults.json");
+    tally->faults += answer != SKIP;
+    tally->faults_right += answer == PASS;
+    if (answer != FAIL) return;
     struct buffer detail = {0};
-    buffer_add(&detail, html_string(fault, "detail"));
-    fail(tally, "fault", html_string(fault, "fault"), &detail, html_string(fault, "command"));
+    buffer_add(&detail, value_text(fault, "detail"));
+    fail(tally, "fault", value_text(fault, "fault"), &detail, value_text(fault, "command"));
+}
+
+static void judge_faults(struct tally *tally, const json_t *faults)
+{
+    char message[VALUE_MESSAGE];
+    const json_t *list = faults ? value_need_list(faults, "faults", message) : NULL, *entry;
+    size_t i;
+    if (faults && !list) unreadable(tally, "faults.json", message);
+    json_array_foreach(list, i, entry) judge_fault(tally, entry);
 }
 
 /* The failures' number and the first one: what it is and, of a check, of whom. */
@@ -186,7 +224,7 @@ static void headline(struct buffer *to, bool checked, const json_t *failures)
 {
     size_t count = json_array_size(failures);
     const json_t *first = json_array_get(failures, 0);
-    const char *area = html_string(first, "area"), *subject = html_string(first, "subject");
+    const char *area = value_text(first, "area"), *subject = value_text(first, "subject");
     /* these names say what they are about */
     bool plain = !strcmp(area, "check") || !strcmp(area, "convergence") || !strcmp(area, "budget");
     if (!count) {
@@ -194,7 +232,7 @@ static void headline(struct buffer *to, bool checked, const json_t *failures)
         return;
     }
     buffer_format(to, "%zu %s%s%s%s", count, count == 1 ? "failure: " : "failures; look first at ",
-                  plain ? "" : area, plain ? "" : " ", html_string(first, "name"));
+                  plain ? "" : area, plain ? "" : " ", value_text(first, "name"));
     if (strstr(subject, "broke down")) return; /* it says where, not of what */
     enum { LONGEST = 64 };
     size_t length = strlen(subject), whole = length;
@@ -217,10 +255,7 @@ json_t *verdict_make(const json_t *results)
     {
         judge_stress(&tally, entry);
     }
-    json_array_foreach(json_object_get(json_object_get(results, "faults"), "faults"), i, entry)
-    {
-        judge_fault(&tally, entry);
-    }
+    judge_faults(&tally, json_object_get(results, "faults"));
 
     struct buffer words = {0};
     bool checked = tally.figures_passed + tally.gates_passed + tally.runs > 0;

@@ -10,11 +10,14 @@
 
 #include "command.h"
 #include "history.h"
+#include "junit.h"
 #include "output.h"
 #include "page.h"
 #include "progress.h"
 #include "result.h"
+#include "summary.h"
 #include "text.h"
+#include "value.h"
 
 enum { PATH_LENGTH = 4096, JOBS_MAX = 1024 };
 
@@ -46,10 +49,10 @@ static enum status write_text(const char *folder, const char *name, const char *
 static enum status write_page(const char *folder, const struct page *page, struct error *error)
 {
     enum status status = write_text(folder, "index.html", page->html, error);
-    for (size_t k = 0; k < page->file_count && !status; k++) {
+    for (size_t k = 0; k < page->plots.file_count && !status; k++) {
         char name[PATH_LENGTH / 4];
-        snprintf(name, sizeof name, "plots/%s", page->files[k].name);
-        status = write_text(folder, name, page->files[k].bytes, error);
+        snprintf(name, sizeof name, "plots/%s", page->plots.files[k].name);
+        status = write_text(folder, name, page->plots.files[k].bytes, error);
     }
     return status;
 }
@@ -59,7 +62,7 @@ static enum status write_report(const char *folder, const json_t *results, struc
                                 char *summary, struct error *error)
 {
     char path[PATH_LENGTH];
-    char *junit = page_junit(results);
+    char *junit = junit_text(results);
     snprintf(path, sizeof path, "%s/results.json", folder);
     enum status status = result_write(results, path, error);
     if (!status) status = write_text(folder, "junit.xml", junit, error);
@@ -138,7 +141,7 @@ static enum status run(const struct options *options, int n, char **arguments, s
     json_object_set_new(results, "history", told);
 
     struct page page;
-    char *summary = page_summary(results);
+    char *summary = summary_text(results);
     if (!page_make(&page, results) || !summary)
         status = error_set(error, STATUS_ENVIRONMENT, "no memory for the page");
     else
@@ -154,9 +157,9 @@ static enum status run(const struct options *options, int n, char **arguments, s
                result_real(json_object_get(results, "seconds")),
                realpath(folder, absolute) ? absolute : folder);
     }
-    if (!status && page.plots_missing)
+    if (!status && page.plots.missing)
         status = error_set(error, STATUS_ENVIRONMENT, "%zu plots are missing: %s",
-                           page.plots_missing, page.message);
+                           page.plots.missing, page.plots.message);
     const char *verdict =
         json_string_value(json_object_get(json_object_get(results, "verdict"), "status"));
     if (!status && strcmp(verdict, "pass") != 0) status = STATUS_CHECK_FAILED;

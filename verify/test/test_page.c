@@ -7,8 +7,10 @@
 #include <stdint.h>
 #include <cmocka.h>
 
+#include "junit.h"
 #include "markup.h"
 #include "page.h"
+#include "summary.h"
 #include "verdict.h"
 
 static const char *const results_text =
@@ -102,7 +104,8 @@ static void judge_page(json_t *results, const char *const *contents, size_t n)
     assert_null(markup_network(page.html));
     for (size_t k = 0; k < n; k++)
         if (!strstr(page.html, contents[k])) fail_msg("the page lacks: %s", contents[k]);
-    assert_int_equal(page.file_count, json_array_size(json_object_get(results, "runs")) ? 12 : 0);
+    assert_int_equal(page.plots.file_count,
+                     json_array_size(json_object_get(results, "runs")) ? 12 : 0);
     page_free(&page);
     json_decref(results);
 }
@@ -159,8 +162,8 @@ static void page_without_gnuplot(void **state)
     setenv("PATH", path, 1);
     free(path);
     assert_true(made);
-    assert_int_equal(page.plots_missing, 6);
-    assert_non_null(strstr(page.message, "gnuplot"));
+    assert_int_equal(page.plots.missing, 6);
+    assert_non_null(strstr(page.plots.message, "gnuplot"));
     assert_null(strstr(page.html, "<svg"));
     assert_non_null(strstr(page.html, "4.61e-3"));
     page_free(&page);
@@ -179,7 +182,7 @@ static void junit(void **state)
     (void)state;
     char fault[256];
     json_t *good = sound(), *bad = unsound();
-    char *passes = page_junit(good), *fails = page_junit(bad);
+    char *passes = junit_text(good), *fails = junit_text(bad);
     if (!markup_well_formed(passes, fault, sizeof fault)) fail_msg("%s", fault);
     if (!markup_well_formed(fails, fault, sizeof fault)) fail_msg("%s", fault);
     assert_int_equal(occurrences(passes, "<testcase "), 6);
@@ -195,7 +198,7 @@ static void summary(void **state)
 {
     (void)state;
     json_t *good = sound(), *bad = unsound();
-    char *passes = page_summary(good), *fails = page_summary(bad);
+    char *passes = summary_text(good), *fails = summary_text(bad);
     assert_non_null(strstr(passes, "All is well"));
     assert_non_null(strstr(passes, "| sod | ia | 1.00 | 0.90 to 1.10 |"));
     assert_non_null(strstr(fails, "5 failures; look first at kernels: sign"));
@@ -251,10 +254,30 @@ static void cause_first(void **state)
         if (strncmp(detail, expected[k].detail, strlen(expected[k].detail))) fail_msg("%s", detail);
         assert_int_equal(strstr(detail, "2 more figures") != NULL, k == 2);
     }
-    char *junit_text = page_junit(results);
-    assert_non_null(strstr(junit_text, "the same error twice"));
-    free(junit_text);
+    char *xml = junit_text(results);
+    assert_non_null(strstr(xml, "the same error twice"));
+    free(xml);
     json_decref(results);
+}
+
+/* Nothing passes for well whose status nobody can read. */
+static void unreadable(void **state)
+{
+    (void)state;
+    static const char *const lists[][2] = {
+        {"runs", NULL}, {"studies", "orders"}, {"verify", "checks"}, {"faults", "faults"}};
+    for (size_t k = 0; k < sizeof lists / sizeof *lists; k++) {
+        json_t *results = sound(), *list = json_object_get(results, lists[k][0]);
+        if (json_is_array(list) && lists[k][1]) list = json_array_get(list, 0);
+        if (lists[k][1]) list = json_object_get(list, lists[k][1]);
+        json_object_set_new(json_array_get(list, 0), "status", json_string("passed"));
+        const json_t *verdict = json_object_get(judged(results), "verdict");
+        assert_string_equal(json_string_value(json_object_get(verdict, "status")), "fail");
+        const char *detail = json_string_value(
+            json_object_get(json_array_get(json_object_get(verdict, "failures"), 0), "detail"));
+        assert_non_null(strstr(detail, "'status' is 'passed'; allowed: "));
+        json_decref(results);
+    }
 }
 
 int main(void)
@@ -263,7 +286,7 @@ int main(void)
         cmocka_unit_test(good_page),   cmocka_unit_test(bad_page),
         cmocka_unit_test(empty_page),  cmocka_unit_test(page_without_gnuplot),
         cmocka_unit_test(junit),       cmocka_unit_test(summary),
-        cmocka_unit_test(cause_first),
+        cmocka_unit_test(cause_first), cmocka_unit_test(unreadable),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Convergence of one case: errors over n with fitted and reference slopes, orders and gates.
+ * Internal to pages. */
+#ifndef SPHPROOF_PAGE_STUDY_H
+#define SPHPROOF_PAGE_STUDY_H
+
+#include <jansson.h>
+
+#include "page_plot.h"
+
+/* Plot and tables of the studies (converge documents) of one case. */
+void page_study(struct page_writer *writer, const char *case_name, const json_t *const *documents,
+                size_t count);
+
+/* The entry of a converge document for a field and a norm, or NULL. */
+const json_t *page_study_order(const json_t *document, const char *field, const char *norm);
+
+#endif

@@ -1,0 +1,80 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Reading JSON: numbers and words, lenient and needed. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "near.h"
+#include "value.h"
+
+static json_t *document(void)
+{
+    json_t *made =
+        json_pack("{s:f, s:i, s:s, s:s, s:s, s:b, s:n, s:s, s:[f, s, b], s:{s:i}}", "real", 2.385,
+                  "whole", -7, "high", "inf", "low", "-inf", "none", "nan", "truth", 1, "null",
+                  "word", "pass", "list", 1.5, "inf", 0, "inner", "x", 3);
+    assert_non_null(made);
+    return made;
+}
+
+static void numbers(void **state)
+{
+    (void)state;
+    json_t *d = document();
+    double values[3] = {0};
+    near_absolute(value_member(d, "real"), 2.385, 0);
+    near_absolute(value_member(d, "whole"), -7, 0);
+    near_absolute(value_inner(d, "inner", "x"), 3, 0);
+    assert_true(isinf(value_member(d, "high")) && value_member(d, "high") > 0);
+    assert_true(isinf(value_member(d, "low")) && value_member(d, "low") < 0);
+    static const char *const no_numbers[] = {"none", "truth", "null", "word", "list", "absent"};
+    for (size_t k = 0; k < sizeof no_numbers / sizeof *no_numbers; k++)
+        assert_true(isnan(value_member(d, no_numbers[k])));
+    static const char *const are[] = {"real", "whole", "high", "low", "none"};
+    for (size_t k = 0; k < sizeof are / sizeof *are; k++)
+        assert_true(value_is_real(json_object_get(d, are[k])));
+    for (size_t k = 1; k < sizeof no_numbers / sizeof *no_numbers; k++)
+        assert_false(value_is_real(json_object_get(d, no_numbers[k])));
+    assert_int_equal(value_reals(json_object_get(d, "list"), values, 2), 2);
+    near_absolute(values[0], 1.5, 0);
+    assert_true(isinf(values[1]));
+    assert_true(values[2] == 0);
+    assert_int_equal(value_reals(json_object_get(d, "word"), values, 3), 0);
+    json_decref(d);
+}
+
+static void words(void **state)
+{
+    (void)state;
+    static const char *const allowed[] = {"fail", "pass", NULL};
+    static const struct {
+        const char *name, *message;
+    } wrong[] = {{"high", "'high' is 'inf'; allowed: fail pass"},
+                 {"real", "'real' is a number; allowed: fail pass"},
+                 {"inner", "'inner' is an object; allowed: fail pass"},
+                 {"truth", "'truth' is true; allowed: fail pass"},
+                 {"absent", "'absent' is nothing; allowed: fail pass"}};
+    json_t *d = document();
+    char message[VALUE_MESSAGE] = "";
+    assert_string_equal(value_text(d, "word"), "pass");
+    assert_string_equal(value_text(d, "real"), "");
+    assert_string_equal(value_text_or(d, "absent", "?"), "?");
+    assert_int_equal(value_need_word(d, "word", allowed, message), 1);
+    assert_string_equal(message, "");
+    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) {
+        assert_int_equal(value_need_word(d, wrong[k].name, allowed, message), -1);
+        assert_string_equal(message, wrong[k].message);
+    }
+    assert_ptr_equal(value_need_list(d, "list", message), json_object_get(d, "list"));
+    assert_null(value_need_list(d, "word", message));
+    assert_string_equal(message, "'word' must be a list, it is 'pass'");
+    json_decref(d);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(numbers), cmocka_unit_test(words)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
