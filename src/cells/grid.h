@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Points in 2 and 3 dimensions sorted into cells of a regular grid, and for each of them the list
+ * of the others that are nearer than the wider of two search radii. Cells are numbered along x
+ * first, in tiles of 8 x 8 columns, so that the neighbours of a cell lie in a few contiguous runs
+ * that stay in the cache. Within a cell points keep their order: lists depend on the points alone,
+ * not on threads. Allen & Tildesley 2017, ch. 5. */
+#ifndef SPHPROOF_GRID_H
+#define SPHPROOF_GRID_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "status.h"
+
+/* A list holds whole vectors; the rest of the last one is filled with the sentinel, a slot of its
+ * own at the end of every array in slot order. */
+enum { GRID_LANES = 8 };
+
+struct grid_box {
+    int dim; /* 2 or 3 */
+    double lo[3], hi[3];
+    bool periodic[3];
+};
+
+struct grid_list {
+    const int32_t *slots; /* count of them, then sentinels up to whole vectors */
+    int32_t count;
+    bool wrapped; /* differences of positions need the nearest image */
+};
+
+struct grid; /* private to grid.c but for what the functions below give */
+
+/* For n points at most at first; grows with the points. threads >= 1. NULL: no memory. */
+struct grid *grid_create(const struct grid_box *box, size_t n, int threads);
+void grid_destroy(struct grid *grid);
+
+/* Sorts n points and finds the list of each of the first `active` ones (the others are only found).
+ * x: dim arrays of n, any real positions on periodic axes; radius: n search radii.
+ * STATUS_BAD_INPUT: a position or a radius is not finite, or a radius exceeds half a periodic side
+ * (the message names the point); STATUS_ENVIRONMENT: no memory. */
+enum status grid_search(struct grid *grid, size_t n, size_t active, const double *const x[],
+                        const double *radius, struct error *error);
+
+/* Of the last search. Slots run over the points in the order of their cells; the sentinel is slot
+ * n. position: slot -> {x, y, z (0 in 2D), 0}, wrapped into the box on periodic axes. */
+const uint32_t *grid_order(const struct grid *grid); /* slot -> point, n of them */
+const double (*grid_positions(const struct grid *grid))[4];
+const struct grid_list *grid_lists(const struct grid *grid); /* of each slot; count 0: not active */
+double grid_side(const struct grid *grid, int axis);         /* period, 0: open */
+int grid_longest(const struct grid *grid);                   /* list, in whole vectors */
+
+/* Parts of the slots for threads to share: at most 256 slots each, independent of the number of
+ * threads. begin: parts + 1 slots. */
+size_t grid_parts(const struct grid *grid, const uint32_t **begin);
+
+/* Bytes that a grid of n points with lists of `neighbours` each takes. */
+double grid_bytes(size_t n, double neighbours, int dim);
+
+#endif
