@@ -1,0 +1,92 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The particle sums in 2D and 3D: density, moment matrix and velocity gradient, pair forces, over
+ * the neighbour lists of a grid. Every particle gathers its own sums in the order of its list, in
+ * eight lanes that are added in a fixed order: results depend neither on threads nor on instruction
+ * sets, and what two particles do to each other is opposite to the last bit. Each sum runs in short
+ * stages over arrays that stay in the first-level cache: neighbours gathered, geometry, kernel,
+ * physics. */
+#ifndef SPHPROOF_CELLS_H
+#define SPHPROOF_CELLS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "grid.h"
+#include "kernel.h"
+#include "pair.h"
+#include "scheme.h"
+
+/* Entries of a symmetric matrix xx, xy, (xz,) yy, (yz, zz): 3 in 2D, 6 in 3D. */
+enum { CELLS_SYMMETRIC = 6, CELLS_SQUARE = 9 };
+
+/* What the sums are asked for; constant over a run. */
+struct cells_method {
+    struct grid_box box;
+    const struct kernel *kernel; /* must outlive the cells */
+    bool stamped;                /* kernel loops of its own, where it is a built-in one */
+    enum gradient gradient;
+    enum formulation formulation;
+    enum pair_width pair_width;
+    enum energy energy;
+    bool energy_element; /* Z = U, else Z = m */
+    bool number;         /* Z = 1 */
+    enum pair_viscosity viscosity;
+    bool signal_form;       /* of viscosity: else the mu form */
+    bool projected;         /* PAIR_RECONSTRUCTED with the linear term of `projected` */
+    bool balsara;           /* viscosity times the mean factor of the pair */
+    bool velocity_gradient; /* something needs it */
+    bool div_v;             /* and the divergence by the pair gradient */
+    double conductivity;    /* alpha_u; 0: none */
+    double noise;           /* nu of `projected` */
+    double
+        worst_condition; /* of a moment matrix; beyond it the pair's gradient is the standard one */
+    struct pair_numbers numbers;
+    int threads;
+};
+
+/* Arrays of the particles, n each, in the caller's order; NULL where the method needs none. */
+struct cells_fields {
+    size_t n;
+    const double *x[3], *v[3], *m, *U, *alpha, *balsara;
+    const double *h_inverse;
+    const double *P, *c, *rho, *V; /* of the equation of state, V = Z/y */
+    const double *b, *grad_h;      /* lagrangian */
+    /* found: without the factor C/h^d */
+    double *sum_m, *sum_m_dh;        /* sum m w and sum m (d w + q w'), number: m = 1 */
+    double *sum_Z, *sum_Z_dh;        /* energy element */
+    double *matrix[CELLS_SYMMETRIC]; /* C h^-d times C of eq. ia: gradient = matrix x w(q) */
+    double *condition;               /* of the moment matrix */
+    double *slope[CELLS_SQUARE];     /* (grad v): d v_a/d x_b at a dim + b */
+    double *projector[CELLS_SYMMETRIC];
+    double *F[3], *de, *div_v, *signal; /* signal: largest speed of the particle's pairs */
+};
+
+struct cells;
+
+/* Memory for n particles. NULL: none left. */
+struct cells *cells_create(const struct cells_method *method, size_t n);
+void cells_destroy(struct cells *cells);
+
+/* Finds who is near whom, to max(radius_i, radius_j). Errors as grid_search. */
+enum status cells_arrange(struct cells *cells, const struct cells_fields *fields,
+                          const double *radius, struct error *error);
+
+/* sum_m ... at the widths 1/h_inverse. */
+void cells_density(struct cells *cells, const struct cells_fields *fields);
+
+/* The same for one particle at another width, for Newton's method; sums: m, m_dh, Z, Z_dh. The
+ * neighbours must reach as far. thread: of the caller, whose scratch is used. */
+void cells_density_again(struct cells *cells, const struct cells_fields *fields, size_t slot,
+                         double h_inverse, int thread, double sums[4]);
+
+/* matrix, condition, slope, projector, as the method needs them. Returns how many particles have
+ * too few neighbours for a matrix. */
+size_t cells_matrix(struct cells *cells, const struct cells_fields *fields);
+
+/* F, de, div_v, signal. Returns the number of pairs within max(h_i, h_j). */
+uint64_t cells_forces(struct cells *cells, const struct cells_fields *fields);
+
+const struct grid *cells_grid(const struct cells *cells);
+
+#endif

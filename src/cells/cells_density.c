@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Density in 2D and 3D: sum_j Z_j w(r_ij/h_i) and its derivative in h, sum_j Z_j (d w + q w'),
+ * without the factors C/h^d and -C/h^(d+1); with j = i. */
+#include <math.h>
+
+#include "lanes.h"
+
+static void fill_records(struct cells *cells, const struct cells_fields *fields)
+{
+    const struct lanes_layout *layout = &cells->density;
+    const double(*place)[4] = grid_positions(cells->grid);
+    const uint32_t *order = grid_order(cells->grid);
+    const ptrdiff_t size = layout->size, energy = layout->offset[GROUP_LAGRANGIAN];
+#pragma omp parallel for num_threads(cells->method.threads) if (cells->method.threads > 1)
+    for (size_t s = 0; s <= fields->n; s++) {
+        double *record = cells->records + (ptrdiff_t)s * size;
+        const bool sentinel = s == fields->n;
+        for (int a = 0; a < 3; a++) record[a] = place[s][a];
+        record[3] = sentinel ? 0 : cells->method.number ? 1 : fields->m[order[s]];
+        if (energy >= 0) record[energy + 2] = sentinel ? 0 : fields->U[order[s]];
+    }
+}
+
+CLONES static void scale(int count, const double *restrict r, double h_inverse, double *restrict q)
+{
+#pragma omp simd
+    for (int k = 0; k < count; k++) q[k] = r[k] * h_inverse;
+}
+
+/* In place of w': d w + q w'. */
+CLONES static void derivative(int count, double dim, const double *restrict q,
+                              const double *restrict w, double *restrict dw)
+{
+#pragma omp simd
+    for (int k = 0; k < count; k++) dw[k] = dim * w[k] + q[k] * dw[k];
+}
+
+/* The sums over lanes that are gathered, at another width each time. */
+static void sum_at(const struct cells *cells, const struct lanes *lanes, int count, double m,
+                   double U, double h_inverse, double sums[4])
+{
+    const struct kernel *kernel = cells->method.kernel;
+    const int dim = cells->method.box.dim;
+    double *q = lane(lanes, LANE_Q), *w = lane(lanes, LANE_W), *dw = lane(lanes, LANE_W_J);
+    scale(count, lane(lanes, LANE_R), h_inverse, q);
+    cells->kernel_loops.w(kernel, (size_t)count, q, w);
+    cells->kernel_loops.dw(kernel, (size_t)count, q, dw);
+    derivative(count, dim, q, w, dw);
+    const double own = kernel->w(kernel, 0, dim);
+    const double *mass = lane_of(lanes, &cells->density, GROUP_PLACE, 3);
+    sums[0] = m * own + lanes_dot(mass, w, count);
+    sums[1] = m * (dim * own) + lanes_dot(mass, dw, count);
+    sums[2] = sums[3] = 0;
+    if (!cells->method.energy_element) return;
+    const double *energy = lane_of(lanes, &cells->density, GROUP_LAGRANGIAN, 2);
+    sums[2] = U * own + lanes_dot(energy, w, count);
+    sums[3] = U * (dim * own) + lanes_dot(energy, dw, count);
+}
+
+static void density_pass(struct cells *cells, const struct cells_fields *fields, size_t slot,
+                         struct lanes *lanes)
+{
+    const size_t i = grid_order(cells->grid)[slot];
+    double sums[4];
+    const int count = lanes_gather(cells, &cells->density, slot, lanes);
+    sum_at(cells, lanes, count, cells->method.number ? 1 : fields->m[i],
+           cells->method.energy_element ? fields->U[i] : 0, fields->h_inverse[i], sums);
+    fields->sum_m[i] = sums[0];
+    fields->sum_m_dh[i] = sums[1];
+    if (!cells->method.energy_element) return;
+    fields->sum_Z[i] = sums[2];
+    fields->sum_Z_dh[i] = sums[3];
+}
+
+void cells_density(struct cells *cells, const struct cells_fields *fields)
+{
+    fill_records(cells, fields);
+    lanes_all(cells, fields, density_pass);
+}

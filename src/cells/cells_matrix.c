@@ -1,0 +1,183 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The moment matrix T_i = sum_j V_j x x^T W and its inverse (Garcia-Senz, Cabezon & Escartin 2012),
+ * for gradient=corrected with -W'/r in place of W (Bonet & Lok 1999), and the linear_exact velocity
+ * gradient (grad v)_i = sum_j V_j (v_j - v_i) (x) C_i x W (Price 2004). C/h^d cancels between
+ * matrix and gradient, so both are written with w(q) alone. x = r_j - r_i. */
+#include <math.h>
+
+#include "lanes.h"
+#include "matrix.h"
+
+static void fill_records(struct cells *cells, const struct cells_fields *fields)
+{
+    const struct lanes_layout *layout = &cells->matrix;
+    const double(*place)[4] = grid_positions(cells->grid);
+    const uint32_t *order = grid_order(cells->grid);
+    const int dim = cells->method.box.dim;
+    const ptrdiff_t size = layout->size, motion = layout->offset[GROUP_MOTION],
+                    gas = layout->offset[GROUP_GAS];
+#pragma omp parallel for num_threads(cells->method.threads) if (cells->method.threads > 1)
+    for (size_t s = 0; s <= fields->n; s++) {
+        double *record = cells->records + (ptrdiff_t)s * size;
+        for (ptrdiff_t f = 0; f < size; f++) record[f] = 0;
+        for (int a = 0; a < 3; a++) record[a] = place[s][a];
+        if (s == fields->n) continue;
+        const size_t i = order[s];
+        for (int a = 0; motion >= 0 && a < dim; a++) record[motion + a] = fields->v[a][i];
+        record[gas + 1] = fields->V[i];
+    }
+}
+
+CLONES static void scale(int count, const double *restrict r, double h_inverse, double *restrict q)
+{
+#pragma omp simd
+    for (int k = 0; k < count; k++) q[k] = r[k] * h_inverse;
+}
+
+/* -w'(q)/q, the weight of gradient=corrected; 0 where points coincide. */
+CLONES static void slope_weight(int count, double h, const double *restrict r_inverse,
+                                double *restrict dw)
+{
+#pragma omp simd
+    for (int k = 0; k < count; k++) dw[k] = -dw[k] * (r_inverse[k] * h);
+}
+
+CLONES static void product(int count, const double *restrict a, const double *restrict b,
+                           double *restrict ab)
+{
+#pragma omp simd
+    for (int k = 0; k < count; k++) ab[k] = a[k] * b[k];
+}
+
+CLONES static double moment(int count, const double *restrict weight, const double *restrict x,
+                            const double *restrict y)
+{
+    double s[GRID_LANES] = {0};
+    for (int k = 0; k < count; k += GRID_LANES)
+#pragma omp simd
+        for (int l = 0; l < GRID_LANES; l++) s[l] += weight[k + l] * x[k + l] * y[k + l];
+    return ((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + (s[6] + s[7]));
+}
+
+/* sum weight x (v - own). */
+CLONES static double moment_of_difference(int count, const double *restrict weight,
+                                          const double *restrict x, const double *restrict v,
+                                          double own)
+{
+    double s[GRID_LANES] = {0};
+    for (int k = 0; k < count; k += GRID_LANES)
+#pragma omp simd
+        for (int l = 0; l < GRID_LANES; l++) s[l] += weight[k + l] * x[k + l] * (v[k + l] - own);
+    return ((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + (s[6] + s[7]));
+}
+
+/* The inverse of the moments with these weights. False: too few neighbours, or all on a line. */
+static bool invert_moments(int dim, int count, const struct lanes *lanes, const double *weight,
+                           double inverse[CELLS_SQUARE], double *condition)
+{
+    double moments[CELLS_SQUARE];
+    for (int a = 0; a < dim; a++)
+        for (int b = a; b < dim; b++)
+            moments[a * dim + b] = moments[b * dim + a] =
+                moment(count, weight, lane(lanes, LANE_DX + a), lane(lanes, LANE_DX + b));
+    *condition = HUGE_VAL;
+    if (!matrix_invert(dim, moments, inverse)) return false;
+    double norm = 0, norm_inverse = 0;
+    for (int k = 0; k < dim * dim; k++) {
+        norm += moments[k] * moments[k];
+        norm_inverse += inverse[k] * inverse[k];
+    }
+    *condition = sqrt(norm * norm_inverse); /* Frobenius: dim for a multiple of the unit matrix */
+    return true;
+}
+
+/* P = kappa M^2/tr M^2 with M = L L^T and kappa = smoothstep((s - 0.7)/0.25),
+ * s = 2 tr M^2/(tr M)^2 - 1: 1 for simple shear, 0 for rotation. */
+static void project(int dim, const double L[CELLS_SQUARE], double projector[CELLS_SYMMETRIC])
+{
+    double M[CELLS_SQUARE], M2[CELLS_SQUARE], trace = 0, trace2 = 0;
+    for (int a = 0; a < dim; a++)
+        for (int b = 0; b < dim; b++) {
+            M[a * dim + b] = 0;
+            for (int c = 0; c < dim; c++) M[a * dim + b] += L[a * dim + c] * L[b * dim + c];
+        }
+    for (int a = 0; a < dim; a++)
+        for (int b = 0; b < dim; b++) {
+            M2[a * dim + b] = 0;
+            for (int c = 0; c < dim; c++) M2[a * dim + b] += M[a * dim + c] * M[c * dim + b];
+        }
+    for (int a = 0; a < dim; a++) trace += M[a * dim + a], trace2 += M2[a * dim + a];
+    const double s = trace2 > 0 ? 2 * trace2 / (trace * trace) - 1 : 0;
+    const double t = fmin(1, fmax(0, (s - 0.7) / 0.25)), kappa = t * t * (3 - 2 * t);
+    for (int a = 0; a < dim; a++)
+        for (int b = a; b < dim; b++)
+            projector[symmetric_at(dim, a, b)] = trace2 > 0 ? kappa * M2[a * dim + b] / trace2 : 0;
+}
+
+static void velocity_gradient(struct cells *cells, const struct cells_fields *fields, size_t i,
+                              int count, struct lanes *lanes, const double *weight,
+                              const double inverse[CELLS_SQUARE], bool sound)
+{
+    const int dim = cells->method.box.dim;
+    double L[CELLS_SQUARE] = {0};
+    for (int a = 0; sound && a < dim; a++) {
+        double sums[3];
+        for (int c = 0; c < dim; c++)
+            sums[c] = moment_of_difference(count, weight, lane(lanes, LANE_DX + c),
+                                           lane_of(lanes, &cells->matrix, GROUP_MOTION, a),
+                                           fields->v[a][i]);
+        for (int b = 0; b < dim; b++)
+            for (int c = 0; c < dim; c++) L[a * dim + b] += inverse[b * dim + c] * sums[c];
+    }
+    for (int k = 0; k < dim * dim; k++) fields->slope[k][i] = L[k];
+    if (!cells->method.projected) return;
+    double projector[CELLS_SYMMETRIC];
+    project(dim, L, projector);
+    for (int k = 0; k < dim * (dim + 1) / 2; k++) fields->projector[k][i] = projector[k];
+}
+
+static void matrix_pass(struct cells *cells, const struct cells_fields *fields, size_t slot,
+                        struct lanes *lanes)
+{
+    const struct cells_method *method = &cells->method;
+    const size_t i = grid_order(cells->grid)[slot];
+    const int dim = method->box.dim, count = lanes_gather(cells, &cells->matrix, slot, lanes);
+    const double *V = lane_of(lanes, &cells->matrix, GROUP_GAS, 1);
+    double *q = lane(lanes, LANE_Q), *w = lane(lanes, LANE_W), *weight = lane(lanes, LANE_W_J);
+    double inverse[CELLS_SQUARE], condition = 0;
+    scale(count, lane(lanes, LANE_R), fields->h_inverse[i], q);
+    bool sound = false;
+    if (method->gradient == GRADIENT_IA || method->velocity_gradient) {
+        cells->kernel_loops.w(method->kernel, (size_t)count, q, w);
+        product(count, V, w, weight);
+        sound = invert_moments(dim, count, lanes, weight, inverse, &condition);
+    }
+    if (method->velocity_gradient)
+        velocity_gradient(cells, fields, i, count, lanes, weight, inverse, sound);
+    if (method->gradient == GRADIENT_STANDARD) return;
+    if (method->gradient != GRADIENT_IA) { /* corrected */
+        cells->kernel_loops.dw(method->kernel, (size_t)count, q, w);
+        slope_weight(count, 1 / fields->h_inverse[i], lane(lanes, LANE_R_INVERSE), w);
+        product(count, V, w, weight);
+        sound = invert_moments(dim, count, lanes, weight, inverse, &condition);
+    }
+    fields->condition[i] = condition;
+    sound = sound && condition <= method->worst_condition;
+    for (int a = 0; a < dim; a++)
+        for (int b = a; b < dim; b++)
+            fields->matrix[symmetric_at(dim, a, b)][i] =
+                sound ? 0.5 * (inverse[a * dim + b] + inverse[b * dim + a]) : 0;
+    if (!sound) fields->condition[i] = HUGE_VAL;
+}
+
+size_t cells_matrix(struct cells *cells, const struct cells_fields *fields)
+{
+    const struct cells_method *method = &cells->method;
+    if (method->gradient == GRADIENT_STANDARD && !method->velocity_gradient) return 0;
+    fill_records(cells, fields);
+    lanes_all(cells, fields, matrix_pass);
+    size_t fallen_back = 0;
+    for (size_t i = 0; method->gradient != GRADIENT_STANDARD && i < fields->n; i++)
+        fallen_back += !(fields->condition[i] <= method->worst_condition);
+    return fallen_back;
+}

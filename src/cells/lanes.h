@@ -1,0 +1,116 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Inside of cells: one thread's arrays over the neighbours of one particle, and the records that
+ * they are gathered from. */
+#ifndef SPHPROOF_LANES_H
+#define SPHPROOF_LANES_H
+
+#include "cells.h"
+#include "gather.h"
+#include "kernel_loop.h"
+
+/* Values of a record by groups of four; which groups there are is the method's. */
+enum lanes_group {
+    GROUP_PLACE,      /* x y z m */
+    GROUP_MOTION,     /* vx vy vz h */
+    GROUP_GAS,        /* 1/h V P c */
+    GROUP_VISCOSITY,  /* rho alpha balsara u */
+    GROUP_LAGRANGIAN, /* b grad_h Z -; density with the energy element: U */
+    GROUP_MATRIX,     /* symmetric, and how far it is used: 1, or 0 for the standard gradient */
+    GROUP_MATRIX_2,
+    GROUP_SLOPE,
+    GROUP_SLOPE_2,
+    GROUP_SLOPE_3,
+    GROUP_PROJECTOR,
+    GROUP_PROJECTOR_2,
+    GROUPS
+};
+
+struct lanes_layout {
+    int size;           /* doubles of a record */
+    int offset[GROUPS]; /* of a group; -1: absent */
+};
+
+/* Arrays of the lanes that loops make. */
+enum lanes_array {
+    LANE_DX, /* r_j - r_i */
+    LANE_DY,
+    LANE_DZ,
+    LANE_R,
+    LANE_R_INVERSE,
+    LANE_Q,
+    LANE_Q_J,
+    LANE_W,
+    LANE_W_J,
+    LANE_GX, /* minus the pair gradient: forces are along it */
+    LANE_GY,
+    LANE_GZ,
+    LANE_GX_I, /* at h_i and at h_j alone */
+    LANE_GY_I,
+    LANE_GZ_I,
+    LANE_GX_J,
+    LANE_GY_J,
+    LANE_GZ_J,
+    LANE_CLOSING,
+    LANE_A_I,
+    LANE_A_J,
+    LANE_K,
+    LANE_SLOPE_I,
+    LANE_SLOPE_J,
+    LANE_SPARE,
+    LANES_OWN
+};
+
+struct lanes {
+    double *block; /* LANES_OWN + records of GROUPS groups, stride each */
+    ptrdiff_t stride;
+    int64_t pairs;
+};
+
+struct cells {
+    struct cells_method method;
+    struct grid *grid;
+    gather_loop *gather;
+    struct kernel_loops kernel_loops;
+    size_t capacity; /* of records, in particles */
+    double *records; /* slot n is the sentinel's */
+    struct lanes_layout density, matrix, force;
+    struct lanes *lanes; /* of each thread */
+};
+
+/* An array of the thread's own, or a value of the gathered records. */
+static inline double *lane(const struct lanes *lanes, enum lanes_array which)
+{
+    return lanes->block + which * lanes->stride;
+}
+
+static inline double *lane_of(const struct lanes *lanes, const struct lanes_layout *layout,
+                              enum lanes_group group, int value)
+{
+    return lanes->block + (LANES_OWN + layout->offset[group] + value) * lanes->stride;
+}
+
+/* Gathers the records of a slot's list and finds r_j - r_i, r and 1/r. Returns the number of lanes,
+ * a multiple of GRID_LANES. */
+int lanes_gather(const struct cells *cells, const struct lanes_layout *layout, size_t slot,
+                 const struct lanes *lanes);
+
+/* Room for lists of the grid's longest one. */
+bool lanes_reserve(struct cells *cells);
+
+/* Runs a pass over all parts of the grid, shared out among threads. */
+typedef void lanes_pass(struct cells *cells, const struct cells_fields *fields, size_t slot,
+                        struct lanes *lanes);
+void lanes_all(struct cells *cells, const struct cells_fields *fields, lanes_pass *pass);
+
+/* Sums of count values, count a multiple of GRID_LANES, in a fixed order. */
+double lanes_sum(const double *values, int count);
+double lanes_dot(const double *a, const double *b, int count);
+
+/* Position of the entry (a, b) of a symmetric matrix. */
+static inline int symmetric_at(int dim, int a, int b)
+{
+    const int low = a < b ? a : b, high = a < b ? b : a;
+    return low * dim - low * (low - 1) / 2 + high - low;
+}
+
+#endif
