@@ -134,21 +134,21 @@ ALWAYS_INLINE double pair_viscous(enum viscosity viscosity, const struct pair_nu
 
 /* The same term with the signal velocity (Monaghan 1997), for closing = -w_ij > 0:
  * PI = (alpha cbar + (beta/2) closing) closing/rhobar. */
-ALWAYS_INLINE double pair_viscous_signal(enum pair_viscosity viscosity,
+ALWAYS_INLINE double pair_viscous_signal(enum viscosity viscosity,
                                          const struct pair_numbers *numbers,
                                          const struct pair_side *i, const struct pair_side *j,
                                          double r, double closing, double G)
 {
     double scale = 1;
-    const double w = viscosity == PAIR_RECONSTRUCTED
+    const double w = viscosity == VISCOSITY_RECONSTRUCTED
                          ? pair_closing_at_midpoint(i, j, r, closing, numbers->near, &scale)
                          : largest(closing, 0);
     const double speed = w / scale, c_sum = i->c + j->c;
-    const bool varying = viscosity == PAIR_VARYING;
+    const bool varying = viscosity == VISCOSITY_TIME_DEPENDENT;
     const double alpha_half = varying ? 0.25 * (i->alpha + j->alpha) : 0.5 * numbers->alpha;
     const double beta = varying ? 2 * numbers->beta_ratio * alpha_half : numbers->beta;
     const double c_seen =
-        viscosity == PAIR_FADING ? least(c_sum, speed * (2 / pair_fade_below)) : c_sum;
+        viscosity == VISCOSITY_FADING ? least(c_sum, speed * (2 / pair_fade_below)) : c_sum;
     return i->m * j->m * G * speed * (alpha_half * c_seen + 0.5 * beta * speed) / (i->rho + j->rho);
 }
 

@@ -14,7 +14,7 @@
 static void add_groups(struct lanes_layout *layout, enum lanes_group first, int count)
 {
     for (int g = 0; g < count; g++, layout->size += GATHER_GROUP)
-        layout->offset[first + g] = layout->size;
+        layout->offset[(int)first + g] = layout->size;
 }
 
 static void empty(struct lanes_layout *layout)
@@ -40,11 +40,11 @@ static void lay_out(struct cells *cells)
     add_groups(force, GROUP_PLACE, 1);
     add_groups(force, GROUP_MOTION, 1);
     add_groups(force, GROUP_GAS, 1);
-    if (method->viscosity != PAIR_INVISCID || method->conductivity > 0)
+    if (method->viscosity != VISCOSITY_NONE || method->conductivity > 0)
         add_groups(force, GROUP_VISCOSITY, 1);
     if (method->formulation == FORMULATION_LAGRANGIAN) add_groups(force, GROUP_LAGRANGIAN, 1);
     if (matrix) add_groups(force, GROUP_MATRIX, in_3d ? 2 : 1);
-    if (method->viscosity == PAIR_RECONSTRUCTED) add_groups(force, GROUP_SLOPE, in_3d ? 3 : 1);
+    if (method->viscosity == VISCOSITY_RECONSTRUCTED) add_groups(force, GROUP_SLOPE, in_3d ? 3 : 1);
     if (method->projected) add_groups(force, GROUP_PROJECTOR, in_3d ? 2 : 1);
 }
 
@@ -67,7 +67,7 @@ struct cells *cells_create(const struct cells_method *method, size_t n)
     if (!cells) return NULL;
     cells->method = *method;
     cells->gather = gather_choose();
-    cells->kernel_loops = kernel_loop_find(method->kernel, method->box.dim, method->stamped);
+    cells->shapes = shapes_of(method->kernel, method->box.dim, method->stamped);
     lay_out(cells);
     cells->grid = grid_create(&method->box, n, method->threads);
     cells->lanes = calloc((size_t)method->threads, sizeof *cells->lanes);

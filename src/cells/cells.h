@@ -31,9 +31,9 @@ struct cells_method {
     enum energy energy;
     bool energy_element; /* Z = U, else Z = m */
     bool number;         /* Z = 1 */
-    enum pair_viscosity viscosity;
+    enum viscosity viscosity;
     bool signal_form;       /* of viscosity: else the mu form */
-    bool projected;         /* PAIR_RECONSTRUCTED with the linear term of `projected` */
+    bool projected;         /* VISCOSITY_RECONSTRUCTED with the linear term of `projected` */
     bool balsara;           /* viscosity times the mean factor of the pair */
     bool velocity_gradient; /* something needs it */
     bool div_v;             /* and the divergence by the pair gradient */

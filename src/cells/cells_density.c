@@ -43,8 +43,8 @@ static void sum_at(const struct cells *cells, const struct lanes *lanes, int cou
     const int dim = cells->method.box.dim;
     double *q = lane(lanes, LANE_Q), *w = lane(lanes, LANE_W), *dw = lane(lanes, LANE_W_J);
     scale(count, lane(lanes, LANE_R), h_inverse, q);
-    cells->kernel_loops.w(kernel, (size_t)count, q, w);
-    cells->kernel_loops.dw(kernel, (size_t)count, q, dw);
+    cells->shapes.w(kernel, (size_t)count, q, w);
+    cells->shapes.dw(kernel, (size_t)count, q, dw);
     derivative(count, dim, q, w, dw);
     const double own = kernel->w(kernel, 0, dim);
     const double *mass = lane_of(lanes, &cells->density, GROUP_PLACE, 3);

@@ -131,12 +131,12 @@ CLONES static void widths(enum pair_width width, int count, const double *restri
 {
 #pragma omp simd
     for (int k = 0; k < count; k++) {
-        if (width == PAIR_MEAN) {
+        if (width == PAIR_WIDTH_MEAN) {
             q[k] = r[k] * h_inverse;
             q_j[k] = r[k] * theirs[k];
         } else {
             const double both =
-                width == PAIR_MAX ? least(h_inverse, theirs[k]) : 0.5 * (h_inverse + theirs[k]);
+                width == PAIR_WIDTH_MAX ? least(h_inverse, theirs[k]) : 0.5 * (h_inverse + theirs[k]);
             q[k] = r[k] * both;
             q_j[k] = both;
         }
@@ -223,14 +223,14 @@ CLONES static void fall_back(int count, double own, const double *restrict their
 }
 
 /* w(q), w'(q) or what the gradient needs of them, in place of w. */
-static void shapes(const struct cells *cells, int count, const double *q, double *w)
+static void pair_shapes(const struct cells *cells, int count, const double *q, double *w)
 {
     const struct cells_method *method = &cells->method;
     if (method->gradient == GRADIENT_IA) {
-        cells->kernel_loops.w(method->kernel, (size_t)count, q, w);
+        cells->shapes.w(method->kernel, (size_t)count, q, w);
         return;
     }
-    cells->kernel_loops.dw(method->kernel, (size_t)count, q, w);
+    cells->shapes.dw(method->kernel, (size_t)count, q, w);
     if (method->gradient != GRADIENT_STANDARD) corrected_weight(count, q, w);
 }
 
@@ -241,16 +241,16 @@ static void standard_pair(const struct cells *cells, int count, const struct lan
     const struct cells_method *method = &cells->method;
     const int dim = method->box.dim;
     const double C = method->kernel->constant[dim], *r_inverse = lane(lanes, LANE_R_INVERSE);
-    const bool mean_width = method->pair_width == PAIR_MEAN;
+    const bool mean_width = method->pair_width == PAIR_WIDTH_MEAN;
     double *q = lane(lanes, LANE_Q), *q_j = lane(lanes, LANE_Q_J);
     widths(method->pair_width, count, lane(lanes, LANE_R), h_inverse, theirs, q, q_j);
-    cells->kernel_loops.dw(method->kernel, (size_t)count, q, s);
+    cells->shapes.dw(method->kernel, (size_t)count, q, s);
     standard_sizes(dim, count, C, h_inverse, mean_width ? NULL : q_j, r_inverse, s);
     if (!mean_width) {
         for (int k = 0; k < count; k++) s_j[k] = s[k];
         return;
     }
-    cells->kernel_loops.dw(method->kernel, (size_t)count, q_j, s_j);
+    cells->shapes.dw(method->kernel, (size_t)count, q_j, s_j);
     standard_sizes(dim, count, C, h_inverse, theirs, r_inverse, s_j);
 }
 
@@ -288,9 +288,9 @@ static void pair_gradients(const struct cells *cells, int count, int neighbours,
     }
     double *q = lane(lanes, LANE_Q), *q_j = lane(lanes, LANE_Q_J);
     widths(method->pair_width, count, lane(lanes, LANE_R), h_inverse, theirs, q, q_j);
-    shapes(cells, count, q, w);
-    if (method->pair_width == PAIR_MEAN)
-        shapes(cells, count, q_j, w_j);
+    pair_shapes(cells, count, q, w);
+    if (method->pair_width == PAIR_WIDTH_MEAN)
+        pair_shapes(cells, count, q_j, w_j);
     else
         for (int k = 0; k < count; k++) w_j[k] = w[k];
     const double *own = record + layout->offset[GROUP_MATRIX];
@@ -364,15 +364,16 @@ static struct sides find_sides(const struct cells *cells, const struct lanes *la
     return sides;
 }
 
-/* a_i and a_j of the pressure, for G = 1. The particles' own mass in Z of the number element is not
- * theirs to weigh: see CONVENTIONS on f_ij. */
-CLONES static void pressure(enum formulation formulation, int count, const struct sides *sides,
-                            double *restrict a_i, double *restrict a_j)
+/* a_i and a_j of the pressure, for G = 1. With the number element 1 stands in place of the mass in
+ * f_ij = 1 - (m_j/Z_j)(1 - f_i), too: h follows the sum that it adds up. */
+CLONES static void pressure(enum formulation formulation, bool number, int count,
+                            const struct sides *sides, double *restrict a_i, double *restrict a_j)
 {
-    const struct pair_side own = sides->own;
+    struct pair_side own = sides->own;
+    if (number) own.m = own.Z;
     const double *restrict V = sides->V, *restrict P = sides->P, *restrict b = sides->b,
                            *restrict grad_h = sides->grad_h, *restrict Z = sides->Z,
-                           *restrict m = sides->m;
+                           *restrict m = number ? sides->Z : sides->m;
     if (formulation == FORMULATION_VANILLA_ICE) {
 #pragma omp simd
         for (int k = 0; k < count; k++) {
@@ -393,9 +394,9 @@ CLONES static void pressure(enum formulation formulation, int count, const struc
 }
 
 /* K, what viscosity adds to a_i and a_j alike, for G = 1. */
-ALWAYS_INLINE void viscous_body(enum pair_viscosity viscosity, bool signal_form, int count,
-                                const struct pair_numbers *numbers, const struct sides *sides,
-                                const struct lanes *lanes)
+ALWAYS_INLINE void viscous_body(enum viscosity viscosity, bool signal_form, bool squared,
+                                int count, const struct pair_numbers *numbers,
+                                const struct sides *sides, const struct lanes *lanes)
 {
     const struct pair_side own = sides->own;
     const struct pair_numbers n = *numbers;
@@ -423,27 +424,28 @@ ALWAYS_INLINE void viscous_body(enum pair_viscosity viscosity, bool signal_form,
         const double term = signal_form
                                 ? pair_viscous_signal(viscosity, &n, &i, &j, r[k], closing[k], 1)
                                 : pair_viscous(viscosity, &n, &i, &j, r[k], closing[k], 1);
-        K[k] = term * (0.5 * (f_own + balsara[k]));
+        const double f = 0.5 * (f_own + balsara[k]);
+        K[k] = term * (squared ? f * f : f);
     }
 }
 
 #define VISCOUS(name, signal_form)                                                                 \
-    CLONES static void name(enum pair_viscosity viscosity, int count,                              \
+    CLONES static void name(enum viscosity viscosity, bool squared, int count,                \
                             const struct pair_numbers *numbers, const struct sides *sides,         \
                             const struct lanes *lanes)                                             \
     {                                                                                              \
         switch (viscosity) {                                                                       \
-        case PAIR_UNIFORM:                                                                         \
-            viscous_body(PAIR_UNIFORM, signal_form, count, numbers, sides, lanes);                 \
+        case VISCOSITY_CONSTANT:                                                                         \
+            viscous_body(VISCOSITY_CONSTANT, signal_form, squared, count, numbers, sides, lanes);        \
             break;                                                                                 \
-        case PAIR_VARYING:                                                                         \
-            viscous_body(PAIR_VARYING, signal_form, count, numbers, sides, lanes);                 \
+        case VISCOSITY_TIME_DEPENDENT:                                                                         \
+            viscous_body(VISCOSITY_TIME_DEPENDENT, signal_form, squared, count, numbers, sides, lanes);        \
             break;                                                                                 \
-        case PAIR_RECONSTRUCTED:                                                                   \
-            viscous_body(PAIR_RECONSTRUCTED, signal_form, count, numbers, sides, lanes);           \
+        case VISCOSITY_RECONSTRUCTED:                                                                   \
+            viscous_body(VISCOSITY_RECONSTRUCTED, signal_form, squared, count, numbers, sides, lanes);  \
             break;                                                                                 \
-        case PAIR_FADING:                                                                          \
-            viscous_body(PAIR_FADING, signal_form, count, numbers, sides, lanes);                  \
+        case VISCOSITY_FADING:                                                                          \
+            viscous_body(VISCOSITY_FADING, signal_form, squared, count, numbers, sides, lanes);         \
             break;                                                                                 \
         default:                                                                                   \
             break;                                                                                 \
@@ -610,16 +612,16 @@ static void add_viscosity(const struct cells *cells, int count, const struct lan
     const struct lanes_layout *layout = &cells->force;
     const int dim = method->box.dim;
     double *K = lane(lanes, LANE_K);
-    if (method->viscosity == PAIR_INVISCID) {
+    if (method->viscosity == VISCOSITY_NONE) {
         for (int k = 0; k < count; k++) K[k] = 0;
         return;
     }
-    if (method->viscosity == PAIR_RECONSTRUCTED)
+    if (method->viscosity == VISCOSITY_RECONSTRUCTED)
         slopes_along(dim, count, lanes, record + layout->offset[GROUP_SLOPE],
                      lane_of(lanes, layout, GROUP_SLOPE, 0));
-    (method->signal_form ? viscous_signal : viscous_mu)(method->viscosity, count, &method->numbers,
-                                                        sides, lanes);
-    if (method->viscosity == PAIR_RECONSTRUCTED) {
+    (method->signal_form ? viscous_signal : viscous_mu)(method->viscosity, method->projected, count,
+                                                        &method->numbers, sides, lanes);
+    if (method->viscosity == VISCOSITY_RECONSTRUCTED) {
         double *approach = lane(lanes, LANE_SPARE);
         find_approach(dim, count, lanes, record + layout->offset[GROUP_MOTION],
                       lane_of(lanes, layout, GROUP_MOTION, 0), approach);
@@ -659,7 +661,8 @@ static void force_pass(struct cells *cells, const struct cells_fields *fields, s
                  theirs + lanes->stride, theirs + 2 * lanes->stride, v, lane(lanes, LANE_R_INVERSE),
                  lane(lanes, LANE_CLOSING));
     pair_gradients(cells, count, neighbours, lanes, record);
-    pressure(method->formulation, count, &sides, lane(lanes, LANE_A_I), lane(lanes, LANE_A_J));
+    pressure(method->formulation, method->number, count, &sides, lane(lanes, LANE_A_I),
+             lane(lanes, LANE_A_J));
     add_viscosity(cells, count, lanes, &sides, record);
     struct totals totals = {0};
     const bool both = method->formulation == FORMULATION_LAGRANGIAN;

@@ -75,7 +75,7 @@ CLONES static double moment_of_difference(int count, const double *restrict weig
 static bool invert_moments(int dim, int count, const struct lanes *lanes, const double *weight,
                            double inverse[CELLS_SQUARE], double *condition)
 {
-    double moments[CELLS_SQUARE];
+    double moments[CELLS_SQUARE] = {0};
     for (int a = 0; a < dim; a++)
         for (int b = a; b < dim; b++)
             moments[a * dim + b] = moments[b * dim + a] =
@@ -131,7 +131,7 @@ static void velocity_gradient(struct cells *cells, const struct cells_fields *fi
     }
     for (int k = 0; k < dim * dim; k++) fields->slope[k][i] = L[k];
     if (!cells->method.projected) return;
-    double projector[CELLS_SYMMETRIC];
+    double projector[CELLS_SYMMETRIC] = {0};
     project(dim, L, projector);
     for (int k = 0; k < dim * (dim + 1) / 2; k++) fields->projector[k][i] = projector[k];
 }
@@ -148,7 +148,7 @@ static void matrix_pass(struct cells *cells, const struct cells_fields *fields, 
     scale(count, lane(lanes, LANE_R), fields->h_inverse[i], q);
     bool sound = false;
     if (method->gradient == GRADIENT_IA || method->velocity_gradient) {
-        cells->kernel_loops.w(method->kernel, (size_t)count, q, w);
+        cells->shapes.w(method->kernel, (size_t)count, q, w);
         product(count, V, w, weight);
         sound = invert_moments(dim, count, lanes, weight, inverse, &condition);
     }
@@ -156,7 +156,7 @@ static void matrix_pass(struct cells *cells, const struct cells_fields *fields, 
         velocity_gradient(cells, fields, i, count, lanes, weight, inverse, sound);
     if (method->gradient == GRADIENT_STANDARD) return;
     if (method->gradient != GRADIENT_IA) { /* corrected */
-        cells->kernel_loops.dw(method->kernel, (size_t)count, q, w);
+        cells->shapes.dw(method->kernel, (size_t)count, q, w);
         slope_weight(count, 1 / fields->h_inverse[i], lane(lanes, LANE_R_INVERSE), w);
         product(count, V, w, weight);
         sound = invert_moments(dim, count, lanes, weight, inverse, &condition);
@@ -178,6 +178,6 @@ size_t cells_matrix(struct cells *cells, const struct cells_fields *fields)
     lanes_all(cells, fields, matrix_pass);
     size_t fallen_back = 0;
     for (size_t i = 0; method->gradient != GRADIENT_STANDARD && i < fields->n; i++)
-        fallen_back += !(fields->condition[i] <= method->worst_condition);
+        if (!(fields->condition[i] <= method->worst_condition)) fallen_back++;
     return fallen_back;
 }

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "loop.h"
+#include "stamp.h"
 
 #ifdef _OPENMP
 #include <omp.h>

@@ -6,7 +6,7 @@
 
 #include "cells.h"
 #include "gather.h"
-#include "kernel_loop.h"
+#include "shapes.h"
 
 /* Values of a record by groups of four; which groups there are is the method's. */
 enum lanes_group {
@@ -70,7 +70,7 @@ struct cells {
     struct cells_method method;
     struct grid *grid;
     gather_loop *gather;
-    struct kernel_loops kernel_loops;
+    struct shapes shapes;
     size_t capacity; /* of records, in particles */
     double *records; /* slot n is the sentinel's */
     struct lanes_layout density, matrix, force;
