@@ -11,10 +11,10 @@
 static void ended(struct buffer *to, const json_t *fault)
 {
     const json_t *number = json_object_get(fault, "exit");
-    const json_int_t value = json_integer_value(number);
+    const int value = (int)json_number_value(number);
     buffer_add(to, "<td>");
-    if (json_is_integer(number))
-        buffer_format(to, value < 0 ? "signal %d" : "exit status %d", abs((int)value));
+    if (json_is_number(number))
+        buffer_format(to, value < 0 ? "signal %d" : "exit status %d", abs(value));
     buffer_add(to, "</td>");
 }
 

@@ -88,9 +88,11 @@ const struct command command_diff = {
     .synopsis = "OLD.json NEW.json",
     .help = "what a change did: each figure old, new, ratio, and a verdict against its noise\n\n"
             "Takes two result documents of one command (--json FILE of any of them, results.json "
-            "of a\nreport). Verdicts: worse, better, same (within noise), incomparable (there is "
-            "no better or\nworse, or only one document has it). Exit status 1 if there is a "
-            "regression.",
+            "of a\nreport). Entries of lists are found again by what they are about, never by "
+            "their place.\nVerdicts: worse, better, same (within noise), incomparable (it changed, "
+            "and there is no\nbetter or worse), vanished, new. Exit status 1 unless all is well: a "
+            "regression, a figure\nthat vanished or is incomparable, two different problems, "
+            "nothing to compare.",
     .run = run,
     .options = own_options,
     .examples = "sphproof diff old/results.json reports/out/results.json\n"

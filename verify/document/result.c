@@ -77,7 +77,8 @@ enum status result_load(json_t **document, const char *path, struct error *error
         return error_set(error, STATUS_BAD_INPUT, "'%.200s': %s", path, strerror(errno));
     if (!S_ISREG(is.st_mode))
         return error_set(error, STATUS_BAD_INPUT, "'%.200s': not a regular file", path);
-    *document = json_load_file(path, JSON_REJECT_DUPLICATES, &reason);
+    /* a tool that rewrites a document may write 1.0 as 1 and 1e30 with all its digits */
+    *document = json_load_file(path, JSON_REJECT_DUPLICATES | JSON_DECODE_INT_AS_REAL, &reason);
     if (!*document)
         return error_set(error, STATUS_BAD_INPUT, "%.200s:%d: no result document: %.200s", path,
                          reason.line, reason.text);

@@ -27,8 +27,9 @@ static void compare(const json_t *old, const json_t *new)
         fuzz_refused(status, &error);
         return;
     }
-    FUZZ_PROMISE((diff.regressions > 0) == (status == STATUS_CHECK_FAILED));
-    FUZZ_PROMISE(old != new || !diff.regressions);
+    FUZZ_PROMISE(diff.well == (status == STATUS_OK));
+    FUZZ_PROMISE(old != new || !(diff.regressions || diff.verdicts[VERDICT_VANISHED]));
+    FUZZ_PROMISE(old != new || diff.well || !diff.compared);
     json_t *document = json_object();
     diff_add_json(&diff, document);
     char *text = result_text(document);

@@ -4,7 +4,8 @@
 
   mutants.py check SOURCE WORK               does each one still apply exactly once?
   mutants.py run SOURCE WORK [NAME ...]      (names or groups) build each fault into a copy of the tree and expect
-                                             `sphproof verify GROUP` to fail (two at a time)
+                                             `sphproof verify GROUP`, or the test that is named,
+                                             to fail (two at a time)
   mutants.py build SOURCE WORK NAME PROGRAM  the whole program with one fault (meson -Dmutant=NAME)
 
 The list is mutants.txt beside this script; its head says how an entry looks. Nothing is ever
@@ -27,7 +28,7 @@ PATIENCE = 120  # seconds that one verification may take
 
 class Mutant:
     def __init__(self, name):
-        self.name, self.fault, self.group, self.file = name, "", "", ""
+        self.name, self.fault, self.group, self.test, self.file = name, "", "", "", ""
         self.old, self.new = [], []
 
     def apply(self, tree):
@@ -57,14 +58,14 @@ def read_list():
                 mutants[-1].new.append(line[2:])
             elif ": " in line and not line.startswith("#"):
                 key, value = line.split(": ", 1)
-                if key not in ("fault", "group", "file"):
+                if key not in ("fault", "group", "test", "file"):
                     sys.exit("%s:%d: unknown key '%s'" % (LIST, number, key))
                 setattr(mutants[-1], key, value)
             elif line and not line.startswith("#"):
                 sys.exit("%s:%d: what is this?" % (LIST, number))
     names = [m.name for m in mutants]
     for m in mutants:
-        if names.count(m.name) > 1 or not (m.fault and m.group and m.file and m.old):
+        if names.count(m.name) > 1 or not (m.fault and bool(m.group) != bool(m.test) and m.file and m.old):
             sys.exit("%s: mutant %s is incomplete or listed twice" % (LIST, m.name))
     return mutants
 
@@ -117,9 +118,17 @@ class Worker:
         demand(["meson", "setup", self.build, self.tree] + OPTIONS)
         demand(["ninja", "-C", self.build, "sphproof"])
 
-    def verify(self, group):
-        command = [self.program, "verify", group, "--first", "--quiet", "--failures",
-                   os.path.join(self.build, "failures")]
+    def verify(self, mutant):
+        """The exit status of what must notice it: a group of checks, a script, a test in C."""
+        if mutant.group:
+            command = [self.program, "verify", mutant.group, "--first", "--quiet", "--failures",
+                       os.path.join(self.build, "failures")]
+        elif mutant.test.endswith(".py"):
+            command = [sys.executable, os.path.join(self.tree, "verify/test", mutant.test), self.program]
+        else:
+            target = "verify/test/" + mutant.test
+            demand(["ninja", "-C", self.build, target])
+            command = [os.path.join(self.build, target)]
         try:
             return quietly(command, timeout=PATIENCE).returncode
         except subprocess.TimeoutExpired:
@@ -136,15 +145,15 @@ class Worker:
             built = quietly(["ninja", "-C", self.build, "sphproof"])
             if built.returncode:
                 return "does not compile:\n" + built.stdout[-2000:]
-            code = self.verify(mutant.group)
-            return "caught" if code not in (0, 2, 4) else "NOT CAUGHT (exit status %s)" % code
+            code = self.verify(mutant)
+            return "caught" if code not in (0, 2, 4) or (mutant.test and code) else "NOT CAUGHT (exit status %s)" % code
         finally:
             with open(path, "w") as f:
                 f.write(original)
 
 
 def run(source, work, names):
-    mutants = [m for m in read_list() if not names or m.name in names or m.group in names]
+    mutants = [m for m in read_list() if not names or {m.name, m.group, m.test} & set(names)]
     began, outcomes, waiting = time.time(), {}, queue.Queue()
     # those of one file follow each other: taking one back and putting the next in is one compilation
     for m in sorted(mutants, key=lambda m: m.file):
@@ -153,10 +162,10 @@ def run(source, work, names):
                for i in range(min(WORKERS, len(mutants)))]
     for worker in workers:  # after the copies: all of them are of the same moment
         worker.prepare()
-    groups = sorted({m.group for m in mutants})
-    failing = [g for g in groups if workers[0].verify(g) != 0]
+    judges = {m.group or m.test: m for m in mutants}
+    failing = [name for name, m in sorted(judges.items()) if workers[0].verify(m) != 0]
     if failing:
-        sys.exit("without any fault these groups fail already: " + " ".join(failing))
+        sys.exit("without any fault these fail already: " + " ".join(failing))
 
     def work_off(worker):
         while True:
@@ -166,7 +175,7 @@ def run(source, work, names):
                 return
             outcomes[mutant.name] = worker.judge(mutant)
             print("%3d/%d  %-34s %-14s %s" % (len(outcomes), len(mutants), mutant.name,
-                                              mutant.group, outcomes[mutant.name]), flush=True)
+                                              mutant.group or mutant.test, outcomes[mutant.name]), flush=True)
 
     threads = [threading.Thread(target=work_off, args=(w,)) for w in workers]
     for t in threads:
@@ -175,7 +184,7 @@ def run(source, work, names):
         t.join()
     missed = [m for m in mutants if outcomes[m.name] != "caught"]
     with open(os.path.join(work, "mutants.json"), "w") as f:
-        json.dump([{"mutant": m.name, "group": m.group, "file": m.file, "fault": m.fault,
+        json.dump([{"mutant": m.name, "group": m.group or m.test, "file": m.file, "fault": m.fault,
                     "outcome": outcomes[m.name]} for m in mutants], f, indent=1)
     print("\n%d source mutants, %d caught, %d not; %.0f s"
           % (len(mutants), len(mutants) - len(missed), len(missed), time.time() - began))

@@ -14,7 +14,17 @@
  * wants to compare. */
 static const enum setting problem_keys[] = {SETTING_kind,   SETTING_gamma, SETTING_t_end,
                                             SETTING_lo,     SETTING_hi,    SETTING_window,
-                                            SETTING_jitter, SETTING_seed};
+                                            SETTING_jitter, SETTING_seed,  SETTING_n};
+
+/* Members of a document that say the same; command "": of every document. */
+static const struct {
+    const char *command, *member;
+} problem_members[] = {
+    {"", "case"},        {"", "mode"},         {"kernel", "kernel"},     {"kernel", "dim"},
+    {"kernel", "h"},     {"gradient", "dim"},  {"gradient", "operator"}, {"gradient", "kernel"},
+    {"riemann", "left"}, {"riemann", "right"}, {"riemann", "gamma"},     {"riemann", "time"},
+    {"riemann", "x0"},
+};
 
 static bool differs(const json_t *a, const json_t *b)
 {
@@ -46,11 +56,13 @@ static const char *differing_problem(const json_t *old, const json_t *new)
 /* Are two documents about one problem? Where they do not say, yes. */
 static void compare_problems(const json_t *old, const json_t *new, struct diff *diff)
 {
-    static const char *const tops[] = {"case", "n", "kernel", "dim", "h"};
     const char *what = NULL, *command = json_string_value(json_object_get(new, "command"));
-    const bool kernel = command && strcmp(command, "kernel") == 0;
-    for (size_t i = 0; i < (kernel ? 5 : 2) && !what; i++)
-        if (differs(json_object_get(old, tops[i]), json_object_get(new, tops[i]))) what = tops[i];
+    for (size_t i = 0; i < sizeof problem_members / sizeof *problem_members && !what; i++) {
+        const char *member = problem_members[i].member, *of = problem_members[i].command;
+        if ((!*of || strcmp(of, command) == 0) &&
+            differs(json_object_get(old, member), json_object_get(new, member)))
+            what = member;
+    }
     if (!what) what = differing_problem(old, new);
     if (what)
         snprintf(diff->problem, sizeof diff->problem,
@@ -62,7 +74,8 @@ static void compare_problems(const json_t *old, const json_t *new, struct diff *
 static int severity(const struct difference *d)
 {
     static const int order[] = {
-        [VERDICT_SAME] = 4, [VERDICT_BETTER] = 2, [VERDICT_WORSE] = 1, [VERDICT_INCOMPARABLE] = 3};
+        [VERDICT_VANISHED] = 1, [VERDICT_INCOMPARABLE] = 2, [VERDICT_WORSE] = 3,
+        [VERDICT_BETTER] = 4,   [VERDICT_NEW] = 5,          [VERDICT_SAME] = 6};
     return d->regression ? 0 : order[d->verdict];
 }
 
@@ -108,12 +121,85 @@ static void judge(struct diff *diff, const struct reading *old, const struct rea
     bool fault;
     *d = (struct difference){.old = old, .new = new};
     d->verdict = reading_judge(old, new, &d->amount, &fault);
-    if (diff->problem[0] && d->verdict != VERDICT_INCOMPARABLE)
+    if (diff->problem[0] && old && new)
         d->verdict = VERDICT_INCOMPARABLE, d->amount = 0, fault = false;
     const bool order = new &&new->kind == READING_ORDER; /* its interval is its threshold */
     d->regression = d->verdict == VERDICT_WORSE && fault && (order || d->amount > threshold);
-    diff->verdicts[d->verdict]++;
-    diff->regressions += d->regression;
+}
+
+/* ---- figures that belong together ---- */
+
+/* Of the figure at path: the length of its object's path. */
+static size_t object_length(const char *path)
+{
+    size_t end = 0;
+    int depth = 0;
+    for (size_t i = 0; path[i]; i++) {
+        depth += (path[i] == '[') - (path[i] == ']');
+        if (path[i] == '.' && depth == 0) end = i;
+    }
+    return end;
+}
+
+/* Is another figure within the object of the one at path? */
+static bool within(const char *path, size_t object, const char *other)
+{
+    return other != path && strncmp(path, other, object) == 0 &&
+           (!object || other[object] == '.' || other[object] == '[');
+}
+
+static bool says_broke_down(const struct reading *reading)
+{
+    return reading && reading->word && strcmp(reading->word, "broke_down") == 0;
+}
+
+/* Where a run broke down, before or after, its figures are of other times, or none: what became of
+ * the run is compared, and nothing else of it. */
+static void leave_out_broken(struct diff *diff)
+{
+    struct difference *list = diff->list;
+    bool *out = calloc(diff->count + 1, sizeof *out);
+    for (size_t i = 0; out && i < diff->count; i++) {
+        if (!says_broke_down(list[i].old) && !says_broke_down(list[i].new)) continue;
+        const char *path = path_of(&list[i]);
+        const size_t object = object_length(path);
+        for (size_t k = 0; k < diff->count; k++)
+            if (!out[k] && within(path, object, path_of(&list[k]))) out[k] = true;
+    }
+    size_t kept = 0;
+    for (size_t i = 0; out && i < diff->count; i++)
+        if (!out[i]) list[kept++] = list[i];
+    if (out) diff->left_out = diff->count - kept, diff->count = kept;
+    free(out);
+}
+
+/* The status of a whole that fails because a part of it does is no regression of its own. */
+static void count_causes(struct diff *diff)
+{
+    for (size_t i = 0; i < diff->count; i++) {
+        struct difference *whole = &diff->list[i];
+        if (!whole->regression || !whole->new->word) continue;
+        const char *path = path_of(whole);
+        const size_t object = strcmp(path, "verdict.status") ? object_length(path) : 0;
+        for (size_t k = 0; k < diff->count && whole->regression; k++)
+            if (diff->list[k].regression && within(path, object, path_of(&diff->list[k])))
+                whole->regression = false;
+    }
+}
+
+static void conclude(struct diff *diff)
+{
+    for (size_t i = 0; i < diff->count; i++) {
+        diff->verdicts[diff->list[i].verdict]++;
+        diff->regressions += diff->list[i].regression;
+        diff->compared += diff->list[i].old && diff->list[i].new;
+    }
+    if (diff->problem[0]) diff->compared = 0;
+    if (!diff->compared && !diff->problem[0])
+        snprintf(diff->problem, sizeof diff->problem,
+                 "nothing was compared: the documents have no figure in common");
+    diff->well = !diff->problem[0] && !diff->regressions && !diff->verdicts[VERDICT_VANISHED] &&
+                 !diff->verdicts[VERDICT_INCOMPARABLE];
 }
 
 enum status diff_documents(const json_t *old, const json_t *new, double threshold,
@@ -131,6 +217,13 @@ enum status diff_documents(const json_t *old, const json_t *new, double threshol
         diff_free(diff);
         return error->status;
     }
+    if (diff->old.trouble[0] || diff->new.trouble[0]) {
+        error_set(error, STATUS_BAD_INPUT, "%s document: %.300s",
+                  diff->old.trouble[0] ? "old" : "new",
+                  diff->old.trouble[0] ? diff->old.trouble : diff->new.trouble);
+        diff_free(diff);
+        return error->status;
+    }
     const struct readings *a = &diff->old, *b = &diff->new;
     diff->list = calloc(a->count + b->count + 1, sizeof *diff->list);
     if (!diff->list) {
@@ -145,8 +238,11 @@ enum status diff_documents(const json_t *old, const json_t *new, double threshol
         i += order <= 0;
         j += order >= 0;
     }
+    leave_out_broken(diff);
+    count_causes(diff);
+    conclude(diff);
     qsort(diff->list, diff->count, sizeof *diff->list, worst_first);
-    return diff->regressions ? STATUS_CHECK_FAILED : STATUS_OK;
+    return diff->well ? STATUS_OK : STATUS_CHECK_FAILED;
 }
 
 void diff_free(struct diff *diff)

@@ -19,12 +19,17 @@ struct difference {
 
 struct diff {
     struct readings old, new;
-    struct difference *list; /* regressions first, then worse, better, incomparable, same */
-    size_t count, verdicts[4], regressions;
-    char problem[256]; /* "", or why errors cannot be compared: different cases ... */
+    struct difference *list; /* regressions first, then vanished, incomparable, worse, better ... */
+    size_t count, verdicts[READING_VERDICTS], regressions;
+    size_t compared; /* figures that both documents have and that say something about each other */
+    size_t left_out; /* figures of runs that broke down: the breakdown is what is compared */
+    char
+        problem[256]; /* "", or why no figures can be compared: two cases, nothing to compare ... */
+    bool well;        /* no problem, no regression, nothing vanished, nothing incomparable */
 };
 
-/* STATUS_OK or STATUS_CHECK_FAILED (regressions); STATUS_BAD_INPUT: documents of two commands. */
+/* STATUS_OK or STATUS_CHECK_FAILED (not well); STATUS_BAD_INPUT: documents of two commands, or a
+ * figure that nobody knows how to judge. */
 enum status diff_documents(const json_t *old, const json_t *new, double threshold,
                            struct diff *diff, struct error *error);
 void diff_free(struct diff *diff);
@@ -39,10 +44,11 @@ double diff_exact(const struct difference *difference);
 /* [{"path", "old", "new", "exact", "ratio", "verdict", "regression"}], the first `most` of them. */
 json_t *diff_figures_json(const struct diff *diff, size_t most);
 
-/* Adds "figures", "summary" and "problem". */
+/* Adds "figures", "summary", "problem" and "status". */
 void diff_add_json(const struct diff *diff, json_t *document);
 
-/* Table of everything that is not the same, on standard output; exact: with that column. */
+/* Why it is not well, if so; then a table of everything that is not the same, on standard output;
+ * exact: with that column. */
 void diff_print(const struct diff *diff, double threshold, bool exact, bool color);
 
 #endif

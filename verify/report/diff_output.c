@@ -66,10 +66,13 @@ json_t *diff_figures_json(const struct diff *diff, size_t most)
 void diff_add_json(const struct diff *diff, json_t *document)
 {
     json_t *summary = json_object();
-    for (int v = 0; v < 4; v++)
+    for (int v = 0; v < READING_VERDICTS; v++)
         json_object_set_new(summary, reading_verdicts[v],
                             json_integer((json_int_t)diff->verdicts[v]));
     json_object_set_new(summary, "regressions", json_integer((json_int_t)diff->regressions));
+    json_object_set_new(summary, "compared", json_integer((json_int_t)diff->compared));
+    json_object_set_new(summary, "left_out", json_integer((json_int_t)diff->left_out));
+    json_object_set_new(document, "status", json_string(diff->well ? "pass" : "fail"));
     json_object_set_new(document, "problem", json_string(diff->problem));
     json_object_set_new(document, "figures", diff_figures_json(diff, diff->count));
     json_object_set_new(document, "summary", summary);
@@ -98,9 +101,10 @@ static void print_number(const char *format, int width, double value)
 static void print_difference(const struct difference *d, bool exact,
                              const struct table_style *style)
 {
-    const char *color = d->verdict == VERDICT_WORSE    ? style->bad
-                        : d->verdict == VERDICT_BETTER ? style->good
-                                                       : "";
+    const char *color =
+        d->regression || d->verdict == VERDICT_VANISHED || d->verdict == VERDICT_WORSE ? style->bad
+        : d->verdict == VERDICT_BETTER                                                 ? style->good
+                                                                                       : "";
     printf("%s%-12s%s", color, d->regression ? "REGRESSION" : reading_verdicts[d->verdict],
            style->end);
     print_value(d->old);
@@ -110,10 +114,39 @@ static void print_difference(const struct difference *d, bool exact,
     printf("  %s\n", path_of(d));
 }
 
+/* The first line: what it comes to, and why. */
+static void print_verdict(const struct diff *diff, const struct table_style *style)
+{
+    const size_t regressions = diff->regressions, vanished = diff->verdicts[VERDICT_VANISHED],
+                 changed = diff->verdicts[VERDICT_INCOMPARABLE];
+    if (diff->well) {
+        printf("%swell%s: %zu figures compared, no regression\n", style->good, style->end,
+               diff->compared);
+        return;
+    }
+    printf("%sNOT WELL%s: ", style->bad, style->end);
+    if (diff->problem[0]) {
+        printf("%s\n", diff->problem);
+        return;
+    }
+    const char *comma = "";
+    if (regressions)
+        printf("%zu regression%s", regressions, regressions > 1 ? "s" : ""), comma = ", ";
+    if (vanished)
+        printf("%s%zu figure%s vanished: less was compared than before", comma, vanished,
+               vanished > 1 ? "s" : ""),
+            comma = ", ";
+    if (changed)
+        printf("%s%zu figure%s changed that ha%s no better or worse", comma, changed,
+               changed > 1 ? "s" : "", changed > 1 ? "ve" : "s");
+    putchar('\n');
+}
+
 void diff_print(const struct diff *diff, double threshold, bool exact, bool color)
 {
     const struct table_style style = table_style(color);
     const size_t shown = diff->problem[0] ? 0 : diff->count - diff->verdicts[VERDICT_SAME];
+    print_verdict(diff, &style);
     if (shown) {
         printf("%s%-12s %13s %13s", style.bold, "verdict", "old", "new");
         if (exact) printf(" %13s", "exact");
@@ -122,14 +155,17 @@ void diff_print(const struct diff *diff, double threshold, bool exact, bool colo
     for (size_t i = 0; i < shown && i < LINES_MAX; i++)
         print_difference(&diff->list[i], exact, &style);
     if (shown > LINES_MAX) printf("... and %zu more (all with --json)\n", shown - LINES_MAX);
-    if (diff->problem[0]) printf("%s\n", diff->problem);
-    printf("%s%zu worse%s, %zu of them regressions (errors by more than %.3g %%, orders beyond "
-           "their intervals, new failures); %zu better, %zu same, %zu incomparable\n",
-           diff->regressions ? style.bad : style.bold, diff->verdicts[VERDICT_WORSE], style.end,
-           diff->regressions, 100 * threshold, diff->verdicts[VERDICT_BETTER],
-           diff->verdicts[VERDICT_SAME], diff->verdicts[VERDICT_INCOMPARABLE]);
-    printf("%snoise: errors 0.1 %%, orders their 95 %% intervals, figures of checks a factor of 3 "
-           "or ten floors,\nCPU times a factor of 1.5, wall clock 3; timings and counts of work "
-           "are never regressions%s\n",
-           style.faint, style.end);
+    if (diff->problem[0]) return;
+    printf("%zu worse, %zu of them regressions (errors by more than %.3g %%, orders beyond their "
+           "intervals, new failures);\n%zu better, %zu same, %zu changed, %zu vanished, %zu new",
+           diff->verdicts[VERDICT_WORSE], diff->regressions, 100 * threshold,
+           diff->verdicts[VERDICT_BETTER], diff->verdicts[VERDICT_SAME],
+           diff->verdicts[VERDICT_INCOMPARABLE], diff->verdicts[VERDICT_VANISHED],
+           diff->verdicts[VERDICT_NEW]);
+    if (diff->left_out) printf("; %zu left out, of runs that broke down", diff->left_out);
+    printf(
+        "\n%snoise: errors 0.1 %%, orders their 95 %% intervals, figures of checks a factor of 3 "
+        "or ten floors,\nCPU times a factor of 1.5, wall clock 3; timings and counts of work "
+        "are never regressions%s\n",
+        style.faint, style.end);
 }

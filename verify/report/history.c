@@ -174,7 +174,7 @@ static json_t *since_last(const json_t *nights, const struct readings *now)
     const json_t *last = json_array_get(nights, count - 2),
                  *figures = json_object_get(last, "figures");
     json_t *moved = json_array();
-    size_t verdicts[4] = {0};
+    size_t verdicts[READING_VERDICTS] = {0};
     for (size_t i = 0; i < now->count; i++) {
         const struct reading *new = &now->list[i];
         if (!new->headline || new->kind == READING_TIMING) continue;
@@ -198,7 +198,7 @@ static json_t *since_last(const json_t *nights, const struct readings *now)
     }
     json_t *since = json_pack("{s:s, s:s, s:o}", "date", string_of(last, "date"), "git",
                               string_of(last, "git"), "figures", sorted(moved, worst_first));
-    for (int v = 0; v < 4; v++)
+    for (int v = 0; v < READING_VERDICTS; v++)
         json_object_set_new(since, reading_verdicts[v], json_integer((json_int_t)verdicts[v]));
     return since;
 }

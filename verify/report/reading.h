@@ -21,7 +21,7 @@ enum reading_kind {
     READING_COUNT,   /* of work: less is better, never a fault; noise is relative */
     READING_TIMING,  /* less is better, never a fault; noise is a ratio */
     READING_STATUS,  /* a word */
-    READING_NEUTRAL, /* neither more nor less is better */
+    READING_NEUTRAL, /* neither more nor less is better: any change must be looked at */
 };
 
 struct reading {
@@ -37,23 +37,36 @@ struct reading {
 struct readings {
     struct reading *list; /* sorted by path, each once */
     size_t count, room;
-    bool failed; /* no memory */
+    bool failed;       /* no memory */
+    char trouble[400]; /* "", or a figure of which nobody knows what it is: not in the list */
 };
 
-/* All readings of a document. STATUS_ENVIRONMENT: no memory. */
+/* All readings of a document. Entries of a list that nothing tells apart are one reading, the worst
+ * of them, with their number in its path. STATUS_ENVIRONMENT: no memory. */
 enum status reading_collect(const json_t *document, struct readings *readings, struct error *error);
 void reading_free(struct readings *readings);
 
 /* The reading at a path, or NULL. */
 const struct reading *reading_find(const struct readings *readings, const char *path);
 
-enum reading_verdict { VERDICT_SAME, VERDICT_BETTER, VERDICT_WORSE, VERDICT_INCOMPARABLE };
-extern const char *const reading_verdicts[];
+enum reading_verdict {
+    VERDICT_SAME,
+    VERDICT_BETTER,
+    VERDICT_WORSE,
+    VERDICT_INCOMPARABLE, /* it changed, and neither way is better */
+    VERDICT_VANISHED,     /* only the old document has it */
+    VERDICT_NEW,          /* only the new one has it */
+};
+enum { READING_VERDICTS = VERDICT_NEW + 1 };
+extern const char *const reading_verdicts[READING_VERDICTS];
 
 /* What became of a reading (either may be NULL: it is there on one side only). *amount: how much
  * worse, relative (an order: absolute), infinite where a word or a finite number got lost; 0 unless
  * it is worse. fault: does it count where amounts beyond a threshold fail? */
 enum reading_verdict reading_judge(const struct reading *old, const struct reading *new,
                                    double *amount, bool *fault);
+
+/* Is a the worse one of two readings of one kind? For those without better or worse: no. */
+bool reading_worse(const struct reading *a, const struct reading *b);
 
 #endif

@@ -82,14 +82,118 @@ def test_runs(run):
     verdict("round-off", run, energy, name, lambda v: 9e-13, 0, "same")
     verdict("energy lost", run, energy, name, lambda v: 1e-6, 1, "worse")
     verdict("broke down", run, ["status"], "status", lambda v: "broke_down", 1, "worse")
-    got, figures, document = diff(run, moved(run, ["case"], lambda v: "lax"))
-    expect("two cases", got == 0 and document["problem"], document["problem"])
-    expect("two cases", {f["verdict"] for f in figures.values()} == {"incomparable"}, figures)
+    for what, other in (("case", moved(run, ["case"], lambda v: "lax")), ("n", made_by("run", "sod", "n=80")),
+                        ("gamma", made_by("run", "sod", "n=60", "gamma=1.3"))):
+        got, figures, document = diff(run, other)
+        expect("another " + what, got == 1 and "differ in " + what in document["problem"], document["problem"])
+        expect("another " + what, {f["verdict"] for f in figures.values()} <= {"incomparable", "vanished", "new"},
+               figures)
+        said = sphproof("diff", "old.json", "new.json").stdout.splitlines()[2]
+        expect("another %s, said first" % what, said.startswith("NOT WELL") and "differ in " + what in said, said)
     less = copy.deepcopy(run)
     del less["conservation"]
-    got, figures, _ = diff(run, less)
+    got, figures, document = diff(run, less)
     gone = figures["conservation.energy"]
-    expect("missing figure", (gone["verdict"], gone["new"], got) == ("incomparable", None, 0), gone)
+    expect("a figure that vanished", (gone["verdict"], gone["new"], got) == ("vanished", None, 1), gone)
+    said = sphproof("diff", "old.json", "new.json").stdout.splitlines()[2]
+    expect("vanished, said first", said.startswith("NOT WELL") and "3 figures vanished" in said, said)
+    got, figures, document = diff(less, run)
+    expect("a new figure", (figures["conservation.energy"]["verdict"], got) == ("new", 0), got)
+    bare = {key: run[key] for key in ("schema", "command", "case", "n", "settings")}
+    got, _, document = diff(bare, bare)
+    expect("nothing compared", got == 1 and "nothing was compared" in document["problem"], document)
+    got, _, document = diff(run, dict(run, surprise=3))
+    done = sphproof("diff", "old.json", "new.json")
+    expect("a figure of an unknown kind", done.returncode == 2 and "surprise" in done.stderr and not done.stdout,
+           done.stderr)
+    functional = ["functionals", "shock_position"]
+    verdict("nearer the exact position", run, functional, ".".join(functional),
+            lambda v: run["functionals_exact"]["shock_position"], 0, "better")
+
+
+def test_breakdowns(run):
+    """ok -> broke_down is one regression, whatever is missing then; the other way is better."""
+    broken = dict(run, status="broke_down", message="no reason", time=0.1, conservation=None)
+    broken["errors"] = {field: {norm: 1e-9 for norm in norms} if isinstance(norms, dict) else 1e-9
+                        for field, norms in run["errors"].items()}
+    got, figures, document = diff(run, broken)
+    expect("broke down: one regression", got == 1 and document["summary"]["regressions"] == 1 and
+           document["summary"]["better"] == 0 and list(figures) == ["status"], document["summary"])
+    got, figures, document = diff(broken, run)
+    expect("survives now", got == 0 and figures["status"]["verdict"] == "better" and len(figures) == 1,
+           document["summary"])
+    head = {key: run[key] for key in ("schema", "version", "git", "compiler", "flags", "machine", "date")}
+    whole = dict(head, command="report", mode="quick", runs=[dict(run, label="one"), dict(run, label="two")],
+                 verdict={"status": "pass", "runs": 2})
+    got, figures, document = diff(whole, dict(whole, runs=[dict(broken, label="one"), dict(run, label="two")],
+                                              verdict={"status": "fail", "runs": 2}))
+    expect("a report's broken run: one regression", got == 1 and document["summary"]["regressions"] == 1 and
+           figures["runs[sod, one, n 60].status"]["regression"] and
+           figures["runs[sod, two, n 60].errors.density.l1"]["verdict"] == "same", document["summary"])
+    got, _, document = diff(whole, dict(whole, mode="nightly"))
+    expect("quick against nightly", got == 1 and "mode" in document["problem"], document["problem"])
+    got, _, document = diff(whole, dict(whole, verdict={"status": "fail", "runs": 2}))
+    expect("a verdict alone", got == 1 and document["summary"]["regressions"] == 1, document["summary"])
+
+
+def test_identity(stress):
+    """Entries are found again by their settings: with one missing, or in another order, the others
+    are compared with themselves."""
+    cells = stress["cells"]
+    got, figures, document = diff(stress, dict(stress, cells=cells[::-1]))
+    expect("cells reversed", got == 0 and {f["verdict"] for f in figures.values()} == {"same"}, document["summary"])
+    for gone in (0, len(cells) // 2):
+        got, figures, _ = diff(stress, dict(stress, cells=cells[:gone] + cells[gone + 1:]))
+        lost = [path for path, figure in figures.items() if figure["verdict"] != "same"]
+        expect("a cell less", got == 1 and lost and all("cells[" in path for path in lost) and
+               {figures[path]["verdict"] for path in lost} == {"vanished"} and
+               len({path.rsplit("]", 1)[0] for path in lost}) == 1, lost)
+    got, figures, _ = diff(stress, moved(stress, ["cells", 3, "settings", "n"], lambda v: "17"))
+    seen = sorted(f["verdict"] for f in figures.values() if f["verdict"] != "same")
+    expect("a cell of another n", got == 1 and set(seen) == {"new", "vanished"}, seen)
+    ok = next(i for i, cell in enumerate(cells) if cell["outcome"] == "ok" and cell["measured"] is not None)
+    broken = moved(moved(stress, ["cells", ok, "outcome"], lambda v: "broke_down"), ["cells", ok, "measured"],
+                   lambda v: None)
+    got, _, document = diff(stress, broken)
+    expect("a cell that breaks down", got == 1 and document["summary"]["regressions"] == 1 and
+           document["summary"]["vanished"] == 0, document["summary"])
+    got, _, document = diff(broken, stress)
+    expect("a cell that survives", got == 0 and document["summary"]["better"] == 1, document["summary"])
+
+
+def test_alike():
+    """Entries that nothing tells apart: the worst of each side, and their number."""
+    def document(*values):
+        figures = [{"group": "g", "name": "c", "subject": "s", "value": v, "bound": 1, "floor": 0,
+                    "status": "pass" if v <= 1 else "fail"} for v in values]
+        return {"schema": "sphproof/1", "command": "verify", "checks": figures}
+    got, figures, _ = diff(document(0.1, 0.9, 0.2), document(0.9, 0.2, 0.1))
+    name = "checks[g, c, s].value (3 alike)"
+    expect("the same three", got == 0 and figures[name]["new"] == 0.9, figures)
+    got, figures, _ = diff(document(0.1, 0.9, 0.2), document(0.9, 0.2))
+    expect("two of three", got == 1 and figures[name]["verdict"] == "vanished", figures)
+    got, figures, _ = diff(document(0.1, 0.9, 0.2), document(0.1, 7, 0.2))
+    expect("one of three fails", got == 1 and figures["checks[g, c, s].status (3 alike)"]["regression"], figures)
+    got, figures, _ = diff(document(0.1, 0.2), dict(document(0.1, 0.2), checks=[
+        dict(figure, status="skip") for figure in document(0.1, 0.2)["checks"]]))
+    expect("what passed is skipped", got == 1, figures)
+
+
+def test_rewritten(documents):
+    """Another tool writes 1.0 as 1, 1e30 with all its digits, keys in another order."""
+    def rewritten(value):
+        if isinstance(value, dict):
+            return {key: rewritten(value[key]) for key in sorted(value, reverse=True)}
+        if isinstance(value, list):
+            return [rewritten(v) for v in value]
+        return int(value) if isinstance(value, float) and value == int(value) else value
+    for document in documents:
+        got, figures, whole = diff(document, rewritten(document))
+        expect("%s rewritten" % document["command"], got == 0 and
+               {f["verdict"] for f in figures.values()} == {"same"}, whole)
+    large = {"schema": "sphproof/1", "command": "bench", "points": [{"scheme": "s", "error": 1e30}]}
+    got, _, whole = diff(large, rewritten(large))
+    expect("a large integer", got == 0, whole)
 
 
 def test_studies(study):
@@ -120,6 +224,8 @@ def test_studies(study):
         random.Random(1).shuffle(shuffled[part])
     got, figures, _ = diff(study, shuffled)
     expect("reordered", got == 0 and {f["verdict"] for f in figures.values()} == {"same"}, figures)
+    none = moved(study, gate, lambda v: "none")
+    expect("a gate that is no more", diff(passed, none)[0] == 1)
 
 
 def test_checks(verify):
@@ -139,20 +245,32 @@ def test_checks(verify):
 
 
 def test_kinds():
+    """Every kind of document is read, all its figures are known, and differs in nothing from itself."""
     with open("cloud.csv", "w", encoding="ascii") as cloud:
         cloud.write("x,volume,f\n" + "".join("%g,0.1,%g\n" % (0.1 * i, i * i) for i in range(20)))
-    kinds = (["list"], ["riemann", "1", "0", "1", "0.125", "0", "0.1", "--sample", "-1:1:5"],
+    kinds = (["riemann", "1", "0", "1", "0.125", "0", "0.1", "--sample", "-1:1:5"],
              ["kernel", "cubic_spline", "--dim", "2", "--at", "0.1,0.5"],
              ["gradient", "cloud.csv", "--operator", "linear_exact", "--kernel", "cubic_spline", "--dim", "1",
-              "--eta", "2"], ["run", "sod", "n=60", "--explain"])
-    for words in kinds:
+              "--eta", "2"],
+             ["bench", "sod", "--n", "40,60", "--samples", "1", "--time", "1e-4"],
+             ["bench", "--scaling", "--n", "50,100", "--samples", "1", "--time", "1e-4"],
+             ["bench", "--kernels", "--vary", "kernel=cubic_spline", "--samples", "1", "--time", "1e-4"],
+             ["converge", "sod", "--n", "40,60,80,120", "--vary", "kernel=cubic_spline,quartic_spline"])
+    documents = [made_by(*words) for words in kinds]
+    for document, words in zip(documents, kinds):
+        got, figures, whole = diff(document, document)
+        expect("%s with itself" % words, got == 0 and {f["verdict"] for f in figures.values()} == {"same"}, whole)
+        expect("figures of %s" % words, len(figures) > 3, figures)
+    test_rewritten(documents)
+    for words in (["list"], ["run", "sod", "n=60", "--explain"]):
         document = made_by(*words)
-        got, figures, _ = diff(document, document)
-        expect("%s with itself" % words[0], got == 0 and {f["verdict"] for f in figures.values()} <= {"same"},
-               figures)
-        expect("figures of %s" % words[0], len(figures) > 3 or words[0] == "list" or len(words) == 4, figures)
-    star = made_by(*kinds[1])
-    verdict("a figure without better or worse", star, ["p_star"], "p_star", times(1.01), 0, "incomparable")
+        got, figures, whole = diff(document, document)
+        expect("%s has no figures" % words, got == 1 and not figures, whole)
+    star = documents[0]
+    cloud = documents[2]
+    verdict("a gradient", cloud, ["points", 3, "gradients", "f", 0], "points[x 0.3].gradients.f.x", times(1.01), 1,
+            "incomparable")
+    verdict("a figure without better or worse", star, ["p_star"], "p_star", times(1.01), 1, "incomparable")
 
 
 def test_bad_input(run, study):
@@ -202,6 +320,12 @@ def test_baseline(run):
     with open("kept.json", encoding="utf-8") as file:
         reasons = [entry["reason"] for entry in json.load(file)["accepted"]]
     expect("every reason", reasons == ["the first", "the second"], reasons)
+    fewer = copy.deepcopy(run)
+    del fewer["errors"]["velocity"]
+    done = baseline(save("fewer.json", fewer))
+    expect("less than accepted", done.returncode == 1 and done.stdout.startswith("NOT WELL"), done.stdout)
+    done = baseline(save("other.json", made_by("run", "sod", "n=80")))
+    expect("another problem than accepted", done.returncode == 1 and "differ in n" in done.stdout, done.stdout)
     expect("no baseline", sphproof("baseline", "run.json", "--file", "run.json").returncode == 2)
 
 
@@ -211,6 +335,9 @@ def main():
         run = made_by("run", "sod", "n=60")
         study = made_by("converge", "sod", "--n", "40,60,80,120")
         test_runs(run)
+        test_breakdowns(run)
+        test_identity(made_by("stress", "few", "leblanc"))
+        test_alike()
         test_studies(study)
         test_checks(made_by("verify", "norms"))
         test_kinds()

@@ -1,0 +1,135 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What became of a figure: better, worse, or the same within its noise. */
+#include <math.h>
+#include <string.h>
+
+#include "reading.h"
+
+/* Timings below this are noise. */
+static const double timing_least = 0.02;
+/* A check's value: a factor that means nothing. */
+static const double check_factor = 3;
+
+const char *const reading_verdicts[READING_VERDICTS] = {"same",         "better",   "worse",
+                                                        "incomparable", "vanished", "new"};
+
+/* How bad a word is; -1: not known. From FAULT on it is a fault. */
+enum { FAULT = 3 };
+static int rank(const char *word, bool suspicion)
+{
+    static const struct {
+        const char *word;
+        int rank;
+    } ranks[] = {{"", 0},           {"pass", 0},          {"ok", 0},       {"true", 0},
+                 {"asymptotic", 0}, {"none", 1},          {"skip", 1},     {"oscillating", 1},
+                 {"diverging", 2},  {"floor-limited", 1}, {"fail", FAULT}, {"false", FAULT},
+                 {"inaccurate", 4}, {"broke_down", 5},    {"wrong", 6}};
+    if (suspicion) return *word ? FAULT : 0;
+    for (size_t i = 0; i < sizeof ranks / sizeof *ranks; i++)
+        if (strcmp(ranks[i].word, word) == 0) return ranks[i].rank;
+    return -1;
+}
+
+static bool is_suspicion(const struct reading *reading)
+{
+    const size_t length = strlen(reading->path), tail = strlen("suspicion");
+    return length >= tail && strcmp(reading->path + length - tail, "suspicion") == 0;
+}
+
+static enum reading_verdict judge_word(const struct reading *old, const struct reading *new,
+                                       double *amount, bool *fault)
+{
+    const bool suspicion = is_suspicion(new);
+    const int before = rank(old->word, suspicion), after = rank(new->word, suspicion);
+    if (strcmp(old->word, new->word) == 0) return VERDICT_SAME;
+    if (before < 0 || after < 0) return VERDICT_INCOMPARABLE;
+    if (before == after) return VERDICT_SAME;
+    if (after < before) return VERDICT_BETTER;
+    *amount = (double)INFINITY;
+    /* what passed and is not judged any more is lost, too */
+    *fault = after >= FAULT || (strcmp(old->word, "pass") == 0 &&
+                                (!strcmp(new->word, "none") || !strcmp(new->word, "skip")));
+    return VERDICT_WORSE;
+}
+
+/* a before, b after, less being better. */
+static enum reading_verdict judge_less(double a, double b, double noise, double floor,
+                                       double *amount)
+{
+    if (a <= floor && b <= floor) return VERDICT_SAME;
+    const double base = fmax(a, floor);
+    const double change = base > 0 ? (b - base) / base : (b > 0 ? (double)INFINITY : 0);
+    if (fabs(b - a) <= noise * base || change == 0) return VERDICT_SAME;
+    if (change < 0) return VERDICT_BETTER;
+    *amount = change;
+    return VERDICT_WORSE;
+}
+
+static enum reading_verdict judge_number(const struct reading *old, const struct reading *new,
+                                         double *amount, bool *fault)
+{
+    const double a = old->value, b = new->value, noise = fmax(old->noise, new->noise);
+    const double floor = fmax(old->floor, new->floor);
+    switch (new->kind) {
+    case READING_ERROR:
+        *fault = true;
+        return judge_less(a, b, noise, floor, amount);
+    case READING_CHECK:
+        return judge_less(a, b, check_factor - 1, floor, amount) == VERDICT_WORSE ? VERDICT_WORSE
+               : b * check_factor < a && a > floor                                ? VERDICT_BETTER
+                                                                                  : VERDICT_SAME;
+    case READING_EXACT:
+        return judge_less(fabs(a - old->exact), fabs(b - new->exact), noise,
+                          floor * (1 + fabs(new->exact)), amount);
+    case READING_COUNT:
+    case READING_PART:
+        return judge_less(a, b, noise, floor, amount);
+    case READING_TIMING:
+        if (fabs(b - a) < timing_least || (b < noise * a && a < noise * b)) return VERDICT_SAME;
+        *amount = b > a ? b / a - 1 : 0;
+        return b > a ? VERDICT_WORSE : VERDICT_BETTER;
+    case READING_ORDER:
+        if (fabs(b - a) <= hypot(old->noise, new->noise)) return VERDICT_SAME;
+        *amount = fmax(0, a - b);
+        *fault = b < a;
+        return b < a ? VERDICT_WORSE : VERDICT_BETTER;
+    default:
+        return fabs(b - a) <= fmax(floor, noise * fabs(a)) ? VERDICT_SAME : VERDICT_INCOMPARABLE;
+    }
+}
+
+enum reading_verdict reading_judge(const struct reading *old, const struct reading *new,
+                                   double *amount, bool *fault)
+{
+    *amount = 0;
+    *fault = false;
+    if (!old) return VERDICT_NEW;
+    if (!new) return VERDICT_VANISHED;
+    if (!old->word != !new->word) return VERDICT_INCOMPARABLE;
+    if (new->word) return judge_word(old, new, amount, fault);
+    const double a = old->value, b = new->value;
+    if (a == b || (isnan(a) && isnan(b))) return VERDICT_SAME;
+    if (isfinite(a) && isfinite(b)) return judge_number(old, new, amount, fault);
+    if (new->kind == READING_NEUTRAL) return VERDICT_INCOMPARABLE;
+    if (isfinite(b)) return VERDICT_BETTER;
+    *amount = (double)INFINITY;
+    *fault = new->kind == READING_ERROR;
+    return VERDICT_WORSE;
+}
+
+bool reading_worse(const struct reading *a, const struct reading *b)
+{
+    if (!a->word != !b->word) return a->word != NULL;
+    if (a->word) return rank(a->word, is_suspicion(a)) > rank(b->word, is_suspicion(b));
+    if (isnan(a->value) || isnan(b->value)) return isnan(a->value) && !isnan(b->value);
+    switch (a->kind) {
+    case READING_NEUTRAL:
+        return false;
+    case READING_ORDER:
+        return a->value < b->value;
+    case READING_EXACT:
+        return fabs(a->value - a->exact) > fabs(b->value - b->exact);
+    default:
+        return a->value > b->value;
+    }
+}

@@ -1,0 +1,163 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "reading_rule.h"
+
+#include <string.h>
+
+#define OUT RULE_LEFT_OUT, 0, 0, 0
+
+static const struct reading_rule rules[] = {
+    /* what depends on timings, or is a sum over what is judged one by one */
+    {"cheapest", "*", OUT},
+    {"comparison", "only_seed_survives", 0, READING_PART, 0, 0},
+    {"comparison", "*", OUT},
+    {"checks", "seconds", OUT}, /* of thousands some are always slow */
+    {"", "limit_over_this", OUT},
+    {"", "seed_plain_over_this", OUT},
+    {"", "saves", OUT},
+    {"", "skipped_fraction", OUT},
+    {"", "on_front", OUT},
+    {"threads", "gain", OUT},
+    /* time, memory, work */
+    {"", "wall_s", 0, READING_TIMING, 3, 0}, /* what else runs counts */
+    {"", "*_s", 0, READING_TIMING, 1.5, 0},
+    {"", "cpu_s_*", 0, READING_TIMING, 1.5, 0},
+    {"", "seconds", 0, READING_TIMING, 3, 0},
+    {"", "ns_*", 0, READING_TIMING, 1.5, 0},
+    {"", "exponent", 0, READING_TIMING, 1.5, 0},
+    {"", "figure_of_merit", 0, READING_TIMING, 1.5, 0},
+    {"", "peak_rss_bytes", 0, READING_TIMING, 1.5, 0},
+    {"", "bytes_per_particle", 0, READING_TIMING, 1.5, 0},
+    {"", "steps", 0, READING_COUNT, 0.01, 0},
+    {"", "particle_updates", 0, READING_COUNT, 0.01, 0},
+    {"", "pair_interactions", 0, READING_COUNT, 0.01, 0},
+    {"", "pairs_per_particle", 0, READING_COUNT, 0.01, 0},
+    {"", "skipped_particle_updates", OUT},
+    /* words */
+    {"faults", "status", 0, READING_STATUS, 0, 0},
+    {"faults", "*", OUT},
+    {"", "status", 0, READING_STATUS, 0, 0},
+    {"", "detected", 0, READING_STATUS, 0, 0},
+    {"", "suspicion", 0, READING_STATUS, 0, 0},
+    {"", "outcome", 0, READING_STATUS, 0, 0},
+    {"", "state", 0, READING_STATUS, 0, 0},
+    {"", "same_bits", 0, READING_STATUS, 0, 0},
+    {"", "*_wave", 0, READING_STATUS, 0, 0},
+    {"orders", "class", 0, READING_STATUS, 0, 0},
+    /* errors, and what they are made of */
+    {"", "still", 0, READING_CHECK, 0, 1e-9},
+    {"still_gas", "value", 0, READING_CHECK, 0, 1e-9},
+    {"still_gas", "bound", 0, READING_NEUTRAL, 1e-9, 0},
+    {"errors", "linf", 0, READING_PART, 1e-3, 1e-13}, /* of one particle at a jump */
+    {"errors", "*", 0, READING_ERROR, 1e-3, 1e-13},
+    {"budget", "*", 0, READING_PART, 1e-2, 1e-13},
+    {"regions", "l1", 0, READING_PART, 1e-2, 1e-13},
+    {"regions", "*", OUT},
+    {"conservation", "*", 0, READING_ERROR, 0.1, 1e-12},
+    {"floors", "density", 0, READING_CHECK, 0, 1e-13},
+    {"floors", "gradient", 0, READING_CHECK, 0, 1e-13},
+    {"floors", "*", OUT},
+    {"lattice", "density", 0, READING_CHECK, 0, 1e-13},
+    {"lattice", "gradient", 0, READING_CHECK, 0, 1e-13},
+    {"checks", "value", 0, READING_CHECK, 0, 0},
+    {"checks", "*", OUT},
+    {"mutants", "*", OUT},
+    {"skips", "difference", 0, READING_CHECK, 0, 1e-9},
+    {"skips", "bound", 0, READING_NEUTRAL, 1e-9, 0},
+    {"functionals", "extrapolated", 0, READING_EXACT, 0.05, 1e-13},
+    {"functionals", "exact", OUT},
+    {"functionals", "gci*", OUT},
+    {"functionals", "order", OUT},
+    {"functionals", "reference", OUT},
+    {"functionals", "*", 0, READING_EXACT, 0.05, 1e-13},
+    {"functionals_exact", "*", 0, READING_NEUTRAL, 1e-9, 1e-13},
+    {"", "relative_error", 0, READING_PART, 1e-3, 1e-13}, /* the same as error */
+    {"", "error", 0, READING_ERROR, 1e-3, 1e-13},
+    {"", "error_*", 0, READING_ERROR, 1e-2, 1e-12},
+    {"", "*momentum_defect", 0, READING_ERROR, 0.1, 1e-12},
+    {"", "order", 0, READING_ORDER, 0.02, 0},
+    {"", "order_*", 0, READING_ORDER, 0.05, 0},
+    {"", "exact_degree_*", 0, READING_ORDER, 0.5, 0},
+    {"", "normalisation", 0, READING_EXACT, 1, 1e-12},
+    /* maps of stability; the outcome is what judges a cell */
+    {"cells", "measured", 0, READING_PART, 0.1, 1e-13},
+    {"cells", "predicted", 0, READING_NEUTRAL, 1e-6, 1e-13},
+    {"groups", "bound", 0, READING_NEUTRAL, 1e-9, 0},
+    /* sums over what is judged one by one: one fault is one regression */
+    {"verdict", "*", OUT},
+    {"summary", "*", OUT},
+    /* of operators on clouds */
+    {"rows", "neighbours", 0, READING_COUNT, 0.01, 0},
+    {"rows", "condition", 0, READING_PART, 0.1, 0},
+    /* without better or worse: exact solutions, kernels, gradients and rates of given particles */
+    {"speeds", "*", 0, READING_NEUTRAL, 1e-9, 1e-13},
+    {"samples", "*", 0, READING_NEUTRAL, 1e-9, 1e-13},
+    {"values", "*", 0, READING_NEUTRAL, 1e-9, 1e-13},
+    {"moments", "*", 0, READING_NEUTRAL, 1e-9, 1e-13},
+    {"fourier", "*", 0, READING_NEUTRAL, 1e-6, 1e-13},
+    {"gradients", "*", 0, READING_NEUTRAL, 1e-9, 1e-13},
+    {"particles", "*", 0, READING_NEUTRAL, 1e-9, 1e-13},
+    {"sums", "*", 0, READING_NEUTRAL, 1e-9, 1e-13},
+    {"", "*_star", 0, READING_NEUTRAL, 1e-9, 1e-13},
+    {"", "*_star_left", 0, READING_NEUTRAL, 1e-9, 1e-13},
+    {"", "*_star_right", 0, READING_NEUTRAL, 1e-9, 1e-13},
+    {"", "mean_density", 0, READING_NEUTRAL, 1e-9, 1e-13},
+    {"", "constant", 0, READING_NEUTRAL, 1e-9, 1e-13},
+    {"", "class", 0, READING_NEUTRAL, 0, 0},
+    {"", "class_declared", 0, READING_NEUTRAL, 0, 0},
+    {"", "pairing_neighbours", 0, READING_NEUTRAL, 1e-6, 0},
+    {"", "self_term", 0, READING_NEUTRAL, 1e-9, 1e-13},
+    {"", "least_eta", 0, READING_NEUTRAL, 1e-9, 1e-13},
+    {"points", "neighbours", 0, READING_NEUTRAL, 0, 0},
+    {"points", "condition", 0, READING_NEUTRAL, 1e-6, 0},
+    {"points", "h", 0, READING_NEUTRAL, 1e-9, 0},
+    /* contexts: what follows from settings, what says how sure another figure is */
+    {"", "n", OUT},
+    {"", "h", OUT},
+    {"", "spacing", OUT},
+    {"", "time", OUT},
+    {"", "gamma", OUT},
+    {"", "x0", OUT},
+    {"", "dim", OUT},
+    {"", "low", OUT},
+    {"", "high", OUT},
+    {"", "samples", OUT},
+    {"", "spread", OUT},
+    {"", "replicates", OUT},
+    {"", "computations", OUT},
+    {"", "found", OUT},
+    {"", "failures", OUT},
+};
+
+static bool fits(const char *pattern, const char *name)
+{
+    const size_t length = strlen(pattern), own = strlen(name);
+    if (pattern[0] == '*')
+        return own + 1 >= length && strcmp(name + own - (length - 1), pattern + 1) == 0;
+    if (length && pattern[length - 1] == '*') return strncmp(name, pattern, length - 1) == 0;
+    return strcmp(pattern, name) == 0;
+}
+
+bool reading_passes(const char *path, const char *name)
+{
+    const size_t length = strlen(name);
+    int depth = 0;
+    bool start = true;
+    for (const char *c = path; *c; c++) {
+        if (start && depth == 0 && strncmp(c, name, length) == 0 &&
+            (c[length] == '.' || c[length] == '[' || !c[length]))
+            return true;
+        depth += (*c == '[') - (*c == ']');
+        start = *c == '.';
+    }
+    return false;
+}
+
+const struct reading_rule *reading_rule(const char *path, const char *name)
+{
+    for (size_t i = 0; i < sizeof rules / sizeof *rules; i++) {
+        const struct reading_rule *rule = &rules[i];
+        if ((!*rule->inside || reading_passes(path, rule->inside)) && fits(rule->name, name))
+            return rule;
+    }
+    return NULL;
+}
