@@ -22,7 +22,7 @@ struct job {
     enum { JOB_NONE, JOB_LOOPS, JOB_STEP, JOB_OPERATOR, JOB_LIMIT } kind;
     double pairs, particles; /* of the work done once */
     struct bench_loops loops;
-    struct run_settings *run;
+    struct run *run;
     struct operator_settings settings;
     const struct clouds_cloud *cloud;
     const double *field;
@@ -190,32 +190,30 @@ static enum status add_solver(struct bench *bench, const char *kernel, const cha
     snprintf(keys[1], sizeof keys[1], "gradient=%s", gradient);
     char *arguments[] = {keys[0],  keys[1],     "viscosity=constant",
                          "n=1600", "skip=none", "t_end=0.1"};
-    struct run_settings *run = malloc(sizeof *run);
+    struct run_settings asked;
+    struct run *run = malloc(sizeof *run);
     if (!run) return error_set(error, STATUS_ENVIRONMENT, "no memory");
     struct job *step = new_row(bench, kernel, ia ? "step ia" : "step standard", 1, false);
     step[STAMPED].run = run; /* owned by the first job */
-    if (run_prepare(run, "sound_wave", sizeof arguments / sizeof *arguments, arguments, error))
+    if (run_prepare(&asked, "sound_wave", sizeof arguments / sizeof *arguments, arguments, error) ||
+        run_resolve(run, &asked, error))
         return error->status;
-    run->threads = 1;
-    struct settings resolved = run->settings;
-    struct scheme scheme;
-    if (settings_resolve(&resolved, 1, &scheme, error)) return error->status;
     for (enum variant v = STAMPED; v <= UNSTAMPED; v++) {
         step[v].kind = JOB_STEP;
         if (v == UNSTAMPED && !(step[v].run = malloc(sizeof *run)))
             return error_set(error, STATUS_ENVIRONMENT, "no memory");
         *step[v].run = *run;
-        step[v].run->unstamped = v == UNSTAMPED;
+        step[v].run->asked.unstamped = v == UNSTAMPED;
     }
     const unsigned all =
         1u << PASS_STATE | 1u << PASS_DENSITY | 1u << PASS_MATRIX | 1u << PASS_FORCE;
-    if (prepare_loops(&step[LIMIT], &scheme, true, all, error)) return error->status;
+    if (prepare_loops(&step[LIMIT], &run->scheme, true, all, error)) return error->status;
     for (size_t l = 0; l < sizeof loops / sizeof *loops; l++) {
         if (loops[l].ia != ia && !loops[l].both) continue;
         const char *name = !loops[l].both ? loops[l].name : ia ? "force ia" : "force standard";
         struct job *job = new_row(bench, kernel, name, 1, false);
         for (enum variant v = STAMPED; v <= UNSTAMPED; v++)
-            if (prepare_loops(&job[v], &scheme, v == STAMPED, loops[l].passes, error))
+            if (prepare_loops(&job[v], &run->scheme, v == STAMPED, loops[l].passes, error))
                 return error->status;
     }
     return STATUS_OK;

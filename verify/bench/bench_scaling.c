@@ -21,7 +21,7 @@ enum { THREAD_LEVELS = sizeof thread_n / sizeof *thread_n };
 enum part { PART_SHORT, PART_LONG, PART_RUN, PARTS };
 
 struct job {
-    struct run_settings settings;
+    struct run run;
     uint64_t most_steps; /* 0: to t_end */
     bool keep;           /* the last state, to compare; else memory is measured without it */
     struct run_result last;
@@ -39,11 +39,11 @@ static enum status work(void *context, uint64_t times, struct clock_taken *taken
                         struct error *error)
 {
     struct job *job = context;
-    job->settings.progress = go_on;
-    job->settings.progress_context = job;
+    job->run.asked.progress = go_on;
+    job->run.asked.progress_context = job;
     for (uint64_t i = 0; i < times; i++) {
         run_free(&job->last);
-        const enum status status = run_execute(&job->settings, &job->last, error);
+        const enum status status = run_execute(&job->run, &job->last, error);
         if (status == STATUS_BROKE_DOWN || (!status && !job->keep)) run_free(&job->last);
         if (status) return status;
         taken->wall_s += job->last.cost.wall_s;
@@ -59,13 +59,15 @@ static enum status prepare(struct job *job, const struct run_settings *settings,
 {
     static char *const awake[] = {"skip=none", "t_end=1e9"};
     char key[40], *keys[] = {key};
-    *job = (struct job){.settings = *settings, .most_steps = most_steps};
-    job->settings.threads = threads;
+    struct run_settings asked = *settings;
+    job->most_steps = most_steps;
+    asked.threads = threads;
+    asked.any_window = asked.any_window || most_steps;
     snprintf(key, sizeof key, "n=%zu", n);
-    if (settings_apply(&job->settings.settings, 1, keys, error)) return error->status;
-    if (!most_steps) return STATUS_OK;
-    job->settings.any_window = true;
-    return settings_apply(&job->settings.settings, 2, awake, error);
+    if (settings_apply(&asked.settings, 1, keys, error) ||
+        (most_steps && settings_apply(&asked.settings, 2, awake, error)))
+        return error->status;
+    return run_resolve(&job->run, &asked, error);
 }
 
 struct bench {

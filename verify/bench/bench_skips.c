@@ -87,7 +87,7 @@ double bench_skips_difference(const struct snapshot *a, const struct snapshot *b
 /* --- one measurement -------------------------------------------------------------------------- */
 
 struct job {
-    struct run_settings *run; /* or */
+    struct run *run; /* or */
     struct bench_loops *loops;
     struct run_result last; /* of the run */
 };
@@ -167,14 +167,17 @@ static struct job *jobs_of(const struct bench *bench, const struct bench_skip *s
     return &bench->jobs[(size_t)(skip - bench->result->skips) * SIDES];
 }
 
-static struct run_settings *copy_settings(const struct run_settings *from, struct error *error)
+/* A run with more keys; malloced. NULL: they cannot be, or no memory. */
+static struct run *run_with(const struct run_settings *from, const char *keys, double alpha,
+                            struct error *error)
 {
-    struct run_settings *copy = malloc(sizeof *copy);
-    if (copy)
-        *copy = *from;
-    else
-        error_set(error, STATUS_ENVIRONMENT, "no memory");
-    return copy;
+    struct run_settings asked = *from;
+    if (apply(&asked, keys, alpha, error)) return NULL;
+    struct run *run = malloc(sizeof *run);
+    if (!run) error_set(error, STATUS_ENVIRONMENT, "no memory");
+    if (!run || !run_resolve(run, &asked, error)) return run;
+    free(run);
+    return NULL;
 }
 
 static enum status add_switches(struct bench *bench, size_t c, const struct scheme *scheme,
@@ -187,9 +190,9 @@ static enum status add_switches(struct bench *bench, size_t c, const struct sche
         skip->bound = switches[s].bound;
         for (int side = WITHOUT; side <= WITH; side++) {
             struct job *job = &jobs_of(bench, skip)[side];
-            job->run = copy_settings(&bench->result->cases[c], error);
-            if (!job->run || apply(job->run, switches[s].keys[side], scheme->alpha, error))
-                return error->status;
+            job->run =
+                run_with(&bench->result->cases[c], switches[s].keys[side], scheme->alpha, error);
+            if (!job->run) return error->status;
         }
     }
     return STATUS_OK;
@@ -245,15 +248,13 @@ static enum status add_extras(struct bench *bench, size_t c, const struct scheme
 
 static enum status add_case(struct bench *bench, size_t c, struct error *error)
 {
-    struct run_settings *settings = &bench->result->cases[c];
-    struct settings resolved = settings->settings;
-    struct scheme scheme;
-    if (settings_resolve(&resolved, settings->file.dimension, &scheme, error) ||
-        add_switches(bench, c, &scheme, error) || add_extras(bench, c, &scheme, error))
-        return error->status;
+    const struct run_settings *settings = &bench->result->cases[c];
     struct job *whole = &bench->jobs[bench->max * SIDES + c];
-    whole->run = copy_settings(settings, error);
-    return whole->run ? apply(whole->run, "skip=none", 0, error) : error->status;
+    whole->run = run_with(settings, "skip=none", 0, error);
+    if (!whole->run || add_switches(bench, c, &whole->run->scheme, error) ||
+        add_extras(bench, c, &whole->run->scheme, error))
+        return error->status;
+    return STATUS_OK;
 }
 
 /* --- all of them ------------------------------------------------------------------------------ */
@@ -264,20 +265,16 @@ static enum status add_case(struct bench *bench, size_t c, struct error *error)
 static double sensitivity(const struct job *job)
 {
     struct error ignored = {0};
-    struct run_settings *nudged = copy_settings(job->run, &ignored);
     struct run_result result = {0};
     double difference = 0;
-    if (!nudged) return 0;
-    struct settings resolved = nudged->settings;
-    struct scheme scheme;
     char cfl[40];
-    if (!settings_resolve(&resolved, nudged->file.dimension, &scheme, &ignored)) {
-        snprintf(cfl, sizeof cfl, "cfl=%.17g", scheme.cfl * (1 + 1e-11));
-        if (!apply(nudged, cfl, 0, &ignored) && !run_execute(nudged, &result, &ignored))
-            difference = bench_skips_difference(&job->last.snapshot, &result.snapshot,
-                                                domain_length(&job->last.problem.domain, 0));
-        run_free(&result);
-    }
+    snprintf(cfl, sizeof cfl, "cfl=%.17g", job->run->scheme.cfl * (1 + 1e-11));
+    struct run *nudged = run_with(&job->run->asked, cfl, 0, &ignored);
+    if (!nudged) return 0;
+    if (!run_execute(nudged, &result, &ignored))
+        difference = bench_skips_difference(&job->last.snapshot, &result.snapshot,
+                                            domain_length(&job->last.problem.domain, 0));
+    run_free(&result);
     free(nudged);
     return isfinite(difference) ? difference : 0;
 }

@@ -62,7 +62,7 @@ double precision_cost_of(size_t n, const double *cost, const double *error, doub
 /* --- one point -------------------------------------------------------------------------------- */
 
 struct job {
-    struct run_settings settings;
+    struct run run;
     struct precision_point *point;
 };
 
@@ -72,7 +72,7 @@ static enum status execute(void *context, uint64_t times, struct clock_taken *ta
     struct job *job = context;
     for (uint64_t i = 0; i < times; i++) {
         struct run_result result;
-        const enum status status = run_execute(&job->settings, &result, error);
+        const enum status status = run_execute(&job->run, &result, error);
         if (status == STATUS_BROKE_DOWN) run_free(&result);
         if (status) return status;
         taken->wall_s += result.cost.wall_s;
@@ -91,15 +91,11 @@ static enum status execute(void *context, uint64_t times, struct clock_taken *ta
 static enum status find_mean_density(const struct run_settings *settings, double *mean,
                                      struct error *error)
 {
-    struct settings resolved = settings->settings;
-    struct scheme scheme;
-    struct prepared problem;
+    struct run run;
     double means[NORM_BINS];
-    if (settings_resolve(&resolved, settings->file.dimension, &scheme, error) ||
-        problem_prepare(&problem, &resolved, settings->file.dimension, error))
-        return error->status;
-    problem_means(&problem, FIELD_DENSITY, settings_real(&resolved, SETTING_t_end), NORM_BINS,
-                  means);
+    if (run_resolve(&run, settings, error)) return error->status;
+    problem_means(&run.problem, FIELD_DENSITY, settings_real(&run.settings, SETTING_t_end),
+                  NORM_BINS, means);
     *mean = gsl_stats_mean(means, 1, NORM_BINS);
     return STATUS_OK;
 }
@@ -130,7 +126,7 @@ static bool want_graded(const struct run_settings *settings, const struct sweep 
     return !settings_foreign(keys, SETTING_grade) && settings_real(keys, SETTING_grade) == 1;
 }
 
-/* Sets the scheme's keys; why it cannot be goes into scheme->excluded. */
+/* Sets the scheme's keys. */
 static enum status prepare(const struct precision *precision, const struct sweep *sweep, size_t i,
                            struct run_settings *settings, struct error *error)
 {
@@ -161,10 +157,18 @@ static enum status prepare(const struct precision *precision, const struct sweep
             settings_set(&settings->settings, SETTING_mass_ratio, "1", SOURCE_CASE, NULL, error))
             return error->status;
     }
-    struct settings resolved = settings->settings;
-    struct scheme ignored;
+    return STATUS_OK;
+}
+
+/* Resolves the scheme's run with n particles; why it cannot be goes into scheme->excluded. */
+static enum status add_level(struct job *job, struct run_settings *settings, size_t n,
+                             struct precision_scheme *scheme, struct error *error)
+{
+    char key[40], *keys[] = {key};
     struct error reason;
-    if (settings_resolve(&resolved, settings->file.dimension, &ignored, &reason))
+    snprintf(key, sizeof key, "n=%zu", n);
+    if (settings_apply(&settings->settings, 1, keys, error)) return error->status;
+    if (run_resolve(&job->run, settings, &reason))
         snprintf(scheme->excluded, sizeof scheme->excluded, "%s", reason.message);
     return STATUS_OK;
 }
@@ -179,8 +183,7 @@ static void collect(struct precision *precision, const struct bench_subject *sub
         struct precision_scheme *scheme = &precision->schemes[points[i].scheme];
         if (subjects[i].failure.status && !scheme->excluded[0])
             snprintf(scheme->excluded, sizeof scheme->excluded, "n = %g: %.450s",
-                     settings_real(&jobs[i].settings.settings, SETTING_n),
-                     subjects[i].failure.message);
+                     settings_real(&jobs[i].run.settings, SETTING_n), subjects[i].failure.message);
     }
     for (size_t i = 0; i < precision->point_count; i++) {
         struct precision_scheme *scheme = &precision->schemes[points[i].scheme];
@@ -254,15 +257,14 @@ enum status precision_measure(const struct run_settings *settings, const struct 
     size_t n = 0, own_schemes = 0;
     for (size_t i = 0; i < schemes && !status; i++) {
         status = prepare(precision, sweep, i, own, error);
-        if (status || precision->schemes[i].excluded[0]) continue;
-        own_schemes += i < sweep->count;
-        for (size_t l = 0; l < count; l++, n++) {
-            char key[40], *keys[] = {key};
-            snprintf(key, sizeof key, "n=%zu", ladder[l]);
-            jobs[n] = (struct job){*own, &precision->points[n]};
+        for (size_t l = 0; l < count && !status && !precision->schemes[i].excluded[0]; l++) {
+            status = add_level(&jobs[n], own, ladder[l], &precision->schemes[i], error);
+            if (status || precision->schemes[i].excluded[0]) continue;
+            own_schemes += l == 0 && i < sweep->count;
+            jobs[n].point = &precision->points[n];
             precision->points[n].scheme = i;
             subjects[n] = (struct bench_subject){.work = execute, .context = &jobs[n]};
-            if (!status) status = settings_apply(&jobs[n].settings.settings, 1, keys, error);
+            n++;
         }
     }
     precision->point_count = n;

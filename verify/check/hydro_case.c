@@ -31,14 +31,15 @@ enum { LINES = sizeof lines / sizeof *lines };
 static bool execute(struct check_run *run, const char *name, const char *const *arguments,
                     struct run_result *result)
 {
-    static struct run_settings settings;
+    struct run_settings settings;
+    struct run solved;
     struct error error = {0};
     char *list[ARGUMENTS_MAX];
     int n = 0;
     for (; arguments[n]; n++) list[n] = (char *)arguments[n];
     enum status status = run_prepare(&settings, name, n, list, &error);
-    settings.threads = 1;
-    if (!status) status = run_execute(&settings, result, &error);
+    if (!status) status = run_resolve(&solved, &settings, &error);
+    if (!status) status = run_execute(&solved, result, &error);
     if (status == STATUS_OK) return true;
     if (status == STATUS_BROKE_DOWN) run_free(result);
     check_measure(run, 1, 0, 0, "%s: %s", name, error.message);

@@ -259,11 +259,10 @@ static enum status run(const struct options *options, int n, char **arguments, s
     json_t *document = result_new("converge");
     json_object_set_new(document, "case", json_string(study.settings.file.name));
     json_object_set_new(document, "status", json_string("ok"));
-    struct settings resolved = study.settings.settings;
-    struct scheme scheme;
+    struct run as_given;
     struct error trouble = {0};
-    if (!settings_resolve(&resolved, study.settings.file.dimension, &scheme, &trouble))
-        json_object_set_new(document, "settings", settings_json(&resolved));
+    if (!run_resolve(&as_given, &study.settings, &trouble))
+        json_object_set_new(document, "settings", settings_json(&as_given.settings));
     enum status status = carry_out(&study, options, &settings, document, error);
     const bool sound = status == STATUS_OK || status == STATUS_CHECK_FAILED;
     if (options->speak && (sound || status == STATUS_BROKE_DOWN)) print_all(&study, options);

@@ -193,12 +193,13 @@ static void remark(const struct options *options, const char *text)
     if (text[0] && !options->quiet) fprintf(stderr, "sphproof: note: %s\n", text);
 }
 
-static enum status explain(const struct options *options, const struct run_settings *settings,
+static enum status explain(const struct options *options, const struct run *run,
                            struct error *error)
 {
+    const struct run_settings *settings = &run->asked;
     struct run_result result;
     const struct table_style style = table_style(options->color);
-    enum status status = run_explain(settings, &result, error);
+    enum status status = run_explain(run, &result, error);
     if (status) return status;
     remark(options, result.warnings);
     if (options->speak) {
@@ -241,25 +242,24 @@ static enum status present(const struct options *options, const struct run_setti
     return STATUS_OK;
 }
 
-static enum status run(const struct options *options, int n, char **arguments, struct error *error)
+static enum status run_case(const struct options *options, int n, char **arguments,
+                            struct error *error)
 {
     struct run_settings settings;
     struct run_result result;
-    struct settings resolved;
-    struct scheme scheme;
+    struct run run;
     if (n < 1) return command_usage(options, error, "a case is needed (`sphproof list cases`)");
     if (run_prepare(&settings, arguments[0], n - 1, arguments + 1, error)) return error->status;
     settings.threads = options->threads;
-    if (options_value(options, "explain")) return explain(options, &settings, error);
-    resolved = settings.settings;
-    if (settings_resolve(&resolved, settings.file.dimension, &scheme, error)) return error->status;
+    if (run_resolve(&run, &settings, error)) return error->status;
+    if (options_value(options, "explain")) return explain(options, &run, error);
     if (check_files(options, error)) return error->status;
 
-    struct progress_of_run of_run = {.t_end = settings_real(&resolved, SETTING_t_end)};
+    struct progress_of_run of_run = {.t_end = settings_real(&run.settings, SETTING_t_end)};
     progress_begin(&of_run.progress, settings.file.name, options->quiet);
-    settings.progress = show_progress;
-    settings.progress_context = &of_run;
-    enum status status = run_execute(&settings, &result, error);
+    run.asked.progress = show_progress;
+    run.asked.progress_context = &of_run;
+    enum status status = run_execute(&run, &result, error);
     progress_end(&of_run.progress);
     if (status != STATUS_OK && status != STATUS_BROKE_DOWN) return status;
     struct error trouble = {0};
@@ -285,7 +285,7 @@ const struct command command_run = {
             "CASE is a built-in name (`sphproof list cases`) or the path of a case file (with a "
             "slash,\nor ending in .ini). Keys and what they may be: `sphproof list keys`. Without "
             "keys the\ncase's own scheme is used.",
-    .run = run,
+    .run = run_case,
     .options = own_options,
     .examples = "sphproof run sod\n"
                 "sphproof run sod n=800 kernel=cubic_spline eta=2 gradient=ia --plot sod.svg\n"

@@ -73,12 +73,14 @@ void fuzz_refused(enum status status, const struct error *error)
 void fuzz_plan(const struct run_settings *settings)
 {
     struct run_settings few = *settings;
+    struct run run;
     struct run_result result;
     struct error error = {0};
     char too_many[] = "n=64";
     char *const arguments[] = {too_many};
     if (settings_real(&few.settings, SETTING_n) > 64)
         FUZZ_PROMISE(!settings_apply(&few.settings, 1, arguments, &error));
-    const enum status status = run_explain(&few, &result, &error);
+    enum status status = run_resolve(&run, &few, &error);
+    if (!status) status = run_explain(&run, &result, &error);
     if (status) fuzz_refused(status, &error);
 }

@@ -19,10 +19,10 @@ static enum status compute_run(const struct report_piece *piece, json_t **docume
                                struct error *error)
 {
     struct run_result result;
-    struct run_settings settings = piece->settings;
+    struct run run = piece->run;
     struct trace trace = {0};
-    settings.trace = &trace;
-    const enum status status = run_execute(&settings, &result, error);
+    run.asked.trace = &trace;
+    const enum status status = run_execute(&run, &result, error);
     if (status != STATUS_OK && status != STATUS_BROKE_DOWN) return status;
     *document = result_new("run");
     run_add_json(&piece->settings, &result, *document);
@@ -143,9 +143,10 @@ enum status report_piece_add(struct pool *pool, struct report_piece *piece, stru
     if (piece->kind == REPORT_CHECKS && piece->slow) strcat(name, ", slow ones too");
     if (piece->kind == REPORT_KERNEL)
         snprintf(name, sizeof name, "kernel %s, dim %d", piece->where, piece->dim);
-    if (piece->kind == REPORT_RUN && !(key = run = run_job_key(&piece->settings, "profile", error)))
+    if (piece->kind == REPORT_RUN && (run_resolve(&piece->run, &piece->settings, error) ||
+                                      !(key = run = run_job_key(&piece->run, "profile", error))))
         return error->status;
-    const double weight = run ? run_job_weight(&piece->settings) : weights[piece->kind];
+    const double weight = run ? run_job_weight(&piece->run) : weights[piece->kind];
     piece->job = pool_add(pool, name, key, weight, compute, piece);
     free(run);
     return piece->job == (size_t)-1

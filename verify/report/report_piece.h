@@ -15,6 +15,7 @@ struct report_piece {
     int dim;                      /* of a kernel */
     bool slow;                    /* the slow checks too */
     struct run_settings settings; /* of a run or a bench */
+    struct run run;               /* the same, from report_piece_add */
     size_t job;                   /* its number, from report_piece_add */
 };
 

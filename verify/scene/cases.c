@@ -359,9 +359,11 @@ enum status case_parse(struct case_file *file, const char *path, const char *tex
     const enum status status = check_complete(&parser);
     if (status) return status;
     struct settings trial = file->settings;
+    struct prepared problem;
     struct scheme scheme;
     struct error reason = {0};
-    if (settings_resolve(&trial, file->dimension, &scheme, &reason))
+    if (problem_prepare(&problem, &trial, file->dimension, &reason) ||
+        settings_scheme(&trial, file->dimension, &scheme, &reason))
         return error_set(error, STATUS_BAD_INPUT, "%.160s: %.340s", path, reason.message);
     return STATUS_OK;
 }

@@ -31,57 +31,60 @@ static double peak_rss(void)
 #endif
 }
 
-static struct scene scene_of(const struct run_settings *settings, const struct run_result *result,
-                             const struct initial *initial)
+enum status run_resolve(struct run *run, const struct run_settings *asked, struct error *error)
 {
-    const struct domain *domain = &result->problem.domain;
+    const int dim = asked->file.dimension;
+    run->asked = *asked;
+    run->settings = asked->settings;
+    const enum status status = problem_prepare(&run->problem, &run->settings, dim, error);
+    return status ? status : settings_scheme(&run->settings, dim, &run->scheme, error);
+}
+
+static struct scene scene_of(const struct run *run, const struct initial *initial)
+{
+    const struct domain *domain = &run->problem.domain;
     return (struct scene){
         .dim = domain->dim,
         .lo = {domain->lo[0], domain->lo[1], domain->lo[2]},
         .hi = {domain->hi[0], domain->hi[1], domain->hi[2]},
-        .gamma = result->problem.gamma,
-        .t_end = settings_real(&result->settings, SETTING_t_end),
+        .gamma = run->problem.gamma,
+        .t_end = settings_real(&run->settings, SETTING_t_end),
         .n = initial->n,
         .x = {initial->x[0], initial->x[1], initial->x[2]},
         .v = {initial->v[0], initial->v[1], initial->v[2]},
         .m = initial->m,
         .u = initial->u,
         .rho = initial->rho,
-        .scheme = result->scheme,
-        .skip = settings_choice(&result->settings, SETTING_skip) == SKIP_AUTO,
-        .unstamped = settings->unstamped,
-        .threads = settings->threads,
+        .scheme = run->scheme,
+        .skip = settings_choice(&run->settings, SETTING_skip) == SKIP_AUTO,
+        .unstamped = run->asked.unstamped,
+        .threads = run->asked.threads,
     };
 }
 
 /* Everything before the first step. On an error nothing is left to free. */
-static enum status begin(const struct run_settings *settings, struct run_result *result,
-                         struct initial *initial, struct error *error)
+static enum status begin(const struct run *run, struct run_result *result, struct initial *initial,
+                         struct error *error)
 {
-    *result = (struct run_result){.settings = settings->settings};
+    const double t_end = settings_real(&run->settings, SETTING_t_end);
+    enum status status;
+    *result = (struct run_result){
+        .settings = run->settings, .scheme = run->scheme, .problem = run->problem};
     *initial = (struct initial){0};
-    struct settings *resolved = &result->settings;
-    enum status status =
-        settings_resolve(resolved, settings->file.dimension, &result->scheme, error);
-    if (status ||
-        (status = problem_prepare(&result->problem, resolved, settings->file.dimension, error)) ||
-        (!settings->any_window &&
-         (status = problem_check_time(&result->problem, settings_real(resolved, SETTING_t_end),
-                                      error))) ||
-        (status = initial_create(initial, &result->problem, resolved, error)))
+    if ((!run->asked.any_window && (status = problem_check_time(&run->problem, t_end, error))) ||
+        (status = initial_create(initial, &run->problem, &run->settings, error)))
         return status;
-    const struct scene scene = scene_of(settings, result, initial);
+    const struct scene scene = scene_of(run, initial);
     result->n = initial->n;
     result->plan_count =
         plan_explain(&scene, result->plan, RUN_PLAN_MAX, result->warnings, sizeof result->warnings);
     return STATUS_OK;
 }
 
-enum status run_explain(const struct run_settings *settings, struct run_result *result,
-                        struct error *error)
+enum status run_explain(const struct run *run, struct run_result *result, struct error *error)
 {
     struct initial initial;
-    const enum status status = begin(settings, result, &initial, error);
+    const enum status status = begin(run, result, &initial, error);
     initial_free(&initial);
     return status;
 }
@@ -262,39 +265,40 @@ static bool after_step(void *context, double time, uint64_t steps)
     return settings->progress(settings->progress_context, time, steps);
 }
 
-static enum status simulate(const struct run_settings *settings, struct run_result *result,
+static enum status simulate(const struct run *run, struct run_result *result,
                             const struct initial *initial, struct error *error)
 {
+    const struct run_settings *asked = &run->asked;
     struct simulation *simulation = NULL;
     struct outcome outcome = {0};
-    const struct scene scene = scene_of(settings, result, initial);
+    const struct scene scene = scene_of(run, initial);
     enum status status = simulation_create(&scene, &simulation, &outcome.reason);
     if (status == STATUS_BROKE_DOWN) return broke_down_at_start(result, &outcome.reason);
     if (status) {
         *error = outcome.reason;
         return status;
     }
-    struct watch watch = {settings, simulation};
+    struct watch watch = {asked, simulation};
     simulation_conservation(simulation, &outcome.start);
-    if (settings->trace) keep_trace(&watch, 0);
-    outcome.status = simulation_run(simulation, scene.t_end,
-                                    settings->progress || settings->trace ? after_step : NULL,
-                                    &watch, &outcome.reason);
+    if (asked->trace) keep_trace(&watch, 0);
+    outcome.status =
+        simulation_run(simulation, scene.t_end, asked->progress || asked->trace ? after_step : NULL,
+                       &watch, &outcome.reason);
     simulation_cost(simulation, &result->cost);
     simulation_conservation(simulation, &outcome.end);
     simulation_snapshot(simulation, &outcome.snapshot);
-    if (settings->trace) trace_add(settings->trace, outcome.snapshot.time, &outcome.end);
+    if (asked->trace) trace_add(asked->trace, outcome.snapshot.time, &outcome.end);
     status = finish(result, &outcome, error);
     simulation_destroy(simulation);
     return status;
 }
 
-static enum status simulate_plainly(const struct run_settings *settings, struct run_result *result,
+static enum status simulate_plainly(const struct run *run, struct run_result *result,
                                     const struct initial *initial, struct error *error)
 {
     struct plain plain;
     struct outcome outcome = {0};
-    const struct scene scene = scene_of(settings, result, initial);
+    const struct scene scene = scene_of(run, initial);
     outcome.status = plain_run(&plain, &scene, &outcome.reason);
     outcome.start = plain.start;
     outcome.end = plain.end;
@@ -305,13 +309,12 @@ static enum status simulate_plainly(const struct run_settings *settings, struct 
     return status;
 }
 
-enum status run_execute(const struct run_settings *settings, struct run_result *result,
-                        struct error *error)
+enum status run_execute(const struct run *run, struct run_result *result, struct error *error)
 {
     struct initial initial;
-    enum status status = begin(settings, result, &initial, error);
+    enum status status = begin(run, result, &initial, error);
     if (!status)
-        status = (settings->plain ? simulate_plainly : simulate)(settings, result, &initial, error);
+        status = (run->asked.plain ? simulate_plainly : simulate)(run, result, &initial, error);
     initial_free(&initial);
     if (status) {
         run_free(result);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * One run: settings -> particles -> simulation -> errors, conservation, cost. The one way in which
- * the commands run, converge, bench, report and stress compute anything. */
+ * One run: settings as asked -> resolved, once -> particles -> simulation -> errors, conservation,
+ * cost. The one way in which the commands run, converge, bench, report and stress compute
+ * anything. */
 #ifndef SPHPROOF_RUN_H
 #define SPHPROOF_RUN_H
 
@@ -29,6 +30,16 @@ struct run_settings {
     struct trace *trace; /* {0}: gets conservation through time; NULL: nobody asks */
 };
 
+/* A run with every choice made: no `auto` is left, the problem is solved. Its key, its plan and its
+ * result all come from here; whoever changes a key resolves again. What is asked beside the keys
+ * (threads, progress, trace ...) may still be changed. */
+struct run {
+    struct run_settings asked;
+    struct settings settings;
+    struct scheme scheme;
+    struct prepared problem;
+};
+
 /* A scalar of the final state, for extrapolation where no exact value is at hand. */
 struct run_functional {
     const char *name;
@@ -38,7 +49,7 @@ struct run_functional {
 struct run_result {
     enum status status;       /* STATUS_OK or STATUS_BROKE_DOWN */
     char message[512];        /* how it broke down */
-    struct settings settings; /* as used, resolved */
+    struct settings settings; /* as used: these three are the run's */
     struct scheme scheme;
     struct prepared problem;
     size_t n;
@@ -65,13 +76,15 @@ struct run_result {
 enum status run_prepare(struct run_settings *settings, const char *case_name, int n,
                         char *const *arguments, struct error *error);
 
-/* Runs. STATUS_OK and STATUS_BROKE_DOWN leave a result (run_free it), anything else none. */
-enum status run_execute(const struct run_settings *settings, struct run_result *result,
-                        struct error *error);
+/* STATUS_BAD_INPUT: keys that cannot be together, or that no problem or scheme can be made of. */
+enum status run_resolve(struct run *run, const struct run_settings *asked, struct error *error);
 
-/* All but the simulation: settings resolved, plan and warnings filled; n is what it would be. */
-enum status run_explain(const struct run_settings *settings, struct run_result *result,
-                        struct error *error);
+/* Runs. STATUS_OK and STATUS_BROKE_DOWN leave a result (run_free it), anything else none:
+ * STATUS_BAD_INPUT where the exact solution does not hold in the window up to t_end. */
+enum status run_execute(const struct run *run, struct run_result *result, struct error *error);
+
+/* All but the simulation: plan and warnings filled; n is what it would be. */
+enum status run_explain(const struct run *run, struct run_result *result, struct error *error);
 void run_free(struct run_result *result);
 
 /* "errors" of a result document: {"density": {"l1", ...}, ..., "binned_density_l1"}. */

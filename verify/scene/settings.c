@@ -187,13 +187,11 @@ static void fill(struct settings *settings, enum setting key, double real, int c
     value->choice = choice;
 }
 
-enum status settings_resolve(struct settings *settings, int dim, struct scheme *scheme,
-                             struct error *error)
+enum status settings_scheme(struct settings *settings, int dim, struct scheme *scheme,
+                            struct error *error)
 {
 #define REAL_OF(key)   settings_real(settings, SETTING_##key)
 #define CHOICE_OF(key) settings_choice(settings, SETTING_##key)
-    struct prepared problem;
-    if (problem_prepare(&problem, settings, dim, error)) return error->status;
     const struct integrator *integrator =
         (const struct integrator *)integrator_family.members[CHOICE_OF(integrator)];
     struct kernel kernel;

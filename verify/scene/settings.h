@@ -68,10 +68,10 @@ enum status settings_set(struct settings *settings, enum setting key, const char
 enum status settings_apply(struct settings *settings, int n, char *const *arguments,
                            struct error *error);
 
-/* Replaces every `auto` by what it stands for and makes the scheme, checked in dim dimensions.
- * Ranges that concern two keys are checked here too. */
-enum status settings_resolve(struct settings *settings, int dim, struct scheme *scheme,
-                             struct error *error);
+/* The scheme that the keys stand for, checked in dim dimensions; its keys that are `auto` get their
+ * values. (Those of the problem: problem_prepare. Both: run_resolve.) */
+enum status settings_scheme(struct settings *settings, int dim, struct scheme *scheme,
+                            struct error *error);
 
 double settings_real(const struct settings *settings, enum setting key);
 int settings_choice(const struct settings *settings, enum setting key);

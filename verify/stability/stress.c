@@ -187,12 +187,13 @@ static json_t *judge_run(const struct stress_cell *cell, const struct run_result
 static enum status compute_run(const struct stress_cell *cell, json_t **document,
                                struct error *error)
 {
-    struct run_settings settings = cell->settings;
+    struct run run;
     struct run_result result;
     struct watch watch = {.budget = cell->step_budget};
-    settings.progress = watch_steps;
-    settings.progress_context = &watch;
-    const enum status status = run_execute(&settings, &result, error);
+    enum status status = run_resolve(&run, &cell->settings, error);
+    run.asked.progress = watch_steps;
+    run.asked.progress_context = &watch;
+    if (!status) status = run_execute(&run, &result, error);
     if (status == STATUS_OK || status == STATUS_BROKE_DOWN) {
         *document = judge_run(cell, &result, &watch);
         run_free(&result);

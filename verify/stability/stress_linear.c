@@ -32,6 +32,7 @@ static bool within_budget(void *context, double time, uint64_t steps)
  * down, which noise that grows does in the end. */
 static double noise_after(struct run_settings settings, double time)
 {
+    struct run run;
     struct run_result result;
     struct error error;
     const double gamma = settings_real(&settings.settings, SETTING_gamma), c = sqrt(gamma);
@@ -40,7 +41,8 @@ static double noise_after(struct run_settings settings, double time)
     double budget = 500 + 8 * time;
     settings.progress = within_budget;
     settings.progress_context = &budget;
-    const enum status status = run_execute(&settings, &result, &error);
+    enum status status = run_resolve(&run, &settings, &error);
+    if (!status) status = run_execute(&run, &result, &error);
     const bool whole =
         status == STATUS_OK && result.time >= settings_real(&settings.settings, SETTING_t_end);
     const double noise = whole ? run_error(&result, FIELD_VELOCITY, NORM_L2) / c : (double)INFINITY;
@@ -166,16 +168,15 @@ static json_t *pairing(const struct stress_cell *cell, const struct scheme *sche
 
 enum status stress_linear(const struct stress_cell *cell, json_t **document, struct error *error)
 {
-    struct settings resolved = cell->settings.settings;
-    struct scheme scheme;
-    const enum status status = settings_resolve(&resolved, 1, &scheme, error);
-    if (status) return status;
+    struct run run;
+    const struct scheme *scheme = &run.scheme;
+    if (run_resolve(&run, &cell->settings, error)) return error->status;
     if (cell->group->kind == STRESS_LIMIT)
-        *document = limit(cell, &scheme);
+        *document = limit(cell, scheme);
     else if (cell->group->kind == STRESS_STEP)
-        *document = time_step(cell, &scheme, error);
+        *document = time_step(cell, scheme, error);
     else
-        *document = pairing(cell, &scheme);
+        *document = pairing(cell, scheme);
     return *document ? STATUS_OK : error->status;
 }
 
@@ -187,7 +188,7 @@ static struct scheme atlas_scheme(const char *kernel, enum gradient gradient, do
     struct settings settings;
     struct scheme scheme;
     settings_init(&settings);
-    settings_resolve(&settings, 1, &scheme, NULL);
+    settings_scheme(&settings, 1, &scheme, NULL);
     kernel_select(&scheme.kernel, kernel, 5, NULL);
     scheme.gradient = gradient;
     scheme.viscosity = VISCOSITY_NONE;

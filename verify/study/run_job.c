@@ -6,15 +6,12 @@
 
 #include "result.h"
 
-char *run_job_key(const struct run_settings *settings, const char *kind, struct error *error)
+char *run_job_key(const struct run *run, const char *kind, struct error *error)
 {
-    struct settings resolved = settings->settings;
-    struct scheme scheme;
-    if (settings_resolve(&resolved, settings->file.dimension, &scheme, error)) return NULL;
-    json_t *key =
-        json_pack("{s:s, s:s, s:s, s:i, s:b, s:o}", "kind", kind, "case", settings->file.name,
-                  "title", settings->file.title, "dimension", settings->file.dimension,
-                  "any_window", settings->any_window, "settings", settings_json(&resolved));
+    const struct case_file *file = &run->asked.file;
+    json_t *key = json_pack("{s:s, s:s, s:s, s:i, s:b, s:o}", "kind", kind, "case", file->name,
+                            "title", file->title, "dimension", file->dimension, "any_window",
+                            run->asked.any_window, "settings", settings_json(&run->settings));
     char *text =
         key ? json_dumps(key, JSON_COMPACT | JSON_SORT_KEYS | JSON_REAL_PRECISION(17)) : NULL;
     json_decref(key);
@@ -22,33 +19,32 @@ char *run_job_key(const struct run_settings *settings, const char *kind, struct 
     return text;
 }
 
-double run_job_weight(const struct run_settings *settings)
+double run_job_weight(const struct run *run)
 {
-    const double n = settings_real(&settings->settings, SETTING_n);
+    const double n = settings_real(&run->settings, SETTING_n);
     return 0.002 + 5e-8 * n * n;
 }
 
 static enum status compute(const void *context, json_t **document, struct error *error)
 {
-    const struct run_settings *settings = context;
+    const struct run *run = context;
     struct run_result result;
-    const enum status status = run_execute(settings, &result, error);
+    const enum status status = run_execute(run, &result, error);
     if (status != STATUS_OK && status != STATUS_BROKE_DOWN) return status;
     *document = result_new("run");
-    run_add_json(settings, &result, *document);
+    run_add_json(&run->asked, &result, *document);
     run_free(&result);
     return status;
 }
 
-enum status run_job_add(struct pool *pool, const struct run_settings *settings, size_t *job,
-                        struct error *error)
+enum status run_job_add(struct pool *pool, const struct run *run, size_t *job, struct error *error)
 {
     char name[128];
-    char *key = run_job_key(settings, "run", error);
+    char *key = run_job_key(run, "run", error);
     if (!key) return error->status;
-    snprintf(name, sizeof name, "%s, n = %.10g", settings->file.name,
-             settings_real(&settings->settings, SETTING_n));
-    *job = pool_add(pool, name, key, run_job_weight(settings), compute, settings);
+    snprintf(name, sizeof name, "%s, n = %.10g", run->asked.file.name,
+             settings_real(&run->settings, SETTING_n));
+    *job = pool_add(pool, name, key, run_job_weight(run), compute, run);
     free(key);
     return *job == (size_t)-1 ? error_set(error, STATUS_ENVIRONMENT, "no memory for a run")
                               : STATUS_OK;

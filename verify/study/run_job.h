@@ -7,14 +7,13 @@
 #include "run.h"
 
 /* All that decides the result of a run, as text: case, dimension and every setting as used. kind
- * tells apart what is computed from it. Malloced; NULL with error: bad settings, or no memory. */
-char *run_job_key(const struct run_settings *settings, const char *kind, struct error *error);
+ * tells apart what is computed from it. Malloced; NULL with error: no memory. */
+char *run_job_key(const struct run *run, const char *kind, struct error *error);
 
-/* About how many seconds a run with these settings takes. */
-double run_job_weight(const struct run_settings *settings);
+/* About how many seconds a run takes. */
+double run_job_weight(const struct run *run);
 
-/* Adds the run; settings must outlive the pool. Its document is that of `sphproof run`. */
-enum status run_job_add(struct pool *pool, const struct run_settings *settings, size_t *job,
-                        struct error *error);
+/* Adds the run, which must outlive the pool. Its document is that of `sphproof run`. */
+enum status run_job_add(struct pool *pool, const struct run *run, size_t *job, struct error *error);
 
 #endif

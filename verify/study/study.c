@@ -24,8 +24,7 @@ bool study_is_random(const struct settings *settings)
 
 /* ---- planning ---- */
 
-static struct run_settings *run_at(const struct study *study, size_t combination, size_t level,
-                                   size_t seed)
+static struct run *run_at(const struct study *study, size_t combination, size_t level, size_t seed)
 {
     return &study->runs[(combination * study->level_count + level) * study->seeds + seed];
 }
@@ -35,22 +34,38 @@ static size_t job_at(const struct study *study, size_t combination, size_t level
     return study->jobs[run_at(study, combination, level, seed) - study->runs];
 }
 
-static enum status set_integer(struct run_settings *run, enum setting key, double value,
+static enum status set_integer(struct run_settings *settings, enum setting key, double value,
                                struct error *error)
 {
     char text[32];
     snprintf(text, sizeof text, "%.0f", value);
-    return settings_set(&run->settings, key, text, SOURCE_USER, NULL, error);
+    return settings_set(&settings->settings, key, text, SOURCE_USER, NULL, error);
 }
 
 /* What no level could run is said before anything runs. */
-static enum status try_coarsest(const struct run_settings *run, struct error *error)
+static enum status try_coarsest(const struct run *run, struct error *error)
 {
     struct run_result *plan = malloc(sizeof *plan);
     if (!plan) return error_set(error, STATUS_ENVIRONMENT, "no memory for a study");
     const enum status status = run_explain(run, plan, error);
     free(plan);
     return status;
+}
+
+/* The runs of a combination, resolved. */
+static enum status make_runs(struct study *study, size_t c, const struct run_settings *base,
+                             struct error *error)
+{
+    const double seed = settings_real(&base->settings, SETTING_seed);
+    for (size_t l = 0; l < study->level_count; l++)
+        for (size_t r = 0; r < study->seeds; r++) {
+            struct run_settings asked = *base;
+            if (set_integer(&asked, SETTING_n, (double)study->ladder[l], error) ||
+                (r && set_integer(&asked, SETTING_seed, seed + (double)r, error)) ||
+                run_resolve(run_at(study, c, l, r), &asked, error))
+                return error->status;
+        }
+    return STATUS_OK;
 }
 
 static enum status plan_combination(struct study *study, size_t c, struct pool *pool,
@@ -60,27 +75,25 @@ static enum status plan_combination(struct study *study, size_t c, struct pool *
     struct run_settings base = study->settings;
     struct error reason = {0};
     if (sweep_apply(&study->sweep, c, &base, error)) return error->status;
-    result->settings = base.settings;
-    if (settings_resolve(&result->settings, base.file.dimension, &result->scheme, &reason)) {
+    if (make_runs(study, c, &base, &reason)) {
         if (study->sweep.count == 1) return error_set(error, reason.status, "%s", reason.message);
         result->excluded = true;
         memcpy(result->message, reason.message, sizeof result->message);
         return STATUS_OK;
     }
+    const struct run *finest = run_at(study, c, study->level_count - 1, 0);
+    result->settings = finest->settings;
+    result->scheme = finest->scheme;
     if (study->seeds > 1 && !study_is_random(&result->settings))
         return error_set(error, STATUS_BAD_INPUT,
                          "%zu seeds: the initial state is not random; allowed: one seed, or "
                          "jitter > 0",
                          study->seeds);
-    const double seed = settings_real(&result->settings, SETTING_seed);
+    if (try_coarsest(run_at(study, c, 0, 0), error)) return error->status;
     for (size_t l = 0; l < study->level_count; l++)
         for (size_t r = 0; r < study->seeds; r++) {
-            struct run_settings *run = run_at(study, c, l, r);
-            *run = base;
-            if (set_integer(run, SETTING_n, (double)study->ladder[l], error) ||
-                (r && set_integer(run, SETTING_seed, seed + (double)r, error)) ||
-                (l == 0 && r == 0 && try_coarsest(run, error)) ||
-                run_job_add(pool, run, &study->jobs[run - study->runs], error))
+            const struct run *run = run_at(study, c, l, r);
+            if (run_job_add(pool, run, &study->jobs[run - study->runs], error))
                 return error->status;
         }
     return STATUS_OK;
@@ -208,11 +221,6 @@ static enum status read_levels(struct study *study, size_t c, const struct pool 
         close_level(level, pool->jobs[job_at(study, c, l, 0)].document, study->seeds);
         result->level_count++;
     }
-    struct scheme scheme;
-    struct error none;
-    struct run_settings finest = *run_at(study, c, study->level_count - 1, 0);
-    if (!settings_resolve(&finest.settings, finest.file.dimension, &scheme, &none))
-        result->settings = finest.settings;
     return STATUS_OK;
 }
 

@@ -69,7 +69,7 @@ struct study {
     /* from study_plan and study_judge: */
     enum status status;             /* the worst of the results */
     struct study_result *results;   /* sweep.count */
-    struct run_settings *runs;      /* combination, level, replicate: the last runs fastest */
+    struct run *runs;               /* combination, level, replicate: the last runs fastest */
     size_t *jobs;                   /* their numbers in the pool */
     char suspicion[SUSPICION_TEXT]; /* a setting that changes nothing */
 };

@@ -66,6 +66,7 @@ static int calls_in(const char *case_name, const char *keys, int threads,
     char text[256], *words[16];
     int n = 0;
     struct run_settings settings;
+    struct run run;
     struct run_result result;
     struct error error;
     assert_true(strlen(keys) < sizeof text);
@@ -74,8 +75,9 @@ static int calls_in(const char *case_name, const char *keys, int threads,
     if (run_prepare(&settings, case_name, n, words, &error)) fail_msg("%s", error.message);
     settings.threads = threads;
     settings.progress = progress;
+    if (run_resolve(&run, &settings, &error)) fail_msg("%s", error.message);
     calls = 0;
-    const enum status status = run_execute(&settings, &result, &error);
+    const enum status status = run_execute(&run, &result, &error);
     if (status) fail_msg("%s %s: %s", case_name, keys, error.message);
     assert_true(result.cost.steps > 0);
     run_free(&result);

@@ -222,7 +222,7 @@ static void test_loops_stand_still(void **state)
         struct error error = {0};
         struct clock_taken taken = {0};
         assert_int_equal(run_prepare(&settings, "sod", 2, keys[k], &error), 0);
-        assert_int_equal(settings_resolve(&settings.settings, 1, &scheme, &error), 0);
+        assert_int_equal(settings_scheme(&settings.settings, 1, &scheme, &error), 0);
         const unsigned all = 1u << PASS_STATE | 1u << PASS_DENSITY | 1u << PASS_MATRIX |
                              1u << PASS_FORCE | 1u << PASS_SIGNAL;
         assert_int_equal(bench_loops_create(&loops, &scheme, 200, true, all, &error), 0);
@@ -258,14 +258,16 @@ static void compare_plain(const char *name, int n, char *const *more)
                                  "skip=none",
                                  "h_tolerance=1e-13"};
     struct run_settings *settings = calloc(1, sizeof *settings);
+    struct run run;
     struct run_result fast, plain;
     struct error error = {0};
     assert_int_equal(run_prepare(settings, name, sizeof keys / sizeof *keys, keys, &error), 0);
     assert_int_equal(settings_apply(&settings->settings, n, more, &error), 0);
     settings->threads = 1;
-    assert_int_equal(run_execute(settings, &fast, &error), STATUS_OK);
-    settings->plain = true;
-    assert_int_equal(run_execute(settings, &plain, &error), STATUS_OK);
+    assert_int_equal(run_resolve(&run, settings, &error), STATUS_OK);
+    assert_int_equal(run_execute(&run, &fast, &error), STATUS_OK);
+    run.asked.plain = true;
+    assert_int_equal(run_execute(&run, &plain, &error), STATUS_OK);
     assert_int_equal(plain.n, fast.n);
     assert_int_equal(plain.cost.steps, fast.cost.steps);
     near_relative(plain.time, fast.time, 1e-15);
@@ -308,12 +310,13 @@ static void test_plain_refuses_other_schemes(void **state)
     (void)state;
     static char *const keys[] = {"n=60", "kernel=wendland_c2"};
     struct run_settings *settings = calloc(1, sizeof *settings);
+    struct run run;
     struct run_result result;
     struct error error = {0};
     assert_int_equal(run_prepare(settings, "sod", 2, keys, &error), 0);
-    settings->threads = 1;
     settings->plain = true;
-    assert_int_equal(run_execute(settings, &result, &error), STATUS_BAD_INPUT);
+    assert_int_equal(run_resolve(&run, settings, &error), STATUS_OK);
+    assert_int_equal(run_execute(&run, &result, &error), STATUS_BAD_INPUT);
     assert_non_null(strstr(error.message, "cubic_spline"));
     free(settings);
 }

@@ -13,11 +13,13 @@
 #include "cases.h"
 #include "integrator.h"
 #include "near.h"
+#include "problem.h"
 #include "settings.h"
 
 static void resolve(struct settings *settings, struct scheme *scheme, int n, ...)
 {
     char *arguments[16];
+    struct prepared problem;
     struct error error = {0};
     va_list list;
     va_start(list, n);
@@ -25,7 +27,8 @@ static void resolve(struct settings *settings, struct scheme *scheme, int n, ...
     va_end(list);
     settings_init(settings);
     assert_int_equal(settings_apply(settings, n, arguments, &error), STATUS_OK);
-    assert_int_equal(settings_resolve(settings, 1, scheme, &error), STATUS_OK);
+    assert_int_equal(problem_prepare(&problem, settings, 1, &error), STATUS_OK);
+    assert_int_equal(settings_scheme(settings, 1, scheme, &error), STATUS_OK);
 }
 
 static void defaults_are_the_fastest_scheme(void **state)

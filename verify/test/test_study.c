@@ -68,17 +68,24 @@ static void any_number_of_processes(void **state)
     study_free(&three);
 }
 
+static struct run_result ran(const char *name, int n, char **arguments)
+{
+    struct run_settings settings;
+    struct run run;
+    struct run_result result;
+    struct error error = {0};
+    if (run_prepare(&settings, name, n, arguments, &error) ||
+        run_resolve(&run, &settings, &error) || run_execute(&run, &result, &error))
+        fail_msg("%s", error.message);
+    return result;
+}
+
 /* Levels of a study are runs like any other. */
 static void levels_are_runs(void **state)
 {
     (void)state;
     struct study study = made("sod", "t_end=0.1", NULL, 1, 2);
-    struct run_settings settings;
-    struct run_result run;
-    struct error error = {0};
-    char *arguments[] = {"t_end=0.1", "n=80"};
-    assert_int_equal(run_prepare(&settings, "sod", 2, arguments, &error), STATUS_OK);
-    assert_int_equal(run_execute(&settings, &run, &error), STATUS_OK);
+    struct run_result run = ran("sod", 2, (char *[]){"t_end=0.1", "n=80"});
     const struct study_level *level = &study.results[0].levels[2];
     for (int f = 0; f < FIELDS; f++)
         for (int m = 0; m < NORMS; m++)
@@ -97,14 +104,9 @@ static void replicates(void **state)
     /* geometric mean and spread of four single runs */
     double sum = 0, squares = 0;
     for (int r = 0; r < 4; r++) {
-        struct run_settings settings;
-        struct run_result run;
-        struct error error = {0};
         char seed[32];
         snprintf(seed, sizeof seed, "seed=%d", r + 1);
-        char *arguments[] = {"t_end=0.1", "jitter=0.1", "n=60", seed};
-        assert_int_equal(run_prepare(&settings, "sod", 4, arguments, &error), STATUS_OK);
-        assert_int_equal(run_execute(&settings, &run, &error), STATUS_OK);
+        struct run_result run = ran("sod", 4, (char *[]){"t_end=0.1", "jitter=0.1", "n=60", seed});
         const double value = log(run.errors[FIELD_DENSITY].l1);
         sum += value;
         squares += value * value;
@@ -169,13 +171,8 @@ static void budgets_add_up(void **state)
 static void still_gas_that_moves(void **state)
 {
     (void)state;
-    struct run_settings settings;
-    struct run_result run;
-    struct error error = {0};
+    struct run_result run = ran("sod", 1, (char *[]){"n=800"});
     struct budget budget;
-    char *arguments[] = {"n=800"};
-    assert_int_equal(run_prepare(&settings, "sod", 1, arguments, &error), STATUS_OK);
-    assert_int_equal(run_execute(&settings, &run, &error), STATUS_OK);
     const double *none[FIELDS] = {run.snapshot.rho, run.snapshot.v[0], run.snapshot.P,
                                   run.snapshot.u};
     near_below(run.budget.still, 1e-6);
