@@ -18,6 +18,9 @@ struct integrator {
     int evaluations;    /* of the rates, a step */
     double cfl;         /* default of the key cfl, in support radii; see the member's comment */
     bool cfl_per_width; /* the default is cfl / eta: in particle spacings */
+    /* Density sums stand evenly between steps, and energy is not kept to a high order: h may be
+     * predicted, and total energy is the one to integrate (see scheme_default). */
+    bool predicts;
     /* where h is predicted: P = P(rho, U) (1 - follow (gamma - 1)(V/V_predicted - 1)), 0 for none;
      * see predicted_midpoint.h */
     double follow;

@@ -5,6 +5,9 @@
 #ifndef SPHPROOF_KERNEL_H
 #define SPHPROOF_KERNEL_H
 
+#include <stdbool.h>
+
+#include "families.h"
 #include "family.h"
 #include "status.h"
 
@@ -24,10 +27,17 @@ struct kernel {
     const double *knots;                 /* not owned; constant for the built-in kernels */
     int smoothness[KERNEL_DIM_MAX + 1];  /* class C^k: least over origin, knots and edge */
     double unity_width; /* smallest eta in 1D whose lattice sums are exact; 0: none */
-    double default_eta; /* eta where the user gives none, in 1D */
     /* Largest eta at which the uniform 1D lattice is linearly stable without viscosity,
-     * vanilla_ice, gamma 1.4, with the standard and the ia gradient; 0: no limit was found. */
-    double stable_eta[2];
+     * vanilla_ice, gamma 1.4; 0: no limit was found. */
+    double stable_eta[GRADIENTS];
+    /* Defaults in 1D, as measured (see scheme_default); 0: as for other kernels. */
+    double default_eta;
+    struct {                        /* with integrators that predict */
+        double alpha;               /* viscosity that suffices */
+        double cfl;                 /* times eta: steps that are stable with no more than that */
+        enum pair_width pair_width; /* of the standard gradient */
+        bool uncorrected;           /* a predicted h stays near its root without Newton's help */
+    } predicted;
     int order; /* n of sinc_n; 0 for the others */
     /* A plug-in's own functions (see verify/kernel/plugin.h); NULL for the built-in kernels. */
     double (*plugin_w)(double q, int dim);

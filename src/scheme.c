@@ -12,6 +12,39 @@
     const struct family scheme_##name##_family = {plural, title, name##_members, count};
 FAMILY_LIST(FAMILY)
 
+void scheme_default(struct scheme *scheme, const struct scheme_open *open, int dim)
+{
+    const struct kernel *kernel = &scheme->kernel;
+    const struct integrator *integrator = scheme->integrator;
+    const bool predicts = integrator->predicts, own = predicts && dim == 1,
+               vanilla = scheme->formulation == FORMULATION_VANILLA_ICE,
+               standard = scheme->gradient == GRADIENT_STANDARD;
+    if (open->eta) scheme->eta = kernel->default_eta;
+    if (open->energy) scheme->energy = predicts ? ENERGY_TOTAL : ENERGY_INTERNAL;
+    if (open->alpha)
+        scheme->alpha = own && kernel->predicted.alpha > 0 ? kernel->predicted.alpha : 1;
+    if (open->beta) scheme->beta = 2 * scheme->alpha;
+    if (open->h_method)
+        scheme->h_method = !predicts || !vanilla                  ? H_NEWTON
+                           : own && kernel->predicted.uncorrected ? H_PREDICTED
+                                                                  : H_CORRECTED;
+    if (open->pair_width)
+        scheme->pair_width = !predicts || !vanilla                          ? PAIR_WIDTH_MEAN
+                             : scheme->viscosity == VISCOSITY_RECONSTRUCTED ? PAIR_WIDTH_HARMONIC
+                             : own && standard ? kernel->predicted.pair_width
+                                               : PAIR_WIDTH_MEAN;
+    if (!open->cfl) return;
+    /* long steps are stable with this much viscosity, and not needed without */
+    const double most_alpha =
+        scheme->viscosity == VISCOSITY_TIME_DEPENDENT ? scheme->alpha_max : scheme->alpha;
+    const bool long_steps =
+        own && standard && kernel->predicted.cfl > 0 && scheme->eta == kernel->default_eta &&
+        scheme->viscosity != VISCOSITY_NONE && most_alpha <= kernel->predicted.alpha &&
+        scheme->h_method == H_PREDICTED && scheme->volume_element == VOLUME_MASS;
+    scheme->cfl = long_steps ? kernel->predicted.cfl : integrator->cfl;
+    if (integrator->cfl_per_width) scheme->cfl /= scheme->eta;
+}
+
 /* Reports a value that is not in (least, most]. */
 static enum status out_of_range(struct error *error, const char *key, double value,
                                 const char *allowed)

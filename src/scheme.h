@@ -31,6 +31,15 @@ struct scheme {
     double h_tolerance;          /* relative, of Newton's h */
 };
 
+/* What the maker of a scheme leaves open. */
+struct scheme_open {
+    bool eta, alpha, beta, cfl, energy, pair_width, h_method;
+};
+
+/* Fills what is open from the descriptors of the kernel, the integrator and the other choices, all
+ * of which are there. Numbers that were measured in 1D are used in 1D alone. */
+void scheme_default(struct scheme *scheme, const struct scheme_open *open, int dim);
+
 /* Checks that the choices go together and the numbers are in range (eta against the existence limit
  * of the kernel in dim dimensions). STATUS_BAD_INPUT names the two that exclude each other. */
 enum status scheme_check(const struct scheme *scheme, int dim, struct error *error);

@@ -128,5 +128,5 @@ static enum status predicted_midpoint_step(struct simulation *simulation, double
 INTEGRATOR(predicted_midpoint,
            .member = {"predicted_midpoint", "midpoint with predicted rates, one evaluation a step",
                       "van Leer 1979"},
-           .order = 2, .evaluations = 1, .cfl = 0.8, .cfl_per_width = true, .follow = 1.5,
-           .first_step = 0.25)
+           .order = 2, .evaluations = 1, .cfl = 0.8, .cfl_per_width = true, .predicts = true,
+           .follow = 1.5, .first_step = 0.25)

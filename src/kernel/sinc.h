@@ -49,4 +49,5 @@ static inline double sinc_dw(const struct kernel *kernel, double q, int dim)
 
 #endif
 KERNEL(sinc, .member = {"sinc", "sinc family, (sin(pi q)/(pi q))^n", "Cabezon et al. 2008"},
-       .smoothness = {0, 4, 4, 4}, .default_eta = 2.5, .stable_eta = {4.687, 4.886}, .order = 5)
+       .smoothness = {0, 4, 4, 4}, .default_eta = 2.5,
+       .stable_eta = {[GRADIENT_STANDARD] = 4.687, [GRADIENT_IA] = 4.886}, .order = 5)

@@ -179,55 +179,16 @@ bool settings_foreign(const struct settings *settings, enum setting key)
     return !problem_reads(problem_of(settings), key);
 }
 
-static void fill(struct settings *settings, enum setting key, double real, int choice)
-{
-    struct setting_value *value = &settings->value[key];
-    if (!value->automatic) return;
-    value->real[0] = real;
-    value->choice = choice;
-}
-
-enum status settings_scheme(struct settings *settings, int dim, struct scheme *scheme,
-                            struct error *error)
+/* What the scheme's keys say; what they leave open is told apart. */
+static enum status read_scheme(const struct settings *settings, struct scheme *scheme,
+                               struct scheme_open *open, struct error *error)
 {
 #define REAL_OF(key)   settings_real(settings, SETTING_##key)
 #define CHOICE_OF(key) settings_choice(settings, SETTING_##key)
-    const struct integrator *integrator =
-        (const struct integrator *)integrator_family.members[CHOICE_OF(integrator)];
-    struct kernel kernel;
-    const char *kernel_name = kernel_family.members[CHOICE_OF(kernel)]->name;
-    if (kernel_select(&kernel, kernel_name, (int)REAL_OF(sinc_n), error)) return error->status;
-
-    const bool predicted = strcmp(integrator->member.name, "predicted_midpoint") == 0;
-    const bool quadratic = strcmp(kernel_name, "quadratic_spline") == 0;
-    const bool vanilla = CHOICE_OF(formulation) == FORMULATION_VANILLA_ICE;
-    const bool standard = CHOICE_OF(gradient) == GRADIENT_STANDARD;
-    const bool reconstructed = CHOICE_OF(viscosity) == VISCOSITY_RECONSTRUCTED;
-    fill(settings, SETTING_eta, kernel.default_eta, 0);
-    fill(settings, SETTING_energy, 0, predicted ? ENERGY_TOTAL : ENERGY_INTERNAL);
-    fill(settings, SETTING_alpha, quadratic && predicted ? 0.75 : 1, 0);
-    fill(settings, SETTING_beta, 2 * REAL_OF(alpha), 0);
-    fill(settings, SETTING_h_method, 0,
-         !predicted || !vanilla ? H_NEWTON
-         : quadratic            ? H_PREDICTED
-                                : H_CORRECTED);
-    fill(settings, SETTING_pair_width, 0,
-         !vanilla || !predicted  ? PAIR_WIDTH_MEAN
-         : reconstructed         ? PAIR_WIDTH_HARMONIC
-         : quadratic && standard ? PAIR_WIDTH_MAX
-                                 : PAIR_WIDTH_MEAN);
-    /* steps that are stable with this much viscosity, and not needed without */
-    const int viscosity = CHOICE_OF(viscosity);
-    const double most_alpha =
-        viscosity == VISCOSITY_TIME_DEPENDENT ? REAL_OF(alpha_max) : REAL_OF(alpha);
-    const bool long_steps = quadratic && standard && REAL_OF(eta) == kernel.default_eta &&
-                            viscosity != VISCOSITY_NONE && most_alpha <= 0.75 &&
-                            CHOICE_OF(h_method) == H_PREDICTED &&
-                            CHOICE_OF(volume_element) == VOLUME_MASS;
-    fill(settings, SETTING_cfl,
-         predicted ? (long_steps ? 1.1 : integrator->cfl) / REAL_OF(eta) : integrator->cfl, 0);
+#define IS_AUTO(key)   settings->value[SETTING_##key].automatic
+    const struct member *kernel = kernel_family.members[CHOICE_OF(kernel)],
+                        *integrator = integrator_family.members[CHOICE_OF(integrator)];
     *scheme = (struct scheme){
-        .kernel = kernel,
         .gradient = (enum gradient)CHOICE_OF(gradient),
         .formulation = (enum formulation)CHOICE_OF(formulation),
         .volume_element = (enum volume_element)CHOICE_OF(volume_element),
@@ -235,7 +196,7 @@ enum status settings_scheme(struct settings *settings, int dim, struct scheme *s
         .energy = (enum energy)CHOICE_OF(energy),
         .pair_width = (enum pair_width)CHOICE_OF(pair_width),
         .h_method = (enum h_method)CHOICE_OF(h_method),
-        .integrator = integrator,
+        .integrator = (const struct integrator *)integrator,
         .alpha = REAL_OF(alpha),
         .beta = REAL_OF(beta),
         .alpha_min = REAL_OF(alpha_min),
@@ -244,9 +205,46 @@ enum status settings_scheme(struct settings *settings, int dim, struct scheme *s
         .cfl = REAL_OF(cfl),
         .h_tolerance = REAL_OF(h_tolerance),
     };
-    return scheme_check(scheme, dim, error);
+    *open = (struct scheme_open){
+        .eta = IS_AUTO(eta),
+        .alpha = IS_AUTO(alpha),
+        .beta = IS_AUTO(beta),
+        .cfl = IS_AUTO(cfl),
+        .energy = IS_AUTO(energy),
+        .pair_width = IS_AUTO(pair_width),
+        .h_method = IS_AUTO(h_method),
+    };
+    return kernel_select(&scheme->kernel, kernel->name, (int)REAL_OF(sinc_n), error);
 #undef REAL_OF
 #undef CHOICE_OF
+#undef IS_AUTO
+}
+
+/* The values of keys that were left open, as they are used. */
+static void write_scheme(struct settings *settings, const struct scheme *scheme)
+{
+    const struct {
+        enum setting key;
+        double real;
+    } numbers[] = {{SETTING_eta, scheme->eta},
+                   {SETTING_alpha, scheme->alpha},
+                   {SETTING_beta, scheme->beta},
+                   {SETTING_cfl, scheme->cfl}};
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+        settings->value[numbers[i].key].real[0] = numbers[i].real;
+    settings->value[SETTING_energy].choice = (int)scheme->energy;
+    settings->value[SETTING_pair_width].choice = (int)scheme->pair_width;
+    settings->value[SETTING_h_method].choice = (int)scheme->h_method;
+}
+
+enum status settings_scheme(struct settings *settings, int dim, struct scheme *scheme,
+                            struct error *error)
+{
+    struct scheme_open open;
+    if (read_scheme(settings, scheme, &open, error)) return error->status;
+    scheme_default(scheme, &open, dim);
+    write_scheme(settings, scheme);
+    return scheme_check(scheme, dim, error);
 }
 
 void settings_text(const struct settings *settings, enum setting which, char text[SETTING_TEXT_MAX])
