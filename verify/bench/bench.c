@@ -73,8 +73,7 @@ static void finish(struct bench_subject *subject, struct samples *samples)
 }
 
 enum status bench_measure(struct bench_subject *subjects, size_t count,
-                          const struct bench_rules *rules, bench_progress *progress, void *context,
-                          struct error *error)
+                          const struct bench_rules *rules, struct error *error)
 {
     enum status status = STATUS_OK;
     struct samples *samples = calloc(count + 1, sizeof *samples);
@@ -94,9 +93,9 @@ enum status bench_measure(struct bench_subject *subjects, size_t count,
             if (status) goto end;
             /* calibration costs about two more samples */
             const double done = (double)i + 1, all = (double)count;
-            if (progress)
-                progress(context, round == 0 ? 3 * done : (2 + round) * all + done,
-                         (2 + rules->samples) * all);
+            if (rules->progress)
+                rules->progress(rules->context, round == 0 ? 3 * done : (2 + round) * all + done,
+                                (2 + rules->samples) * all);
         }
     for (size_t i = 0; i < count; i++) finish(&subjects[i], &samples[i]);
 end:

@@ -30,21 +30,22 @@ struct bench_subject {
     struct error failure;   /* STATUS_OK, or why there is no result */
 };
 
+/* done of total samples. */
+typedef void bench_progress(void *context, double done, double total);
+
 enum { BENCH_SAMPLES_MAX = 64 };
 struct bench_rules {
-    double least_s; /* CPU time of a sample, at least */
-    double most_s;  /* of all of a subject's samples; two are taken in any case */
-    int samples;    /* 1 .. BENCH_SAMPLES_MAX */
+    double least_s;           /* CPU time of a sample, at least */
+    double most_s;            /* of all of a subject's samples; two are taken in any case */
+    int samples;              /* 1 .. BENCH_SAMPLES_MAX */
+    bench_progress *progress; /* told after each sample; may be NULL */
+    void *context;            /* its own */
 };
 extern const struct bench_rules bench_usual;
-
-/* done of total samples; may be NULL. */
-typedef void bench_progress(void *context, double done, double total);
 
 /* Measures all subjects. One that breaks down is left out and says so in its failure; any other
  * status ends the measurement and is returned. */
 enum status bench_measure(struct bench_subject *subjects, size_t count,
-                          const struct bench_rules *rules, bench_progress *progress, void *context,
-                          struct error *error);
+                          const struct bench_rules *rules, struct error *error);
 
 #endif

@@ -306,7 +306,6 @@ static struct bench_cost cost_of(const struct job *job, const struct bench_subje
 }
 
 enum status bench_kernels_measure(const struct sweep *sweep, const struct bench_rules *rules,
-                                  bench_progress *progress, void *context,
                                   struct bench_kernels *result, struct error *error)
 {
     struct bench bench = {.result = result};
@@ -323,7 +322,7 @@ enum status bench_kernels_measure(const struct sweep *sweep, const struct bench_
     for (size_t k = 0; k < bench.row_count * VARIANTS; k++)
         if (bench.jobs[k].kind != JOB_NONE)
             subjects[count++] = (struct bench_subject){.work = work, .context = &bench.jobs[k]};
-    if ((status = bench_measure(subjects, count, rules, progress, context, error))) goto end;
+    if ((status = bench_measure(subjects, count, rules, error))) goto end;
     result->count = bench.row_count;
     const struct bench_subject *next = subjects;
     for (size_t r = 0; r < bench.row_count; r++) {

@@ -32,7 +32,6 @@ struct bench_kernels {
 /* sweep: which kernels (its one key may be kernel; no key: all). Free with bench_kernels_free, also
  * after a failure. */
 enum status bench_kernels_measure(const struct sweep *sweep, const struct bench_rules *rules,
-                                  bench_progress *progress, void *context,
                                   struct bench_kernels *result, struct error *error);
 void bench_kernels_free(struct bench_kernels *result);
 

@@ -160,8 +160,7 @@ static void read_threads(struct bench *bench, size_t i, size_t first, int thread
 
 enum status bench_scaling_measure(const struct run_settings *settings, const size_t *ladder,
                                   size_t count, int threads, const struct bench_rules *rules,
-                                  bench_progress *progress, void *context, struct scaling *scaling,
-                                  struct error *error)
+                                  struct scaling *scaling, struct error *error)
 {
     *scaling = (struct scaling){.settings = settings, .level_count = count};
     const size_t most = PARTS * count + 2 * THREAD_LEVELS;
@@ -187,8 +186,7 @@ enum status bench_scaling_measure(const struct run_settings *settings, const siz
             bench.jobs[bench.count - 1].keep = true;
         }
     }
-    if (!status)
-        status = bench_measure(bench.subjects, bench.count, rules, progress, context, error);
+    if (!status) status = bench_measure(bench.subjects, bench.count, rules, error);
     for (size_t k = 0; k < bench.count && !status; k++)
         if (bench.subjects[k].failure.status) {
             *error = bench.subjects[k].failure;

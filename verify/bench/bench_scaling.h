@@ -46,8 +46,7 @@ struct scaling {
  * as long as the result. */
 enum status bench_scaling_measure(const struct run_settings *settings, const size_t *ladder,
                                   size_t count, int threads, const struct bench_rules *rules,
-                                  bench_progress *progress, void *context, struct scaling *scaling,
-                                  struct error *error);
+                                  struct scaling *scaling, struct error *error);
 
 /* "points" (the whole runs) and "scaling" of a result document. */
 void bench_scaling_add_json(const struct scaling *scaling, json_t *document);

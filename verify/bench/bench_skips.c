@@ -324,7 +324,7 @@ static void finish(struct bench *bench, const struct bench_subject *of_job[])
 }
 
 static enum status measure(struct bench *bench, const struct bench_rules *rules,
-                           bench_progress *progress, void *context, struct error *error)
+                           struct error *error)
 {
     const size_t all = bench->max * SIDES + bench->result->case_count;
     const struct bench_subject **of_job = calloc(all, sizeof *of_job);
@@ -340,7 +340,7 @@ static enum status measure(struct bench *bench, const struct bench_rules *rules,
         subjects[count] = (struct bench_subject){.work = work, .context = &bench->jobs[k]};
         of_job[k] = &subjects[count++];
     }
-    status = bench_measure(subjects, count, rules, progress, context, error);
+    status = bench_measure(subjects, count, rules, error);
     for (size_t k = 0; k < count && !status; k++)
         if (subjects[k].failure.status) {
             *error = subjects[k].failure;
@@ -353,8 +353,8 @@ end:
 }
 
 enum status bench_skips_measure(const struct run_settings *cases, size_t count,
-                                const struct bench_rules *rules, bench_progress *progress,
-                                void *context, struct bench_skips *result, struct error *error)
+                                const struct bench_rules *rules, struct bench_skips *result,
+                                struct error *error)
 {
     struct bench bench = {.result = result, .max = count * (SWITCHES + EXTRAS)};
     *result = (struct bench_skips){.case_count = count,
@@ -369,7 +369,7 @@ enum status bench_skips_measure(const struct run_settings *cases, size_t count,
         result->cases[c] = cases[c];
         status = add_case(&bench, c, error);
     }
-    if (!status) status = measure(&bench, rules, progress, context, error);
+    if (!status) status = measure(&bench, rules, error);
     for (size_t k = 0; bench.jobs && k < bench.max * SIDES + count; k++) {
         free(bench.jobs[k].run);
         run_free(&bench.jobs[k].last);

@@ -48,8 +48,8 @@ struct bench_skips {
 /* cases: count prepared settings, copied. STATUS_OK also where a promise is broken: see kept. Free
  * with bench_skips_free, also after a failure. */
 enum status bench_skips_measure(const struct run_settings *cases, size_t count,
-                                const struct bench_rules *rules, bench_progress *progress,
-                                void *context, struct bench_skips *result, struct error *error);
+                                const struct bench_rules *rules, struct bench_skips *result,
+                                struct error *error);
 void bench_skips_free(struct bench_skips *result);
 
 /* Array "skips" of a result document. */

@@ -240,8 +240,7 @@ static enum status judge(struct precision *precision, struct error *error)
 
 enum status precision_measure(const struct run_settings *settings, const struct sweep *sweep,
                               const size_t *ladder, size_t count, const struct bench_rules *rules,
-                              bench_progress *progress, void *context, struct precision *precision,
-                              struct error *error)
+                              struct precision *precision, struct error *error)
 {
     const size_t schemes = sweep->count + 2 + want_graded(settings, sweep), most = schemes * count;
     *precision = (struct precision){.settings = settings, .scheme_count = schemes};
@@ -272,7 +271,7 @@ enum status precision_measure(const struct run_settings *settings, const struct 
         status =
             error_set(error, STATUS_BAD_INPUT, "bench: no combination of --vary is allowed: %s",
                       precision->schemes[0].excluded);
-    if (!status) status = bench_measure(subjects, n, rules, progress, context, error);
+    if (!status) status = bench_measure(subjects, n, rules, error);
     if (!status) {
         collect(precision, subjects, jobs);
         status = judge(precision, error);

@@ -59,8 +59,7 @@ struct precision {
  * is left. Free with precision_free, also after a failure. */
 enum status precision_measure(const struct run_settings *settings, const struct sweep *sweep,
                               const size_t *ladder, size_t count, const struct bench_rules *rules,
-                              bench_progress *progress, void *context, struct precision *precision,
-                              struct error *error);
+                              struct precision *precision, struct error *error);
 void precision_free(struct precision *precision);
 
 /* "case", "points", "schemes", "cheapest", "excluded" ... of a result document. */

@@ -137,67 +137,85 @@ static size_t choose(const struct precision *precision, const struct precision_s
     return n;
 }
 
-enum status precision_plot(const struct precision *precision, const char *path, struct error *error)
-{
-    const size_t n = precision->point_count;
-    const struct precision_scheme **list = sorted_schemes(precision), *chosen[PLOT_COLORS];
-    double *x = malloc((4 * n + 1) * sizeof *x), *y = x + n, *rest_x = y + n, *rest_y = rest_x + n;
-    if (!list || !x) {
-        free(list), free(x);
-        return error_set(error, STATUS_ENVIRONMENT, "--plot %.150s: no memory", path);
-    }
+/* What is drawn: the named schemes' points joined, all others faint. */
+struct picture {
+    const struct precision_scheme *chosen[PLOT_COLORS];
+    size_t curves, count, mark_count;
     struct plot_series series[PLOT_COLORS + 1];
-    const size_t curves = choose(precision, list, chosen);
-    size_t rest = 0, count = 0;
-    for (size_t i = 0; i < n; i++) {
-        const struct precision_point *point = &precision->points[i];
-        bool named = false;
-        for (size_t c = 0; c < curves; c++)
-            named = named || chosen[c] == &precision->schemes[point->scheme];
-        x[i] = point->time.cpu_s;
-        y[i] = 100 * point->relative;
-        if (named) continue;
-        rest_x[rest] = x[i];
-        rest_y[rest++] = y[i];
-    }
-    if (rest)
-        series[count++] = (struct plot_series){.kind = PLOT_POINTS,
-                                               .n = rest,
-                                               .x = rest_x,
-                                               .y = rest_y,
-                                               .color = PLOT_NEUTRAL,
-                                               .size = 0.25};
-    for (size_t c = 0; c < curves; c++)
-        series[count++] = (struct plot_series){.label = chosen[c]->brief,
-                                               .kind = PLOT_LINES_POINTS,
-                                               .n = chosen[c]->count,
-                                               .x = x + chosen[c]->first,
-                                               .y = y + chosen[c]->first,
-                                               .dashed = chosen[c]->reference != REFERENCE_NONE};
     struct plot_mark marks[PRECISION_TARGETS];
     char names[PRECISION_TARGETS][16];
-    size_t mark_count = 0; /* those that anything comes near to */
+    double *x, *y; /* CPU time, percent: of all points, then of the others */
+};
+
+static bool is_named(const struct picture *picture, const struct precision_scheme *scheme)
+{
+    for (size_t c = 0; c < picture->curves; c++)
+        if (picture->chosen[c] == scheme) return true;
+    return false;
+}
+
+static void add_points(struct picture *picture, const struct precision *precision)
+{
+    const size_t n = precision->point_count;
+    double *x = picture->x, *y = picture->y;
+    size_t rest = n;
+    for (size_t i = 0; i < n; i++) {
+        const struct precision_point *point = &precision->points[i];
+        x[i] = point->time.cpu_s;
+        y[i] = 100 * point->relative;
+        if (is_named(picture, &precision->schemes[point->scheme])) continue;
+        x[rest] = x[i];
+        y[rest++] = y[i];
+    }
+    if (rest > n)
+        picture->series[picture->count++] = (struct plot_series){.kind = PLOT_POINTS,
+                                                                 .n = rest - n,
+                                                                 .x = x + n,
+                                                                 .y = y + n,
+                                                                 .color = PLOT_NEUTRAL,
+                                                                 .size = 0.25};
+    for (size_t c = 0; c < picture->curves; c++) {
+        const struct precision_scheme *scheme = picture->chosen[c];
+        picture->series[picture->count++] =
+            (struct plot_series){.label = scheme->brief,
+                                 .kind = PLOT_LINES_POINTS,
+                                 .n = scheme->count,
+                                 .x = x + scheme->first,
+                                 .y = y + scheme->first,
+                                 .dashed = scheme->reference != REFERENCE_NONE};
+    }
+}
+
+/* The targets that anything comes near to. */
+static void add_marks(struct picture *picture, size_t points)
+{
     for (size_t t = 0; t < PRECISION_TARGETS; t++) {
         const double percent = 100 * precision_targets[t];
-        if (percent < 0.5 * gsl_stats_min(y, 1, n)) continue;
-        snprintf(names[t], sizeof names[t], "%g %%", percent);
-        marks[mark_count++] =
-            (struct plot_mark){.at = percent, .horizontal = true, .label = names[t]};
+        if (percent < 0.5 * gsl_stats_min(picture->y, 1, points)) continue;
+        snprintf(picture->names[t], sizeof picture->names[t], "%g %%", percent);
+        picture->marks[picture->mark_count++] =
+            (struct plot_mark){.at = percent, .horizontal = true, .label = picture->names[t]};
     }
+}
+
+static enum status draw(const struct picture *picture, const char *case_title, const char *path,
+                        struct error *error)
+{
     size_t longest = 0; /* names stand right of the panel */
-    for (size_t c = 0; c < curves; c++)
-        if (strlen(chosen[c]->brief) > longest) longest = strlen(chosen[c]->brief);
+    for (size_t c = 0; c < picture->curves; c++)
+        if (strlen(picture->chosen[c]->brief) > longest)
+            longest = strlen(picture->chosen[c]->brief);
     char title[256];
-    snprintf(title, sizeof title, "%.200s: what an error costs", precision->settings->file.title);
+    snprintf(title, sizeof title, "%.200s: what an error costs", case_title);
     const struct plot_panel panel = {.x_label = "CPU time (s)",
                                      .y_label = "L1 error of density (% of the mean)",
                                      .x_log = true,
                                      .y_log = true,
                                      .key = PLOT_KEY_END,
-                                     .series = series,
-                                     .series_count = count,
-                                     .marks = marks,
-                                     .mark_count = mark_count};
+                                     .series = picture->series,
+                                     .series_count = picture->count,
+                                     .marks = picture->marks,
+                                     .mark_count = picture->mark_count};
     const struct plot plot = {.name = "bench",
                               .title = title,
                               .show_title = true,
@@ -205,7 +223,24 @@ enum status precision_plot(const struct precision *precision, const char *path, 
                               .height = 480,
                               .panels = &panel,
                               .panel_count = 1};
-    const enum status status = picture_write(&plot, path, error);
-    free(list), free(x);
+    return picture_write(&plot, path, error);
+}
+
+enum status precision_plot(const struct precision *precision, const char *path, struct error *error)
+{
+    const size_t n = precision->point_count;
+    const struct precision_scheme **list = sorted_schemes(precision);
+    struct picture picture = {.x = malloc((4 * n + 1) * sizeof(double))};
+    enum status status = STATUS_OK;
+    if (!list || !picture.x) {
+        status = error_set(error, STATUS_ENVIRONMENT, "--plot %.150s: no memory", path);
+    } else {
+        picture.y = picture.x + 2 * n;
+        picture.curves = choose(precision, list, picture.chosen);
+        add_points(&picture, precision);
+        add_marks(&picture, n);
+        status = draw(&picture, precision->settings->file.title, path, error);
+    }
+    free(list), free(picture.x);
     return status;
 }

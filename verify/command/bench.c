@@ -38,6 +38,8 @@ static enum status read_rules(struct request *request, struct error *error)
     const char *samples = options_value(request->options, "samples");
     double value;
     request->rules = bench_usual;
+    request->rules.progress = show_progress;
+    request->rules.context = &request->progress;
     if (least) {
         if (!text_real(least, &value) || !(value > 0 && value <= 60))
             return command_usage(request->options, error,
@@ -101,8 +103,8 @@ static enum status work_precision(struct request *request, struct error *error)
         (plot && picture_probe(plot, error)))
         return error->status;
     progress_begin(&request->progress, "bench", request->options->quiet);
-    enum status status = precision_measure(&settings, &sweep, ladder, count, &request->rules,
-                                           show_progress, &request->progress, &precision, error);
+    enum status status =
+        precision_measure(&settings, &sweep, ladder, count, &request->rules, &precision, error);
     progress_end(&request->progress);
     if (!status && plot) status = precision_plot(&precision, plot, error);
     if (!status) {
@@ -146,8 +148,7 @@ static enum status kernels(struct request *request, struct error *error)
         sweep_parse(&sweep, options_value(request->options, "vary"), error))
         return error->status;
     progress_begin(&request->progress, "bench --kernels", request->options->quiet);
-    enum status status = bench_kernels_measure(&sweep, &request->rules, show_progress,
-                                               &request->progress, &result, error);
+    enum status status = bench_kernels_measure(&sweep, &request->rules, &result, error);
     progress_end(&request->progress);
     if (!status) {
         json_t *document = result_new("bench");
@@ -198,8 +199,7 @@ static enum status skips(struct request *request, struct error *error)
     struct run_settings *cases = all_cases(request, &count, error);
     if (!cases) return error->status;
     progress_begin(&request->progress, "bench --skips", request->options->quiet);
-    enum status status = bench_skips_measure(cases, count, &request->rules, show_progress,
-                                             &request->progress, &result, error);
+    enum status status = bench_skips_measure(cases, count, &request->rules, &result, error);
     progress_end(&request->progress);
     for (size_t s = 0; s < result.count; s++) kept = kept && result.skips[s].kept;
     if (!status) {
@@ -236,8 +236,8 @@ static enum status scaling(struct request *request, struct error *error)
         (plot && picture_probe(plot, error)))
         return error->status;
     progress_begin(&request->progress, "bench --scaling", request->options->quiet);
-    enum status status = bench_scaling_measure(&settings, ladder, count, threads, &request->rules,
-                                               show_progress, &request->progress, &result, error);
+    enum status status =
+        bench_scaling_measure(&settings, ladder, count, threads, &request->rules, &result, error);
     progress_end(&request->progress);
     if (!status && plot) status = bench_scaling_plot(&result, plot, error);
     if (!status) {

@@ -99,72 +99,96 @@ static enum status take_settings(const struct options *options, struct report_se
     return STATUS_OK;
 }
 
-static enum status run(const struct options *options, int n, char **arguments, struct error *error)
-{
-    struct report_settings settings = {.progress = show_progress};
-    struct cache cache;
-    char plots[PATH_LENGTH], kept[PATH_LENGTH], nights[PATH_LENGTH], faults[PATH_LENGTH];
-    const char *history = options_value(options, "history"),
-               *folder = options_value(options, "out");
-    if (!folder) folder = "reports/out";
-    if (n) return command_usage(options, error, "no argument is known: '%.40s'", arguments[0]);
-    enum status status = take_settings(options, &settings, error);
-    if (!status && snprintf(plots, sizeof plots, "%s/plots", folder) >= (int)sizeof plots)
-        return error_set(error, STATUS_BAD_INPUT, "report: --out: the path is too long");
-    if (!status) status = output_folder(plots, error);
-    snprintf(kept, sizeof kept, "%.*s/cache", PATH_LENGTH - 64, folder);
-    if (!status) status = cache_open(&cache, kept, options_value(options, "force") != NULL, error);
-    if (!history) {
-        snprintf(nights, sizeof nights, "%.*s/history.jsonl", PATH_LENGTH - 64, folder);
-        history = nights;
-    }
-    if (!status) status = output_probe(history, error);
-    if (status) return status;
-    settings.cache = &cache;
-    snprintf(faults, sizeof faults, "%.*s/faults.json", PATH_LENGTH - 64, folder);
-    settings.faults = faults;
+/* Where everything lies: in one folder, but for the history where the user says so. */
+struct paths {
+    const char *folder, *history;
+    char plots[PATH_LENGTH], cache[PATH_LENGTH], nights[PATH_LENGTH], faults[PATH_LENGTH];
+};
 
-    json_t *results;
+static enum status take_paths(const struct options *options, struct paths *paths,
+                              struct error *error)
+{
+    const char *folder = options_value(options, "out");
+    paths->folder = folder ? folder : "reports/out";
+    paths->history = options_value(options, "history");
+    if (!paths->history) paths->history = paths->nights;
+    if (strlen(paths->folder) > PATH_LENGTH - 64)
+        return error_set(error, STATUS_BAD_INPUT, "report: --out: the path is too long");
+    snprintf(paths->plots, PATH_LENGTH, "%s/plots", paths->folder);
+    snprintf(paths->cache, PATH_LENGTH, "%s/cache", paths->folder);
+    snprintf(paths->nights, PATH_LENGTH, "%s/history.jsonl", paths->folder);
+    snprintf(paths->faults, PATH_LENGTH, "%s/faults.json", paths->folder);
+    if (output_folder(paths->plots, error)) return error->status;
+    return output_probe(paths->history, error);
+}
+
+/* All results, with what the nights before tell; the caller owns them. */
+static enum status compute(const struct options *options, struct report_settings *settings,
+                           const char *history, json_t **results, struct error *error)
+{
     struct progress progress;
-    settings.context = &progress;
+    json_t *told;
+    settings->progress = show_progress;
+    settings->context = &progress;
     progress_begin(&progress, "report", options->quiet);
-    status = report_compute(&settings, &results, error);
+    enum status status = report_compute(settings, results, error);
     progress_end(&progress);
     if (status) return status;
-    const char *note = json_string_value(json_object_get(results, "note"));
-    if (note && !options->quiet) fprintf(stderr, "sphproof: note: %s\n", note);
-    json_t *told;
-    if ((status = history_tell(results, history, &told, error))) {
-        json_decref(results);
-        return status;
-    }
-    json_object_set_new(results, "history", told);
+    const char *note = value_text(*results, "note");
+    if (*note && !options->quiet) fprintf(stderr, "sphproof: note: %s\n", note);
+    if ((status = history_tell(*results, history, &told, error)))
+        json_decref(*results);
+    else
+        json_object_set_new(*results, "history", told);
+    return status;
+}
 
+static void speak(const json_t *results, const char *summary, const char *folder)
+{
+    char absolute[PATH_LENGTH];
+    printf("%s\n%.0f computations, %.0f of them found in %s/cache; %.1f s\n"
+           "report: %s/index.html\n",
+           summary, value_member(results, "computations"), value_member(results, "found"), folder,
+           value_member(results, "seconds"), realpath(folder, absolute) ? absolute : folder);
+}
+
+/* The verdict as an exit status, after all that can go wrong on the way to it. */
+static enum status tell(const struct options *options, const json_t *results,
+                        const struct paths *paths, struct error *error)
+{
     struct page page;
+    enum status status = STATUS_OK;
     char *summary = summary_text(results);
     if (!page_make(&page, results) || !summary)
         status = error_set(error, STATUS_ENVIRONMENT, "no memory for the page");
-    else
-        status = write_report(folder, results, &page, summary, error);
-    if (!status) status = history_append(results, history, error);
+    if (!status) status = write_report(paths->folder, results, &page, summary, error);
+    if (!status) status = history_append(results, paths->history, error);
     if (!status && options->json) status = result_write(results, options->json, error);
-    if (!status && options->speak) {
-        char absolute[PATH_LENGTH];
-        printf("%s\n%.0f computations, %.0f of them found in %s/cache; %.1f s\n"
-               "report: %s/index.html\n",
-               summary, result_real(json_object_get(results, "computations")),
-               result_real(json_object_get(results, "found")), folder,
-               result_real(json_object_get(results, "seconds")),
-               realpath(folder, absolute) ? absolute : folder);
-    }
+    if (!status && options->speak) speak(results, summary, paths->folder);
     if (!status && page.plots.missing)
         status = error_set(error, STATUS_ENVIRONMENT, "%zu plots are missing: %s",
                            page.plots.missing, page.plots.message);
-    const char *verdict =
-        json_string_value(json_object_get(json_object_get(results, "verdict"), "status"));
-    if (!status && strcmp(verdict, "pass") != 0) status = STATUS_CHECK_FAILED;
     page_free(&page);
     free(summary);
+    if (status) return status;
+    const char *verdict = value_text(json_object_get(results, "verdict"), "status");
+    return strcmp(verdict, "pass") == 0 ? STATUS_OK : STATUS_CHECK_FAILED;
+}
+
+static enum status run(const struct options *options, int n, char **arguments, struct error *error)
+{
+    struct report_settings settings = {0};
+    struct paths paths;
+    struct cache cache;
+    json_t *results;
+    if (n) return command_usage(options, error, "no argument is known: '%.40s'", arguments[0]);
+    if (take_settings(options, &settings, error) || take_paths(options, &paths, error) ||
+        cache_open(&cache, paths.cache, options_value(options, "force") != NULL, error))
+        return error->status;
+    settings.cache = &cache;
+    settings.faults = paths.faults;
+    if (compute(options, &settings, paths.history, &results, error)) return error->status;
+    const enum status status = tell(options, results, &paths, error);
     json_decref(results);
     return status;
 }

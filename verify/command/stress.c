@@ -11,6 +11,7 @@
 #include "result.h"
 #include "table.h"
 #include "text.h"
+#include "value.h"
 
 enum { JOBS_MAX = 1024, SHOWN = 12 };
 
@@ -21,12 +22,6 @@ static void show_progress(void *context, const char *what, size_t done, size_t t
     progress_share(progress, done, total, share);
 }
 
-static const char *text_of(const json_t *entry, const char *name)
-{
-    const char *text = json_string_value(json_object_get(entry, name));
-    return text ? text : "";
-}
-
 static const char *style_of(const struct table_style *style, const char *outcome)
 {
     return !strcmp(outcome, "ok") ? style->good : !strcmp(outcome, "broke_down") ? style->bad : "";
@@ -35,7 +30,7 @@ static const char *style_of(const struct table_style *style, const char *outcome
 /* "ok 3.6e-3", "broke down", ... of one cell, in 12 columns. */
 static void print_cell(const json_t *entry, const struct table_style *style)
 {
-    const char *outcome = text_of(entry, "outcome");
+    const char *outcome = value_text(entry, "outcome");
     const json_t *measured = json_object_get(entry, "measured"),
                  *predicted = json_object_get(entry, "predicted");
     char text[40] = "";
@@ -54,28 +49,28 @@ static void print_group(const json_t *group, const json_t *cells, const struct t
 {
     const json_t *rows = json_object_get(group, "rows"),
                  *columns = json_object_get(group, "columns"), *entry;
-    const char *name = text_of(group, "name");
+    const char *name = value_text(group, "name");
     size_t i, shown = 0;
-    printf("\n%s%s%s: %s\n%-24s", style->bold, name, style->end, text_of(group, "title"),
-           text_of(group, "column_title"));
+    printf("\n%s%s%s: %s\n%-24s", style->bold, name, style->end, value_text(group, "title"),
+           value_text(group, "column_title"));
     for (i = 0; i < json_array_size(columns); i++)
         printf(" %12.12s", json_string_value(json_array_get(columns, i)));
     for (size_t r = 0; r < json_array_size(rows); r++) {
         const char *row = json_string_value(json_array_get(rows, r));
         printf("\n%-24.24s", row);
-        json_array_foreach(cells, i, entry) if (!strcmp(text_of(entry, "group"), name) &&
-                                                !strcmp(text_of(entry, "row"), row))
+        json_array_foreach(cells, i, entry) if (!strcmp(value_text(entry, "group"), name) &&
+                                                !strcmp(value_text(entry, "row"), row))
             print_cell(entry, style);
     }
     printf("\n");
     json_array_foreach(cells, i, entry)
     {
-        if (strcmp(text_of(entry, "group"), name) || !strcmp(text_of(entry, "outcome"), "ok"))
+        if (strcmp(value_text(entry, "group"), name) || !strcmp(value_text(entry, "outcome"), "ok"))
             continue;
         if (shown++ == SHOWN) break;
-        printf("  %s%s, %s: %s%s\n    %s\n", style->faint, text_of(entry, "row"),
-               text_of(entry, "column"), text_of(entry, "reason"), style->end,
-               text_of(entry, "command"));
+        printf("  %s%s, %s: %s%s\n    %s\n", style->faint, value_text(entry, "row"),
+               value_text(entry, "column"), value_text(entry, "reason"), style->end,
+               value_text(entry, "command"));
     }
     if (shown > SHOWN) printf("  ... all of them with --json\n");
 }

@@ -13,17 +13,12 @@
 #include "reading.h"
 #include "result.h"
 #include "trend.h"
+#include "value.h"
 
 /* What a figure may move by without having changed: an error relatively, an order absolutely. */
 static const double error_noise = 0.01, order_noise = 0.03;
 static const double error_least = 1e-15; /* a logarithm needs one */
 enum { CHANGES_PER_FIGURE = 8, PATH_LENGTH = 1024, GROUPS = 256 };
-
-static const char *string_of(const json_t *object, const char *name)
-{
-    const char *string = json_string_value(json_object_get(object, name));
-    return string ? string : "";
-}
 
 /* ---- this night's line ---- */
 
@@ -32,14 +27,13 @@ static void add_checks(const json_t *checks, json_t *figures)
 {
     for (size_t i = 0; i < json_array_size(checks); i++) {
         const json_t *check = json_array_get(checks, i);
-        const double value = result_real(json_object_get(check, "value")),
-                     bound = result_real(json_object_get(check, "bound"));
+        const double value = value_member(check, "value"), bound = value_member(check, "bound");
         char path[PATH_LENGTH];
-        if (!(bound > 0) || strcmp(string_of(check, "status"), "skip") == 0) continue;
-        snprintf(path, sizeof path, "verify[%s, %s].value_over_bound", string_of(check, "group"),
-                 string_of(check, "name"));
+        if (!(bound > 0) || strcmp(value_text(check, "status"), "skip") == 0) continue;
+        snprintf(path, sizeof path, "verify[%s, %s].value_over_bound", value_text(check, "group"),
+                 value_text(check, "name"));
         const json_t *kept = json_object_get(figures, path);
-        if (!kept || !(value / bound <= result_real(kept)))
+        if (!kept || !(value / bound <= value_real(kept)))
             json_object_set_new(figures, path, result_number(value / bound));
     }
 }
@@ -67,10 +61,10 @@ static json_t *line_of(const json_t *results, struct error *error)
     if (reading_collect(results, &readings, error)) return NULL;
     json_t *line =
         json_pack("{s:s, s:s, s:s, s:s, s:s, s:s, s:I, s:o}", "schema", "sphproof-history/1",
-                  "date", string_of(results, "date"), "git", string_of(results, "git"), "mode",
-                  string_of(results, "mode"), "processor",
-                  string_of(json_object_get(results, "machine"), "processor"), "verdict",
-                  string_of(verdict, "status"), "failures",
+                  "date", value_text(results, "date"), "git", value_text(results, "git"), "mode",
+                  value_text(results, "mode"), "processor",
+                  value_text(json_object_get(results, "machine"), "processor"), "verdict",
+                  value_text(verdict, "status"), "failures",
                   (json_int_t)json_array_size(json_object_get(verdict, "failures")), "figures",
                   figures_of(&readings, results));
     reading_free(&readings);
@@ -120,9 +114,9 @@ static enum status read_nights(const char *path, const char *mode, json_t *night
                          strerror(errno));
     for (ssize_t length; (length = getline(&text, &room, file)) > 0;) {
         json_t *line = json_loadb(text, (size_t)length, 0, NULL);
-        if (!line || strcmp(string_of(line, "schema"), "sphproof-history/1") != 0)
+        if (!line || strcmp(value_text(line, "schema"), "sphproof-history/1") != 0)
             *unreadable += text[0] != '\n';
-        else if (strcmp(string_of(line, "mode"), mode) == 0)
+        else if (strcmp(value_text(line, "mode"), mode) == 0)
             json_array_append(nights, line);
         json_decref(line);
         if (json_array_size(nights) >= HISTORY_NIGHTS_MAX) json_array_remove(nights, 0);
@@ -137,7 +131,7 @@ static enum status read_nights(const char *path, const char *mode, json_t *night
 /* How far a figure has moved, up or down; a word, or one that was not finite: farther than any. */
 static double distance(const json_t *entry)
 {
-    const double ratio = result_real(json_object_get(entry, "ratio"));
+    const double ratio = value_member(entry, "ratio");
     return ratio > 0 ? fabs(log(ratio)) : (double)INFINITY;
 }
 
@@ -152,7 +146,7 @@ static int worst_first(const void *a, const void *b)
         if (i != j) return i == (k == 0) ? -1 : 1;
     }
     const double i = distance(x), j = distance(y);
-    return i != j ? (i > j ? -1 : 1) : strcmp(string_of(x, "path"), string_of(y, "path"));
+    return i != j ? (i > j ? -1 : 1) : strcmp(value_text(x, "path"), value_text(y, "path"));
 }
 
 static json_t *sorted(json_t *list, int compare(const void *, const void *))
@@ -182,7 +176,7 @@ static json_t *since_last(const json_t *nights, const struct readings *now)
         struct reading old = *new;
         double amount;
         bool fault;
-        old.value = result_real(value);
+        old.value = value_real(value);
         old.word = new->word ? (char *)json_string_value(value) : NULL;
         const enum reading_verdict verdict =
             reading_judge(value ? &old : NULL, new, &amount, &fault);
@@ -196,8 +190,8 @@ static json_t *since_last(const json_t *nights, const struct readings *now)
                              reading_verdicts[verdict], "fault", fault && amount > DIFF_THRESHOLD,
                              "work", new->kind == READING_COUNT));
     }
-    json_t *since = json_pack("{s:s, s:s, s:o}", "date", string_of(last, "date"), "git",
-                              string_of(last, "git"), "figures", sorted(moved, worst_first));
+    json_t *since = json_pack("{s:s, s:s, s:o}", "date", value_text(last, "date"), "git",
+                              value_text(last, "git"), "figures", sorted(moved, worst_first));
     for (int v = 0; v < READING_VERDICTS; v++)
         json_object_set_new(since, reading_verdicts[v], json_integer((json_int_t)verdicts[v]));
     return since;
@@ -210,7 +204,7 @@ static json_t *series_of(const json_t *nights, const char *path)
     json_t *series = json_array();
     for (size_t i = 0; i < json_array_size(nights); i++) {
         const json_t *figures = json_object_get(json_array_get(nights, i), "figures");
-        json_array_append_new(series, result_number(result_real(json_object_get(figures, path))));
+        json_array_append_new(series, result_number(value_member(figures, path)));
     }
     return series;
 }
@@ -222,10 +216,10 @@ static json_t *trends(const json_t *nights, const json_t *results)
     for (size_t i = 0; i < json_array_size(studies); i++) {
         const json_t *study = json_array_get(studies, i),
                      *levels = json_object_get(study, "levels");
-        const char *name = string_of(study, "case"), *label = string_of(study, "label");
+        const char *name = value_text(study, "case"), *label = value_text(study, "label");
         const json_t *finest = json_array_get(levels, json_array_size(levels) - 1);
         char error[PATH_LENGTH], order[PATH_LENGTH];
-        const double n = result_real(json_object_get(finest, "n"));
+        const double n = value_member(finest, "n");
         snprintf(error, sizeof error, "studies[%s, %s].levels[n %.10g].errors.density.l1", name,
                  label, n);
         snprintf(order, sizeof order, "studies[%s, %s].orders[density, l1].order", name, label);
@@ -246,8 +240,8 @@ static json_t *change_json(const struct reading *reading, const json_t *nights, 
     const json_t *at = json_array_get(nights, night[change->at]),
                  *last = json_array_get(nights, night[change->at - 1]);
     return json_pack("{s:s, s:I, s:s, s:s, s:s, s:o, s:o, s:o, s:s}", "path", reading->path,
-                     "night", (json_int_t)night[change->at], "date", string_of(at, "date"), "git",
-                     string_of(at, "git"), "git_before", string_of(last, "git"), "before",
+                     "night", (json_int_t)night[change->at], "date", value_text(at, "date"), "git",
+                     value_text(at, "git"), "git_before", value_text(last, "git"), "before",
                      result_number(before), "after", result_number(after), "ratio",
                      result_number(after / before), "verdict",
                      (after > before) == order ? "better" : "worse");
@@ -262,7 +256,7 @@ static void add_changes(const struct reading *reading, const json_t *nights, jso
     const bool order = reading->kind == READING_ORDER;
     for (size_t i = 0; i < json_array_size(nights) && i < HISTORY_NIGHTS_MAX; i++) {
         const json_t *figures = json_object_get(json_array_get(nights, i), "figures");
-        double now = result_real(json_object_get(figures, reading->path));
+        double now = value_member(figures, reading->path);
         if (!order) now = log(fmax(now, fmax(reading->floor, error_least)));
         if (!isfinite(now)) continue;
         value[n] = now;
@@ -278,11 +272,10 @@ static void add_changes(const struct reading *reading, const json_t *nights, jso
 static int newest_first(const void *a, const void *b)
 {
     const json_t *x = *(json_t *const *)a, *y = *(json_t *const *)b;
-    const double i = result_real(json_object_get(x, "night")),
-                 j = result_real(json_object_get(y, "night"));
+    const double i = value_member(x, "night"), j = value_member(y, "night");
     if (i != j) return i > j ? -1 : 1;
     const double p = distance(x), q = distance(y);
-    return p != q ? (p > q ? -1 : 1) : strcmp(string_of(x, "path"), string_of(y, "path"));
+    return p != q ? (p > q ? -1 : 1) : strcmp(value_text(x, "path"), value_text(y, "path"));
 }
 
 static json_t *heads(const json_t *nights)
@@ -290,8 +283,8 @@ static json_t *heads(const json_t *nights)
     json_t *list = json_array();
     for (size_t i = 0; i < json_array_size(nights); i++) {
         const json_t *night = json_array_get(nights, i);
-        json_array_append_new(list, json_pack("{s:s, s:s}", "date", string_of(night, "date"), "git",
-                                              string_of(night, "git")));
+        json_array_append_new(list, json_pack("{s:s, s:s}", "date", value_text(night, "date"),
+                                              "git", value_text(night, "git")));
     }
     return list;
 }
@@ -303,7 +296,7 @@ enum status history_tell(const json_t *results, const char *path, json_t **histo
     size_t unreadable;
     json_t *nights = json_array(), *changes = json_array();
     *history = NULL;
-    enum status status = read_nights(path, string_of(results, "mode"), nights, &unreadable, error);
+    enum status status = read_nights(path, value_text(results, "mode"), nights, &unreadable, error);
     json_t *line = status ? NULL : line_of(results, error);
     if (!status && (!line || reading_collect(results, &readings, error))) status = error->status;
     if (!status) {

@@ -14,6 +14,7 @@
 #include "run_job.h"
 #include "suite.h"
 #include "suite_output.h"
+#include "value.h"
 
 static enum status compute_run(const struct report_piece *piece, json_t **document,
                                struct error *error)
@@ -102,7 +103,7 @@ static enum status compute_bench(const struct report_piece *piece, json_t **docu
     enum status status = sweep_parse(sweep, varied, error);
     if (!status)
         status = precision_measure(&piece->settings, sweep, file->ladder, file->ladder_count,
-                                   &rules, NULL, NULL, &precision, error);
+                                   &rules, &precision, error);
     if (!status) {
         char reproduce[256];
         snprintf(reproduce, sizeof reproduce, "sphproof bench %s --vary %s --time %g --samples %d",
@@ -156,22 +157,16 @@ enum status report_piece_add(struct pool *pool, struct report_piece *piece, stru
 
 /* ---- joining checks ---- */
 
-static const char *text(const json_t *object, const char *name)
-{
-    const char *string = json_string_value(json_object_get(object, name));
-    return string ? string : "";
-}
-
 /* Distinct mutants; one counts as detected where it is in every entry. */
 static void count_mutants(const json_t *list, json_t *summary)
 {
     json_int_t mutants = 0, detected = 0;
     for (size_t i = 0; i < json_array_size(list); i++) {
-        const char *name = text(json_array_get(list, i), "mutant");
+        const char *name = value_text(json_array_get(list, i), "mutant");
         bool first = true, everywhere = true;
         for (size_t j = 0; j < json_array_size(list); j++) {
             const json_t *other = json_array_get(list, j);
-            if (strcmp(text(other, "mutant"), name) != 0) continue;
+            if (strcmp(value_text(other, "mutant"), name) != 0) continue;
             first = first && j >= i;
             everywhere = everywhere && json_is_true(json_object_get(other, "detected"));
         }

@@ -8,8 +8,8 @@
 
 #include "functional.h"
 #include "measure.h"
-#include "result.h"
 #include "run_job.h"
+#include "value.h"
 
 /* An order lost to the lattice sums shows a relative error of this many floors at most. */
 static const double floor_reach = 20;
@@ -130,16 +130,11 @@ void study_free(struct study *study)
 
 /* ---- reading the runs ---- */
 
-static double number(const json_t *object, const char *name)
-{
-    return result_real(json_object_get(object, name));
-}
-
 static double error_of(const json_t *run, int field, int norm)
 {
     const json_t *fields = json_object_get(run, "errors");
-    return number(json_object_get(fields, field_family.members[field]->name),
-                  norm_family.members[norm]->name);
+    return value_member(json_object_get(fields, field_family.members[field]->name),
+                        norm_family.members[norm]->name);
 }
 
 static void read_functionals(struct study_result *result, struct study_level *level,
@@ -152,8 +147,8 @@ static void read_functionals(struct study_result *result, struct study_level *le
     {
         if (i == PROBLEM_FUNCTIONALS_MAX) break;
         result->functional_names[i] = functional_name(name);
-        level->functionals[i] += weight * result_real(value);
-        result->functional_exact[i] = number(json_object_get(run, "functionals_exact"), name);
+        level->functionals[i] += weight * value_real(value);
+        result->functional_exact[i] = value_member(json_object_get(run, "functionals_exact"), name);
         i++;
     }
     result->functional_count = i;
@@ -162,9 +157,9 @@ static void read_functionals(struct study_result *result, struct study_level *le
 static void read_run(struct study_result *result, struct study_level *level, const json_t *run,
                      double weight)
 {
-    level->n = (size_t)number(run, "n");
-    level->spacing = number(run, "spacing");
-    level->h += weight * number(run, "h");
+    level->n = (size_t)value_member(run, "n");
+    level->spacing = value_member(run, "spacing");
+    level->h += weight * value_member(run, "h");
     for (int f = 0; f < FIELDS; f++)
         for (int m = 0; m < NORMS; m++) {
             const double value = log(error_of(run, f, m));
@@ -172,13 +167,13 @@ static void read_run(struct study_result *result, struct study_level *level, con
             level->spread[f][m] += weight * value * value;
         }
     level->binned_density_l1 +=
-        weight * log(number(json_object_get(run, "errors"), "binned_density_l1"));
-    level->cpu_s += weight * number(json_object_get(run, "cost"), "cpu_s");
+        weight * log(value_member(json_object_get(run, "errors"), "binned_density_l1"));
+    level->cpu_s += weight * value_member(json_object_get(run, "cost"), "cpu_s");
     budget_add(&level->budget, problem_of(&result->settings)->regions,
                json_object_get(run, "budget"), weight);
     read_functionals(result, level, run, weight);
-    const char *suspicion = json_string_value(json_object_get(run, "suspicion"));
-    if (suspicion && *suspicion && !result->suspicion[0])
+    const char *suspicion = value_text(run, "suspicion");
+    if (*suspicion && !result->suspicion[0])
         snprintf(result->suspicion, sizeof result->suspicion, "%s", suspicion);
 }
 
@@ -193,9 +188,9 @@ static void close_level(struct study_level *level, const json_t *first, size_t s
             level->spread[f][m] = sqrt(freedom * fmax(0, squares - mean * mean));
             level->errors[f][m] = seeds > 1 ? exp(mean) : error_of(first, f, m);
         }
-    level->binned_density_l1 = seeds > 1
-                                   ? exp(level->binned_density_l1)
-                                   : number(json_object_get(first, "errors"), "binned_density_l1");
+    level->binned_density_l1 =
+        seeds > 1 ? exp(level->binned_density_l1)
+                  : value_member(json_object_get(first, "errors"), "binned_density_l1");
 }
 
 /* Levels in order, up to the first that broke down. */

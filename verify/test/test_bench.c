@@ -51,7 +51,7 @@ static void test_samples_double_until_they_are_long_enough(void **state)
     fake.noise[6] = 1.5, fake.noise[7] = 3, fake.noise[8] = 1.25, fake.noise[9] = 1.75;
     struct bench_subject subject = {.work = fake_work, .context = &fake};
     fake.warm_up = 0;
-    assert_int_equal(bench_measure(&subject, 1, &rules, NULL, NULL, NULL), STATUS_OK);
+    assert_int_equal(bench_measure(&subject, 1, &rules, NULL), STATUS_OK);
     assert_int_equal(subject.time.times, 16);
     assert_int_equal(subject.time.samples, 5);
     assert_int_equal(fake.calls, 10);
@@ -67,7 +67,7 @@ static void test_first_call_does_not_count(void **state)
     struct fake fake = {.once = 0.02, .warm_up = 0.05};
     struct bench_subject subject = {.work = fake_work, .context = &fake};
     fake.noise[0] = 0.1; /* a first call that is too fast to be true */
-    assert_int_equal(bench_measure(&subject, 1, &rules, NULL, NULL, NULL), STATUS_OK);
+    assert_int_equal(bench_measure(&subject, 1, &rules, NULL), STATUS_OK);
     near_relative(subject.time.cpu_s, 0.02, 1e-12);
     assert_int_equal(fake.calls, 6);
 }
@@ -78,7 +78,7 @@ static void test_long_work_is_not_repeated_for_ever(void **state)
     struct fake fake = {.once = 3};
     struct bench_subject subject = {.work = fake_work, .context = &fake};
     const struct bench_rules short_of_time = {.least_s = 0.01, .most_s = 4, .samples = 5};
-    assert_int_equal(bench_measure(&subject, 1, &short_of_time, NULL, NULL, NULL), STATUS_OK);
+    assert_int_equal(bench_measure(&subject, 1, &short_of_time, NULL), STATUS_OK);
     assert_int_equal(fake.calls, 2); /* the first is worth a sample */
     assert_int_equal(subject.time.samples, 2);
 }
@@ -92,7 +92,7 @@ static void test_samples_are_taken_in_turn(void **state)
     /* both share their calls: 2 each to calibrate, then a b a b ...; b is dearer */
     for (int call = 0; call < 12; call++)
         fake.noise[call] = call == 3 || (call > 3 && call % 2 == 1) ? 2 : 1;
-    assert_int_equal(bench_measure(subjects, 2, &rules, NULL, NULL, NULL), STATUS_OK);
+    assert_int_equal(bench_measure(subjects, 2, &rules, NULL), STATUS_OK);
     near_relative(subjects[1].time.cpu_s / subjects[0].time.cpu_s, 2, 1e-12);
     near_absolute(subjects[0].time.spread, 0, 1e-12);
     near_absolute(subjects[1].time.spread, 0, 1e-12);
@@ -108,7 +108,7 @@ static void test_breakdown_leaves_the_others(void **state)
     struct bench_subject subjects[3] = {{.work = fake_work, .context = &unsound},
                                         {.work = fake_work, .context = &hopeless},
                                         {.work = fake_work, .context = &sound}};
-    assert_int_equal(bench_measure(subjects, 3, &rules, NULL, NULL, &error), STATUS_OK);
+    assert_int_equal(bench_measure(subjects, 3, &rules, &error), STATUS_OK);
     assert_int_equal(subjects[0].failure.status, STATUS_BROKE_DOWN);
     assert_int_equal(subjects[1].failure.status, STATUS_BROKE_DOWN);
     assert_string_equal(subjects[1].failure.message, "as arranged");
@@ -119,7 +119,7 @@ static void test_breakdown_leaves_the_others(void **state)
 
     struct fake wrong = {.once = 0.02, .breaks_at = 2, .status = STATUS_ENVIRONMENT};
     struct bench_subject subject = {.work = fake_work, .context = &wrong};
-    assert_int_equal(bench_measure(&subject, 1, &rules, NULL, NULL, &error), STATUS_ENVIRONMENT);
+    assert_int_equal(bench_measure(&subject, 1, &rules, &error), STATUS_ENVIRONMENT);
     assert_string_equal(error.message, "as arranged");
 }
 
@@ -358,7 +358,7 @@ static void test_promises_are_kept_or_seen_broken(void **state)
     const struct bench_rules brief = {.least_s = 1e-6, .most_s = 1, .samples = 2};
     assert_int_equal(run_prepare(&settings, "sod", 2, (char *[]){"t_end=0.1", "n=180"}, &error), 0);
     settings.threads = 1;
-    assert_int_equal(bench_skips_measure(&settings, 1, &brief, NULL, NULL, &skips, &error), 0);
+    assert_int_equal(bench_skips_measure(&settings, 1, &brief, &skips, &error), 0);
     assert_true(skips.count >= 6);
     near_inside(skips.skips[0].skipped, 0.2, 0.9); /* no signal has come far at t = 0.1 */
     for (size_t i = 0; i < skips.count; i++) {
@@ -380,8 +380,7 @@ static void test_scaling(void **state)
     struct error error = {0};
     const struct bench_rules brief = {.least_s = 1e-6, .most_s = 1, .samples = 2};
     assert_int_equal(run_prepare(&settings, "sod", 1, (char *[]){"t_end=0.02"}, &error), 0);
-    assert_int_equal(
-        bench_scaling_measure(&settings, ladder, 4, 2, &brief, NULL, NULL, &scaling, &error), 0);
+    assert_int_equal(bench_scaling_measure(&settings, ladder, 4, 2, &brief, &scaling, &error), 0);
     for (size_t i = 0; i < 4; i++) {
         assert_int_equal(scaling.levels[i].n, ladder[i]);
         near_inside(scaling.levels[i].error, 1e-5, 0.1);
@@ -407,8 +406,8 @@ static void test_study(void **state)
     settings.threads = 1;
     assert_int_equal(sweep_parse(&sweep, "kernel=quadratic_spline,cubic_spline,eta=2,1.1", &error),
                      0);
-    assert_int_equal(
-        precision_measure(&settings, &sweep, ladder, 2, &brief, NULL, NULL, &precision, &error), 0);
+    assert_int_equal(precision_measure(&settings, &sweep, ladder, 2, &brief, &precision, &error),
+                     0);
     assert_int_equal(precision.scheme_count, 7);
     /* eta = 1.1 is below the existence limit of either kernel: excluded */
     assert_int_equal(precision.point_count, 10);
