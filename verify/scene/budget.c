@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "result.h"
+#include "value.h"
 
 void budget_measure(const struct prepared *p, const struct snapshot *s,
                     const double *const *exact_values, struct budget *budget)
@@ -34,9 +35,8 @@ void budget_add(struct budget *budget, const struct regions *regions, const json
     for (size_t r = 0; regions->names[r]; r++)
         for (int f = 0; f < FIELDS; f++)
             budget->l1[r][f] +=
-                weight * result_real(json_object_get(json_object_get(json, regions->names[r]),
-                                                     field_family.members[f]->name));
-    budget->still = fmax(budget->still, result_real(json_object_get(json, "still")));
+                weight * value_inner(json, regions->names[r], field_family.members[f]->name);
+    budget->still = fmax(budget->still, value_member(json, "still"));
 }
 
 json_t *budget_json(const struct budget *budget)

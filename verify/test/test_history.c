@@ -15,6 +15,7 @@
 #include "history.h"
 #include "near.h"
 #include "result.h"
+#include "value.h"
 
 /* A report whose one study has this error and order. */
 static json_t *report(const char *mode, const char *git, double error, double order)
@@ -56,7 +57,7 @@ static json_t *night(const char *path, const char *mode, const char *git, double
 
 static double number(const json_t *object, const char *name)
 {
-    return result_real(json_object_get(object, name));
+    return value_real(json_object_get(object, name));
 }
 
 static void new_file(char *path)
@@ -147,8 +148,8 @@ static void moves_are_dated(void **state)
     assert_string_equal(json_string_value(json_object_get(change, "verdict")), "worse");
     near_relative(number(change, "ratio"), 1.2, 1e-9);
     assert_int_equal(json_array_size(json_object_get(trend, "error")), 12);
-    near_relative(result_real(json_array_get(json_object_get(trend, "error"), 11)), 1.2e-3, 1e-12);
-    near_relative(result_real(json_array_get(json_object_get(trend, "order"), 0)), 0.95, 1e-12);
+    near_relative(value_real(json_array_get(json_object_get(trend, "error"), 11)), 1.2e-3, 1e-12);
+    near_relative(value_real(json_array_get(json_object_get(trend, "order"), 0)), 0.95, 1e-12);
     json_decref(told);
     unlink(path);
 }
