@@ -9,26 +9,22 @@
 #include "command.h"
 #include "result.h"
 #include "text.h"
-
-static const char *head_of(const json_t *document, const char *name)
-{
-    const char *text = json_string_value(json_object_get(document, name));
-    return text ? text : "?";
-}
+#include "value.h"
 
 static void print_head(const char *side, const char *path, const json_t *document)
 {
-    printf("%s  %s: %s of %s, git %s, %s\n", side, path, head_of(document, "command"),
-           head_of(document, "date"), head_of(document, "git"), head_of(document, "compiler"));
+    printf("%s  %s: %s of %s, git %s, %s\n", side, path, value_text_or(document, "command", "?"),
+           value_text_or(document, "date", "?"), value_text_or(document, "git", "?"),
+           value_text_or(document, "compiler", "?"));
 }
 
 static json_t *diff_json(const struct diff *diff, const json_t *old, const json_t *new,
                          double threshold)
 {
     json_t *document = result_new("diff");
-    json_object_set_new(document, "of", json_string(head_of(new, "command")));
-    json_object_set_new(document, "old_git", json_string(head_of(old, "git")));
-    json_object_set_new(document, "new_git", json_string(head_of(new, "git")));
+    json_object_set_new(document, "of", json_string(value_text_or(new, "command", "?")));
+    json_object_set_new(document, "old_git", json_string(value_text_or(old, "git", "?")));
+    json_object_set_new(document, "new_git", json_string(value_text_or(new, "git", "?")));
     json_object_set_new(document, "threshold", result_number(threshold));
     json_object_set_new(document, "problem", json_string(diff->problem));
     diff_add_json(diff, document);

@@ -55,14 +55,6 @@ json_t *result_number(double value)
     return json_real(value);
 }
 
-double result_real(const json_t *value)
-{
-    const char *word = json_string_value(value);
-    if (!word) return json_is_number(value) ? json_number_value(value) : (double)NAN;
-    if (strcmp(word, "inf") == 0) return (double)INFINITY;
-    return strcmp(word, "-inf") == 0 ? -(double)INFINITY : (double)NAN;
-}
-
 char *result_text(const json_t *document)
 {
     return json_dumps(document, JSON_COMPACT | JSON_REAL_PRECISION(17));

@@ -11,11 +11,9 @@
  * owns the reference. */
 json_t *result_new(const char *command);
 
-/* A number, or the string "nan", "inf" or "-inf" where it is not finite. New reference. */
+/* A number, or the string "nan", "inf" or "-inf" where it is not finite; value_real reads it. New
+ * reference. */
 json_t *result_number(double value);
-
-/* The other way round; NaN where value is no number. */
-double result_real(const json_t *value);
 
 /* The document as text, 17 significant digits; malloced, NULL: no memory. */
 char *result_text(const json_t *document);

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "reading_rule.h"
-#include "result.h"
+#include "value.h"
 
 enum { PATH_MAX_LENGTH = 1536, NAME_MAX_LENGTH = 900, KEYS_MAX = 64 };
 
@@ -56,18 +56,6 @@ static void add(struct readings *readings, struct reading reading, const char *p
     readings->list[readings->count++] = reading;
 }
 
-static double member(const json_t *object, const char *name)
-{
-    return result_real(json_object_get(object, name));
-}
-
-static bool is_number(const json_t *value)
-{
-    const char *word = json_string_value(value);
-    return json_is_number(value) ||
-           (word && (!strcmp(word, "nan") || !strcmp(word, "inf") || !strcmp(word, "-inf")));
-}
-
 /* level: the entry of "levels" that encloses this object, or NULL; field: its field; exact: the
  * exact values of its members, or NULL. */
 struct place {
@@ -79,8 +67,8 @@ struct place {
 static double exact_of(const struct place *at, const json_t *parent, const char *name)
 {
     if (strcmp(name, "normalisation") == 0) return 1;
-    if (at->exact) return member(at->exact, name);
-    return member(parent, strcmp(name, "value") ? "exact" : "reference");
+    if (at->exact) return value_member(at->exact, name);
+    return value_member(parent, strcmp(name, "value") ? "exact" : "reference");
 }
 
 /* What the figure's neighbours know about its noise. */
@@ -88,14 +76,14 @@ static void refine(struct reading *reading, const struct place *at, const json_t
                    const char *name)
 {
     if (reading->kind == READING_ORDER) {
-        const double half = (member(parent, "high") - member(parent, "low")) / 2;
+        const double half = (value_member(parent, "high") - value_member(parent, "low")) / 2;
         if (half > reading->noise) reading->noise = half;
     }
-    if (reading->kind == READING_CHECK && member(parent, "floor") >= 0)
-        reading->floor = fmax(reading->floor, check_floors * member(parent, "floor"));
-    if (reading->kind == READING_PART && isfinite(member(parent, "predicted"))) {
+    if (reading->kind == READING_CHECK && value_member(parent, "floor") >= 0)
+        reading->floor = fmax(reading->floor, check_floors * value_member(parent, "floor"));
+    if (reading->kind == READING_PART && isfinite(value_member(parent, "predicted"))) {
         reading->kind = READING_EXACT;
-        reading->exact = member(parent, "predicted");
+        reading->exact = value_member(parent, "predicted");
     } else if (reading->kind == READING_EXACT) {
         reading->exact = exact_of(at, parent, name);
         if (!isfinite(reading->exact)) reading->kind = READING_NEUTRAL;
@@ -105,8 +93,9 @@ static void refine(struct reading *reading, const struct place *at, const json_t
 /* Replicates say themselves how far an error may move: two standard deviations of the mean. */
 static double level_noise(const json_t *level, const char *field, const char *norm)
 {
-    const double spread = member(json_object_get(json_object_get(level, "spread"), field), norm);
-    const double replicates = member(level, "replicates");
+    const double spread =
+        value_member(json_object_get(json_object_get(level, "spread"), field), norm);
+    const double replicates = value_member(level, "replicates");
     return spread > 0 && replicates > 1 ? 2 * spread / sqrt(replicates) : 0;
 }
 
@@ -135,7 +124,7 @@ static void take(struct readings *readings, const struct place *at, const json_t
 {
     char path[PATH_MAX_LENGTH + 128];
     const char *word = json_string_value(value);
-    const bool number = is_number(value), truth = json_is_boolean(value);
+    const bool number = value_is_real(value), truth = json_is_boolean(value);
     const struct reading_rule *rule = reading_rule(at->path, name);
     if (json_is_null(value) || (rule && rule->use == RULE_LEFT_OUT)) return;
     snprintf(path, sizeof path, "%s%s%.100s", at->path, *at->path ? "." : "", name);
@@ -150,7 +139,7 @@ static void take(struct readings *readings, const struct place *at, const json_t
         if (!word) return;
         reading.word = (char *)word;
     } else if (number) {
-        reading.value = result_real(value);
+        reading.value = value_real(value);
         refine(&reading, at, parent, name);
         if (at->level && at->field && rule->kind == READING_ERROR)
             reading.noise = fmax(reading.noise, level_noise(at->level, at->field, name));
