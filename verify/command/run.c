@@ -131,7 +131,7 @@ static enum status draw(const struct run_settings *settings, const struct run_re
     enum status status = STATUS_OK;
     for (int field = 0; field < FIELDS; field++) {
         if (!settings->file.fields[field]) continue;
-        if (!profile_fill(&profiles[n], result, field)) {
+        if (!profile_fill(&profiles[n], result, (enum field)field)) {
             status = error_set(error, STATUS_ENVIRONMENT, "--plot %.150s: no memory", path);
             goto end;
         }
