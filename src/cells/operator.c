@@ -9,9 +9,9 @@
 #include "stamp.h"
 #include "matrix.h"
 
-#define OPERATOR(name, vectors, difference, corrected, label, paper)                               \
+#define OPERATOR(name, vectors, difference, corrected, exact, exact_on_lattice, label, paper)      \
     static const struct operator_form operator_##name = {                                          \
-        {#name, label, paper}, vectors, difference, corrected};
+        {#name, label, paper}, vectors, difference, corrected, exact, exact_on_lattice};
 #include "operators.def"
 #undef OPERATOR
 

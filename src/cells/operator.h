@@ -30,6 +30,9 @@ struct operator_form {
     enum pair_vector pair_vector;
     bool difference; /* f_j - f_i; normalised vectors sum to 0, there it only saves digits */
     bool corrected;  /* A is the inverse matrix */
+    /* what it promises, for the checks: polynomials of degree below this are exact everywhere; in
+     * the interior of a lattice with its cells as volumes */
+    int exact, exact_on_lattice;
 };
 
 extern const struct family operator_family;

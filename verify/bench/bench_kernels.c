@@ -15,6 +15,7 @@
 #include "run.h"
 
 enum { VARIANTS = 3, PARTICLES = 1600, LIST = 1024 };
+enum { SOLVER_ROWS_MAX = 4 }; /* of a kernel and a gradient, see add_solver: steps and the loops */
 enum variant { STAMPED, UNSTAMPED, LIMIT };
 
 /* One measurement: what a row's column is made from. */
@@ -32,7 +33,7 @@ struct job {
 };
 
 struct bench {
-    struct kernel kernels[SWEEP_VALUES_MAX];
+    struct kernel *kernels;
     size_t kernel_count, row_count, row_max;
     struct job *jobs; /* VARIANTS a row */
     struct clouds_settings cloud_settings[KERNEL_DIM_MAX];
@@ -179,7 +180,7 @@ static enum status add_solver(struct bench *bench, const char *kernel, const cha
         const char *name;
         unsigned passes;
         bool ia, both; /* belongs to ia; to both gradients, then named after it */
-    } loops[] = {
+    } loops[SOLVER_ROWS_MAX - 1] = {
         {"density", 1u << PASS_DENSITY, false, false},
         {"matrix", 1u << PASS_MATRIX, true, false},
         {"force", 1u << PASS_FORCE, false, true},
@@ -253,13 +254,15 @@ static enum status choose_kernels(struct bench *bench, const struct sweep *sweep
                          "bench --kernels: --vary %s: allowed: kernel or kernel=A,B,...",
                          setting_keys[sweep->keys[sweep->key_count - 1].key].name);
     bench->kernel_count = sweep->key_count ? sweep->keys[0].count : kernel_family.n;
+    bench->kernels = calloc(bench->kernel_count, sizeof *bench->kernels);
+    if (!bench->kernels) return error_set(error, STATUS_ENVIRONMENT, "no memory for kernels");
     for (size_t k = 0; k < bench->kernel_count; k++) {
         const char *name =
             sweep->key_count ? sweep->keys[0].values[k] : kernel_family.members[k]->name;
         if (kernel_select(&bench->kernels[k], name, 5, error)) return error->status;
     }
-    enum { SOLVER_ROWS = 6 }; /* see add_solver */
-    bench->row_max = bench->kernel_count * (SOLVER_ROWS + KERNEL_DIM_MAX * operator_family.n);
+    bench->row_max = bench->kernel_count * (SOLVER_ROWS_MAX * scheme_gradient_family.n +
+                                            KERNEL_DIM_MAX * operator_family.n);
     bench->jobs = calloc(bench->row_max * VARIANTS, sizeof *bench->jobs);
     bench->result->rows = calloc(bench->row_max, sizeof *bench->result->rows);
     if (bench->jobs && bench->result->rows) return STATUS_OK;
@@ -295,7 +298,7 @@ static void clean_up(struct bench *bench)
         clouds_free(&bench->clouds[dim]);
         free(bench->fields[dim]);
     }
-    free(bench->jobs), free(bench->scratch), free(bench->list_memory);
+    free(bench->jobs), free(bench->scratch), free(bench->list_memory), free(bench->kernels);
 }
 
 static struct bench_cost cost_of(const struct job *job, const struct bench_subject *subject)

@@ -7,6 +7,8 @@
 #include <gsl/gsl_integration.h>
 #include <gsl/gsl_sort.h>
 
+#include "worst.h"
+
 enum { LAWS = 3, POINTS = 64 }; /* GSL keeps its own 27 digits of the 64 point rule */
 
 /* Densities and fluxes of mass, momentum and energy (Toro eq. 3.2). */
@@ -83,7 +85,7 @@ double balance_defect(const struct flow *flow, const double x[2], const double t
     gsl_integration_glfixed_table_free(rule);
     for (size_t law = 0; law < LAWS; law++) {
         const double defect = size[law] == 0 ? 0 : fabs(sum[law]) / size[law];
-        if (!(defect <= worst)) worst = defect;
+        worst_keep(&worst, defect);
     }
     return worst;
 }
@@ -119,7 +121,7 @@ double balance_residual(const struct flow *flow, double x, double t, double dx, 
         gsl_deriv_central(&U, t, dt, &dU, &error);
         gsl_deriv_central(&F, x, dx, &dF, &error);
         const double residual = fabs(dU + dF) / (fabs(dU) + fabs(dF));
-        if (!(residual <= worst)) worst = residual;
+        worst_keep(&worst, residual);
     }
     return worst;
 }

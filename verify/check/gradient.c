@@ -8,25 +8,12 @@
 
 #include "check.h"
 #include "gradient_forms.h"
+#include "worst.h"
 
-/* What each operator promises, by name: independent of the flags in its descriptor. */
-static const struct promise {
-    const char *name;
-    bool constant, linear;                 /* exact everywhere */
-    bool constant_lattice, linear_lattice; /* exact in the interior of a lattice, exact volumes */
-} promises[] = {
-    {"standard", false, false, true, false},
-    {"standard_difference", true, false, true, false},
-    {"ia", false, false, true, true},
-    {"linear_exact", true, true, true, true},
-    {"normalised_corrected", true, true, true, true},
-};
-
-static const struct promise *promise_of(const struct gradient_subject *subject)
+/* What the operator of this name promises: a wrong one is held to it, too. */
+static const struct operator_form *promise_of(const struct gradient_subject *subject)
 {
-    for (size_t i = 0; i < sizeof promises / sizeof *promises; i++)
-        if (strcmp(promises[i].name, subject->form->member.name) == 0) return &promises[i];
-    return NULL;
+    return (const struct operator_form *)family_find(&operator_family, subject->form->member.name);
 }
 
 static struct kernel kernel_at(size_t i)
@@ -45,8 +32,7 @@ static double departure(const struct gradient_subject *subject, const struct ker
 {
     const size_t n = cloud->cloud.points.n;
     const int dim = cloud->cloud.points.dim;
-    const struct operator_form *right =
-        (const struct operator_form *)family_find(&operator_family, subject->form->member.name);
+    const struct operator_form *right = promise_of(subject);
     double *memory = malloc((4 * n + 1) * sizeof *memory), largest = 0, worst = 0;
     struct operator_point *point = malloc((n + 1) * sizeof *point);
     double *const gradient[3] = {memory + n, memory + 2 * n, memory + 3 * n};
@@ -64,7 +50,7 @@ static double departure(const struct gradient_subject *subject, const struct ker
         for (int a = 0; a < dim; a++) {
             const double error = fabs(gradient[a][i] - expected[a]) * cloud->h[i] / largest /
                                  (right->corrected ? point[i].condition : 1);
-            if (!(error <= worst)) worst = error;
+            worst_keep(&worst, error);
         }
     }
     free(memory), free(point);
@@ -116,41 +102,51 @@ static enum status errors_of(const struct gradient_subject *subject, size_t kern
     clouds_free(&cloud);
     if (status) return status;
     *worst = exact;
-    if (!(summed.interior <= exact.interior)) worst->interior = summed.interior;
-    if (!(summed.edge <= exact.edge)) worst->edge = summed.edge;
+    worst_keep(&worst->interior, summed.interior);
+    worst_keep(&worst->edge, summed.edge);
     worst->condition = fmax(exact.condition, summed.condition);
     return STATUS_OK;
+}
+
+/* A field of this degree on one cloud; everywhere: not only in the interior. */
+static void measure_degree(struct check_run *run, const struct gradient_subject *s, size_t kernel,
+                           enum clouds_kind kind, int dim, enum gradient_function field,
+                           bool everywhere)
+{
+    struct gradient_errors errors;
+    const char *name = s->form->member.name, *field_name = gradient_study_field_name(field);
+    if (errors_of(s, kernel, kind, dim, field, &errors)) {
+        check_measure(run, (double)NAN, 0, 0, "no memory");
+        return;
+    }
+    const double scale = fmax(errors.condition, 1);
+    if (errors.inside)
+        check_measure(run, errors.interior, 1e-12 * scale, 1e-14 * scale,
+                      "%s, %s, %dD, %s, interior", name, field_name, dim, clouds_name(kind));
+    else
+        check_skip(run, "%s, %s, %dD, %s, interior: no point is that far from the edge", name,
+                   field_name, dim, clouds_name(kind));
+    if (everywhere)
+        check_measure(run, errors.edge, 1e-12 * scale, 1e-14 * scale, "%s, %s, %dD, %s, edge", name,
+                      field_name, dim, clouds_name(kind));
 }
 
 static void measure_exactness(struct check_run *run, const void *subject)
 {
     const struct gradient_subject *s = subject;
-    const struct promise *promise = promise_of(s);
+    const struct operator_form *promise = promise_of(s);
     size_t kernel = 0;
     for (int dim = 1; dim <= 3; dim++)
         for (int kind = 0; kind < CLOUDS_KINDS; kind++, kernel++)
             for (int field = FUNCTION_CONSTANT; field <= FUNCTION_LINEAR; field++) {
-                const bool everywhere = field ? promise->linear : promise->constant;
-                const bool lattice = kind == CLOUDS_LATTICE &&
-                                     (field ? promise->linear_lattice : promise->constant_lattice);
-                struct gradient_errors errors;
-                if (!everywhere && !lattice) continue;
-                if (errors_of(s, kernel, (enum clouds_kind)kind, dim, (enum gradient_function)field,
-                              &errors)) {
-                    check_measure(run, (double)NAN, 0, 0, "no memory");
-                    continue;
-                }
-                const double scale = fmax(errors.condition, 1);
-                const char *names[] = {s->form->member.name,
-                                       gradient_study_field_name((enum gradient_function)field),
-                                       clouds_name((enum clouds_kind)kind)};
-                if (errors.inside)
-                    check_measure(run, errors.interior, 1e-12 * scale, 1e-14 * scale,
-                                  "%s, %s, %dD, %s, interior", names[0], names[1], dim, names[2]);
-                if (everywhere)
-                    check_measure(run, errors.edge, 1e-12 * scale, 1e-14 * scale,
-                                  "%s, %s, %dD, %s, edge", names[0], names[1], dim, names[2]);
+                const bool everywhere = field < promise->exact;
+                const bool lattice = kind == CLOUDS_LATTICE && field < promise->exact_on_lattice;
+                if (everywhere || lattice)
+                    measure_degree(run, s, kernel, (enum clouds_kind)kind, dim,
+                                   (enum gradient_function)field, everywhere);
             }
+    if (promise->exact == 0 && promise->exact_on_lattice == 0)
+        check_skip(run, "%s: promises nothing", s->form->member.name);
 }
 
 static const struct check_mutant brute_force_mutants[] = {
@@ -177,8 +173,7 @@ const struct check check_gradient_brute_force = {
     .group = "gradients",
     .name = "brute_force",
     .property = "|grad f - brute force in long double| h/max|f| (per condition number)",
-    .subject_count = gradient_study_subject_count,
-    .subject = gradient_study_subject,
+    .subjects = gradient_subjects,
     .measure = measure_brute_force,
     .mutants = brute_force_mutants,
 };
@@ -209,8 +204,7 @@ const struct check check_gradient_exactness = {
     .group = "gradients",
     .name = "exactness",
     .property = "|grad f - exact| h/max|f| where the operator is exact: constant, linear",
-    .subject_count = gradient_study_subject_count,
-    .subject = gradient_study_subject,
+    .subjects = gradient_subjects,
     .measure = measure_exactness,
     .mutants = exactness_mutants,
 };
@@ -219,57 +213,78 @@ const struct check check_gradient_exactness = {
 
 /* For f = a.x + c, ia gives a + f_i C s with s = sum V x W: exact where s = 0, wrong by f_i C s
  * elsewhere. C s is what ia makes of the field 1. */
+struct assumption {
+    double left;      /* |error of the field - f_i C s| h, the worst of the interior */
+    double error;     /* of the linear field */
+    double violation; /* |s|/h */
+    double condition;
+    size_t inside;
+};
+
+static bool assumption_of(const struct gradient_subject *subject, const struct kernel *kernel,
+                          const struct clouds_settings *settings, struct assumption *result)
+{
+    static const struct operator_form moment = {.member = {"moment", "", ""},
+                                                .pair_vector = VECTOR_POSITION};
+    static const struct gradient_subject moment_subject = {&moment, NAIVE_NONE};
+    const int dim = settings->dim;
+    struct clouds_cloud cloud;
+    *result = (struct assumption){.condition = 1};
+    if (clouds_make(settings, &cloud, NULL)) return false;
+    const size_t n = cloud.cloud.points.n;
+    double *m = malloc((11 * n + 1) * sizeof *m), slope[3] = {0};
+    struct operator_point *point = malloc((n + 1) * sizeof *point);
+    double *const one = m, *const f = m + n, *const g1[3] = {m + 2 * n, m + 3 * n, m + 4 * n};
+    double *const g[3] = {m + 5 * n, m + 6 * n, m + 7 * n};
+    double *const violated[3] = {m + 8 * n, m + 9 * n, m + 10 * n};
+    bool ok = m && point;
+    for (size_t i = 0; ok && i < n; i++) {
+        double x[3] = {0};
+        for (int a = 0; a < dim; a++) x[a] = cloud.x[a][i];
+        one[i] = 1, f[i] = gradient_study_field(FUNCTION_LINEAR, dim, x, slope);
+    }
+    ok = ok && !gradient_study_apply(subject, kernel, &cloud.cloud, one, g1, point, NULL) &&
+         !gradient_study_apply(subject, kernel, &cloud.cloud, f, g, point, NULL) &&
+         !gradient_study_apply(&moment_subject, kernel, &cloud.cloud, one, violated, point, NULL);
+    for (size_t i = 0; ok && i < n; i++) {
+        if (!clouds_interior(settings, &cloud, i)) continue;
+        result->condition = fmax(result->condition, point[i].condition);
+        result->inside++;
+        for (int a = 0; a < dim; a++) {
+            const double error = g[a][i] - slope[a], expected = f[i] * g1[a][i];
+            worst_keep(&result->left, fabs(error - expected) * cloud.h[i]);
+            worst_keep(&result->error, fabs(error));
+            worst_keep(&result->violation, fabs(violated[a][i]) / cloud.h[i]);
+        }
+    }
+    free(m), free(point);
+    clouds_free(&cloud);
+    return ok;
+}
+
 static void measure_assumption(struct check_run *run, const void *subject)
 {
     static const struct gradient_subject right = {&ia, NAIVE_NONE};
-    static const struct operator_form moment = {{"moment", "", ""}, VECTOR_POSITION, false, false};
-    static const struct gradient_subject moment_subject = {&moment, NAIVE_NONE};
-    const struct gradient_subject *s = subject ? subject : &right;
     for (int dim = 1; dim <= 3; dim++)
         for (int kind = 0; kind < CLOUDS_KINDS; kind++) {
+            const char *name = clouds_name((enum clouds_kind)kind);
             const struct clouds_settings settings =
                 gradient_study_cloud((enum clouds_kind)kind, dim);
             const struct kernel kernel = kernel_at((size_t)(kind + dim));
-            struct clouds_cloud cloud;
-            if (clouds_make(&settings, &cloud, NULL)) continue;
-            const size_t n = cloud.cloud.points.n;
-            double *m = malloc((11 * n + 1) * sizeof *m);
-            struct operator_point *point = malloc((n + 1) * sizeof *point);
-            double *const one = m, *const f = m + n,
-                          *const g1[3] = {m + 2 * n, m + 3 * n, m + 4 * n};
-            double *const g[3] = {m + 5 * n, m + 6 * n, m + 7 * n};
-            double *const violated[3] = {m + 8 * n, m + 9 * n, m + 10 * n};
-            double left = 0, error = 0, violation = 0, condition = 1, slope[3] = {0};
-            size_t inside = 0;
-            bool ok = m && point;
-            for (size_t i = 0; ok && i < n; i++) {
-                double x[3] = {0};
-                for (int a = 0; a < dim; a++) x[a] = cloud.x[a][i];
-                one[i] = 1, f[i] = gradient_study_field(FUNCTION_LINEAR, dim, x, slope);
+            struct assumption a;
+            if (!assumption_of(subject ? subject : &right, &kernel, &settings, &a)) {
+                check_measure(run, (double)NAN, 0, 0, "%dD, %s: no memory", dim, name);
+                continue;
             }
-            ok = ok && !gradient_study_apply(s, &kernel, &cloud.cloud, one, g1, point, NULL) &&
-                 !gradient_study_apply(s, &kernel, &cloud.cloud, f, g, point, NULL) &&
-                 !gradient_study_apply(&moment_subject, &kernel, &cloud.cloud, one, violated, point,
-                                       NULL);
-            for (size_t i = 0; ok && i < n; i++) {
-                if (!clouds_interior(&settings, &cloud, i)) continue;
-                condition = fmax(condition, point[i].condition);
-                inside++;
-                for (int a = 0; a < dim; a++) {
-                    const double e = fabs(g[a][i] - slope[a] - f[i] * g1[a][i]) * cloud.h[i];
-                    if (!(e <= left)) left = e;
-                    error = fmax(error, fabs(g[a][i] - slope[a]));
-                    violation = fmax(violation, fabs(violated[a][i]) / cloud.h[i]);
-                }
+            if (!a.inside) {
+                check_skip(run, "%dD, %s: no point is an h away from the edge", dim, name);
+                continue;
             }
-            free(m), free(point);
-            clouds_free(&cloud);
-            if (ok && !inside) continue;
-            check_measure(run, ok ? left : (double)NAN, 1e-12 * condition, 1e-14 * condition,
-                          "%dD, %s: error of a linear field %.2e, |sum V x W|/h %.2e", dim,
-                          clouds_name((enum clouds_kind)kind), error, violation);
+            check_measure(run, a.left, 1e-12 * a.condition, 1e-14 * a.condition,
+                          "%dD, %s: error of a linear field %.2e, |sum V x W|/h %.2e", dim, name,
+                          a.error, a.violation);
             if (kind == CLOUDS_LATTICE)
-                check_measure(run, violation, 1e-14, 1e-16, "%dD, lattice: |sum V x W|/h", dim);
+                check_measure(run, a.violation, 1e-14, 1e-16, "%dD, lattice: |sum V x W|/h", dim);
         }
 }
 

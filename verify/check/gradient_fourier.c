@@ -128,8 +128,7 @@ const struct check check_gradient_fourier = {
     .group = "gradients",
     .name = "fourier",
     .property = "grad sin(k.x): projection on k cos(k.x) equal to the lattice sum, and the noise",
-    .subject_count = gradient_study_subject_count,
-    .subject = gradient_study_subject,
+    .subjects = gradient_subjects,
     .measure = measure_fourier,
     .mutants = fourier_mutants,
 };

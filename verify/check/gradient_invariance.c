@@ -8,6 +8,7 @@
 
 #include "check.h"
 #include "gradient_forms.h"
+#include "worst.h"
 
 /* A rotation about no axis of the lattice; -1 in 1D. */
 static void rotation_make(int dim, double *R)
@@ -49,7 +50,7 @@ static double moved_difference(const struct gradient_subject *subject, const str
             for (int b = 0; b < dim; b++) turned += R[a * dim + b] * before[b][i];
             const double scale = subject->form->corrected ? point[i].condition : 1;
             const double error = fabs(after[a][i] - turned) * cloud.h[i] / largest / scale;
-            if (!(error <= worst)) worst = error;
+            worst_keep(&worst, error);
         }
     free(m), free(point);
     clouds_free(&cloud);
@@ -86,8 +87,7 @@ const struct check check_gradient_invariance = {
     .group = "gradients",
     .name = "invariance",
     .property = "|grad(Rx + t) - R grad(x)| h/max|f| (per condition number)",
-    .subject_count = gradient_study_subject_count,
-    .subject = gradient_study_subject,
+    .subjects = gradient_subjects,
     .measure = measure_invariance,
     .mutants = invariance_mutants,
 };
@@ -121,9 +121,8 @@ static bool defects_of(const struct gradient_subject *subject, const struct kern
             for (int a = 0; a < dim; a++) { /* sum V p (x_j - x_i) by linearity */
                 const double D = linear[a][i] - cloud.x[b][i] * one[a][i];
                 const double isotropy = fabs(D - (a == b)), homogeneity = fabs(one[a][i]);
-                if (!(isotropy <= defects->isotropy)) defects->isotropy = isotropy;
-                if (!(homogeneity * cloud.h[i] <= defects->homogeneity))
-                    defects->homogeneity = homogeneity * cloud.h[i];
+                worst_keep(&defects->isotropy, isotropy);
+                worst_keep(&defects->homogeneity, homogeneity * cloud.h[i]);
                 defects->condition = fmax(defects->condition, point[i].condition);
             }
     }

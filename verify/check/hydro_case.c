@@ -8,6 +8,7 @@
 #include "check.h"
 #include "riemann.h"
 #include "run.h"
+#include "worst.h"
 
 enum { ARGUMENTS_MAX = 16 };
 
@@ -108,6 +109,8 @@ const struct check check_hydro_seed = {
 
 /* --- set-up ----------------------------------------------------------------------------------- */
 
+enum { SETUP_MAX = 1000 };
+
 typedef void disturb_function(size_t n, double *x, double *m, double *u);
 
 struct setup_subject {
@@ -123,7 +126,12 @@ static void measure_setup_of(struct check_run *run, const char *name, size_t n,
     struct run_result result;
     if (!execute(run, name, arguments, &result)) return;
     const struct snapshot *s = &result.snapshot;
-    double x[1000], m[1000], u[1000];
+    double x[SETUP_MAX], m[SETUP_MAX], u[SETUP_MAX];
+    if (s->n > SETUP_MAX) {
+        check_measure(run, 1, 0, 0, "%s n %zu: %zu particles", name, n, s->n);
+        run_free(&result);
+        return;
+    }
     for (size_t i = 0; i < s->n; i++) x[i] = s->x[0][i], m[i] = s->m[i], u[i] = s->u[i];
     if (subject) subject->disturb(s->n, x, m, u);
 
@@ -138,9 +146,9 @@ static void measure_setup_of(struct check_run *run, const char *name, size_t n,
         const double *state = on_left ? left : right;
         const double share = on_left ? count : (double)s->n - count;
         const double k = on_left ? (double)i : (double)i - count;
-        place = fmax(place, fabs(x[i] - ((on_left ? -1 : 0) + (k + 0.5) / share)));
-        mass = fmax(mass, fabs(m[i] * share / state[0] - 1));
-        energy = fmax(energy, fabs(u[i] * (gamma - 1) * state[0] / state[2] - 1));
+        worst_keep(&place, fabs(x[i] - ((on_left ? -1 : 0) + (k + 0.5) / share)));
+        worst_keep(&mass, fabs(m[i] * share / state[0] - 1));
+        worst_keep(&energy, fabs(u[i] * (gamma - 1) * state[0] / state[2] - 1));
         if (i > 0 && !(x[i] > x[i - 1])) order++;
     }
     check_measure(run, fabs((double)s->n - (double)n), 0, 0, "%s n %zu: particles", name, n);

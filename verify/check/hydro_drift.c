@@ -10,24 +10,20 @@
 #include "order.h"
 #include "solver.h" /* the state as an integrator sees it: for mutants only */
 
-enum { TUBE = 99, COMBINATIONS = 2 * 2 * 2 * 2 * 5 };
+enum { TUBE = 99 };
 
 /* NULL, or what the mutant does to the rates: a wrapped integrator. */
 struct drift_subject {
     enum status (*step)(struct simulation *simulation, double dt, struct error *error);
 };
 
-static struct scheme combination(int c, const struct integrator *integrator)
+static struct scheme combination(size_t c, const struct integrator *integrator)
 {
     struct scheme s = hydro_scheme();
     s.h_tolerance = 1e-10;
     s.integrator = integrator;
     s.cfl = integrator->cfl_per_width ? integrator->cfl / s.eta : integrator->cfl;
-    s.gradient = c & 1 ? GRADIENT_IA : GRADIENT_STANDARD;
-    s.formulation = c & 2 ? FORMULATION_LAGRANGIAN : FORMULATION_VANILLA_ICE;
-    s.volume_element = c & 4 ? VOLUME_ENERGY : VOLUME_MASS;
-    s.energy = c & 8 ? ENERGY_TOTAL : ENERGY_INTERNAL;
-    s.viscosity = (enum viscosity)(c >> 4);
+    hydro_combine(&s, c);
     return s;
 }
 
@@ -72,7 +68,7 @@ static void measure_drift(struct check_run *run, const void *subject)
     const struct drift_subject *s = subject;
     hydro_tube(&state, TUBE);
     for (size_t i = 0; i < integrator_family.n; i++)
-        for (int c = 0; c < COMBINATIONS && !check_decided(run); c++) {
+        for (size_t c = 0; c < hydro_combinations() && !check_decided(run); c++) {
             struct scheme scheme =
                 combination(c, (const struct integrator *)integrator_family.members[i]);
             struct integrator wrapped = *scheme.integrator;

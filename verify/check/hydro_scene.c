@@ -110,6 +110,29 @@ void hydro_set_kernel(struct scheme *scheme, const char *name)
     scheme->eta = scheme->kernel.default_eta;
 }
 
+size_t hydro_combinations(void)
+{
+    return scheme_gradient_family.n * scheme_formulation_family.n * scheme_volume_element_family.n *
+           scheme_energy_family.n * scheme_viscosity_family.n;
+}
+
+/* The last digit of *c in the base of a family, which is taken off. */
+static int choice(size_t *c, const struct family *family)
+{
+    const size_t digit = *c % family->n;
+    *c /= family->n;
+    return (int)digit;
+}
+
+void hydro_combine(struct scheme *scheme, size_t c)
+{
+    scheme->gradient = (enum gradient)choice(&c, &scheme_gradient_family);
+    scheme->formulation = (enum formulation)choice(&c, &scheme_formulation_family);
+    scheme->volume_element = (enum volume_element)choice(&c, &scheme_volume_element_family);
+    scheme->energy = (enum energy)choice(&c, &scheme_energy_family);
+    scheme->viscosity = (enum viscosity)choice(&c, &scheme_viscosity_family);
+}
+
 struct scheme hydro_scheme(void)
 {
     struct scheme scheme = {.viscosity = VISCOSITY_CONSTANT,

@@ -35,6 +35,10 @@ struct scene hydro_scene(const struct hydro_state *state, const struct scheme *s
 struct scheme hydro_scheme(void);
 /* Sets the kernel and its default width; the name is a built-in one. */
 void hydro_set_kernel(struct scheme *scheme, const char *name);
+/* Every gradient with every formulation, volume element, energy and viscosity: scheme c of so many;
+ * the rest of the scheme stays. Some exclude each other, see scheme_check. */
+size_t hydro_combinations(void);
+void hydro_combine(struct scheme *scheme, size_t c);
 /* By name. */
 const struct integrator *hydro_integrator(const char *name);
 /* "cubic_spline 2 ia lagrangian ...": what tells a scheme from hydro_scheme(). */

@@ -13,20 +13,20 @@
 static const int sinc_orders[] = {5, 3, 12};
 enum { SINC_ORDERS = sizeof sinc_orders / sizeof *sinc_orders };
 
-/* Subjects: the family's members, sinc again at its other orders, the user's kernel. */
-static size_t subject_count(void)
+static void add(struct check_run *run, const char *name, int sinc_order)
 {
-    return kernel_family.n + SINC_ORDERS - 1 + (check_kernel_plugin != NULL);
+    struct kernel kernel;
+    kernel_select(&kernel, name, sinc_order, NULL);
+    check_subject(run, &kernel, sizeof kernel);
 }
 
-static const void *subject(size_t i)
+/* The family's members, sinc again at its other orders, the user's kernel. */
+static void subjects(struct check_run *run)
 {
-    static struct kernel kernel; /* until the next one is asked for */
-    const size_t extra = i < kernel_family.n ? 0 : i - kernel_family.n + 1;
-    if (extra == SINC_ORDERS) return check_kernel_plugin;
-    const char *name = extra ? "sinc" : kernel_family.members[i]->name;
-    kernel_select(&kernel, name, sinc_orders[extra], NULL);
-    return &kernel;
+    for (size_t k = 0; k < kernel_family.n; k++)
+        add(run, kernel_family.members[k]->name, sinc_orders[0]);
+    for (size_t i = 1; i < SINC_ORDERS; i++) add(run, "sinc", sinc_orders[i]);
+    if (check_kernel_plugin) check_subject(run, check_kernel_plugin, 0);
 }
 
 /* Passes the figures of a property on to the check. */
@@ -77,8 +77,7 @@ static void measure(struct check_run *run, const struct kernel *kernel,
     const struct check check_kernel_##name_ = {.group = "kernels",                                 \
                                                .name = #name_,                                     \
                                                .property = formula,                                \
-                                               .subject_count = subject_count,                     \
-                                               .subject = subject,                                 \
+                                               .subjects = subjects,                               \
                                                .measure = measure_##name_,                         \
                                                .mutants = kernel_mutants_##name_};
 #include "properties.def"

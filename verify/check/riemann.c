@@ -5,14 +5,9 @@
 
 #include "check.h"
 #include "riemann_mutants.h"
+#include "worst.h"
 
 enum { PROBLEMS = 2000 };
-
-/* The larger; NaN, which compares as nothing, is taken and stays. */
-static void keep_worst(double *worst, double value)
-{
-    if (!(value <= *worst) && !isnan(*worst)) *worst = value;
-}
 
 static double relative(double value, double expected)
 {
@@ -88,10 +83,10 @@ static void measure_table(struct check_run *run, const void *subject)
         if (solver->solve(row->problem.gamma, &row->problem.left, &row->problem.right, &s))
             worst = (double)NAN;
         else {
-            keep_worst(&worst, relative(s.p_star, row->p_star));
-            keep_worst(&worst, fabs(s.v_star - row->v_star) / riemann_speed_scale(&row->problem));
-            keep_worst(&worst, relative(s.rho_star_left, row->rho_star_left));
-            keep_worst(&worst, relative(s.rho_star_right, row->rho_star_right));
+            worst_keep(&worst, relative(s.p_star, row->p_star));
+            worst_keep(&worst, fabs(s.v_star - row->v_star) / riemann_speed_scale(&row->problem));
+            worst_keep(&worst, relative(s.rho_star_left, row->rho_star_left));
+            worst_keep(&worst, relative(s.rho_star_right, row->rho_star_right));
         }
         /* the floor: inputs such as 1.4 and 5.99924 are rounded, and 1e-16 there is felt */
         check_measure(run, worst, 1e-13, 5e-15, "%s: p*, v*, rho* on both sides", row->name);
@@ -131,22 +126,26 @@ static void measure_waves(struct check_run *run, const void *subject)
     gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
     double worst[FIGURES] = {0};
     struct riemann_problem at[FIGURES] = {0};
+    int shocks = 0, fans = 0;
     for (int i = 0; i < PROBLEMS; i++) {
         const struct riemann_problem p = riemann_random(random, i % 2 ? 10 : 3);
         struct riemann_solution s;
         if (solver->solve(p.gamma, &p.left, &p.right, &s)) s.p_star = s.v_star = (double)NAN;
         const struct riemann_defects d = riemann_defects_of(&s);
+        shocks += (s.left_wave == RIEMANN_SHOCK) + (s.right_wave == RIEMANN_SHOCK);
+        fans += (s.left_wave == RIEMANN_RAREFACTION) + (s.right_wave == RIEMANN_RAREFACTION);
         const double values[FIGURES] = {d.mass,      d.momentum, d.energy, d.isentrope,
                                         d.invariant, d.speeds,   d.order};
         for (int k = 0; k < FIGURES; k++) {
             const double before = worst[k];
-            keep_worst(&worst[k], values[k]);
+            worst_keep(&worst[k], values[k]);
             if (worst[k] != before && !isnan(before)) at[k] = p;
         }
     }
     gsl_rng_free(random);
+    const bool enough = shocks >= PROBLEMS / 4 && fans >= PROBLEMS / 4;
     for (int k = 0; k < FIGURES; k++)
-        check_measure(run, worst[k], 1e-14, 1e-15,
+        check_measure(run, enough ? worst[k] : (double)NAN, 1e-14, 1e-15,
                       "%s; worst of %d problems: gamma %.6g, rho v P %.6g %.6g %.6g | %.6g %.6g "
                       "%.6g",
                       names[k], PROBLEMS, at[k].gamma, at[k].left.rho, at[k].left.v, at[k].left.P,
@@ -179,6 +178,7 @@ static void measure_vacuum(struct check_run *run, const void *subject)
     const struct riemann_subject *solver = subject ? subject : &riemann_reference;
     gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
     double kind = 0, edge = 0;
+    size_t vacua = 0;
     struct riemann_solution s;
     for (int i = 0; i < PROBLEMS; i++) {
         const struct riemann_problem p = riemann_random(random, 4);
@@ -186,13 +186,15 @@ static void measure_vacuum(struct check_run *run, const void *subject)
             kind = 1;
             continue;
         }
-        keep_worst(&kind, riemann_vacuum_defect(&s));
+        worst_keep(&kind, riemann_vacuum_defect(&s));
         if (!s.vacuum) continue;
-        keep_worst(&edge, riemann_defects_of(&s).invariant);
+        vacua++;
+        worst_keep(&edge, riemann_defects_of(&s).invariant);
     }
     gsl_rng_free(random);
     check_measure(run, kind, 0, 0, "vacuum exactly where v_R - v_L >= 2 (c_L + c_R)/(gamma-1)");
-    check_measure(run, edge, 1e-14, 1e-15, "edges of a vacuum move with v -+ 2c/(gamma-1)");
+    check_measure(run, vacua ? edge : (double)NAN, 1e-14, 1e-15,
+                  "edges of a vacuum move with v -+ 2c/(gamma-1)");
 
     const struct riemann_state gas = {1, 0, 1}, nothing = {0, 0, 0};
     const double c = sqrt(1.4);
@@ -200,11 +202,11 @@ static void measure_vacuum(struct check_run *run, const void *subject)
     if (solver->solve(1.4, &gas, &nothing, &s))
         side = (double)NAN;
     else
-        keep_worst(&side, relative(s.left_tail, 5 * c) + relative(s.left_head, -c));
+        worst_keep(&side, relative(s.left_tail, 5 * c) + relative(s.left_head, -c));
     if (solver->solve(1.4, &nothing, &gas, &s))
         side = (double)NAN;
     else
-        keep_worst(&side, relative(s.right_tail, -5 * c) + relative(s.right_head, c));
+        worst_keep(&side, relative(s.right_tail, -5 * c) + relative(s.right_head, c));
     check_measure(run, side, 1e-14, 1e-15, "vacuum on the right, on the left");
 }
 
@@ -231,6 +233,7 @@ static void measure_symmetries(struct check_run *run, const void *subject)
     const struct riemann_subject *solver = subject ? subject : &riemann_reference;
     gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
     double mirror = 0, boost = 0;
+    size_t boosted = 0;
     for (int i = 0; i < PROBLEMS / 2; i++) {
         struct riemann_problem p = riemann_random(random, 2);
         /* velocities on a grid, so that the boost itself rounds nothing */
@@ -247,14 +250,16 @@ static void measure_symmetries(struct check_run *run, const void *subject)
             break;
         }
         in_mirror = riemann_solution_mirrored(&in_mirror);
-        keep_worst(&mirror, riemann_difference(&s, &in_mirror, speed));
+        worst_keep(&mirror, riemann_difference(&s, &in_mirror, speed));
         if (b.left.v - dv != p.left.v || b.right.v - dv != p.right.v) continue;
+        boosted++;
         moving = riemann_solution_boosted(&moving, -dv);
-        keep_worst(&boost, riemann_difference(&s, &moving, speed + dv));
+        worst_keep(&boost, riemann_difference(&s, &moving, speed + dv));
     }
     gsl_rng_free(random);
     check_measure(run, mirror, 0, 0, "the mirror image's solution is the mirrored solution");
-    check_measure(run, boost, 2e-15, 2e-16, "seen from a moving frame (Galilei)");
+    check_measure(run, boosted ? boost : (double)NAN, 2e-15, 2e-16,
+                  "seen from a moving frame (Galilei)");
 }
 
 static const struct check_mutant symmetries_mutants[] = {

@@ -188,6 +188,7 @@ double riemann_fan_defect(const struct riemann_subject *subject, const struct ri
 {
     enum { POINTS = 9 };
     double worst = 0;
+    int compared = 0;
     for (int right = 0; right < 2; right++) {
         const struct seen k = look(s, right);
         const double to_v = 2 / (k.gamma - 1), scale = fabs(k.v) + (1 + to_v) * k.c + fabs(x0) / t;
@@ -203,11 +204,12 @@ double riemann_fan_defect(const struct riemann_subject *subject, const struct ri
             worst = larger(worst, fabs(v - c - xi) / scale);
             worst = larger(worst, fabs(v + to_v * c - k.v - to_v * k.c) / scale);
             const double fall = log(state.P / k.P);
+            compared++;
             worst = larger(worst, fabs(fall - k.gamma * log(state.rho / k.rho)) /
                                       (1 + k.gamma + fabs(fall)));
         }
     }
-    return worst;
+    return compared ? worst : (double)NAN;
 }
 
 /* ---- symmetries ---- */

@@ -3,19 +3,21 @@
  * is made of are differences of the solver's own, and its limits of eta are the known ones. */
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "check.h"
 #include "hydro_scene.h"
 #include "integrator.h"
 #include "simulation.h"
 #include "stability.h"
+#include "worst.h"
 
-enum { PARTICLES = 24, SUBJECTS_MAX = 128, STEPS = 32 };
+enum { PARTICLES = 24, STEPS = 32 };
 
-/* A scheme, and what a mutant does to the theory of it. */
+/* A scheme; or what a mutant does to the theory of lattice_scheme(). */
 struct theory {
-    struct scheme scheme;
     void (*spoil)(struct stability *lattice);
+    struct scheme scheme;
 };
 
 enum component { DISPLACEMENT, VELOCITY, HEAT };
@@ -69,56 +71,64 @@ static enum status solver_response(const struct stability *lattice, double kappa
 /* --- rates -------------------------------------------------------------------------------------
  */
 
-static struct theory subjects[SUBJECTS_MAX];
-static size_t subject_total;
-
-static size_t subject_count(void)
+static struct scheme lattice_scheme(void)
 {
-    if (subject_total) return subject_total;
-    for (size_t k = 0; k < kernel_family.n; k++)
-        for (int c = 0; c < 16; c++) {
-            struct scheme s = hydro_scheme();
-            if (c >= 8 && k != 1) continue;
-            kernel_select(&s.kernel, kernel_family.members[k]->name, 5, NULL);
-            s.eta = 3.37; /* no neighbour on a knot, where the kernel has no second derivative */
-            s.gradient = c & 1 ? GRADIENT_IA : GRADIENT_STANDARD;
-            s.formulation = c & 2 ? FORMULATION_LAGRANGIAN : FORMULATION_VANILLA_ICE;
-            s.volume_element = c & 4 ? VOLUME_ENERGY : VOLUME_MASS;
-            s.beta = 0; /* quadratic */
-            s.viscosity = c & 8 ? VISCOSITY_CONSTANT : VISCOSITY_NONE;
-            subjects[subject_total++].scheme = s;
-        }
-    return subject_total;
+    struct scheme s = hydro_scheme();
+    s.eta = 3.37; /* no neighbour on a knot, where the kernel has no second derivative */
+    s.beta = 0;   /* quadratic */
+    return s;
 }
 
-static const void *subject_at(size_t i)
+static void add(struct check_run *run, const char *kernel, enum viscosity viscosity)
 {
-    return &subjects[i];
+    struct theory theory = {NULL, lattice_scheme()};
+    struct scheme *s = &theory.scheme;
+    kernel_select(&s->kernel, kernel, 5, NULL);
+    s->viscosity = viscosity;
+    for (size_t e = 0; e < scheme_volume_element_family.n; e++)
+        for (size_t f = 0; f < scheme_formulation_family.n; f++)
+            for (size_t g = 0; g < scheme_gradient_family.n; g++) {
+                s->volume_element = (enum volume_element)e;
+                s->formulation = (enum formulation)f;
+                s->gradient = (enum gradient)g;
+                check_subject(run, &theory, sizeof theory);
+            }
+}
+
+/* Viscosity knows nothing of the kernel. */
+static void subjects(struct check_run *run)
+{
+    for (size_t k = 0; k < kernel_family.n; k++) {
+        const char *name = kernel_family.members[k]->name;
+        add(run, name, VISCOSITY_NONE);
+        if (strcmp(name, "cubic_spline") == 0) add(run, name, VISCOSITY_CONSTANT);
+    }
 }
 
 static void measure_rates(struct check_run *run, const void *subject)
 {
     const struct theory *theory = subject;
+    const struct scheme scheme = theory->spoil ? lattice_scheme() : theory->scheme;
     struct stability lattice;
     struct error error = {0};
     char where[HYDRO_TEXT];
     double worst = 0;
-    hydro_describe(&theory->scheme, where);
-    enum status status = stability_begin(&lattice, &theory->scheme, 1.4, &error);
+    hydro_describe(&scheme, where);
+    enum status status = stability_begin(&lattice, &scheme, 1.4, &error);
     for (int p = 1; p <= 11 && !status; p += 5) {
         const double kappa = 2 * M_PI * p / PARTICLES;
         double x = 0, v = 0, u = 0, heat = 0, ignored;
         struct stability_rates r;
         if (theory->spoil) theory->spoil(&lattice);
         stability_rates(&lattice, kappa, &r);
-        lattice.scheme = theory->scheme;
+        lattice.scheme = scheme;
         status = solver_response(&lattice, kappa, DISPLACEMENT, &x, &ignored, &error);
         if (!status) status = solver_response(&lattice, kappa, VELOCITY, &v, &heat, &error);
         if (!status) status = solver_response(&lattice, kappa, HEAT, &u, &ignored, &error);
         /* viscous heating has no linear part, and a quadratic one that the differences keep */
-        if (theory->scheme.viscosity != VISCOSITY_NONE) heat = r.energy;
-        worst = fmax(worst, fmax(fmax(fabs(x - r.x), fabs(v - r.v)),
-                                 fmax(fabs(u - r.u), fabs(heat - r.energy))));
+        if (scheme.viscosity != VISCOSITY_NONE) heat = r.energy;
+        const double off[] = {x - r.x, v - r.v, u - r.u, heat - r.energy};
+        for (size_t i = 0; i < sizeof off / sizeof *off; i++) worst_keep(&worst, fabs(off[i]));
     }
     if (status)
         check_measure(run, 1, 0, 0, "%s: %s", where, error.message);
@@ -161,32 +171,16 @@ static void hotter(struct stability *lattice)
     lattice->u *= 1 + 1e-6;
 }
 
-/* Mutants: the first scheme, with viscosity, and a spoilt theory of it. */
-enum { FAULTS = 7 };
-static struct theory spoilt[FAULTS];
-
-static void measure_rates_or_fill(struct check_run *run, const void *subject)
-{
-    static void (*const faults[FAULTS])(struct stability *) = {
-        frozen_width, frozen_gradient, bent_kernel, all_pairs, other_form, other_element, hotter};
-    const struct theory *theory = subject;
-    if (theory >= spoilt && theory < spoilt + FAULTS)
-        for (int i = 0; i < FAULTS; i++) {
-            spoilt[i] = (struct theory){hydro_scheme(), faults[i]};
-            spoilt[i].scheme.eta = 3.37;
-            spoilt[i].scheme.beta = 0;
-        }
-    measure_rates(run, subject);
-}
-
+#define SPOIL(how) (&(const struct theory){.spoil = how})
 static const struct check_mutant rates_mutants[] = {
-    {"stability_frozen_width", "smoothing length does not follow density", &spoilt[0]},
-    {"stability_frozen_gradient", "gradient does not follow the smoothing length", &spoilt[1]},
-    {"stability_curvature", "second derivative of the kernel off by 1e-6", &spoilt[2]},
-    {"stability_all_pairs", "viscosity also on pairs that part", &spoilt[3]},
-    {"stability_formulation", "theory of lagrangian for vanilla_ice", &spoilt[4]},
-    {"stability_element", "theory of the energy element for mass", &spoilt[5]},
-    {"stability_energy", "internal energy off by 1e-6", &spoilt[6]},
+    {"stability_frozen_width", "smoothing length does not follow density", SPOIL(frozen_width)},
+    {"stability_frozen_gradient", "gradient does not follow the smoothing length",
+     SPOIL(frozen_gradient)},
+    {"stability_curvature", "second derivative of the kernel off by 1e-6", SPOIL(bent_kernel)},
+    {"stability_all_pairs", "viscosity also on pairs that part", SPOIL(all_pairs)},
+    {"stability_formulation", "theory of lagrangian for vanilla_ice", SPOIL(other_form)},
+    {"stability_element", "theory of the energy element for mass", SPOIL(other_element)},
+    {"stability_energy", "internal energy off by 1e-6", SPOIL(hotter)},
     {0},
 };
 
@@ -194,9 +188,8 @@ const struct check check_stability_rates = {
     .group = "stability",
     .name = "rates",
     .property = "linearised rates of a wave equal differences of the solver's, c/dx = 1",
-    .subject_count = subject_count,
-    .subject = subject_at,
-    .measure = measure_rates_or_fill,
+    .subjects = subjects,
+    .measure = measure_rates,
     .mutants = rates_mutants,
 };
 
@@ -236,35 +229,44 @@ static enum status run_wave(const struct stability *lattice, double kappa, doubl
     return status;
 }
 
+static void measure_wave(struct check_run *run, const struct stepping *stepping,
+                         const struct integrator *integrator, enum h_method method)
+{
+    struct scheme scheme = lattice_scheme();
+    struct stability lattice;
+    struct error error = {0};
+    double dt = 0, x = 0, v = 0, x_theory, v_theory;
+    struct integrator even = *integrator;
+    even.first_step = 0; /* steps of one length, as the theory's */
+    scheme.integrator = &even;
+    scheme.viscosity = VISCOSITY_NONE;
+    scheme.h_method = method;
+    const double kappa = 2 * M_PI * 5 / PARTICLES;
+    enum status status = stability_begin(&lattice, &scheme, 1.4, &error);
+    if (!status) status = run_wave(&lattice, kappa, &dt, &x, &v, &error);
+    if (stepping->followed) lattice.scheme.integrator = hydro_integrator(stepping->followed);
+    if (stepping->newton) lattice.scheme.h_method = H_NEWTON;
+    stability_follow(&lattice, kappa, dt, STEPS, &x_theory, &v_theory);
+    const double size = hypot(x_theory, v_theory);
+    check_measure(run, status ? 1 : hypot(x - x_theory, v - v_theory) / size, 1e-4, 1e-5,
+                  "%s, h %s, c dt/dx %.3f", integrator->member.name,
+                  scheme_h_method_family.members[method]->name, dt);
+}
+
 static void measure_steps(struct check_run *run, const void *subject)
 {
     static const struct stepping right;
-    const struct stepping *stepping = subject ? subject : &right;
-    for (size_t k = 0; k < integrator_family.n; k++)
-        for (size_t method = 0; method < scheme_h_method_family.n; method++) {
-            struct scheme scheme = hydro_scheme();
-            struct stability lattice;
-            struct error error = {0};
-            double dt = 0, x = 0, v = 0, x_theory, v_theory;
-            struct integrator even = *(const struct integrator *)integrator_family.members[k];
-            even.first_step = 0; /* steps of one length, as the theory's */
-            scheme.integrator = &even;
-            scheme.eta = 3.37;
-            scheme.viscosity = VISCOSITY_NONE;
-            scheme.h_method = (enum h_method)method;
-            scheme.cfl = 0.3;
-            const double kappa = 2 * M_PI * 5 / PARTICLES;
-            enum status status = stability_begin(&lattice, &scheme, 1.4, &error);
-            if (!status) status = run_wave(&lattice, kappa, &dt, &x, &v, &error);
-            if (stepping->followed)
-                lattice.scheme.integrator = hydro_integrator(stepping->followed);
-            if (stepping->newton) lattice.scheme.h_method = H_NEWTON;
-            stability_follow(&lattice, kappa, dt, STEPS, &x_theory, &v_theory);
-            const double size = hypot(x_theory, v_theory);
-            check_measure(run, status ? 1 : hypot(x - x_theory, v - v_theory) / size, 1e-4, 1e-5,
-                          "%s, h %s, c dt/dx %.3f", scheme.integrator->member.name,
-                          scheme_h_method_family.members[method]->name, dt);
+    for (size_t k = 0; k < integrator_family.n; k++) {
+        const struct integrator *integrator =
+            (const struct integrator *)integrator_family.members[k];
+        if (!stability_knows(integrator)) {
+            check_skip(run, "%s: no theory of its steps (stability/stability_steps.c)",
+                       integrator->member.name);
+            continue;
         }
+        for (size_t method = 0; method < scheme_h_method_family.n; method++)
+            measure_wave(run, subject ? subject : &right, integrator, (enum h_method)method);
+    }
 }
 
 static const struct stepping heun = {.followed = "rk2"},

@@ -6,6 +6,7 @@
 #include "check.h"
 #include "hydro_scene.h"
 #include "simulation.h"
+#include "worst.h"
 
 enum { PARTICLES = 24 };
 
@@ -77,12 +78,12 @@ static double steps_to(double light)
     simulation_snapshot(simulation, &s);
     simulation_rates(simulation, &rates);
     double pull = 0;
-    for (size_t i = 0; i < s.n; i++) pull = fmax(pull, fabs(rates.force[0][i]) / (s.m[i] * s.h[i]));
+    for (size_t i = 0; i < s.n; i++) worst_keep(&pull, fabs(rates.force[0][i]) / (s.m[i] * s.h[i]));
     const double end = fmin(1.5 * scheme.cfl / sqrt(pull), rates.time_step);
-    simulation_run(simulation, end, NULL, NULL, &error);
+    const enum status status = simulation_run(simulation, end, NULL, NULL, &error);
     simulation_cost(simulation, &cost);
     simulation_destroy(simulation);
-    return (double)cost.steps;
+    return status ? (double)NAN : (double)cost.steps;
 }
 
 /* Where the density falls 200 times within a width, h -> eta m/rho(h) runs away from its root:

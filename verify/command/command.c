@@ -60,18 +60,24 @@ static const struct command_option *find(const struct command_option *list, cons
 static enum status unknown_option(const struct options *options, const char *word,
                                   struct error *error)
 {
-    char names[COMMAND_OPTIONS_MAX + 8][40];
-    const char *list[COMMAND_OPTIONS_MAX + 8];
-    size_t n = 0;
     const struct command_option *const lists[] = {
         options->command ? options->command->options : NULL, common};
-    for (size_t l = 0; l < 2; l++)
+    const size_t most = count(lists[0]) + count(lists[1]);
+    char(*names)[40] = malloc(most * sizeof *names);
+    const char **list = malloc(most * sizeof *list);
+    enum status status = STATUS_OK;
+    size_t n = 0;
+    if (!names || !list) status = error_set(error, STATUS_ENVIRONMENT, "no memory");
+    for (size_t l = 0; l < 2 && !status; l++)
         for (size_t i = 0; i < count(lists[l]); i++, n++) {
             snprintf(names[n], sizeof names[n], "--%s", lists[l][i].name);
             list[n] = names[n];
         }
-    return text_unknown(error, options->command ? options->command->name : NULL, "option", word,
-                        list, n);
+    if (!status)
+        status = text_unknown(error, options->command ? options->command->name : NULL, "option",
+                              word, list, n);
+    free(names), free(list);
+    return status;
 }
 
 static enum status apply_common(struct line *line, const char *name, const char *value,
@@ -139,16 +145,15 @@ static enum status take_option(struct line *line, int argc, char **argv, int *i,
     return STATUS_OK;
 }
 
-static enum status find_command(const char *word, const struct command **command,
-                                struct error *error)
+static enum status find_command(const char *word, struct options *options, struct error *error)
 {
     const char *names[COMMANDS];
     for (size_t i = 0; i < COMMANDS; i++) {
         names[i] = commands[i]->name;
-        if (strcmp(word, names[i]) == 0) {
-            *command = commands[i];
-            return STATUS_OK;
-        }
+        if (strcmp(word, names[i]) != 0) continue;
+        options->command = commands[i];
+        options->values = calloc(count(commands[i]->options) + 1, sizeof *options->values);
+        return options->values ? STATUS_OK : error_set(error, STATUS_ENVIRONMENT, "no memory");
     }
     return text_unknown(error, NULL, "command", word, names, COMMANDS);
 }
@@ -165,7 +170,7 @@ static enum status parse(struct line *line, int argc, char **argv, struct error 
         else if (!options_end && word[0] == '-' && word[1] && !text_real(word, &number))
             status = take_option(line, argc, argv, &i, error);
         else if (!line->options.command)
-            status = find_command(word, &line->options.command, error);
+            status = find_command(word, &line->options, error);
         else
             line->arguments[line->n++] = word;
     }
@@ -272,6 +277,6 @@ int command_main(int argc, char **argv)
     const enum status flushed = output_finish_process(&error);
     if (flushed) status = flushed;
     if (error.message[0] && status) fprintf(stderr, "sphproof: %s\n", error.message);
-    free(line.arguments);
+    free(line.arguments), free(line.options.values);
     return (int)status;
 }

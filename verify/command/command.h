@@ -5,8 +5,6 @@
 
 #include "status.h"
 
-enum { COMMAND_OPTIONS_MAX = 24 };
-
 /* An option of one command; a list of them ends with a NULL name. */
 struct command_option {
     const char *name;     /* without the dashes */
@@ -22,7 +20,7 @@ struct options {
     int speak;        /* 1 where tables for a person go to standard output */
     int color;        /* resolved: 1 where stdout may be coloured */
     const struct command *command;
-    const char *values[COMMAND_OPTIONS_MAX]; /* of the command's own options, see options_value */
+    const char **values; /* of the command's own options, see options_value */
 };
 
 struct command {

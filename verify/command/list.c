@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * sphproof list: the names that can be used, one line each. */
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "cases.h"
@@ -8,6 +9,7 @@
 #include "command.h"
 #include "integrator.h"
 #include "kernel.h"
+#include "list.h"
 #include "operator.h"
 #include "result.h"
 #include "settings.h"
@@ -16,25 +18,33 @@
 #include "table.h"
 #include "text.h"
 
-enum { ITEMS_MAX = 512, LABEL_MAX = 160 };
-
-/* A family made at run time, from a registry whose members are not struct member. */
+/* A family made at run time, from a registry whose members are not struct member; made once. */
 struct made {
     struct family family;
-    struct member items[ITEMS_MAX];
-    const struct member *members[ITEMS_MAX];
-    char labels[ITEMS_MAX][LABEL_MAX];
+    struct member *items;
+    const struct member **members; /* to the items, once all are there */
 };
+
+static bool no_memory; /* for some of them */
 
 static void made_add(struct made *made, const char *name, const char *label, const char *paper)
 {
-    const size_t i = made->family.n;
-    if (i == ITEMS_MAX) return;
-    snprintf(made->labels[i], LABEL_MAX, "%s", label);
-    made->items[i] = (struct member){name, made->labels[i], paper};
-    made->members[i] = &made->items[i];
+    char *copy = strdup(label);
+    if (copy && list_grow(&made->items, made->family.n, sizeof *made->items)) {
+        made->items[made->family.n++] = (struct member){name, copy, paper};
+        return;
+    }
+    free(copy);
+    no_memory = true;
+}
+
+static const struct family *made_family(struct made *made)
+{
+    made->members = malloc((made->family.n + 1) * sizeof *made->members);
+    no_memory = no_memory || !made->members;
+    for (size_t i = 0; made->members && i < made->family.n; i++) made->members[i] = &made->items[i];
     made->family.members = made->members;
-    made->family.n++;
+    return &made->family;
 }
 
 static const struct family *cases(void)
@@ -42,51 +52,51 @@ static const struct family *cases(void)
     static struct made made = {.family = {"cases", "built-in cases", NULL, 0}};
     struct case_file file;
     struct error error;
-    made.family.n = 0;
+    if (made.members) return &made.family;
     for (const struct case_builtin *builtin = case_builtins; builtin->name; builtin++)
-        if (!case_load(&file, builtin->name, &error))
-            made_add(&made, builtin->name, file.title, "");
-    return &made.family;
+        made_add(&made, builtin->name,
+                 case_load(&file, builtin->name, &error) ? error.message : file.title, "");
+    return made_family(&made);
 }
 
 static const struct family *keys(void)
 {
     static struct made made = {.family = {"keys", "keys of a run: KEY=VALUE", NULL, 0}};
-    made.family.n = 0;
+    if (made.members) return &made.family;
     for (int i = 0; i < SETTINGS; i++)
         made_add(&made, setting_keys[i].name, setting_keys[i].meaning, "");
-    return &made.family;
+    return made_family(&made);
 }
 
 static const struct family *checks(void)
 {
     static struct made made = {.family = {"checks", "checks of `sphproof verify`", NULL, 0}};
-    made.family.n = 0;
+    if (made.members) return &made.family;
     for (size_t i = 0; i < check_registry_count; i++)
         made_add(&made, check_registry[i]->name, check_registry[i]->property, "");
-    return &made.family;
+    return made_family(&made);
 }
 
 static const struct family *mutants(void)
 {
     static struct made made = {
         .family = {"mutants", "wrong variants that the checks must reject", NULL, 0}};
-    made.family.n = 0;
+    if (made.members) return &made.family;
     for (size_t i = 0; i < check_registry_count; i++)
         for (const struct check_mutant *m = check_registry[i]->mutants; m && m->name; m++)
             made_add(&made, m->name, m->fault, "");
-    return &made.family;
+    return made_family(&made);
 }
 
 static const struct family *stress(void)
 {
     static struct made made = {.family = {"stress", "groups of `sphproof stress`", NULL, 0}};
-    made.family.n = 0;
+    if (made.members) return &made.family;
     for (size_t i = 0; i < stress_group_count; i++) {
         const struct member *member = &stress_groups[i].member;
         made_add(&made, member->name, member->label, member->paper);
     }
-    return &made.family;
+    return made_family(&made);
 }
 
 static const struct family *kernels(void)
@@ -199,6 +209,8 @@ static enum status run(const struct options *options, int n, char **arguments, s
     const struct table_style style = table_style(options->color);
     const bool markdown = options_value(options, "markdown");
     if (n > 1) return command_usage(options, error, "one family at a time");
+    for (size_t i = 0; i < LISTS; i++) lists[i]();
+    if (no_memory) return error_set(error, STATUS_ENVIRONMENT, "list: no memory");
     if (n == 1 && choose(arguments[0], &chosen, error)) return error->status;
     const bool only_keys = chosen && strcmp(chosen->name, "keys") == 0;
     if (markdown && !only_keys)

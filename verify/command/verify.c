@@ -2,6 +2,7 @@
  * sphproof verify: runs the checks, and with --mutants shows what they are able to reject. */
 #include <gsl/gsl_errno.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -15,7 +16,7 @@
 #include "text.h"
 #include "user_kernel.h"
 
-enum { GROUPS_MAX = 64, FOLDER_LENGTH = 1000 };
+enum { FOLDER_LENGTH = 1000 };
 
 static const struct command_option verify_options[] = {
     {"mutants", NULL, "also run the mutants: wrong variants that the checks must reject"},
@@ -41,14 +42,16 @@ static void default_folder(char *folder, size_t size)
 
 static enum status choose_groups(int n, char **arguments, struct error *error)
 {
-    const char *names[GROUPS_MAX];
-    const size_t count = suite_groups(check_registry, check_registry_count, names);
-    for (int i = 0; i < n; i++) {
+    size_t count;
+    const char **names = suite_groups(check_registry, check_registry_count, &count);
+    enum status status = names ? STATUS_OK : error_set(error, STATUS_ENVIRONMENT, "no memory");
+    for (int i = 0; i < n && !status; i++) {
         bool known = false;
         for (size_t j = 0; j < count; j++) known = known || strcmp(names[j], arguments[i]) == 0;
-        if (!known) return text_unknown(error, "verify", "group", arguments[i], names, count);
+        if (!known) status = text_unknown(error, "verify", "group", arguments[i], names, count);
     }
-    return STATUS_OK;
+    free(names);
+    return status;
 }
 
 static void show_progress(void *progress, const struct check *check, size_t done, size_t total)

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WORD_MAX = 64, NAMES_MAX = 256 };
+enum { WORD_MAX = 64 };
 
 bool text_real(const char *text, double *value)
 {
@@ -123,8 +123,10 @@ enum status text_unknown(struct error *error, const char *where, const char *kin
 enum status text_unknown_member(struct error *error, const char *where, const char *kind,
                                 const char *word, const struct family *family)
 {
-    const char *names[NAMES_MAX];
-    const size_t n = least(family->n, NAMES_MAX);
-    for (size_t i = 0; i < n; i++) names[i] = family->members[i]->name;
-    return text_unknown(error, where, kind, word, names, n);
+    const char **names = malloc((family->n + 1) * sizeof *names);
+    if (!names) return error_set(error, STATUS_ENVIRONMENT, "no memory");
+    for (size_t i = 0; i < family->n; i++) names[i] = family->members[i]->name;
+    const enum status status = text_unknown(error, where, kind, word, names, family->n);
+    free(names);
+    return status;
 }

@@ -4,18 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-size_t gradient_study_subject_count(void)
-{
-    return operator_family.n;
-}
-
-const void *gradient_study_subject(size_t i)
-{
-    enum { MAX = 16 };
-    static struct gradient_subject subjects[MAX];
-    subjects[i].form = (const struct operator_form *)operator_family.members[i];
-    return &subjects[i];
-}
+#include "worst.h"
 
 const char *gradient_study_field_name(enum gradient_function field)
 {
@@ -99,7 +88,7 @@ enum status gradient_study_errors(const struct gradient_subject *subject,
         const double scaled = difference * cloud->h[i] / largest;
         const bool inside = clouds_interior(settings, cloud, i);
         double *worst = inside ? &errors->interior : &errors->edge;
-        if (!(scaled <= *worst)) *worst = scaled;
+        worst_keep(worst, scaled);
         if (inside) errors->interior_rms += scaled * scaled;
         errors->inside += inside ? 1u : 0u, errors->outside += inside ? 0u : 1u;
         errors->condition = fmax(errors->condition, point[i].condition);

@@ -12,10 +12,6 @@ struct gradient_subject {
     enum naive_fault fault; /* NAIVE_NONE: src's operator; else the naive one with this fault */
 };
 
-/* The five right subjects, in the order of operator_family: for struct check. */
-size_t gradient_study_subject_count(void);
-const void *gradient_study_subject(size_t i);
-
 /* Fields of high entropy: mixed polynomials of full degree 0..3 and smooth ones. */
 enum gradient_function {
     FUNCTION_CONSTANT,

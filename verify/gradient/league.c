@@ -123,16 +123,18 @@ static enum status measure(const struct operator_form *form, int dim, struct lea
     return status;
 }
 
-enum status league_measure(struct league_row *rows, size_t *count, struct error *error)
+enum status league_measure(struct league_row **rows, size_t *count, struct error *error)
 {
-    *count = 0;
-    for (int dim = 1; dim <= 3; dim++)
-        for (size_t o = 0; o < operator_family.n && *count < LEAGUE_ROWS_MAX; o++, ++*count) {
-            const struct gradient_subject *subject = gradient_study_subject(o);
-            const enum status status = measure(subject->form, dim, &rows[*count], error);
-            if (status) return status;
-        }
-    return STATUS_OK;
+    *count = 3 * operator_family.n;
+    *rows = calloc(*count, sizeof **rows);
+    enum status status =
+        *rows ? STATUS_OK : error_set(error, STATUS_ENVIRONMENT, "no memory for a league");
+    for (size_t i = 0; i < *count && !status; i++)
+        status =
+            measure((const struct operator_form *)operator_family.members[i % operator_family.n],
+                    1 + (int)(i / operator_family.n), &(*rows)[i], error);
+    if (status) free(*rows), *rows = NULL;
+    return status;
 }
 
 /* Three digits: these are figures for a table. */

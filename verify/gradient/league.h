@@ -21,11 +21,9 @@ struct league_row {
     double neighbours;                      /* a point, in that timing */
 };
 
-enum { LEAGUE_ROWS_MAX = 32 };
-
 /* Measures all operators in 1D, 2D and 3D (jitter 0.2, cubic_spline at eta 2, 2.4, 2.4); about a
- * second. *count rows. STATUS_ENVIRONMENT: no memory. */
-enum status league_measure(struct league_row *rows, size_t *count, struct error *error);
+ * second. *count rows, to be freed. STATUS_ENVIRONMENT: no memory. */
+enum status league_measure(struct league_row **rows, size_t *count, struct error *error);
 
 /* {"rows": [{"operator", "dim", ...}], "reproduce"}, flat rows as a report shows them; 1D angular
  * momentum is null. New reference, NULL: no memory. */

@@ -3,22 +3,29 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
+#include <stdlib.h>
 
 #include <gsl/gsl_errno.h>
+
+#include "list.h"
 
 struct certificate_sink {
     struct property_sink sink;
     struct certificate *certificate;
     const struct property *property;
+    bool no_memory;
 };
 
 static void take(struct property_sink *sink, double value, double bound, double floor,
                  const char *where, bool skipped)
 {
-    const struct certificate_sink *context = (const struct certificate_sink *)sink;
+    struct certificate_sink *context = (struct certificate_sink *)sink;
     struct certificate *certificate = context->certificate;
-    if (certificate->figure_count == CERTIFICATE_FIGURES_MAX) return;
+    if (!list_grow(&certificate->figures, certificate->figure_count,
+                   sizeof *certificate->figures)) {
+        context->no_memory = true;
+        return;
+    }
     struct certificate_figure *figure = &certificate->figures[certificate->figure_count++];
     *figure = (struct certificate_figure){.property = context->property,
                                           .value = value,
@@ -56,16 +63,21 @@ enum status certificate_measure(struct certificate *certificate, const struct ke
     measure_fourier(&certificate->spectrum, &certificate->fourier);
     certificate->pairing = measure_pairing(kernel, dim);
     measure_lattices(certificate);
+    struct certificate_sink context = {.sink = {take}, .certificate = certificate};
     for (size_t i = 0; i < property_count; i++) {
-        struct certificate_sink context = {{take}, certificate, &property_list[i]};
+        context.property = &property_list[i];
         property_list[i].measure(&certificate->pieces, &context.sink);
     }
     gsl_set_error_handler(handler);
-    return STATUS_OK;
+    if (!context.no_memory) return STATUS_OK;
+    certificate_free(certificate);
+    return error_set(error, STATUS_ENVIRONMENT, "no memory for the figures of a kernel");
 }
 
 void certificate_free(struct certificate *certificate)
 {
     pieces_free(&certificate->pieces);
     measure_spectrum_free(&certificate->spectrum);
+    free(certificate->figures);
+    certificate->figures = NULL;
 }

@@ -11,7 +11,7 @@
 #include "measure.h"
 #include "property.h"
 
-enum { CERTIFICATE_FIGURES_MAX = 128, CERTIFICATE_WIDTHS = 8 };
+enum { CERTIFICATE_WIDTHS = 8 };
 
 struct certificate_figure {
     const struct property *property;
@@ -32,8 +32,8 @@ struct certificate {
     struct {        /* lattice sums against width: multiples of the mean spacing */
         double eta, density, gradient;
     } lattice[CERTIFICATE_WIDTHS];
-    int figure_count, failed;
-    struct certificate_figure figures[CERTIFICATE_FIGURES_MAX];
+    size_t figure_count, failed;
+    struct certificate_figure *figures;
 };
 
 /* Measures everything on a kernel in dim dimensions. STATUS_ENVIRONMENT: no memory. A property that

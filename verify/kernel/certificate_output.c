@@ -90,7 +90,7 @@ static void print_properties(const struct certificate *c, FILE *stream, bool col
     fprintf(stream, "\n  %-4s %-18s %9s %9s %9s\n", "", "property", "value", "bound", "floor");
     for (size_t p = 0; p < property_count; p++) {
         const struct certificate_figure *nearest = NULL;
-        for (int i = 0; i < c->figure_count; i++) {
+        for (size_t i = 0; i < c->figure_count; i++) {
             const struct certificate_figure *figure = &c->figures[i];
             if (figure->property != &property_list[p]) continue;
             if (!figure->passed) print_figure(figure, stream, color);
@@ -109,9 +109,9 @@ void certificate_print(const struct certificate *c, double h, FILE *stream, bool
     print_properties(c, stream, color);
     fprintf(stream, "\n%s: ", c->failed ? "REJECTED" : "accepted");
     if (c->failed) {
-        fprintf(stream, "%d of %d figures beyond their bound, in", c->failed, c->figure_count);
+        fprintf(stream, "%zu of %zu figures beyond their bound, in", c->failed, c->figure_count);
         const struct property *last = NULL;
-        for (int i = 0; i < c->figure_count; i++) {
+        for (size_t i = 0; i < c->figure_count; i++) {
             const struct certificate_figure *figure = &c->figures[i];
             if (figure->passed || figure->property == last) continue;
             fprintf(stream, "%s %s", last ? "," : "", figure->property->name);
@@ -119,7 +119,7 @@ void certificate_print(const struct certificate *c, double h, FILE *stream, bool
         }
         fprintf(stream, "\n");
     } else
-        fprintf(stream, "%d figures within their bounds\n", c->figure_count);
+        fprintf(stream, "%zu figures within their bounds\n", c->figure_count);
 }
 
 /* ---- JSON ---- */
@@ -128,7 +128,7 @@ static json_t *figures_json(const struct certificate *c)
 {
     json_t *list = json_array();
     char subject[256];
-    for (int i = 0; i < c->figure_count; i++) {
+    for (size_t i = 0; i < c->figure_count; i++) {
         const struct certificate_figure *figure = &c->figures[i];
         snprintf(subject, sizeof subject, "%s, dim %d, %s", c->kernel->member.name, c->dim,
                  figure->where);

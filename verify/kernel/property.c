@@ -60,7 +60,9 @@ void property_keep(struct property_worst *worst, double value, double bound, dou
 
 void property_take_worst(struct property_sink *sink, const struct property_worst *worst)
 {
-    sink->take(sink, worst->value, worst->bound, worst->floor, worst->where, false);
+    const bool compared = worst->where[0];
+    sink->take(sink, compared ? worst->value : (double)NAN, worst->bound, worst->floor,
+               compared ? worst->where : "nothing was compared", false);
 }
 
 double property_bound(double base, double floor)

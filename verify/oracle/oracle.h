@@ -45,6 +45,9 @@ void oracle_signals(struct oracle *oracle);
 /* The time step of the present signal speeds. */
 long double oracle_time_step(const struct oracle *oracle);
 
+/* Whether the steps of this integrator are written here too. */
+bool oracle_knows(const struct integrator *integrator);
+
 /* Advances by dt; rates must be there, and are when it returns. STATUS_BAD_INPUT: an integrator
  * that the oracle does not know. */
 enum status oracle_step(struct oracle *oracle, long double dt, struct error *error);

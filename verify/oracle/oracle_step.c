@@ -148,32 +148,46 @@ static enum status predicted_midpoint(struct oracle *oracle, long double dt, str
     return status;
 }
 
+typedef enum status step_function(struct oracle *oracle, long double dt, struct error *error);
+
+static const struct {
+    const char *name;
+    step_function *step;
+} table[] = {
+    {"leapfrog", leapfrog},
+    {"modified_leapfrog", modified_leapfrog},
+    {"symplectic_euler", symplectic_euler},
+    {"rk2", rk2},
+    {"vl2", vl2},
+    {"rk3", rk3},
+    {"predicted_midpoint", predicted_midpoint},
+};
+
+static step_function *find_step(const struct integrator *integrator)
+{
+    for (size_t i = 0; i < sizeof table / sizeof *table; i++)
+        if (strcmp(integrator->member.name, table[i].name) == 0) return table[i].step;
+    return NULL;
+}
+
+bool oracle_knows(const struct integrator *integrator)
+{
+    return find_step(integrator) != NULL;
+}
+
 enum status oracle_step(struct oracle *oracle, long double dt, struct error *error)
 {
-    static const struct {
-        const char *name;
-        enum status (*step)(struct oracle *oracle, long double dt, struct error *error);
-    } table[] = {
-        {"leapfrog", leapfrog},
-        {"modified_leapfrog", modified_leapfrog},
-        {"symplectic_euler", symplectic_euler},
-        {"rk2", rk2},
-        {"vl2", vl2},
-        {"rk3", rk3},
-        {"predicted_midpoint", predicted_midpoint},
-    };
-    const char *name = oracle->scheme.integrator->member.name;
+    step_function *step = find_step(oracle->scheme.integrator);
+    if (!step)
+        return error_set(error, STATUS_BAD_INPUT, "oracle: no integrator %s",
+                         oracle->scheme.integrator->member.name);
     /* density sums stand in the middle of the steps */
     oracle->ahead = oracle->last_dt > 0 ? (oracle->last_dt + dt) / (2 * oracle->last_dt) : 0;
     oracle->last_dt = dt;
-    for (size_t i = 0; i < sizeof table / sizeof *table; i++)
-        if (strcmp(name, table[i].name) == 0) {
-            const enum status status = table[i].step(oracle, dt, error);
-            oracle->time += dt;
-            oracle->steps++;
-            return status;
-        }
-    return error_set(error, STATUS_BAD_INPUT, "oracle: no integrator %s", name);
+    const enum status status = step(oracle, dt, error);
+    oracle->time += dt;
+    oracle->steps++;
+    return status;
 }
 
 long double oracle_time_step(const struct oracle *oracle)

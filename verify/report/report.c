@@ -40,7 +40,7 @@ static const struct {
 static const double compared_bound = 3;
 
 enum { CASES = sizeof cases / sizeof *cases, SCHEMES = sizeof schemes / sizeof *schemes };
-enum { KEYS_MAX = 16, PIECES_MAX = 256, GROUPS_MAX = 64, COMMAND_TEXT = 1024 };
+enum { KEYS_MAX = 16, PIECES_MAX = 256, COMMAND_TEXT = 1024 };
 
 struct report {
     bool nightly;
@@ -60,7 +60,12 @@ static enum status prepare(int c, int s, struct run_settings *settings, struct e
     char text[512], *arguments[KEYS_MAX], *rest = text;
     int n = 0;
     snprintf(text, sizeof text, "%s", schemes[s].keys);
-    for (char *word; n < KEYS_MAX && (word = strtok_r(rest, " ", &rest));) arguments[n++] = word;
+    for (char *word; (word = strtok_r(rest, " ", &rest));) {
+        if (n == KEYS_MAX)
+            return error_set(error, STATUS_ENVIRONMENT, "scheme %s: more than %d keys",
+                             schemes[s].label, KEYS_MAX);
+        arguments[n++] = word;
+    }
     return run_prepare(settings, cases[c].name, n, arguments, error);
 }
 
@@ -98,10 +103,20 @@ static enum status add_piece(struct report *report, struct report_piece piece, s
     return report_piece_add(&report->pool, kept, error);
 }
 
+static enum status add_checks(struct report *report, struct error *error)
+{
+    size_t count;
+    const char **groups = suite_groups(check_registry, check_registry_count, &count);
+    enum status status = groups ? STATUS_OK : error_set(error, STATUS_ENVIRONMENT, "no memory");
+    for (size_t g = 0; g < count && !status; g++)
+        status = add_piece(report, (struct report_piece){.kind = REPORT_CHECKS, .where = groups[g]},
+                           error);
+    free(groups);
+    return status;
+}
+
 static enum status add_all(struct report *report, struct error *error)
 {
-    const char *groups[GROUPS_MAX];
-    const size_t group_count = suite_groups(check_registry, check_registry_count, groups);
     for (int c = 0; c < CASES; c++)
         for (int s = 0; s < SCHEMES; s++) {
             struct report_piece run = {.kind = REPORT_RUN, .where = cases[c].name};
@@ -115,10 +130,7 @@ static enum status add_all(struct report *report, struct error *error)
             (prepare(c, 0, &bench.settings, error) || add_piece(report, bench, error)))
             return error->status;
     }
-    for (size_t g = 0; g < group_count; g++)
-        if (add_piece(report, (struct report_piece){.kind = REPORT_CHECKS, .where = groups[g]},
-                      error))
-            return error->status;
+    if (add_checks(report, error)) return error->status;
     if (add_piece(report, (struct report_piece){.kind = REPORT_LEAGUE, .where = "operators"},
                   error))
         return error->status;

@@ -75,10 +75,12 @@ static enum status compute_kernel(const struct report_piece *piece, json_t **doc
 
 static enum status compute_league(json_t **document, struct error *error)
 {
-    struct league_row rows[LEAGUE_ROWS_MAX];
+    struct league_row *rows;
     size_t count;
-    const enum status status = league_measure(rows, &count, error);
-    if (!status) *document = league_json(rows, count);
+    const enum status status = league_measure(&rows, &count, error);
+    if (status) return status;
+    *document = league_json(rows, count);
+    free(rows);
     return status;
 }
 

@@ -12,10 +12,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "list.h"
 #include "problem.h"
 #include "text.h"
 
-enum { SIZE_MAX_FILE = 65536, LINE_LENGTH_MAX = 180, WORDS_MAX = 64 };
+enum { SIZE_MAX_FILE = 65536, LINE_LENGTH_MAX = 180 };
 
 /* Keys of a case file beside settings_keys. */
 enum extra {
@@ -404,17 +405,31 @@ static enum status load_path(struct case_file *file, const char *path, struct er
     return status;
 }
 
+static enum status unknown_case(const char *name, struct error *error)
+{
+    const char **names = NULL;
+    size_t n = 0;
+    enum status status = STATUS_OK;
+    for (const struct case_builtin *builtin = case_builtins; builtin->name; builtin++) {
+        if (!list_grow(&names, n, sizeof *names))
+            status = error_set(error, STATUS_ENVIRONMENT, "no memory");
+        else
+            names[n++] = builtin->name;
+    }
+    if (!status) status = text_unknown(error, NULL, "case", name, names, n);
+    free(names);
+    return status;
+}
+
 enum status case_load(struct case_file *file, const char *name, struct error *error)
 {
-    const char *names[WORDS_MAX], *dot = strrchr(name, '.');
-    size_t n = 0;
+    const char *dot = strrchr(name, '.');
     if (strchr(name, '/') || (dot && strcmp(dot, ".ini") == 0)) return load_path(file, name, error);
     for (const struct case_builtin *builtin = case_builtins; builtin->name; builtin++) {
         char path[80];
         snprintf(path, sizeof path, "cases/%s.ini", builtin->name);
         if (strcmp(builtin->name, name) == 0)
             return case_parse(file, path, builtin->text, strlen(builtin->text), error);
-        if (n < WORDS_MAX) names[n++] = builtin->name;
     }
-    return text_unknown(error, NULL, "case", name, names, n);
+    return unknown_case(name, error);
 }

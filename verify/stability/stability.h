@@ -7,6 +7,8 @@
 #ifndef SPHPROOF_STABILITY_H
 #define SPHPROOF_STABILITY_H
 
+#include <stdbool.h>
+
 #include "scheme.h"
 
 enum { STABILITY_REACH_MAX = 128 };
@@ -59,6 +61,10 @@ struct stability_interval {
 };
 int stability_intervals(const struct scheme *scheme, double gamma, double to,
                         struct stability_interval *intervals, int max);
+
+/* Whether the steps of this integrator are written here too; the three functions below give NaN,
+ * NaN and 0 for others. */
+bool stability_knows(const struct integrator *integrator);
 
 /* Displacement and velocity of a wave after `count` steps dt of the scheme's integrator, from X = 1
  * at rest with U uniform. */

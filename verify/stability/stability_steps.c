@@ -10,6 +10,7 @@
 
 #include "integrator.h"
 #include "stability.h"
+#include "worst.h"
 
 enum { X, V, E, FORCE, HEAT, FOUND, LAST, STATES };
 enum { WAVES = 64 };
@@ -138,7 +139,7 @@ static double spectral_radius(struct wave_step *w, void (*step)(struct wave_step
     gsl_eigen_nonsymm_workspace *workspace = gsl_eigen_nonsymm_alloc(STATES);
     if (!values || !workspace || gsl_eigen_nonsymm(&matrix.matrix, values, workspace)) radius = NAN;
     for (size_t i = 0; values && i < STATES && !isnan(radius); i++)
-        radius = fmax(radius, gsl_complex_abs(gsl_vector_complex_get(values, i)));
+        worst_keep(&radius, gsl_complex_abs(gsl_vector_complex_get(values, i)));
     if (values) gsl_vector_complex_free(values);
     if (workspace) gsl_eigen_nonsymm_free(workspace);
     return radius;
@@ -163,6 +164,12 @@ static struct wave_step begin(const struct stability *lattice, double dt)
                                                   (lattice->gamma - 1) * lattice->u
                                             : 0,
                               .predicted = lattice->scheme.h_method != H_NEWTON};
+}
+
+bool stability_knows(const struct integrator *integrator)
+{
+    const struct stability lattice = {.scheme.integrator = integrator};
+    return find_step(&lattice) != NULL;
 }
 
 void stability_follow(const struct stability *lattice, double kappa, double dt, int count,
@@ -193,7 +200,7 @@ double stability_amplification(const struct stability *lattice, double dt)
     for (int i = 1; step && i <= WAVES; i++) {
         stability_response(lattice, M_PI * i / WAVES, &w.r);
         const double radius = spectral_radius(&w, step);
-        if (!(radius <= worst)) worst = radius;
+        worst_keep(&worst, radius);
     }
     return worst;
 }

@@ -18,13 +18,18 @@ static const double work_nightly = 1e11;
  */
 
 /* Appends "KEY=VALUE;KEY=VALUE" to the cell's arguments. */
-static void add_keys(struct stress_cell *cell, const char *keys)
+static enum status add_keys(struct stress_cell *cell, const char *keys, struct error *error)
 {
-    while (*keys && cell->argument_count < STRESS_ARGUMENTS) {
+    while (*keys) {
         const size_t length = strcspn(keys, ";");
+        if (cell->argument_count == STRESS_ARGUMENTS || length >= STRESS_TEXT)
+            return error_set(error, STATUS_BAD_INPUT,
+                             "stress %s: more than %d keys, or one of more than %d characters: %s",
+                             cell->group->member.name, STRESS_ARGUMENTS, STRESS_TEXT - 1, keys);
         snprintf(cell->arguments[cell->argument_count++], STRESS_TEXT, "%.*s", (int)length, keys);
         keys += length + (keys[length] == ';');
     }
+    return STATUS_OK;
 }
 
 static bool wanted(const struct stress_group *group, size_t count, char *const *names)
@@ -66,9 +71,9 @@ static void list_cells(struct stress *stress, size_t count, char *const *names)
 static enum status prepare(struct stress_cell *cell, bool nightly, struct error *error)
 {
     char *arguments[STRESS_ARGUMENTS];
-    add_keys(cell, cell->group->keys);
-    add_keys(cell, cell->column->keys);
-    add_keys(cell, cell->row->keys);
+    if (add_keys(cell, cell->group->keys, error) || add_keys(cell, cell->column->keys, error) ||
+        add_keys(cell, cell->row->keys, error))
+        return error->status;
     for (size_t i = 0; i < cell->argument_count; i++) arguments[i] = cell->arguments[i];
     if (run_prepare(&cell->settings, cell->group->case_name, (int)cell->argument_count, arguments,
                     error))

@@ -57,8 +57,13 @@ static enum status complete(struct sweep *sweep, struct error *error)
             return error_set(error, STATUS_BAD_INPUT,
                              "--vary %s: a number's values are needed: --vary %s=VALUE,VALUE",
                              setting_keys[key->key].name, setting_keys[key->key].name);
+        if (key->count == 0 && family->n > SWEEP_VALUES_MAX)
+            return error_set(error, STATUS_BAD_INPUT,
+                             "--vary %s: %zu values, at most %d: --vary %s=VALUE,VALUE",
+                             setting_keys[key->key].name, family->n, SWEEP_VALUES_MAX,
+                             setting_keys[key->key].name);
         if (key->count == 0)
-            for (size_t m = 0; m < family->n && m < SWEEP_VALUES_MAX; m++)
+            for (size_t m = 0; m < family->n; m++)
                 snprintf(key->values[key->count++], SETTING_TEXT_MAX, "%s",
                          family->members[m]->name);
         sweep->count *= key->count;

@@ -9,7 +9,7 @@
 #include <stddef.h>
 
 struct kernel;
-struct check_run; /* collects the figures of one check on one subject; see check.c */
+struct check_run; /* collects the subjects and figures of one check; see suite.c */
 
 /* One figure. subject: where (kernel, dimension, h, point ...), printf-like; passes if value <=
  * bound (a NaN fails). floor: the noise below which the figure means nothing (0: exact). */
@@ -18,6 +18,10 @@ void check_measure(struct check_run *run, double value, double bound, double flo
 
 /* The figure could not be measured here, and why; neither passes nor fails. */
 void check_skip(struct check_run *run, const char *why, ...) __attribute__((format(printf, 2, 3)));
+
+/* Adds a right subject. size: the check is given a copy of so many bytes; 0: the subject itself,
+ * which outlives the suite. */
+void check_subject(struct check_run *run, const void *subject, size_t size);
 
 /* True once a mutant has been rejected: long loops over subjects may stop there. Never true for a
  * right subject. */
@@ -41,10 +45,11 @@ struct check {
     const char *name;
     const char *property; /* one line, a formula where it helps */
     bool slow;            /* not in the quick suite */
-    /* The right subjects, index 0..subject_count-1. Without these two, measure is called once with
-     * NULL as the right subject. */
-    size_t (*subject_count)(void);
-    const void *(*subject)(size_t i);
+    /* Adds the right subjects, in order. NULL: measure is called once, with NULL as the right one.
+     */
+    void (*subjects)(struct check_run *run);
+    /* Measures at least one figure on a subject, or says why not (check_skip): one that does
+     * neither is a failure, and so is a check that has skipped everything. */
     void (*measure)(struct check_run *run, const void *subject);
     const struct check_mutant *mutants; /* ends with a NULL name; must not be empty */
 };

@@ -8,14 +8,22 @@
 #include <string.h>
 
 #include "clock.h"
+#include "list.h"
 
 const struct kernel *check_kernel_plugin;
 
+/* A right subject; copy: where it is the run's own. */
+struct subject {
+    const void *given;
+    void *copy;
+};
+
 struct check_run {
     const struct check *check;
+    struct subject *subjects;
     struct figure *figures;
     struct series *series;
-    size_t figure_count, series_count;
+    size_t subject_count, figure_count, series_count;
     double began; /* of the figure being measured */
     bool no_memory;
     bool mutant, rejected;
@@ -27,24 +35,13 @@ double suite_ratio(double value, double bound)
     return bound > 0 && value > 0 ? value / bound : (double)INFINITY;
 }
 
-/* Room for one more item at *list (its address is the list's own), by doubling. */
-static bool grow(void *list, size_t count, size_t size)
-{
-    void *old, *grown;
-    if (count & (count - 1)) return true;
-    memcpy(&old, list, sizeof old);
-    grown = realloc(old, (count ? 2 * count : 1) * size);
-    if (grown) memcpy(list, &grown, sizeof grown);
-    return grown;
-}
-
 static void add_figure(struct check_run *run, struct figure figure)
 {
     const double now = clock_wall();
     figure.check = run->check;
     figure.seconds = now - run->began;
     run->began = now;
-    if (!figure.subject || !grow(&run->figures, run->figure_count, sizeof figure)) {
+    if (!figure.subject || !list_grow(&run->figures, run->figure_count, sizeof figure)) {
         run->no_memory = true;
         free(figure.subject);
         return;
@@ -75,6 +72,18 @@ void check_measure(struct check_run *run, double value, double bound, double flo
                                     .status = pass ? FIGURE_PASS : FIGURE_FAIL});
 }
 
+void check_subject(struct check_run *run, const void *subject, size_t size)
+{
+    void *copy = size ? malloc(size) : NULL;
+    if ((size && !copy) || !list_grow(&run->subjects, run->subject_count, sizeof *run->subjects)) {
+        free(copy);
+        run->no_memory = true;
+        return;
+    }
+    if (size) memcpy(copy, subject, size);
+    run->subjects[run->subject_count++] = (struct subject){subject, copy};
+}
+
 bool check_decided(const struct check_run *run)
 {
     return run->rejected;
@@ -99,7 +108,7 @@ void check_series(struct check_run *run, const char *label, size_t n, const doub
     series.x = malloc(n * sizeof *x + 1);
     series.y = malloc(n * sizeof *y + 1);
     if (!series.label || !series.x || !series.y ||
-        !grow(&run->series, run->series_count, sizeof series)) {
+        !list_grow(&run->series, run->series_count, sizeof series)) {
         free(series.label), free(series.x), free(series.y);
         run->no_memory = true;
         return;
@@ -134,7 +143,7 @@ static bool take_figures(struct suite *suite, struct check_run *run)
 {
     size_t failed = 0;
     for (size_t i = 0; i < run->figure_count; i++) {
-        if (!grow(&suite->figures, suite->figure_count, sizeof *suite->figures)) return false;
+        if (!list_grow(&suite->figures, suite->figure_count, sizeof *suite->figures)) return false;
         suite->figures[suite->figure_count++] = run->figures[i];
         suite->passed += run->figures[i].status == FIGURE_PASS;
         suite->skipped += run->figures[i].status == FIGURE_SKIP;
@@ -143,7 +152,7 @@ static bool take_figures(struct suite *suite, struct check_run *run)
     }
     suite->failed += failed;
     for (size_t i = 0; failed && i < run->series_count; i++) {
-        if (!grow(&suite->series, suite->series_count, sizeof *suite->series)) return false;
+        if (!list_grow(&suite->series, suite->series_count, sizeof *suite->series)) return false;
         suite->series[suite->series_count++] = run->series[i];
         run->series[i] = (struct series){0};
     }
@@ -152,20 +161,44 @@ static bool take_figures(struct suite *suite, struct check_run *run)
 
 static void free_run(struct check_run *run)
 {
+    for (size_t i = 0; i < run->subject_count; i++) free(run->subjects[i].copy);
+    free(run->subjects);
     free_figures(run->figures, run->figure_count);
     free_series(run->series, run->series_count);
 }
 
+/* What has compared nothing has not passed. */
+static void refuse_silence(struct check_run *run)
+{
+    size_t measured = 0;
+    for (size_t i = 0; i < run->figure_count; i++)
+        measured += run->figures[i].status != FIGURE_SKIP;
+    if (run->figure_count == 0)
+        check_measure(run, 1, 0, 0, "harness: the check measured nothing at all");
+    else if (measured == 0)
+        check_measure(run, 1, 0, 0, "harness: the check measured nothing, it skipped all %zu",
+                      run->figure_count);
+}
+
 static bool run_subjects(struct suite *suite, const struct check *check)
 {
-    struct check_run run = {.check = check, .began = clock_wall()};
-    const size_t subjects = check->subject_count ? check->subject_count() : 1;
-    for (size_t i = 0; i < subjects; i++) {
+    struct check_run run = {.check = check};
+    if (check->subjects)
+        check->subjects(&run);
+    else
+        check_subject(&run, NULL, 0);
+    for (size_t i = 0; i < run.subject_count; i++) {
+        const struct subject *subject = &run.subjects[i];
+        const size_t before = run.figure_count;
         run.began = clock_wall();
-        check->measure(&run, check->subject_count ? check->subject(i) : NULL);
+        check->measure(&run, subject->copy ? subject->copy : subject->given);
+        if (run.figure_count == before && run.subject_count > 1)
+            check_measure(
+                &run, 1, 0, 0,
+                "harness: nothing was measured on subject %zu of %zu, and no reason given", i + 1,
+                run.subject_count);
     }
-    if (run.figure_count == 0)
-        check_measure(&run, 1, 0, 0, "harness: the check measured nothing at all");
+    refuse_silence(&run);
     const bool sound = !run.no_memory && take_figures(suite, &run);
     free_run(&run);
     return sound;
@@ -197,7 +230,7 @@ static bool run_mutants(struct suite *suite, const struct check *check)
         check->measure(&run, mutant->subject);
         const struct mutant_outcome outcome = judge_mutant(&run, mutant);
         any = any || outcome.detected;
-        sound = !run.no_memory && grow(&suite->outcomes, suite->outcome_count, sizeof outcome);
+        sound = !run.no_memory && list_grow(&suite->outcomes, suite->outcome_count, sizeof outcome);
         if (sound) suite->outcomes[suite->outcome_count++] = outcome;
         free_run(&run);
     }
@@ -256,13 +289,15 @@ enum status suite_run(struct suite *suite, const struct check *const *checks, si
                                                                      : STATUS_OK;
 }
 
-size_t suite_groups(const struct check *const *checks, size_t count, const char **names)
+const char **suite_groups(const struct check *const *checks, size_t count, size_t *total)
 {
     size_t n = 0;
-    for (size_t i = 0; i < count; i++) {
+    const char **names = malloc((count + 1) * sizeof *names);
+    for (size_t i = 0; names && i < count; i++) {
         bool known = false;
         for (size_t j = 0; j < n; j++) known = known || strcmp(names[j], checks[i]->group) == 0;
         if (!known) names[n++] = checks[i]->group;
     }
-    return n;
+    *total = n;
+    return names;
 }

@@ -59,8 +59,8 @@ void suite_free(struct suite *suite);
 /* value/bound of a figure, the measure of how near it is to failing; infinite for a NaN. */
 double suite_ratio(double value, double bound);
 
-/* The distinct groups of checks[0..count-1], in order, into names (at least count); their number.
- */
-size_t suite_groups(const struct check *const *checks, size_t count, const char **names);
+/* The distinct groups of checks[0..count-1], in order, and their number; to be freed. NULL: no
+ * memory. */
+const char **suite_groups(const struct check *const *checks, size_t count, size_t *total);
 
 #endif

@@ -12,8 +12,10 @@
 #include <cmocka.h>
 
 #include "check_registry.h"
+#include "near.h"
 #include "suite.h"
 #include "suite_output.h"
+#include "worst.h"
 
 static int group_argument_count;
 static char **group_arguments;
@@ -35,14 +37,9 @@ static const struct check_mutant slipped[] = {
     {"one", "", &values[1]}, {"two", "", &values[2]}, {0}};
 static const struct check_mutant idle[] = {{"one", "", &values[1]}, {0}};
 
-static size_t failing_count(void)
+static void failing_subjects(struct check_run *run)
 {
-    return 3;
-}
-
-static const void *failing_subject(size_t i)
-{
-    return &values[i + 1];
+    for (size_t i = 1; i < 4; i++) check_subject(run, &values[i], sizeof values[i]);
 }
 
 static const struct check good = {
@@ -56,8 +53,7 @@ static const struct check bare = {
 static const struct check failing = {.group = "a",
                                      .name = "failing",
                                      .property = "p",
-                                     .subject_count = failing_count,
-                                     .subject = failing_subject,
+                                     .subjects = failing_subjects,
                                      .measure = measure,
                                      .mutants = caught};
 
@@ -115,22 +111,92 @@ static void test_vacuous(void **state)
     suite_free(&suite);
 }
 
-static const double nothing = 0.25;
+static const double nothing = 0.25, something = 0.5;
 
-static const void *nothing_subject(size_t i)
+static void nothing_subject(struct check_run *run)
 {
-    (void)i;
-    return &nothing;
+    check_subject(run, &nothing, 0);
 }
 
+static void something_and_nothing(struct check_run *run)
+{
+    check_subject(run, &something, sizeof something);
+    check_subject(run, &nothing, sizeof nothing);
+}
+
+static void no_subjects(struct check_run *run)
+{
+    (void)run;
+}
+
+static void skips(struct check_run *run, const void *subject)
+{
+    (void)subject;
+    check_skip(run, "not today");
+}
+
+static void expect_one_failure(const struct check *check, const char *says)
+{
+    struct suite suite = run(check, false, STATUS_CHECK_FAILED);
+    assert_int_equal(suite.failed, 1);
+    const struct figure *last = &suite.figures[suite.figure_count - 1];
+    assert_int_equal(last->status, FIGURE_FAIL);
+    assert_non_null(strstr(last->subject, says));
+    suite_free(&suite);
+}
+
+/* A check that has no subject, that is silent on all of them or on one, that skips all. */
 static void test_measures_nothing(void **state)
 {
     (void)state;
     struct check silent = failing;
-    silent.subject = nothing_subject;
-    struct suite suite = run(&silent, false, STATUS_CHECK_FAILED);
-    assert_int_equal(suite.failed, 1);
+    silent.subjects = nothing_subject;
+    expect_one_failure(&silent, "nothing at all");
+    silent.subjects = no_subjects;
+    expect_one_failure(&silent, "nothing at all");
+    silent.subjects = something_and_nothing;
+    expect_one_failure(&silent, "subject 2 of 2");
+    silent = good;
+    silent.measure = skips;
+    expect_one_failure(&silent, "skipped all 1");
+}
+
+/* More subjects than any array that somebody would have thought ample. */
+static void many_subjects(struct check_run *run)
+{
+    for (int i = 0; i < 5000; i++) {
+        const double value = i / 1e4;
+        check_subject(run, &value, sizeof value);
+    }
+}
+
+static void measure_one(struct check_run *run, const void *subject)
+{
+    check_measure(run, *(const double *)subject, 1, 0, "%g", *(const double *)subject);
+}
+
+static void test_many_subjects(void **state)
+{
+    (void)state;
+    struct check many = failing;
+    many.subjects = many_subjects;
+    many.measure = measure_one;
+    struct suite suite = run(&many, false, STATUS_OK);
+    assert_int_equal(suite.passed, 5000);
+    for (int i = 0; i < 5000; i++) assert_true(suite.figures[i].value == i / 1e4);
     suite_free(&suite);
+}
+
+static void test_worst(void **state)
+{
+    (void)state;
+    double worst = 0;
+    worst_keep(&worst, 2);
+    worst_keep(&worst, 1);
+    near_absolute(worst, 2, 0);
+    worst_keep(&worst, (double)NAN);
+    worst_keep(&worst, 3);
+    assert_true(isnan(worst));
 }
 
 static void below_floor(struct check_run *run, const void *subject)
@@ -218,8 +284,9 @@ static void test_registry(void **state)
             assert_false(strcmp(c->group, check_registry[j]->group) == 0 &&
                          strcmp(c->name, check_registry[j]->name) == 0);
     }
-    const char *names[64];
-    const size_t n = suite_groups(check_registry, check_registry_count, names);
+    size_t n;
+    const char **names = suite_groups(check_registry, check_registry_count, &n);
+    assert_non_null(names);
     assert_int_equal(n, group_argument_count);
     for (size_t i = 0; i < n; i++) {
         bool known = false;
@@ -227,6 +294,7 @@ static void test_registry(void **state)
             known = known || strcmp(names[i], group_arguments[j]) == 0;
         assert_true(known);
     }
+    free(names);
 }
 
 int main(int argc, char **argv)
@@ -239,6 +307,8 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_undetected_mutant),
         cmocka_unit_test(test_vacuous),
         cmocka_unit_test(test_measures_nothing),
+        cmocka_unit_test(test_many_subjects),
+        cmocka_unit_test(test_worst),
         cmocka_unit_test(test_floor_and_skip),
         cmocka_unit_test(test_groups_are_chosen),
         cmocka_unit_test(test_results),

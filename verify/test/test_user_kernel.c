@@ -38,7 +38,7 @@ static int rejected(const char *name, int dim, const char *by)
     int by_that = 0;
     if (user_kernel_load(&user, path_of(name), dim, &error)) fail_msg("%s", error.message);
     assert_int_equal(certificate_measure(&certificate, &user.kernel, dim, NULL), STATUS_OK);
-    for (int i = 0; i < certificate.figure_count; i++) {
+    for (size_t i = 0; i < certificate.figure_count; i++) {
         const struct certificate_figure *figure = &certificate.figures[i];
         if (!figure->passed && !by)
             print_error("%s, dim %d: %s: %g > %g, floor %g, %s\n", name, dim,
@@ -46,7 +46,7 @@ static int rejected(const char *name, int dim, const char *by)
                         figure->where);
         by_that |= by && !figure->passed && strcmp(figure->property->name, by) == 0;
     }
-    const int failed = certificate.failed;
+    const int failed = (int)certificate.failed;
     certificate_free(&certificate);
     user_kernel_unload(&user);
     return by ? by_that : failed;
