@@ -188,11 +188,12 @@ double riemann_fan_defect(const struct riemann_subject *subject, const struct ri
 {
     enum { POINTS = 9 };
     double worst = 0;
-    int compared = 0;
+    bool fan = false, compared = false;
     for (int right = 0; right < 2; right++) {
         const struct seen k = look(s, right);
         const double to_v = 2 / (k.gamma - 1), scale = fabs(k.v) + (1 + to_v) * k.c + fabs(x0) / t;
         if (k.wave != RIEMANN_RAREFACTION || !(k.tail - k.head > 1e-6 * scale)) continue;
+        fan = true;
         /* up to the tail; at the edge of a vacuum the rounding of x decides whether there is gas */
         for (int i = 0; i <= POINTS + !s->vacuum; i++) {
             const double xi = k.head + (k.tail - k.head) * i / (POINTS + 1);
@@ -204,12 +205,12 @@ double riemann_fan_defect(const struct riemann_subject *subject, const struct ri
             worst = larger(worst, fabs(v - c - xi) / scale);
             worst = larger(worst, fabs(v + to_v * c - k.v - to_v * k.c) / scale);
             const double fall = log(state.P / k.P);
-            compared++;
+            compared = true;
             worst = larger(worst, fabs(fall - k.gamma * log(state.rho / k.rho)) /
                                       (1 + k.gamma + fabs(fall)));
         }
     }
-    return compared ? worst : (double)NAN;
+    return compared || !fan ? worst : (double)NAN;
 }
 
 /* ---- symmetries ---- */
