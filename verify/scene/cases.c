@@ -115,19 +115,22 @@ static void set_ladder(struct parser *parser, const char *value)
 static void set_reference(struct parser *parser, const char *value)
 {
     char where[256];
-    const char *names[WORDS_MAX];
+    const char **names = NULL;
     size_t n = 0;
-    for (size_t i = 0; i < problem_family.n && n < WORDS_MAX; i++) {
+    bool known = false;
+    for (size_t i = 0; i < problem_family.n && !known; i++) {
         const char *name = ((const struct problem *)problem_family.members[i])->reference;
-        if (strcmp(name, value) == 0) {
-            snprintf(parser->reference, sizeof parser->reference, "%s", value);
-            return;
-        }
-        names[n++] = name;
+        known = strcmp(name, value) == 0;
+        if (list_grow(&names, n, sizeof *names)) names[n++] = name;
     }
     snprintf(where, sizeof where, "%.200s:%d", parser->path, parser->line);
-    text_unknown(parser->error, where, "reference", value, names, n);
-    parser->failed = true;
+    if (known) {
+        snprintf(parser->reference, sizeof parser->reference, "%s", value);
+    } else {
+        text_unknown(parser->error, where, "reference", value, names, n);
+        parser->failed = true;
+    }
+    free(names);
 }
 
 static void set_extra(struct parser *parser, enum extra extra, const char *value)
