@@ -50,7 +50,7 @@ struct problem_key {
 /* A scalar of a state, at any time of a run: a mean, the place of a shock, the amplitude of a mode.
  * What Richardson's extrapolation is for. */
 struct functional {
-    const char *name;                          /* one in the program, also if problems share it */
+    const char *name;                          /* no other of the problem has it */
     bool (*present)(const struct prepared *p); /* NULL: with all settings */
     double (*measure)(const struct prepared *p, const struct snapshot *s);
     double (*exact)(const struct prepared *p, double t); /* or from a reference; NULL: unknown */

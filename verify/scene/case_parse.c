@@ -1,0 +1,369 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * inih does the INI syntax, line by line from our own reader: it cuts long lines, takes a folder
+ * for an empty file and does not tell its callback the line, so text is checked before it. */
+#include "cases.h"
+
+#include <ini.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "list.h"
+#include "problem.h"
+#include "text.h"
+
+enum { LINE_LENGTH_MAX = 180 };
+
+/* Keys of a case file beside settings_keys. */
+enum extra {
+    EXTRA_title,
+    EXTRA_dimension,
+    EXTRA_reference,
+    EXTRA_fields,
+    EXTRA_exact,
+    EXTRA_ladder,
+    EXTRAS
+};
+static const struct {
+    const char *section, *name;
+} extras[EXTRAS] = {{"case", "title"},     {"case", "dimension"}, {"case", "reference"},
+                    {"measure", "fields"}, {"measure", "exact"},  {"converge", "n"}};
+static const char *const sections[] = {"case", "domain",  "initial", "scheme",
+                                       "run",  "measure", "converge"};
+
+struct parser {
+    struct case_file *file;
+    const char *path;
+    const char *text, *end; /* what is left to read */
+    int line;
+    char reference[64];
+    int seen_settings[SETTINGS], seen_extras[EXTRAS], seen_gates[CASE_GATES_MAX]; /* lines */
+    struct error *error;
+    bool failed;
+};
+
+static enum status fail(struct parser *parser, const char *what, const char *allowed)
+{
+    parser->failed = true;
+    return error_set(parser->error, STATUS_BAD_INPUT, "%.200s:%d: %.120s%s%.160s", parser->path,
+                     parser->line, what, *allowed ? "; allowed: " : "", allowed);
+}
+
+static enum status fail_value(struct parser *parser, const char *key, const char *value,
+                              const char *allowed)
+{
+    char what[120];
+    snprintf(what, sizeof what, "%.40s = %.60s", key, value);
+    return fail(parser, what, allowed);
+}
+
+/* True the first time; else fails with the line of the first. */
+static bool first_time(struct parser *parser, int *line, const char *key)
+{
+    char what[120];
+    if (!*line) {
+        *line = parser->line;
+        return true;
+    }
+    snprintf(what, sizeof what, "key %.40s is given twice, first in line %d", key, *line);
+    fail(parser, what, "");
+    return false;
+}
+
+static void set_fields(struct parser *parser, const char *name, const char *value, bool *fields)
+{
+    char copy[LINE_LENGTH_MAX + 1], where[256], *rest = NULL;
+    snprintf(copy, sizeof copy, "%s", value);
+    snprintf(where, sizeof where, "%.200s:%d", parser->path, parser->line);
+    memset(fields, 0, FIELDS * sizeof *fields);
+    if (!*value) fail_value(parser, name, value, "names of fields");
+    for (char *word = strtok_r(copy, " \t,", &rest); word; word = strtok_r(NULL, " \t,", &rest)) {
+        const int field = family_index(&field_family, word);
+        if (field < 0) {
+            text_unknown_member(parser->error, where, "field", word, &field_family);
+            parser->failed = true;
+            return;
+        }
+        fields[field] = true;
+    }
+}
+
+static void set_ladder(struct parser *parser, const char *value)
+{
+    char copy[LINE_LENGTH_MAX + 1], *rest = NULL;
+    struct case_file *file = parser->file;
+    const struct setting_key *key = &setting_keys[SETTING_n];
+    snprintf(copy, sizeof copy, "%s", value);
+    for (char *word = strtok_r(copy, " \t,", &rest); word; word = strtok_r(NULL, " \t,", &rest)) {
+        double n;
+        if (!text_integer(word, &n) || n < key->lo || n > key->hi ||
+            file->ladder_count == CASE_LADDER_MAX ||
+            (file->ladder_count && n <= (double)file->ladder[file->ladder_count - 1])) {
+            fail_value(parser, "n", value, "rising numbers of particles, at least four");
+            return;
+        }
+        file->ladder[file->ladder_count++] = (size_t)n;
+    }
+    if (file->ladder_count < ORDER_LEVELS_MIN)
+        fail_value(parser, "n", value, "rising numbers of particles, at least four");
+}
+
+static void set_reference(struct parser *parser, const char *value)
+{
+    char where[256];
+    const char **names = NULL;
+    size_t n = 0;
+    bool known = false;
+    for (size_t i = 0; i < problem_family.n && !known; i++) {
+        const char *name = ((const struct problem *)problem_family.members[i])->reference;
+        known = strcmp(name, value) == 0;
+        if (list_grow(&names, n, sizeof *names)) names[n++] = name;
+    }
+    snprintf(where, sizeof where, "%.200s:%d", parser->path, parser->line);
+    if (known) {
+        snprintf(parser->reference, sizeof parser->reference, "%s", value);
+    } else {
+        text_unknown(parser->error, where, "reference", value, names, n);
+        parser->failed = true;
+    }
+    free(names);
+}
+
+static void set_extra(struct parser *parser, enum extra extra, const char *value)
+{
+    struct case_file *file = parser->file;
+    if (!first_time(parser, &parser->seen_extras[extra], extras[extra].name)) return;
+    switch (extra) {
+    case EXTRA_title:
+        if (!*value) fail_value(parser, "title", value, "a text");
+        snprintf(file->title, sizeof file->title, "%s", value);
+        return;
+    case EXTRA_dimension:
+        if (strcmp(value, "1") != 0) fail_value(parser, "dimension", value, "1");
+        file->dimension = 1;
+        return;
+    case EXTRA_reference:
+        set_reference(parser, value);
+        return;
+    case EXTRA_fields:
+        set_fields(parser, "fields", value, parser->file->fields);
+        return;
+    case EXTRA_exact:
+        set_fields(parser, "exact", value, parser->file->exact);
+        return;
+    case EXTRA_ladder:
+        set_ladder(parser, value);
+        return;
+    default:
+        return;
+    }
+}
+
+/* "density_l1": false where name is not a field and a norm. */
+static bool gate_name(const char *name, int *field, int *norm)
+{
+    for (*field = 0; *field < FIELDS; ++*field)
+        for (*norm = 0; *norm < NORMS; ++*norm) {
+            char text[64];
+            snprintf(text, sizeof text, "%s_%s", field_family.members[*field]->name,
+                     norm_family.members[*norm]->name);
+            if (strcmp(text, name) == 0) return true;
+        }
+    return false;
+}
+
+static void set_gate(struct parser *parser, int field, int norm, const char *name,
+                     const char *value)
+{
+    double numbers[3];
+    struct case_file *file = parser->file;
+    if (!first_time(parser, &parser->seen_gates[field * NORMS + norm], name)) return;
+    if (!text_reals(value, " \t,", 3, numbers) || !(numbers[0] < numbers[1]) || !(numbers[2] > 0)) {
+        fail_value(parser, name, value, "least order, greatest order, bound of the finest error");
+        return;
+    }
+    file->gates[file->gate_count++] = (struct case_gate){
+        (enum field)field, (enum norm)norm, {numbers[0], numbers[1], numbers[2]}};
+}
+
+/* A key that is not allowed in its section: says where it belongs, or what is near. */
+static void unknown(struct parser *parser, const char *section, const char *name)
+{
+    char where[256], what[120];
+    const char *names[SETTINGS + EXTRAS];
+    size_t n = 0;
+    parser->failed = true;
+    snprintf(where, sizeof where, "%.200s:%d", parser->path, parser->line);
+    bool section_exists = false;
+    for (size_t i = 0; i < sizeof sections / sizeof *sections; i++)
+        section_exists |= strcmp(sections[i], section) == 0;
+    if (!*section) {
+        fail(parser, "a key before the first section", "[case] and the other sections");
+        return;
+    }
+    if (!section_exists) {
+        text_unknown(parser->error, where, "section", section, sections,
+                     sizeof sections / sizeof *sections);
+        return;
+    }
+    const int elsewhere = setting_find(name);
+    if (elsewhere >= 0) {
+        snprintf(what, sizeof what, "key %.40s stands in the section [%s], not in [%s]", name,
+                 setting_keys[elsewhere].section, section);
+        fail(parser, what, "");
+        return;
+    }
+    for (int i = 0; i < SETTINGS; i++)
+        if (strcmp(setting_keys[i].section, section) == 0) names[n++] = setting_keys[i].name;
+    for (int i = 0; i < EXTRAS; i++)
+        if (strcmp(extras[i].section, section) == 0) names[n++] = extras[i].name;
+    if (strcmp(section, "converge") == 0) names[n++] = "density_l1";
+    snprintf(what, sizeof what, "key in [%.20s]", section);
+    text_unknown(parser->error, where, what, name, names, n);
+}
+
+static int take_pair(void *context, const char *section, const char *name, const char *value)
+{
+    struct parser *parser = context;
+    char where[256];
+    int field, norm;
+    if (parser->failed) return 1;
+    for (int i = 0; i < EXTRAS; i++)
+        if (strcmp(extras[i].section, section) == 0 && strcmp(extras[i].name, name) == 0) {
+            set_extra(parser, (enum extra)i, value);
+            return 1;
+        }
+    const int key = setting_find(name);
+    if (key >= 0 && strcmp(setting_keys[key].section, section) == 0) {
+        snprintf(where, sizeof where, "%.200s:%d", parser->path, parser->line);
+        if (first_time(parser, &parser->seen_settings[key], name) &&
+            settings_set(&parser->file->settings, (enum setting)key, value, SOURCE_CASE, where,
+                         parser->error))
+            parser->failed = true;
+    } else if (strcmp(section, "converge") == 0 && gate_name(name, &field, &norm)) {
+        set_gate(parser, field, norm, name, value);
+    } else {
+        unknown(parser, section, name);
+    }
+    return 1;
+}
+
+/* Hands inih one line without its blanks at the start (it would take them for a continuation). */
+static char *take_line(char *line, int size, void *context)
+{
+    struct parser *parser = context;
+    if (parser->text == parser->end || parser->failed) return NULL;
+    const char *newline = memchr(parser->text, '\n', (size_t)(parser->end - parser->text));
+    const char *next = newline ? newline + 1 : parser->end;
+    const char *start = parser->text;
+    while (start < next && (*start == ' ' || *start == '\t')) start++;
+    snprintf(line, (size_t)size, "%.*s", (int)(next - start), start);
+    parser->text = next;
+    parser->line++;
+    return line;
+}
+
+/* Nothing that inih would cut or misread: long lines, NUL and other bytes that are not text. */
+static bool check_text(struct parser *parser)
+{
+    char what[64];
+    int length = 0;
+    parser->line = 1;
+    for (const char *c = parser->text; c < parser->end; c++) {
+        if (*c == '\n') {
+            parser->line++;
+            length = 0;
+            continue;
+        }
+        const bool line_end = *c == '\r' && c + 1 < parser->end && c[1] == '\n';
+        if (((*c < ' ' || *c > '~') && *c != '\t' && !line_end)) {
+            snprintf(what, sizeof what, "byte 0x%02x is not ASCII text", (unsigned)(*c & 0xff));
+            fail(parser, what, "printable ASCII");
+            return false;
+        }
+        if (++length > LINE_LENGTH_MAX) {
+            snprintf(what, sizeof what, "a line of more than %d characters", LINE_LENGTH_MAX);
+            fail(parser, what, "");
+            return false;
+        }
+    }
+    parser->line = 0;
+    return true;
+}
+
+static enum status missing(struct parser *parser, const char *section, const char *name)
+{
+    return error_set(parser->error, STATUS_BAD_INPUT, "%.200s: key %s is missing in [%s]",
+                     parser->path, name, section);
+}
+
+static enum status missing_key(struct parser *parser, enum setting key)
+{
+    return missing(parser, setting_keys[key].section, setting_keys[key].name);
+}
+
+/* Keys that every case has to give, those that its problem needs, and none that another one does.
+ */
+static enum status check_keys(struct parser *parser)
+{
+    static const enum setting always[] = {SETTING_kind, SETTING_t_end, SETTING_window};
+    const struct settings *settings = &parser->file->settings;
+    const struct problem *problem = problem_of(settings);
+    for (int i = 0; i < EXTRA_fields; i++)
+        if (!parser->seen_extras[i]) return missing(parser, extras[i].section, extras[i].name);
+    for (size_t i = 0; i < sizeof always / sizeof *always; i++)
+        if (!parser->seen_settings[always[i]]) return missing_key(parser, always[i]);
+    for (size_t i = 0; i < problem->key_count; i++)
+        if (problem->keys[i].role == ROLE_NEEDED && !parser->seen_settings[problem->keys[i].key])
+            return missing_key(parser, problem->keys[i].key);
+    for (int i = 0; i < SETTINGS; i++)
+        if (parser->seen_settings[i] && settings_foreign(settings, (enum setting)i)) {
+            char what[120];
+            snprintf(what, sizeof what, "key %s and kind = %s exclude each other",
+                     setting_keys[i].name, problem->member.name);
+            parser->line = parser->seen_settings[i];
+            return fail(parser, what, "");
+        }
+    return STATUS_OK;
+}
+
+static enum status check_complete(struct parser *parser)
+{
+    if (check_keys(parser)) return parser->error->status;
+    const char *reference = problem_of(&parser->file->settings)->reference;
+    if (strcmp(parser->reference, reference) == 0) return STATUS_OK;
+    parser->line = parser->seen_extras[EXTRA_reference];
+    return fail_value(parser, "reference", parser->reference, reference);
+}
+
+enum status case_parse(struct case_file *file, const char *path, const char *text, size_t length,
+                       struct error *error)
+{
+    struct parser parser = {
+        .file = file, .path = path, .text = text, .end = text + length, .error = error};
+    const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path;
+    const char *dot = strrchr(base, '.');
+    *file = (struct case_file){.fields = {true, true, true, true}};
+    snprintf(file->name, sizeof file->name, "%.*s", dot ? (int)(dot - base) : (int)strlen(base),
+             base);
+    status_clean(file->name);
+    settings_init(&file->settings);
+    if (length == 0)
+        return error_set(error, STATUS_BAD_INPUT, "%.200s: the case file is empty", path);
+    if (!check_text(&parser)) return error->status;
+    const int line = ini_parse_stream(take_line, &parser, take_pair, &parser);
+    if (parser.failed) return error->status;
+    parser.line = line;
+    if (line)
+        return fail(&parser, "not a line of a case file", "[section], key = value, ; comment");
+    const enum status status = check_complete(&parser);
+    if (status) return status;
+    struct settings trial = file->settings;
+    struct prepared problem;
+    struct scheme scheme;
+    struct error reason = {0};
+    if (problem_prepare(&problem, &trial, file->dimension, &reason) ||
+        settings_scheme(&trial, file->dimension, &scheme, &reason))
+        return error_set(error, STATUS_BAD_INPUT, "%.160s: %.340s", path, reason.message);
+    return STATUS_OK;
+}
