@@ -358,7 +358,7 @@ static void fill_rate_ghosts(struct simulation *simulation, ptrdiff_t count)
     }
 }
 
-/* CONVENTIONS eq. 5.9. */
+/* dalpha/dt = max(-div v, 0)(alpha_max - alpha) - (alpha - alpha_min)/tau, tau = h/(0.2 c). */
 static void range_dalpha(const struct simulation *simulation, const struct range *range)
 {
     const struct particles *a = &simulation->particles;

@@ -4,10 +4,12 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "check.h"
 #include "kernel_mutants.h"
 #include "property.h"
+#include "user_figures.h"
 
 /* The sinc family at its default and its ends. */
 static const int sinc_orders[] = {5, 3, 12};
@@ -53,12 +55,36 @@ static void take(struct property_sink *sink, double value, double bound, double 
                       context->pieces->dim, where);
 }
 
-static void measure(struct check_run *run, const struct kernel *kernel,
+/* The user's kernel has been measured elsewhere. */
+static void pass_on(struct check_run *run, const struct user_figures *figures, const char *property)
+{
+    int n = 0;
+    for (int i = 0; i < figures->n; i++) {
+        const struct user_figure *figure = &figures->list[i];
+        char name[96];
+        if (strcmp(figure->property, property) != 0) continue;
+        snprintf(name, sizeof name, figure->dim ? "%s, dim %d" : "%s", figures->name, figure->dim);
+        if (figure->skipped)
+            check_skip(run, "%s: %s", name, figure->where);
+        else
+            check_measure(run, figure->value, figure->bound, figure->floor, "%s, %s", name,
+                          figure->where);
+        n++;
+    }
+    if (n == 0) check_skip(run, "%s: not measured, it does not run", figures->name);
+}
+
+static void measure(struct check_run *run, const void *subject_, const char *name,
                     void (*property)(const struct pieces *, struct property_sink *))
 {
+    const struct kernel *kernel = subject_;
+    if (check_kernel_plugin && subject_ == check_kernel_plugin) {
+        pass_on(run, check_kernel_plugin, name);
+        return;
+    }
     for (int dim = 1; dim <= KERNEL_DIM_MAX; dim++) {
         struct pieces pieces;
-        if (pieces_find(&pieces, kernel, dim, NULL)) {
+        if (pieces_find(&pieces, kernel, dim, NULL, NULL)) {
             check_measure(run, (double)NAN, 0, 0, "%s, dim %d: no memory", kernel->member.name,
                           dim);
             continue;
@@ -72,7 +98,7 @@ static void measure(struct check_run *run, const struct kernel *kernel,
 #define PROPERTY(name_, formula)                                                                   \
     static void measure_##name_(struct check_run *run, const void *kernel)                         \
     {                                                                                              \
-        measure(run, kernel, property_##name_);                                                    \
+        measure(run, kernel, #name_, property_##name_);                                            \
     }                                                                                              \
     const struct check check_kernel_##name_ = {.group = "kernels",                                 \
                                                .name = #name_,                                     \

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Wrong kernels. Those of the seed pages and of the seed program keep their number
- * (CONVENTIONS section 7); the others are slips that people make. */
+ * Wrong kernels. Those of the seed pages and of the seed program keep their number (PHYSICS,
+ * section 8); the others are slips that people make. */
 #include "kernel_mutants.h"
 
 #include <math.h>
@@ -253,6 +253,56 @@ static double late_dh(double r, double h, int dim)
 }
 static const struct kernel dh_narrow = {CUBIC_SHAPE, CUBIC, .plugin_dw_dh = late_dh};
 
+static double small_dh(double r, double h, int dim)
+{
+    return (h < 1e-3 ? 1.01 : 1) * dh_with(r, h, dim, -dim - 1, dim, 0);
+}
+static const struct kernel dh_small = {CUBIC_SHAPE, CUBIC, .plugin_dw_dh = small_dh};
+
+/* Between the nodes of any series, and a decimal at its end. */
+static double flipped_dw(const struct kernel *kernel, double q, int dim)
+{
+    const double dw = cubic_spline_dw(kernel, q, dim);
+    return q > 0.671234 && q < 0.671234 + 3e-4 ? -dw : dw;
+}
+static const struct kernel sign_narrow = {.w = cubic_spline_w, .dw = flipped_dw, CUBIC};
+
+static double hole_w(const struct kernel *kernel, double q, int dim)
+{
+    return q > 0.37 && q < 0.37 + 1e-8 ? 0 : cubic_spline_w(kernel, q, dim);
+}
+static const struct kernel hole_narrow = {.w = hole_w, .dw = cubic_spline_dw, CUBIC};
+
+static double bumpy_w(const struct kernel *kernel, double q, int dim)
+{
+    const double x = (q - 0.7234567) / 5e-4;
+    return cubic_spline_w(kernel, q, dim) + 1e-9 * exp(-x * x);
+}
+static const struct kernel bump_narrow = {.w = bumpy_w, .dw = cubic_spline_dw, CUBIC};
+
+/* w' jumps by 1e-7, and dw agrees; nobody declares knots. */
+static double slip_w(const struct kernel *kernel, double q, int dim)
+{
+    return cubic_spline_w(kernel, q, dim) + (q < 0.37 ? 1e-7 * (0.37 - q) : 0);
+}
+static double slip_dw(const struct kernel *kernel, double q, int dim)
+{
+    return cubic_spline_dw(kernel, q, dim) - (q < 0.37 ? 1e-7 : 0);
+}
+static const struct kernel slip = {.member = {"cubic_spline", "", ""},
+                                   .w = slip_w,
+                                   .dw = slip_dw,
+                                   .constant = CUBIC_CONSTANT,
+                                   .knot_count = -1};
+
+/* Not a function of its arguments. */
+static double moody_w(const struct kernel *kernel, double q, int dim)
+{
+    static unsigned calls;
+    return cubic_spline_w(kernel, q, dim) * (calls++ % 1000 == 999 ? 1 + 1e-15 : 1);
+}
+static const struct kernel moody = {.w = moody_w, .dw = cubic_spline_dw, CUBIC};
+
 static double tail_w(const struct kernel *kernel, double q, int dim)
 {
     return q > 1.99 && q < 2.01 ? 1e-9 : cubic_spline_w(kernel, q, dim);
@@ -452,6 +502,30 @@ static const struct kernel unity_width_seed = {CUBIC_SHAPE, CUBIC, .unity_width 
     {                                                                                              \
         "unity_width_2.4", "exact lattice sums claimed at eta 2.4", &unity_width_seed              \
     }
+#define DH_SMALL                                                                                   \
+    {                                                                                              \
+        "dh_small_h", "dW/dh off by 1 % for h < 1e-3", &dh_small                                   \
+    }
+#define SIGN_NARROW                                                                                \
+    {                                                                                              \
+        "sign_narrow", "dW/dr with the wrong sign on 3e-4 of q", &sign_narrow                      \
+    }
+#define HOLE_NARROW                                                                                \
+    {                                                                                              \
+        "hole_narrow", "w = 0 on 1e-8 of q beyond 0.37", &hole_narrow                              \
+    }
+#define BUMP_NARROW                                                                                \
+    {                                                                                              \
+        "bump_narrow", "a bump of 1e-9 in w, 1e-3 wide", &bump_narrow                              \
+    }
+#define SLIP                                                                                       \
+    {                                                                                              \
+        "kink_undeclared", "w' jumps by 1e-7 where nobody declares a knot", &slip                  \
+    }
+#define MOODY                                                                                      \
+    {                                                                                              \
+        "not_a_function", "w changes by 1e-15 in every 1000th call", &moody                        \
+    }
 #define END                                                                                        \
     {                                                                                              \
         NULL, NULL, NULL                                                                           \
@@ -466,15 +540,18 @@ mutant_list kernel_mutants_fundamental = {OUTER_SIGN, PRINTED,    NINTH,     BAL
                                           KNOT_049,   KNOT_VALUE, UNSHIFTED, END};
 mutant_list kernel_mutants_radial_derivative = {OUTER_SIGN, PRINTED,  GRADIENT_SIGN,
                                                 NINTH,      BALANCED, END};
-mutant_list kernel_mutants_width_derivative = {DH_NARROW,    DH_POWER, DH_OUTER,
+mutant_list kernel_mutants_width_derivative = {DH_NARROW,    DH_POWER, DH_OUTER, DH_SMALL,
                                                DH_DIMENSION, BALANCED, END};
 mutant_list kernel_mutants_support = {UNSHIFTED, SUPPORT_0999, UNCLAMPED, TAIL, END};
 mutant_list kernel_mutants_sign = {OUTER_SIGN, GRADIENT_SIGN, LOBE, END};
-mutant_list kernel_mutants_continuity = {
-    KNOT_HOLE, KNOT_049, KNOT_DECLARED, KNOT_SECOND, KNOT_VALUE, CLASS, ORIGIN, UNSHIFTED, END};
+mutant_list kernel_mutants_continuity = {KNOT_HOLE,  KNOT_049, KNOT_DECLARED, KNOT_SECOND,
+                                         KNOT_VALUE, CLASS,    ORIGIN,        UNSHIFTED,
+                                         SLIP,       END};
 mutant_list kernel_mutants_moments = {OUTER_SIGN, PRINTED, NINTH, UNSHIFTED, END};
 mutant_list kernel_mutants_delta_limit = {C_359, C_FLOAT, COEFFICIENT, WENDLAND_1D, END};
 mutant_list kernel_mutants_transform = {OUTER_SIGN, NINTH, C_SEVENTH, UNSHIFTED, END};
 mutant_list kernel_mutants_lattice = {UNITY, COEFFICIENT, C_359, GRADIENT_SIGN, END};
 mutant_list kernel_mutants_self_term = {DH_DIMENSION, DH_POWER, ORIGIN, END};
 mutant_list kernel_mutants_round_off = {FLOAT, EXPANDED, END};
+mutant_list kernel_mutants_between = {SIGN_NARROW, HOLE_NARROW, BUMP_NARROW, END};
+mutant_list kernel_mutants_runs = {MOODY, END};

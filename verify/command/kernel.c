@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * sphproof kernel: the certificate of a built-in kernel or of a user's own. */
+ * sphproof kernel: the certificate of a built-in kernel or of a user's own. That of a user's is
+ * made in a process of its own; here its text, document and curves are only passed on. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,6 +8,7 @@
 
 #include "certificate.h"
 #include "command.h"
+#include "guard.h"
 #include "picture.h"
 #include "result.h"
 #include "text.h"
@@ -17,8 +19,11 @@ enum { POINTS_MAX = 10000 };
 /* What the command line asks for. */
 struct request {
     int dim, sinc_order, n;
-    double h;
-    double *q; /* n of them */
+    double h, limit; /* limit: seconds */
+    double *q;       /* n of them */
+    struct terms terms;
+    const char *word; /* name or path */
+    const struct options *options;
 };
 
 static enum status take_number(const struct options *options, const char *name, double low,
@@ -53,11 +58,27 @@ static enum status take_points(const struct options *options, struct request *re
                      text);
 }
 
+static enum status take_terms(const struct options *options, struct request *request,
+                              struct error *error)
+{
+    const char *precision = options_value(options, "precision");
+    double samples = CERTIFICATE_SAMPLES, seed = CERTIFICATE_SEED;
+    if (precision && strcmp(precision, "single") != 0 && strcmp(precision, "double") != 0)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "kernel: --precision '%.40s': allowed: double, single", precision);
+    if (take_number(options, "samples", 1000, 1e9, true, &samples, error)) return error->status;
+    if (take_number(options, "seed", 0, 1e15, true, &seed, error)) return error->status;
+    request->terms = (struct terms){.single = precision && precision[0] == 's',
+                                    .samples = (long)samples,
+                                    .seed = (uint64_t)seed};
+    return take_number(options, "limit", 1, 1e6, false, &request->limit, error);
+}
+
 static enum status take_request(const struct options *options, struct request *request,
                                 struct error *error)
 {
     double dim = 0, sinc_order = 5;
-    *request = (struct request){.h = 1};
+    *request = (struct request){.h = 1, .limit = GUARD_LIMIT, .options = options};
     if (!options_value(options, "dim"))
         return command_usage(options, error, "--dim is needed: 1, 2 or 3");
     if (take_number(options, "dim", 1, 3, true, &dim, error)) return error->status;
@@ -65,19 +86,23 @@ static enum status take_request(const struct options *options, struct request *r
     if (take_number(options, "h", 1e-30, 1e30, false, &request->h, error)) return error->status;
     request->dim = (int)dim;
     request->sinc_order = (int)sinc_order;
+    if (take_terms(options, request, error)) return error->status;
     return take_points(options, request, error);
 }
 
-static enum status load(struct user_kernel *user, const char *word, const struct request *request,
+static enum status load(struct user_kernel *user, const struct request *request,
                         struct error *error)
 {
-    if (user_kernel_is_path(word)) return user_kernel_load(user, word, request->dim, error);
+    const char *word = request->word;
+    if (user_kernel_is_path(word))
+        return user_kernel_load(user, word, request->dim, &request->terms, error);
     if (family_index(&kernel_family, word) < 0)
         return text_unknown_member(error, "kernel", "kernel", word, &kernel_family);
+    user->terms = request->terms;
     return kernel_select(&user->kernel, word, request->sinc_order, error);
 }
 
-static void print_derived(const struct user_kernel *user)
+static void print_derived(const struct user_kernel *user, FILE *stream)
 {
     const struct {
         bool found;
@@ -89,21 +114,22 @@ static void print_derived(const struct user_kernel *user)
         {user->found_class, "class", "by measurement"},
     };
     for (size_t i = 0; user->library && i < sizeof list / sizeof *list; i++)
-        printf("  %-28s %s%s\n", list[i].what, list[i].found ? "not supplied: found " : "supplied",
-               list[i].found ? list[i].how : " and checked");
-    if (user->library) printf("\n");
+        fprintf(stream, "  %-28s %s%s\n", list[i].what,
+                list[i].found ? "not supplied: found " : "supplied",
+                list[i].found ? list[i].how : " and checked");
+    if (user->library) fprintf(stream, "\n");
 }
 
-static void print_values(const struct kernel *kernel, const struct request *request)
+static void print_values(const struct kernel *kernel, const struct request *request, FILE *stream)
 {
     if (!request->n) return;
-    printf("\n%-12s %24s %24s %24s\n", "q", "W", "dW/dr", "dW/dh");
+    fprintf(stream, "\n%-12s %24s %24s %24s\n", "q", "W", "dW/dr", "dW/dh");
     for (int i = 0; i < request->n; i++) {
         const double r = request->q[i] * request->h;
-        printf("%-12.9g %24.16e %24.16e %24.16e\n", request->q[i],
-               kernel_value(kernel, r, request->h, request->dim),
-               kernel_dr(kernel, r, request->h, request->dim),
-               kernel_dh(kernel, r, request->h, request->dim));
+        fprintf(stream, "%-12.9g %24.16e %24.16e %24.16e\n", request->q[i],
+                kernel_value(kernel, r, request->h, request->dim),
+                kernel_dr(kernel, r, request->h, request->dim),
+                kernel_dh(kernel, r, request->h, request->dim));
     }
 }
 
@@ -122,60 +148,161 @@ static json_t *values_json(const struct kernel *kernel, const struct request *re
     return list;
 }
 
-static enum status write_json(const struct options *options, const struct user_kernel *user,
-                              const struct certificate *certificate, const struct request *request,
-                              struct error *error)
+static json_t *document_of(const char *name, const struct request *request, const char *status)
 {
-    json_t *document = result_new("kernel"), *derived = json_array();
+    json_t *document = result_new("kernel");
+    json_object_set_new(document, "kernel", json_string(name));
+    json_object_set_new(document, "dim", json_integer(request->dim));
+    json_object_set_new(document, "h", result_number(request->h));
+    json_object_set_new(document, "status", json_string(status));
+    return document;
+}
+
+static json_t *certificate_document(const struct user_kernel *user,
+                                    const struct certificate *certificate,
+                                    const struct request *request)
+{
+    json_t *derived = json_array();
+    json_t *document =
+        document_of(user->kernel.member.name, request, certificate->failed ? "fail" : "pass");
     const char *const names[] = {"constant", "dw_dh", "knots", "class"};
     const bool found[] = {user->found_constant, user->found_dh, user->found_knots,
                           user->found_class};
     for (int i = 0; i < 4; i++)
         if (found[i]) json_array_append_new(derived, json_string(names[i]));
-    json_object_set_new(document, "kernel", json_string(user->kernel.member.name));
     if (user->kernel.order)
         json_object_set_new(document, "sinc_n", json_integer(user->kernel.order));
-    json_object_set_new(document, "dim", json_integer(request->dim));
-    json_object_set_new(document, "h", result_number(request->h));
-    json_object_set_new(document, "status", json_string(certificate->failed ? "fail" : "pass"));
     json_object_set_new(document, "derived", derived);
     json_object_set_new(document, "values", values_json(&user->kernel, request));
     certificate_json(certificate, request->h, document);
-    const enum status status = result_write(document, options->json, error);
-    json_decref(document);
+    return document;
+}
+
+static json_t *certificate_text(const struct user_kernel *user,
+                                const struct certificate *certificate,
+                                const struct request *request)
+{
+    char *text = NULL;
+    size_t size = 0;
+    FILE *stream = open_memstream(&text, &size);
+    if (!stream) return NULL;
+    certificate_print(certificate, request->h, stream, request->options->color);
+    print_derived(user, stream);
+    print_values(&user->kernel, request, stream);
+    fclose(stream);
+    json_t *string = json_string(text);
+    free(text);
+    return string;
+}
+
+/* {"text", "document", "curves"}; STATUS_CHECK_FAILED: the kernel is rejected. */
+static enum status certify(const void *context, json_t **reply, struct error *error)
+{
+    const struct request *request = context;
+    struct user_kernel user = {0};
+    struct certificate *certificate = calloc(1, sizeof *certificate);
+    if (!certificate) return error_set(error, STATUS_ENVIRONMENT, "no memory for a certificate");
+    enum status status = load(&user, request, error);
+    if (!status) {
+        const struct terms terms = user_kernel_terms(&user, request->dim);
+        status = certificate_measure(certificate, &user.kernel, request->dim, &terms, error);
+    }
+    if (!status) {
+        *reply = json_pack("{s:o, s:o, s:o}", "text", certificate_text(&user, certificate, request),
+                           "document", certificate_document(&user, certificate, request), "curves",
+                           certificate_curves(certificate));
+        if (!*reply) status = error_set(error, STATUS_ENVIRONMENT, "no memory for a certificate");
+        if (!status && certificate->failed) status = STATUS_CHECK_FAILED;
+        certificate_free(certificate);
+    }
+    user_kernel_unload(&user);
+    free(certificate);
     return status;
 }
 
-static enum status report(const struct options *options, const struct user_kernel *user,
-                          const struct request *request, struct error *error)
+/* The certificate of a plug-in that did not come to its end. */
+static enum status certify_none(const struct request *request, const struct guard_verdict *verdict,
+                                json_t **reply, struct error *error)
 {
+    static const char *const unknown[] = {"normalisation", "moments", "class", "fourier"};
+    char name[64], text[600];
+    user_kernel_file_name(request->word, name, sizeof name);
+    json_t *document = document_of(name, request, "fail"), *checks = json_array();
+    json_object_set_new(document, "values", json_array());
+    for (size_t i = 0; i < sizeof unknown / sizeof *unknown; i++)
+        json_object_set_new(document, unknown[i], json_null());
+    snprintf(text, sizeof text, "%s, dim %d, %s", name, request->dim, verdict->reason);
+    json_array_append_new(checks, json_pack("{s:s, s:s, s:s, s:s, s:i, s:i, s:i, s:s}", "group",
+                                            "kernels", "name", "runs", "subject", text, "property",
+                                            "every call returns", "value", 1, "bound", 0, "floor",
+                                            0, "status", "fail"));
+    json_object_set_new(document, "checks", checks);
+    snprintf(text, sizeof text, "%s, %d dimension%s\n\nREJECTED: it %s\n", name, request->dim,
+             request->dim > 1 ? "s" : "", verdict->reason);
+    *reply = json_pack("{s:s, s:o}", "text", text, "document", document);
+    return *reply ? STATUS_CHECK_FAILED
+                  : error_set(error, STATUS_ENVIRONMENT, "no memory for a certificate");
+}
+
+static void add_printed(const struct guard_verdict *verdict, json_t *reply)
+{
+    char note[400];
+    if (!verdict->printed_bytes || !reply) return;
+    json_object_set_new(json_object_get(reply, "document"), "printed",
+                        json_pack("{s:I, s:s}", "bytes", (json_int_t)verdict->printed_bytes, "text",
+                                  verdict->printed));
+    const char *text = json_string_value(json_object_get(reply, "text"));
+    snprintf(note, sizeof note, "note: it printed %zu bytes: %s\n", verdict->printed_bytes,
+             verdict->printed);
+    json_object_set_new(reply, "text", json_sprintf("%s%s", text ? text : "", note));
+}
+
+static enum status certify_guarded(const struct request *request, json_t **reply,
+                                   struct error *error)
+{
+    struct guard_verdict verdict;
+    enum status status = guard_run(certify, request, request->limit, &verdict, error);
+    *reply = json_incref(verdict.reply);
+    if (status == STATUS_CHECK_FAILED && !verdict.ended)
+        status = certify_none(request, &verdict, reply, error);
+    if (status == STATUS_BAD_INPUT && !verdict.ended)
+        error_set(error, status, "kernel '%.100s' %.300s", request->word, verdict.reason);
+    add_printed(&verdict, *reply);
+    guard_free(&verdict);
+    return status;
+}
+
+static enum status show(const struct request *request, const json_t *reply, struct error *error)
+{
+    const struct options *options = request->options;
     const char *plot = options_value(options, "plot");
-    struct certificate certificate;
-    enum status status = certificate_measure(&certificate, &user->kernel, request->dim, error);
-    if (status) return status;
-    if (plot) status = certificate_plot(&certificate, plot, error);
-    if (!status && options->speak) {
-        certificate_print(&certificate, request->h, stdout, options->color);
-        print_derived(user);
-        print_values(&user->kernel, request);
-    }
-    if (!status && options->json) status = write_json(options, user, &certificate, request, error);
-    if (!status && certificate.failed) status = STATUS_CHECK_FAILED;
-    certificate_free(&certificate);
+    const json_t *curves = json_object_get(reply, "curves");
+    const char *text = json_string_value(json_object_get(reply, "text"));
+    enum status status = STATUS_OK;
+    if (plot && curves) status = certificate_plot(curves, plot, error);
+    if (!status && options->speak) fputs(text ? text : "", stdout);
+    if (!status && options->json)
+        status = result_write(json_object_get(reply, "document"), options->json, error);
     return status;
 }
 
 static enum status run(const struct options *options, int n, char **arguments, struct error *error)
 {
     struct request request;
-    struct user_kernel user = {0};
+    json_t *reply = NULL;
     if (n != 1) return command_usage(options, error, "one kernel or one F.so is needed");
     const char *plot = options_value(options, "plot");
     enum status status = take_request(options, &request, error);
+    request.word = arguments[0];
     if (!status && plot) status = picture_probe(plot, error);
-    if (!status) status = load(&user, arguments[0], &request, error);
-    if (!status) status = report(options, &user, &request, error);
-    user_kernel_unload(&user);
+    if (!status)
+        status = user_kernel_is_path(request.word) ? certify_guarded(&request, &reply, error)
+                                                   : certify(&request, &reply, error);
+    if (status == STATUS_OK || status == STATUS_CHECK_FAILED) {
+        const enum status shown = show(&request, reply, error);
+        status = shown ? shown : status;
+    }
+    json_decref(reply);
     free(request.q);
     return status;
 }
@@ -186,6 +313,10 @@ static const struct command_option own_options[] = {
     {"at", "Q1,Q2,...", "also W, dW/dr and dW/dh at these q = r/h"},
     {"sinc_n", "N", "exponent of the kernel sinc, 3 to 12 (default 5)"},
     {"plot", "F.svg|F.png", "plot W, W', W'' and the transform"},
+    {"precision", "double|single", "of a kernel that computes in float: bounds at 1e-6"},
+    {"samples", "N", "random places, one in each of N equal intervals (default 1048576)"},
+    {"seed", "S", "of them (default 1)"},
+    {"limit", "SECONDS", "time that a plug-in has in all (default 300)"},
     {NULL, NULL, NULL},
 };
 
@@ -195,7 +326,9 @@ const struct command command_kernel = {
     .help =
         "the certificate of a kernel: everything that makes it a right one, measured\n"
         "F.so is a kernel of your own: the header verify/kernel/plugin.h says how to write it.\n"
-        "Exit status 1 if a property does not hold.",
+        "It runs in a process of its own: one that crashes, never returns or ends the process "
+        "is a kernel\nthat fails. The certificate says how narrow a fault it could have missed."
+        "\nExit status 1 if a property does not hold, 2 if F.so cannot be used at all.",
     .run = run,
     .options = own_options,
     .examples = "sphproof kernel cubic_spline --dim 3\n"

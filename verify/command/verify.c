@@ -14,7 +14,7 @@
 #include "suite.h"
 #include "suite_output.h"
 #include "text.h"
-#include "user_kernel.h"
+#include "user_figures.h"
 
 enum { FOLDER_LENGTH = 1000 };
 
@@ -105,15 +105,15 @@ static enum status run(const struct options *options, int n, char **arguments, s
         .context = &progress,
     };
     gsl_set_error_handler_off();
-    struct user_kernel user = {0};
+    struct user_figures user = {0};
     const char *plugin = options_value(options, "kernel-plugin");
-    if (plugin && user_kernel_load(&user, plugin, 0, error)) return error->status;
-    check_kernel_plugin = plugin ? &user.kernel : NULL;
+    if (plugin && user_figures_measure(&user, plugin, error)) return error->status;
+    check_kernel_plugin = plugin ? &user : NULL;
     progress_begin(&progress, "checks", options->quiet);
     status = suite_run(&suite, check_registry, check_registry_count, &choice, error);
     progress_end(&progress);
     check_kernel_plugin = NULL;
-    user_kernel_unload(&user);
+    user_figures_free(&user);
     if (status != STATUS_OK && status != STATUS_CHECK_FAILED) return status;
 
     if (options->speak) suite_output_table(&suite, stdout, options->color);

@@ -18,12 +18,20 @@ static struct {
     char name[PATH_MAX];
 } slots[SLOTS];
 
+static volatile sig_atomic_t guarded; /* a group of processes that an interrupt ends, or 0 */
+
 static void interrupted(int number)
 {
+    if (guarded) kill(-(pid_t)guarded, SIGKILL);
     for (int i = 0; i < SLOTS; i++)
         if (slots[i].used) unlink(slots[i].name);
     signal(number, SIG_DFL);
     raise(number);
+}
+
+void output_guard(int group)
+{
+    guarded = group;
 }
 
 static int slot_take(const char *name)

@@ -30,6 +30,9 @@ enum status output_probe(const char *path, struct error *error);
 /* Makes a folder and those above it; one that is there is fine. */
 enum status output_folder(const char *path, struct error *error);
 
+/* An interrupt also ends this group of processes; 0: none. */
+void output_guard(int group);
+
 /* At start-up: interrupts remove temporaries, a full disk or a closed pipe is an error, not a
  * signal; closed standard streams cannot be taken by a file. */
 void output_prepare_process(void);

@@ -1,9 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * A tabulated kernel: (1-q)^4 (1+4q) at 65 points, between them the cubic spline with slope 0 at
- * both ends. Class C2, with a knot at every inner point, which sphproof finds by itself. */
+ * A tabulated kernel: (1-q)^4 (1+4q) at 65 points (-DPOINTS=N: at N), between them the cubic spline
+ * with slope 0 at both ends. Class C2, with a knot at every inner point, which sphproof finds by
+ * itself. */
 #include "plugin.h"
 
-enum { POINTS = 65 };
+#ifndef POINTS
+#define POINTS 65
+#endif
 
 static double value[POINTS], slope[POINTS];
 static int filled;

@@ -8,6 +8,7 @@
 #include <gsl/gsl_errno.h>
 
 #include "list.h"
+#include "places.h"
 
 struct certificate_sink {
     struct property_sink sink;
@@ -26,6 +27,7 @@ static void take(struct property_sink *sink, double value, double bound, double 
         context->no_memory = true;
         return;
     }
+    if (certificate->terms.single && bound > 0) bound = fmax(bound, TERMS_SINGLE_BOUND);
     struct certificate_figure *figure = &certificate->figures[certificate->figure_count++];
     *figure = (struct certificate_figure){.property = context->property,
                                           .value = value,
@@ -49,14 +51,20 @@ static void measure_lattices(struct certificate *certificate)
 }
 
 enum status certificate_measure(struct certificate *certificate, const struct kernel *kernel,
-                                int dim, struct error *error)
+                                int dim, const struct terms *terms, struct error *error)
 {
+    struct places places;
     *certificate = (struct certificate){.kernel = kernel, .dim = dim};
-    if (pieces_find(&certificate->pieces, kernel, dim, error) ||
+    if (pieces_find(&certificate->pieces, kernel, dim, terms, error) ||
         measure_spectrum_make(&certificate->spectrum, &certificate->pieces, error)) {
         certificate_free(certificate);
         return STATUS_ENVIRONMENT;
     }
+    certificate->terms = certificate->pieces.terms;
+    certificate->looks_single = pieces_look_single(&certificate->pieces);
+    places_make(&places, &certificate->pieces);
+    certificate->places = places.n;
+    places_free(&places);
     gsl_error_handler_t *handler = gsl_set_error_handler_off();
     measure_moments(&certificate->pieces, &certificate->moments);
     measure_class(&certificate->pieces, &certificate->class);

@@ -28,6 +28,9 @@ struct certificate {
     struct measure_moments moments;
     struct measure_class class;
     struct measure_fourier fourier;
+    struct terms terms;
+    bool looks_single;
+    int places;     /* likely ones that were looked at */
     double pairing; /* see measure_pairing */
     struct {        /* lattice sums against width: multiples of the mean spacing */
         double eta, density, gradient;
@@ -36,10 +39,14 @@ struct certificate {
     struct certificate_figure *figures;
 };
 
-/* Measures everything on a kernel in dim dimensions. STATUS_ENVIRONMENT: no memory. A property that
- * does not hold is no error, see failed. Release with certificate_free; kernel must outlive it. */
+/* How hard a single kernel is looked at. */
+enum { CERTIFICATE_SAMPLES = 1 << 20, CERTIFICATE_SEED = 1 };
+
+/* Measures everything on a kernel in dim dimensions, on these terms (NULL: terms_usual).
+ * STATUS_ENVIRONMENT: no memory. A property that does not hold is no error, see failed. Release
+ * with certificate_free; kernel must outlive it. */
 enum status certificate_measure(struct certificate *certificate, const struct kernel *kernel,
-                                int dim, struct error *error);
+                                int dim, const struct terms *terms, struct error *error);
 void certificate_free(struct certificate *certificate);
 
 /* For a person; h: support radius in which lengths are given. */
@@ -48,8 +55,10 @@ void certificate_print(const struct certificate *certificate, double h, FILE *st
 /* Adds "normalisation", "moments", "class", "fourier" ... and "checks" to document. */
 void certificate_json(const struct certificate *certificate, double h, json_t *document);
 
-/* Plots W, W', W'' and the transform to path (.svg or .png). */
-enum status certificate_plot(const struct certificate *certificate, const char *path,
-                             struct error *error);
+/* The curves of W, W', W'' and the transform, for certificate_plot; new reference. */
+json_t *certificate_curves(const struct certificate *certificate);
+
+/* Draws them to path (.svg or .png). */
+enum status certificate_plot(const json_t *curves, const char *path, struct error *error);
 
 #endif

@@ -7,6 +7,7 @@
 #include "certificate.h"
 #include "picture.h"
 #include "result.h"
+#include "value.h"
 
 /* ---- text ---- */
 
@@ -15,6 +16,13 @@ static void print_measured(const struct certificate *c, double h, FILE *stream)
     const struct kernel *kernel = c->kernel;
     const int dim = c->dim;
     const double sigma = sqrt(c->moments.second);
+    if (c->terms.single || c->looks_single)
+        fprintf(stream, "  %-28s values are in %s precision; judged as %s, bounds at %g%s\n",
+                "precision", c->looks_single ? "single" : "double",
+                c->terms.single ? "single" : "double", c->terms.single ? TERMS_SINGLE_BOUND : 1e-13,
+                c->terms.single == c->looks_single ? ""
+                : c->looks_single                  ? ": see --precision single"
+                                                   : ": --precision double asks more");
     fprintf(stream, "  %-28s %.17g\n", "constant C_d", kernel->constant[dim]);
     fprintf(stream, "  %-28s 1 %+.2g\n", "integral of W dV", c->moments.volume - 1);
     fprintf(stream, "  %-28s sigma^2 = %.10g h^2, sigma = %.10g\n", "second moment (per axis)",
@@ -27,8 +35,9 @@ static void print_measured(const struct certificate *c, double h, FILE *stream)
         fprintf(stream, "discontinuous");
     else
         fprintf(stream, "C%d%s", c->class.class,
-                c->class.class == MEASURE_CLASS_MAX ? " or higher" : "");
-    if (c->class.class < MEASURE_CLASS_MAX && c->class.class != kernel->smoothness[dim])
+                c->class.class == measure_class_limit(&c->pieces) ? " or higher" : "");
+    if (c->class.class < measure_class_limit(&c->pieces) &&
+        c->class.class != kernel->smoothness[dim])
         fprintf(stream, " (declared C%d)", kernel->smoothness[dim]);
     if (c->class.at == 0 || c->class.at == 1)
         fprintf(stream, ", limited by the %s", c->class.at == 0 ? "origin" : "edge");
@@ -100,6 +109,22 @@ static void print_properties(const struct certificate *c, FILE *stream, bool col
     }
 }
 
+/* What could have been missed. */
+static void print_resolution(const struct certificate *c, FILE *stream)
+{
+    const double width = 1. / (double)c->terms.samples;
+    const int decades = c->terms.single ? 6 : 30;
+    fprintf(stream,
+            "\nresolution: w and dw at %ld random places (one in each %.2g of q, seed %llu), again "
+            "around the worst of\n"
+            "them, and at %d places where formulas like to change, to the last digit; W, dW/dr and "
+            "dW/dh at %ld\n"
+            "random h from 1e-%d to 1e%d. A fault narrower than %.2g in q that begins at none of "
+            "these places may be missed.\n",
+            c->terms.samples, width, (unsigned long long)c->terms.seed, c->places,
+            c->terms.samples / 4, decades, decades, 2 * width);
+}
+
 void certificate_print(const struct certificate *c, double h, FILE *stream, bool color)
 {
     fprintf(stream, "%s (%s), %d dimension%s, support radius h = %g\n\n", c->kernel->member.name,
@@ -107,6 +132,7 @@ void certificate_print(const struct certificate *c, double h, FILE *stream, bool
     print_measured(c, h, stream);
     print_lattice(c, stream);
     print_properties(c, stream, color);
+    print_resolution(c, stream);
     fprintf(stream, "\n%s: ", c->failed ? "REJECTED" : "accepted");
     if (c->failed) {
         fprintf(stream, "%zu of %zu figures beyond their bound, in", c->failed, c->figure_count);
@@ -164,6 +190,15 @@ static json_t *knots_json(const struct certificate *c)
     return list;
 }
 
+static json_t *resolution_json(const struct certificate *c)
+{
+    const double decades = c->terms.single ? 6 : 30;
+    return json_pack("{s:I, s:o, s:i, s:I, s:[f,f], s:I}", "samples", (json_int_t)c->terms.samples,
+                     "width", result_number(2. / (double)c->terms.samples), "places", c->places,
+                     "widths", (json_int_t)(c->terms.samples / 4), "width_range", pow(10, -decades),
+                     pow(10, decades), "seed", (json_int_t)c->terms.seed);
+}
+
 void certificate_json(const struct certificate *c, double h, json_t *document)
 {
     const struct kernel *kernel = c->kernel;
@@ -191,6 +226,11 @@ void certificate_json(const struct certificate *c, double h, json_t *document)
     json_object_set_new(document, "self_term", result_number(kernel_value(kernel, 0, h, c->dim)));
     json_object_set_new(document, "least_eta", result_number(kernel_least_eta(kernel, c->dim)));
     json_object_set_new(document, "lattice", lattice_json(c));
+    json_object_set_new(document, "precision",
+                        json_pack("{s:s, s:s}", "values", c->looks_single ? "single" : "double",
+                                  "judged", c->terms.single ? "single" : "double"));
+    json_object_set_new(document, "negative", json_boolean(c->terms.negative));
+    json_object_set_new(document, "resolution", resolution_json(c));
     json_object_set_new(document, "checks", figures_json(c));
 }
 
@@ -232,11 +272,34 @@ static void fill(struct curves *curves, const struct certificate *c)
     }
 }
 
-enum status certificate_plot(const struct certificate *c, const char *path, struct error *error)
+static json_t *numbers(const double *list, size_t n)
+{
+    json_t *array = json_array();
+    for (size_t i = 0; i < n; i++) json_array_append_new(array, result_number(list[i]));
+    return array;
+}
+
+json_t *certificate_curves(const struct certificate *c)
 {
     struct curves *curves = calloc(1, sizeof *curves);
-    if (!curves) return error_set(error, STATUS_ENVIRONMENT, "no memory for a plot");
+    if (!curves) return NULL;
     fill(curves, c);
+    const size_t n = curves->n;
+    char title[160];
+    snprintf(title, sizeof title, "%s in %d dimension%s, h = 1", c->kernel->member.name, c->dim,
+             c->dim > 1 ? "s" : "");
+    json_t *packed = json_pack(
+        "{s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "title", title, "q", numbers(curves->q, n), "w",
+        numbers(curves->w, n), "dw", numbers(curves->dw, n), "ddw", numbers(curves->ddw, n),
+        "kappa", numbers(curves->kappa, WAVES), "transform", numbers(curves->transform, WAVES),
+        "first_negative", result_number(c->fourier.first_negative));
+    free(curves);
+    return packed;
+}
+
+static enum status draw(const struct curves *curves, const char *title, double first_negative,
+                        const char *path, struct error *error)
+{
     const struct plot_series w = {
         .kind = PLOT_LINES, .n = curves->n, .x = curves->q, .y = curves->w};
     const struct plot_series dw = {
@@ -245,7 +308,7 @@ enum status certificate_plot(const struct certificate *c, const char *path, stru
         .kind = PLOT_LINES, .n = curves->n, .x = curves->q, .y = curves->ddw};
     const struct plot_series transform = {
         .kind = PLOT_LINES, .n = WAVES, .x = curves->kappa, .y = curves->transform};
-    const struct plot_mark negative = {c->fourier.first_negative, false, "negative from here"};
+    const struct plot_mark negative = {first_negative, false, "negative from here"};
     const struct plot_panel panels[] = {
         {.y_label = "W", .key = PLOT_KEY_NONE, .series = &w, .series_count = 1},
         {.y_label = "W′", .key = PLOT_KEY_NONE, .series = &dw, .series_count = 1},
@@ -262,16 +325,27 @@ enum status certificate_plot(const struct certificate *c, const char *path, stru
          .series = &transform,
          .series_count = 1,
          .marks = &negative,
-         .mark_count = c->fourier.first_negative < 0.1 * WAVES}};
-    char title[160];
-    snprintf(title, sizeof title, "%s in %d dimension%s, h = 1", c->kernel->member.name, c->dim,
-             c->dim > 1 ? "s" : "");
+         .mark_count = first_negative < 0.1 * WAVES}};
     const struct plot plot = {.name = "kernel",
                               .title = title,
                               .show_title = true,
                               .panels = panels,
                               .panel_count = sizeof panels / sizeof *panels};
-    const enum status status = picture_write(&plot, path, error);
+    return picture_write(&plot, path, error);
+}
+
+enum status certificate_plot(const json_t *json, const char *path, struct error *error)
+{
+    struct curves *curves = calloc(1, sizeof *curves);
+    if (!curves) return error_set(error, STATUS_ENVIRONMENT, "no memory for a plot");
+    value_reals(json_object_get(json, "w"), curves->w, CURVE_MAX);
+    value_reals(json_object_get(json, "dw"), curves->dw, CURVE_MAX);
+    value_reals(json_object_get(json, "ddw"), curves->ddw, CURVE_MAX);
+    value_reals(json_object_get(json, "kappa"), curves->kappa, WAVES);
+    value_reals(json_object_get(json, "transform"), curves->transform, WAVES);
+    curves->n = value_reals(json_object_get(json, "q"), curves->q, CURVE_MAX);
+    const enum status status = draw(curves, value_text_or(json, "title", "kernel"),
+                                    value_member(json, "first_negative"), path, error);
     free(curves);
     return status;
 }

@@ -114,16 +114,38 @@ static struct measure_jump jump_at(const struct pieces *pieces, int i, int k)
     return jump;
 }
 
+int measure_class_limit(const struct pieces *pieces)
+{
+    return pieces->terms.single || pieces_look_single(pieces) ? 2 : MEASURE_CLASS_MAX;
+}
+
+/* Nobody builds a kernel whose w, w' or w'' jumps by a part of 1e-4 somewhere: that is a slip. A
+ * table's many points do jump so little. */
+static void note_accident(const struct pieces *pieces, int i, int k, double jump,
+                          struct measure_class *result)
+{
+    enum { FEW = 8, HIGHEST = 2 };
+    const double size = jump / (k == 0 ? pieces->max_w : pieces->max_dw);
+    if (pieces->declared[i] || pieces->n > FEW || k > HIGHEST || size > 1e-4) return;
+    result->accident.count++;
+    if (size < result->accident.jump) return;
+    result->accident.at = pieces->edge[i];
+    result->accident.jump = size;
+    result->accident.k = k;
+}
+
 void measure_class(const struct pieces *pieces, struct measure_class *result)
 {
-    *result = (struct measure_class){.class = MEASURE_CLASS_MAX, .at = (double)NAN};
+    const int limit = measure_class_limit(pieces);
+    *result = (struct measure_class){.class = limit, .at = (double)NAN};
     for (int i = 0; i <= pieces->n; i++)
-        for (int k = 0; k <= MEASURE_CLASS_MAX + 1; k++) {
+        for (int k = 0; k <= limit + 1; k++) {
             const struct measure_jump jump = jump_at(pieces, i, k);
             struct measure_jump *worst = &result->jump[k];
             if (i == 0 || !(jump.jump * worst->floor <= worst->jump * jump.floor)) *worst = jump;
             if (jump.jump <= measure_significant * jump.floor) continue;
             if (!pieces->declared[i] && result->extra++ == 0) result->extra_at = jump.at;
+            note_accident(pieces, i, k, jump.jump, result);
             if (k - 1 < result->class) {
                 result->class = k - 1;
                 result->at = jump.at;

@@ -32,16 +32,23 @@ void measure_moments(const struct pieces *pieces, struct measure_moments *moment
 
 enum { MEASURE_CLASS_MAX = 9 }; /* classes above are reported as this one */
 
+/* The highest class that the kernel's rounding errors let anyone tell. */
+int measure_class_limit(const struct pieces *pieces);
+
 /* Where the k-th derivative of w jumps most, in units of the estimate of its own error. */
 struct measure_jump {
     double at, jump, floor;
 };
 
 struct measure_class {
-    int class;       /* C^class measured, at most MEASURE_CLASS_MAX; -1: w itself jumps */
+    int class;       /* C^class measured, at most measure_class_limit; -1: w itself jumps */
     double at;       /* the point that limits it (0 origin, 1 edge), NaN if none does */
     int extra;       /* break points with a jump that are not among the declared knots */
     double extra_at; /* the first of them */
+    struct { /* break points of few pieces that nobody declared, with a jump in w, w' or w'' */
+        int count, k; /* too small to be meant; the derivative and size of the largest */
+        double at, jump;
+    } accident;
     struct measure_jump jump[MEASURE_CLASS_MAX + 2]; /* of derivative k, the most significant */
 };
 

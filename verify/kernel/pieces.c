@@ -7,10 +7,11 @@
 
 enum { N = PIECES_NODES, TAIL = N / 4, LEAVES_MAX = 1 << 15 };
 
-/* A series is resolved when its tail is below this part of the largest value. */
-static const double tolerance = 4e-14;
-/* Intervals with a singularity are bisected down to this width. */
-static const double width_min = 1e-11;
+const struct terms terms_usual = {.samples = 1 << 13, .seed = 1};
+
+/* A series is resolved when its tail is below this part of the largest value; intervals with a
+ * singularity are bisected down to this width: double precision, single precision. */
+static const double tolerances[] = {4e-14, 4e-6}, widths[] = {1e-11, 1e-3};
 
 struct leaves {
     const struct pieces *pieces;
@@ -20,26 +21,38 @@ struct leaves {
 
 double pieces_node(const struct pieces *pieces, int j)
 {
-    return pieces->cosine[2 * j + 1];
+    return pieces->node[j];
 }
 
 void pieces_fit(const struct pieces *pieces, const double values[PIECES_NODES],
                 struct series_fit *fit)
 {
-    double largest = 0, tail = 0;
-    for (int j = 0; j < N; j++) largest = fmax(largest, fabs(values[j]));
+    double largest = 0, tail = 0, sum[N] = {0};
+    for (int j = 0; j < N; j++) {
+        largest = fmax(largest, fabs(values[j]));
+        for (int k = 0; k < N; k++) sum[k] += values[j] * pieces->cosine[j][k];
+    }
     for (int k = 0; k < N; k++) {
-        double sum = 0;
-        for (int j = 0; j < N; j++) sum += values[j] * pieces->cosine[k * (2 * j + 1) % (4 * N)];
-        fit->c[k] = (k ? 2. : 1.) / N * sum;
+        fit->c[k] = (k ? 2. : 1.) / N * sum[k];
         if (!(largest <= DBL_MAX)) fit->c[k] = (double)NAN; /* an Inf or a NaN is passed on */
         if (k >= N - TAIL) tail = fmax(tail, fabs(fit->c[k]));
     }
-    fit->noise = isnan(fit->c[0]) ? fit->c[0] : fmax(tail, 0.5 * DBL_EPSILON * largest);
+    fit->noise = isnan(fit->c[0]) ? fit->c[0] : fmax(tail, 0.5 * pieces->epsilon * largest);
     fit->n = N;
     while (fit->n > 1 && fabs(fit->c[fit->n - 1]) <= 2 * fit->noise) fit->n--;
     /* a tail above round-off is the trace of a break point that was found only nearly */
-    fit->reach = tail > 4 * DBL_EPSILON * largest ? N : fit->n + 2;
+    fit->reach = tail > 4 * pieces->epsilon * largest ? N : fit->n + 2;
+}
+
+double series_value(const struct series_fit *fit, double x)
+{
+    double next = 0, following = 0; /* Clenshaw */
+    for (int j = fit->n - 1; j > 0; j--) {
+        const double b = 2 * x * next - following + fit->c[j];
+        following = next;
+        next = b;
+    }
+    return x * next - following + fit->c[0];
 }
 
 double series_slope(const struct series_fit *fit, double x, double *floor)
@@ -66,13 +79,19 @@ static void sample(const struct pieces *pieces, kernel_shape *shape, double a, d
     pieces_fit(pieces, values, fit);
 }
 
+void pieces_series(const struct pieces *pieces, int p, struct series_fit *w, struct series_fit *dw)
+{
+    sample(pieces, pieces->kernel->w, pieces->edge[p], pieces->edge[p + 1], w);
+    sample(pieces, pieces->kernel->dw, pieces->edge[p], pieces->edge[p + 1], dw);
+}
+
 static bool resolved_nearly(const struct pieces *pieces, double a, double b, double factor)
 {
     struct series_fit w, dw;
     sample(pieces, pieces->kernel->w, a, b, &w);
     sample(pieces, pieces->kernel->dw, a, b, &dw);
-    return w.noise <= factor * tolerance * pieces->max_w &&
-           dw.noise <= factor * tolerance * pieces->max_dw;
+    return w.noise <= factor * pieces->tolerance * pieces->max_w &&
+           dw.noise <= factor * pieces->tolerance * pieces->max_dw;
 }
 
 static bool resolved(const struct pieces *pieces, double a, double b)
@@ -84,7 +103,7 @@ static bool resolved(const struct pieces *pieces, double a, double b)
 static void bisect(struct leaves *leaves, double a, double b)
 {
     if (leaves->pieces->n + leaves->n >= LEAVES_MAX) return;
-    if (b - a > width_min && !resolved(leaves->pieces, a, b)) {
+    if (b - a > leaves->pieces->width_min && !resolved(leaves->pieces, a, b)) {
         bisect(leaves, a, (a + b) / 2);
         bisect(leaves, (a + b) / 2, b);
     } else {
@@ -100,7 +119,8 @@ static int join(const struct pieces *pieces, double a, double *edge, int n)
     for (int i = 0; i < n;) {
         int last = i;
         while (last + 1 < n && resolved(pieces, a, edge[last + 1])) last++;
-        const bool point = edge[last] - a < 1e3 * width_min && !resolved(pieces, a, edge[last]);
+        const bool point =
+            edge[last] - a < 1e3 * pieces->width_min && !resolved(pieces, a, edge[last]);
         if (point && m > 0)
             edge[m - 1] = (a + edge[last]) / 2;
         else if (!point || last + 1 == n)
@@ -204,6 +224,47 @@ static void find_scale(struct pieces *pieces)
     }
 }
 
+/* What the same arguments must give ever after. */
+static void remember(struct pieces *pieces)
+{
+    const struct kernel *kernel = pieces->kernel;
+    for (int i = 0; i < PIECES_FIRST; i++) {
+        const double q = 1.02 * (i + 0.385) / PIECES_FIRST; /* the last one lies beyond the edge */
+        pieces->first[i] = (struct pieces_first){q, kernel->w(kernel, q, pieces->dim),
+                                                 kernel->dw(kernel, q, pieces->dim),
+                                                 kernel_dh(kernel, q, 1, pieces->dim)};
+    }
+}
+
+static int ascending(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* Second differences over a step in which a smooth function bends by 1e-13 only; a knot or a fault
+ * here and there does not move their upper quartile. */
+static void find_grain(struct pieces *pieces)
+{
+    enum { SAMPLES = 256 };
+    const double step = 1e-7;
+    double bend[SAMPLES];
+    for (int i = 0; i < SAMPLES; i++) {
+        const double q = (i + 0.385) / SAMPLES;
+        double w[3];
+        for (int j = 0; j < 3; j++)
+            w[j] = pieces->kernel->w(pieces->kernel, q + j * step, pieces->dim);
+        bend[i] = fabs(w[0] - 2 * w[1] + w[2]);
+    }
+    qsort(bend, SAMPLES, sizeof *bend, ascending);
+    pieces->grain = bend[3 * SAMPLES / 4] / pieces->max_w;
+}
+
+bool pieces_look_single(const struct pieces *pieces)
+{
+    return pieces->grain > 1e-10 && pieces->grain < 1e-5;
+}
+
 /* The plateaus of all pieces; whether all are resolved. */
 static void find_noise(struct pieces *pieces)
 {
@@ -215,8 +276,8 @@ static void find_noise(struct pieces *pieces)
         pieces->noise_w = !(w.noise <= pieces->noise_w) ? w.noise : pieces->noise_w;
         pieces->noise_dw = !(dw.noise <= pieces->noise_dw) ? dw.noise : pieces->noise_dw;
     }
-    pieces->resolved = pieces->noise_w <= tolerance * pieces->max_w &&
-                       pieces->noise_dw <= tolerance * pieces->max_dw;
+    pieces->resolved = pieces->noise_w <= pieces->tolerance * pieces->max_w &&
+                       pieces->noise_dw <= pieces->tolerance * pieces->max_dw;
 }
 
 /* Noise everywhere: nothing to be found, even pieces will do. */
@@ -277,11 +338,20 @@ static int divide(const struct pieces *pieces, double a, double b, double *edge)
 }
 
 enum status pieces_find(struct pieces *pieces, const struct kernel *kernel, int dim,
-                        struct error *error)
+                        const struct terms *terms, struct error *error)
 {
-    *pieces = (struct pieces){.kernel = kernel, .dim = dim};
-    for (int i = 0; i < 4 * N; i++) pieces->cosine[i] = cos(M_PI * i / (2 * N));
+    *pieces = (struct pieces){.kernel = kernel, .dim = dim, .terms = terms ? *terms : terms_usual};
+    pieces->epsilon = pieces->terms.single ? (double)FLT_EPSILON : DBL_EPSILON;
+    pieces->tolerance = tolerances[pieces->terms.single];
+    pieces->width_min = widths[pieces->terms.single];
+    for (int j = 0; j < N; j++) {
+        pieces->node[j] = cos(M_PI * (2 * j + 1) / (2 * N));
+        for (int k = 0; k < N; k++)
+            pieces->cosine[j][k] = cos(M_PI * (k * (2 * j + 1) % (4 * N)) / (2 * N));
+    }
+    remember(pieces);
     find_scale(pieces);
+    find_grain(pieces);
     const int knots = kernel->knot_count > 0 ? kernel->knot_count : 0;
     const size_t room = (size_t)LEAVES_MAX + 64 * (size_t)(knots + 2);
     pieces->edge = calloc(room, sizeof *pieces->edge);

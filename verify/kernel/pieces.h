@@ -6,22 +6,50 @@
 #define SPHPROOF_PIECES_H
 
 #include <stdbool.h>
+#include <stdint.h>
 
 #include "kernel.h"
 
 enum { PIECES_NODES = 32 }; /* of a series */
 
+/* On what terms a kernel is judged: what is declared of it, how hard it is looked at. */
+struct terms {
+    bool single;             /* values in single precision: bounds at TERMS_SINGLE_BOUND */
+    bool negative;           /* declared to have a negative lobe */
+    bool class_found;        /* smoothness was measured, not declared */
+    long samples;            /* random places, one in each of as many equal intervals of q */
+    uint64_t seed;           /* of them */
+    const double *constants; /* numbers in ]0, 1[ that stand in its code; not owned */
+    int constant_count;
+};
+
+#define TERMS_SINGLE_BOUND 1e-6
+
+/* Double precision, nothing declared, a few samples. */
+extern const struct terms terms_usual;
+
+/* Values kept from the first calls. */
+enum { PIECES_FIRST = 64 };
+struct pieces_first {
+    double q, w, dw, dh;
+};
+
 struct pieces {
     const struct kernel *kernel; /* not owned */
     int dim;
-    int n;                    /* pieces */
-    double *edge;             /* n + 1 break points: 0, ..., 1 */
-    bool *declared;           /* n + 1: a declared knot, the origin or the edge */
+    struct terms terms;
+    double epsilon, tolerance, width_min; /* of the precision that the terms name */
+    int n;                                /* pieces */
+    double *edge;                         /* n + 1 break points: 0, ..., 1 */
+    bool *declared;                       /* n + 1: a declared knot, the origin or the edge */
     double *doubt;            /* n + 1: how far a break point that was found may be off */
     bool resolved;            /* false: noise or a singularity somewhere; error estimates show it */
     double max_w, max_dw;     /* largest |w|, |dw| met in [0, 1] */
     double noise_w, noise_dw; /* plateau of the series, the evaluation's round-off */
-    double cosine[4 * PIECES_NODES];
+    double grain;             /* typical error of a value of w, part of max_w */
+    struct pieces_first first[PIECES_FIRST];
+    double node[PIECES_NODES];                 /* of a series, on ]-1, 1[ */
+    double cosine[PIECES_NODES][PIECES_NODES]; /* T_k(node j) at [j][k] */
 };
 
 /* Chebyshev series of a smooth function on an interval, chopped where it meets the noise. */
@@ -32,11 +60,17 @@ struct series_fit {
     double noise; /* of a coefficient */
 };
 
-/* Finds the pieces of a kernel in dim dimensions. STATUS_ENVIRONMENT: no memory. Release with
- * pieces_free; kernel must outlive it. */
+/* Finds the pieces of a kernel in dim dimensions; terms NULL: terms_usual. STATUS_ENVIRONMENT: no
+ * memory. Release with pieces_free; kernel must outlive it. */
 enum status pieces_find(struct pieces *pieces, const struct kernel *kernel, int dim,
-                        struct error *error);
+                        const struct terms *terms, struct error *error);
 void pieces_free(struct pieces *pieces);
+
+/* Do the kernel's values carry rounding errors of single precision? */
+bool pieces_look_single(const struct pieces *pieces);
+
+/* The series of w (dw) on piece p. */
+void pieces_series(const struct pieces *pieces, int p, struct series_fit *w, struct series_fit *dw);
 
 /* Node j of a series on x in [-1, 1] (never an end point). */
 double pieces_node(const struct pieces *pieces, int j);
@@ -44,6 +78,9 @@ double pieces_node(const struct pieces *pieces, int j);
 /* The series through values[j] at the nodes. */
 void pieces_fit(const struct pieces *pieces, const double values[PIECES_NODES],
                 struct series_fit *fit);
+
+/* The series at x. */
+double series_value(const struct series_fit *fit, double x);
 
 /* d/dx of the series at x, and the error that its noise makes there. */
 double series_slope(const struct series_fit *fit, double x, double *floor);

@@ -8,7 +8,10 @@
  * The kernel is W(r,h) = C_d h^-d w(q), q = r/h, where h is the support radius and d = dim = 1, 2
  * or 3. A dimension that is not asked for is not called. What you supply is checked; what you leave
  * out is derived, and the certificate says so. The functions must be pure: same arguments, same
- * value. */
+ * value, however often they are called. They run in a process of their own: one that crashes, ends
+ * the process or does not return within a second is a kernel that fails (exit status 1), or no
+ * kernel (2) if it does so in its first calls; what it prints is kept apart from results. If w and
+ * dw are computed in single precision, say so: sphproof kernel F.so --precision single. */
 #ifndef SPHPROOF_PLUGIN_H
 #define SPHPROOF_PLUGIN_H
 
@@ -36,6 +39,10 @@ int sphproof_kernel_knots(int dim, double *knots);
 /* Optional: the class k of C^k, the least over the origin (w continued as an even function), the
  * knots and the edge q = 1; else it is measured. */
 int sphproof_kernel_class(int dim);
+
+/* Optional: 1 if the kernel is meant to have a negative lobe. Its sign and monotony are then
+ * reported, not required; 0, or no such function: W >= 0 and dW/dr <= 0 are required. */
+int sphproof_kernel_negative(int dim);
 
 /* Optional: a name for the results; else that of the file. */
 const char *sphproof_kernel_name(void);

@@ -4,40 +4,57 @@
 #include <dlfcn.h>
 #include <errno.h>
 #include <math.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
-#include <time.h>
-#include <unistd.h>
 
+#include "guard.h"
 #include "measure.h"
-#include "pieces.h"
+#include "places.h"
 
-enum { PROBE_SECONDS = 20, PROBE_PASSED = 42, KNOTS_ROOM = 1 << 16 };
+enum { KNOTS_ROOM = 1 << 16 };
 
-/* The functions of a plug-in; w and dw are there, the others may be NULL. */
-struct functions {
+/* The functions of the plug-in; w and dw are there, the others may be NULL. */
+static struct functions {
     double (*w)(double q, int dim);
     double (*dw)(double q, int dim);
     double (*constant)(int dim);
     double (*dw_dh)(double r, double h, int dim);
     int (*knots)(int dim, double *knots);
     int (*class)(int dim);
+    int (*negative)(int dim);
     const char *(*name)(void);
-};
+} functions;
 
+/* Each call is announced: a process that guards this one tells where it ended. */
 static double shape_w(const struct kernel *kernel, double q, int dim)
 {
-    return kernel->plugin_w(q, dim);
+    guard_call("sphproof_kernel_w", q, (double)NAN, dim);
+    const double w = kernel->plugin_w(q, dim);
+    guard_back();
+    return w;
 }
 
 static double shape_dw(const struct kernel *kernel, double q, int dim)
 {
-    return kernel->plugin_dw(q, dim);
+    guard_call("sphproof_kernel_dw", q, (double)NAN, dim);
+    const double dw = kernel->plugin_dw(q, dim);
+    guard_back();
+    return dw;
+}
+
+static double width_slope(double r, double h, int dim)
+{
+    guard_call("sphproof_kernel_dw_dh", r, h, dim);
+    const double dh = functions.dw_dh(r, h, dim);
+    guard_back();
+    return dh;
+}
+
+static void announce(const char *function, int dim)
+{
+    guard_call(function, (double)NAN, (double)NAN, dim);
 }
 
 bool user_kernel_is_path(const char *word)
@@ -57,7 +74,9 @@ static enum status open_library(struct user_kernel *user, const char *path, stru
                          "kernel '%.200s' is a directory; allowed: a shared object", path);
     /* without a slash dlopen would look in the system's directories */
     snprintf(plain, sizeof plain, "%s%s", strchr(path, '/') ? "" : "./", path);
+    announce("dlopen", 0);
     user->library = dlopen(plain, RTLD_NOW | RTLD_LOCAL);
+    guard_back();
     if (!user->library)
         return error_set(error, STATUS_BAD_INPUT, "kernel '%.150s' is no shared object: %.250s",
                          path, dlerror());
@@ -80,6 +99,7 @@ static enum status find_functions(void *library, const char *path, struct functi
     find(library, "sphproof_kernel_dw_dh", &f->dw_dh);
     find(library, "sphproof_kernel_knots", &f->knots);
     find(library, "sphproof_kernel_class", &f->class);
+    find(library, "sphproof_kernel_negative", &f->negative);
     find(library, "sphproof_kernel_name", &f->name);
     if (f->w && f->dw) return STATUS_OK;
     return error_set(error, STATUS_BAD_INPUT,
@@ -87,18 +107,24 @@ static enum status find_functions(void *library, const char *path, struct functi
                      f->w ? "dw" : "w");
 }
 
+void user_kernel_file_name(const char *path, char *name, size_t size)
+{
+    const char *slash = strrchr(path, '/');
+    snprintf(name, size, "%s", slash ? slash + 1 : path);
+    char *end = strstr(name, ".so");
+    if (end && end != name) *end = '\0';
+    status_clean(name);
+}
+
 static void take_name(struct user_kernel *user, const char *path, const struct functions *f)
 {
+    announce("sphproof_kernel_name", 0);
     const char *given = f->name ? f->name() : NULL;
-    const char *slash = strrchr(path, '/');
-    snprintf(user->name, sizeof user->name, "%s",
-             given && given[0] ? given
-             : slash           ? slash + 1
-                               : path);
+    user_kernel_file_name(path, user->name, sizeof user->name);
+    if (given && given[0]) snprintf(user->name, sizeof user->name, "%s", given);
+    guard_back();
     for (char *c = user->name; *c; c++)
         if (*c < ' ' || *c > '~') *c = '_';
-    char *end = strstr(user->name, ".so");
-    if (!(given && given[0]) && end && end != user->name) *end = '\0';
     user->kernel.member = (struct member){user->name, "user's kernel", ""};
 }
 
@@ -115,7 +141,9 @@ static enum status take_knots(struct user_kernel *user, const struct functions *
                               double *room, struct error *error)
 {
     for (int i = 0; i < KNOTS_ROOM; i++) room[i] = (double)NAN;
+    announce("sphproof_kernel_knots", dim);
     const int n = f->knots(dim, room);
+    guard_back();
     double last = -1;
     if (n < 0 || n > SPHPROOF_KERNEL_KNOTS_MAX)
         return error_set(error, STATUS_BAD_INPUT,
@@ -182,7 +210,9 @@ static enum status take_class(struct user_kernel *user, const struct functions *
     struct kernel *kernel = &user->kernel;
     const int dim = pieces->dim;
     if (f->class) {
+        announce("sphproof_kernel_class", dim);
         kernel->smoothness[dim] = f->class(dim);
+        guard_back();
         if (kernel->smoothness[dim] < 0)
             return error_set(error, STATUS_BAD_INPUT,
                              "kernel %s: sphproof_kernel_class(%d) = %d; allowed: 0 or more",
@@ -195,100 +225,83 @@ static enum status take_class(struct user_kernel *user, const struct functions *
     return STATUS_OK;
 }
 
+static enum status check_constant(const struct user_kernel *user, int dim, struct error *error)
+{
+    const double constant = user->kernel.constant[dim];
+    if (isfinite(constant) && constant > 0) return STATUS_OK;
+    return error_set(error, STATUS_BAD_INPUT,
+                     "kernel %s: the constant in %d dimensions is %g%s; allowed: above 0",
+                     user->name, dim, constant, user->found_constant ? " by quadrature" : "");
+}
+
+/* What the plug-in says of itself in dim dimensions. */
+static enum status ask(struct user_kernel *user, const struct functions *f, int dim,
+                       struct error *error)
+{
+    if (probe_values(&user->kernel, dim, error)) return error->status;
+    if (f->negative) {
+        announce("sphproof_kernel_negative", dim);
+        user->negative[dim] = f->negative(dim) != 0;
+        guard_back();
+    }
+    if (!f->constant) return STATUS_OK;
+    announce("sphproof_kernel_constant", dim);
+    user->kernel.constant[dim] = f->constant(dim);
+    guard_back();
+    return check_constant(user, dim, error);
+}
+
+/* What it leaves to be found. */
 static enum status complete(struct user_kernel *user, const struct functions *f, int dim,
                             struct error *error)
 {
     struct kernel *kernel = &user->kernel;
     struct pieces pieces;
     double floor = 0;
-    if (probe_values(kernel, dim, error)) return error->status;
-    if (f->constant) kernel->constant[dim] = f->constant(dim);
-    if (pieces_find(&pieces, kernel, dim, error)) return error->status;
+    if (pieces_find(&pieces, kernel, dim, &user->terms, error)) return error->status;
     if (!f->constant) kernel->constant[dim] = measure_constant(&pieces, &floor);
     enum status status = take_class(user, f, &pieces, error);
     pieces_free(&pieces);
-    const double constant = kernel->constant[dim];
-    if (!status && !(isfinite(constant) && constant > 0))
-        status = error_set(error, STATUS_BAD_INPUT,
-                           "kernel %s: the constant in %d dimensions is %g%s; allowed: above 0",
-                           user->name, dim, constant, f->constant ? "" : " by quadrature");
-    return status;
+    return status ? status : check_constant(user, dim, error);
+}
+
+static void take_functions(struct user_kernel *user, const struct functions *f)
+{
+    user->kernel.w = shape_w;
+    user->kernel.dw = shape_dw;
+    user->kernel.plugin_w = f->w;
+    user->kernel.plugin_dw = f->dw;
+    user->kernel.plugin_dw_dh = f->dw_dh ? width_slope : NULL;
+    user->kernel.knot_count = f->knots ? 0 : -1;
+    user->found_constant = !f->constant;
+    user->found_dh = !f->dw_dh;
+    user->found_class = !f->class;
+    user->found_knots = !f->knots;
 }
 
 static enum status load(struct user_kernel *user, const char *path, int dim, struct error *error)
 {
     const int range[2] = {dim ? dim : 1, dim ? dim : KERNEL_DIM_MAX};
-    struct functions f;
+    struct functions *f = &functions;
     if (open_library(user, path, error)) return error->status;
-    if (find_functions(user->library, path, &f, error)) return error->status;
-    take_name(user, path, &f);
-    user->kernel.w = shape_w;
-    user->kernel.dw = shape_dw;
-    user->kernel.plugin_w = f.w;
-    user->kernel.plugin_dw = f.dw;
-    user->kernel.plugin_dw_dh = f.dw_dh;
-    user->found_constant = !f.constant;
-    user->found_dh = !f.dw_dh;
-    user->found_class = !f.class;
-    user->found_knots = !f.knots;
-    if (!f.knots)
-        user->kernel.knot_count = -1;
-    else if (take_all_knots(user, &f, range, error))
-        return error->status;
+    if (find_functions(user->library, path, f, error)) return error->status;
+    take_name(user, path, f);
+    take_functions(user, f);
+    if (f->knots && take_all_knots(user, f, range, error)) return error->status;
     for (int d = range[0]; d <= range[1]; d++)
-        if (complete(user, &f, d, error)) return error->status;
-    return STATUS_OK;
-}
-
-/* Waits for the child; kills it when its time is over. Returns what waitpid tells, -1: killed. */
-static int wait_for(pid_t child)
-{
-    const struct timespec pause = {0, 2000000};
-    int outcome = 0;
-    for (int i = 0; i < PROBE_SECONDS * 500; i++) {
-        const pid_t done = waitpid(child, &outcome, WNOHANG);
-        if (done == child) return outcome;
-        if (done < 0 && errno != EINTR) return -1;
-        nanosleep(&pause, NULL);
-    }
-    kill(child, SIGKILL);
-    waitpid(child, &outcome, 0);
-    return -1;
-}
-
-/* Foreign code may crash or never return: it does so in a child first. */
-static enum status probe(const char *path, int dim, struct error *error)
-{
-    fflush(NULL);
-    const pid_t child = fork();
-    if (child < 0) return STATUS_OK; /* no process to spare: go on without */
-    if (child == 0) {
-        struct user_kernel user = {0};
-        struct error ignored = {0};
-        const struct rlimit no_core = {0, 0};
-        setrlimit(RLIMIT_CORE, &no_core);
-        load(&user, path, dim, &ignored);
-        _exit(PROBE_PASSED);
-    }
-    const int outcome = wait_for(child);
-    if (outcome == -1)
-        return error_set(error, STATUS_BAD_INPUT,
-                         "kernel '%.200s' does not return from its functions within %d s", path,
-                         PROBE_SECONDS);
-    if (WIFEXITED(outcome) && WEXITSTATUS(outcome) != PROBE_PASSED)
-        return error_set(error, STATUS_BAD_INPUT, "kernel '%.200s' ends the process with exit(%d)",
-                         path, WEXITSTATUS(outcome));
-    if (WIFSIGNALED(outcome))
-        return error_set(error, STATUS_BAD_INPUT, "kernel '%.200s' crashes: %s", path,
-                         strsignal(WTERMSIG(outcome)));
+        if (ask(user, f, d, error)) return error->status;
+    guard_begun();
+    user->terms.constant_count = places_constants(path, &user->constants);
+    user->terms.constants = user->constants;
+    for (int d = range[0]; d <= range[1]; d++)
+        if (complete(user, f, d, error)) return error->status;
     return STATUS_OK;
 }
 
 enum status user_kernel_load(struct user_kernel *user, const char *path, int dim,
-                             struct error *error)
+                             const struct terms *terms, struct error *error)
 {
-    *user = (struct user_kernel){0};
-    if (probe(path, dim, error)) return error->status;
+    *user = (struct user_kernel){.terms = terms ? *terms : terms_usual};
     const enum status status = load(user, path, dim, error);
     if (status) user_kernel_unload(user);
     return status;
@@ -297,6 +310,17 @@ enum status user_kernel_load(struct user_kernel *user, const char *path, int dim
 void user_kernel_unload(struct user_kernel *user)
 {
     free(user->knots);
+    free(user->constants);
+    announce("dlclose", 0);
     if (user->library) dlclose(user->library);
+    guard_back();
     *user = (struct user_kernel){0};
+}
+
+struct terms user_kernel_terms(const struct user_kernel *user, int dim)
+{
+    struct terms terms = user->terms;
+    terms.negative = user->negative[dim];
+    terms.class_found = user->found_class;
+    return terms;
 }

@@ -121,7 +121,7 @@ class Worker:
     def verify(self, mutant):
         """The exit status of what must notice it: a group of checks, a script, a test in C."""
         if mutant.group:
-            command = [self.program, "verify", mutant.group, "--first", "--quiet", "--failures",
+            command = [self.program, "verify", *mutant.group.split(), "--first", "--quiet", "--failures",
                        os.path.join(self.build, "failures")]
         elif mutant.test.endswith(".py"):
             command = [sys.executable, os.path.join(self.tree, "verify/test", mutant.test), self.program]

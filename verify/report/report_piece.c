@@ -55,7 +55,7 @@ static enum status compute_kernel(const struct report_piece *piece, json_t **doc
     struct certificate *certificate = calloc(1, sizeof *certificate);
     if (!certificate) return error_set(error, STATUS_ENVIRONMENT, "no memory for a kernel");
     enum status status = kernel_select(&kernel, piece->where, 5, error);
-    if (!status) status = certificate_measure(certificate, &kernel, piece->dim, error);
+    if (!status) status = certificate_measure(certificate, &kernel, piece->dim, NULL, error);
     if (!status) {
         char reproduce[128];
         snprintf(reproduce, sizeof reproduce, "sphproof kernel %s --dim %d", piece->where,

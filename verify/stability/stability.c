@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Derivation. A wave is a complex amplitude a, the perturbation Re(a exp(i kappa j)); at offset k
- * the neighbour's is a e, e = exp(i kappa k). Each equation of CONVENTIONS sections 3 to 5 is
+ * the neighbour's is a e, e = exp(i kappa k). Each equation of PHYSICS.md, sections 3 to 5, is
  * varied term by term: density and width together (h rho = eta m), volume, pressure, the matrix of
  * ia, grad-h factors, then the pair force. */
 #include "stability.h"
@@ -88,7 +88,7 @@ enum status stability_begin(struct stability *lattice, const struct scheme *sche
                          scheme->eta);
     lattice->reach = (int)ceil(lattice->h) - 1;
     struct pieces pieces;
-    if (pieces_find(&pieces, &lattice->scheme.kernel, 1, error)) return error->status;
+    if (pieces_find(&pieces, &lattice->scheme.kernel, 1, NULL, error)) return error->status;
     for (int k = 0; k <= lattice->reach; k++) lattice->pair[k] = pair_at(&pieces, k, lattice->h);
     pieces_free(&pieces);
     lattice->rho = scheme->eta / lattice->h;

@@ -4,9 +4,7 @@
 #ifndef SPHPROOF_STRESS_LINEAR_H
 #define SPHPROOF_STRESS_LINEAR_H
 
-#include <jansson.h>
-
-#include "stress_cell.h"
+#include "stress.h"
 
 /* Computes a cell of kind STRESS_LIMIT, STRESS_STEP or STRESS_PAIRING: its stress_outcome. */
 enum status stress_linear(const struct stress_cell *cell, json_t **document, struct error *error);

@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-struct kernel;
+struct user_figures;
 struct check_run; /* collects the subjects and figures of one check; see suite.c */
 
 /* One figure. subject: where (kernel, dimension, h, point ...), printf-like; passes if value <=
@@ -31,8 +31,9 @@ bool check_decided(const struct check_run *run);
 void check_series(struct check_run *run, const char *label, size_t n, const double *x,
                   const double *y);
 
-/* The kernel of `verify --kernel-plugin`, or NULL: kernel checks add it to their subjects. */
-extern const struct kernel *check_kernel_plugin;
+/* Figures of the kernel of `verify --kernel-plugin`, or NULL: kernel checks add them to their own.
+ */
+extern const struct user_figures *check_kernel_plugin;
 
 struct check_mutant {
     const char *name;    /* distinct over the program */

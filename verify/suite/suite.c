@@ -10,7 +10,7 @@
 #include "clock.h"
 #include "list.h"
 
-const struct kernel *check_kernel_plugin;
+const struct user_figures *check_kernel_plugin;
 
 /* A right subject; copy: where it is the run's own. */
 struct subject {

@@ -131,6 +131,8 @@ COMMANDS = [
     ["riemann", "1", "0", "1", "0.125", "0", "0.1", "--sample", "-1:1:5", "--time", "0.1"],
     ["riemann", "1", "-5", "0.4", "1", "5", "0.4"],
     ["kernel", "cubic_spline", "--dim", "2", "--at", "0.5"],
+    ["kernel", "verify/examples/hostile_prints.so", "--dim", "2", "--at", "0.5"],
+    ["kernel", "verify/examples/hostile_abort_in_dh.so", "--dim", "2", "--at", "0.5"],
     ["stress", "few", "leblanc"],
     ["stress", "steps"],
 ]
@@ -143,6 +145,8 @@ def main():
     validator, bad = Validator(schema), 0
     with tempfile.TemporaryDirectory() as folder:
         for words in COMMANDS:
+            # plug-ins stand beside the program
+            words = [os.path.join(os.path.dirname(program), w) if w.endswith(".so") else w for w in words]
             done = subprocess.run([program, *words, "--json", "-"], capture_output=True, text=True,
                                   cwd=folder, timeout=60)
             try:

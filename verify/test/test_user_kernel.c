@@ -18,6 +18,7 @@
 
 #include "certificate.h"
 #include "near.h"
+#include "user_figures.h"
 #include "user_kernel.h"
 
 static const char *program, *folder;
@@ -36,8 +37,9 @@ static int rejected(const char *name, int dim, const char *by)
     struct certificate certificate;
     struct error error = {0};
     int by_that = 0;
-    if (user_kernel_load(&user, path_of(name), dim, &error)) fail_msg("%s", error.message);
-    assert_int_equal(certificate_measure(&certificate, &user.kernel, dim, NULL), STATUS_OK);
+    if (user_kernel_load(&user, path_of(name), dim, NULL, &error)) fail_msg("%s", error.message);
+    const struct terms terms = user_kernel_terms(&user, dim);
+    assert_int_equal(certificate_measure(&certificate, &user.kernel, dim, &terms, NULL), STATUS_OK);
     for (size_t i = 0; i < certificate.figure_count; i++) {
         const struct certificate_figure *figure = &certificate.figures[i];
         if (!figure->passed && !by)
@@ -55,7 +57,8 @@ static int rejected(const char *name, int dim, const char *by)
 static void test_right(void **state)
 {
     (void)state;
-    static const char *const names[] = {"wendland_c8", "gaussian", "table", "faulty_NONE"};
+    static const char *const names[] = {"wendland_c8", "gaussian", "super_gaussian",
+                                        "table",       "table_12", "faulty_NONE"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         for (int dim = 1; dim <= 3; dim++) assert_int_equal(rejected(names[i], dim, NULL), 0);
 }
@@ -64,14 +67,14 @@ static void test_derived(void **state)
 {
     (void)state;
     struct user_kernel user;
-    assert_int_equal(user_kernel_load(&user, path_of("wendland_c8"), 0, NULL), STATUS_OK);
+    assert_int_equal(user_kernel_load(&user, path_of("wendland_c8"), 0, NULL, NULL), STATUS_OK);
     assert_true(user.found_constant && user.found_knots && user.found_dh && !user.found_class);
     near_relative(user.kernel.constant[1], 525. / 256, 1e-14); /* exact integrals */
     near_relative(user.kernel.constant[2], 40 / (3 * M_PI), 1e-14);
     near_relative(user.kernel.constant[3], 1785 / (64 * M_PI), 1e-14);
     assert_string_equal(user.kernel.member.name, "wendland_c8");
     user_kernel_unload(&user);
-    assert_int_equal(user_kernel_load(&user, path_of("table"), 2, NULL), STATUS_OK);
+    assert_int_equal(user_kernel_load(&user, path_of("table"), 2, NULL, NULL), STATUS_OK);
     assert_true(user.found_class && user.kernel.smoothness[2] == 2);
     assert_string_equal(user.kernel.member.name, "table");
     user_kernel_unload(&user);
@@ -110,9 +113,9 @@ static void test_subtle(void **state)
 
 static void refused(const char *path, const char *why)
 {
-    struct user_kernel user;
+    struct user_figures figures;
     struct error error = {0};
-    assert_int_equal(user_kernel_load(&user, path, 0, &error), STATUS_BAD_INPUT);
+    assert_int_equal(user_figures_measure(&figures, path, &error), STATUS_BAD_INPUT);
     if (!strstr(error.message, why)) fail_msg("'%s' lacks '%s'", error.message, why);
 }
 

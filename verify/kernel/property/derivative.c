@@ -4,10 +4,17 @@
 #include <float.h>
 #include <math.h>
 
+#include "places.h"
 #include "property.h"
 
 /* The series' own error estimate is a typical, not a largest error. */
 static const double margin = 30;
+
+/* Slopes of noise are noisier: what is left for a bound in double, in single precision. */
+static double most(const struct pieces *pieces)
+{
+    return pieces->terms.single ? 1e-2 : 1e-6;
+}
 
 static void radial_piece(const struct pieces *pieces, double a, double b, double h,
                          struct property_worst *worst)
@@ -30,9 +37,10 @@ static void radial_piece(const struct pieces *pieces, double a, double b, double
         const double slope = series_slope(&fit, x, &floor) / (half * h);
         const double error = fabs(slope - slopes[j]);
         const double scale = fabs(unit) * pieces->max_dw;
-        floor = (floor / (half * h) + slope_fit.noise * slope_fit.reach) / scale + 4 * DBL_EPSILON;
-        property_keep(worst, error / scale, fmin(margin * floor, 1e-6), floor, "h %g, q %.6g", h,
-                      q);
+        floor =
+            (floor / (half * h) + slope_fit.noise * slope_fit.reach) / scale + 4 * pieces->epsilon;
+        property_keep(worst, error / scale, fmin(margin * floor, most(pieces)), floor,
+                      "h %g, q %.6g", h, q);
     }
 }
 
@@ -64,37 +72,55 @@ static void width_point(const struct pieces *pieces, double a, double b, double 
     pieces_fit(pieces, values, &fit);
     const double slope = series_slope(&fit, (h - middle) / half, &floor) / half;
     const double error = fabs(slope - kernel_dh(kernel, r, h, dim));
-    floor = floor / half / scale + 8 * DBL_EPSILON;
-    property_keep(worst, error / scale, fmin(margin * floor, 1e-6), floor, "h %g, q %.6g", h, q);
+    floor = floor / half / scale + 8 * pieces->epsilon;
+    property_keep(worst, error / scale, fmin(margin * floor, most(pieces)), floor, "h %g, q %.6g",
+                  h, q);
 }
 
-/* A supplied dW/dh against the one that follows from w and dw, densely. */
-static void compare_supplied(const struct pieces *pieces, double h, struct property_sink *sink)
+/* W, dW/dr and dW/dh at (r, h) against C_d h^-d w and what follows from it. */
+static void compare_at(const struct pieces *pieces, double q, double h,
+                       struct property_worst *worst)
 {
-    enum { POINTS = 1200 };
+    const struct kernel *kernel = pieces->kernel;
     const int dim = pieces->dim;
-    const double unit = fabs(pieces->kernel->constant[dim]) * pow(h, -dim - 1);
+    const double r = q * h, unit = fabs(kernel->constant[dim]) * pow(h, -dim - 1);
     const double scale = unit * (dim * pieces->max_w + pieces->max_dw);
-    struct kernel derived = *pieces->kernel;
-    struct property_worst worst = {0};
-    derived.plugin_dw_dh = NULL;
-    for (int i = 0; i < POINTS; i++) {
-        const double q = (double)i / POINTS, r = q * h;
-        const double error =
-            fabs(kernel_dh(pieces->kernel, r, h, dim) - kernel_dh(&derived, r, h, dim));
-        property_keep(&worst, error / scale, 1e-12, 1e-14,
-                      "h %g, q %.6g, against -C_d h^-(d+1) (d w + q dw)", h, q);
-    }
-    property_take_worst(sink, &worst);
+    q = r / h;
+    const double w = kernel->w(kernel, q, dim), dw = kernel->dw(kernel, q, dim);
+    const double dh = -unit * (dim * w + q * dw),
+                 errors[] = {fabs(kernel_value(kernel, r, h, dim) - unit * h * w) / h,
+                             fabs(kernel_dr(kernel, r, h, dim) - unit * dw),
+                             fabs(kernel_dh(kernel, r, h, dim) - dh)};
+    static const char *const names[] = {"W", "dW/dr", "dW/dh"};
+    for (int i = 0; i < 3; i++)
+        property_keep(worst, errors[i] / scale, 1e-12, 1e-14,
+                      "h %.6g, q %.17g, %s against C_d h^-d w and its derivatives", h, q, names[i]);
+}
+
+/* At h over many decades and random q, and at h = 1 where a formula is likely to change. */
+static void compare_formula(const struct pieces *pieces, struct property_sink *sink)
+{
+    const struct terms *terms = &pieces->terms;
+    const double decades = terms->single ? 6 : 30;
+    struct property_worst random = {0}, likely = {0};
+    struct places places;
+    for (uint64_t i = 0; i < (uint64_t)terms->samples / 4; i++)
+        compare_at(pieces, places_random(terms->seed, 2 * i),
+                   pow(10, decades * (2 * places_random(terms->seed, 2 * i + 1) - 1)), &random);
+    property_take_worst(sink, &random);
+    places_make(&places, pieces);
+    for (int i = 0; i < places.n; i++) compare_at(pieces, places.q[i], 1, &likely);
+    places_free(&places);
+    property_take_worst(sink, &likely);
 }
 
 void property_width_derivative(const struct pieces *pieces, struct property_sink *sink)
 {
     enum { POINTS = 7 };
+    compare_formula(pieces, sink);
     for (int i = 0; i < PROPERTY_WIDTHS; i++) {
         const double h = property_width[i];
         struct property_worst worst = {0};
-        if (pieces->kernel->plugin_dw_dh) compare_supplied(pieces, h, sink);
         for (int p = 0; p < pieces->n; p++) {
             const double a = pieces->edge[p], b = pieces->edge[p + 1];
             if (p == 0) width_point(pieces, a, b, 0, h, &worst);

@@ -46,8 +46,11 @@ void property_round_off(const struct pieces *pieces, struct property_sink *sink)
     /* where break points had to be found, their error looks like noise */
     const double floor = pieces->n > 1 && pieces->kernel->knot_count < 0 ? 500 : 0.5;
     const double bound = floor > 1 ? 100 * floor : 400;
-    property_take(sink, pieces->noise_w / (DBL_EPSILON * pieces->max_w), bound, floor,
-                  "noise of w, ULP of max |w|");
-    property_take(sink, pieces->noise_dw / (DBL_EPSILON * pieces->max_dw), bound, floor,
+    property_take(sink, pieces->noise_w / (pieces->epsilon * pieces->max_w), bound, floor,
+                  "noise of w, ULP of max |w|%s",
+                  !pieces->terms.single && pieces_look_single(pieces)
+                      ? ": single precision? judge it with --precision single"
+                      : "");
+    property_take(sink, pieces->noise_dw / (pieces->epsilon * pieces->max_dw), bound, floor,
                   "noise of dw, ULP of max |dw|");
 }

@@ -56,18 +56,26 @@ void property_sign(const struct pieces *pieces, struct property_sink *sink)
     enum { SAMPLES = 64 };
     const struct kernel *kernel = pieces->kernel;
     struct property_worst value = {0}, slope = {0};
+    double least = 0, steepest = 0;
     for (int p = 0; p < pieces->n; p++)
         for (int i = 0; i < SAMPLES; i++) {
             const double a = pieces->edge[p], b = pieces->edge[p + 1];
             const double q = a + (b - a) * i / SAMPLES;
             const double w = kernel->w(kernel, q, pieces->dim) / pieces->max_w;
             const double dw = kernel->dw(kernel, q, pieces->dim) / pieces->max_dw;
-            const double floor = 2 * DBL_EPSILON;
+            const double floor = 2 * pieces->epsilon;
+            least = fmin(least, w);
+            steepest = fmax(steepest, dw);
             property_keep(&value, isnan(w) ? w : fmax(0, -w), 8 * floor + ripple(pieces, 2, 4),
                           floor, "W/W(0) < 0 at q = %.6g", q);
             property_keep(&slope, isnan(dw) ? dw : fmax(0, dw), 8 * floor + ripple(pieces, 10, 3),
                           floor, "dW/dr > 0 at q = %.6g", q);
         }
+    if (pieces->terms.negative) {
+        property_skip(sink, "declared negative: least w/max|w| = %.3g, largest dw/max|dw| = %.3g",
+                      least, steepest);
+        return;
+    }
     property_take_worst(sink, &value);
     property_take_worst(sink, &slope);
 }
@@ -127,7 +135,8 @@ void property_continuity(const struct pieces *pieces, struct property_sink *sink
     const int declared = pieces->kernel->smoothness[pieces->dim];
     struct measure_class class;
     measure_class(pieces, &class);
-    for (int k = 0; k <= declared && k <= MEASURE_CLASS_MAX; k++) {
+    const int limit = measure_class_limit(pieces);
+    for (int k = 0; k <= declared && k <= limit; k++) {
         const struct measure_jump *jump = &class.jump[k];
         const char *place = jump->at == 0 ? "the origin" : jump->at == 1 ? "the edge" : "a knot";
         property_take(sink, jump->jump, measure_significant * jump->floor, jump->floor,
@@ -135,9 +144,13 @@ void property_continuity(const struct pieces *pieces, struct property_sink *sink
                       k == 0 && jump->at == 1 ? ": w must vanish there" : "");
     }
     look_for_holes(pieces, sink);
-    property_take(sink, fmax(0, fmin(declared, MEASURE_CLASS_MAX) - class.class), 0, 0,
-                  "declared C%d, measured C%d%s", declared, class.class,
-                  class.class == MEASURE_CLASS_MAX ? " or higher" : "");
+    property_take(sink, fmax(0, fmin(declared, limit) - class.class), 0, 0,
+                  "%s C%d, measured C%d%s", pieces->terms.class_found ? "found" : "declared",
+                  declared, class.class, class.class == limit ? " or higher" : "");
+    if (class.accident.count)
+        property_take(sink, class.accident.count, 0, 0,
+                      "w^(%d) jumps by %.2g of its size at q = %.9g: too little to be meant",
+                      class.accident.k, class.accident.jump, class.accident.at);
     if (pieces->kernel->knot_count >= 0)
         property_take(sink, class.extra, 0, 0, "knots not declared%s",
                       class.extra ? "" : ": none found");

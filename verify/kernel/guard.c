@@ -1,0 +1,347 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "guard.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/time.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+#ifdef __linux__
+#include <sys/prctl.h>
+#endif
+
+#include "output.h"
+#include "result.h"
+
+/* Shared by the two processes. Names of functions are literals, at the same address in both. */
+struct trace {
+    const char *volatile function;
+    volatile double a, b;
+    volatile int dim;
+    volatile long calls;
+    volatile int inside, begun, stuck, complete;
+};
+
+static struct trace nowhere, *trace = &nowhere;
+
+void guard_call(const char *function, double a, double b, int dim)
+{
+    trace->function = function;
+    trace->a = a;
+    trace->b = b;
+    trace->dim = dim;
+    trace->calls++;
+    trace->inside = 1;
+}
+
+void guard_back(void)
+{
+    trace->inside = 0;
+}
+
+void guard_begun(void)
+{
+    trace->begun = 1;
+}
+
+/* ---- in the other process ---- */
+
+enum { TICKS = 4, MEMORY = 1 << 29 };
+
+/* Several times a second of the processor's time: has a call gone on for too long? */
+static void tick(int number)
+{
+    static long calls;
+    static int ticks;
+    (void)number;
+    ticks = trace->inside && trace->calls == calls ? ticks + 1 : 0;
+    calls = trace->calls;
+    if (ticks <= TICKS * GUARD_CALL_LIMIT) return;
+    trace->stuck = 1;
+    raise(SIGKILL);
+}
+
+/* What it has now and half a GiB more (sanitizers have reserved a lot by now); nothing where that
+ * cannot be read. */
+static void limit_memory(void)
+{
+    unsigned long pages = 0;
+    FILE *file = fopen("/proc/self/statm", "r");
+    const int known = file && fscanf(file, "%lu", &pages) == 1;
+    if (file) fclose(file);
+    if (!known) return;
+    struct rlimit memory;
+    if (getrlimit(RLIMIT_AS, &memory)) return;
+    const rlim_t most = (rlim_t)pages * (rlim_t)sysconf(_SC_PAGESIZE) + MEMORY;
+    if (memory.rlim_cur == RLIM_INFINITY || memory.rlim_cur > most) memory.rlim_cur = most;
+    setrlimit(RLIMIT_AS, &memory);
+}
+
+static void prepare(pid_t parent, int printed)
+{
+    const int usual[] = {SIGABRT, SIGBUS,  SIGFPE,  SIGILL, SIGSEGV,
+                         SIGINT,  SIGTERM, SIGQUIT, SIGHUP, SIGPIPE};
+    const struct rlimit no_core = {0, 0};
+    const struct itimerval period = {{0, 1000000 / TICKS}, {0, 1000000 / TICKS}};
+    setpgid(0, 0);
+#ifdef __linux__
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+#endif
+    if (getppid() != parent) _exit(0); /* it has gone already */
+    for (size_t i = 0; i < sizeof usual / sizeof *usual; i++) signal(usual[i], SIG_DFL);
+    setrlimit(RLIMIT_CORE, &no_core);
+    limit_memory();
+    const int nothing = open("/dev/null", O_RDONLY);
+    dup2(nothing, STDIN_FILENO);
+    dup2(printed, STDOUT_FILENO);
+    dup2(printed, STDERR_FILENO);
+    signal(SIGPROF, tick);
+    setitimer(ITIMER_PROF, &period, NULL);
+}
+
+static _Noreturn void child(guard_work *work, const void *context, pid_t parent, int answer,
+                            int printed)
+{
+    json_t *reply = NULL;
+    struct error error = {0};
+    prepare(parent, printed);
+    const enum status status = work(context, &reply, &error);
+    fflush(NULL);
+    json_t *document = json_pack("{s:i, s:s, s:o}", "status", (int)status, "message",
+                                 status ? error.message : "", "reply", reply ? reply : json_null());
+    char *text = document ? result_text(document) : NULL;
+    const size_t length = text ? strlen(text) : 0;
+    trace->complete = 1;
+    for (size_t sent = 0; sent < length;) {
+        const ssize_t n = write(answer, text + sent, length - sent);
+        if (n < 0 && errno != EINTR) break;
+        if (n > 0) sent += (size_t)n;
+    }
+    _exit(0);
+}
+
+/* ---- in this one ---- */
+
+/* What has come through a pipe; beyond most bytes only their number is kept. */
+struct stream {
+    int file;
+    char *text;
+    size_t length, room, most, seen;
+};
+
+static void take(struct stream *stream, const char *bytes, size_t n)
+{
+    stream->seen += n;
+    if (n > stream->most - stream->length) n = stream->most - stream->length;
+    if (stream->length + n > stream->room) {
+        const size_t room = 2 * stream->room + n;
+        char *text = realloc(stream->text, room);
+        if (!text) return;
+        stream->text = text;
+        stream->room = room;
+    }
+    if (n) memcpy(stream->text + stream->length, bytes, n);
+    stream->length += n;
+}
+
+/* Reads what there is; false when there was nothing. */
+static bool drain(struct stream *stream)
+{
+    static char bytes[1 << 16];
+    const ssize_t n = read(stream->file, bytes, sizeof bytes);
+    if (n > 0) take(stream, bytes, (size_t)n);
+    return n > 0;
+}
+
+static double now(void)
+{
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+enum ending { ENDED, TOO_LATE, TOO_MUCH };
+enum { PRINTED_MAX = 1 << 26 };
+
+/* Listens until the process has ended, or ends it; the pipes may be held open by others. */
+static enum ending listen_to(pid_t pid, double limit, struct stream *streams, int *outcome)
+{
+    enum { WAIT_MS = 20 };
+    const double until = now() + limit;
+    enum ending ending = ENDED;
+    for (bool over = false; !over;) {
+        struct pollfd polls[2];
+        for (int i = 0; i < 2; i++)
+            polls[i] = (struct pollfd){.fd = streams[i].file, .events = POLLIN};
+        if (poll(polls, 2, WAIT_MS) > 0 && (polls[0].revents | polls[1].revents) & POLLHUP) {
+            const struct timespec pause = {0, 2000000}; /* no more waiting on such a pipe */
+            nanosleep(&pause, NULL);
+        }
+        const pid_t done = waitpid(pid, outcome, WNOHANG | WUNTRACED);
+        for (int i = 0; i < 2; i++) {
+            const size_t before = streams[i].seen;
+            while (drain(&streams[i]) && streams[i].seen - before < (size_t)1 << 22) continue;
+        }
+        over = done == pid && !WIFSTOPPED(*outcome);
+        const bool much = streams[1].seen > PRINTED_MAX, late = now() >= until;
+        if (over || (done != pid && !much && !late)) continue;
+        ending = done == pid ? ENDED : much ? TOO_MUCH : TOO_LATE; /* ENDED: stopped */
+        kill(-pid, SIGKILL);
+        kill(pid, SIGKILL);
+        int ignored;
+        while (waitpid(pid, &ignored, 0) < 0 && errno == EINTR) continue;
+        over = true;
+    }
+    kill(-pid, SIGKILL); /* what it has started itself */
+    return ending;
+}
+
+static void place(const struct trace *seen, char *text, size_t size)
+{
+    char arguments[80] = "";
+    if (!seen->function) {
+        snprintf(text, size, "%s", "");
+        return;
+    }
+    if (isfinite(seen->b))
+        snprintf(arguments, sizeof arguments, "(%.9g, %.9g, %d)", seen->a, seen->b, seen->dim);
+    else if (isfinite(seen->a))
+        snprintf(arguments, sizeof arguments, "(%.9g, %d)", seen->a, seen->dim);
+    else if (seen->dim)
+        snprintf(arguments, sizeof arguments, "(%d)", seen->dim);
+    snprintf(text, size, " %s %s%s, call %ld", seen->inside ? "in" : "after", seen->function,
+             arguments, seen->calls);
+}
+
+static void explain(struct guard_verdict *verdict, const struct trace *seen, enum ending ending,
+                    double limit, int outcome)
+{
+    char where[200];
+    place(seen, where, sizeof where);
+    char *text = verdict->reason;
+    const size_t size = sizeof verdict->reason;
+    if (seen->stuck)
+        snprintf(text, size, "does not return within %d s%s", GUARD_CALL_LIMIT, where);
+    else if (ending == TOO_LATE)
+        snprintf(text, size, "did not end within %g s: stands%s", limit, where);
+    else if (ending == TOO_MUCH)
+        snprintf(text, size, "prints without end, more than %d MB%s", PRINTED_MAX >> 20, where);
+    else if (WIFSTOPPED(outcome))
+        snprintf(text, size, "has stopped itself%s", where);
+    else if (WIFSIGNALED(outcome))
+        snprintf(text, size, "crashes (%s)%s", strsignal(WTERMSIG(outcome)), where);
+    else if (seen->complete)
+        snprintf(text, size, "closes or writes to files that are not its own: no result");
+    else
+        snprintf(text, size, "ends the process with exit(%d)%s", WEXITSTATUS(outcome), where);
+    status_clean(text);
+}
+
+/* The reply, if it is one; sets the status of the work. */
+static bool take_answer(struct guard_verdict *verdict, const struct stream *answer,
+                        enum status *status, struct error *error)
+{
+    int number = -1;
+    const char *message = "";
+    json_t *reply = NULL;
+    json_t *document = answer->text ? json_loadb(answer->text, answer->length, 0, NULL) : NULL;
+    if (document && !json_unpack(document, "{s:i, s:s, s:o}", "status", &number, "message",
+                                 &message, "reply", &reply)) {
+        *status = (enum status)number;
+        if (*status) error_set(error, *status, "%s", message);
+        verdict->reply = json_is_null(reply) ? NULL : json_incref(reply);
+        verdict->ended = true;
+    }
+    json_decref(document);
+    return verdict->ended;
+}
+
+static void take_printed(struct guard_verdict *verdict, const struct stream *printed)
+{
+    const size_t most = sizeof verdict->printed - 1;
+    const size_t n = printed->length < most ? printed->length : most;
+    if (n) memcpy(verdict->printed, printed->text, n);
+    for (size_t i = 0; i < n; i++)
+        if (!verdict->printed[i]) verdict->printed[i] = '?';
+    verdict->printed[n] = '\0';
+    status_clean(verdict->printed);
+    verdict->printed_bytes = printed->seen;
+}
+
+static enum status watch(pid_t pid, double limit, struct stream *streams,
+                         struct guard_verdict *verdict, struct error *error)
+{
+    enum status status = STATUS_OK;
+    int outcome = 0;
+    output_guard(pid);
+    const enum ending ending = listen_to(pid, limit, streams, &outcome);
+    output_guard(0);
+    const bool sound =
+        ending == ENDED && WIFEXITED(outcome) && WEXITSTATUS(outcome) == 0 && trace->complete;
+    verdict->begun = trace->begun;
+    take_printed(verdict, &streams[1]);
+    if (sound && take_answer(verdict, &streams[0], &status, error)) return status;
+    explain(verdict, trace, ending, limit, outcome);
+    return verdict->begun ? STATUS_CHECK_FAILED : STATUS_BAD_INPUT;
+}
+
+static enum status start(guard_work *work, const void *context, double limit,
+                         struct guard_verdict *verdict, struct error *error)
+{
+    int answer[2], printed[2];
+    if (pipe(answer)) return error_set(error, STATUS_ENVIRONMENT, "no pipe: %s", strerror(errno));
+    if (pipe(printed)) {
+        close(answer[0]), close(answer[1]);
+        return error_set(error, STATUS_ENVIRONMENT, "no pipe: %s", strerror(errno));
+    }
+    fflush(NULL);
+    const pid_t parent = getpid(), pid = fork();
+    if (pid == 0) child(work, context, parent, answer[1], printed[1]);
+    const int reason = errno;
+    struct stream streams[2] = {{.file = answer[0], .most = (size_t)1 << 26},
+                                {.file = printed[0], .most = sizeof verdict->printed}};
+    close(answer[1]), close(printed[1]);
+    for (int i = 0; i < 2; i++)
+        fcntl(streams[i].file, F_SETFL, fcntl(streams[i].file, F_GETFL) | O_NONBLOCK);
+    enum status status;
+    if (pid < 0) {
+        status = error_set(error, STATUS_ENVIRONMENT, "no process: %s", strerror(reason));
+    } else {
+        setpgid(pid, pid);
+        status = watch(pid, limit, streams, verdict, error);
+    }
+    for (int i = 0; i < 2; i++) close(streams[i].file), free(streams[i].text);
+    return status;
+}
+
+enum status guard_run(guard_work *work, const void *context, double limit,
+                      struct guard_verdict *verdict, struct error *error)
+{
+    *verdict = (struct guard_verdict){0};
+    void *shared =
+        mmap(NULL, sizeof *trace, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (shared == MAP_FAILED)
+        return error_set(error, STATUS_ENVIRONMENT, "no memory: %s", strerror(errno));
+    trace = shared;
+    *trace = (struct trace){.a = (double)NAN, .b = (double)NAN};
+    const enum status status = start(work, context, limit, verdict, error);
+    trace = &nowhere;
+    munmap(shared, sizeof *trace);
+    return status;
+}
+
+void guard_free(struct guard_verdict *verdict)
+{
+    json_decref(verdict->reply);
+    verdict->reply = NULL;
+}

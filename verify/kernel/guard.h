@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Work on foreign code in a process of its own, which may crash, never return, end itself, print,
+ * or eat all memory: whatever happens there is told, and nothing of it is left behind. It is no
+ * prison: code that means harm can do what its user can do. */
+#ifndef SPHPROOF_GUARD_H
+#define SPHPROOF_GUARD_H
+
+#include <jansson.h>
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "status.h"
+
+/* What the foreign code is at, in memory that both processes see; call notes what is called before,
+ * guard_back after. In the parent, or where nobody guards, it goes nowhere. */
+void guard_call(const char *function, double a, double b, int dim);
+void guard_back(void);
+/* From here on foreign code that fails is a kernel that fails; before, it is no kernel at all. */
+void guard_begun(void);
+
+/* The work; reply: what it has to say, a new reference. Runs in the other process. */
+typedef enum status guard_work(const void *context, json_t **reply, struct error *error);
+
+struct guard_verdict {
+    bool ended;        /* the work came to its end; else see reason */
+    json_t *reply;     /* of the work; NULL: none. Release with guard_free */
+    bool begun;        /* guard_begun was called */
+    char reason[400];  /* "crashes (Aborted) in sphproof_kernel_w(0.5, 1), call 7": no subject */
+    char printed[200]; /* what was printed, its beginning, cleaned */
+    size_t printed_bytes;
+};
+
+enum { GUARD_LIMIT = 300, GUARD_CALL_LIMIT = 1 }; /* seconds: in all; of the processor in a call */
+
+/* Runs work, for at most limit seconds. Returns the status of the work if that came to its end,
+ * with its message in error; STATUS_CHECK_FAILED or, if it had not begun, STATUS_BAD_INPUT if it
+ * did not (verdict->reason, error not set); STATUS_ENVIRONMENT: no process, no memory. */
+enum status guard_run(guard_work *work, const void *context, double limit,
+                      struct guard_verdict *verdict, struct error *error);
+void guard_free(struct guard_verdict *verdict);
+
+#endif

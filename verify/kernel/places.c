@@ -1,0 +1,118 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "places.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { DECIMALS = 1000, DENOMINATORS = 64, DIGITS_FROM = 6, DIGITS_TO = 16, FILE_MAX = 1 << 24 };
+
+double places_random(uint64_t seed, uint64_t i)
+{
+    uint64_t z = seed + (i + 1) * 0x9e3779b97f4a7c15u;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    z ^= z >> 31;
+    return (double)(z >> 11) * 0x1p-53;
+}
+
+static int ascending(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* Sorts, and drops what is there twice. */
+static int distinct(double *q, int n)
+{
+    int kept = 0;
+    qsort(q, (size_t)n, sizeof *q, ascending);
+    for (int i = 0; i < n; i++)
+        if (kept == 0 || q[i] > q[kept - 1]) q[kept++] = q[i];
+    return kept;
+}
+
+static int make_centres(const struct pieces *pieces, double *centre)
+{
+    const struct terms *terms = &pieces->terms;
+    int n = 0;
+    for (int i = 0; i <= pieces->n; i++) centre[n++] = pieces->edge[i];
+    for (int i = 0; i < DECIMALS; i++) centre[n++] = (double)i / DECIMALS;
+    for (int b = 2; b <= DENOMINATORS; b++)
+        for (int a = 1; a < b; a++) centre[n++] = (double)a / b;
+    for (int i = 0; i < terms->constant_count; i++) {
+        centre[n++] = terms->constants[i];
+        centre[n++] = 1 - terms->constants[i];
+        centre[n++] = sqrt(terms->constants[i]);
+    }
+    return distinct(centre, n);
+}
+
+void places_make(struct places *places, const struct pieces *pieces)
+{
+    const size_t room = (size_t)pieces->n + 1 + DECIMALS + DENOMINATORS * DENOMINATORS +
+                        3 * (size_t)pieces->terms.constant_count;
+    const size_t each = 1 + 2 * (DIGITS_TO - DIGITS_FROM + 1);
+    double *centre = malloc(room * sizeof *centre);
+    *places = (struct places){.q = malloc(room * each * sizeof *places->q)};
+    if (centre && places->q) {
+        places->centres = make_centres(pieces, centre);
+        for (int i = 0; i < places->centres; i++) {
+            double *q = places->q + places->n;
+            int n = 0;
+            q[n++] = centre[i];
+            for (int digit = DIGITS_FROM; digit <= DIGITS_TO; digit++) {
+                q[n++] = centre[i] + pow(10, -digit);
+                q[n++] = fabs(centre[i] - pow(10, -digit));
+            }
+            places->n += n;
+        }
+        places->n = distinct(places->q, places->n);
+        while (places->n && places->q[places->n - 1] >= 1) places->n--;
+    }
+    free(centre);
+}
+
+void places_free(struct places *places)
+{
+    free(places->q);
+    *places = (struct places){0};
+}
+
+static int keep(double value, double *list, int n)
+{
+    if (!(value > 1e-9 && value < 1) || n == PLACES_CONSTANTS_MAX) return n;
+    list[n] = value;
+    return n + 1;
+}
+
+/* Where compilers put them, in the constants' section (aligned), first; then any place, as in the
+ * midst of an instruction. */
+static int scan(const unsigned char *bytes, size_t size, double *list)
+{
+    int n = 0;
+    for (int aligned = 1; aligned >= 0; aligned--)
+        for (size_t i = 0; i + sizeof(double) <= size; i++) {
+            double value;
+            float single;
+            if ((i % 8 == 0) != aligned) continue;
+            memcpy(&value, bytes + i, sizeof value);
+            memcpy(&single, bytes + i, sizeof single);
+            n = keep(value, list, n);
+            if (i % 4 == 0) n = keep((double)single, list, n);
+        }
+    return distinct(list, n);
+}
+
+int places_constants(const char *path, double **constants)
+{
+    unsigned char *bytes = malloc(FILE_MAX);
+    FILE *file = fopen(path, "rb");
+    int n = 0;
+    *constants = malloc(PLACES_CONSTANTS_MAX * sizeof **constants);
+    if (bytes && file && *constants) n = scan(bytes, fread(bytes, 1, FILE_MAX, file), *constants);
+    if (file) fclose(file);
+    free(bytes);
+    return n;
+}

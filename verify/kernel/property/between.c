@@ -1,0 +1,155 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * w and dw between the places that everything else rests on: against the Chebyshev series through
+ * the nodes of their piece, at one random place in each of many equal intervals, again and again
+ * around the worst of them, and at the places where a formula is likely to change. And whether the
+ * same arguments give the same value after all those calls. */
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "places.h"
+#include "property.h"
+
+/* The series' own error estimate is a typical, not a largest error. */
+static const double margin = 40;
+
+/* Goes through places in ascending order; the series belong to the piece that it is on. */
+struct walk {
+    const struct pieces *pieces;
+    int piece; /* -1: none yet */
+    struct series_fit w, dw;
+    struct property_worst *value, *slope;
+};
+
+static void go_to(struct walk *walk, double q)
+{
+    const struct pieces *pieces = walk->pieces;
+    int p = walk->piece < 0 || q < pieces->edge[walk->piece] ? 0 : walk->piece;
+    while (p + 1 < pieces->n && q >= pieces->edge[p + 1]) p++;
+    if (p == walk->piece) return;
+    walk->piece = p;
+    pieces_series(pieces, p, &walk->w, &walk->dw);
+}
+
+/* Compares at q; how near to the bound the worse of w and dw is. */
+static double look(struct walk *walk, double q)
+{
+    const struct pieces *pieces = walk->pieces;
+    const struct kernel *kernel = pieces->kernel;
+    go_to(walk, q);
+    const double a = pieces->edge[walk->piece], b = pieces->edge[walk->piece + 1];
+    const double x = fmin(1, 2 * (q - a) / (b - a) - 1), cap = pieces->terms.single ? 1e-4 : 1e-7;
+    const struct {
+        const char *name;
+        double got, scale;
+        const struct series_fit *fit;
+        struct property_worst *worst;
+    } list[] = {
+        {"w", kernel->w(kernel, q, pieces->dim), pieces->max_w, &walk->w, walk->value},
+        {"dw", kernel->dw(kernel, q, pieces->dim), pieces->max_dw, &walk->dw, walk->slope},
+    };
+    double ratio = 0;
+    for (int i = 0; i < 2; i++) {
+        const struct series_fit *fit = list[i].fit;
+        const double error = fabs(list[i].got - series_value(fit, x)) / list[i].scale;
+        const double floor = fit->noise * fit->reach / list[i].scale + pieces->epsilon;
+        const double bound = fmin(margin * floor, cap);
+        ratio = fmax(ratio, isnan(error) ? (double)INFINITY : error / bound);
+        property_keep(list[i].worst, error, bound, floor, "%s at q = %.17g", list[i].name, q);
+    }
+    return ratio;
+}
+
+enum { WORST = 16 };
+
+/* The places nearest to failing so far, one in an interval. */
+struct nearest {
+    double q[WORST], ratio[WORST];
+};
+
+static void remember(struct nearest *nearest, double q, double ratio)
+{
+    int least = 0;
+    for (int i = 1; i < WORST; i++)
+        if (nearest->ratio[i] < nearest->ratio[least]) least = i;
+    if (!(ratio > nearest->ratio[least])) return;
+    nearest->q[least] = q;
+    nearest->ratio[least] = ratio;
+}
+
+/* Closer and closer around q: a narrow fault has flanks. */
+static void close_in(struct walk *walk, double q, double width, uint64_t seed)
+{
+    enum { LEVELS = 8, TRIES = 64 };
+    uint64_t count = 0;
+    double best = 0;
+    for (int level = 0; level < LEVELS; level++, width /= 8) {
+        const double centre = q;
+        for (int i = 0; i < TRIES; i++) {
+            const double at = centre + width * (2 * places_random(seed, count++) - 1);
+            if (!(at >= 0 && at < 1)) continue;
+            const double ratio = look(walk, at);
+            if (ratio > best) best = ratio, q = at;
+        }
+    }
+}
+
+static void look_at_random(struct walk *walk)
+{
+    const struct terms *terms = &walk->pieces->terms;
+    struct nearest nearest = {0};
+    const double width = 1. / (double)terms->samples;
+    for (long i = 0; i < terms->samples; i++) {
+        const double q = ((double)i + places_random(terms->seed, (uint64_t)i)) * width;
+        if (q < 1) remember(&nearest, q, look(walk, q));
+    }
+    for (int i = 0; i < WORST; i++)
+        close_in(walk, nearest.q[i], 2 * width, terms->seed + 1 + (uint64_t)i);
+}
+
+static void look_at_places(struct walk *walk)
+{
+    struct places places;
+    places_make(&places, walk->pieces);
+    for (int i = 0; i < places.n; i++) look(walk, places.q[i]);
+    if (!places.n)
+        property_keep(walk->value, (double)NAN, 0, 0, "no memory for the places to look at");
+    places_free(&places);
+}
+
+void property_between(const struct pieces *pieces, struct property_sink *sink)
+{
+    void (*const ways[])(struct walk *) = {look_at_random, look_at_places};
+    for (int i = 0; i < 2; i++) {
+        struct property_worst value = {0}, slope = {0};
+        struct walk walk = {.pieces = pieces, .piece = -1, .value = &value, .slope = &slope};
+        ways[i](&walk);
+        property_take_worst(sink, &value);
+        property_take_worst(sink, &slope);
+    }
+}
+
+static double differs(double now, double then, double scale)
+{
+    return memcmp(&now, &then, sizeof now) ? fmax(fabs(now - then) / scale, DBL_TRUE_MIN) : 0;
+}
+
+void property_runs(const struct pieces *pieces, struct property_sink *sink)
+{
+    const struct kernel *kernel = pieces->kernel;
+    const int dim = pieces->dim;
+    const long rounds = 1 + pieces->terms.samples / (4 * PIECES_FIRST);
+    struct property_worst worst = {0};
+    for (long round = 0; round < rounds; round++)
+        for (int i = 0; i < PIECES_FIRST; i++) {
+            const struct pieces_first *then = &pieces->first[i];
+            const double q = then->q;
+            property_keep(&worst, differs(kernel->w(kernel, q, dim), then->w, pieces->max_w), 0, 0,
+                          "w(%.6g) against its first value", q);
+            property_keep(&worst, differs(kernel->dw(kernel, q, dim), then->dw, pieces->max_dw), 0,
+                          0, "dw(%.6g) against its first value", q);
+            property_keep(&worst, differs(kernel_dh(kernel, q, 1, dim), then->dh, pieces->max_w), 0,
+                          0, "dW/dh(%.6g) at h = 1 against its first value", q);
+        }
+    property_take_worst(sink, &worst);
+}

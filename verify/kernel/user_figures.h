@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * All properties of a user's kernel in 1, 2 and 3 dimensions, measured in a process of its own: the
+ * checks take the figures from here and never call foreign code. */
+#ifndef SPHPROOF_USER_FIGURES_H
+#define SPHPROOF_USER_FIGURES_H
+
+#include <stdbool.h>
+
+#include "status.h"
+
+struct user_figure {
+    const char *property; /* its name; not owned */
+    int dim;              /* 0: of the kernel as such */
+    double value, bound, floor;
+    bool skipped;
+    char where[400]; /* of a skipped figure: why */
+};
+
+struct user_figures {
+    char name[64];
+    int n;
+    struct user_figure *list;
+};
+
+/* A kernel that crashes, never returns ... has one failing figure of property `runs`.
+ * STATUS_BAD_INPUT: it cannot be used at all. Release with user_figures_free. */
+enum status user_figures_measure(struct user_figures *figures, const char *path,
+                                 struct error *error);
+void user_figures_free(struct user_figures *figures);
+
+#endif

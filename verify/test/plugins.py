@@ -1,0 +1,151 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Plug-in kernels that are wrong where nobody looks, and foreign code at its worst: the table
+examples/hostile.txt says what the program must say to each.
+
+  plugins.py PROGRAM FOLDER TABLE [OPTION ...]   FOLDER: of the plug-ins; OPTIONs for `sphproof kernel`
+
+Standard output is one document, or nothing where the kernel is refused; no process is left."""
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
+
+PROGRAM, FOLDER, TABLE, MORE = sys.argv[1], sys.argv[2], sys.argv[3], sys.argv[4:]
+PATIENCE = 600 if MORE else 100  # seconds
+VERIFIED = ["none", "sign_narrow", "abort_in_dh", "exit_42", "loop_first"]
+RIGHT = ["wendland_c8", "gaussian", "super_gaussian", "table", "table_12", "table_4000"]
+
+
+def read_table():
+    with open(TABLE) as f:
+        lines = [line.strip("\n") for line in f if line.strip() and not line.startswith("#")]
+    return [[cell.strip() for cell in line.split("|", 4)] for line in lines]
+
+
+def module(name):
+    return os.path.join(FOLDER, "hostile_%s.so" % name)
+
+
+def call(*arguments):
+    result = subprocess.run([PROGRAM, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                            text=True, timeout=PATIENCE, stdin=subprocess.DEVNULL)
+    return result.returncode, result.stdout, result.stderr
+
+
+def said(document):
+    """What a document says: names of failing checks, and all words about precision, places, prints."""
+    checks = document["checks"]
+    names = [c["name"] for c in checks if c["status"] == "fail"]
+    words = [c.get("subject") or "" for c in checks] + [json.dumps(document.get(k))
+                                                       for k in ("precision", "printed")]
+    return names, " ".join(words)
+
+
+def judge(line):
+    name, _, options, status, words = line
+    try:
+        code, out, err = call("kernel", module(name), "--dim", "1", "--json", "-", *MORE,
+                              *options.split())
+    except subprocess.TimeoutExpired:
+        return "hangs"
+    if code != int(status):
+        return "exit status %d, not %s: %s" % (code, status, err.strip())
+    if code == 2:
+        return None if not out and words in err else "says %r%r, not %r" % (out, err, words)
+    try:
+        names, text = said(json.loads(out))
+    except ValueError as error:
+        return "no document on standard output: %s" % error
+    if (code == 1) != bool(names):
+        return "exit status %d and failing checks %s" % (code, names)
+    if code == 1 and words in ("between", "continuity", "radial_derivative", "width_derivative", "runs",
+                               "sign", "fundamental", "normalisation"):
+        return None if words in names else "%s fails, not %s" % (", ".join(names), words)
+    return None if words in text else "does not say %r but %s" % (words, text[-600:])
+
+
+def judge_verify(line):
+    name, _, options, status, words = line
+    code, out, err = call("verify", "kernels", "--kernel-plugin", module(name), "--json", "-",
+                          "--failures", os.path.join(FOLDER, "failures"))
+    if code != int(status):
+        return "verify: exit status %d, not %s: %s" % (code, status, err.strip())
+    if code == 2:
+        return None if not out and words in err else "verify: says %r%r" % (out, err)
+    failing = [c["name"] + " " + c["subject"] for c in json.loads(out)["checks"]
+               if c["status"] == "fail"]
+    if code == 1 and not any(words in text for text in failing):
+        return "verify: fails in %s, not in %s" % (failing, words)
+    return None
+
+
+def judge_right(name, dim):
+    code, out, err = call("kernel", os.path.join(FOLDER, name + ".so"), "--dim", dim, "--json", "-", *MORE)
+    return None if code == 0 else "dim %s: exit status %d: %s%s" % (dim, code, said(json.loads(out))[0], err)
+
+
+def processes(path):
+    found = []
+    for pid in filter(str.isdigit, os.listdir("/proc")):
+        try:
+            with open("/proc/%s/cmdline" % pid, "rb") as f:
+                if path.encode() in f.read().split(b"\0") and int(pid) != os.getpid():
+                    found.append(int(pid))
+        except OSError:
+            pass
+    return found
+
+
+def wait_for(condition, seconds=20):
+    until = time.time() + seconds
+    while not condition():
+        if time.time() > until:
+            return False
+        time.sleep(0.02)
+    return True
+
+
+def judge_interrupt(number):
+    """An interrupt ends everything, also where the plug-in has processes of its own."""
+    path = os.path.realpath(module("forks_and_sleeps"))
+    work = subprocess.Popen([PROGRAM, "kernel", path, "--dim", "1"], stdout=subprocess.DEVNULL,
+                            stderr=subprocess.DEVNULL)
+    if not wait_for(lambda: len(processes(path)) == 3):
+        work.kill()
+        return "%d processes at work, not 3" % len(processes(path))
+    work.send_signal(number)
+    work.wait(PATIENCE)
+    if not wait_for(lambda: not processes(path)):
+        return "left behind: %s" % processes(path)
+    return None if work.returncode == -number else "exit status %d" % work.returncode
+
+
+def main():
+    table, bad = read_table(), 0
+    by_name = {line[0]: line for line in table}
+    with ThreadPoolExecutor(2) as pool:
+        outcomes = [(line[0], pool.submit(judge, line)) for line in table]
+        if not MORE:
+            outcomes += [(name, pool.submit(judge_verify, by_name[name])) for name in VERIFIED]
+        else:
+            outcomes += [(name, pool.submit(judge_right, name, dim)) for name in RIGHT for dim in "123"]
+        for name, outcome in outcomes:
+            trouble = outcome.result()
+            print("%-24s %s" % (name, trouble or "ok"), flush=True)
+            bad += trouble is not None
+    if os.path.isdir("/proc/self"):
+        left = [p for line in table for p in processes(module(line[0]))]
+        for name, trouble in [("nothing left", "left behind: %s" % left if left else None),
+                              ("interrupted", judge_interrupt(signal.SIGINT)),
+                              ("terminated", judge_interrupt(signal.SIGTERM))]:
+            print("%-24s %s" % (name, trouble or "ok"))
+            bad += trouble is not None
+    print("%d plug-ins, %d wrong verdicts" % (len(table), bad))
+    return 1 if bad else 0
+
+
+sys.exit(main())
