@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "integrator.h"
 
-#include <string.h>
-
-#include "loop.h"
 #include "scheme.h"
-#include "solver.h"
 
 #define INTEGRATOR(name, ...)                                                                      \
     static const struct integrator integrator_##name = {.step = name##_step, __VA_ARGS__};

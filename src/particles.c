@@ -1,15 +1,29 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "particles.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { LINE = 8 }; /* doubles in a cache line */
 
-#define FIELD(name, meaning) +1
-enum { FIELD_COUNT = 0 PARTICLE_FIELDS(FIELD) };
-#undef FIELD
+#define SCALAR(name, meaning) +1
+#define VECTOR(name, meaning) +3
+enum { ARRAYS_MAX = 0 PARTICLE_FIELDS(SCALAR, VECTOR) };
+#undef SCALAR
+#undef VECTOR
+
+/* Lists where the particles' pointers to arrays stand; returns their number. */
+static size_t list_arrays(struct particles *particles, double **arrays[ARRAYS_MAX])
+{
+    size_t count = 0;
+#define SCALAR(name, meaning) arrays[count++] = &particles->name;
+#define VECTOR(name, meaning)                                                                      \
+    for (int k = 0; k < particles->dim; k++) arrays[count++] = &particles->name[k];
+    PARTICLE_FIELDS(SCALAR, VECTOR)
+#undef SCALAR
+#undef VECTOR
+    return count;
+}
 
 static ptrdiff_t stride(ptrdiff_t n, ptrdiff_t ghosts)
 {
@@ -20,28 +34,26 @@ static ptrdiff_t stride(ptrdiff_t n, ptrdiff_t ghosts)
 
 static enum status allocate(struct particles *particles, struct error *error)
 {
+    double **arrays[ARRAYS_MAX];
+    const size_t count = list_arrays(particles, arrays);
     particles->ghosts = (particles->ghosts + LINE - 1) / LINE * LINE;
     const ptrdiff_t length = stride(particles->n, particles->ghosts);
-    const size_t bytes = (size_t)length * (FIELD_COUNT + 1) * sizeof(double);
+    const size_t bytes = (size_t)length * (count + 1) * sizeof(double);
     particles->block = aligned_alloc(64, bytes);
     if (!particles->block)
         return error_set(error, STATUS_ENVIRONMENT, "no memory for %td particles (%zu MiB)",
                          particles->n, bytes >> 20);
     memset(particles->block, 0, bytes);
     double *next = particles->block + particles->ghosts;
-#define FIELD(name, meaning)                                                                       \
-    particles->name = next;                                                                        \
-    next += length;
-    PARTICLE_FIELDS(FIELD)
-#undef FIELD
+    for (size_t k = 0; k < count; k++, next += length) *arrays[k] = next;
     particles->spare = next;
     return STATUS_OK;
 }
 
-enum status particles_create(struct particles *particles, ptrdiff_t n, ptrdiff_t ghosts,
+enum status particles_create(struct particles *particles, int dim, ptrdiff_t n, ptrdiff_t ghosts,
                              struct error *error)
 {
-    *particles = (struct particles){.n = n, .ghosts = ghosts};
+    *particles = (struct particles){.dim = dim, .n = n, .ghosts = ghosts};
     const enum status status = allocate(particles, error);
     if (status) return status;
     particles->id = malloc((size_t)n * sizeof *particles->id);
@@ -66,57 +78,26 @@ enum status particles_grow_ghosts(struct particles *particles, ptrdiff_t ghosts,
     grown.ghosts = ghosts;
     const enum status status = allocate(&grown, error);
     if (status) return status;
-    const size_t bytes = (size_t)particles->n * sizeof(double);
-#define FIELD(name, meaning) memcpy(grown.name, particles->name, bytes);
-    PARTICLE_FIELDS(FIELD)
-#undef FIELD
+    double **from[ARRAYS_MAX], **to[ARRAYS_MAX];
+    const size_t count = list_arrays(particles, from);
+    list_arrays(&grown, to);
+    for (size_t k = 0; k < count; k++)
+        memcpy(*to[k], *from[k], (size_t)particles->n * sizeof(double));
     free(particles->block);
     *particles = grown;
     return STATUS_OK;
 }
 
-void particles_fill_ghosts(const struct particles *particles, double *array, ptrdiff_t count,
-                           double shift)
+void particles_permute(struct particles *particles)
 {
     const ptrdiff_t n = particles->n;
-    /* counted upwards and downwards from the ends: images of images where count > n */
-    for (ptrdiff_t k = 0; k < count; k++) array[n + k] = array[k] + shift;
-    for (ptrdiff_t k = 1; k <= count; k++) array[-k] = array[n - k] - shift;
-}
-
-static void permute(struct particles *particles, double *array)
-{
-    for (ptrdiff_t i = 0; i < particles->n; i++) particles->spare[i] = array[particles->order[i]];
-    memcpy(array, particles->spare, (size_t)particles->n * sizeof *array);
-}
-
-bool particles_sort(struct particles *particles)
-{
-    const ptrdiff_t n = particles->n;
-    double *x = particles->x, *x_old = particles->x_old;
-    for (ptrdiff_t i = 0; i < n; i++)
-        if (!isfinite(x[i])) return false;
-
-    /* All into one period that starts at the first particle, then a stable insertion sort: the
-     * order is nearly right. */
-    const double start = x[0];
-    for (ptrdiff_t i = 0; i < n; i++) {
-        const double shift = -particles->period * floor((x[i] - start) / particles->period);
-        x[i] += shift;
-        x_old[i] += shift;
-        particles->order[i] = (size_t)i;
+    double **arrays[ARRAYS_MAX];
+    const size_t count = list_arrays(particles, arrays);
+    for (size_t k = 0; k < count; k++) {
+        double *array = *arrays[k];
+        for (ptrdiff_t i = 0; i < n; i++) particles->spare[i] = array[particles->order[i]];
+        memcpy(array, particles->spare, (size_t)n * sizeof *array);
     }
-    for (ptrdiff_t i = 1; i < n; i++) {
-        const size_t moving = particles->order[i];
-        ptrdiff_t k = i;
-        for (; k > 0 && x[particles->order[k - 1]] > x[moving]; k--)
-            particles->order[k] = particles->order[k - 1];
-        particles->order[k] = moving;
-    }
-#define FIELD(name, meaning) permute(particles, particles->name);
-    PARTICLE_FIELDS(FIELD)
-#undef FIELD
     for (ptrdiff_t i = 0; i < n; i++) particles->order[i] = particles->id[particles->order[i]];
     memcpy(particles->id, particles->order, (size_t)n * sizeof *particles->id);
-    return true;
 }

@@ -1,63 +1,67 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Storage of the solver: structure of arrays, in 1D sorted by position, with ghost copies of the
- * periodic images at both ends, so that no inner loop knows of a boundary. Every array has indices
- * -ghosts .. n-1+ghosts. Positions are unwrapped: x may leave the box, the cyclic order counts. */
+ * Storage of the solver: structure of arrays, vectors by component. In 1D they are sorted by
+ * position, with ghost copies of the periodic images at both ends, so that no inner loop knows of a
+ * boundary (ghosts is 0 where none are kept). Every array has indices -ghosts .. n-1+ghosts.
+ * Positions are unwrapped: x may leave the box. */
 #ifndef SPHPROOF_PARTICLES_H
 #define SPHPROOF_PARTICLES_H
 
-#include <stdbool.h>
+#include <math.h>
 #include <stddef.h>
 
 #include "status.h"
 
-/* FIELD(name, meaning). The first group is the state, the rest is derived in an evaluation or
- * belongs to the integrator; a change of order permutes them all. */
-#define PARTICLE_FIELDS(FIELD)                                                                     \
-    FIELD(x, "position")                                                                           \
-    FIELD(x_old, "position kept by the integrator")                                                \
-    FIELD(m, "mass")                                                                               \
-    FIELD(m_inverse, "1/m")                                                                        \
-    FIELD(p, "momentum")                                                                           \
-    FIELD(e, "energy that is integrated: U = m u, or E = U + p^2/2m")                              \
-    FIELD(alpha, "viscosity of the particle")                                                      \
-    FIELD(p_old, "momentum kept by the integrator")                                                \
-    FIELD(e_old, "energy kept by the integrator")                                                  \
-    FIELD(alpha_old, "viscosity kept by the integrator")                                           \
-    FIELD(v, "velocity")                                                                           \
-    FIELD(U, "internal energy")                                                                    \
-    FIELD(h, "smoothing length = support radius")                                                  \
-    FIELD(h_inverse, "1/h")                                                                        \
-    FIELD(h_inverse_found, "1/h = rho/(eta m) of the last density sum")                            \
-    FIELD(h_inverse_old, "and of the one before")                                                  \
-    FIELD(grad_h, "1 - f of the grad-h factor")                                                    \
-    FIELD(V, "volume Z/y")                                                                         \
-    FIELD(rho, "density of the equation of state")                                                 \
-    FIELD(P, "pressure")                                                                           \
-    FIELD(c, "sound speed")                                                                        \
-    FIELD(b, "lagrangian: Z P/y^2")                                                                \
-    FIELD(g, "scale of the pair gradient: C/h^2 (standard), 1/sum V x^2 w (ia)")                   \
-    FIELD(dv, "velocity gradient, linear_exact")                                                   \
-    FIELD(F, "dp/dt")                                                                              \
-    FIELD(de, "de/dt")                                                                             \
-    FIELD(dalpha, "dalpha/dt")                                                                     \
-    FIELD(div_v, "divergence of v")                                                                \
-    FIELD(signal, "largest signal speed")
+/* SCALAR(name, meaning) or VECTOR(name, meaning). The first group is the state, the rest is derived
+ * in an evaluation or belongs to the integrator; a change of order permutes them all. */
+#define PARTICLE_FIELDS(SCALAR, VECTOR)                                                            \
+    VECTOR(x, "position")                                                                          \
+    VECTOR(x_old, "position kept by the integrator")                                               \
+    SCALAR(m, "mass")                                                                              \
+    SCALAR(m_inverse, "1/m")                                                                       \
+    VECTOR(p, "momentum")                                                                          \
+    SCALAR(e, "energy that is integrated: U = m u, or E = U + p^2/2m")                             \
+    SCALAR(alpha, "viscosity of the particle")                                                     \
+    VECTOR(p_old, "momentum kept by the integrator")                                               \
+    SCALAR(e_old, "energy kept by the integrator")                                                 \
+    SCALAR(alpha_old, "viscosity kept by the integrator")                                          \
+    VECTOR(v, "velocity")                                                                          \
+    SCALAR(U, "internal energy")                                                                   \
+    SCALAR(h, "smoothing length = support radius")                                                 \
+    SCALAR(h_inverse, "1/h")                                                                       \
+    SCALAR(h_inverse_found, "1/h = (rho/m)^(1/d)/eta of the last density sum")                     \
+    SCALAR(h_inverse_old, "and of the one before")                                                 \
+    SCALAR(grad_h, "1 - f of the grad-h factor")                                                   \
+    SCALAR(V, "volume Z/y")                                                                        \
+    SCALAR(rho, "density of the equation of state")                                                \
+    SCALAR(P, "pressure")                                                                          \
+    SCALAR(c, "sound speed")                                                                       \
+    SCALAR(b, "lagrangian: Z P/y^2")                                                               \
+    SCALAR(g, "scale of the pair gradient: C/h^(d+1) (standard); 1D: 1/sum V x^2 w (ia)")          \
+    SCALAR(dv, "1D: velocity gradient, linear_exact")                                              \
+    VECTOR(F, "dp/dt")                                                                             \
+    SCALAR(de, "de/dt")                                                                            \
+    SCALAR(dalpha, "dalpha/dt")                                                                    \
+    SCALAR(div_v, "divergence of v")                                                               \
+    SCALAR(signal, "largest signal speed")
 
 struct particles {
+    int dim; /* components of vectors; the others are NULL */
     ptrdiff_t n;
     ptrdiff_t ghosts; /* images at each end */
-    double period;    /* length of the box */
-#define FIELD(name, meaning) double *name;
-    PARTICLE_FIELDS(FIELD)
-#undef FIELD
+    double period[3]; /* lengths of the box */
+#define SCALAR(name, meaning) double *name;
+#define VECTOR(name, meaning) double *name[3];
+    PARTICLE_FIELDS(SCALAR, VECTOR)
+#undef SCALAR
+#undef VECTOR
     size_t *id;    /* index in the scene */
     double *block; /* what the arrays live in */
     double *spare; /* one array, for permutations */
-    size_t *order; /* likewise */
+    size_t *order; /* likewise: where the particle that belongs at place i stands */
 };
 
 /* Allocates everything (zeros). STATUS_ENVIRONMENT without memory. */
-enum status particles_create(struct particles *particles, ptrdiff_t n, ptrdiff_t ghosts,
+enum status particles_create(struct particles *particles, int dim, ptrdiff_t n, ptrdiff_t ghosts,
                              struct error *error);
 void particles_destroy(struct particles *particles);
 
@@ -65,13 +69,17 @@ void particles_destroy(struct particles *particles);
 enum status particles_grow_ghosts(struct particles *particles, ptrdiff_t ghosts,
                                   struct error *error);
 
-/* Copies the periodic images of count particles to both ends of an array; shift: what is added per
- * period (the period for x, 0 for the rest). */
-void particles_fill_ghosts(const struct particles *particles, double *array, ptrdiff_t count,
-                           double shift);
+/* Puts the particle at place order[i] to place i, all of its values. Ghosts are not touched. */
+void particles_permute(struct particles *particles);
 
-/* Restores the order of positions, also across the ends of the box. false: a position is not
- * finite, and nothing has been done. */
-bool particles_sort(struct particles *particles);
+/* Size of the vector of particle i; in 1D exactly |vector[0][i]|. */
+static inline double particles_norm(const struct particles *particles, double *const vector[3],
+                                    ptrdiff_t i)
+{
+    if (particles->dim == 1) return fabs(vector[0][i]);
+    double squares = 0;
+    for (int k = 0; k < particles->dim; k++) squares += vector[k][i] * vector[k][i];
+    return sqrt(squares);
+}
 
 #endif

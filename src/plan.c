@@ -9,9 +9,12 @@
 #include "integrator.h"
 #include "simulation.h"
 
-struct plan plan_make(const struct scheme *scheme, bool skip)
+struct plan plan_make(const struct scheme *scheme, int dim, bool skip, bool stamped)
 {
     return (struct plan){
+        .dim = dim,
+        .sums = sums_find(dim),
+        .stamped = stamped,
         .newton = scheme->h_method == H_NEWTON,
         .correct = scheme->h_method == H_CORRECTED,
         .energy_sum = scheme->volume_element == VOLUME_ENERGY,
@@ -84,7 +87,7 @@ size_t plan_explain(const struct scene *scene, struct plan_line *lines, size_t m
                     size_t warnings_size)
 {
     const struct scheme *scheme = &scene->scheme;
-    const struct plan plan = plan_make(scheme, scene->skip);
+    const struct plan plan = plan_make(scheme, scene->dim, scene->skip, !scene->unstamped);
     struct writer writer = {lines, 0, max};
     line(&writer, "order", true,
          "neighbours are a contiguous range; sorted anew only if particles "

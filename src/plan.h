@@ -7,21 +7,26 @@
 #include <stdbool.h>
 
 #include "scheme.h"
+#include "sums.h"
 
 struct plan {
-    bool newton;       /* h by Newton at every evaluation; else predicted */
-    bool correct;      /* predicted h with a Newton step */
-    bool energy_sum;   /* second kernel sum, of U */
-    bool grad_h;       /* grad-h factors */
-    bool matrix;       /* moment matrix of the Integral Approach */
-    bool own_gradient; /* standard gradients at each particle's own h */
-    bool slope;        /* linear_exact velocity gradient, for reconstruction */
-    bool viscosity;    /* artificial viscosity in the pair expression */
-    bool alpha;        /* evolution of alpha, with div v */
-    bool signal_pass;  /* a pass of its own for the time step */
-    bool sleep;        /* leave out particles that no signal has reached */
+    int dim;
+    const struct sums *sums; /* the way to sum over neighbours; NULL: none for the dimension */
+    bool stamped;            /* loops compiled for the choices; else all is looked up (oracle) */
+    bool newton;             /* h by Newton at every evaluation; else predicted */
+    bool correct;            /* predicted h with a Newton step */
+    bool energy_sum;         /* second kernel sum, of U */
+    bool grad_h;             /* grad-h factors */
+    bool matrix;             /* moment matrix of the Integral Approach */
+    bool own_gradient;       /* standard gradients at each particle's own h */
+    bool slope;              /* linear_exact velocity gradient, for reconstruction */
+    bool viscosity;          /* artificial viscosity in the pair expression */
+    bool alpha;              /* evolution of alpha, with div v */
+    bool signal_pass;        /* a pass of its own for the time step */
+    bool sleep;              /* leave out particles that no signal has reached */
 };
 
-struct plan plan_make(const struct scheme *scheme, bool skip);
+/* What the scheme needs in dim dimensions; skip: leave out work that cannot change the result. */
+struct plan plan_make(const struct scheme *scheme, int dim, bool skip, bool stamped);
 
 #endif

@@ -4,10 +4,12 @@
 #ifndef INTEGRATOR_MODIFIED_LEAPFROG_H
 #define INTEGRATOR_MODIFIED_LEAPFROG_H
 
+#include "integrator/leapfrog_kicks.h"
+
 static enum status modified_leapfrog_step(struct simulation *simulation, double dt,
                                           struct error *error)
 {
-    const enum status status = leapfrog_step(simulation, dt, error);
+    const enum status status = leapfrog_kicks(simulation, dt, error);
     return status ? status : evaluate_rates(simulation, error);
 }
 

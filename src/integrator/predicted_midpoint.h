@@ -17,41 +17,73 @@
 #ifndef INTEGRATOR_PREDICTED_MIDPOINT_H
 #define INTEGRATOR_PREDICTED_MIDPOINT_H
 
+#include <stdlib.h>
+#include <string.h>
+
+#include "solver.h"
+#include "stamp.h"
+#include "width.h"
+
+struct predicted_midpoint {
+    double ahead; /* the step whose middle x, v, U and alpha are at already; 0: none */
+};
+
+static enum status predicted_midpoint_create(struct simulation *simulation, struct error *error)
+{
+    simulation->integrator_state = calloc(1, sizeof(struct predicted_midpoint));
+    return simulation->integrator_state ? STATUS_OK
+                                        : error_set(error, STATUS_ENVIRONMENT, "no memory");
+}
+
+static void predicted_midpoint_free(struct simulation *simulation)
+{
+    free(simulation->integrator_state);
+}
+
 /* Advances the state by dt from its middle, predicts it for the first half of the step ahead, or
  * both in one walk over memory. Predicted x, v and U go where the evaluation reads them, x_old is
  * the position of the state; p and e stay those of the state. Returns how many particles are left
  * without internal energy. */
-ALWAYS_INLINE double move_body(bool advance, bool predict, const struct simulation *simulation,
-                               const struct span *span, double dt, double ahead)
+ALWAYS_INLINE double move_body(int dim, bool advance, bool predict,
+                               const struct simulation *simulation, const struct span *span,
+                               double dt, double ahead)
 {
     const struct particles *a = &simulation->particles;
     const ptrdiff_t end = span->first + span->len;
     const double half = 0.5 * ahead;
     const double kinetic = simulation->scheme.energy == ENERGY_TOTAL ? 0.5 : 0;
-    double *restrict x = a->x, *restrict x_old = a->x_old, *restrict v = a->v, *restrict U = a->U,
-                     *restrict p = a->p, *restrict e = a->e;
-    const double *restrict F = a->F, *restrict de = a->de, *restrict m_inverse = a->m_inverse;
+    double *restrict U = a->U, *restrict e = a->e;
+    const double *restrict de = a->de, *restrict m_inverse = a->m_inverse;
+    double *restrict x[3], *restrict x_old[3], *restrict v[3], *restrict p[3];
+    const double *restrict F[3];
+    for (int k = 0; k < dim; k++)
+        x[k] = a->x[k], x_old[k] = a->x_old[k], v[k] = a->v[k], p[k] = a->p[k], F[k] = a->F[k];
     double unsound = 0;
 #pragma omp simd reduction(+ : unsound)
     for (ptrdiff_t i = span->first; i < end; i++) {
-        double p_now = p[i], e_now = e[i], x_now = x[i];
-        if (advance) {
-            p_now += F[i] * dt;
-            e_now += de[i] * dt;
-            x_now = x_old[i] + 0.5 * (p[i] + p_now) * m_inverse[i] * dt;
-            p[i] = p_now;
-            e[i] = e_now;
+        const double e_now = advance ? e[i] + de[i] * dt : e[i];
+        double U_now = e_now, U_half = e_now + de[i] * half;
+        for (int k = 0; k < dim; k++) {
+            double p_now = p[k][i], x_now = x[k][i];
+            if (advance) {
+                p_now += F[k][i] * dt;
+                x_now = x_old[k][i] + 0.5 * (p[k][i] + p_now) * m_inverse[i] * dt;
+                p[k][i] = p_now;
+            }
+            const double v_now = p_now * m_inverse[i];
+            U_now -= kinetic * p_now * v_now;
+            if (predict) {
+                const double p_half = p_now + F[k][i] * half, v_half = p_half * m_inverse[i];
+                x_old[k][i] = x_now;
+                v[k][i] = v_half;
+                U_half -= kinetic * p_half * v_half;
+                x_now += v_now * half;
+            }
+            x[k][i] = x_now;
         }
-        const double v_now = p_now * m_inverse[i], U_now = e_now - kinetic * p_now * v_now;
+        if (advance) e[i] = e_now;
+        if (predict) U[i] = largest(U_half, 0.5 * U_now);
         unsound += U_now > 0 ? 0. : 1.;
-        if (predict) {
-            const double p_half = p_now + F[i] * half, v_half = p_half * m_inverse[i];
-            x_old[i] = x_now;
-            v[i] = v_half;
-            U[i] = largest(e_now + de[i] * half - kinetic * p_half * v_half, 0.5 * U_now);
-            x_now += v_now * half;
-        }
-        x[i] = x_now;
     }
     for (ptrdiff_t i = span->first; simulation->plan.alpha && i < end; i++) {
         if (advance) a->alpha[i] = a->alpha_old[i] + a->dalpha[i] * dt;
@@ -64,27 +96,36 @@ ALWAYS_INLINE double move_body(bool advance, bool predict, const struct simulati
 typedef double move(const struct simulation *simulation, const struct span *span, double dt,
                     double ahead);
 
-#define MOVE(name, advance, predict)                                                               \
-    CLONES static double name(const struct simulation *simulation, const struct span *span,        \
-                              double dt, double ahead)                                             \
+#define MOVE(name, advance, predict, dim)                                                          \
+    CLONES static double name##_##dim(const struct simulation *simulation,                         \
+                                      const struct span *span, double dt, double ahead)            \
     {                                                                                              \
-        return move_body(advance, predict, simulation, span, dt, ahead);                           \
+        return move_body(dim, advance, predict, simulation, span, dt, ahead);                      \
     }
-MOVE(predict_midpoint, false, true)
-MOVE(advance_from_midpoint, true, false)
-MOVE(advance_and_predict, true, true)
+#define MOVES(name, advance, predict)                                                              \
+    MOVE(name, advance, predict, 1)                                                                \
+    MOVE(name, advance, predict, 2)                                                                \
+    MOVE(name, advance, predict, 3)                                                                \
+    static move *const name[] = {name##_1, name##_2, name##_3};
+MOVES(predict_midpoint, false, true)
+MOVES(advance_from_midpoint, true, false)
+MOVES(advance_and_predict, true, true)
+#undef MOVES
+#undef MOVE
 
-/* One of them over all that moves: sleepers in moving gas drift, those at rest are left
- * alone. A count of particles: its sum does not depend on the order. */
-static double move_all(const struct simulation *simulation, move *walk, double dt, double ahead)
+/* One of them (stamped for each dimension) over all that moves: sleepers in moving gas drift, those
+ * at rest are left alone. A count of particles: its sum does not depend on the order. */
+static double move_all(const struct simulation *simulation, move *const *walks, double dt,
+                       double ahead)
 {
+    move *const walk = walks[simulation->plan.dim - 1];
     const struct sleep *sleep = &simulation->sleep;
     const struct span all = {0, simulation->particles.n};
     const bool spans = sleep->on && sleep->at_rest;
     double count = 0;
     for (ptrdiff_t s = 0; s < (spans ? sleep->span_count : 1); s++) {
         const struct span *span = spans ? &sleep->spans[s] : &all;
-        const ptrdiff_t parts = span->len >= WORTH_A_THREAD * RANGE_MAX ? simulation->threads : 1;
+        const ptrdiff_t parts = span->len >= WORTH_A_THREAD * BATCH_MAX ? simulation->threads : 1;
         if (parts == 1) {
             count += walk(simulation, span, dt, ahead);
             continue;
@@ -103,8 +144,9 @@ static enum status name_unsound(const struct simulation *simulation, struct erro
     const struct particles *a = &simulation->particles;
     const double kinetic = simulation->scheme.energy == ENERGY_TOTAL ? 0.5 : 0;
     for (ptrdiff_t i = 0;; i++) {
-        const double U = a->e[i] - kinetic * a->p[i] * a->p[i] * a->m_inverse[i];
-        if (!(U > 0)) return broke_down(simulation, i, "internal energy", U, error);
+        double U = a->e[i];
+        for (int k = 0; k < a->dim; k++) U -= kinetic * a->p[k][i] * a->p[k][i] * a->m_inverse[i];
+        if (!(U > 0)) return simulation_broke_down(simulation, i, "internal energy", U, error);
     }
 }
 
@@ -114,14 +156,27 @@ static enum status name_unsound(const struct simulation *simulation, struct erro
 static enum status predicted_midpoint_step(struct simulation *simulation, double dt,
                                            struct error *error)
 {
-    if (simulation->ahead <= 0) move_all(simulation, predict_midpoint, 0, dt);
+    struct predicted_midpoint *state = simulation->integrator_state;
+    if (state->ahead <= 0) move_all(simulation, predict_midpoint, 0, dt);
     const enum status status = evaluate_rates_of_primitives(simulation, error);
     if (status) return status;
     const double ahead = simulation_next_step(simulation, simulation_time_after(simulation, dt));
     const double unsound =
         move_all(simulation, ahead > 0 ? advance_and_predict : advance_from_midpoint, dt, ahead);
-    simulation->ahead = ahead;
+    state->ahead = ahead;
     return unsound > 0 ? name_unsound(simulation, error) : STATUS_OK;
+}
+
+/* Back from the middle of a step that does not follow. */
+static void predicted_midpoint_synchronise(struct simulation *simulation)
+{
+    struct predicted_midpoint *state = simulation->integrator_state;
+    const struct particles *a = &simulation->particles;
+    const size_t bytes = (size_t)a->n * sizeof(double);
+    if (state->ahead <= 0) return;
+    for (int k = 0; k < a->dim; k++) memcpy(a->x[k], a->x_old[k], bytes);
+    if (simulation->plan.alpha) memcpy(a->alpha, a->alpha_old, bytes);
+    state->ahead = 0;
 }
 
 #endif
@@ -129,4 +184,5 @@ INTEGRATOR(predicted_midpoint,
            .member = {"predicted_midpoint", "midpoint with predicted rates, one evaluation a step",
                       "van Leer 1979"},
            .order = 2, .evaluations = 1, .cfl = 0.8, .cfl_per_width = true, .predicts = true,
-           .follow = 1.5, .first_step = 0.25)
+           .follow = 1.5, .first_step = 0.25, .create = predicted_midpoint_create,
+           .free = predicted_midpoint_free, .synchronise = predicted_midpoint_synchronise)

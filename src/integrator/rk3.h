@@ -3,6 +3,8 @@
 #ifndef INTEGRATOR_RK3_H
 #define INTEGRATOR_RK3_H
 
+#include "integrator/runge_kutta.h"
+
 static enum status rk3_step(struct simulation *simulation, double dt, struct error *error)
 {
     runge_kutta_begin(simulation);

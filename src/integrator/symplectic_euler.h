@@ -4,15 +4,21 @@
 #ifndef INTEGRATOR_SYMPLECTIC_EULER_H
 #define INTEGRATOR_SYMPLECTIC_EULER_H
 
+#include "solver.h"
+
 static enum status symplectic_euler_step(struct simulation *simulation, double dt,
                                          struct error *error)
 {
     struct particles *a = &simulation->particles;
-    for (ptrdiff_t i = 0; i < a->n; i++) {
-        a->p[i] += a->F[i] * dt;
-        a->e[i] += a->de[i] * dt;
-        a->x[i] += a->p[i] * a->m_inverse[i] * dt;
+    for (int k = 0; k < a->dim; k++) {
+        double *x = a->x[k], *p = a->p[k];
+        const double *F = a->F[k];
+        for (ptrdiff_t i = 0; i < a->n; i++) {
+            p[i] += F[i] * dt;
+            x[i] += p[i] * a->m_inverse[i] * dt;
+        }
     }
+    for (ptrdiff_t i = 0; i < a->n; i++) a->e[i] += a->de[i] * dt;
     if (simulation->plan.alpha)
         for (ptrdiff_t i = 0; i < a->n; i++) a->alpha[i] += a->dalpha[i] * dt;
     return evaluate_rates(simulation, error);

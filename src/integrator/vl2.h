@@ -3,6 +3,8 @@
 #ifndef INTEGRATOR_VL2_H
 #define INTEGRATOR_VL2_H
 
+#include "integrator/runge_kutta.h"
+
 static enum status vl2_step(struct simulation *simulation, double dt, struct error *error)
 {
     runge_kutta_begin(simulation);

@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-#include "loop.h"
+#include "stamp.h"
 #include "matrix.h"
 
 /* Places of the sums. */

@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "integrator.h"
-#include "loop.h"
-#include "range.h"
+#include "stamp.h"
+#include "state.h"
 
 enum { GHOSTS = 64 };
 static const double jitter = 0.02, gamma_gas = 1.4;
@@ -21,12 +21,12 @@ static void fill(struct bench_loops *loops)
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
     for (ptrdiff_t i = 0; i < a->n; i++) {
         const double phase = 2 * M_PI * (double)i / (double)a->n;
-        a->x[i] = a->x_old[i] = (double)i + jitter * (2 * gsl_rng_uniform(rng) - 1);
+        a->x[0][i] = a->x_old[0][i] = (double)i + jitter * (2 * gsl_rng_uniform(rng) - 1);
         a->m[i] = a->V[i] = a->m_inverse[i] = a->rho[i] = 1;
-        a->v[i] = 0.1 * sin(phase);
+        a->v[0][i] = 0.1 * sin(phase);
         a->U[i] = 2.5 * (1 + 0.1 * cos(phase));
-        a->p[i] = a->m[i] * a->v[i];
-        a->e[i] = a->U[i] + 0.5 * a->p[i] * a->v[i];
+        a->p[0][i] = a->m[i] * a->v[0][i];
+        a->e[i] = a->U[i] + 0.5 * a->p[0][i] * a->v[0][i];
         a->P[i] = (gamma_gas - 1) * a->U[i];
         a->c[i] = sqrt(gamma_gas * a->P[i]);
         a->h[i] = scheme->eta;
@@ -37,19 +37,18 @@ static void fill(struct bench_loops *loops)
         a->dv[i] = 0.1 * cos(phase);
     }
     gsl_rng_free(rng);
-    double *const all[] = {a->m, a->V, a->rho,       a->v,     a->U, a->P, a->c,
+    double *const all[] = {a->m, a->V, a->rho,       a->v[0],  a->U, a->P, a->c,
                            a->h, a->b, a->h_inverse, a->alpha, a->g, a->dv};
-    for (size_t k = 0; k < sizeof all / sizeof *all; k++)
-        particles_fill_ghosts(a, all[k], a->ghosts, 0);
-    particles_fill_ghosts(a, a->x, a->ghosts, a->period);
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++) ghosts_fill(a, all[k], a->ghosts, 0);
+    ghosts_fill(a, a->x[0], a->ghosts, a->period[0]);
 }
 
 /* As predicted_midpoint moves particles: to the end of a step and on to the middle of the next. */
 CLONES static void move(const struct particles *a, ptrdiff_t n, double dt)
 {
-    double *restrict x = a->x, *restrict x_old = a->x_old, *restrict v = a->v, *restrict U = a->U,
-                     *restrict p = a->p, *restrict e = a->e;
-    const double *restrict F = a->F, *restrict de = a->de, *restrict m_inverse = a->m_inverse;
+    double *restrict x = a->x[0], *restrict x_old = a->x_old[0], *restrict v = a->v[0],
+                     *restrict U = a->U, *restrict p = a->p[0], *restrict e = a->e;
+    const double *restrict F = a->F[0], *restrict de = a->de, *restrict m_inverse = a->m_inverse;
 #pragma omp simd
     for (ptrdiff_t i = 0; i < n; i++) {
         const double p_now = p[i] + F[i] * dt, e_now = e[i] + de[i] * dt;
@@ -68,7 +67,7 @@ CLONES static void move(const struct particles *a, ptrdiff_t n, double dt)
 static double search(const struct particles *a, ptrdiff_t first, int len)
 {
     ptrdiff_t reach = 1;
-    while (range_inside(a, first, len, reach + 1) > 0) reach++;
+    while (reach_inside(a, first, len, reach + 1) > 0) reach++;
     return (double)reach;
 }
 
@@ -79,15 +78,15 @@ static void run_range(struct bench_loops *loops, ptrdiff_t first, int len)
     const unsigned passes = loops->passes;
     const bool state = passes & 1u << PASS_STATE;
     struct density_sums sums;
-    if (passes & 1u << PASS_REACH) loops->rate += range_inside(a, first, len, loops->reach + 1);
+    if (passes & 1u << PASS_REACH) loops->rate += reach_inside(a, first, len, loops->reach + 1);
     if (passes & 1u << PASS_SEARCH) loops->rate += search(a, first, len);
-    if (state) range_predict_width(a, first, len, 1);
+    if (state) width_predict(a, first, len, 1);
     if (passes & 1u << PASS_DENSITY) {
         loops->loops.density(kernel, a, first, len, loops->reach, a->h_inverse + first, &sums);
         const struct gas gas = {gamma_gas, kernel->constant[1], loops->scheme.eta,
                                 loops->scheme.integrator->follow};
         if (state)
-            range_close(a, first, len, &loops->plan, &gas, &sums);
+            state_close(a, first, len, &loops->plan, &gas, &sums);
         else
             memcpy(a->h_inverse_found + first, sums.m, (size_t)len * sizeof(double));
     }
@@ -98,12 +97,12 @@ static void run(struct bench_loops *loops)
 {
     const struct particles *a = &loops->particles;
     if (loops->passes & 1u << PASS_STATE) move(a, a->n, loops->dt);
-    if (loops->passes & 1u << PASS_ORDER) loops->rate += range_crossings(a, 0, a->n - 1);
-    if (loops->passes & 1u << PASS_SORT) loops->rate += particles_sort(&loops->particles);
-    for (ptrdiff_t first = 0; first < a->n; first += RANGE_MAX)
-        run_range(loops, first, (int)(a->n - first < RANGE_MAX ? a->n - first : RANGE_MAX));
-    for (ptrdiff_t first = 0; first < a->n; first += RANGE_MAX) {
-        const int len = (int)(a->n - first < RANGE_MAX ? a->n - first : RANGE_MAX);
+    if (loops->passes & 1u << PASS_ORDER) loops->rate += order_crossings(a, 0, a->n - 1);
+    if (loops->passes & 1u << PASS_SORT) loops->rate += order_sort(&loops->particles);
+    for (ptrdiff_t first = 0; first < a->n; first += BATCH_MAX)
+        run_range(loops, first, (int)(a->n - first < BATCH_MAX ? a->n - first : BATCH_MAX));
+    for (ptrdiff_t first = 0; first < a->n; first += BATCH_MAX) {
+        const int len = (int)(a->n - first < BATCH_MAX ? a->n - first : BATCH_MAX);
         if (loops->passes & 1u << PASS_FORCE)
             loops->rate +=
                 loops->loops.force(&loops->loops, a, first, len, loops->reach, loops->scratch);
@@ -115,14 +114,14 @@ enum status bench_loops_create(struct bench_loops *loops, const struct scheme *s
                                bool stamped, unsigned passes, struct error *error)
 {
     *loops = (struct bench_loops){.scheme = *scheme, .passes = passes};
-    loops->plan = plan_make(&loops->scheme, false);
-    loops_choose(&loops->scheme, stamped, &loops->loops);
+    loops->plan = plan_make(&loops->scheme, 1, false, stamped);
+    loops_choose(&loops->plan, &loops->scheme, &loops->loops);
     if (!loops->loops.matrix) loops->passes &= ~(1u << PASS_MATRIX);
     loops->reach = (ptrdiff_t)ceil(scheme->eta) - 1;
     if (loops->reach < 1) loops->reach = 1;
-    const enum status status = particles_create(&loops->particles, (ptrdiff_t)n, GHOSTS, error);
+    const enum status status = particles_create(&loops->particles, 1, (ptrdiff_t)n, GHOSTS, error);
     if (status) return status;
-    loops->particles.period = (double)n;
+    loops->particles.period[0] = (double)n;
     loops->scratch = malloc(force_scratch(loops->reach) * sizeof(double));
     if (!loops->scratch) return error_set(error, STATUS_ENVIRONMENT, "no memory");
     fill(loops);

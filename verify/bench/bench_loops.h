@@ -8,7 +8,7 @@
 #include <stdbool.h>
 
 #include "bench.h"
-#include "loops.h"
+#include "line/line.h"
 #include "plan.h"
 
 struct bench_loops {

@@ -83,7 +83,7 @@ static void measure_drift(struct check_run *run, const void *subject)
 static enum status drags(struct simulation *simulation, double dt, struct error *error)
 {
     const enum status status = hydro_integrator("modified_leapfrog")->step(simulation, dt, error);
-    simulation->particles.p[85] *= 1 + 1e-10;
+    simulation->particles.p[0][85] *= 1 + 1e-10;
     return status;
 }
 
@@ -186,8 +186,8 @@ static enum status unbalanced(struct simulation *simulation, double dt, struct e
     const enum status status = hydro_integrator("rk2")->step(simulation, 0.98 * dt, error);
     struct particles *a = &simulation->particles;
     for (ptrdiff_t i = 0; i < a->n; i++) {
-        a->x[i] += 0.02 * dt * a->p[i] * a->m_inverse[i];
-        a->p[i] += 0.02 * dt * a->F[i];
+        a->x[0][i] += 0.02 * dt * a->p[0][i] * a->m_inverse[i];
+        a->p[0][i] += 0.02 * dt * a->F[0][i];
         a->e[i] += 0.02 * dt * a->de[i] * 0.9;
     }
     return status ? status : evaluate_rates(simulation, error);

@@ -233,9 +233,9 @@ static void test_loops_stand_still(void **state)
             near_relative(a->h[i], scheme.eta, 0.1);
             near_relative(a->rho[i], 1, 0.1);
             near_inside(a->U[i], 2, 3);
-            near_inside(a->x[i] - (double)i, -0.03, 0.03);
-            near_below(fabs(a->F[i]), 1);
-            force = fmax(force, fabs(a->F[i]));
+            near_inside(a->x[0][i] - (double)i, -0.03, 0.03);
+            near_below(fabs(a->F[0][i]), 1);
+            force = fmax(force, fabs(a->F[0][i]));
         }
         near_inside(force, 1e-3, 1);
         assert_true(loops.rate > 0);

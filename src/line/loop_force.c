@@ -6,7 +6,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "loop.h"
+#include "loops.h"
+#include "stamp.h"
 
 /* What a particle gathers at offset d: its pair to the left is strip[i], to the right strip[i + d].
  * The first offset sets the sums, the others add to them. */
@@ -25,11 +26,11 @@ ALWAYS_INLINE void gather(bool add, enum energy energy, int count, ptrdiff_t d,
 
 size_t force_scratch(ptrdiff_t D)
 {
-    return STRIPS * (size_t)(RANGE_MAX + D + 8); /* and the rest of a vector */
+    return FORCE_STRIPS * (size_t)(BATCH_MAX + D + 8); /* and the rest of a vector */
 }
 
 struct force_sums {
-    double F[RANGE_MAX], de[RANGE_MAX], div_v[RANGE_MAX];
+    double F[BATCH_MAX], de[BATCH_MAX], div_v[BATCH_MAX];
 };
 
 /* Particle k as one side of a pair. */
@@ -62,7 +63,7 @@ ALWAYS_INLINE double pairs_at(ptrdiff_t d, enum formulation formulation, enum vi
     const int pairs = len + (int)d;
     loops->gradient(loops->kernel, particles, o, pairs, d, G, G_j);
 
-    const double *restrict x = particles->x + o, *restrict v = particles->v + o,
+    const double *restrict x = particles->x[0] + o, *restrict v = particles->v[0] + o,
                            *restrict V = particles->V + o;
     const double *Z = loops->energy_element ? particles->U : particles->m;
     const struct pair_numbers numbers = loops->numbers;
@@ -95,7 +96,7 @@ ALWAYS_INLINE double pairs_at(ptrdiff_t d, enum formulation formulation, enum vi
             largest(2 * left.c * left.h_inverse, speed * largest(left.h_inverse, right.h_inverse));
     }
     gather(d > 1, energy, whole_vectors(len), d, f, e_i, e_j, sums->F, sums->de);
-    if (loops->want_div_v) {
+    if (loops->div_v) {
         const double *both = formulation == FORMULATION_VANILLA_ICE ? G : G_j;
         for (int i = 0; i < pairs; i++) f[i] = 0.5 * (G[i] + both[i]) * (v[i] - v[i + d]);
         for (int i = 0; i < len; i++) sums->div_v[i] -= V[i + 2 * d] * f[i + d] + V[i] * f[i];
@@ -109,9 +110,9 @@ ALWAYS_INLINE double force_body(enum formulation formulation, enum viscosity vis
                                 const struct particles *particles, ptrdiff_t first, int len,
                                 ptrdiff_t D, double *scratch)
 {
-    const ptrdiff_t strip = (ptrdiff_t)force_scratch(D) / STRIPS;
+    const ptrdiff_t strip = (ptrdiff_t)force_scratch(D) / FORCE_STRIPS;
     struct force_sums sums;
-    if (loops->want_div_v)
+    if (loops->div_v)
         for (int i = 0; i < len; i++) sums.div_v[i] = 0;
     /* most ranges need no more than the first offset: it stands with constant addresses */
     double rate = pairs_at(1, formulation, viscosity, energy, loops, particles, first, len, strip,
@@ -120,9 +121,9 @@ ALWAYS_INLINE double force_body(enum formulation formulation, enum viscosity vis
         rate = largest(rate, pairs_at(d, formulation, viscosity, energy, loops, particles, first,
                                       len, strip, scratch, &sums));
     const size_t bytes = (size_t)len * sizeof(double);
-    memcpy(particles->F + first, sums.F, bytes);
+    memcpy(particles->F[0] + first, sums.F, bytes);
     memcpy(particles->de + first, sums.de, bytes);
-    if (loops->want_div_v) memcpy(particles->div_v + first, sums.div_v, bytes);
+    if (loops->div_v) memcpy(particles->div_v + first, sums.div_v, bytes);
     return rate;
 }
 

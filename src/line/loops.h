@@ -11,12 +11,10 @@
 
 #include "pair.h"
 #include "particles.h"
-#include "scheme.h"
+#include "plan.h"
+#include "width.h"
 
-enum {
-    RANGE_MAX = 64, /* particles of one range at most, whole vectors */
-    STRIPS = 6      /* of a pair force */
-};
+enum { FORCE_STRIPS = 6 }; /* of scratch, in a pair force */
 
 /* --- kernel sums of one range, at width 1/h_inverse[i] -------------------------------------- */
 
@@ -27,11 +25,6 @@ enum {
     TERMS(DENSITY_ENERGY, __VA_ARGS__)     /* and the same two with Z = U */
 enum density_terms { DENSITY_LIST(FAMILY_SYMBOL, ) };
 enum { DENSITY_TERMS = 0 DENSITY_LIST(FAMILY_COUNTED, ) };
-
-/* Sums of a range, RANGE_MAX each, without the factor C/h. */
-struct density_sums {
-    double m[RANGE_MAX], m_dh[RANGE_MAX], Z[RANGE_MAX], Z_dh[RANGE_MAX];
-};
 
 /* h_inverse: of the len particles of the range. */
 typedef void density_loop(const struct kernel *kernel, const struct particles *particles,
@@ -83,13 +76,22 @@ struct loops {
     enum viscosity viscosity;
     enum energy energy;
     bool energy_element; /* Z = U, else Z = m */
-    bool want_div_v;     /* time-dependent viscosity */
+    bool div_v;          /* wanted, for time-dependent viscosity */
     struct pair_numbers numbers;
 };
 
-/* Chooses through the tables, once per simulation; stamped = false asks for the unstamped bodies
- * (always so for a plug-in kernel). The loops keep a pointer to the scheme's kernel. */
-void loops_choose(const struct scheme *scheme, bool stamped, struct loops *loops);
+/* Chooses through the tables what the plan asks for, once per simulation; stamped loops where the
+ * plan wants them and the kernel is a built-in one. The loops keep a pointer to the scheme's
+ * kernel.
+ */
+void loops_choose(const struct plan *plan, const struct scheme *scheme, struct loops *loops);
+
+/* The tables, one in each of the four files; kernel: position in kernels.def, -1: unstamped. */
+density_loop *loop_density(int kernel, enum density_terms terms);
+matrix_loop *loop_matrix(int kernel, enum matrix_terms terms);
+gradient_loop *loop_gradient(int kernel, enum gradient gradient, int width);
+force_loop *loop_force(bool stamped, enum formulation formulation, enum viscosity viscosity,
+                       enum energy energy);
 
 /* The signal speed of each particle of the range, where it is asked for by itself. */
 void loops_signal(const struct particles *particles, ptrdiff_t first, int len, ptrdiff_t D);

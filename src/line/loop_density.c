@@ -2,14 +2,15 @@
  * Kernel sums of density, smoothing length and grad-h (PHYSICS: y_i = sum_j Z_j W(r_ij, h_i)). */
 #include <math.h>
 
-#include "loop.h"
+#include "loops.h"
+#include "stamp.h"
 
 ALWAYS_INLINE void sum_pairs(const struct kernel *kernel, kernel_shape *w, kernel_shape *dw,
                              enum density_terms terms, const struct particles *particles,
                              ptrdiff_t first, int len, ptrdiff_t D,
                              const double *restrict h_inverse, struct density_sums *restrict sums)
 {
-    const double *restrict x = particles->x + first, *restrict m = particles->m + first,
+    const double *restrict x = particles->x[0] + first, *restrict m = particles->m + first,
                            *restrict U = particles->U + first;
     const double w0 = w(kernel, 0, 1);
     const int count = whole_vectors(len);

@@ -4,7 +4,8 @@
  * standard: -C/h^2 w'(r/h); ia: g r w(r/h), g = 1/sum V x^2 w. */
 #include <math.h>
 
-#include "loop.h"
+#include "loops.h"
+#include "stamp.h"
 
 ALWAYS_INLINE double own_gradient(const struct kernel *kernel, kernel_shape *w, kernel_shape *dw,
                                   enum gradient gradient, double g, double r, double h_inverse)
@@ -18,7 +19,7 @@ ALWAYS_INLINE void gradients_of_pairs(const struct kernel *kernel, kernel_shape 
                                       const struct particles *particles, ptrdiff_t first, int pairs,
                                       ptrdiff_t d, double *restrict G, double *restrict G_j)
 {
-    const double *restrict x = particles->x + first, *restrict g = particles->g + first,
+    const double *restrict x = particles->x[0] + first, *restrict g = particles->g + first,
                            *restrict h_inverse = particles->h_inverse + first;
     const double constant = kernel->constant[1];
     const int count = whole_vectors(pairs);

@@ -4,17 +4,18 @@
  * matrix and gradient: g = 1/sum V x^2 w, G = g x w. */
 #include <math.h>
 
-#include "loop.h"
+#include "loops.h"
+#include "stamp.h"
 
 ALWAYS_INLINE void sum_moments(const struct kernel *kernel, kernel_shape *w,
                                enum matrix_terms terms, const struct particles *particles,
                                ptrdiff_t first, int len, ptrdiff_t D)
 {
     const bool reconstruct = terms != MATRIX_MOMENT;
-    const double *restrict x = particles->x + first, *restrict V = particles->V + first,
-                           *restrict v = particles->v + first,
+    const double *restrict x = particles->x[0] + first, *restrict V = particles->V + first,
+                           *restrict v = particles->v[0] + first,
                            *restrict h_inverse = particles->h_inverse + first;
-    double second[RANGE_MAX] = {0}, slope[RANGE_MAX] = {0};
+    double second[BATCH_MAX] = {0}, slope[BATCH_MAX] = {0};
     const int count = whole_vectors(len);
     for (ptrdiff_t d = 1; d <= D; d++) {
 #pragma omp simd

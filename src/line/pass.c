@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pass.h"
 
-#include "loop.h"
-#include "solver.h"
+#include "line.h"
+#include "stamp.h"
 
 #ifdef _OPENMP
 #include <omp.h>
@@ -29,17 +29,18 @@ static void tally_add(struct tally *all, const struct tally *own)
 
 struct tally pass_all(struct simulation *simulation, range_pass *pass)
 {
-    const ptrdiff_t count = simulation->range_count;
+    const struct line *line = line_of(simulation);
+    const ptrdiff_t count = line->range_count;
     struct tally all = {.without_root = PTRDIFF_MAX};
     if (simulation->threads == 1 || count < WORTH_A_THREAD) {
-        for (ptrdiff_t b = 0; b < count; b++) pass(simulation, &simulation->ranges[b], &all);
+        for (ptrdiff_t b = 0; b < count; b++) pass(simulation, &line->ranges[b], &all);
         return all;
     }
 #pragma omp parallel num_threads(simulation->threads)
     {
         struct tally own = {.thread = thread_number(), .without_root = PTRDIFF_MAX};
 #pragma omp for schedule(static) nowait
-        for (ptrdiff_t b = 0; b < count; b++) pass(simulation, &simulation->ranges[b], &own);
+        for (ptrdiff_t b = 0; b < count; b++) pass(simulation, &line->ranges[b], &own);
 #pragma omp critical(tally)
         tally_add(&all, &own);
     }

@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The passes over pairs: matrices, forces, signal speeds. */
+#include <stdlib.h>
+
+#include "line.h"
+#include "pass.h"
+#include "stamp.h"
+#include "state.h"
+
+static void matrix_pass(struct simulation *simulation, struct range *range, struct tally *tally)
+{
+    (void)tally;
+    line_of(simulation)
+        ->loops.matrix(&simulation->scheme.kernel, &simulation->particles, range->first, range->len,
+                       range->reach);
+}
+
+void forces_matrix(struct simulation *simulation)
+{
+    const struct particles *a = &simulation->particles;
+    const ptrdiff_t count = line_of(simulation)->reach + 1;
+    pass_all(simulation, matrix_pass);
+    ghosts_fill(a, a->g, count, 0);
+    if (simulation->plan.slope) ghosts_fill(a, a->dv, count, 0);
+}
+
+enum status forces_reserve_scratch(struct simulation *simulation, ptrdiff_t reach,
+                                   struct error *error)
+{
+    struct line *line = line_of(simulation);
+    const size_t size = force_scratch(reach);
+    if (size <= line->scratch_size) return STATUS_OK;
+    free(line->scratch);
+    line->scratch_size = 2 * size;
+    line->scratch = malloc(line->scratch_size * (size_t)simulation->threads * sizeof(double));
+    if (line->scratch) return STATUS_OK;
+    line->scratch_size = 0;
+    return error_set(error, STATUS_ENVIRONMENT, "no memory for pairs %td apart", reach);
+}
+
+static void force_pass(struct simulation *simulation, struct range *range, struct tally *tally)
+{
+    const struct line *line = line_of(simulation);
+    const struct particles *a = &simulation->particles;
+    double *scratch = line->scratch + line->scratch_size * (size_t)tally->thread;
+    range->force_reach = reach_of_pairs(simulation, range);
+    const double rate =
+        line->loops.force(&line->loops, a, range->first, range->len, range->force_reach, scratch);
+    tally->rate = largest(tally->rate, rate);
+    /* visited: both sides of every sum in the own-width sums, each pair once in the forces */
+    const int sums = 1 + (line->loops.matrix != NULL);
+    tally->pairs += (uint64_t)(range->len * (2 * sums * range->reach + range->force_reach));
+    if (simulation->plan.alpha) state_dalpha(a, range->first, range->len, &simulation->scheme);
+}
+
+enum status forces_sum(struct simulation *simulation, double *rate, struct error *error)
+{
+    const enum status status =
+        forces_reserve_scratch(simulation, line_of(simulation)->reach, error);
+    if (status) return status;
+    const struct tally found = pass_all(simulation, force_pass);
+    simulation->cost.pair_interactions += found.pairs;
+    *rate = found.rate;
+    return STATUS_OK;
+}
+
+static void signal_pass(struct simulation *simulation, struct range *range, struct tally *tally)
+{
+    const struct particles *a = &simulation->particles;
+    loops_signal(a, range->first, range->len, range->force_reach);
+    tally->rate = largest(tally->rate, state_rate(a, range->first, range->len));
+}
+
+double forces_signal(struct simulation *simulation)
+{
+    const struct particles *a = &simulation->particles;
+    ghosts_fill(a, a->v[0], line_of(simulation)->reach + 1, 0);
+    return pass_all(simulation, signal_pass).rate;
+}

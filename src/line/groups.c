@@ -1,0 +1,177 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Sleep in 1D: groups of successive particles, spans of awake groups, ranges of the spans. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "line.h"
+#include "stamp.h"
+#include "state.h"
+
+static int group_len(const struct simulation *simulation, ptrdiff_t group)
+{
+    const ptrdiff_t left = simulation->particles.n - group * GROUP;
+    return left < GROUP ? (int)left : GROUP;
+}
+
+static bool group_disturbed(const struct simulation *simulation, ptrdiff_t group)
+{
+    return sleep_disturbed(simulation, group * GROUP, group_len(simulation, group));
+}
+
+/* Groups around a disturbed one that must be awake: a disturbance passes through density and forces
+ * in one step, so it comes twice the reach of pairs closer. */
+static ptrdiff_t margin(ptrdiff_t reach)
+{
+    return (2 * reach + 2 + GROUP - 1) / GROUP;
+}
+
+static void wake_groups(struct groups *groups, ptrdiff_t first, ptrdiff_t count)
+{
+    memset(groups->awake + first, 1, (size_t)count);
+    memset(groups->rate + first, 0, (size_t)count * sizeof *groups->rate);
+}
+
+/* A group and its neighbours, across the ends of the box. */
+static void wake(struct groups *groups, ptrdiff_t group, ptrdiff_t reach)
+{
+    const ptrdiff_t count = 2 * reach + 1;
+    if (count >= groups->count) {
+        wake_groups(groups, 0, groups->count);
+        return;
+    }
+    const ptrdiff_t first = (group - reach + groups->count) % groups->count;
+    const ptrdiff_t before_end = groups->count - first < count ? groups->count - first : count;
+    wake_groups(groups, first, before_end);
+    wake_groups(groups, 0, count - before_end);
+}
+
+/* The next group from the given one on that is awake, or asleep; their number where there is none.
+ */
+static ptrdiff_t find_group(const struct groups *groups, ptrdiff_t from, bool awake)
+{
+    const unsigned char *found =
+        memchr(groups->awake + from, awake, (size_t)(groups->count - from));
+    return found ? found - groups->awake : groups->count;
+}
+
+/* Spans from the groups. */
+static void find_spans(struct simulation *simulation)
+{
+    const struct groups *groups = &line_of(simulation)->groups;
+    struct sleep *sleep = &simulation->sleep;
+    const ptrdiff_t n = simulation->particles.n;
+    sleep->span_count = sleep->awake_count = 0;
+    sleep->rate = largest_of(groups->rate, (groups->count + 7) / 8 * 8);
+    for (ptrdiff_t begin, end = 0; (begin = find_group(groups, end, true)) < groups->count;) {
+        end = find_group(groups, begin, false);
+        const ptrdiff_t first = begin * GROUP;
+        const ptrdiff_t last = end * GROUP < n ? end * GROUP : n;
+        sleep->spans[sleep->span_count++] = (struct span){first, last - first};
+        sleep->awake_count += last - first;
+    }
+    sleep->on = sleep->awake_count < n;
+}
+
+/* Spans from the groups, ranges from the spans. */
+static void lay_out(struct simulation *simulation)
+{
+    struct line *line = line_of(simulation);
+    const struct sleep *sleep = &simulation->sleep;
+    find_spans(simulation);
+    line->range_count = 0;
+    for (ptrdiff_t s = 0; s < sleep->span_count; s++)
+        for (ptrdiff_t done = 0; done < sleep->spans[s].len; done += BATCH_MAX) {
+            const ptrdiff_t left = sleep->spans[s].len - done;
+            line->ranges[line->range_count++] =
+                (struct range){.first = sleep->spans[s].first + done,
+                               .len = (int)(left < BATCH_MAX ? left : BATCH_MAX),
+                               .reach = 1};
+        }
+}
+
+/* A group falls asleep, with a limit of the time step that stays. */
+static void fall_asleep(struct simulation *simulation, ptrdiff_t group, ptrdiff_t reach)
+{
+    const struct particles *a = &simulation->particles;
+    const ptrdiff_t first = group * GROUP;
+    const int len = group_len(simulation, group);
+    loops_signal(a, first, len, reach);
+    line_of(simulation)->groups.rate[group] = state_rate(a, first, len);
+    sleep_begin(simulation, first, len);
+}
+
+static enum status allocate(struct simulation *simulation, struct error *error)
+{
+    struct groups *groups = &line_of(simulation)->groups;
+    struct sleep *sleep = &simulation->sleep;
+    const ptrdiff_t n = simulation->particles.n;
+    groups->count = (n + GROUP - 1) / GROUP;
+    groups->awake = calloc((size_t)groups->count, 1);
+    /* whole vectors */
+    groups->rate = calloc((size_t)(groups->count + 7), sizeof *groups->rate);
+    sleep->spans = malloc((size_t)(groups->count / 2 + 1) * sizeof *sleep->spans);
+    return groups->awake && groups->rate && sleep->spans
+               ? STATUS_OK
+               : error_set(error, STATUS_ENVIRONMENT, "no memory for %td particles", n);
+}
+
+enum status groups_begin(struct simulation *simulation, struct error *error)
+{
+    const struct line *line = line_of(simulation);
+    const ptrdiff_t count = (simulation->particles.n + GROUP - 1) / GROUP;
+    const enum status status = allocate(simulation, error);
+    if (status) return status;
+    simulation->sleep.at_rest = true;
+    if (!simulation->plan.sleep) {
+        groups_wake_all(simulation);
+        return STATUS_OK;
+    }
+    struct groups *groups = &line_of(simulation)->groups;
+    ptrdiff_t reach = 0;
+    for (ptrdiff_t b = 0; b < line->range_count; b++)
+        if (line->ranges[b].force_reach > reach) reach = line->ranges[b].force_reach;
+    for (ptrdiff_t group = 0; group < count; group++)
+        if (group_disturbed(simulation, group)) wake(groups, group, margin(reach));
+    for (ptrdiff_t group = 0; group < count; group++)
+        if (!groups->awake[group]) fall_asleep(simulation, group, reach);
+    lay_out(simulation);
+    return STATUS_OK;
+}
+
+void groups_wake_all(struct simulation *simulation)
+{
+    struct groups *groups = &line_of(simulation)->groups;
+    wake_groups(groups, 0, groups->count);
+    lay_out(simulation);
+}
+
+/* Disturbances come from inside: looks from one end of a span inwards, in the direction step, for
+ * the outermost disturbed group. Returns whether it woke anybody. */
+static bool wake_beyond(struct simulation *simulation, ptrdiff_t end, ptrdiff_t step,
+                        ptrdiff_t reach, ptrdiff_t count)
+{
+    for (ptrdiff_t k = 0; k < reach && k < count; k++)
+        if (group_disturbed(simulation, end + step * k)) {
+            wake(&line_of(simulation)->groups, end + step * k, reach);
+            return true;
+        }
+    return false;
+}
+
+void groups_update(struct simulation *simulation)
+{
+    const struct sleep *sleep = &simulation->sleep;
+    if (!sleep->on) return;
+    bool woken = false;
+    const struct range *range = line_of(simulation)->ranges;
+    for (ptrdiff_t s = 0; s < sleep->span_count; s++) {
+        const struct span *span = &sleep->spans[s];
+        const ptrdiff_t first = span->first / GROUP;
+        const ptrdiff_t last = (span->first + span->len - 1) / GROUP;
+        woken |= wake_beyond(simulation, first, 1, margin(range->force_reach), last - first + 1);
+        range += (span->len + BATCH_MAX - 1) / BATCH_MAX - 1; /* the last one of the span */
+        woken |= wake_beyond(simulation, last, -1, margin(range->force_reach), last - first + 1);
+        range++;
+    }
+    if (woken) lay_out(simulation);
+}

@@ -1,0 +1,70 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The descriptor of the sums in 1D, and their room. */
+#include "line.h"
+
+#include <stdlib.h>
+
+enum { GHOSTS_AT_START = 64, RESERVE = 8 };
+
+static enum status create(struct simulation *simulation, ptrdiff_t n, struct error *error)
+{
+    struct line *line = simulation->room = calloc(1, sizeof *line);
+    if (!line) return error_set(error, STATUS_ENVIRONMENT, "no memory");
+    loops_choose(&simulation->plan, &simulation->scheme, &line->loops);
+    /* room for spans of every length, each of which ends in a range that is not full */
+    const ptrdiff_t groups = (n + GROUP - 1) / GROUP;
+    line->range_count = (n + BATCH_MAX - 1) / BATCH_MAX;
+    line->ranges = calloc((size_t)(groups + 1), sizeof *line->ranges);
+    if (!line->ranges)
+        return error_set(error, STATUS_ENVIRONMENT, "no memory for %td particles", n);
+    for (ptrdiff_t b = 0; b < line->range_count; b++) {
+        struct range *range = &line->ranges[b];
+        range->first = b * BATCH_MAX;
+        range->len = (int)(n - range->first < BATCH_MAX ? n - range->first : BATCH_MAX);
+        range->reach = 1;
+    }
+    return particles_create(&simulation->particles, 1, n, GHOSTS_AT_START, error);
+}
+
+static void free_room(struct simulation *simulation)
+{
+    struct line *line = line_of(simulation);
+    if (!line) return;
+    free(line->ranges);
+    free(line->scratch);
+    free(line->groups.awake);
+    free(line->groups.rate);
+    free(line);
+}
+
+/* Memory for neighbours eight times as far apart in the order as they are at the start, which is
+ * more than a shock brings. Only where they get beyond that does a step ask for memory, each time
+ * for half as much again at least. */
+static enum status reserve(struct simulation *simulation, struct error *error)
+{
+    struct line *line = line_of(simulation);
+    const ptrdiff_t reach = RESERVE * line->reach;
+    if (reach + 8 > simulation->particles.ghosts) {
+        const enum status status = particles_grow_ghosts(&simulation->particles, reach + 8, error);
+        if (status) return status;
+        line->ghosts_filled = 0;
+    }
+    return forces_reserve_scratch(simulation, reach, error);
+}
+
+const struct sums line_sums = {
+    .name = "line",
+    .dim_min = 1,
+    .dim_max = 1,
+    .create = create,
+    .free = free_room,
+    .begin = order_begin,
+    .reserve = reserve,
+    .arrange = order_arrange,
+    .widths = widths_find,
+    .matrix = forces_matrix,
+    .forces = forces_sum,
+    .signal = forces_signal,
+    .sleep_begin = groups_begin,
+    .sleep_update = groups_update,
+};

@@ -1,0 +1,199 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Widths, densities and the equation of state, range by range: by Newton, or with one sum at a
+ * predicted width. */
+#include <math.h>
+
+#include "line.h"
+#include "pass.h"
+#include "stamp.h"
+#include "state.h"
+
+/* What becomes of a range: all is well, or more ghosts are needed, or (>= 0) the first particle
+ * that has no root. */
+enum { SOLVED = -1, NO_GHOSTS = -2 };
+
+static struct width_rule rule_of(const struct simulation *simulation)
+{
+    const struct scheme *scheme = &simulation->scheme;
+    return (struct width_rule){1, scheme->eta, scheme->kernel.constant[1], scheme->h_tolerance};
+}
+
+/* h = eta m/rho(h) of a range; a particle that has converged keeps its h while the others go on. */
+static ptrdiff_t solve_range(struct simulation *simulation, struct range *range,
+                             struct density_sums *sums)
+{
+    const struct line *line = line_of(simulation);
+    const struct particles *a = &simulation->particles;
+    const struct width_rule rule = rule_of(simulation);
+    double *h = a->h + range->first, *h_inverse = a->h_inverse + range->first;
+    const double *m = a->m + range->first;
+    struct width_bracket bracket;
+    width_begin(&bracket, range->len, INFINITY);
+    for (int i = 0; i < range->len; i++) h_inverse[i] = 1 / h[i];
+    for (int step = 0; step < WIDTH_STEPS_MAX; step++) {
+        if (!reach_cover(simulation, range)) return NO_GHOSTS;
+        line->loops.density_newton(&simulation->scheme.kernel, a, range->first, range->len,
+                                   range->reach, h_inverse, sums);
+        if (!width_step(&rule, range->len, m, sums, &bracket, h, h_inverse)) return SOLVED;
+    }
+    const int without_root = width_without_root(&rule, range->len, m, sums, h, h_inverse);
+    return without_root < 0 ? SOLVED : range->first + without_root;
+}
+
+/* One density sum at a predicted h. */
+static ptrdiff_t sum_range(struct simulation *simulation, struct range *range,
+                           struct density_sums *sums)
+{
+    const struct line *line = line_of(simulation);
+    const struct particles *a = &simulation->particles;
+    if (range->predicted != line->density_passes)
+        width_predict(a, range->first, range->len, line->predict_ratio);
+    range->predicted = line->density_passes;
+    if (!reach_cover(simulation, range)) return NO_GHOSTS;
+    if (simulation->cost.steps % 8 == 0) reach_tighten(simulation, range);
+    line->loops.density(&simulation->scheme.kernel, a, range->first, range->len, range->reach,
+                        a->h_inverse + range->first, sums);
+    return SOLVED;
+}
+
+/* The equation of state of a range. Returns how many predictions have failed. */
+static double close_range(struct simulation *simulation, const struct range *range,
+                          const struct density_sums *sums)
+{
+    const bool predicted = range->predicted == line_of(simulation)->density_passes;
+    const struct gas gas = {.gamma = simulation->gamma,
+                            .constant = simulation->scheme.kernel.constant[1],
+                            .eta = simulation->scheme.eta,
+                            .follow = predicted ? simulation->scheme.integrator->follow : 0};
+    return state_close(&simulation->particles, range->first, range->len, &simulation->plan, &gas,
+                       sums);
+}
+
+static void conclude(const struct line *line, struct range *range, ptrdiff_t result,
+                     struct tally *tally)
+{
+    if (result == SOLVED) range->done = line->density_passes;
+    if (result == NO_GHOSTS) tally->short_of_ghosts = true;
+    if (result >= 0 && result < tally->without_root) tally->without_root = result;
+    if (range->reach > tally->reach) tally->reach = range->reach;
+}
+
+static void newton_pass(struct simulation *simulation, struct range *range, struct tally *tally)
+{
+    const struct line *line = line_of(simulation);
+    struct density_sums sums;
+    ptrdiff_t result = SOLVED;
+    if (range->done != line->density_passes) {
+        result = solve_range(simulation, range, &sums);
+        if (result == SOLVED) close_range(simulation, range, &sums);
+        if (result == SOLVED && simulation->cost.steps % 8 == 0) reach_tighten(simulation, range);
+    }
+    conclude(line, range, result, tally);
+}
+
+/* h -> eta m/rho(h) is no contraction where the density changes by orders of magnitude within a
+ * width: predictions there diverge. Where one has failed the root is looked for, from the predicted
+ * width on. A root at half or twice that width or beyond (particles that all but meet in the first
+ * half of a step) is not taken. The pressure follows the volume that U was predicted with, whether
+ * the width jumps to its root or not. Each particle decides for itself, so that nothing depends on
+ * its range. */
+static ptrdiff_t find_roots(struct simulation *simulation, struct range *range,
+                            const double *predicted, bool *jumps, struct density_sums *sums)
+{
+    const struct particles *a = &simulation->particles;
+    const ptrdiff_t first = range->first;
+    struct density_sums roots;
+    const ptrdiff_t result = solve_range(simulation, range, &roots);
+    for (int i = 0; i < range->len; i++) {
+        const double ratio = a->h[first + i] * predicted[i];
+        jumps[i] &= result == SOLVED && ratio > 0.5 && ratio < 2;
+        if (!jumps[i]) {
+            a->h_inverse[first + i] = predicted[i];
+            continue;
+        }
+        sums->m[i] = roots.m[i];
+        sums->m_dh[i] = roots.m_dh[i];
+        sums->Z[i] = roots.Z[i];
+        sums->Z_dh[i] = roots.Z_dh[i];
+    }
+    return result;
+}
+
+static ptrdiff_t solve_surprised(struct simulation *simulation, struct range *range,
+                                 struct density_sums *sums)
+{
+    const struct particles *a = &simulation->particles;
+    const ptrdiff_t first = range->first;
+    const double follow = simulation->scheme.integrator->follow * (simulation->gamma - 1);
+    double predicted[BATCH_MAX]; /* 1/h */
+    bool jumps[BATCH_MAX];
+    for (int i = 0; i < range->len; i++) {
+        predicted[i] = a->h_inverse[first + i];
+        jumps[i] = state_surprised(a, first + i);
+        a->h[first + i] = 1 / predicted[i];
+    }
+    if (find_roots(simulation, range, predicted, jumps, sums) == NO_GHOSTS) return NO_GHOSTS;
+    close_range(simulation, range, sums);
+    for (ptrdiff_t i = first; i < first + range->len; i++) {
+        if (!jumps[i - first]) continue;
+        const double factor = largest(0.5, 1 + follow * (1 - a->h[i] * predicted[i - first]));
+        a->h_inverse_old[i] = a->h_inverse_found[i];
+        if (simulation->plan.energy_sum) continue;
+        a->P[i] *= factor;
+        if (simulation->plan.grad_h) a->b[i] *= factor;
+    }
+    return SOLVED;
+}
+
+static void predicted_pass(struct simulation *simulation, struct range *range, struct tally *tally)
+{
+    const struct line *line = line_of(simulation);
+    struct density_sums sums;
+    ptrdiff_t result = SOLVED;
+    if (range->done != line->density_passes) {
+        result = sum_range(simulation, range, &sums);
+        if (result == SOLVED && close_range(simulation, range, &sums) > 0)
+            result = solve_surprised(simulation, range, &sums);
+    }
+    conclude(line, range, result, tally);
+}
+
+/* A width that covers more of the box's images than any root would has run away. */
+static enum status too_wide(const struct simulation *simulation, struct error *error)
+{
+    const struct particles *a = &simulation->particles;
+    ptrdiff_t widest = 0;
+    for (ptrdiff_t i = 1; i < a->n; i++)
+        if (!(a->h_inverse[i] >= a->h_inverse[widest])) widest = i;
+    return simulation_broke_down(simulation, widest, "smoothing length", 1 / a->h_inverse[widest],
+                                 error);
+}
+
+/* Repeats the pass over ranges that were short of ghosts. */
+enum status widths_find(struct simulation *simulation, bool newton, double ratio,
+                        struct error *error)
+{
+    struct line *line = line_of(simulation);
+    range_pass *const pass = newton ? newton_pass : predicted_pass;
+    ptrdiff_t ghosts = line->ghosts_filled > 8 ? line->ghosts_filled : 8;
+    if (line->reach + 2 > ghosts) ghosts = line->reach + 2;
+    /* no root lies beyond eta times the box; a search may go twice as far */
+    const double most = 64 + (2 * simulation->scheme.eta + 2) * (double)simulation->particles.n;
+    line->density_passes++;
+    line->predict_ratio = ratio;
+    for (;;) {
+        const enum status status = ghosts_of_density(simulation, ghosts, error);
+        if (status) return status;
+        const struct tally found = pass_all(simulation, pass);
+        if (found.without_root < PTRDIFF_MAX)
+            return simulation_broke_down(simulation, found.without_root,
+                                         "smoothing length (no root was found)",
+                                         simulation->particles.h[found.without_root], error);
+        line->reach = found.reach;
+        if (!found.short_of_ghosts) break;
+        if ((double)ghosts > most) return too_wide(simulation, error);
+        ghosts *= 2;
+    }
+    ghosts_of_pairs(simulation);
+    return STATUS_OK;
+}

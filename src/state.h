@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What a state implies without any neighbours: velocity and internal energy, equation of state,
+ * what the pair terms need of it, limits of the time step. Plain loops over particles, stamped over
+ * instruction sets like the sums. */
+#ifndef SPHPROOF_STATE_H
+#define SPHPROOF_STATE_H
+
+#include "plan.h"
+#include "width.h"
+
+/* v = p/m and U = e (- p^2/2m where kinetic = 1/2; 0 where e is U already). Returns how many of the
+ * len particles from first have no positive U (NaN counts). */
+double state_primitives(const struct particles *particles, ptrdiff_t first, ptrdiff_t len,
+                        double kinetic);
+
+/* The numbers of the equation of state: constant = C_d of the kernel; follow = how strongly the
+ * pressure follows a volume that was predicted too small or too large (integrator.h). */
+struct gas {
+    double gamma, constant, eta, follow;
+};
+
+/* Equation of state of len <= BATCH_MAX particles, from their sums at h_inverse: P = (gamma - 1)
+ * rho u or (gamma - 1) y (energy element), c, V, rho; h as the sum of mass has found it; with them
+ * g, b and grad_h where the plan wants them. Returns how many widths that were predicted are far
+ * from those. */
+double state_close(const struct particles *particles, ptrdiff_t first, int len,
+                   const struct plan *plan, const struct gas *gas, const struct density_sums *sums);
+
+/* Is the width of particle i that was predicted far from the one that the sum has found? */
+bool state_surprised(const struct particles *particles, ptrdiff_t i);
+
+/* Time-dependent viscosity (Morris & Monaghan 1997; Rosswog et al. 2000):
+ * dalpha/dt = max(-div v, 0)(alpha_max - alpha) - (alpha - alpha_min)/tau, tau = h/(0.2 c). */
+void state_dalpha(const struct particles *particles, ptrdiff_t first, int len,
+                  const struct scheme *scheme);
+
+/* The largest signal speed / h of len <= BATCH_MAX particles. */
+double state_rate(const struct particles *particles, ptrdiff_t first, int len);
+
+#endif

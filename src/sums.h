@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The sums over neighbours that an evaluation is made of, as one descriptor per way to find
+ * neighbours: line/ (1D: sorted particles, ranges) and whatever serves 2D and 3D. The plan chooses
+ * one for the dimension; evaluate.c, simulation.c and sleep.c call through it and know no geometry.
+ *
+ * What the sums keep for themselves (order, reach, ghosts, lists, scratch) hangs on
+ * simulation->room. No function asks for memory in a step unless neighbours have come closer than
+ * what reserve has set aside for. Results do not depend on the number of threads. */
+#ifndef SPHPROOF_SUMS_H
+#define SPHPROOF_SUMS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "status.h"
+
+struct simulation;
+
+struct sums {
+    const char *name;
+    int dim_min, dim_max; /* the dimensions that it serves */
+
+    /* Allocates the room and simulation->particles (n, dim, empty). */
+    enum status (*create)(struct simulation *simulation, ptrdiff_t n, struct error *error);
+    void (*free)(struct simulation *simulation); /* the room; after a failed create, too */
+
+    /* Once, after the state has been set, with h a first guess: orders it, and moves apart
+     * particles in one place that have no h. */
+    void (*begin)(struct simulation *simulation);
+    /* After the first rates: sets memory aside for what a run may come to. */
+    enum status (*reserve)(struct simulation *simulation, struct error *error);
+
+    /* Positions have changed: restores the order, finds neighbours. STATUS_BROKE_DOWN: a position
+     * is not finite. */
+    enum status (*arrange)(struct simulation *simulation, struct error *error);
+    /* Density, smoothing length and equation of state (h, h_inverse, h_inverse_found, V, rho, P,
+     * c; g, b and grad_h where the plan wants them) from x, m, U. newton: h by Newton; else
+     * predicted, 1/h extrapolated by ratio times its last change. */
+    enum status (*widths)(struct simulation *simulation, bool newton, double ratio,
+                          struct error *error);
+    /* Moment matrices and velocity gradients; called where the plan wants either. */
+    void (*matrix)(struct simulation *simulation);
+    /* F, de, and dalpha where the plan wants it; *rate: at least the largest signal speed / h. */
+    enum status (*forces)(struct simulation *simulation, double *rate, struct error *error);
+    /* signal of every awake particle from v, c, h; returns the largest signal speed / h. */
+    double (*signal)(struct simulation *simulation);
+
+    /* Who sleeps: from the first rates, and after every step. Fill simulation->sleep. */
+    enum status (*sleep_begin)(struct simulation *simulation, struct error *error);
+    void (*sleep_update)(struct simulation *simulation);
+};
+
+extern const struct sums line_sums;
+
+/* The sums for dim dimensions, or NULL. */
+const struct sums *sums_find(int dim);
+
+#endif

@@ -1,0 +1,97 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "width.h"
+
+#include <math.h>
+
+#include "stamp.h"
+
+double width_of(const struct width_rule *rule, double m, double rho)
+{
+    return rule->dim == 1 ? rule->eta * m / rho : rule->eta * pow(m / rho, 1. / rule->dim);
+}
+
+/* What the sum at 1/h asks for. */
+static double target_of(const struct width_rule *rule, double m, double sum, double h_inverse)
+{
+    double scale = rule->constant * h_inverse;
+    for (int k = 1; k < rule->dim; k++) scale *= h_inverse;
+    return width_of(rule, m, scale * sum);
+}
+
+void width_begin(struct width_bracket *bracket, int len, double high)
+{
+    for (int i = 0; i < len; i++) {
+        bracket->low[i] = 0;
+        bracket->high[i] = high;
+    }
+}
+
+bool width_step(const struct width_rule *rule, int len, const double *m,
+                const struct density_sums *sums, struct width_bracket *bracket, double *h,
+                double *h_inverse)
+{
+    double *low = bracket->low, *high = bracket->high;
+    const double tolerance = rule->tolerance;
+    bool open = false;
+    for (int i = 0; i < len; i++) {
+        const double target = target_of(rule, m[i], sums->m[i], h_inverse[i]);
+        const double residual = h[i] - target;
+        if (fabs(residual) <= tolerance * h[i]) continue;
+        open = true;
+        if (residual < 0)
+            low[i] = h[i];
+        else
+            high[i] = h[i];
+        /* d target/dh = target/h (sum m (d w + q w'))/(d sum m w) */
+        const double slope = 1 - target / h[i] * (sums->m_dh[i] / (rule->dim * sums->m[i]));
+        double next = h[i] - residual / slope;
+        if (!(slope > 0 && next > low[i] && next < high[i]))
+            next = isinf(high[i]) ? 2 * h[i] : 0.5 * (low[i] + high[i]);
+        /* a bracket of two neighbouring numbers is a root, too */
+        if (next == low[i] || next == high[i]) low[i] = high[i] = next;
+        h[i] = least(next, 2 * h[i]);
+        h_inverse[i] = 1 / h[i];
+    }
+    return open;
+}
+
+int width_without_root(const struct width_rule *rule, int len, const double *m,
+                       const struct density_sums *sums, const double *h, const double *h_inverse)
+{
+    for (int i = 0; i < len; i++) {
+        const double target = target_of(rule, m[i], sums->m[i], h_inverse[i]);
+        if (!(fabs(h[i] - target) <= 1e-6 * h[i])) return i;
+    }
+    return -1;
+}
+
+ALWAYS_INLINE void predict(const struct particles *particles, ptrdiff_t first, int len,
+                           double ratio)
+{
+    const double *restrict found = particles->h_inverse_found + first;
+    double *restrict h_inverse = particles->h_inverse + first, *restrict last =
+                                                                   particles->h_inverse_old + first;
+#pragma omp simd
+    for (int i = 0; i < len; i++) {
+        const double next = found[i] + ratio * (found[i] - last[i]);
+        h_inverse[i] = largest(0.5 * found[i], least(2 * found[i], next));
+        last[i] = found[i];
+    }
+}
+
+/* Stamped functions are static, and the public ones call them: clang 14 gives the dispatched symbol
+ * a name of its own, so that another file would not find it. Nearly all batches are full: a
+ * constant trip count has no remainder loop. */
+CLONES static void predict_stamped(const struct particles *particles, ptrdiff_t first, int len,
+                                   double ratio)
+{
+    if (len == BATCH_MAX)
+        predict(particles, first, BATCH_MAX, ratio);
+    else
+        predict(particles, first, len, ratio);
+}
+
+void width_predict(const struct particles *particles, ptrdiff_t first, int len, double ratio)
+{
+    predict_stamped(particles, first, len, ratio);
+}

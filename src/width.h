@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The smoothing length h = eta (m/rho(h))^(1/d), d = 1, 2, 3, with rho the kernel sum of mass:
+ * Newton's method inside a bracket, for up to BATCH_MAX particles that are worked on together. Who
+ * knows geometry computes the sums at the widths that are asked for. */
+#ifndef SPHPROOF_WIDTH_H
+#define SPHPROOF_WIDTH_H
+
+#include <stdbool.h>
+
+#include "particles.h"
+
+enum {
+    BATCH_MAX = 64, /* particles that are worked on together at most: whole vectors */
+    WIDTH_STEPS_MAX = 200
+};
+
+/* Kernel sums of a batch at the width h, without the factor C_d/h^d:
+ * m = sum m w, m_dh = sum m (d w + q w') = -h d/dh of what m gives, Z and Z_dh the same with Z. */
+struct density_sums {
+    double m[BATCH_MAX], m_dh[BATCH_MAX], Z[BATCH_MAX], Z_dh[BATCH_MAX];
+};
+
+struct width_rule {
+    int dim;
+    double eta, constant; /* C_d of the kernel */
+    double tolerance;     /* relative, of |h - eta (m/rho(h))^(1/d)| */
+};
+
+struct width_bracket {
+    double low[BATCH_MAX], high[BATCH_MAX];
+};
+
+/* eta (m/rho)^(1/d). */
+double width_of(const struct width_rule *rule, double m, double rho);
+
+/* Starts with the bracket (0, high) around each of len widths; high may be INFINITY. */
+void width_begin(struct width_bracket *bracket, int len, double high);
+
+/* One step of Newton's method from the sums at h; where that leaves the bracket, or the slope is
+ * no good, half of the bracket (twice h where it has no end). A width that has converged stays as
+ * it is. Sets h_inverse with h. Returns whether any has not converged. */
+bool width_step(const struct width_rule *rule, int len, const double *m,
+                const struct density_sums *sums, struct width_bracket *bracket, double *h,
+                double *h_inverse);
+
+/* After WIDTH_STEPS_MAX steps: the first whose width is not even good to 1e-6, -1 for none. */
+int width_without_root(const struct width_rule *rule, int len, const double *m,
+                       const struct density_sums *sums, const double *h, const double *h_inverse);
+
+/* 1/h for the next density sum: as last found, extrapolated by ratio times its last change, no
+ * further than a factor of 2 away. */
+void width_predict(const struct particles *particles, ptrdiff_t first, int len, double ratio);
+
+#endif
