@@ -1,12 +1,56 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Sourced by verify/run and reports/run: installs what is missing, configures, builds. Needs neither
-# network nor root where everything is there.
-#   root   the source tree          build  the build folder (BUILD=DIR, else build/ in the tree)
+# Sourced by verify/run, reports/run and reports/compare: reads their options, installs what is
+# missing, configures, builds. Needs neither network nor root where everything is there.
+#   root   the source tree
+#   build  the build folder (BUILD=DIR, else build/ in the tree), after setup_packages
 #   out    the report's folder, after setup_report
 set -eu
 root=$(CDPATH='' cd -- "$(dirname -- "$0")/.." && pwd -P)
-mkdir -p -- "${BUILD:-$root/build}"
-build=$(CDPATH='' cd -- "${BUILD:-$root/build}" && pwd -P)
+
+# setup_help: prints the head of the script that runs, without its first two lines.
+setup_help() { sed -n '3,/^[^#]/s/^# \{0,1\}//p' "$0"; }
+
+setup_refuse() {
+    echo "${0##*/}: $1 (--help says what there is)" >&2
+    exit 2
+}
+
+# setup_options "OPTION ..." "OPTION ..." WORD ...: are these words options, each once? First list:
+# those without a value; second: those with one, as --option VALUE or --option=VALUE. Answers --help.
+setup_options() {
+    plain=" $1 " valued=" $2 " seen=' '
+    shift 2
+    for word; do
+        case $word in -h | --help) setup_help; exit 0 ;; esac
+    done
+    while [ $# -gt 0 ]; do
+        option=${1%%=*}
+        case $1 in -*) ;; *) setup_refuse "what is '$1'?" ;; esac
+        case $seen in *" $option "*) setup_refuse "$option is given twice" ;; esac
+        seen="$seen$option "
+        case $plain in *" $1 "*) shift; continue ;; esac
+        case $valued in *" $option "*) ;; *) setup_refuse "unknown option '$1'" ;; esac
+        if [ "$option" = "$1" ]; then
+            [ $# -ge 2 ] || setup_refuse "$1 needs a value"
+            shift
+        fi
+        shift
+    done
+}
+
+# setup_exclude OPTION OPTION WORD ...: not both of them.
+setup_exclude() {
+    one=$1 other=$2 both=
+    shift 2
+    for word; do
+        case $word in "$one" | "$other") both=$both+ ;; esac
+    done
+    [ "$both" != ++ ] || setup_refuse "$one and $other exclude each other"
+}
+
+# What every command of the program takes.
+setup_plain='--quiet'
+setup_valued='--json --threads --color'
 
 setup_has() { command -v "$1" >/dev/null 2>&1; }
 setup_library() { pkg-config --exists "$@" 2>/dev/null; }
@@ -58,6 +102,8 @@ setup_install() {
 
 # setup_packages [full|nightly]
 setup_packages() {
+    mkdir -p -- "${BUILD:-$root/build}"
+    build=$(CDPATH='' cd -- "${BUILD:-$root/build}" && pwd -P)
     # shellcheck disable=SC2046 # words on purpose
     setup_install $(setup_missing "${1:-}")
     # clang's sanitizers are a package of their own, named after clang's version.
@@ -73,16 +119,37 @@ setup_report() {
     mkdir -p "$out"
 }
 
-# setup_build DIR [meson options]: configures DIR unless that was done, and builds. Quiet while all
-# is well.
+# setup_watch LOG: says every ten seconds (on a terminal every second) how far ninja is.
+setup_watch() {
+    every=10 begin='   ' end='\n'
+    if [ -t 1 ]; then every=1 begin='\r   ' end='\033[K'; fi
+    while sleep "$every"; do
+        printf "$begin%s$end" "$(sed -n '$s/^\(\[[0-9/]*\]\) .*/\1 compiled/p' "$1")"
+    done
+}
+
+# setup_build DIR [meson options]: configures DIR unless that was done, and builds. Says what it does
+# and how long that takes where it takes long.
 setup_build() {
     directory=$1
     shift
     mkdir -p "$directory"
     if [ ! -f "$directory/build.ninja" ]; then
+        echo "configuring $directory"
         meson setup "$@" "$directory" "$root" >"$directory/setup.log" 2>&1 ||
             { cat "$directory/setup.log"; return 1; }
     fi
-    ninja -C "$directory" >"$directory/build.log" 2>&1 ||
-        { tail -n 60 "$directory/build.log"; return 1; }
+    steps=$(ninja -n -C "$directory" 2>/dev/null | grep -c '^\[' || true)
+    [ "$steps" -lt 10 ] ||
+        echo "compiling, $steps steps; a first build takes about a minute on two cores"
+    began=$(date +%s)
+    setup_watch "$directory/build.log" &
+    watch=$!
+    well=0
+    ninja -C "$directory" >"$directory/build.log" 2>&1 || well=1
+    kill "$watch" 2>/dev/null || true
+    wait "$watch" 2>/dev/null || true
+    if [ "$steps" -ge 10 ] && [ -t 1 ]; then printf '\r\033[K'; fi
+    [ "$well" = 0 ] || { tail -n 60 "$directory/build.log"; return 1; }
+    [ "$steps" -lt 10 ] || echo "compiled in $(($(date +%s) - began)) s"
 }

@@ -1,8 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """readme.py keys PROGRAM README      the README's table of keys is the program's
-   readme.py stories SOURCE WORK  its stories, run as written in a copy of the tree"""
+   readme.py scripts PROGRAM SOURCE WORK  its scripts: wrong options and --help answer before
+                                  anything is built, right ones reach the program as they are, those
+                                  of the nightly jobs, too
+   readme.py stories SOURCE WORK  its stories, and all else that it says to type, in a copy of the tree"""
 import os
+import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -19,6 +24,103 @@ def keys(program, readme):
     print("the table of keys is the program's")
 
 
+# What stands for the words in capitals of what the text says to type; None: tried elsewhere.
+PLACES = {
+    "sphproof COMMAND --help": "sphproof run --help",
+    "sphproof run CASE": "sphproof run sod",
+    "sphproof run CASE n=1602 [KEYS]": "sphproof run sod n=1602 viscosity=fading",
+    "sphproof diff OLD.json NEW.json": "sphproof run sod --json a.json; sphproof diff a.json a.json",
+    "sphproof kernel ./mine.so --dim 3": "sphproof kernel build/verify/examples/wendland_c8.so --dim 3",
+    "sphproof gradient cloud.csv --operator ia --kernel wendland_c2 --dim 2 --eta 2":
+        "printf 'x,y,volume,f\\n0,0,1,2\\n1,0,1,3\\n0,1,1,4\\n1,1,1,5\\n' >cloud.csv; "
+        "sphproof gradient cloud.csv --operator ia --kernel wendland_c2 --dim 2 --eta 2",
+    "python3 verify/test/faults.py build/sphproof PART": None,  # test `faults`
+    "reports/run": None, "reports/compare main": None,  # tests `README: scripts`, `reports/compare`
+    "verify/run --full": None, "verify/run --nightly": None,
+}
+
+
+def inline(text):
+    """What the text says to type within its sentences."""
+    found = []
+    text = re.sub(r"```.*?```", "", text, flags=re.S)
+    for span in re.findall(r"`([^`]+)`", text):
+        span = " ".join(span.split())
+        if not re.match(r"(sphproof |reports/\w+ |reports/run$|verify/run|python3 )", span) or span == "verify/run":
+            continue
+        command = PLACES.get(span, span)
+        if span not in PLACES and re.search(r"\b[A-Z]{3,}\b", span):
+            sys.exit("README.md: what stands for the words in capitals of `%s`? Tell readme.py" % span)
+        if command and command not in found:
+            found.append(command)
+    if len(found) < 8:
+        sys.exit("README.md: only %d commands in its text" % len(found))
+    return found
+
+
+def job(text):
+    """The commands of the job in YAML."""
+    yaml = text.split("```yaml\n", 1)[1].split("```", 1)[0]
+    return [line.split("run:", 1)[1].strip() for line in yaml.splitlines() if re.search(r"\brun: ", line)]
+
+
+def stub(path, text):
+    with open(path, "w", encoding="ascii") as file:
+        file.write("#!/bin/sh\n" + text)
+    os.chmod(path, 0o755)
+
+
+def scripts(program, source, work):
+    shutil.rmtree(work, ignore_errors=True)
+    folder = os.path.join(work, "build")
+    os.makedirs(os.path.join(work, "bin"))
+    environment = dict(os.environ, BUILD=folder, PATH=os.path.join(work, "bin") + os.pathsep + os.environ["PATH"])
+
+    def run(command):
+        result = subprocess.run(["sh", "-c", command], cwd=work, env=environment, capture_output=True, text=True,
+                                stdin=subprocess.DEVNULL, check=False)
+        return result.returncode, result.stdout, result.stderr
+
+    def in_source(command):
+        return re.sub(r"(?<![\w/])(reports|verify)/(run|compare)", shlex.quote(source) + r"/\1/\2", command)
+
+    wrong = {"reports/run": ["--bogus", "--out a --out=b", "--out", "word", "--quick --nightly", "--resume --force"],
+             "verify/run": ["--bogus", "--full --bogus", "--full --nightly", "word"],
+             "reports/compare": ["HEAD --bogus", "HEAD HEAD", "HEAD --threshold", "no-such-revision"]}
+    for script, lines in wrong.items():
+        for line in lines:
+            code, out, said = run(in_source(script) + " " + line)
+            if code != 2 or out or not said or os.path.exists(folder):
+                sys.exit("%s %s: exit %d\n%s%s" % (script, line, code, out, said))
+        for line in ("--help", "-h"):
+            code, out, said = run(in_source(script) + " " + line)
+            if code or script not in out or said or os.path.exists(folder):
+                sys.exit("%s %s: exit %d\n%s%s" % (script, line, code, out, said))
+    # what is built is a program that says how it was called; nothing is compiled
+    os.makedirs(folder)
+    for name in ("meson", "ninja", "python3"):
+        stub(os.path.join(work, "bin", name), "exit 0\n")
+    stub(os.path.join(folder, "sphproof"), "printf '%%s\\n' \"$@\" >%s/words\n" % shlex.quote(work))
+    text = open(os.path.join(source, "README.md"), encoding="utf-8").read()
+    cron = re.search(r"^    15 3 .*(reports/run.*)$", text, flags=re.M).group(1)
+    known = subprocess.run([program, "report", "--help"], capture_output=True, text=True, check=True).stdout
+    for line in [c for c in job(text) if "reports/run" in c] + [cron, "reports/run --out=a", "reports/run --out a",
+                                                                "reports/run", "reports/run --jobs --out"]:
+        code, out, said = run("mkdir -p a nights/report; touch nights/report/faults.json a/faults.json; " +
+                              in_source(line).replace("--nightly", "--nightly --out nights/report"
+                                                      if "--out" not in line else "--nightly"))
+        words = open(os.path.join(work, "words"), encoding="utf-8").read().split("\n")[:-1]
+        options = [word for before, word in zip(words, words[1:]) if word.startswith("--") and before != "--jobs"]
+        if code or len(options) != len(set(options)) or options.count("--out") != 1:
+            sys.exit("%s: exit %d, the program got %s\n%s%s" % (line, code, words, out, said))
+        for option in options:
+            if option not in known:
+                sys.exit("%s: `sphproof report` knows no %s" % (line, option))
+        if "--out" in line and "jobs" not in line and words[words.index("--out") + 1] not in line:
+            sys.exit("%s: the folder is %s" % (line, words))
+    print("scripts are right")
+
+
 def stories(source, work):
     tree = os.path.join(work, "tree")
     shutil.rmtree(work, ignore_errors=True)
@@ -26,26 +128,32 @@ def stories(source, work):
     subprocess.run(["meson", "setup", "build", "-Dclones=false", "-Doptimization=1", "-Dslow=false"],
                    cwd=tree, check=True, stdout=subprocess.DEVNULL)
     subprocess.run(["ninja", "-C", "build"], cwd=tree, check=True, stdout=subprocess.DEVNULL)
-    path = os.path.join(tree, "build") + os.pathsep + os.environ["PATH"]
+    environment = dict(os.environ, GITHUB_STEP_SUMMARY=os.path.join(work, "step.md"))
+    environment["PATH"] = os.path.join(tree, "build") + os.pathsep + os.environ["PATH"]
     text = open(os.path.join(tree, "README.md"), encoding="utf-8").read()
     blocks = [part.split("```", 1)[0] for part in text.split("```sh\n")[1:]]
     commands = [line for block in blocks for line in block.splitlines() if line.strip()]
     if len(commands) < 12:
         sys.exit("README.md: only %d commands in its stories" % len(commands))
+    commands += ["%s >%s" % (command, os.devnull) for command in inline(text)]
+    # the job, with what a quarter of an hour allows
+    commands += [command.replace("--nightly", "--quick") for command in job(text)]
     for command in commands:
         wanted = int(command.rsplit("# exit ", 1)[1]) if "# exit " in command else 0
-        result = subprocess.run(["sh", "-c", command], cwd=tree, env=dict(os.environ, PATH=path),
+        result = subprocess.run(["sh", "-c", command], cwd=tree, env=environment,
                                 capture_output=True, text=True, stdin=subprocess.DEVNULL)
         print("%d  %s" % (result.returncode, command), flush=True)
         if result.returncode != wanted:
             sys.exit("exit %d instead of %d\n%s%s" % (result.returncode, wanted,
                                                       result.stdout[-2000:], result.stderr[-2000:]))
-    for made in ("sod.svg", "streams.svg"):
+    for made in ("sod.svg", "streams.svg", "nights/report/index.html", "nights/history.jsonl", "../step.md"):
         if os.path.getsize(os.path.join(tree, made)) < 1000:
             sys.exit(made + " is empty")
 
 
 if sys.argv[1] == "keys":
     keys(*sys.argv[2:4])
+elif sys.argv[1] == "scripts":
+    scripts(*sys.argv[2:5])
 else:
     stories(*sys.argv[2:4])
