@@ -35,7 +35,7 @@ PLACES = {
         "printf 'x,y,volume,f\\n0,0,1,2\\n1,0,1,3\\n0,1,1,4\\n1,1,1,5\\n' >cloud.csv; "
         "sphproof gradient cloud.csv --operator ia --kernel wendland_c2 --dim 2 --eta 2",
     "python3 verify/test/faults.py build/sphproof PART": None,  # test `faults`
-    "reports/run": None, "reports/compare main": None,  # tests `README: scripts`, `reports/compare`
+    "reports/run": None, "reports/run --nightly": None, "reports/compare main": None,  # tests `README: scripts`, `reports/compare`
     "verify/run --full": None, "verify/run --nightly": None,
 }
 
