@@ -6,9 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "run_job.h"
 #include "stress_linear.h"
 #include "stress_outcome.h"
+#include "stress_run.h"
 
 enum { STEPS_QUICK = 30000, STEPS_NIGHTLY = 3000000 };
 /* Steps times n^2, which is what they cost where few particles see all: about a minute. */
@@ -95,125 +95,11 @@ void stress_command(const struct stress_cell *cell, char command[STRESS_COMMAND]
     }
 }
 
-/* --- one run -----------------------------------------------------------------------------------
- */
-
-/* Stops a run that has used up its steps. */
-struct watch {
-    uint64_t budget;
-    double first_step, last_step, last_time; /* mean time steps of the first and last 32 */
-    bool out_of_steps;
-};
-
-static bool watch_steps(void *context, double time, uint64_t steps)
-{
-    struct watch *watch = context;
-    watch->last_step = (time - watch->last_time) / 32;
-    if (watch->first_step <= 0) watch->first_step = watch->last_step;
-    watch->last_time = time;
-    watch->out_of_steps = steps >= watch->budget;
-    return !watch->out_of_steps;
-}
-
-static bool all_finite(const struct snapshot *s)
-{
-    const double *const fields[] = {s->x[0], s->v[0], s->rho, s->u, s->P, s->h, s->volume};
-    for (size_t f = 0; f < sizeof fields / sizeof *fields; f++)
-        for (size_t i = 0; i < s->n; i++)
-            if (!isfinite(fields[f][i])) return false;
-    return true;
-}
-
-/* Mean of the exact density over the window. */
-static double mean_density(const struct run_result *result)
-{
-    enum { POINTS = 200 };
-    const struct window *window = &result->problem.window;
-    double sum = 0;
-    for (int i = 0; i < POINTS; i++) {
-        struct problem_state state;
-        const double x = window->lo[0] + (i + 0.5) / POINTS * (window->hi[0] - window->lo[0]);
-        problem_sample(&result->problem, (double[3]){x}, result->time, &state);
-        sum += state.rho / POINTS;
-    }
-    return sum;
-}
-
-static json_t *judge_run(const struct stress_cell *cell, const struct run_result *result,
-                         const struct watch *watch)
-{
-    char reason[768] = "";
-    const bool drift = cell->group->kind == STRESS_DRIFT;
-    const double error = result->errors[FIELD_DENSITY].l1 / mean_density(result);
-    const double measured = drift ? result->energy : error;
-    const size_t crossed = result->crossed;
-    if (result->status == STATUS_BROKE_DOWN) {
-        snprintf(reason, sizeof reason, "%s: %s", stress_outcome_breakdown(result->message),
-                 result->message);
-        return stress_outcome((double)NAN, (double)NAN, "broke_down", reason);
-    }
-    if (!all_finite(&result->snapshot))
-        return stress_outcome((double)NAN, (double)NAN, "broke_down",
-                              "silent NaN: the run did not notice");
-    if (watch->out_of_steps) {
-        const bool collapse = watch->last_step < 1e-3 * watch->first_step;
-        snprintf(reason, sizeof reason,
-                 "%s: t = %.4g of %.4g after %llu steps, dt %.2g, first %.2g",
-                 collapse ? "time step collapse" : "budget", result->time,
-                 settings_real(&result->settings, SETTING_t_end),
-                 (unsigned long long)result->cost.steps, watch->last_step, watch->first_step);
-        return stress_outcome((double)NAN, measured, collapse ? "broke_down" : "inaccurate",
-                              reason);
-    }
-    const double momentum_bound = 1e-9, energy_bound = drift ? cell->group->bound : 0.05;
-    int used = 0;
-    if (!(measured <= cell->group->bound))
-        used += snprintf(reason + used, sizeof reason - (size_t)used, "%s %.2g above %.2g; ",
-                         drift ? "energy error" : "density error", measured, cell->group->bound);
-    if (!(result->energy <= energy_bound) && !drift)
-        used += snprintf(reason + used, sizeof reason - (size_t)used, "energy error %.2g; ",
-                         result->energy);
-    /* in gas that comes to rest the scale of momentum vanishes */
-    if (!(result->momentum <= momentum_bound) && !drift)
-        used += snprintf(reason + used, sizeof reason - (size_t)used, "momentum error %.2g; ",
-                         result->momentum);
-    const bool good = used == 0;
-    if (crossed)
-        used += snprintf(reason + used, sizeof reason - (size_t)used,
-                         "%zu neighbours are no longer next to each other; ", crossed);
-    if (drift)
-        used += snprintf(reason + used, sizeof reason - (size_t)used,
-                         "momentum error %.2g, largest speed %.2g; ", result->momentum,
-                         result->errors[FIELD_VELOCITY].linf);
-    if (used) reason[used - 2] = '\0';
-    return stress_outcome((double)NAN, measured, good ? "ok" : "inaccurate", reason);
-}
-
-static enum status compute_run(const struct stress_cell *cell, json_t **document,
-                               struct error *error)
-{
-    struct run run;
-    struct run_result result;
-    struct watch watch = {.budget = cell->step_budget};
-    enum status status = run_resolve(&run, &cell->settings, error);
-    run.asked.progress = watch_steps;
-    run.asked.progress_context = &watch;
-    if (!status) status = run_execute(&run, &result, error);
-    if (status == STATUS_OK || status == STATUS_BROKE_DOWN) {
-        *document = judge_run(cell, &result, &watch);
-        run_free(&result);
-        return STATUS_OK;
-    }
-    if (status != STATUS_BAD_INPUT) return status;
-    *document = stress_outcome((double)NAN, (double)NAN, "refused", error->message);
-    return STATUS_OK;
-}
-
 static enum status compute(const void *context, json_t **document, struct error *error)
 {
     const struct stress_cell *cell = context;
     const bool run = cell->group->kind == STRESS_RUN || cell->group->kind == STRESS_DRIFT;
-    return run ? compute_run(cell, document, error) : stress_linear(cell, document, error);
+    return run ? stress_run(cell, document, error) : stress_linear(cell, document, error);
 }
 
 /* --- the pool ----------------------------------------------------------------------------------

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The maps of the stress test. A new one is an entry here. */
-#include "stress.h"
+#include "stress_cell.h"
 
 #define ENTRIES(...) ((const struct stress_entry[]){__VA_ARGS__, {NULL, NULL, false}})
 #define SEED                                                                                       \

@@ -4,7 +4,9 @@
 #ifndef SPHPROOF_STRESS_LINEAR_H
 #define SPHPROOF_STRESS_LINEAR_H
 
-#include "stress.h"
+#include <jansson.h>
+
+#include "stress_cell.h"
 
 /* Computes a cell of kind STRESS_LIMIT, STRESS_STEP or STRESS_PAIRING: its stress_outcome. */
 enum status stress_linear(const struct stress_cell *cell, json_t **document, struct error *error);

@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The groups of the stress test (stress_groups.c lists them) and their cells. */
+#ifndef SPHPROOF_STRESS_CELL_H
+#define SPHPROOF_STRESS_CELL_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "run.h"
+
+/* A row or column of a group's map: a label and "KEY=VALUE;KEY=VALUE". */
+struct stress_entry {
+    const char *label, *keys;
+    bool nightly; /* not in the quick stress test */
+};
+
+/* What the cells of a group are. */
+enum stress_kind {
+    STRESS_RUN,     /* a run against its exact solution: error of density, relative to its mean */
+    STRESS_DRIFT,   /* many steps of a still box: drift of energy */
+    STRESS_LIMIT,   /* limits of eta: predicted, and found by noise runs */
+    STRESS_STEP,    /* largest c dt/dx of an integrator: the same */
+    STRESS_PAIRING, /* onset of pairing in 2D and 3D: predicted */
+};
+
+struct stress_group {
+    struct member member; /* name, what it does, paper */
+    enum stress_kind kind;
+    const char *case_name, *keys;         /* of all cells; the columns', then the rows' follow */
+    const char *row_title, *column_title; /* of the map */
+    const struct stress_entry *rows, *columns; /* end with a NULL label */
+    double bound;                              /* of what is measured: above it is inaccurate */
+};
+
+extern const struct stress_group stress_groups[];
+extern const size_t stress_group_count;
+
+/* Schemes that a group without rows of its own compares: the first is the default scheme, the
+ * second the seed program's method, corrected. */
+extern const struct stress_entry stress_schemes[];
+
+enum { STRESS_ARGUMENTS = 40, STRESS_TEXT = 64, STRESS_COMMAND = 1024 };
+
+struct stress_cell {
+    const struct stress_group *group;
+    const struct stress_entry *row, *column;
+    char arguments[STRESS_ARGUMENTS][STRESS_TEXT]; /* KEY=VALUE */
+    size_t argument_count;
+    struct run_settings settings;
+    uint64_t step_budget;
+    size_t job; /* in the pool */
+};
+
+#endif
