@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Kernels: W(r,h) = C_d h^-d w(q), q = r/h, with h the support radius (w = 0 for q >= 1).
- * A kernel is one file in kernel/ (its mathematics and one KERNEL line) and one line in
- * kernels.def. */
+ * Kernels (CONVENTIONS section 2): W(r,h) = C_d h^-d w(q), q = r/h, with h the support radius (w =
+ * 0 for q >= 1). A kernel is one file in kernel/ (its mathematics and one KERNEL line) and one line
+ * in kernels.def. */
 #ifndef SPHPROOF_KERNEL_H
 #define SPHPROOF_KERNEL_H
 

@@ -41,7 +41,7 @@ struct pair_numbers {
 
 /* --- pressure --------------------------------------------------------------------------------- */
 
-/* vanilla_ice (Wadsley, Keller & Quinn 2017, lambda = 1):
+/* vanilla_ice, CONVENTIONS eq. 5.1 (Wadsley, Keller & Quinn 2017, lambda = 1):
  * m_i dv_i/dt = -sum_j Z_i Z_j (P_i + P_j)/(y_i y_j) Gbar_ij, and Z/y = V. G: mean of both. */
 ALWAYS_INLINE struct pair_terms pair_pressure_vanilla_ice(const struct pair_side *i,
                                                           const struct pair_side *j, double G)
@@ -50,7 +50,7 @@ ALWAYS_INLINE struct pair_terms pair_pressure_vanilla_ice(const struct pair_side
     return (struct pair_terms){A * i->P, A * j->P};
 }
 
-/* lagrangian (Springel & Hernquist 2002; f_ij of Hopkins 2013):
+/* lagrangian, CONVENTIONS eq. 5.3 (Springel & Hernquist 2002; f_ij of Hopkins 2013):
  * m_i dv_i/dt = -sum_j Z_i Z_j (f_ij P_i/y_i^2 G_ij(h_i) + f_ji P_j/y_j^2 G_ij(h_j)) with
  * f_ij = 1 - (m_j/Z_j)(1 - f_i), b = Z P/y^2. */
 ALWAYS_INLINE struct pair_terms pair_pressure_lagrangian(const struct pair_side *i,
@@ -86,11 +86,11 @@ ALWAYS_INLINE double pair_damping(double z)
     return s * s;
 }
 
-/* Closing speed of a pair extrapolated to its midpoint with a limited slope (Frontiere, Raskin &
- * Owen 2017; Rosswog 2020, MAGMA2 eqs. 18-22): closing + phi/2 (s_i + s_j) r with the limiter
- * phi = max(0, 4 s_i s_j/(s_i + s_j)^2) exp(-((q - near)/0.2)^2 where q = r/max(h_i, h_j) < near).
- * Returned as a numerator over *scale, so that the pair needs one division. Zero where the pair
- * itself recedes: the heating uses v_ij, and viscosity never cools. */
+/* Closing speed of a pair extrapolated to its midpoint with a limited slope, CONVENTIONS eqs. 5.11
+ * and 5.12 (Frontiere, Raskin & Owen 2017; Rosswog 2020, eqs. 18-22): closing + phi/2 (s_i + s_j)
+ * r, phi = max(0, 4 s_i s_j/(s_i + s_j)^2) exp(-((q - near)/0.2)^2 where q = r/max(h_i, h_j) <
+ * near). Returned as a numerator over *scale, so that the pair needs one division. Zero where the
+ * pair itself recedes: the heating uses v_ij, and viscosity never cools. */
 ALWAYS_INLINE double pair_closing_at_midpoint(const struct pair_side *i, const struct pair_side *j,
                                               double r, double closing, double near, double *scale)
 {
@@ -103,14 +103,15 @@ ALWAYS_INLINE double pair_closing_at_midpoint(const struct pair_side *i, const s
     return closing > 0 && at_midpoint * *scale > 0 ? at_midpoint : 0;
 }
 
-/* Viscosity fading: the linear term sees the speed of sound only where a pair closes faster than
- * this part of it, and a proportionally smaller one below: smooth flow is left alone, to second
- * order, while shocks (0.1 c and more a pair) do not notice. */
+/* Viscosity fading, CONVENTIONS eq. 5.13: the linear term sees the speed of sound only where a pair
+ * closes faster than this part of it, and a proportionally smaller one below: smooth flow is left
+ * alone, to second order, while shocks (0.1 c and more a pair) do not notice. */
 static const double pair_fade_below = 0.01;
 
 /* The term m_i m_j PI G/2 that viscosity adds to a_i and to a_j alike (heat in halves), in the form
- * of Monaghan 1992: PI = (-alpha cbar mu + beta mu^2)/rhobar, mu = -hbar closing r/(r^2 + 0.01
- * hbar^2), hbar = (h_i + h_j)/4, 0 where the pair recedes. G: mean of both gradients. */
+ * of Monaghan 1992, CONVENTIONS eqs. 5.6 to 5.8: PI = (-alpha cbar mu + beta mu^2)/rhobar, mu =
+ * -hbar closing r/(r^2 + 0.01 hbar^2), hbar = (h_i + h_j)/4, 0 where the pair recedes. G: mean of
+ * both gradients. */
 ALWAYS_INLINE double pair_viscous(enum viscosity viscosity, const struct pair_numbers *numbers,
                                   const struct pair_side *i, const struct pair_side *j, double r,
                                   double closing, double G)
@@ -132,8 +133,8 @@ ALWAYS_INLINE double pair_viscous(enum viscosity viscosity, const struct pair_nu
            (D2 * D2 * (i->rho + j->rho));
 }
 
-/* The same term with the signal velocity (Monaghan 1997), for closing = -w_ij > 0:
- * PI = (alpha cbar + (beta/2) closing) closing/rhobar. */
+/* The same term with the signal velocity (Monaghan 1997, CONVENTIONS eq. 6.2), for closing = -w_ij
+ * > 0: PI = (alpha cbar + (beta/2) closing) closing/rhobar. */
 ALWAYS_INLINE double pair_viscous_signal(enum viscosity viscosity,
                                          const struct pair_numbers *numbers,
                                          const struct pair_side *i, const struct pair_side *j,
@@ -154,16 +155,16 @@ ALWAYS_INLINE double pair_viscous_signal(enum viscosity viscosity,
 
 /* --- energy ----------------------------------------------------------------------------------- */
 
-/* Heating of either particle: dU_i/dt = sum_j a_i closing (a_i = f_i P_i V_i V_j G and half of the
- * viscosity). */
+/* Heating of either particle, CONVENTIONS eqs. 5.2 and 5.4: dU_i/dt = sum_j a_i closing (a_i = f_i
+ * P_i V_i V_j G and half of the viscosity). */
 ALWAYS_INLINE struct pair_terms pair_heating(struct pair_terms a, double closing)
 {
     return (struct pair_terms){a.i * closing, a.j * closing};
 }
 
-/* Total energy that passes from i to j along one axis (v_i, v_j: velocities along it, a: terms
- * along it): the pressure of each with the velocity of the other, so that
- * dE_i = -dE_j = v_i . dp_i + dU_i. */
+/* Total energy that passes from i to j along one axis, CONVENTIONS eq. 5.5 (v_i, v_j: velocities
+ * along it, a: terms along it): the pressure of each with the velocity of the other, so that dE_i =
+ * -dE_j = v_i . dp_i + dU_i. */
 ALWAYS_INLINE double pair_energy_flux(struct pair_terms a, double v_i, double v_j)
 {
     return a.j * v_i + a.i * v_j;
@@ -171,7 +172,7 @@ ALWAYS_INLINE double pair_energy_flux(struct pair_terms a, double v_i, double v_
 
 /* --- time step -------------------------------------------------------------------------------- */
 
-/* Signal speed c_i + c_j + 3 max(closing, 0) (Monaghan 1997; Springel 2005). */
+/* Signal speed, CONVENTIONS eq. 5.14 (Monaghan 1997; Springel 2005). */
 ALWAYS_INLINE double pair_signal_speed(double c_i, double c_j, double closing)
 {
     return c_i + c_j + 3 * largest(closing, 0);

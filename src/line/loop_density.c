@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Kernel sums of density, smoothing length and grad-h (PHYSICS: y_i = sum_j Z_j W(r_ij, h_i)). */
+ * Kernel sums of density, smoothing length and grad-h (CONVENTIONS eqs. 3.1 and 3.9). */
 #include <math.h>
 
 #include "loops.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Pair forces in 1D (PHYSICS: equations of motion). A half loop: for each offset d the fluxes of
+ * Pair forces in 1D (CONVENTIONS section 5; pair.h). A half loop: for each offset d the fluxes of
  * the pairs (i, i+d) go into strips, then every particle collects its right and its left pair:
  * the order of summation is fixed, and momentum is conserved to round-off. The kernel stands in
  * loop_gradient.c alone. With j right of i: r = x_j - x_i >= 0, G = grad_i W > 0. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Gradients of the pairs (i, i+d) in 1D, the one part of the pair force that knows the kernel.
  * With j right of i, r = x_j - x_i >= 0 and the component of grad_i W is positive:
- * standard: -C/h^2 w'(r/h); ia: g r w(r/h), g = 1/sum V x^2 w. */
+ * standard: -C/h^2 w'(r/h), ia: g r w(r/h), g = 1/sum V x^2 w (CONVENTIONS eqs. 4.1 and 4.3). */
 #include <math.h>
 
 #include "loops.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The moment matrix of the Integral Approach, in 1D the number T_i = sum_j V_j x^2 W, and with it
- * the linear_exact velocity gradient (Garcia-Senz et al. 2012; Price 2004). C/h cancels between
+ * the linear_exact velocity gradient (CONVENTIONS eqs. 4.3 and 4.4). C/h cancels between
  * matrix and gradient: g = 1/sum V x^2 w, G = g x w. */
 #include <math.h>
 

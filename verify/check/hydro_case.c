@@ -12,8 +12,8 @@
 
 enum { ARGUMENTS_MAX = 16 };
 
-/* data/seed_program_crosscheck.csv of the project's notes: two independent implementations agree on
- * these to 2e-11. N = 100, t = 0.1, particle means of |error| over |x| < 0.5. */
+/* Two independent implementations of the corrected method agree on these to 2e-11. N = 100, t =
+ * 0.1, particle means of |error| over |x| < 0.5. */
 struct line {
     const char *formulation, *volume_element, *gradient;
     double density, velocity, pressure;

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The equations of motion as pair forces (PHYSICS section 5) on random disordered states in 1D, 2D
- * and 3D, straight from their formulas, with gradients G_ij that are src's operators applied to
- * fields which are 1 at one point. For rates of change of conserved sums without time stepping. */
+ * The equations of motion as pair forces (CONVENTIONS eqs. 5.1 to 5.4) on random disordered states
+ * in 1D, 2D and 3D, straight from their formulas, with gradients G_ij that are src's operators
+ * applied to fields which are 1 at one point. For rates of change of conserved sums without time
+ * stepping. */
 #ifndef SPHPROOF_PAIR_FORCES_H
 #define SPHPROOF_PAIR_FORCES_H
 

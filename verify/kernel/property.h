@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The properties that every kernel must have (PHYSICS: kernels), each measured by one function in
- * property/. The certificate of a kernel and the checks of group `kernels` read the same list,
+ * The properties that every kernel must have (CONVENTIONS section 2), each measured by one function
+ * in property/. The certificate of a kernel and the checks of group `kernels` read the same list,
  * properties.def. */
 #ifndef SPHPROOF_PROPERTY_H
 #define SPHPROOF_PROPERTY_H

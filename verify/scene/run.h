@@ -59,7 +59,7 @@ struct run_result {
     size_t crossed;       /* neighbours of the start that are not next to each other any more */
     double spacing, h;    /* box/n; mean smoothing length in the window, by volume */
     struct budget budget; /* L1 by regions of the problem */
-    double mass, momentum, energy; /* conservation: relative, >= 0; see CONSERVATION in run.c */
+    double mass, momentum, energy; /* conservation: relative, >= 0: see trace_drift */
     struct simulation_cost cost;
     double peak_rss; /* bytes, of the process so far */
     struct plan_line plan[RUN_PLAN_MAX];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Derivation. A wave is a complex amplitude a, the perturbation Re(a exp(i kappa j)); at offset k
- * the neighbour's is a e, e = exp(i kappa k). Each equation of PHYSICS.md, sections 3 to 5, is
+ * the neighbour's is a e, e = exp(i kappa k). Each equation of CONVENTIONS sections 3 to 5 is
  * varied term by term: density and width together (h rho = eta m), volume, pressure, the matrix of
  * ia, grad-h factors, then the pair force. */
 #include "stability.h"
