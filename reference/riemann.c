@@ -235,6 +235,7 @@ const char *riemann_solve(double gamma, const struct riemann_state *left,
         wave[1] = wave_make(b, y, p, -v);
         s.p_star = (double)p;
         s.v_star = (double)v;
+        s.underflow = p < DBL_MIN || wave[0].rho < DBL_MIN || wave[1].rho < DBL_MIN;
     }
     s.contact = s.v_star;
     s.left_wave = wave[0].kind;

@@ -23,6 +23,7 @@ struct riemann_solution {
     bool vacuum;                          /* somewhere, hence no star region and no contact */
     double p_star, v_star;                /* between the waves; 0 and NaN with vacuum */
     double rho_star_left, rho_star_right; /* either side of the contact; 0 with vacuum */
+    bool underflow; /* p* or a rho* is no vacuum, but below DBL_MIN: 0, or with few digits */
     enum riemann_wave left_wave, right_wave;
     double left_head, left_tail; /* speeds; equal for a shock, NaN where there is no wave; */
     double contact;              /* a tail beside vacuum is the gas's edge */
@@ -35,8 +36,9 @@ const char *riemann_wave_name(enum riemann_wave wave);
 /* Solves the problem left | right. gamma > 1, rho >= 0, P >= 0, P = 0 where rho = 0, all finite.
  * Star values are right to 1e-14 relative, speeds to 1e-14 of the largest of |v|, c; close to
  * vacuum p* and rho* lose what their problem loses, (2 gamma/(gamma-1))/(1 - dv/dv_vacuum) times
- * the rounding of long double. Returns NULL, or a text that says what is wrong with the input, or
- * that the result is beyond the range of double (solution is then untouched). */
+ * the rounding of long double; values below DBL_MIN lose digits, which `underflow` says. Returns
+ * NULL, or a text that says what is wrong with the input, or that the result is beyond the range of
+ * double (solution is then untouched). */
 const char *riemann_solve(double gamma, const struct riemann_state *left,
                           const struct riemann_state *right, struct riemann_solution *solution);
 

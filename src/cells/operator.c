@@ -8,6 +8,7 @@
 #include "shapes.h"
 #include "stamp.h"
 #include "matrix.h"
+#include "units.h"
 
 #define OPERATOR(name, vectors, difference, corrected, exact, exact_on_lattice, label, paper)      \
     static const struct operator_form operator_##name = {                                          \
@@ -26,8 +27,8 @@ const struct family operator_family = {"operators", "gradient operators on a clo
 
 const char *operator_state_name(enum operator_state state)
 {
-    static const char *const names[] = {"ok", "too_few_neighbours", "ill_conditioned", "singular",
-                                        "overflow"};
+    static const char *const names[] = {"ok",       "too_few_neighbours", "ill_conditioned",
+                                        "singular", "overflow",           "underflow"};
     return names[state];
 }
 
@@ -397,14 +398,12 @@ static enum status check(const struct cloud *cloud, struct error *error)
     return STATUS_OK;
 }
 
-enum status operator_apply(const struct operator_settings *settings, const struct cloud *cloud,
-                           size_t fields, const double *const *f, double *const *gradient,
-                           struct operator_point *point, uint64_t *pairs, struct error *error)
+static enum status apply(const struct operator_settings *settings, const struct cloud *cloud,
+                         size_t fields, const double *const *f, double *const *gradient,
+                         struct operator_point *point, uint64_t *pairs, struct error *error)
 {
     struct neighbours *nb;
-    enum status status = check(cloud, error);
-    if (pairs) *pairs = 0;
-    if (status) return status;
+    enum status status;
     if ((status = neighbours_create(&cloud->points, &nb, error))) return status;
     const size_t n = nb->n;
     struct task task = {.settings = settings,
@@ -428,5 +427,77 @@ enum status operator_apply(const struct operator_settings *settings, const struc
     }
     free(task.sorted);
     neighbours_destroy(nb);
+    return status;
+}
+
+static bool ordinary(const struct cloud *cloud, size_t fields, const double *const *f)
+{
+    bool all =
+        units_ordinary(cloud->points.n, cloud->h) && units_ordinary(cloud->points.n, cloud->volume);
+    for (size_t k = 0; k < fields; k++) all = all && units_ordinary(cloud->points.n, f[k]);
+    return all;
+}
+
+/* One component of the gradients of a field, found in other units, in those of the caller. */
+static void give_back(size_t n, int e, double *gradient, struct operator_point *point)
+{
+    for (size_t i = 0; i < n; i++) {
+        const double found = gradient[i];
+        gradient[i] = ldexp(found, e);
+        if (!point || point[i].state != OPERATOR_OK || !isfinite(found)) continue;
+        if (!isfinite(gradient[i])) point[i].state = OPERATOR_OVERFLOW;
+        if (fabs(gradient[i]) < DBL_MIN && fabs(found) > 0) point[i].state = OPERATOR_UNDERFLOW;
+    }
+}
+
+/* The exponents of the units: of length, of volume, then of the fields. */
+static enum status apply_in_units(const struct operator_settings *settings,
+                                  const struct cloud *cloud, size_t fields, const int *e,
+                                  double **scaled, double *const *gradient,
+                                  struct operator_point *point, uint64_t *pairs,
+                                  struct error *error)
+{
+    const size_t n = cloud->points.n;
+    const int dim = cloud->points.dim;
+    const struct operator_form *form = settings->form;
+    const bool bare = !form->corrected && form->pair_vector == VECTOR_GRADIENT;
+    struct cloud copy = {.h = scaled[0], .volume = scaled[1]};
+    bool sound = units_points(&cloud->points, e[0], &copy.points);
+    for (size_t k = 0; k < 2 + fields; k++) sound = sound && scaled[k];
+    enum status status = sound
+                             ? apply(settings, &copy, fields, (const double *const *)scaled + 2,
+                                     gradient, point, pairs, error)
+                             : error_set(error, STATUS_ENVIRONMENT, "no memory for %zu points", n);
+    for (size_t k = 0; k < fields && !status; k++)
+        for (int a = 0; a < dim; a++)
+            give_back(n, e[2 + k] + (bare ? e[1] - (dim + 1) * e[0] : -e[0]),
+                      gradient[k * (size_t)dim + (size_t)a], point);
+    if (sound) units_points_free(&copy.points);
+    return status;
+}
+
+enum status operator_apply(const struct operator_settings *settings, const struct cloud *cloud,
+                           size_t fields, const double *const *f, double *const *gradient,
+                           struct operator_point *point, uint64_t *pairs, struct error *error)
+{
+    const size_t n = cloud->points.n;
+    enum status status = check(cloud, error);
+    if (pairs) *pairs = 0;
+    if (status) return status;
+    if (ordinary(cloud, fields, f))
+        return apply(settings, cloud, fields, f, gradient, point, pairs, error);
+    int *e = calloc(2 + fields, sizeof *e);
+    double **scaled = calloc(2 + fields, sizeof *scaled);
+    for (size_t k = 0; e && scaled && k < 2 + fields; k++) {
+        const double *values = k == 0 ? cloud->h : k == 1 ? cloud->volume : f[k - 2];
+        e[k] = units_exponent(n, values);
+        scaled[k] = units_copy(n, values, e[k]);
+    }
+    status = e && scaled
+                 ? apply_in_units(settings, cloud, fields, e, scaled, gradient, point, pairs, error)
+                 : error_set(error, STATUS_ENVIRONMENT, "no memory for %zu fields", fields);
+    for (size_t k = 0; scaled && k < 2 + fields; k++) free(scaled[k]);
+    free(scaled);
+    free(e);
     return status;
 }

@@ -43,6 +43,7 @@ enum operator_state {
     OPERATOR_ILL_CONDITIONED,    /* condition above OPERATOR_CONDITION_MAX */
     OPERATOR_SINGULAR,           /* no inverse in double precision */
     OPERATOR_OVERFLOW,           /* a gradient is not a finite number */
+    OPERATOR_UNDERFLOW,          /* a gradient is too small for a normal number: digits are lost */
 };
 #define OPERATOR_CONDITION_MAX 1e6 /* beyond, a gradient keeps fewer than ten digits */
 
@@ -66,15 +67,15 @@ struct operator_settings {
 };
 
 /* Gradients of `fields` fields at once: f[k][i] at point i, component a goes to
- * gradient[k * dim + a][i]. A point whose matrix has no inverse gets NaN if the operator needs one.
- * point: n, or NULL where nobody asks (that is cheaper); pairs: number of pairs summed, or NULL.
- * STATUS_BAD_INPUT: h, volume or a coordinate out of range (the message names the point);
- * STATUS_ENVIRONMENT: no memory. */
+ * gradient[k * dim + a][i]. Any units will do (units.h). A point whose matrix has no inverse gets
+ * NaN if the operator needs one. point: n, or NULL where nobody asks (that is cheaper); pairs:
+ * number of pairs summed, or NULL. STATUS_BAD_INPUT: h, volume or a coordinate out of range (the
+ * message names the point); STATUS_ENVIRONMENT: no memory. */
 enum status operator_apply(const struct operator_settings *settings, const struct cloud *cloud,
                            size_t fields, const double *const *f, double *const *gradient,
                            struct operator_point *point, uint64_t *pairs, struct error *error);
 
-/* "ok", "too_few_neighbours", "ill_conditioned", "singular", "overflow" */
+/* "ok", "too_few_neighbours", "ill_conditioned", "singular", "overflow", "underflow" */
 const char *operator_state_name(enum operator_state state);
 
 #endif

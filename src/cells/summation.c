@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "summation.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
 #include "shapes.h"
+#include "units.h"
 
 enum { ITERATIONS_MAX = 200, REACHES_MAX = 200 };
 
@@ -171,8 +173,8 @@ static enum status check(const struct summation *of, struct error *error)
     return STATUS_OK;
 }
 
-enum status summation_solve(const struct summation *summation, double *h, double *rho,
-                            struct error *error)
+static enum status solve(const struct summation *summation, double *h, double *rho,
+                         struct error *error)
 {
     struct neighbours *nb;
     struct task task = {.of = summation, .h = h, .rho = rho};
@@ -201,5 +203,57 @@ enum status summation_solve(const struct summation *summation, double *h, double
         free(work.r);
     }
     neighbours_destroy(nb);
+    return status;
+}
+
+/* Extents of the cloud, or of its periodic box. */
+static void extents(const struct points *points, double extent[3])
+{
+    for (int a = 0; a < points->dim; a++) {
+        double lo = points->lo[a], hi = points->hi[a];
+        for (size_t i = 0; i < points->n && !points->periodic; i++) {
+            lo = i ? fmin(lo, points->x[a][i]) : points->x[a][i];
+            hi = i ? fmax(hi, points->x[a][i]) : points->x[a][i];
+        }
+        extent[a] = points->n || points->periodic ? hi - lo : 0;
+    }
+}
+
+/* h and rho found in other units, in those of the caller. */
+static enum status give_back(const struct summation *of, int length, int weight, double *h,
+                             double *rho, struct error *error)
+{
+    for (size_t i = 0; i < of->points.n; i++) {
+        h[i] = ldexp(h[i], length);
+        rho[i] = ldexp(rho[i], weight - of->points.dim * length);
+        if (!(h[i] >= DBL_MIN && h[i] <= DBL_MAX && rho[i] >= DBL_MIN && rho[i] <= DBL_MAX))
+            return error_set(error, STATUS_BROKE_DOWN,
+                             "point %zu: h = %g, density = %g: beyond the range of double "
+                             "precision; other units help",
+                             i, h[i], rho[i]);
+    }
+    return STATUS_OK;
+}
+
+enum status summation_solve(const struct summation *summation, double *h, double *rho,
+                            struct error *error)
+{
+    const struct points *points = &summation->points;
+    double extent[3] = {0};
+    extents(points, extent);
+    if (units_ordinary((size_t)points->dim, extent) && units_ordinary(points->n, summation->m))
+        return solve(summation, h, rho, error);
+    const int length = units_exponent((size_t)points->dim, extent);
+    const int weight = units_exponent(points->n, summation->m);
+    struct summation copy = *summation;
+    double *m = units_copy(points->n, summation->m, weight);
+    copy.m = m;
+    const bool sound = m && units_points(points, length, &copy.points);
+    enum status status =
+        sound ? solve(&copy, h, rho, error)
+              : error_set(error, STATUS_ENVIRONMENT, "no memory for %zu points", points->n);
+    if (!status) status = give_back(summation, length, weight, h, rho, error);
+    if (sound) units_points_free(&copy.points);
+    free(m);
     return status;
 }

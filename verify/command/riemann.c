@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * sphproof riemann: the exact solution of a Riemann problem, as a table and as JSON. */
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -90,17 +91,18 @@ static json_t *document_make(const struct riemann_solution *s, const struct samp
 {
     json_t *document = result_new("riemann");
     json_t *content = json_pack(
-        "{s:o, s:[o,o,o], s:[o,o,o], s:o, s:o, s:o, s:o, s:s, s:s, s:{s:o, s:o, s:o, s:o, s:o}, "
+        "{s:o, s:[o,o,o], s:[o,o,o], s:o, s:o, s:o, s:o, s:b, s:s, s:s, s:{s:o, s:o, s:o, s:o, "
+        "s:o}, "
         "s:o, s:o, s:o}",
         "gamma", number(s->gamma), "left", number(s->left.rho), number(s->left.v),
         number(s->left.P), "right", number(s->right.rho), number(s->right.v), number(s->right.P),
         "p_star", number(s->p_star), "v_star", number(s->v_star), "rho_star_left",
-        number(s->rho_star_left), "rho_star_right", number(s->rho_star_right), "left_wave",
-        riemann_wave_name(s->left_wave), "right_wave", riemann_wave_name(s->right_wave), "speeds",
-        "left_head", number(s->left_head), "left_tail", number(s->left_tail), "contact",
-        number(s->contact), "right_tail", number(s->right_tail), "right_head",
-        number(s->right_head), "time", number(sampling->time), "x0", number(sampling->x0),
-        "samples", samples_json(s, sampling));
+        number(s->rho_star_left), "rho_star_right", number(s->rho_star_right), "underflow",
+        (int)s->underflow, "left_wave", riemann_wave_name(s->left_wave), "right_wave",
+        riemann_wave_name(s->right_wave), "speeds", "left_head", number(s->left_head), "left_tail",
+        number(s->left_tail), "contact", number(s->contact), "right_tail", number(s->right_tail),
+        "right_head", number(s->right_head), "time", number(sampling->time), "x0",
+        number(sampling->x0), "samples", samples_json(s, sampling));
     if (!document || !content || json_object_update(document, content)) {
         json_decref(document);
         document = NULL;
@@ -134,6 +136,9 @@ static void print_solution(const struct riemann_solution *s, const struct sampli
         print_state("right star", s->rho_star_right, s->v_star, s->p_star);
     }
     print_state("right", s->right.rho, s->right.v, s->right.P);
+    if (s->underflow)
+        printf("note: a star value is below %.3g: 0, or with few digits; other units help\n",
+               DBL_MIN);
     printf("\n");
     print_wave("left", s->left_wave, s->left_head, s->left_tail);
     if (!s->vacuum) printf("%-18s speed %.11g\n", "contact", s->contact);

@@ -7,6 +7,7 @@
 #include <cmocka.h>
 #include <gsl/gsl_linalg.h>
 #include <gsl/gsl_rng.h>
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -307,6 +308,74 @@ static void test_summation(void **state)
         }
 }
 
+/* A cloud in units of 2^e, its fields in units of 2^g: the same gradients, densities and states but
+ * for their exponents, to the last bit. */
+static void test_units(void **state)
+{
+    (void)state;
+    static const int exponents[] = {-330, -200, 129, 300, 500, -990};
+    for (int dim = 1; dim <= 3; dim++)
+        for (size_t u = 0; u < sizeof exponents / sizeof *exponents; u++) {
+            const int e = exponents[u], g = u % 2 ? 400 : -400;
+            if (abs(e * dim) > 1000) continue; /* its volumes are no doubles */
+            const struct kernel kernel = kernel_named("wendland_c4");
+            const struct clouds_settings how = {
+                CLOUDS_JITTERED, dim, dim == 1 ? 60 : dim == 2 ? 12 : 6, 0.3, 2.7, 5};
+            struct clouds_cloud cloud, far;
+            assert_int_equal(clouds_make(&how, &cloud, NULL), STATUS_OK);
+            assert_int_equal(clouds_make(&how, &far, NULL), STATUS_OK);
+            const size_t n = cloud.cloud.points.n;
+            double *h[2] = {numbers(n), numbers(n)}, *rho[2] = {numbers(n), numbers(n)};
+            for (size_t i = 0; i < n; i++) {
+                for (int a = 0; a < dim; a++) far.x[a][i] = ldexp(far.x[a][i], e);
+                far.volume[i] = ldexp(far.volume[i], dim * e);
+                far.h[i] = ldexp(far.h[i], e);
+            }
+            for (size_t o = 0; o < operator_family.n; o++) {
+                const struct operator_settings settings = {operator_at(o), &kernel, false, 1};
+                struct computed c, d = {0};
+                compute(&settings, &cloud.cloud, &c);
+                for (size_t k = 0; k < FIELDS * 3; k++) d.gradient[k] = numbers(n);
+                for (size_t k = 0; k < FIELDS; k++) {
+                    d.f[k] = numbers(n);
+                    for (size_t i = 0; i < n; i++) d.f[k][i] = ldexp(c.f[k][i], g);
+                }
+                assert_non_null(d.point = calloc(n, sizeof *d.point));
+                assert_int_equal(operator_apply(&settings, &far.cloud, FIELDS,
+                                                (const double *const *)d.f, d.gradient, d.point,
+                                                &d.pairs, NULL),
+                                 STATUS_OK);
+                assert_true(c.pairs == d.pairs);
+                for (size_t i = 0; i < n; i++) {
+                    bool tiny = false, huge = false;
+                    for (size_t k = 0; k < FIELDS * (size_t)dim; k++) {
+                        const double expected = ldexp(c.gradient[k][i], g - e);
+                        assert_true(d.gradient[k][i] == expected);
+                        tiny = tiny || (fabs(expected) < DBL_MIN && c.gradient[k][i] != 0);
+                        huge = huge || isinf(expected);
+                    }
+                    if (tiny || huge)
+                        assert_true(d.point[i].state != OPERATOR_OK);
+                    else
+                        assert_true(d.point[i].state == c.point[i].state);
+                }
+                release(&c);
+                release(&d);
+            }
+            struct summation sum = {cloud.cloud.points, &kernel, cloud.volume, how.eta, 1e-12, 1};
+            struct summation far_sum = {far.cloud.points, &kernel, far.volume, how.eta, 1e-12, 1};
+            assert_int_equal(summation_solve(&sum, h[0], rho[0], NULL), STATUS_OK);
+            assert_int_equal(summation_solve(&far_sum, h[1], rho[1], NULL), STATUS_OK);
+            for (size_t i = 0; i < n; i++) {
+                near_relative(ldexp(h[1][i], -e), h[0][i], 1e-11);
+                near_relative(rho[1][i], rho[0][i], 1e-11);
+            }
+            for (int i = 0; i < 2; i++) free(h[i]), free(rho[i]);
+            clouds_free(&cloud);
+            clouds_free(&far);
+        }
+}
+
 /* Inverse and condition number against GSL's singular values, also badly scaled. */
 static void test_matrix(void **state)
 {
@@ -358,7 +427,7 @@ int main(void)
         cmocka_unit_test(test_brute_force), cmocka_unit_test(test_same_result),
         cmocka_unit_test(test_periodic),    cmocka_unit_test(test_states),
         cmocka_unit_test(test_odd_clouds),  cmocka_unit_test(test_summation),
-        cmocka_unit_test(test_matrix),
+        cmocka_unit_test(test_matrix),      cmocka_unit_test(test_units),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

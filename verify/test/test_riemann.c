@@ -307,6 +307,29 @@ static void test_equal_states(void **state)
     }
 }
 
+/* The same problem in units of velocity of 2^e: p* goes with 2^(2 e), also below the least normal
+ * number, where it says so. */
+static void test_underflow(void **state)
+{
+    (void)state;
+    static const int exponents[] = {-100, -500, -509, -511, 300};
+    const struct riemann_state left = {1, -1, 1}, right = {0.7, 1.3, 1.1};
+    struct riemann_solution base, s;
+    assert_null(riemann_solve(1.4, &left, &right, &base));
+    assert_false(base.underflow);
+    for (size_t i = 0; i < sizeof exponents / sizeof *exponents; i++) {
+        const int e = exponents[i];
+        const struct riemann_state l = {left.rho, ldexp(left.v, e), ldexp(left.P, 2 * e)};
+        const struct riemann_state r = {right.rho, ldexp(right.v, e), ldexp(right.P, 2 * e)};
+        const double expected = ldexp(base.p_star, 2 * e);
+        assert_null(riemann_solve(1.4, &l, &r, &s));
+        assert_true(s.underflow == (expected < DBL_MIN));
+        assert_true(fabs(s.p_star - expected) <= 1e-14 * expected + 2 * DBL_TRUE_MIN);
+        near_relative(s.rho_star_left, base.rho_star_left, 1e-14);
+        near_relative(s.v_star, ldexp(base.v_star, e), 1e-14);
+    }
+}
+
 static void test_cold_gas(void **state)
 {
     (void)state;
@@ -404,8 +427,9 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_table),          cmocka_unit_test(test_random),
         cmocka_unit_test(test_symmetries),     cmocka_unit_test(test_galilean),
         cmocka_unit_test(test_anything),       cmocka_unit_test(test_equal_states),
-        cmocka_unit_test(test_cold_gas),       cmocka_unit_test(test_sample_regions),
-        cmocka_unit_test(test_vacuum_samples), cmocka_unit_test(test_bad_input),
+        cmocka_unit_test(test_cold_gas),       cmocka_unit_test(test_underflow),
+        cmocka_unit_test(test_sample_regions), cmocka_unit_test(test_vacuum_samples),
+        cmocka_unit_test(test_bad_input),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
