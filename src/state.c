@@ -109,8 +109,8 @@ ALWAYS_INLINE double close_body(const struct particles *particles, ptrdiff_t fir
     return surprised;
 }
 
-/* 1/h as a Newton step from the width of the sums finds it, no further than a factor of 2 away:
- * close to the existence limit of h the step has no length. */
+/* 1/h as a step of CONVENTIONS eq. 3.10 from the width of the sums finds it, no further than a
+ * factor of 2 away: close to the existence limit of h the step has no length. */
 CLONES static void correct_width(const struct particles *particles, ptrdiff_t first, int len,
                                  const struct density_sums *restrict sums)
 {
@@ -149,8 +149,9 @@ typedef double close_loop(const struct particles *particles, ptrdiff_t first, in
     [energy_sum][own_gradient][dim - 1] = close_##energy_sum##_##own_gradient##_##dim,
 static close_loop *const close_loops[2][2][3] = {ALL(ENTRY)};
 
-/* The factors of the grad-h terms. With the energy element f_ij = 1 - (m_j/Z_j) grad_h_i (Hopkins
- * 2013), with the mass element f_i = 1 - grad_h_i; (h/(d rho)) drho/dh = -m_dh/(d m). */
+/* The factors of the grad-h terms (CONVENTIONS eqs. 3.7 to 3.9). With the energy element f_ij = 1 -
+ * (m_j/Z_j) grad_h_i (Hopkins 2013), with the mass element f_i = 1 - grad_h_i; (h/(d rho)) drho/dh
+ * = -m_dh/(d m). */
 static void find_grad_h(const struct particles *particles, ptrdiff_t first, int len,
                         bool energy_sum, const struct density_sums *restrict sums)
 {

@@ -19,8 +19,8 @@ struct gas {
     double gamma, constant, eta, follow;
 };
 
-/* Equation of state of len <= BATCH_MAX particles, from their sums at h_inverse: P = (gamma - 1)
- * rho u or (gamma - 1) y (energy element), c, V, rho; h as the sum of mass has found it; with them
+/* Equation of state of len <= BATCH_MAX particles, from their sums at h_inverse: P, c, V, rho
+ * (CONVENTIONS eqs. 1.1, 3.1 to 3.3); h as the sum of mass has found it; with them
  * g, b and grad_h where the plan wants them. Returns how many widths that were predicted are far
  * from those. */
 double state_close(const struct particles *particles, ptrdiff_t first, int len,
@@ -29,7 +29,7 @@ double state_close(const struct particles *particles, ptrdiff_t first, int len,
 /* Is the width of particle i that was predicted far from the one that the sum has found? */
 bool state_surprised(const struct particles *particles, ptrdiff_t i);
 
-/* Time-dependent viscosity (Morris & Monaghan 1997; Rosswog et al. 2000):
+/* Time-dependent viscosity, CONVENTIONS eq. 5.9 (Morris & Monaghan 1997):
  * dalpha/dt = max(-div v, 0)(alpha_max - alpha) - (alpha - alpha_min)/tau, tau = h/(0.2 c). */
 void state_dalpha(const struct particles *particles, ptrdiff_t first, int len,
                   const struct scheme *scheme);

@@ -42,7 +42,7 @@ bool width_step(const struct width_rule *rule, int len, const double *m,
             low[i] = h[i];
         else
             high[i] = h[i];
-        /* d target/dh = target/h (sum m (d w + q w'))/(d sum m w) */
+        /* CONVENTIONS eq. 3.10 */
         const double slope = 1 - target / h[i] * (sums->m_dh[i] / (rule->dim * sums->m[i]));
         double next = h[i] - residual / slope;
         if (!(slope > 0 && next > low[i] && next < high[i]))

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The smoothing length h = eta (m/rho(h))^(1/d), d = 1, 2, 3, with rho the kernel sum of mass:
- * Newton's method inside a bracket, for up to BATCH_MAX particles that are worked on together. Who
- * knows geometry computes the sums at the widths that are asked for. */
+ * The smoothing length h = eta (m/rho(h))^(1/d) (CONVENTIONS eq. 3.4), d = 1, 2, 3, with rho the
+ * kernel sum of mass: Newton's method (eq. 3.10) inside a bracket, for up to BATCH_MAX particles
+ * that are worked on together. Who knows geometry computes the sums at the widths that are asked
+ * for. */
 #ifndef SPHPROOF_WIDTH_H
 #define SPHPROOF_WIDTH_H
 
@@ -47,8 +48,8 @@ bool width_step(const struct width_rule *rule, int len, const double *m,
 int width_without_root(const struct width_rule *rule, int len, const double *m,
                        const struct density_sums *sums, const double *h, const double *h_inverse);
 
-/* 1/h for the next density sum: as last found, extrapolated by ratio times its last change, no
- * further than a factor of 2 away. */
+/* 1/h for the next density sum (eq. 3.11): as last found, extrapolated by ratio times its last
+ * change, no further than a factor of 2 away. */
 void width_predict(const struct particles *particles, ptrdiff_t first, int len, double ratio);
 
 #endif
