@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "check_registry.h"
 
-#define CHECK(name) extern const struct check check_##name;
+#define CHECK(file, name) extern const struct check check_##name;
 #include "checks.def"
 #undef CHECK
 
 const struct check *const check_registry[] = {
-#define CHECK(name) &check_##name,
+#define CHECK(file, name) &check_##name,
 #include "checks.def"
 #undef CHECK
 };

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * A check: a property, measured on subjects (kernels, operators, solvers, norms ...), each figure
  * against a bound with the noise floor beside it; and the mutants, wrong subjects that the same
- * code must reject. Adding a check: one file and one line in checks.def, both in check/. */
+ * code must reject. Adding a check: one file in check/ and one line in its checks.def. */
 #ifndef SPHPROOF_CHECK_H
 #define SPHPROOF_CHECK_H
 
