@@ -27,6 +27,7 @@ static const struct command_option report_options[] = {
     {"out", "DIR", "folder for the report (default: reports/out), made if needed"},
     {"jobs", "J", "so many computations side by side (default: one for each core)"},
     {"history", "FILE", "one line a night is added there (default: DIR/history.jsonl)"},
+    {"list", NULL, "compute nothing: the names of what would be computed, one a line"},
     {"resume", NULL, "go on after an interruption: what was finished is in DIR/cache"},
     {"force", NULL, "compute everything, also what DIR/cache has from this build"},
     {NULL, NULL, NULL},
@@ -182,7 +183,9 @@ static enum status run(const struct options *options, int n, char **arguments, s
     struct cache cache;
     json_t *results;
     if (n) return command_usage(options, error, "no argument is known: '%.40s'", arguments[0]);
-    if (take_settings(options, &settings, error) || take_paths(options, &paths, error) ||
+    if (take_settings(options, &settings, error)) return error->status;
+    if (options_value(options, "list")) return report_list(settings.mode, stdout, error);
+    if (take_paths(options, &paths, error) ||
         cache_open(&cache, paths.cache, options_value(options, "force") != NULL, error))
         return error->status;
     settings.cache = &cache;

@@ -7,8 +7,10 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "cases.h"
 #include "check_registry.h"
 #include "clock.h"
+#include "list.h"
 #include "pool.h"
 #include "report_piece.h"
 #include "result.h"
@@ -16,16 +18,6 @@
 #include "study.h"
 #include "suite.h"
 #include "verdict.h"
-
-/* compared: the schemes below get the case's gates too, with a wider bound of the error; not where
- * one of them is known to have no order yet at these resolutions. benched: what an error costs.
- * deeper: a night adds a level; not where the case says why its ladder ends. */
-static const struct {
-    const char *name;
-    bool compared, benched, deeper;
-} cases[] = {{"sod", true, true, true},           {"sod_standard", true, true, true},
-             {"strong_shock", false, true, true}, {"two_rarefactions", true, false, false},
-             {"lax", true, false, true},          {"sound_wave", true, true, true}};
 
 /* The default scheme, and the two gradients with all else equal. */
 static const struct {
@@ -39,23 +31,31 @@ static const struct {
 /* Of the bound on the finest error, for schemes other than the default. */
 static const double compared_bound = 3;
 
-enum { CASES = sizeof cases / sizeof *cases, SCHEMES = sizeof schemes / sizeof *schemes };
-enum { KEYS_MAX = 16, PIECES_MAX = 256, COMMAND_TEXT = 1024 };
+enum { SCHEMES = sizeof schemes / sizeof *schemes };
+enum { KEYS_MAX = 16, COMMAND_TEXT = 1024 };
+
+/* What a report has of a case. */
+struct reported {
+    const char *name;
+    bool studied;   /* it has a ladder of resolutions */
+    char more[256]; /* what the command line of its studies has beside their keys */
+    struct study studies[SCHEMES];
+};
 
 struct report {
     bool nightly;
     struct pool pool;
-    struct study studies[CASES][SCHEMES];
-    struct report_piece pieces[PIECES_MAX];
-    size_t piece_count;
+    struct reported *cases;
+    struct report_piece **pieces; /* one by one: the pool keeps where they are */
+    size_t case_count, piece_count;
     struct stress stress;
-    char more[CASES][256]; /* what the command line of a study has beside its keys */
 };
 
 /* ---- what is to be computed ---- */
 
 /* The case with the scheme's keys. */
-static enum status prepare(int c, int s, struct run_settings *settings, struct error *error)
+static enum status prepare(const char *name, int s, struct run_settings *settings,
+                           struct error *error)
 {
     char text[512], *arguments[KEYS_MAX], *rest = text;
     int n = 0;
@@ -66,41 +66,75 @@ static enum status prepare(int c, int s, struct run_settings *settings, struct e
                              schemes[s].label, KEYS_MAX);
         arguments[n++] = word;
     }
-    return run_prepare(settings, cases[c].name, n, arguments, error);
+    return run_prepare(settings, name, n, arguments, error);
 }
 
-static enum status add_study(struct report *report, int c, int s, struct error *error)
+static void add_level(struct study *study, char *more, size_t size)
 {
-    struct study *study = &report->studies[c][s];
+    study->ladder[study->level_count] = 2 * study->ladder[study->level_count - 1];
+    study->level_count++;
+    int used = snprintf(more, size, " --n ");
+    for (size_t i = 0; i < study->level_count && used < (int)size; i++)
+        used += snprintf(more + used, size - (size_t)used, "%s%zu", i ? "," : "", study->ladder[i]);
+}
+
+static enum status add_study(struct report *report, struct reported *of, int s,
+                             const struct run_settings *settings, struct error *error)
+{
+    struct study *study = &of->studies[s];
     struct case_file *file = &study->settings.file;
-    if (prepare(c, s, &study->settings, error) || sweep_parse(&study->sweep, NULL, error))
-        return error->status;
-    if (s && !cases[c].compared) file->gate_count = 0;
+    study->settings = *settings;
+    if (sweep_parse(&study->sweep, NULL, error)) return error->status;
+    if (s && !file->compare) file->gate_count = 0;
     for (size_t i = 0; i < file->gate_count && s; i++) file->gates[i].gate.bound *= compared_bound;
     memcpy(study->ladder, file->ladder, sizeof study->ladder);
     study->level_count = file->ladder_count;
     study->seeds = 1;
-    if (report->nightly && cases[c].deeper &&
-        study->level_count < CASE_LADDER_MAX) { /* one level more */
-        char *more = report->more[c];
-        study->ladder[study->level_count] = 2 * study->ladder[study->level_count - 1];
-        study->level_count++;
-        int used = snprintf(more, sizeof report->more[c], " --n ");
-        for (size_t i = 0; i < study->level_count && used < (int)sizeof report->more[c]; i++)
-            used += snprintf(more + used, sizeof report->more[c] - (size_t)used, "%s%zu",
-                             i ? "," : "", study->ladder[i]);
-    }
+    if (report->nightly && file->deepen && study->level_count < CASE_LADDER_MAX)
+        add_level(study, of->more, sizeof of->more);
     return study_plan(study, &report->pool, error);
 }
 
 static enum status add_piece(struct report *report, struct report_piece piece, struct error *error)
 {
-    if (report->piece_count == PIECES_MAX)
-        return error_set(error, STATUS_ENVIRONMENT, "a report of more than %d pieces", PIECES_MAX);
-    struct report_piece *kept = &report->pieces[report->piece_count++];
+    struct report_piece *kept = malloc(sizeof *kept);
+    if (!kept || !list_grow(&report->pieces, report->piece_count, sizeof *report->pieces)) {
+        free(kept);
+        return error_set(error, STATUS_ENVIRONMENT, "no memory for a piece of the report");
+    }
     piece.slow = report->nightly;
     *kept = piece;
+    report->pieces[report->piece_count++] = kept;
     return report_piece_add(&report->pool, kept, error);
+}
+
+/* Every built-in case with every scheme. */
+static enum status add_cases(struct report *report, struct error *error)
+{
+    while (case_builtins[report->case_count].name) report->case_count++;
+    report->cases = calloc(report->case_count, sizeof *report->cases);
+    if (!report->cases) return error_set(error, STATUS_ENVIRONMENT, "no memory for the cases");
+    for (size_t c = 0; c < report->case_count; c++) {
+        struct reported *of = &report->cases[c];
+        of->name = case_builtins[c].name;
+        for (int s = 0; s < SCHEMES; s++) {
+            struct report_piece run = {
+                .kind = REPORT_RUN, .where = of->name, .case_number = c, .scheme = s};
+            if (prepare(of->name, s, &run.settings, error)) return error->status;
+            of->studied = run.settings.file.ladder_count > 0;
+            if ((of->studied && add_study(report, of, s, &run.settings, error)) ||
+                add_piece(report, run, error))
+                return error->status;
+        }
+    }
+    for (size_t c = 0; c < report->case_count; c++) {
+        struct report_piece bench = {.kind = REPORT_BENCH, .where = report->cases[c].name};
+        if (prepare(bench.where, 0, &bench.settings, error)) return error->status;
+        if (report->cases[c].studied && bench.settings.file.bench &&
+            add_piece(report, bench, error))
+            return error->status;
+    }
+    return STATUS_OK;
 }
 
 static enum status add_checks(struct report *report, struct error *error)
@@ -117,20 +151,7 @@ static enum status add_checks(struct report *report, struct error *error)
 
 static enum status add_all(struct report *report, struct error *error)
 {
-    for (int c = 0; c < CASES; c++)
-        for (int s = 0; s < SCHEMES; s++) {
-            struct report_piece run = {.kind = REPORT_RUN, .where = cases[c].name};
-            if (add_study(report, c, s, error) || prepare(c, s, &run.settings, error) ||
-                add_piece(report, run, error))
-                return error->status;
-        }
-    for (int c = 0; c < CASES; c++) {
-        struct report_piece bench = {.kind = REPORT_BENCH, .where = cases[c].name};
-        if (cases[c].benched &&
-            (prepare(c, 0, &bench.settings, error) || add_piece(report, bench, error)))
-            return error->status;
-    }
-    if (add_checks(report, error)) return error->status;
+    if (add_cases(report, error) || add_checks(report, error)) return error->status;
     if (add_piece(report, (struct report_piece){.kind = REPORT_LEAGUE, .where = "operators"},
                   error))
         return error->status;
@@ -147,19 +168,20 @@ static enum status add_all(struct report *report, struct error *error)
 
 /* ---- what has come out ---- */
 
-static void describe(const char *command, int c, int s, const char *more, json_t *document)
+static void describe(const char *command, const struct reported *of, int s, const char *more,
+                     json_t *document)
 {
     char reproduce[COMMAND_TEXT];
     const char *keys = schemes[s].keys;
-    snprintf(reproduce, sizeof reproduce, "sphproof %s %s%s%s%s", command, cases[c].name, more,
+    snprintf(reproduce, sizeof reproduce, "sphproof %s %s%s%s%s", command, of->name, more,
              *keys ? " " : "", keys);
     json_object_set_new(document, "label", json_string(schemes[s].label));
     json_object_set_new(document, "reproduce", json_string(reproduce));
 }
 
-static json_t *study_document(const struct report *report, int c, int s)
+static json_t *study_document(const struct reported *of, int s)
 {
-    const struct study *study = &report->studies[c][s];
+    const struct study *study = &of->studies[s];
     json_t *document = result_new("converge");
     json_object_set_new(document, "case", json_string(study->settings.file.name));
     json_object_set_new(document, "title", json_string(study->settings.file.title));
@@ -168,16 +190,16 @@ static json_t *study_document(const struct report *report, int c, int s)
                                     : study->status                    ? "fail"
                                                                        : "pass"));
     study_add_json(study, document);
-    describe("converge", c, s, report->more[c], document);
+    describe("converge", of, s, of->more, document);
     return document;
 }
 
 /* Two schemes of a case with the same errors to the last bit: one setting was not read. */
-static void suspect_same(const struct report *report, int c, json_t *documents[SCHEMES])
+static void suspect_same(const struct reported *of, json_t *documents[SCHEMES])
 {
     for (int s = 1; s < SCHEMES; s++) {
-        const struct study_result *a = &report->studies[c][s - 1].results[0],
-                                  *b = &report->studies[c][s].results[0];
+        const struct study_result *a = &of->studies[s - 1].results[0],
+                                  *b = &of->studies[s].results[0];
         char why[SUSPICION_TEXT];
         if (study_suspect_same("the scheme", a, b, why))
             json_object_set_new(documents[s], "suspicion", json_string(why));
@@ -192,23 +214,19 @@ static void add_trouble(json_t *results, const char *name, const char *message)
     json_array_append_new(list, json_pack("{s:s, s:s}", "name", name, "message", message));
 }
 
-/* Runs are listed by case and scheme, as they were added. */
 static void add_documents(struct report *report, json_t *results)
 {
     json_t *runs = json_array(), *kernels = json_array(), *bench = json_array(), *verify = NULL;
-    size_t run = 0;
     for (size_t k = 0; k < report->piece_count; k++) {
-        const struct report_piece *piece = &report->pieces[k];
+        const struct report_piece *piece = report->pieces[k];
         const struct pool_job *job = &report->pool.jobs[piece->job];
-        const int c = (int)(run / SCHEMES), s = (int)(run % SCHEMES);
-        run += piece->kind == REPORT_RUN;
         if (!job->document) {
             add_trouble(results, piece->where, job->error.message);
             continue;
         }
         switch (piece->kind) {
         case REPORT_RUN:
-            describe("run", c, s, "", job->document);
+            describe("run", &report->cases[piece->case_number], piece->scheme, "", job->document);
             json_array_append(runs, job->document);
             break;
         case REPORT_KERNEL:
@@ -255,13 +273,14 @@ static json_t *collect(struct report *report, const char *faults, double seconds
     json_object_set_new(results, "seconds", result_number(seconds));
     json_object_set_new(results, "computations", json_integer((json_int_t)report->pool.count));
     json_object_set_new(results, "found", json_integer((json_int_t)report->pool.found));
-    for (int c = 0; c < CASES; c++) {
+    for (size_t c = 0; c < report->case_count; c++) {
+        const struct reported *of = &report->cases[c];
         json_t *documents[SCHEMES];
-        for (int s = 0; s < SCHEMES; s++) {
-            documents[s] = study_document(report, c, s);
+        for (int s = 0; s < SCHEMES && of->studied; s++) {
+            documents[s] = study_document(of, s);
             json_array_append_new(studies, documents[s]);
         }
-        suspect_same(report, c, documents);
+        if (of->studied) suspect_same(of, documents);
     }
     json_object_set_new(results, "studies", studies);
     add_documents(report, results);
@@ -284,6 +303,38 @@ static enum status sound(const struct pool *pool, struct error *error)
     return STATUS_OK;
 }
 
+static enum status judge_studies(struct report *report, struct error *error)
+{
+    enum status status = STATUS_OK;
+    for (size_t c = 0; c < report->case_count; c++)
+        for (int s = 0; s < SCHEMES && report->cases[c].studied && !status; s++)
+            status = study_judge(&report->cases[c].studies[s], &report->pool, error);
+    return status;
+}
+
+static void free_report(struct report *report)
+{
+    for (size_t c = 0; report->cases && c < report->case_count; c++)
+        for (int s = 0; s < SCHEMES; s++) study_free(&report->cases[c].studies[s]);
+    for (size_t k = 0; k < report->piece_count; k++) free(report->pieces[k]);
+    stress_free(&report->stress);
+    pool_free(&report->pool);
+    free(report->cases), free(report->pieces);
+    free(report);
+}
+
+enum status report_list(enum report_mode mode, FILE *stream, struct error *error)
+{
+    struct report *report = calloc(1, sizeof *report);
+    if (!report) return error_set(error, STATUS_ENVIRONMENT, "no memory for a report");
+    report->nightly = mode == REPORT_NIGHTLY;
+    const enum status status = add_all(report, error);
+    for (size_t k = 0; k < report->pool.count && !status; k++)
+        fprintf(stream, "%s\n", report->pool.jobs[k].name);
+    free_report(report);
+    return status;
+}
+
 enum status report_compute(const struct report_settings *settings, json_t **results,
                            struct error *error)
 {
@@ -300,17 +351,12 @@ enum status report_compute(const struct report_settings *settings, json_t **resu
     enum status status = add_all(report, error);
     if (!status) status = pool_run(&report->pool, &how, error);
     if (!status) status = sound(&report->pool, error);
-    for (int k = 0; k < CASES * SCHEMES && !status; k++)
-        status = study_judge(&report->studies[k / SCHEMES][k % SCHEMES], &report->pool, error);
+    if (!status) status = judge_studies(report, error);
     if (!status) {
         *results = collect(report, settings->faults, clock_wall() - began);
         if (report->pool.note[0])
             json_object_set_new(*results, "note", json_string(report->pool.note));
     }
-    for (int k = 0; k < CASES * SCHEMES; k++)
-        study_free(&report->studies[k / SCHEMES][k % SCHEMES]);
-    stress_free(&report->stress);
-    pool_free(&report->pool);
-    free(report);
+    free_report(report);
     return status;
 }

@@ -6,6 +6,7 @@
 
 #include <jansson.h>
 #include <stdbool.h>
+#include <stdio.h>
 
 #include "pool.h"
 #include "status.h"
@@ -26,5 +27,8 @@ struct report_settings {
  * the results; anything else that goes wrong is returned, and *results is then NULL. */
 enum status report_compute(const struct report_settings *settings, json_t **results,
                            struct error *error);
+
+/* Computes nothing: the names of what a report of this mode computes, one a line. */
+enum status report_list(enum report_mode mode, FILE *stream, struct error *error);
 
 #endif

@@ -14,6 +14,8 @@ struct report_piece {
     const char *where;            /* case, group, kernel */
     int dim;                      /* of a kernel */
     bool slow;                    /* the slow checks too */
+    size_t case_number;           /* of a run, */
+    int scheme;                   /* and what it is compared as */
     struct run_settings settings; /* of a run or a bench */
     struct run run;               /* the same, from report_piece_add */
     size_t job;                   /* its number, from report_piece_add */

@@ -14,22 +14,25 @@
 
 enum { LINE_LENGTH_MAX = 180 };
 
-/* Keys of a case file beside settings_keys. */
-enum extra {
-    EXTRA_title,
-    EXTRA_dimension,
-    EXTRA_reference,
-    EXTRA_fields,
-    EXTRA_exact,
-    EXTRA_ladder,
-    EXTRAS
-};
+/* Keys of a case file beside settings_keys: SECTION, KEY. */
+#define EXTRA_LIST(EXTRA)                                                                          \
+    EXTRA(case, title)                                                                             \
+    EXTRA(case, dimension)                                                                         \
+    EXTRA(case, reference)                                                                         \
+    EXTRA(measure, fields)                                                                         \
+    EXTRA(measure, exact)                                                                          \
+    EXTRA(converge, n)                                                                             \
+    EXTRA(report, compare)                                                                         \
+    EXTRA(report, bench)                                                                           \
+    EXTRA(report, deepen)
+#define EXTRA_SYMBOL(section, name) EXTRA_##name,
+#define EXTRA_ENTRY(section, name)  {#section, #name},
+enum extra { EXTRA_LIST(EXTRA_SYMBOL) EXTRAS };
 static const struct {
     const char *section, *name;
-} extras[EXTRAS] = {{"case", "title"},     {"case", "dimension"}, {"case", "reference"},
-                    {"measure", "fields"}, {"measure", "exact"},  {"converge", "n"}};
-static const char *const sections[] = {"case", "domain",  "initial", "scheme",
-                                       "run",  "measure", "converge"};
+} extras[EXTRAS] = {EXTRA_LIST(EXTRA_ENTRY)};
+static const char *const sections[] = {"case", "domain",  "initial",  "scheme",
+                                       "run",  "measure", "converge", "report"};
 
 struct parser {
     struct case_file *file;
@@ -108,6 +111,12 @@ static void set_ladder(struct parser *parser, const char *value)
         fail_value(parser, "n", value, "rising numbers of particles, at least four");
 }
 
+static void set_flag(struct parser *parser, const char *name, const char *value, bool *flag)
+{
+    *flag = strcmp(value, "yes") == 0;
+    if (!*flag && strcmp(value, "no") != 0) fail_value(parser, name, value, "yes no");
+}
+
 static void set_reference(struct parser *parser, const char *value)
 {
     char where[256];
@@ -151,8 +160,17 @@ static void set_extra(struct parser *parser, enum extra extra, const char *value
     case EXTRA_exact:
         set_fields(parser, "exact", value, parser->file->exact);
         return;
-    case EXTRA_ladder:
+    case EXTRA_n:
         set_ladder(parser, value);
+        return;
+    case EXTRA_compare:
+        set_flag(parser, "compare", value, &file->compare);
+        return;
+    case EXTRA_bench:
+        set_flag(parser, "bench", value, &file->bench);
+        return;
+    case EXTRA_deepen:
+        set_flag(parser, "deepen", value, &file->deepen);
         return;
     default:
         return;
@@ -343,7 +361,8 @@ enum status case_parse(struct case_file *file, const char *path, const char *tex
         .file = file, .path = path, .text = text, .end = text + length, .error = error};
     const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path;
     const char *dot = strrchr(base, '.');
-    *file = (struct case_file){.fields = {true, true, true, true}};
+    *file = (struct case_file){
+        .fields = {true, true, true, true}, .compare = true, .bench = true, .deepen = true};
     snprintf(file->name, sizeof file->name, "%.*s", dot ? (int)(dot - base) : (int)strlen(base),
              base);
     status_clean(file->name);

@@ -31,9 +31,12 @@ struct case_file {
     size_t ladder[CASE_LADDER_MAX], ladder_count;
     struct case_gate gates[CASE_GATES_MAX];
     size_t gate_count;
+    /* In a report: other schemes are compared and get the gates, too, with a wider bound of the
+     * error; what an error costs is measured; a night adds a level to the ladder. */
+    bool compare, bench, deepen;
 };
 
-/* The built-in cases, in alphabetical order; ends with a NULL name. */
+/* The built-in cases, in the order of a report; ends with a NULL name. */
 struct case_builtin {
     const char *name, *text;
 };

@@ -46,20 +46,35 @@ static bool is_group(const char *name)
     return false;
 }
 
-static const struct stress_entry *rows_of(const struct stress_group *group)
+/* Row i of a group's map; false: it has no such row. */
+static bool row_at(const struct stress_group *group, size_t i, struct stress_entry *row)
 {
-    return group->rows ? group->rows : stress_schemes;
+    const struct family *family = group->row_family;
+    if (family) {
+        if (i == family->n) return false;
+        *row = (struct stress_entry){.label = family->members[i]->name};
+    } else {
+        *row = (group->rows ? group->rows : stress_schemes)[i];
+    }
+    return row->label;
+}
+
+static bool is_scheme(const struct stress_cell *cell, size_t i)
+{
+    return !cell->group->row_family && !cell->group->rows &&
+           strcmp(cell->row.label, stress_schemes[i].label) == 0;
 }
 
 static void list_cells(struct stress *stress, size_t count, char *const *names)
 {
+    struct stress_entry row;
     stress->count = 0;
     for (size_t g = 0; g < stress_group_count; g++) {
         const struct stress_group *group = &stress_groups[g];
         if (!wanted(group, count, names)) continue;
-        for (const struct stress_entry *row = rows_of(group); row->label; row++)
+        for (size_t r = 0; row_at(group, r, &row); r++)
             for (const struct stress_entry *column = group->columns; column->label; column++) {
-                if ((row->nightly || column->nightly) && !stress->nightly) continue;
+                if ((row.nightly || column->nightly) && !stress->nightly) continue;
                 if (stress->cells)
                     stress->cells[stress->count] =
                         (struct stress_cell){.group = group, .row = row, .column = column};
@@ -70,9 +85,14 @@ static void list_cells(struct stress *stress, size_t count, char *const *names)
 
 static enum status prepare(struct stress_cell *cell, bool nightly, struct error *error)
 {
-    char *arguments[STRESS_ARGUMENTS];
+    char *arguments[STRESS_ARGUMENTS], own[2 * STRESS_TEXT];
+    const char *row = cell->row.keys;
+    if (!row) {
+        snprintf(own, sizeof own, "%s=%s", cell->group->row_title, cell->row.label);
+        row = own;
+    }
     if (add_keys(cell, cell->group->keys, error) || add_keys(cell, cell->column->keys, error) ||
-        add_keys(cell, cell->row->keys, error))
+        add_keys(cell, row, error))
         return error->status;
     for (size_t i = 0; i < cell->argument_count; i++) arguments[i] = cell->arguments[i];
     if (run_prepare(&cell->settings, cell->group->case_name, (int)cell->argument_count, arguments,
@@ -110,8 +130,9 @@ static enum status add_cell(struct stress_cell *cell, struct pool *pool, struct 
     char command[STRESS_COMMAND], key[STRESS_COMMAND + 64], name[128];
     stress_command(cell, command);
     snprintf(key, sizeof key, "stress %s %s %s %llu %s", cell->group->member.name,
-             cell->column->label, cell->row->label, (unsigned long long)cell->step_budget, command);
-    snprintf(name, sizeof name, "stress %s", cell->group->member.name);
+             cell->column->label, cell->row.label, (unsigned long long)cell->step_budget, command);
+    snprintf(name, sizeof name, "stress %s: %s, %s", cell->group->member.name, cell->row.label,
+             cell->column->label);
     const double n = settings_real(&cell->settings.settings, SETTING_n);
     cell->job = pool_add(pool, name, key, 0.02 + 1e-6 * n * n, compute, cell);
     return cell->job == (size_t)-1 ? error_set(error, STATUS_ENVIRONMENT, "no memory for a cell")
@@ -167,7 +188,7 @@ static json_t *cell_json(const struct stress_cell *cell, const struct pool_job *
         json_object_set_new(settings, key, json_string(argument + strlen(key) + 1));
     }
     json_object_set_new(entry, "group", json_string(cell->group->member.name));
-    json_object_set_new(entry, "row", json_string(cell->row->label));
+    json_object_set_new(entry, "row", json_string(cell->row.label));
     json_object_set_new(entry, "column", json_string(cell->column->label));
     json_object_set_new(entry, "settings", settings);
     if (job->document)
@@ -183,17 +204,26 @@ static json_t *cell_json(const struct stress_cell *cell, const struct pool_job *
     if (cell->group->kind == STRESS_LIMIT || cell->group->kind == STRESS_STEP)
         snprintf(command, sizeof command, "sphproof stress %s", cell->group->member.name);
     if (cell->group->kind == STRESS_PAIRING)
-        snprintf(command, sizeof command, "sphproof kernel %s --dim %s", cell->row->label,
+        snprintf(command, sizeof command, "sphproof kernel %s --dim %s", cell->row.label,
                  cell->column->label);
     json_object_set_new(entry, "command", json_string(command));
     return entry;
 }
 
-static json_t *labels_of(const struct stress_entry *entries, bool nightly)
+static json_t *row_labels(const struct stress_group *group, bool nightly)
 {
     json_t *list = json_array();
-    for (; entries->label; entries++)
-        if (nightly || !entries->nightly) json_array_append_new(list, json_string(entries->label));
+    struct stress_entry row;
+    for (size_t i = 0; row_at(group, i, &row); i++)
+        if (nightly || !row.nightly) json_array_append_new(list, json_string(row.label));
+    return list;
+}
+
+static json_t *column_labels(const struct stress_group *group, bool nightly)
+{
+    json_t *list = json_array();
+    for (const struct stress_entry *column = group->columns; column->label; column++)
+        if (nightly || !column->nightly) json_array_append_new(list, json_string(column->label));
     return list;
 }
 
@@ -201,11 +231,11 @@ static json_t *group_json(const struct stress_group *group, bool nightly)
 {
     json_t *reproduce =
         json_sprintf("sphproof stress %s%s", group->member.name, nightly ? " --nightly" : "");
-    return json_pack(
-        "{s:s, s:s, s:s, s:s, s:o, s:o, s:f, s:o}", "name", group->member.name, "title",
-        group->member.label, "row_title", group->row_title ? group->row_title : "scheme",
-        "column_title", group->column_title, "rows", labels_of(rows_of(group), nightly), "columns",
-        labels_of(group->columns, nightly), "bound", group->bound, "reproduce", reproduce);
+    return json_pack("{s:s, s:s, s:s, s:s, s:o, s:o, s:f, s:o}", "name", group->member.name,
+                     "title", group->member.label, "row_title",
+                     group->row_title ? group->row_title : "scheme", "column_title",
+                     group->column_title, "rows", row_labels(group, nightly), "columns",
+                     column_labels(group, nightly), "bound", group->bound, "reproduce", reproduce);
 }
 
 static const char *outcome_of(const json_t *entry)
@@ -244,10 +274,10 @@ static void compare(const struct stress *stress, const json_t *cells, json_t *do
     size_t both = 0, only_default = 0, only_seed = 0, none = 0;
     for (size_t i = 0; i < stress->count; i++) {
         const struct stress_cell *cell = &stress->cells[i];
-        if (cell->row != &stress_schemes[0]) continue;
+        if (!is_scheme(cell, 0)) continue;
         for (size_t j = i + 1; j < stress->count; j++) {
             const struct stress_cell *other = &stress->cells[j];
-            if (other->row != &stress_schemes[1] || other->column != cell->column) continue;
+            if (!is_scheme(other, 1) || other->column != cell->column) continue;
             const json_t *mine = json_array_get(cells, i), *theirs = json_array_get(cells, j);
             const bool survives = strcmp(outcome_of(mine), "broke_down") != 0;
             const bool seed_survives = strcmp(outcome_of(theirs), "broke_down") != 0;

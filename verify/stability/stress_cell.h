@@ -29,8 +29,10 @@ struct stress_group {
     enum stress_kind kind;
     const char *case_name, *keys;         /* of all cells; the columns', then the rows' follow */
     const char *row_title, *column_title; /* of the map */
-    const struct stress_entry *rows, *columns; /* end with a NULL label */
-    double bound;                              /* of what is measured: above it is inaccurate */
+    const struct family *row_family; /* a row for each member, whose key is the row's title; or */
+    const struct stress_entry *rows; /* these; neither: stress_schemes */
+    const struct stress_entry *columns; /* entries end with a NULL label */
+    double bound;                       /* of what is measured: above it is inaccurate */
 };
 
 extern const struct stress_group stress_groups[];
@@ -44,7 +46,8 @@ enum { STRESS_ARGUMENTS = 40, STRESS_TEXT = 64, STRESS_COMMAND = 1024 };
 
 struct stress_cell {
     const struct stress_group *group;
-    const struct stress_entry *row, *column;
+    struct stress_entry row; /* keys: NULL for a member of the group's row_family */
+    const struct stress_entry *column;
     char arguments[STRESS_ARGUMENTS][STRESS_TEXT]; /* KEY=VALUE */
     size_t argument_count;
     struct run_settings settings;

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The maps of the stress test. A new one is an entry here. */
+#include "integrator.h"
+#include "kernel.h"
 #include "stress_cell.h"
 
 #define ENTRIES(...) ((const struct stress_entry[]){__VA_ARGS__, {NULL, NULL, false}})
@@ -19,27 +21,6 @@ const struct stress_entry stress_schemes[] = {
      false},
     {NULL, NULL, false}};
 
-static const struct stress_entry integrators[] = {
-    {"leapfrog", "integrator=leapfrog", false},
-    {"modified_leapfrog", "integrator=modified_leapfrog", false},
-    {"symplectic_euler", "integrator=symplectic_euler", false},
-    {"rk2", "integrator=rk2", false},
-    {"vl2", "integrator=vl2", false},
-    {"rk3", "integrator=rk3", false},
-    {"predicted_midpoint", "integrator=predicted_midpoint", false},
-    {NULL, NULL, false}};
-
-static const struct stress_entry kernels[] = {
-    {"quadratic_spline", "kernel=quadratic_spline", false},
-    {"cubic_spline", "kernel=cubic_spline", false},
-    {"quartic_spline", "kernel=quartic_spline", false},
-    {"quintic_spline", "kernel=quintic_spline", false},
-    {"wendland_c2", "kernel=wendland_c2", false},
-    {"wendland_c4", "kernel=wendland_c4", false},
-    {"wendland_c6", "kernel=wendland_c6", false},
-    {"sinc", "kernel=sinc", false},
-    {NULL, NULL, false}};
-
 #define NOISE                                                                                      \
     "lo=0;hi=1;n=64;amplitude=0;jitter=1e-6;energy=internal;h_method=newton;pair_width=mean;skip=" \
     "none"
@@ -51,7 +32,7 @@ const struct stress_group stress_groups[] = {
      .keys = NOISE ";viscosity=none;integrator=rk3",
      .row_title = "kernel",
      .column_title = "gradient",
-     .rows = kernels,
+     .row_family = &kernel_family,
      .columns = ENTRIES({"standard", "gradient=standard", false}, {"ia", "gradient=ia", false},
                         {"ia lagrangian", "gradient=ia;formulation=lagrangian", false})},
     {.member = {"steps", "largest time step of an integrator: theory and noise runs", ""},
@@ -60,7 +41,7 @@ const struct stress_group stress_groups[] = {
      .keys = NOISE ";viscosity=constant;alpha=1;kernel=cubic_spline",
      .row_title = "integrator",
      .column_title = "eta",
-     .rows = integrators,
+     .row_family = &integrator_family,
      .columns = ENTRIES({"2", "eta=2", false}, {"4.8", "eta=4.8", false})},
     {.member = {"pairing", "neighbours from which particles pair, by energy", "Dehnen & Aly 2012"},
      .kind = STRESS_PAIRING,
@@ -68,7 +49,7 @@ const struct stress_group stress_groups[] = {
      .keys = "",
      .row_title = "kernel",
      .column_title = "dimension",
-     .rows = kernels,
+     .row_family = &kernel_family,
      .columns = ENTRIES({"2", "", false}, {"3", "", false})},
     {.member = {"shock", "shock tubes of rising pressure ratio", ""},
      .case_name = "sod",
@@ -179,7 +160,7 @@ const struct stress_group stress_groups[] = {
      .keys = "n=240;t_end=0.15;kernel=cubic_spline;eta=2",
      .row_title = "integrator",
      .column_title = "cfl",
-     .rows = integrators,
+     .row_family = &integrator_family,
      .columns =
          ENTRIES({"0.1", "cfl=0.1", false}, {"0.2", "cfl=0.2", false}, {"0.3", "cfl=0.3", false},
                  {"0.4", "cfl=0.4", false}, {"0.6", "cfl=0.6", false}, {"0.8", "cfl=0.8", false},
@@ -198,7 +179,7 @@ const struct stress_group stress_groups[] = {
      .keys = "n=240;t_end=0.15;kernel=cubic_spline;eta=2",
      .row_title = "integrator",
      .column_title = "equations",
-     .rows = integrators,
+     .row_family = &integrator_family,
      .columns = ENTRIES(
          {"ice standard", "", false}, {"ice ia", "gradient=ia", false},
          {"lagr. standard", "formulation=lagrangian", false},
