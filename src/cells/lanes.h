@@ -78,7 +78,7 @@ struct cells {
 };
 
 /* An array of the thread's own, or a value of the gathered records. */
-static inline double *lane(const struct lanes *lanes, enum lanes_array which)
+static inline double *lane(const struct lanes *lanes, int which)
 {
     return lanes->block + which * lanes->stride;
 }
