@@ -185,7 +185,7 @@ void lanes_all(struct cells *cells, const struct cells_fields *fields, lanes_pas
 /* Eight lanes, then in pairs: the same order for every instruction set. */
 #define TREE(s) (((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + (s[6] + s[7])))
 
-CLONES double lanes_sum(const double *restrict values, int count)
+CLONES static double sum(const double *restrict values, int count)
 {
     double s[GRID_LANES] = {0};
     for (int k = 0; k < count; k += GRID_LANES)
@@ -194,11 +194,23 @@ CLONES double lanes_sum(const double *restrict values, int count)
     return TREE(s);
 }
 
-CLONES double lanes_dot(const double *restrict a, const double *restrict b, int count)
+CLONES static double dot(const double *restrict a, const double *restrict b, int count)
 {
     double s[GRID_LANES] = {0};
     for (int k = 0; k < count; k += GRID_LANES)
 #pragma omp simd
         for (int l = 0; l < GRID_LANES; l++) s[l] += a[k + l] * b[k + l];
     return TREE(s);
+}
+
+/* Stamped functions are static, and the public ones call them: clang 14 gives the dispatched symbol
+ * a name of its own, so that another file would not find it. */
+double lanes_sum(const double *values, int count)
+{
+    return sum(values, count);
+}
+
+double lanes_dot(const double *a, const double *b, int count)
+{
+    return dot(a, b, count);
 }

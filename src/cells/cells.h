@@ -16,6 +16,7 @@
 #include "kernel.h"
 #include "pair.h"
 #include "scheme.h"
+#include "width.h"
 
 /* Entries of a symmetric matrix xx, xy, (xz,) yy, (yz, zz): 3 in 2D, 6 in 3D. */
 enum { CELLS_SYMMETRIC = 6, CELLS_SQUARE = 9 };
@@ -75,10 +76,20 @@ enum status cells_arrange(struct cells *cells, const struct cells_fields *fields
 /* sum_m ... at the widths 1/h_inverse. */
 void cells_density(struct cells *cells, const struct cells_fields *fields);
 
-/* The same for one particle at another width, for Newton's method; sums: m, m_dh, Z, Z_dh. The
- * neighbours must reach as far. thread: of the caller, whose scratch is used. */
-void cells_density_again(struct cells *cells, const struct cells_fields *fields, size_t slot,
-                         double h_inverse, int thread, double sums[4]);
+/* What becomes of a particle whose width is looked for. */
+enum cells_outcome {
+    CELLS_SOLVED,
+    CELLS_OPEN,   /* to be looked for */
+    CELLS_WIDER,  /* its root lies beyond the radius of the search */
+    CELLS_NO_ROOT /* no width fulfils the rule */
+};
+
+/* h = eta (m/rho(h))^(1/d) by Newton's method, from h on, for the particles whose outcome is
+ * CELLS_OPEN; radius: of cells_arrange, which no width exceeds. Sets h, h_inverse, the sums at them
+ * and the outcome. */
+void cells_widths(struct cells *cells, const struct cells_fields *fields,
+                  const struct width_rule *rule, const double *radius, double *h,
+                  double *h_inverse, unsigned char *outcome);
 
 /* matrix, condition, slope, projector, as the method needs them. Returns how many particles have
  * too few neighbours for a matrix. */
@@ -86,6 +97,9 @@ size_t cells_matrix(struct cells *cells, const struct cells_fields *fields);
 
 /* F, de, div_v, signal. Returns the number of pairs within max(h_i, h_j). */
 uint64_t cells_forces(struct cells *cells, const struct cells_fields *fields);
+
+/* signal alone, from velocities that have changed since the forces. */
+void cells_signal(struct cells *cells, const struct cells_fields *fields);
 
 const struct grid *cells_grid(const struct cells *cells);
 

@@ -57,6 +57,16 @@ static void sum_at(const struct cells *cells, const struct lanes *lanes, int cou
     sums[3] = U * (dim * own) + lanes_dot(energy, dw, count);
 }
 
+static void put_sums(const struct cells *cells, const struct cells_fields *fields, size_t i,
+                     const double sums[4])
+{
+    fields->sum_m[i] = sums[0];
+    fields->sum_m_dh[i] = sums[1];
+    if (!cells->method.energy_element) return;
+    fields->sum_Z[i] = sums[2];
+    fields->sum_Z_dh[i] = sums[3];
+}
+
 static void density_pass(struct cells *cells, const struct cells_fields *fields, size_t slot,
                          struct lanes *lanes)
 {
@@ -65,15 +75,64 @@ static void density_pass(struct cells *cells, const struct cells_fields *fields,
     const int count = lanes_gather(cells, &cells->density, slot, lanes);
     sum_at(cells, lanes, count, cells->method.number ? 1 : fields->m[i],
            cells->method.energy_element ? fields->U[i] : 0, fields->h_inverse[i], sums);
-    fields->sum_m[i] = sums[0];
-    fields->sum_m_dh[i] = sums[1];
-    if (!cells->method.energy_element) return;
-    fields->sum_Z[i] = sums[2];
-    fields->sum_Z_dh[i] = sums[3];
+    put_sums(cells, fields, i, sums);
 }
 
 void cells_density(struct cells *cells, const struct cells_fields *fields)
 {
     fill_records(cells, fields);
     lanes_all(cells, fields, density_pass);
+}
+
+/* --- widths ----------------------------------------------------------------------------------- */
+
+/* One particle's width. With the number element the sum of ones takes the place of m/m_i. */
+static enum cells_outcome solve(const struct cells *cells, const struct lanes *lanes, int count,
+                                size_t i, double m, double U, double sums[4])
+{
+    const struct lanes_newton *newton = &cells->newton;
+    const double radius = newton->radius[i];
+    double *h = &newton->h[i], *h_inverse = &newton->h_inverse[i];
+    struct width_bracket bracket;
+    struct density_sums one;
+    width_begin(&bracket, 1, INFINITY);
+    for (int step = 0; step < WIDTH_STEPS_MAX; step++) {
+        const bool at_radius = !(*h < radius);
+        if (at_radius) *h = radius;
+        *h_inverse = 1 / *h;
+        sum_at(cells, lanes, count, m, U, *h_inverse, sums);
+        one.m[0] = sums[0];
+        one.m_dh[0] = sums[1];
+        if (!width_step(newton->rule, 1, &m, &one, &bracket, h, h_inverse)) return CELLS_SOLVED;
+        if (at_radius && *h > radius) return CELLS_WIDER;
+    }
+    return width_without_root(newton->rule, 1, &m, &one, h, h_inverse) < 0 ? CELLS_SOLVED
+                                                                           : CELLS_NO_ROOT;
+}
+
+static void width_pass(struct cells *cells, const struct cells_fields *fields, size_t slot,
+                       struct lanes *lanes)
+{
+    const size_t i = grid_order(cells->grid)[slot];
+    unsigned char *outcome = &cells->newton.outcome[i];
+    double sums[4];
+    if (*outcome != CELLS_OPEN) return;
+    const int count = lanes_gather(cells, &cells->density, slot, lanes);
+    *outcome = (unsigned char)solve(cells, lanes, count, i,
+                                    cells->method.number ? 1 : fields->m[i],
+                                    cells->method.energy_element ? fields->U[i] : 0, sums);
+    put_sums(cells, fields, i, sums);
+}
+
+void cells_widths(struct cells *cells, const struct cells_fields *fields,
+                  const struct width_rule *rule, const double *radius, double *h,
+                  double *h_inverse, unsigned char *outcome)
+{
+    cells->newton = (struct lanes_newton){.rule = rule,
+                                          .radius = radius,
+                                          .h = h,
+                                          .h_inverse = h_inverse,
+                                          .outcome = outcome};
+    fill_records(cells, fields);
+    lanes_all(cells, fields, width_pass);
 }

@@ -135,8 +135,8 @@ CLONES static void widths(enum pair_width width, int count, const double *restri
             q[k] = r[k] * h_inverse;
             q_j[k] = r[k] * theirs[k];
         } else {
-            const double both =
-                width == PAIR_WIDTH_MAX ? least(h_inverse, theirs[k]) : 0.5 * (h_inverse + theirs[k]);
+            const double both = width == PAIR_WIDTH_MAX ? least(h_inverse, theirs[k])
+                                                        : 0.5 * (h_inverse + theirs[k]);
             q[k] = r[k] * both;
             q_j[k] = both;
         }
@@ -394,58 +394,72 @@ CLONES static void pressure(enum formulation formulation, bool number, int count
 }
 
 /* K, what viscosity adds to a_i and a_j alike, for G = 1. */
-ALWAYS_INLINE void viscous_body(enum viscosity viscosity, bool signal_form, bool squared,
-                                int count, const struct pair_numbers *numbers,
-                                const struct sides *sides, const struct lanes *lanes)
+ALWAYS_INLINE void viscous_body(enum viscosity viscosity, bool signal_form, int count,
+                                const struct pair_numbers *numbers, const struct sides *sides,
+                                const struct lanes *lanes)
 {
-    const struct pair_side own = sides->own;
     const struct pair_numbers n = *numbers;
-    const double f_own = sides->own_balsara;
+    const double own_m = sides->own.m, own_h = sides->own.h, own_h_inverse = sides->own.h_inverse,
+                 own_c = sides->own.c, own_rho = sides->own.rho, own_alpha = sides->own.alpha;
     const double *restrict m = sides->m, *restrict h = sides->h,
                            *restrict h_inverse = sides->h_inverse, *restrict c = sides->c,
                            *restrict rho = sides->rho, *restrict alpha = sides->alpha,
-                           *restrict balsara = sides->balsara,
                            *restrict slope_i = lane(lanes, LANE_SLOPE_I),
                            *restrict slope_j = lane(lanes, LANE_SLOPE_J),
                            *restrict r = lane(lanes, LANE_R),
                            *restrict closing = lane(lanes, LANE_CLOSING);
+    const bool varying = viscosity == VISCOSITY_TIME_DEPENDENT;
+    const bool sloped = viscosity == VISCOSITY_RECONSTRUCTED;
     double *restrict K = lane(lanes, LANE_K);
 #pragma omp simd
     for (int k = 0; k < count; k++) {
-        struct pair_side i = own;
-        i.slope = slope_i[k];
+        const struct pair_side i = {.m = own_m,
+                                    .h = own_h,
+                                    .h_inverse = own_h_inverse,
+                                    .c = own_c,
+                                    .rho = own_rho,
+                                    .alpha = own_alpha,
+                                    .slope = sloped ? slope_i[k] : 0};
         const struct pair_side j = {.m = m[k],
                                     .h = h[k],
                                     .h_inverse = h_inverse[k],
                                     .c = c[k],
                                     .rho = rho[k],
-                                    .alpha = alpha[k],
-                                    .slope = slope_j[k]};
-        const double term = signal_form
-                                ? pair_viscous_signal(viscosity, &n, &i, &j, r[k], closing[k], 1)
-                                : pair_viscous(viscosity, &n, &i, &j, r[k], closing[k], 1);
-        const double f = 0.5 * (f_own + balsara[k]);
-        K[k] = term * (squared ? f * f : f);
+                                    .alpha = varying ? alpha[k] : 0,
+                                    .slope = sloped ? slope_j[k] : 0};
+        K[k] = signal_form ? pair_viscous_signal(viscosity, &n, &i, &j, r[k], closing[k], 1)
+                           : pair_viscous(viscosity, &n, &i, &j, r[k], closing[k], 1);
+    }
+}
+
+/* Times the mean Balsara factor of the pair, or its square. */
+CLONES static void limit_viscosity(int count, bool squared, double own,
+                                   const double *restrict theirs, double *restrict K)
+{
+#pragma omp simd
+    for (int k = 0; k < count; k++) {
+        const double f = 0.5 * (own + theirs[k]);
+        K[k] *= squared ? f * f : f;
     }
 }
 
 #define VISCOUS(name, signal_form)                                                                 \
-    CLONES static void name(enum viscosity viscosity, bool squared, int count,                \
+    CLONES static void name(enum viscosity viscosity, int count,                                   \
                             const struct pair_numbers *numbers, const struct sides *sides,         \
                             const struct lanes *lanes)                                             \
     {                                                                                              \
         switch (viscosity) {                                                                       \
-        case VISCOSITY_CONSTANT:                                                                         \
-            viscous_body(VISCOSITY_CONSTANT, signal_form, squared, count, numbers, sides, lanes);        \
+        case VISCOSITY_CONSTANT:                                                                   \
+            viscous_body(VISCOSITY_CONSTANT, signal_form, count, numbers, sides, lanes);           \
             break;                                                                                 \
-        case VISCOSITY_TIME_DEPENDENT:                                                                         \
-            viscous_body(VISCOSITY_TIME_DEPENDENT, signal_form, squared, count, numbers, sides, lanes);        \
+        case VISCOSITY_TIME_DEPENDENT:                                                             \
+            viscous_body(VISCOSITY_TIME_DEPENDENT, signal_form, count, numbers, sides, lanes);     \
             break;                                                                                 \
-        case VISCOSITY_RECONSTRUCTED:                                                                   \
-            viscous_body(VISCOSITY_RECONSTRUCTED, signal_form, squared, count, numbers, sides, lanes);  \
+        case VISCOSITY_RECONSTRUCTED:                                                              \
+            viscous_body(VISCOSITY_RECONSTRUCTED, signal_form, count, numbers, sides, lanes);      \
             break;                                                                                 \
-        case VISCOSITY_FADING:                                                                          \
-            viscous_body(VISCOSITY_FADING, signal_form, squared, count, numbers, sides, lanes);         \
+        case VISCOSITY_FADING:                                                                     \
+            viscous_body(VISCOSITY_FADING, signal_form, count, numbers, sides, lanes);             \
             break;                                                                                 \
         default:                                                                                   \
             break;                                                                                 \
@@ -591,10 +605,9 @@ CLONES static double find_signal(int count, const struct sides *sides, const str
 #pragma omp simd
         for (int l = 0; l < GRID_LANES; l++) {
             const int n = k + l;
-            const bool near = r[n] < largest(own_h, h[n]);
-            const double speed = near ? pair_signal_speed(own_c, c[n], closing[n]) : 0;
-            top[l] = largest(top[l], speed);
-            inside[l] += near ? 1 : 0;
+            const double near = r[n] < largest(own_h, h[n]) ? 1 : 0;
+            top[l] = largest(top[l], near * pair_signal_speed(own_c, c[n], closing[n]));
+            inside[l] += near;
         }
     double most = 2 * own_c, number = 0;
     for (int l = 0; l < GRID_LANES; l++) {
@@ -619,8 +632,10 @@ static void add_viscosity(const struct cells *cells, int count, const struct lan
     if (method->viscosity == VISCOSITY_RECONSTRUCTED)
         slopes_along(dim, count, lanes, record + layout->offset[GROUP_SLOPE],
                      lane_of(lanes, layout, GROUP_SLOPE, 0));
-    (method->signal_form ? viscous_signal : viscous_mu)(method->viscosity, method->projected, count,
-                                                        &method->numbers, sides, lanes);
+    (method->signal_form ? viscous_signal : viscous_mu)(method->viscosity, count, &method->numbers,
+                                                        sides, lanes);
+    if (method->balsara)
+        limit_viscosity(count, method->projected, sides->own_balsara, sides->balsara, K);
     if (method->viscosity == VISCOSITY_RECONSTRUCTED) {
         double *approach = lane(lanes, LANE_SPARE);
         find_approach(dim, count, lanes, record + layout->offset[GROUP_MOTION],
@@ -691,4 +706,28 @@ uint64_t cells_forces(struct cells *cells, const struct cells_fields *fields)
     int64_t directed = 0;
     for (int t = 0; t < cells->method.threads; t++) directed += cells->lanes[t].pairs;
     return (uint64_t)directed / 2;
+}
+
+/* --- the time step alone ---------------------------------------------------------------------- */
+
+static void signal_pass(struct cells *cells, const struct cells_fields *fields, size_t slot,
+                        struct lanes *lanes)
+{
+    const struct lanes_layout *layout = &cells->force;
+    const int count = lanes_gather(cells, layout, slot, lanes);
+    const double *record = cells->records + (ptrdiff_t)slot * layout->size;
+    const double *theirs = lane_of(lanes, layout, GROUP_MOTION, 0);
+    const struct sides sides = find_sides(cells, lanes, record);
+    int64_t pairs = 0;
+    find_closing(count, lane(lanes, LANE_DX), lane(lanes, LANE_DY), lane(lanes, LANE_DZ), theirs,
+                 theirs + lanes->stride, theirs + 2 * lanes->stride,
+                 record + layout->offset[GROUP_MOTION], lane(lanes, LANE_R_INVERSE),
+                 lane(lanes, LANE_CLOSING));
+    fields->signal[grid_order(cells->grid)[slot]] = find_signal(count, &sides, lanes, &pairs);
+}
+
+void cells_signal(struct cells *cells, const struct cells_fields *fields)
+{
+    fill_records(cells, fields);
+    lanes_all(cells, fields, signal_pass);
 }

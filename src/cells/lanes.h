@@ -7,6 +7,7 @@
 #include "cells.h"
 #include "gather.h"
 #include "shapes.h"
+#include "width.h"
 
 /* Values of a record by groups of four; which groups there are is the method's. */
 enum lanes_group {
@@ -66,6 +67,14 @@ struct lanes {
     int64_t pairs;
 };
 
+/* A search for widths: what each thread reads of it. */
+struct lanes_newton {
+    const struct width_rule *rule;
+    const double *radius;
+    double *h, *h_inverse;
+    unsigned char *outcome;
+};
+
 struct cells {
     struct cells_method method;
     struct grid *grid;
@@ -75,6 +84,7 @@ struct cells {
     double *records; /* slot n is the sentinel's */
     struct lanes_layout density, matrix, force;
     struct lanes *lanes; /* of each thread */
+    struct lanes_newton newton;
 };
 
 /* An array of the thread's own, or a value of the gathered records. */

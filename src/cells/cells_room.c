@@ -1,0 +1,462 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The sums of a simulation in 2D and 3D: its particles' fields handed to cells. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cells.h"
+#include "solver.h"
+#include "stamp.h"
+#include "state.h"
+
+enum {
+    SORT_EVERY = 32, /* steps: particles that move on apart in memory slow the gathering down */
+    TRIES_MAX = 64   /* searches of one evaluation, each 1.5 times as far */
+};
+
+/* How far beyond a first guess the search for a root may go without a second search. */
+static const double margin = 1.25;
+
+/* Beyond this condition number (Frobenius) of a moment matrix its inverse points anywhere. */
+static const double worst_condition = 1e3;
+
+struct room {
+    struct cells *cells;
+    struct cells_fields fields;
+    double *block; /* what the room's own arrays live in */
+    double *radius, *balsara;
+    double *sum_m, *sum_m_dh, *sum_Z, *sum_Z_dh;
+    unsigned char *outcome;
+    uint64_t sorted_at; /* steps */
+    bool sorted;
+    size_t fallen_back;
+};
+
+static struct room *room_of(const struct simulation *simulation)
+{
+    return simulation->room;
+}
+
+static struct cells_method method_of(const struct simulation *simulation)
+{
+    const struct scheme *scheme = &simulation->scheme;
+    const struct plan *plan = &simulation->plan;
+    const bool projected = scheme->viscosity == VISCOSITY_PROJECTED;
+    const bool varies = plan->alpha;
+    struct cells_method method = {
+        .box.dim = plan->dim,
+        .kernel = &scheme->kernel,
+        .stamped = plan->stamped,
+        .gradient = scheme->gradient,
+        .formulation = scheme->formulation,
+        .pair_width = scheme->pair_width,
+        .energy = scheme->energy,
+        .energy_element = plan->energy_sum,
+        .number = scheme->volume_element == VOLUME_NUMBER,
+        .viscosity = projected ? VISCOSITY_RECONSTRUCTED
+                     : varies  ? VISCOSITY_TIME_DEPENDENT
+                               : scheme->viscosity,
+        .signal_form = projected || scheme->viscosity_form == VISCOSITY_FORM_SIGNAL,
+        .projected = projected,
+        .balsara = plan->balsara,
+        .velocity_gradient = plan->slope,
+        .div_v = plan->alpha,
+        .conductivity = scheme->alpha_u,
+        .noise = scheme->noise,
+        .worst_condition = worst_condition,
+        .numbers = {.alpha = scheme->alpha,
+                    .beta = scheme->beta,
+                    .beta_ratio = !varies             ? 0
+                                  : scheme->alpha > 0 ? scheme->beta / scheme->alpha
+                                                      : 2,
+                    .near = 1 / scheme->eta},
+        .threads = simulation->threads,
+    };
+    for (int k = 0; k < plan->dim; k++) {
+        method.box.lo[k] = simulation->lo[k];
+        method.box.hi[k] = simulation->lo[k] + simulation->particles.period[k];
+        method.box.periodic[k] = true;
+    }
+    return method;
+}
+
+/* --- memory ----------------------------------------------------------------------------------- */
+
+/* The room's own arrays, a run of n doubles each, behind each other. */
+static bool allocate_arrays(struct simulation *simulation, size_t n)
+{
+    struct room *room = room_of(simulation);
+    const struct plan *plan = &simulation->plan;
+    const size_t dim = (size_t)plan->dim, symmetric = dim * (dim + 1) / 2;
+    const bool projected = simulation->scheme.viscosity == VISCOSITY_PROJECTED;
+    double **of[8 + 2 * CELLS_SYMMETRIC + CELLS_SQUARE];
+    size_t count = 0;
+    of[count++] = &room->radius;
+    of[count++] = &room->sum_m;
+    of[count++] = &room->sum_m_dh;
+    if (plan->energy_sum) of[count++] = &room->sum_Z, of[count++] = &room->sum_Z_dh;
+    if (plan->balsara) of[count++] = &room->balsara;
+    if (plan->matrix) of[count++] = &room->fields.condition;
+    for (size_t k = 0; plan->matrix && k < symmetric; k++) of[count++] = &room->fields.matrix[k];
+    for (size_t k = 0; plan->slope && k < dim * dim; k++) of[count++] = &room->fields.slope[k];
+    for (size_t k = 0; projected && k < symmetric; k++) of[count++] = &room->fields.projector[k];
+    const size_t stride = (n + BATCH_MAX + 7) / 8 * 8;
+    room->block = calloc(count * stride, sizeof(double));
+    room->outcome = calloc(n, 1);
+    if (!room->block || !room->outcome) return false;
+    for (size_t k = 0; k < count; k++) *of[k] = room->block + k * stride;
+    return true;
+}
+
+/* What the sums read and write of the particles. Their arrays stay where they are: there are no
+ * ghosts to grow. */
+static void connect_fields(struct simulation *simulation)
+{
+    struct room *room = room_of(simulation);
+    const struct particles *a = &simulation->particles;
+    struct cells_fields *fields = &room->fields;
+    fields->n = (size_t)a->n;
+    for (int k = 0; k < a->dim; k++) {
+        fields->x[k] = a->x[k];
+        fields->v[k] = a->v[k];
+        fields->F[k] = a->F[k];
+    }
+    fields->m = a->m;
+    fields->U = a->U;
+    fields->alpha = a->alpha;
+    fields->balsara = room->balsara;
+    fields->h_inverse = a->h_inverse;
+    fields->P = a->P;
+    fields->c = a->c;
+    fields->rho = a->rho;
+    fields->V = a->V;
+    fields->b = a->b;
+    fields->grad_h = a->grad_h;
+    fields->sum_m = room->sum_m;
+    fields->sum_m_dh = room->sum_m_dh;
+    fields->sum_Z = room->sum_Z;
+    fields->sum_Z_dh = room->sum_Z_dh;
+    fields->de = a->de;
+    fields->div_v = a->div_v;
+    fields->signal = a->signal;
+}
+
+static enum status create(struct simulation *simulation, ptrdiff_t n, struct error *error)
+{
+    struct room *room = simulation->room = calloc(1, sizeof *room);
+    if (!room || !allocate_arrays(simulation, (size_t)n))
+        return error_set(error, STATUS_ENVIRONMENT, "no memory for %td particles", n);
+    /* loops in whole vectors read a little beyond the ends */
+    return particles_create(&simulation->particles, simulation->plan.dim, n, 8, error);
+}
+
+static void free_room(struct simulation *simulation)
+{
+    struct room *room = room_of(simulation);
+    if (!room) return;
+    cells_destroy(room->cells);
+    free(room->block);
+    free(room->outcome);
+    free(room);
+}
+
+static void begin(struct simulation *simulation)
+{
+    connect_fields(simulation);
+}
+
+static enum status reserve(struct simulation *simulation, struct error *error)
+{
+    (void)simulation;
+    (void)error;
+    return STATUS_OK;
+}
+
+/* --- neighbours and widths -------------------------------------------------------------------- */
+
+static enum status arrange(struct simulation *simulation, struct error *error)
+{
+    const struct particles *a = &simulation->particles;
+    struct room *room = room_of(simulation);
+    for (int k = 0; k < a->dim; k++)
+        for (ptrdiff_t i = 0; i < a->n; i++)
+            if (!isfinite(a->x[k][i]))
+                return simulation_broke_down(simulation, i, "position", a->x[k][i], error);
+    if (room->cells) return STATUS_OK;
+    /* the box is known by now */
+    const struct cells_method method = method_of(simulation);
+    room->cells = cells_create(&method, (size_t)a->n);
+    return room->cells ? STATUS_OK
+                       : error_set(error, STATUS_ENVIRONMENT, "no memory for %td particles", a->n);
+}
+
+/* Finds neighbours within the radii. What is too wide for the box is bad input at the start and a
+ * breakdown later. */
+static enum status search(struct simulation *simulation, struct error *error)
+{
+    struct room *room = room_of(simulation);
+    const struct particles *a = &simulation->particles;
+    const enum status status = cells_arrange(room->cells, &room->fields, room->radius, error);
+    if (status != STATUS_BAD_INPUT || simulation->cost.steps == 0) return status;
+    ptrdiff_t widest = 0;
+    for (ptrdiff_t i = 1; i < a->n; i++)
+        if (!(room->radius[i] <= room->radius[widest])) widest = i;
+    return simulation_broke_down(simulation, widest, "smoothing length", room->radius[widest],
+                                 error);
+}
+
+/* Particles that are near each other in space become so in memory, now and then. */
+static void sort_memory(struct simulation *simulation)
+{
+    struct room *room = room_of(simulation);
+    struct particles *a = &simulation->particles;
+    if (room->sorted && simulation->cost.steps < room->sorted_at + SORT_EVERY) return;
+    const uint32_t *order = grid_order(cells_grid(room->cells));
+    for (ptrdiff_t i = 0; i < a->n; i++) a->order[i] = order[i];
+    memcpy(a->spare, room->radius, (size_t)a->n * sizeof *room->radius);
+    for (ptrdiff_t i = 0; i < a->n; i++) room->radius[i] = a->spare[order[i]];
+    particles_permute(a);
+    room->sorted = true;
+    room->sorted_at = simulation->cost.steps;
+}
+
+static enum status search_sorted(struct simulation *simulation, struct error *error)
+{
+    const struct room *room = room_of(simulation);
+    const bool due = !room->sorted || simulation->cost.steps >= room->sorted_at + SORT_EVERY;
+    const enum status status = search(simulation, error);
+    if (status || !due) return status;
+    sort_memory(simulation);
+    return search(simulation, error);
+}
+
+static void number_to_mass(const struct simulation *simulation, ptrdiff_t first, int len,
+                           struct density_sums *sums)
+{
+    const double *m = simulation->particles.m + first;
+    for (int i = 0; i < len; i++) {
+        sums->m[i] *= m[i];
+        sums->m_dh[i] *= m[i];
+    }
+}
+
+/* The equation of state of all particles, from their sums. Returns how many predicted widths are
+ * far from what they should be. */
+static double close_all(struct simulation *simulation, bool predicted)
+{
+    const struct room *room = room_of(simulation);
+    const struct particles *a = &simulation->particles;
+    const struct scheme *scheme = &simulation->scheme;
+    const struct gas gas = {.gamma = simulation->gamma,
+                            .constant = scheme->kernel.constant[a->dim],
+                            .eta = scheme->eta,
+                            .follow = predicted ? scheme->integrator->follow : 0};
+    const ptrdiff_t batches = (a->n + BATCH_MAX - 1) / BATCH_MAX;
+    double surprised = 0;
+#pragma omp parallel for num_threads(simulation->threads) reduction(+ : surprised) \
+    if (simulation->threads > 1)
+    for (ptrdiff_t b = 0; b < batches; b++) {
+        struct density_sums sums;
+        const ptrdiff_t first = b * BATCH_MAX;
+        const int len = (int)(a->n - first < BATCH_MAX ? a->n - first : BATCH_MAX);
+        const size_t bytes = (size_t)len * sizeof(double);
+        memcpy(sums.m, room->sum_m + first, bytes);
+        memcpy(sums.m_dh, room->sum_m_dh + first, bytes);
+        if (simulation->plan.energy_sum) {
+            memcpy(sums.Z, room->sum_Z + first, bytes);
+            memcpy(sums.Z_dh, room->sum_Z_dh + first, bytes);
+        }
+        if (scheme->volume_element == VOLUME_NUMBER) number_to_mass(simulation, first, len, &sums);
+        surprised += state_close(a, first, len, &simulation->plan, &gas, &sums);
+    }
+    return surprised;
+}
+
+/* Looks for the roots of all particles that are open, searching further where one lies beyond. */
+static enum status find_roots(struct simulation *simulation, struct error *error)
+{
+    struct room *room = room_of(simulation);
+    const struct particles *a = &simulation->particles;
+    const struct scheme *scheme = &simulation->scheme;
+    const struct width_rule rule = {a->dim, scheme->eta, scheme->kernel.constant[a->dim],
+                                    scheme->h_tolerance};
+    for (int try = 0; try < TRIES_MAX; try++) {
+        cells_widths(room->cells, &room->fields, &rule, room->radius, a->h, a->h_inverse,
+                     room->outcome);
+        bool wider = false;
+        for (ptrdiff_t i = 0; i < a->n; i++) {
+            if (room->outcome[i] == CELLS_NO_ROOT)
+                return simulation_broke_down(simulation, i, "smoothing length (no root was found)",
+                                             a->h[i], error);
+            if (room->outcome[i] != CELLS_WIDER) continue;
+            wider = true;
+            room->outcome[i] = CELLS_OPEN;
+            a->h[i] = room->radius[i];
+            room->radius[i] *= 1.5;
+        }
+        if (!wider) return STATUS_OK;
+        const enum status status = search(simulation, error);
+        if (status) return status;
+    }
+    return error_set(error, STATUS_BROKE_DOWN, "broke down at t = %.9g: no smoothing lengths found",
+                     simulation->time);
+}
+
+static enum status newton_widths(struct simulation *simulation, struct error *error)
+{
+    struct room *room = room_of(simulation);
+    const struct particles *a = &simulation->particles;
+    for (ptrdiff_t i = 0; i < a->n; i++) {
+        room->radius[i] = margin * a->h[i];
+        for (int k = 0; k < a->dim; k++) /* a first guess may be anything */
+            if (a->h[i] <= 0.5 * a->period[k])
+                room->radius[i] = least(room->radius[i], 0.5 * a->period[k]);
+    }
+    enum status status = search_sorted(simulation, error);
+    if (status) return status;
+    memset(room->outcome, CELLS_OPEN, (size_t)a->n);
+    status = find_roots(simulation, error);
+    if (!status) close_all(simulation, false);
+    return status;
+}
+
+/* Where a prediction has failed the root is looked for, as in 1D: from the predicted width on, and
+ * no further than by a factor of 2. */
+static enum status solve_surprised(struct simulation *simulation, struct error *error)
+{
+    struct room *room = room_of(simulation);
+    const struct particles *a = &simulation->particles;
+    const struct scheme *scheme = &simulation->scheme;
+    const struct width_rule rule = {a->dim, scheme->eta, scheme->kernel.constant[a->dim],
+                                    scheme->h_tolerance};
+    for (ptrdiff_t i = 0; i < a->n; i++) {
+        const bool surprised = state_surprised(a, i);
+        room->outcome[i] = surprised ? CELLS_OPEN : CELLS_SOLVED;
+        if (!surprised) continue;
+        a->h[i] = 1 / a->h_inverse[i];
+        room->radius[i] = 2 * a->h[i];
+        for (int k = 0; k < a->dim; k++)
+            room->radius[i] = least(room->radius[i], 0.5 * a->period[k]);
+    }
+    const enum status status = search(simulation, error);
+    if (status) return status;
+    cells_widths(room->cells, &room->fields, &rule, room->radius, a->h, a->h_inverse,
+                 room->outcome);
+    close_all(simulation, true);
+    for (ptrdiff_t i = 0; i < a->n; i++) a->h_inverse_old[i] = a->h_inverse_found[i];
+    return STATUS_OK;
+}
+
+static enum status predicted_widths(struct simulation *simulation, double ratio,
+                                    struct error *error)
+{
+    struct room *room = room_of(simulation);
+    const struct particles *a = &simulation->particles;
+    for (ptrdiff_t first = 0; first < a->n; first += BATCH_MAX)
+        width_predict(a, first, (int)(a->n - first < BATCH_MAX ? a->n - first : BATCH_MAX), ratio);
+    for (ptrdiff_t i = 0; i < a->n; i++) room->radius[i] = 1 / a->h_inverse[i];
+    const enum status status = search_sorted(simulation, error);
+    if (status) return status;
+    cells_density(room->cells, &room->fields);
+    return close_all(simulation, true) > 0 ? solve_surprised(simulation, error) : STATUS_OK;
+}
+
+static enum status widths(struct simulation *simulation, bool newton, double ratio,
+                          struct error *error)
+{
+    return newton ? newton_widths(simulation, error) : predicted_widths(simulation, ratio, error);
+}
+
+/* --- matrices and forces ---------------------------------------------------------------------- */
+
+/* f_i = (|div v| + eps c/h)/(|div v| + |curl v| + (eps + 1e-4) c/h) (Balsara 1995). */
+static void find_balsara(struct simulation *simulation)
+{
+    struct room *room = room_of(simulation);
+    const struct particles *a = &simulation->particles;
+    double *const *L = room->fields.slope;
+    const double floor_of = simulation->scheme.balsara_floor;
+    for (ptrdiff_t i = 0; i < a->n; i++) {
+        const double rate = a->c[i] * a->h_inverse[i];
+        double div = 0, curl2 = 0;
+        for (int k = 0; k < a->dim; k++) {
+            div += L[k * a->dim + k][i];
+            for (int l = 0; l < k; l++) {
+                const double turn = L[k * a->dim + l][i] - L[l * a->dim + k][i];
+                curl2 += turn * turn;
+            }
+        }
+        div = fabs(div);
+        room->balsara[i] = (div + floor_of * rate) / (div + sqrt(curl2) + (floor_of + 1e-4) * rate);
+    }
+}
+
+static void matrix(struct simulation *simulation)
+{
+    struct room *room = room_of(simulation);
+    room->fallen_back = cells_matrix(room->cells, &room->fields);
+    if (simulation->plan.balsara) find_balsara(simulation);
+}
+
+static double rate_of_all(const struct simulation *simulation)
+{
+    const struct particles *a = &simulation->particles;
+    double rate = 0;
+    for (ptrdiff_t first = 0; first < a->n; first += BATCH_MAX)
+        rate = largest(
+            rate, state_rate(a, first, (int)(a->n - first < BATCH_MAX ? a->n - first : BATCH_MAX)));
+    return rate;
+}
+
+static enum status forces(struct simulation *simulation, double *rate, struct error *error)
+{
+    struct room *room = room_of(simulation);
+    const struct particles *a = &simulation->particles;
+    (void)error;
+    simulation->cost.pair_interactions += cells_forces(room->cells, &room->fields);
+    if (simulation->plan.alpha) state_dalpha(a, 0, a->n, &simulation->scheme);
+    *rate = rate_of_all(simulation);
+    return STATUS_OK;
+}
+
+static double signal(struct simulation *simulation)
+{
+    const struct room *room = room_of(simulation);
+    cells_signal(room->cells, &room->fields);
+    return rate_of_all(simulation);
+}
+
+/* --- sleep: nobody does, yet ------------------------------------------------------------------ */
+
+static enum status sleep_begin_all_awake(struct simulation *simulation, struct error *error)
+{
+    struct sleep *sleep = &simulation->sleep;
+    sleep->spans = malloc(sizeof *sleep->spans);
+    if (!sleep->spans) return error_set(error, STATUS_ENVIRONMENT, "no memory");
+    sleep->spans[0] = (struct span){0, simulation->particles.n};
+    sleep->span_count = 1;
+    sleep->awake_count = simulation->particles.n;
+    return STATUS_OK;
+}
+
+static void sleep_update(struct simulation *simulation)
+{
+    (void)simulation;
+}
+
+const struct sums cells_sums = {
+    .name = "cells",
+    .dim_min = 2,
+    .dim_max = 3,
+    .create = create,
+    .free = free_room,
+    .begin = begin,
+    .reserve = reserve,
+    .arrange = arrange,
+    .widths = widths,
+    .matrix = matrix,
+    .forces = forces,
+    .signal = signal,
+    .sleep_begin = sleep_begin_all_awake,
+    .sleep_update = sleep_update,
+};
