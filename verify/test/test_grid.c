@@ -1,0 +1,174 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Neighbour lists of the grid against all pairs, on scenes drawn at random: dimension, number,
+ * boundaries, radii from equal to very different, clumps and points in one place. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+#include <gsl/gsl_rng.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "gather.h"
+#include "grid.h"
+#include "near.h"
+
+enum { DRAWS = 120, POINTS_MAX = 600 };
+
+struct points {
+    struct grid_box box;
+    size_t n;
+    double x[3][POINTS_MAX], radius[POINTS_MAX];
+};
+
+static void draw(gsl_rng *rng, struct points *p)
+{
+    *p = (struct points){.box.dim = 2 + (int)gsl_rng_uniform_int(rng, 2)};
+    p->n = 1 + gsl_rng_uniform_int(rng, POINTS_MAX - 1);
+    const double scale = pow(10, 20 * gsl_rng_uniform(rng) - 10);
+    const double contrast = gsl_rng_uniform(rng) < 0.5 ? 1 : 1 + 9 * gsl_rng_uniform(rng);
+    const double clump = gsl_rng_uniform(rng) < 0.3 ? 1e-3 : 1;
+    double least_side = HUGE_VAL;
+    for (int a = 0; a < p->box.dim; a++) {
+        p->box.periodic[a] = gsl_rng_uniform(rng) < 0.6;
+        p->box.lo[a] = scale * (gsl_rng_uniform(rng) - 0.5) * 4;
+        const double side = scale * (0.5 + gsl_rng_uniform(rng));
+        p->box.hi[a] = p->box.lo[a] + side;
+        if (p->box.periodic[a] && side < least_side) least_side = side;
+    }
+    if (!isfinite(least_side)) least_side = scale;
+    const double usual = least_side * (0.02 + 0.3 * gsl_rng_uniform(rng)) / contrast;
+    for (size_t i = 0; i < p->n; i++) {
+        const bool clumped = gsl_rng_uniform(rng) < 0.5;
+        for (int a = 0; a < p->box.dim; a++) {
+            const double side = p->box.hi[a] - p->box.lo[a];
+            const double at =
+                clumped ? 0.5 + clump * (gsl_rng_uniform(rng) - 0.5) : gsl_rng_uniform(rng);
+            p->x[a][i] = p->box.lo[a] + side * at;
+            /* positions need not lie in a periodic box */
+            if (p->box.periodic[a]) p->x[a][i] += side * ((double)gsl_rng_uniform_int(rng, 5) - 2);
+        }
+        p->radius[i] = usual * (gsl_rng_uniform(rng) < 0.1 ? contrast : 1);
+    }
+    for (int a = 0; a < p->box.dim && p->n > 3; a++) p->x[a][1] = p->x[a][0];
+}
+
+static double distance2(const struct points *p, size_t i, size_t j)
+{
+    double r2 = 0;
+    for (int a = 0; a < p->box.dim; a++) {
+        const double side = p->box.hi[a] - p->box.lo[a];
+        double d = p->x[a][i] - p->x[a][j];
+        if (p->box.periodic[a]) d -= side * round(d / side);
+        r2 += d * d;
+    }
+    return r2;
+}
+
+/* Pairs that are within the wider radius, and in the list or not. */
+static void compare(const struct points *p, const struct grid *grid, size_t active,
+                    size_t *compared)
+{
+    const uint32_t *order = grid_order(grid);
+    char listed[POINTS_MAX];
+    for (size_t s = 0; s < p->n; s++) {
+        const size_t i = order[s];
+        const struct grid_list *list = &grid_lists(grid)[s];
+        if (i >= active) {
+            assert_null(list->slots);
+            continue;
+        }
+        memset(listed, 0, sizeof listed);
+        for (int32_t k = 0; k < list->count; k++) {
+            const size_t j = order[list->slots[k]];
+            assert_false(listed[j]); /* once */
+            assert_int_not_equal(j, i);
+            listed[j] = 1;
+        }
+        for (int32_t k = list->count; k % GRID_LANES; k++) assert_int_equal(list->slots[k], p->n);
+        for (size_t j = 0; j < p->n; j++) {
+            if (j == i) continue;
+            const double r = sqrt(distance2(p, i, j)), reach = fmax(p->radius[i], p->radius[j]);
+            if (r < reach * (1 - 1e-9)) assert_true(listed[j]);
+            if (r > reach * (1 + 1e-3)) assert_false(listed[j]);
+            *compared += listed[j] != 0;
+        }
+    }
+}
+
+static void lists_hold_every_pair(void **state)
+{
+    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
+    struct points *p = malloc(sizeof *p);
+    size_t compared = 0, sound = 0;
+    (void)state;
+    assert_non_null(p);
+    gsl_rng_set(rng, 2385);
+    for (int k = 0; k < DRAWS; k++) {
+        struct error error = {0};
+        draw(rng, p);
+        struct grid *grid = grid_create(&p->box, p->n / 2 + 1, 1 + k % 3);
+        assert_non_null(grid);
+        const double *const x[] = {p->x[0], p->x[1], p->x[2]};
+        const size_t active = k % 4 ? p->n : p->n / 2 + 1;
+        const enum status status = grid_search(grid, p->n, active, x, p->radius, &error);
+        if (status) fail_msg("draw %d: %s", k, error.message);
+        compare(p, grid, active, &compared);
+        sound++;
+        grid_destroy(grid);
+    }
+    assert_int_equal(sound, DRAWS);
+    assert_true(compared > 100000);
+    free(p);
+    gsl_rng_free(rng);
+}
+
+/* What cannot be searched is refused with the point's number. */
+static void refuses(void **state)
+{
+    const struct grid_box box = {2, {0, 0}, {1, 1}, {true, true}};
+    double x[] = {0.1, 0.2, 0.3}, y[] = {0.1, 0.5, 0.9}, radius[] = {0.1, 0.1, 0.1};
+    const double *const at[] = {x, y};
+    struct error error = {0};
+    struct grid *grid = grid_create(&box, 3, 1);
+    (void)state;
+    assert_non_null(grid);
+    assert_int_equal(grid_search(grid, 3, 3, at, radius, &error), STATUS_OK);
+    radius[2] = 0.51;
+    assert_int_equal(grid_search(grid, 3, 3, at, radius, &error), STATUS_BAD_INPUT);
+    assert_non_null(strstr(error.message, "particle 2 reaches as far as 0.51"));
+    radius[2] = NAN;
+    assert_int_equal(grid_search(grid, 3, 3, at, radius, &error), STATUS_BAD_INPUT);
+    radius[2] = 0.1;
+    y[1] = INFINITY;
+    assert_int_equal(grid_search(grid, 3, 3, at, radius, &error), STATUS_BAD_INPUT);
+    assert_non_null(strstr(error.message, "position of particle 1"));
+    assert_int_equal(grid_search(grid, 0, 0, at, radius, &error), STATUS_BAD_INPUT);
+    grid_destroy(grid);
+}
+
+static void gathers(void **state)
+{
+    enum { RECORDS = 37, SIZE = 12, COUNT = 24, STRIDE = 40 };
+    _Alignas(64) double records[RECORDS * SIZE], out[SIZE * STRIDE];
+    int32_t slots[COUNT];
+    (void)state;
+    for (int k = 0; k < RECORDS * SIZE; k++) records[k] = 2.385 * k;
+    for (int k = 0; k < COUNT; k++) slots[k] = k * 17 % RECORDS;
+    for (int k = 0; k < SIZE * STRIDE; k++) out[k] = -1;
+    gather_choose()(records, SIZE, slots, COUNT, out, STRIDE);
+    for (int f = 0; f < SIZE; f++)
+        for (int k = 0; k < STRIDE; k++)
+            assert_true(out[f * STRIDE + k] == (k < COUNT ? records[slots[k] * SIZE + f] : -1));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(lists_hold_every_pair),
+        cmocka_unit_test(refuses),
+        cmocka_unit_test(gathers),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
