@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Crystal lattices: Kittel 2005, ch. 1. Quasi-random points: Sobol 1967, by GSL. */
+#include "lattice.h"
+
+#include <gsl/gsl_qrng.h>
+#include <gsl/gsl_rng.h>
+#include <math.h>
+
+enum { BASE_MAX = 4 };
+
+/* A conventional cell: sides over the first one, and its points in parts of the sides; the points
+ * of a lattice in the plane come first. */
+struct crystal {
+    int least_dim, plane_count, count; /* points in 2D and in 3D */
+    double side[3];
+    double base[BASE_MAX][3];
+};
+
+#define ROOT_3       1.7320508075688772
+#define CLOSE_PACKED 1.6329931618554521 /* sqrt(8/3) */
+
+static const struct crystal square = {2, 1, 1, {1, 1, 1}, {{0.5, 0.5, 0.5}}};
+/* in 3D layers in the gaps of each other, every second one alike */
+static const struct crystal hexagonal = {2,
+                                         2,
+                                         4,
+                                         {1, ROOT_3, CLOSE_PACKED},
+                                         {{0.25, 0.25, 0.25},
+                                          {0.75, 0.75, 0.25},
+                                          {0.75, 0.25 + 1. / 6, 0.75},
+                                          {0.25, 0.75 + 1. / 6, 0.75}}};
+static const struct crystal fcc = {
+    3,
+    0,
+    4,
+    {1, 1, 1},
+    {{0.25, 0.25, 0.25}, {0.75, 0.75, 0.25}, {0.75, 0.25, 0.75}, {0.25, 0.75, 0.75}}};
+static const struct crystal bcc = {3, 0, 2, {1, 1, 1}, {{0.25, 0.25, 0.25}, {0.75, 0.75, 0.75}}};
+
+/* NULL: no crystal. */
+static const struct crystal *crystal_of(enum lattice kind)
+{
+    switch (kind) {
+    case LATTICE_SQUARE:
+        return &square;
+    case LATTICE_HEXAGONAL:
+        return &hexagonal;
+    case LATTICE_FCC:
+        return &fcc;
+    case LATTICE_BCC:
+        return &bcc;
+    default:
+        return NULL;
+    }
+}
+
+enum status lattice_plan_make(struct lattice_plan *plan, const struct domain *box,
+                              enum lattice kind, size_t n, struct error *error)
+{
+    const struct crystal *crystal = crystal_of(kind);
+    const char *name = lattice_family.members[kind]->name;
+    *plan = (struct lattice_plan){.box = *box, .kind = kind, .n = n};
+    if (!crystal) return STATUS_OK;
+    if (box->dim < crystal->least_dim)
+        return error_set(error, STATUS_BAD_INPUT, "lattice=%s has no form in %d dimensions", name,
+                         box->dim);
+    const double count = box->dim == 2 ? crystal->plane_count : crystal->count;
+    double volume = 1, shape = 1;
+    for (int d = 0; d < box->dim; d++) {
+        volume *= domain_length(box, d);
+        shape *= crystal->side[d];
+    }
+    /* a cell's first side if cells filled the box without fitting it */
+    const double side = pow(volume * count / ((double)n * shape), 1. / box->dim);
+    plan->n = (size_t)count;
+    for (int d = 0; d < 3; d++) {
+        const double fit = d < box->dim ? domain_length(box, d) / (side * crystal->side[d]) : 1;
+        plan->cells[d] = (size_t)fmax(1, round(fit));
+        plan->n *= plan->cells[d];
+    }
+    return STATUS_OK;
+}
+
+static void crystal_points(const struct lattice_plan *plan, const struct crystal *crystal,
+                           double *const x[3])
+{
+    const struct domain *box = &plan->box;
+    const int count = box->dim == 2 ? crystal->plane_count : crystal->count;
+    size_t i = 0;
+    for (size_t cz = 0; cz < plan->cells[2]; cz++)
+        for (size_t cy = 0; cy < plan->cells[1]; cy++)
+            for (size_t cx = 0; cx < plan->cells[0]; cx++)
+                for (int k = 0; k < count; k++, i++) {
+                    const size_t cell[3] = {cx, cy, cz};
+                    for (int d = 0; d < box->dim; d++)
+                        x[d][i] = box->lo[d] + domain_length(box, d) *
+                                                   ((double)cell[d] + crystal->base[k][d]) /
+                                                   (double)plan->cells[d];
+                }
+}
+
+/* Sobol's sequence, shifted at random round the box. */
+static void sobol_points(const struct lattice_plan *plan, unsigned long seed, double *const x[3])
+{
+    const struct domain *box = &plan->box;
+    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
+    gsl_qrng *sequence = gsl_qrng_alloc(gsl_qrng_sobol, (unsigned)box->dim);
+    double shift[3], at[3];
+    gsl_rng_set(random, seed);
+    for (int d = 0; d < 3; d++) shift[d] = gsl_rng_uniform(random);
+    for (size_t i = 0; i < plan->n; i++) {
+        gsl_qrng_get(sequence, at);
+        for (int d = 0; d < box->dim; d++) {
+            const double part = at[d] + shift[d];
+            x[d][i] = box->lo[d] + domain_length(box, d) * (part < 1 ? part : part - 1);
+        }
+    }
+    gsl_qrng_free(sequence);
+    gsl_rng_free(random);
+}
+
+void lattice_points(const struct lattice_plan *plan, unsigned long seed, double *const x[3])
+{
+    const struct crystal *crystal = crystal_of(plan->kind);
+    if (crystal)
+        crystal_points(plan, crystal, x);
+    else
+        sobol_points(plan, seed, x);
+}
