@@ -8,11 +8,18 @@
 #ifndef SPHPROOF_FAMILIES_H
 #define SPHPROOF_FAMILIES_H
 
-#define GRADIENT_LIST(CHOICE, ...)                                                                 \
+/* Lists called _LINE are of members that have a form in 1D; those that need two dimensions follow
+ * them in the whole list (scheme_members counts). Loops in 1D are stamped for the former. */
+#define GRADIENT_LINE_LIST(CHOICE, ...)                                                            \
     CHOICE(GRADIENT_STANDARD, "standard", "derivative of the kernel, e_ij dW/dr", "Monaghan 1992", \
            __VA_ARGS__)                                                                            \
     CHOICE(GRADIENT_IA, "ia", "Integral Approach, conservative form, C x W",                       \
            "Garcia-Senz, Cabezon & Escartin 2012", __VA_ARGS__)
+
+#define GRADIENT_LIST(CHOICE, ...)                                                                 \
+    GRADIENT_LINE_LIST(CHOICE, __VA_ARGS__)                                                        \
+    CHOICE(GRADIENT_CORRECTED, "corrected", "as ia with the weight -W'/r in place of W",           \
+           "Bonet & Lok 1999, in conservative form", __VA_ARGS__)
 
 #define FORMULATION_LIST(CHOICE, ...)                                                              \
     CHOICE(FORMULATION_VANILLA_ICE, "vanilla_ice", "(P_i + P_j)/(rho_i rho_j), lambda = 1",        \
@@ -23,9 +30,11 @@
 #define VOLUME_ELEMENT_LIST(CHOICE, ...)                                                           \
     CHOICE(VOLUME_MASS, "mass", "Z = m: density, standard SPH", "Monaghan 1992", __VA_ARGS__)      \
     CHOICE(VOLUME_ENERGY, "energy", "Z = U: energy density, density-independent SPH",              \
-           "Saitoh & Makino 2013", __VA_ARGS__)
+           "Saitoh & Makino 2013", __VA_ARGS__)                                                    \
+    CHOICE(VOLUME_NUMBER, "number", "Z = 1: number density, for unequal masses",                   \
+           "Ritchie & Thomas 2001", __VA_ARGS__)
 
-#define VISCOSITY_LIST(CHOICE, ...)                                                                \
+#define VISCOSITY_LINE_LIST(CHOICE, ...)                                                           \
     CHOICE(VISCOSITY_NONE, "none", "none", "", __VA_ARGS__)                                        \
     CHOICE(VISCOSITY_CONSTANT, "constant", "fixed alpha and beta", "Monaghan 1992", __VA_ARGS__)   \
     CHOICE(VISCOSITY_TIME_DEPENDENT, "time_dependent",                                             \
@@ -35,6 +44,25 @@
     CHOICE(VISCOSITY_FADING, "fading",                                                             \
            "constant, but quadratic in compression below 0.01 c a pair",                           \
            "von Neumann & Richtmyer 1950", __VA_ARGS__)
+
+#define VISCOSITY_LIST(CHOICE, ...)                                                                \
+    VISCOSITY_LINE_LIST(CHOICE, __VA_ARGS__)                                                       \
+    CHOICE(VISCOSITY_CULLEN_DEHNEN, "cullen_dehnen",                                               \
+           "alpha jumps up where div v falls, decays behind", "Cullen & Dehnen 2010", __VA_ARGS__) \
+    CHOICE(VISCOSITY_PROJECTED, "projected",                                                       \
+           "reconstructed in shocks; noise damped, but not along the local shear", "",             \
+           __VA_ARGS__)
+
+#define VISCOSITY_FORM_LIST(CHOICE, ...)                                                           \
+    CHOICE(VISCOSITY_FORM_MU, "mu", "by mu = hbar v.r/(r^2 + 0.01 hbar^2)", "Monaghan 1992",       \
+           __VA_ARGS__)                                                                            \
+    CHOICE(VISCOSITY_FORM_SIGNAL, "signal", "by the signal velocity along the pair",               \
+           "Monaghan 1997", __VA_ARGS__)
+
+#define BALSARA_LIST(CHOICE, ...)                                                                  \
+    CHOICE(BALSARA_OFF, "off", "viscosity in shear as in compression", "", __VA_ARGS__)            \
+    CHOICE(BALSARA_ON, "on", "viscosity times |div v|/(|div v| + |curl v|)", "Balsara 1995",       \
+           __VA_ARGS__)
 
 #define ENERGY_LIST(CHOICE, ...)                                                                   \
     CHOICE(ENERGY_INTERNAL, "internal", "U = m u", "", __VA_ARGS__)                                \
@@ -67,6 +95,9 @@
     FAMILY(volume_element, VOLUME_ELEMENT_LIST, VOLUME_ELEMENTS, "volume_elements",                \
            "what the kernel sum adds up")                                                          \
     FAMILY(viscosity, VISCOSITY_LIST, VISCOSITIES, "viscosities", "artificial viscosities")        \
+    FAMILY(viscosity_form, VISCOSITY_FORM_LIST, VISCOSITY_FORMS, "viscosity_forms",                \
+           "what artificial viscosity takes for the closing speed")                                \
+    FAMILY(balsara, BALSARA_LIST, BALSARAS, "balsara_factors", "artificial viscosity in shear")    \
     FAMILY(energy, ENERGY_LIST, ENERGIES, "energies", "the energy that is integrated")             \
     FAMILY(pair_width, PAIR_WIDTH_LIST, PAIR_WIDTHS, "pair_widths",                                \
            "width at which a pair's gradient is taken")                                            \

@@ -19,11 +19,13 @@ struct plan plan_make(const struct scheme *scheme, int dim, bool skip, bool stam
         .correct = scheme->h_method == H_CORRECTED,
         .energy_sum = scheme->volume_element == VOLUME_ENERGY,
         .grad_h = scheme->formulation == FORMULATION_LAGRANGIAN,
-        .matrix = scheme->gradient == GRADIENT_IA,
+        .matrix = scheme->gradient != GRADIENT_STANDARD,
         .own_gradient = scheme->gradient == GRADIENT_STANDARD &&
                         (scheme->pair_width == PAIR_WIDTH_MEAN ||
                          scheme->formulation == FORMULATION_LAGRANGIAN),
-        .slope = scheme->viscosity == VISCOSITY_RECONSTRUCTED,
+        .slope = scheme->viscosity == VISCOSITY_RECONSTRUCTED ||
+                 scheme->viscosity == VISCOSITY_PROJECTED || scheme->balsara == BALSARA_ON,
+        .balsara = scheme->balsara == BALSARA_ON,
         .viscosity = scheme->viscosity != VISCOSITY_NONE,
         .alpha = scheme->viscosity == VISCOSITY_TIME_DEPENDENT,
         .sleep = skip,

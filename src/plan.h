@@ -20,6 +20,7 @@ struct plan {
     bool matrix;             /* moment matrix of the Integral Approach */
     bool own_gradient;       /* standard gradients at each particle's own h */
     bool slope;              /* linear_exact velocity gradient, for reconstruction */
+    bool balsara;            /* factor of the viscosity, from velocity gradients */
     bool viscosity;          /* artificial viscosity in the pair expression */
     bool alpha;              /* evolution of alpha, with div v */
     bool signal_pass;        /* a pass of its own for the time step */

@@ -45,6 +45,44 @@ void scheme_default(struct scheme *scheme, const struct scheme_open *open, int d
     if (integrator->cfl_per_width) scheme->cfl /= scheme->eta;
 }
 
+size_t scheme_members(const struct family *family, int dim)
+{
+    if (dim > 1) return family->n;
+    if (family == &scheme_gradient_family) return GRADIENT_CORRECTED;
+    if (family == &scheme_volume_element_family) return VOLUME_NUMBER;
+    if (family == &scheme_viscosity_family) return VISCOSITY_CULLEN_DEHNEN;
+    if (family == &scheme_viscosity_form_family) return VISCOSITY_FORM_SIGNAL;
+    if (family == &scheme_balsara_family) return BALSARA_ON;
+    return family->n;
+}
+
+/* Choices that need two dimensions. */
+static enum status check_members(const struct scheme *scheme, int dim, struct error *error)
+{
+    const struct {
+        const char *key;
+        const struct family *family;
+        size_t member;
+    } choices[] = {{"gradient", &scheme_gradient_family, scheme->gradient},
+                   {"volume_element", &scheme_volume_element_family, scheme->volume_element},
+                   {"viscosity", &scheme_viscosity_family, scheme->viscosity},
+                   {"viscosity_form", &scheme_viscosity_form_family, scheme->viscosity_form},
+                   {"balsara", &scheme_balsara_family, scheme->balsara}};
+    for (size_t k = 0; k < sizeof choices / sizeof *choices; k++)
+        if (choices[k].member >= scheme_members(choices[k].family, dim))
+            return error_set(error, STATUS_BAD_INPUT,
+                             "%s=%s and dimension=%d exclude each other: it is for 2 and 3 "
+                             "dimensions",
+                             choices[k].key, choices[k].family->members[choices[k].member]->name,
+                             dim);
+    if (dim == 1 && scheme->alpha_u > 0)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "alpha_u=%g and dimension=1 exclude each other: conductivity is for 2 "
+                         "and 3 dimensions",
+                         scheme->alpha_u);
+    return STATUS_OK;
+}
+
 /* Reports a value that is not in (least, most]. */
 static enum status out_of_range(struct error *error, const char *key, double value,
                                 const char *allowed)
@@ -55,6 +93,7 @@ static enum status out_of_range(struct error *error, const char *key, double val
 enum status scheme_check(const struct scheme *scheme, int dim, struct error *error)
 {
     const double least_eta = kernel_least_eta(&scheme->kernel, dim);
+    if (check_members(scheme, dim, error)) return error->status;
     if (!(scheme->eta > least_eta) || !isfinite(scheme->eta))
         return error_set(error, STATUS_BAD_INPUT,
                          "eta = %g: h = eta (m/rho)^(1/%d) has no root with the kernel %s unless "

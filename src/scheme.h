@@ -20,12 +20,17 @@ struct scheme {
     enum formulation formulation;
     enum volume_element volume_element;
     enum viscosity viscosity;
+    enum viscosity_form viscosity_form;
+    enum balsara balsara;
     enum energy energy;
     enum pair_width pair_width;
     enum h_method h_method;
     const struct integrator *integrator;
     double alpha, beta;          /* viscosity; time_dependent: beta/alpha is the ratio kept */
     double alpha_min, alpha_max; /* time_dependent only */
+    double balsara_floor;        /* eps: keeps some viscosity in pure shear */
+    double noise;                /* projected: nu, strength of the linear term */
+    double alpha_u;              /* conductivity; 0: none */
     double eta;                  /* h = eta (m/rho)^(1/d) */
     double cfl;                  /* dt = cfl min h / v_signal; h = support radius */
     double h_tolerance;          /* relative, of Newton's h */
@@ -39,6 +44,9 @@ struct scheme_open {
 /* Fills what is open from the descriptors of the kernel, the integrator and the other choices, all
  * of which are there. Numbers that were measured in 1D are used in 1D alone. */
 void scheme_default(struct scheme *scheme, const struct scheme_open *open, int dim);
+
+/* How many members of a family have a form in dim dimensions: they stand first in its list. */
+size_t scheme_members(const struct family *family, int dim);
 
 /* Checks that the choices go together and the numbers are in range (eta against the existence limit
  * of the kernel in dim dimensions). STATUS_BAD_INPUT names the two that exclude each other. */

@@ -50,7 +50,7 @@ struct sums {
     void (*sleep_update)(struct simulation *simulation);
 };
 
-extern const struct sums line_sums;
+extern const struct sums line_sums, cells_sums;
 
 /* The sums for dim dimensions, or NULL. */
 const struct sums *sums_find(int dim);

@@ -32,6 +32,11 @@ struct room {
     size_t fallen_back;
 };
 
+static int batch_len(const struct particles *particles, ptrdiff_t first)
+{
+    return (int)(particles->n - first < BATCH_MAX ? particles->n - first : BATCH_MAX);
+}
+
 static struct room *room_of(const struct simulation *simulation)
 {
     return simulation->room;
@@ -258,7 +263,7 @@ static double close_all(struct simulation *simulation, bool predicted)
     for (ptrdiff_t b = 0; b < batches; b++) {
         struct density_sums sums;
         const ptrdiff_t first = b * BATCH_MAX;
-        const int len = (int)(a->n - first < BATCH_MAX ? a->n - first : BATCH_MAX);
+        const int len = batch_len(a, first);
         const size_t bytes = (size_t)len * sizeof(double);
         memcpy(sums.m, room->sum_m + first, bytes);
         memcpy(sums.m_dh, room->sum_m_dh + first, bytes);
@@ -353,7 +358,7 @@ static enum status predicted_widths(struct simulation *simulation, double ratio,
     struct room *room = room_of(simulation);
     const struct particles *a = &simulation->particles;
     for (ptrdiff_t first = 0; first < a->n; first += BATCH_MAX)
-        width_predict(a, first, (int)(a->n - first < BATCH_MAX ? a->n - first : BATCH_MAX), ratio);
+        width_predict(a, first, batch_len(a, first), ratio);
     for (ptrdiff_t i = 0; i < a->n; i++) room->radius[i] = 1 / a->h_inverse[i];
     const enum status status = search_sorted(simulation, error);
     if (status) return status;
@@ -403,8 +408,7 @@ static double rate_of_all(const struct simulation *simulation)
     const struct particles *a = &simulation->particles;
     double rate = 0;
     for (ptrdiff_t first = 0; first < a->n; first += BATCH_MAX)
-        rate = largest(
-            rate, state_rate(a, first, (int)(a->n - first < BATCH_MAX ? a->n - first : BATCH_MAX)));
+        rate = largest(rate, state_rate(a, first, batch_len(a, first)));
     return rate;
 }
 
@@ -414,7 +418,8 @@ static enum status forces(struct simulation *simulation, double *rate, struct er
     const struct particles *a = &simulation->particles;
     (void)error;
     simulation->cost.pair_interactions += cells_forces(room->cells, &room->fields);
-    if (simulation->plan.alpha) state_dalpha(a, 0, a->n, &simulation->scheme);
+    for (ptrdiff_t first = 0; simulation->plan.alpha && first < a->n; first += BATCH_MAX)
+        state_dalpha(a, first, batch_len(a, first), &simulation->scheme);
     *rate = rate_of_all(simulation);
     return STATUS_OK;
 }

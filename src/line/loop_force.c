@@ -128,7 +128,7 @@ ALWAYS_INLINE double force_body(enum formulation formulation, enum viscosity vis
 }
 
 /* Every formulation with every viscosity and every energy. */
-#define OVER_VISCOSITIES(f, name, label, paper, X)   VISCOSITY_LIST(OVER_ENERGIES, X, f)
+#define OVER_VISCOSITIES(f, name, label, paper, X)   VISCOSITY_LINE_LIST(OVER_ENERGIES, X, f)
 #define OVER_ENERGIES(v, name, label, paper, X, f)   ENERGY_LIST(OVER_NOTHING, X, f, v)
 #define OVER_NOTHING(e, name, label, paper, X, f, v) X(f, v, e)
 #define ALL(X)                                       FORMULATION_LIST(OVER_VISCOSITIES, X)

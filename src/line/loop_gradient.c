@@ -58,7 +58,7 @@ ALWAYS_INLINE void gradients_of_pairs(const struct kernel *kernel, kernel_shape 
 #define AT_WIDTHS(g, name, label, paper, X, k)                                                     \
     PAIR_WIDTH_LIST(AT_WIDTH, X, k, g) X(k, g, PAIR_WIDTH_OWN)
 #define AT_WIDTH(width, name, label, paper, X, k, g) X(k, g, width)
-#define ALL(X, k)                                    GRADIENT_LIST(AT_WIDTHS, X, k)
+#define ALL(X, k)                                    GRADIENT_LINE_LIST(AT_WIDTHS, X, k)
 
 #define STAMP(k, g, width) BODY(k##_##g##_##width, k##_w, k##_dw, g, width, CLONES)
 #define KERNEL(name, ...)  ALL(STAMP, name)

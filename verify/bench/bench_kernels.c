@@ -261,8 +261,9 @@ static enum status choose_kernels(struct bench *bench, const struct sweep *sweep
             sweep->key_count ? sweep->keys[0].values[k] : kernel_family.members[k]->name;
         if (kernel_select(&bench->kernels[k], name, 5, error)) return error->status;
     }
-    bench->row_max = bench->kernel_count * (SOLVER_ROWS_MAX * scheme_gradient_family.n +
-                                            KERNEL_DIM_MAX * operator_family.n);
+    bench->row_max =
+        bench->kernel_count * (SOLVER_ROWS_MAX * scheme_members(&scheme_gradient_family, 1) +
+                               KERNEL_DIM_MAX * operator_family.n);
     bench->jobs = calloc(bench->row_max * VARIANTS, sizeof *bench->jobs);
     bench->result->rows = calloc(bench->row_max, sizeof *bench->result->rows);
     if (bench->jobs && bench->result->rows) return STATUS_OK;
@@ -274,7 +275,7 @@ static enum status set_up(struct bench *bench, const struct sweep *sweep, struct
     if (choose_kernels(bench, sweep, error) || make_clouds(bench, error)) return error->status;
     for (size_t k = 0; k < bench->kernel_count; k++) {
         const struct kernel *kernel = &bench->kernels[k];
-        for (size_t g = 0; g < scheme_gradient_family.n; g++)
+        for (size_t g = 0; g < scheme_members(&scheme_gradient_family, 1); g++)
             if (add_solver(bench, kernel->member.name, scheme_gradient_family.members[g]->name,
                            error))
                 return error->status;

@@ -43,7 +43,7 @@ static void subjects(struct check_run *run)
     for (size_t k = 0; k < kernel_family.n; k++)
         for (size_t p = 0; p < scheme_pair_width_family.n; p++)
             for (size_t f = 0; f < scheme_formulation_family.n; f++)
-                for (size_t g = 0; g < scheme_gradient_family.n; g++) {
+                for (size_t g = 0; g < scheme_members(&scheme_gradient_family, 1); g++) {
                     s = hydro_scheme();
                     hydro_set_kernel(&s, kernel_family.members[k]->name);
                     s.pair_width = (enum pair_width)p;

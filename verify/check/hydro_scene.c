@@ -112,15 +112,16 @@ void hydro_set_kernel(struct scheme *scheme, const char *name)
 
 size_t hydro_combinations(void)
 {
-    return scheme_gradient_family.n * scheme_formulation_family.n * scheme_volume_element_family.n *
-           scheme_energy_family.n * scheme_viscosity_family.n;
+    return scheme_members(&scheme_gradient_family, 1) * scheme_formulation_family.n *
+           scheme_members(&scheme_volume_element_family, 1) * scheme_energy_family.n *
+           scheme_members(&scheme_viscosity_family, 1);
 }
 
-/* The last digit of *c in the base of a family, which is taken off. */
+/* The last digit of *c in the base of a family in 1D, which is taken off. */
 static int choice(size_t *c, const struct family *family)
 {
-    const size_t digit = *c % family->n;
-    *c /= family->n;
+    const size_t digit = *c % scheme_members(family, 1);
+    *c /= scheme_members(family, 1);
     return (int)digit;
 }
 

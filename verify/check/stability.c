@@ -85,9 +85,9 @@ static void add(struct check_run *run, const char *kernel, enum viscosity viscos
     struct scheme *s = &theory.scheme;
     kernel_select(&s->kernel, kernel, 5, NULL);
     s->viscosity = viscosity;
-    for (size_t e = 0; e < scheme_volume_element_family.n; e++)
+    for (size_t e = 0; e < scheme_members(&scheme_volume_element_family, 1); e++)
         for (size_t f = 0; f < scheme_formulation_family.n; f++)
-            for (size_t g = 0; g < scheme_gradient_family.n; g++) {
+            for (size_t g = 0; g < scheme_members(&scheme_gradient_family, 1); g++) {
                 s->volume_element = (enum volume_element)e;
                 s->formulation = (enum formulation)f;
                 s->gradient = (enum gradient)g;
