@@ -38,11 +38,18 @@ def names(program, family):
 class Program:
     def __init__(self, path):
         self.path = path
-        self.choices = {key: names(path, family) for key, family in (
+        self.choices = {key: [name for name in names(path, family) if self.has_form(key, name)]
+                        for key, family in (
             ("kernel", "kernels"), ("gradient", "gradients"), ("formulation", "formulations"),
             ("volume_element", "volume_elements"), ("integrator", "integrators"),
             ("viscosity", "viscosities"), ("h_method", "h_methods"))}
-        self.cases = names(path, "cases")
+        self.cases = [name for name in names(path, "cases") if name in RIEMANN + ["sound_wave"]]
+
+    def has_form(self, key, name):
+        """Is this choice one for 1D?"""
+        refused = subprocess.run([self.path, "run", "sod", f"{key}={name}", "--explain"],
+                                 capture_output=True, text=True).stderr
+        return "dimension=1 exclude each other" not in refused
 
 
 def log_uniform(rng, low, high):
