@@ -7,8 +7,9 @@
 
 #include "shapes.h"
 #include "units.h"
+#include "width.h"
 
-enum { ITERATIONS_MAX = 200, REACHES_MAX = 200 };
+enum { REACHES_MAX = 200 };
 
 struct work {
     struct candidates candidates;
@@ -52,20 +53,19 @@ static size_t select_near(const struct task *task, struct work *work, size_t s, 
     return n;
 }
 
-/* C sum m_j w(r_j/h); *slope: its derivative times h. */
-static double mass_inside(const struct task *task, struct work *work, size_t n, double h,
-                          double *slope)
+/* Sums of the n points that have been selected, at width h. */
+static void sum_near(const struct task *task, struct work *work, size_t n, double h,
+                     struct density_sums *sums)
 {
     const struct kernel *kernel = task->of->kernel;
-    const double constant = kernel->constant[task->neighbours->dim];
-    double sum = 0, derivative = 0;
+    double sum = 0, slope = 0;
     for (size_t k = 0; k < n; k++) work->q[k] = work->r[k] / h;
     task->shapes.w(kernel, n, work->q, work->value);
     for (size_t k = 0; k < n; k++) sum += work->m[k] * work->value[k];
     task->shapes.dw(kernel, n, work->q, work->value);
-    for (size_t k = 0; k < n; k++) derivative -= work->m[k] * work->value[k] * work->q[k];
-    *slope = constant * derivative;
-    return constant * sum;
+    for (size_t k = 0; k < n; k++) slope += work->m[k] * work->value[k] * work->q[k];
+    sums->m[0] = sum;
+    sums->m_dh[0] = task->neighbours->dim * sum + slope;
 }
 
 /* h of one point; *found stays false where its root lies beyond reach. */
@@ -74,32 +74,29 @@ static enum status solve_point(const struct task *task, struct work *work, size_
 {
     const int dim = task->neighbours->dim;
     const size_t i = task->neighbours->order[s];
-    const double wanted = task->of->m[i] * pow(task->of->eta, dim);
+    const struct kernel *kernel = task->of->kernel;
+    const struct width_rule rule = {dim, task->of->eta, kernel->constant[dim], task->of->tolerance};
+    const double m = task->of->m[i], wanted = m * pow(rule.eta, dim) / rule.constant;
     const size_t n = select_near(task, work, s, reach);
-    double low = 0, high = reach, h = 0.7 * reach, slope, together = 0;
-    if (mass_inside(task, work, n, reach, &slope) < wanted) return STATUS_OK;
+    struct density_sums sums;
+    struct width_bracket bracket;
+    double h = 0.7 * reach, h_inverse = 1 / h, together = 0;
+    sum_near(task, work, n, reach, &sums);
+    if (sums.m[0] < wanted) return STATUS_OK;
     for (size_t k = 0; k < n; k++) together += work->r[k] > 0 ? 0 : work->m[k];
-    if (task->of->kernel->constant[dim] * task->of->kernel->w(task->of->kernel, 0, dim) *
-            together >=
-        wanted)
+    if (kernel->w(kernel, 0, dim) * together >= wanted)
         return error_set(error, STATUS_BROKE_DOWN,
                          "point %zu: no smoothing length: it coincides with others (mass %g there, "
                          "own %g)",
-                         i, together, task->of->m[i]);
-    for (int iteration = 0; iteration < ITERATIONS_MAX; iteration++) {
-        const double excess = mass_inside(task, work, n, h, &slope) - wanted;
-        if (excess > 0)
-            high = h;
-        else
-            low = h;
-        const double newton = slope > 0 ? h - h * excess / slope : 0;
-        const double next = newton > low && newton < high ? newton : 0.5 * (low + high);
-        const bool converged = fabs(next - h) <= task->of->tolerance * h;
-        h = next;
-        if (converged) break;
+                         i, together, m);
+    width_begin(&bracket, 1, reach);
+    bool open = true;
+    for (int step = 0; open && step < WIDTH_STEPS_MAX; step++) {
+        sum_near(task, work, n, h, &sums);
+        open = width_step(&rule, 1, &m, &sums, &bracket, &h, &h_inverse);
     }
     task->h[i] = h;
-    task->rho[i] = task->of->m[i] * pow(task->of->eta / h, dim);
+    task->rho[i] = m * pow(task->of->eta / h, dim);
     *found = true;
     return STATUS_OK;
 }
