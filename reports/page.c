@@ -7,6 +7,7 @@
 
 #include "html.h"
 #include "page_part.h"
+#include "style.h"
 #include "value.h"
 
 static void tile(struct buffer *to, const char *label, double good, double all, const char *anchor)
@@ -26,7 +27,7 @@ static void head(struct buffer *to, const json_t *results, const json_t *verdict
     buffer_escape(to, value_text(verdict, "headline"));
     buffer_add(to, "</title><style>");
     for (size_t k = 0; page_styles[k]; k++) buffer_add(to, page_styles[k]);
-    buffer_format(to, "%s</style></head><body>\n", plot_css());
+    buffer_format(to, "%s</style></head><body>\n", style_css());
     buffer_format(to, "<header class=\"%s\"><p class=\"kind\">sphproof %s report</p><h1>",
                   well ? "well" : "unwell", value_text(results, "mode"));
     buffer_escape(to, value_text(verdict, "headline"));

@@ -9,6 +9,7 @@
 #include "layout.h"
 #include "process.h"
 #include "script.h"
+#include "style.h"
 #include "svg.h"
 
 enum { PATIENCE = 30 }; /* seconds for one plot */
@@ -103,7 +104,7 @@ static enum plot_status svg_document(const struct plot *plot, struct buffer *pic
     const char *body = strchr(svg, '\n');
     buffer_add(picture, "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n");
     buffer_add_bytes(picture, svg, (size_t)(body - svg));
-    buffer_format(picture, "\n<style>%s</style>", plot_css());
+    buffer_format(picture, "\n<style>%s</style>", style_css());
     buffer_add(picture, body);
     buffer_add(picture, "\n");
     free(svg);

@@ -94,7 +94,7 @@ struct plot {
 };
 
 /* An <svg> element for inlining in HTML (no prolog, ids prefixed with the plot's name, colours by
- * the classes of plot_css). *svg is malloced; on failure NULL, and message (of n bytes) says why.
+ * the classes of style_css). *svg is malloced; on failure NULL, and message (of n bytes) says why.
  */
 enum plot_status plot_svg(const struct plot *plot, char **svg, char *message, size_t n);
 
@@ -110,8 +110,5 @@ enum plot_status plot_draw(const struct plot *plot, enum plot_format format, cha
 /* What draws the plot again: `gnuplot NAME.gp` beside NAME.dat makes NAME.svg. Both malloced;
  * false: no memory. */
 bool plot_source(const struct plot *plot, char **script, char **data);
-
-/* The style sheet that gives inlined plots their colours in light and dark. */
-const char *plot_css(void);
 
 #endif

@@ -16,7 +16,7 @@ const char *style_series(int color, int next)
     return style_colors[STYLE_plot_1 + (color - 1) % PLOT_COLORS].light;
 }
 
-const char *plot_css(void)
+const char *style_css(void)
 {
 #define STYLE(name, light, dark) "." #name "{color:" light "}"
     return "svg.plot{color:#1b1f24;font-family:system-ui,-apple-system,'Segoe UI',Helvetica,Arial,"

@@ -34,4 +34,7 @@ extern const struct style_color style_colors[STYLE_COUNT];
 /* Light colour of plot_series.color (`next`: what PLOT_AUTO stands for here). */
 const char *style_series(int color, int next);
 
+/* The style sheet that gives inlined plots their colours in light and dark. */
+const char *style_css(void);
+
 #endif

@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "status.h"
 
-#include <stdarg.h>
 #include <stddef.h>
-#include <stdio.h>
 
 /* Length of the UTF-8 character at text if it is one to print, else 0. */
 static size_t printable(const unsigned char *text)
@@ -34,17 +32,4 @@ void status_clean(char *text)
         if (!length) *c = *c == '\n' ? ' ' : '?';
         c += length ? length : 1;
     }
-}
-
-enum status error_set(struct error *error, enum status status, const char *format, ...)
-{
-    if (error) {
-        va_list arguments;
-        va_start(arguments, format);
-        vsnprintf(error->message, sizeof error->message, format, arguments);
-        va_end(arguments);
-        status_clean(error->message);
-        error->status = status;
-    }
-    return status;
 }

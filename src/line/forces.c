@@ -28,7 +28,7 @@ enum status forces_reserve_scratch(struct simulation *simulation, ptrdiff_t reac
                                    struct error *error)
 {
     struct line *line = line_of(simulation);
-    const size_t size = force_scratch(reach);
+    const size_t size = loop_force_scratch(reach);
     if (size <= line->scratch_size) return STATUS_OK;
     free(line->scratch);
     line->scratch_size = 2 * size;

@@ -24,7 +24,7 @@ ALWAYS_INLINE void gather(bool add, enum energy energy, int count, ptrdiff_t d,
     }
 }
 
-size_t force_scratch(ptrdiff_t D)
+size_t loop_force_scratch(ptrdiff_t D)
 {
     return FORCE_STRIPS * (size_t)(BATCH_MAX + D + 8); /* and the rest of a vector */
 }
@@ -110,7 +110,7 @@ ALWAYS_INLINE double force_body(enum formulation formulation, enum viscosity vis
                                 const struct particles *particles, ptrdiff_t first, int len,
                                 ptrdiff_t D, double *scratch)
 {
-    const ptrdiff_t strip = (ptrdiff_t)force_scratch(D) / FORCE_STRIPS;
+    const ptrdiff_t strip = (ptrdiff_t)loop_force_scratch(D) / FORCE_STRIPS;
     struct force_sums sums;
     if (loops->div_v)
         for (int i = 0; i < len; i++) sums.div_v[i] = 0;

@@ -57,10 +57,10 @@ typedef void gradient_loop(const struct kernel *kernel, const struct particles *
 struct loops;
 
 /* Returns the largest signal speed / h among the pairs of the range (of either particle) and of
- * the range's particles alone. scratch: force_scratch(D) doubles of the thread. */
+ * the range's particles alone. scratch: loop_force_scratch(D) doubles of the thread. */
 typedef double force_loop(const struct loops *loops, const struct particles *particles,
                           ptrdiff_t first, int len, ptrdiff_t D, double *scratch);
-size_t force_scratch(ptrdiff_t D);
+size_t loop_force_scratch(ptrdiff_t D);
 
 /* --- choosing ------------------------------------------------------------------------------- */
 

@@ -122,7 +122,7 @@ enum status bench_loops_create(struct bench_loops *loops, const struct scheme *s
     const enum status status = particles_create(&loops->particles, 1, (ptrdiff_t)n, GHOSTS, error);
     if (status) return status;
     loops->particles.period[0] = (double)n;
-    loops->scratch = malloc(force_scratch(loops->reach) * sizeof(double));
+    loops->scratch = malloc(loop_force_scratch(loops->reach) * sizeof(double));
     if (!loops->scratch) return error_set(error, STATUS_ENVIRONMENT, "no memory");
     fill(loops);
     static const uint64_t directed[] = {[PASS_STATE] = 0,

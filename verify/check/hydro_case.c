@@ -299,7 +299,7 @@ static void measure_errors_again(struct check_run *run, const void *subject)
                                     (double)(mean / count)};
         for (int k = 0; k < NORMS; k++)
             check_measure(run, fabs(run_error(&result, (enum field)f, (enum norm)k) / want[k] - 1),
-                          1e-12, 2e-14, "%s of %s", norm_family.members[k]->name,
+                          1e-12, 2e-14, "%s of %s", field_norm_family.members[k]->name,
                           field_family.members[f]->name);
     }
     const double late = wrong ? wrong->late : 0;

@@ -246,13 +246,6 @@ static enum status execute(struct line *line, int argc, char **argv, struct erro
     return options->command->run(options, line->n, line->arguments, error);
 }
 
-const char *options_value(const struct options *options, const char *name)
-{
-    const struct command_option *list = options->command->options;
-    const struct command_option *option = find(list, name, strlen(name));
-    return option ? options->values[option - list] : NULL;
-}
-
 enum status command_usage(const struct options *options, struct error *error, const char *format,
                           ...)
 {

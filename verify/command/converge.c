@@ -49,7 +49,7 @@ static void print_orders(const struct case_file *file, const struct study_result
             if (order->status == GATE_NONE && (norm != NORM_L1 || !file->fields[field])) continue;
             char name[40];
             snprintf(name, sizeof name, "%s_%s", field_family.members[field]->name,
-                     norm_family.members[norm]->name);
+                     field_norm_family.members[norm]->name);
             printf("%-22s %7.3f   [%6.3f, %6.3f]  %-14s", name, order->fit.order, order->fit.low,
                    order->fit.high, order_class_name(order->fit.class));
             for (size_t i = 0; i + 1 < order->fit.n; i++) printf(" %.2f", order->fit.pairwise[i]);

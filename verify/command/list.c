@@ -120,7 +120,7 @@ PLAIN(energy, scheme_energy)
 PLAIN(pair_width, scheme_pair_width)
 PLAIN(h_method, scheme_h_method)
 PLAIN(field, field)
-PLAIN(norm, norm)
+PLAIN(norm, field_norm)
 
 static const struct family *(*const lists[])(void) = {cases,
                                                       problem_list,

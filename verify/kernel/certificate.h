@@ -42,7 +42,7 @@ struct certificate {
 /* How hard a single kernel is looked at. */
 enum { CERTIFICATE_SAMPLES = 1 << 20, CERTIFICATE_SEED = 1 };
 
-/* Measures everything on a kernel in dim dimensions, on these terms (NULL: terms_usual).
+/* Measures everything on a kernel in dim dimensions, on these terms (NULL: pieces_terms_usual).
  * STATUS_ENVIRONMENT: no memory. A property that does not hold is no error, see failed. Release
  * with certificate_free; kernel must outlive it. */
 enum status certificate_measure(struct certificate *certificate, const struct kernel *kernel,

@@ -263,7 +263,7 @@ static void fill(struct curves *curves, const struct certificate *c)
             curves->q[curves->n] = q;
             curves->w[curves->n] = unit * c->kernel->w(c->kernel, q, c->dim);
             curves->dw[curves->n] = unit * values[j];
-            curves->ddw[curves->n++] = unit * series_slope(&fit, x, &floor) / half;
+            curves->ddw[curves->n++] = unit * pieces_series_slope(&fit, x, &floor) / half;
         }
     }
     for (int i = 0; i < WAVES; i++) {

@@ -7,7 +7,7 @@
 
 enum { N = PIECES_NODES, TAIL = N / 4, LEAVES_MAX = 1 << 15 };
 
-const struct terms terms_usual = {.samples = 1 << 13, .seed = 1};
+const struct terms pieces_terms_usual = {.samples = 1 << 13, .seed = 1};
 
 /* A series is resolved when its tail is below this part of the largest value; intervals with a
  * singularity are bisected down to this width: double precision, single precision. */
@@ -44,7 +44,7 @@ void pieces_fit(const struct pieces *pieces, const double values[PIECES_NODES],
     fit->reach = tail > 4 * pieces->epsilon * largest ? N : fit->n + 2;
 }
 
-double series_value(const struct series_fit *fit, double x)
+double pieces_series_value(const struct series_fit *fit, double x)
 {
     double next = 0, following = 0; /* Clenshaw */
     for (int j = fit->n - 1; j > 0; j--) {
@@ -55,7 +55,7 @@ double series_value(const struct series_fit *fit, double x)
     return x * next - following + fit->c[0];
 }
 
-double series_slope(const struct series_fit *fit, double x, double *floor)
+double pieces_series_slope(const struct series_fit *fit, double x, double *floor)
 {
     double u = 0, next = 1, sum = 0, amplified = 0; /* u = U_(j-2), next = U_(j-1) */
     for (int j = 1; j < N; j++) {
@@ -340,7 +340,8 @@ static int divide(const struct pieces *pieces, double a, double b, double *edge)
 enum status pieces_find(struct pieces *pieces, const struct kernel *kernel, int dim,
                         const struct terms *terms, struct error *error)
 {
-    *pieces = (struct pieces){.kernel = kernel, .dim = dim, .terms = terms ? *terms : terms_usual};
+    *pieces =
+        (struct pieces){.kernel = kernel, .dim = dim, .terms = terms ? *terms : pieces_terms_usual};
     pieces->epsilon = pieces->terms.single ? (double)FLT_EPSILON : DBL_EPSILON;
     pieces->tolerance = tolerances[pieces->terms.single];
     pieces->width_min = widths[pieces->terms.single];

@@ -26,7 +26,7 @@ struct terms {
 #define TERMS_SINGLE_BOUND 1e-6
 
 /* Double precision, nothing declared, a few samples. */
-extern const struct terms terms_usual;
+extern const struct terms pieces_terms_usual;
 
 /* Values kept from the first calls. */
 enum { PIECES_FIRST = 64 };
@@ -60,8 +60,8 @@ struct series_fit {
     double noise; /* of a coefficient */
 };
 
-/* Finds the pieces of a kernel in dim dimensions; terms NULL: terms_usual. STATUS_ENVIRONMENT: no
- * memory. Release with pieces_free; kernel must outlive it. */
+/* Finds the pieces of a kernel in dim dimensions; terms NULL: pieces_terms_usual.
+ * STATUS_ENVIRONMENT: no memory. Release with pieces_free; kernel must outlive it. */
 enum status pieces_find(struct pieces *pieces, const struct kernel *kernel, int dim,
                         const struct terms *terms, struct error *error);
 void pieces_free(struct pieces *pieces);
@@ -80,10 +80,10 @@ void pieces_fit(const struct pieces *pieces, const double values[PIECES_NODES],
                 struct series_fit *fit);
 
 /* The series at x. */
-double series_value(const struct series_fit *fit, double x);
+double pieces_series_value(const struct series_fit *fit, double x);
 
 /* d/dx of the series at x, and the error that its noise makes there. */
-double series_slope(const struct series_fit *fit, double x, double *floor);
+double pieces_series_slope(const struct series_fit *fit, double x, double *floor);
 
 /* k-th derivative of w at q = at from one side: the one of `to`, the far end of the piece. k = 0
  * takes w, the others the (k-1)-th derivative of dw. floor: estimate of the error (not a bound). */

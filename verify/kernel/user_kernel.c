@@ -301,7 +301,7 @@ static enum status load(struct user_kernel *user, const char *path, int dim, str
 enum status user_kernel_load(struct user_kernel *user, const char *path, int dim,
                              const struct terms *terms, struct error *error)
 {
-    *user = (struct user_kernel){.terms = terms ? *terms : terms_usual};
+    *user = (struct user_kernel){.terms = terms ? *terms : pieces_terms_usual};
     const enum status status = load(user, path, dim, error);
     if (status) user_kernel_unload(user);
     return status;

@@ -27,8 +27,8 @@ bool user_kernel_is_path(const char *word);
 void user_kernel_file_name(const char *path, char *name, size_t size);
 
 /* dim 1, 2, 3: only that dimension of the kernel is valid; 0: all. terms: precision, samples and
- * seed of the judgement (NULL: terms_usual). STATUS_BAD_INPUT: missing file, not a shared object,
- * missing function, knots that are not ascending in ]0, 1[, a value that is not finite. */
+ * seed of the judgement (NULL: pieces_terms_usual). STATUS_BAD_INPUT: missing file, not a shared
+ * object, missing function, knots that are not ascending in ]0, 1[, a value that is not finite. */
 enum status user_kernel_load(struct user_kernel *user, const char *path, int dim,
                              const struct terms *terms, struct error *error);
 void user_kernel_unload(struct user_kernel *user);

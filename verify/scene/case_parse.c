@@ -184,7 +184,7 @@ static bool gate_name(const char *name, int *field, int *norm)
         for (*norm = 0; *norm < NORMS; ++*norm) {
             char text[64];
             snprintf(text, sizeof text, "%s_%s", field_family.members[*field]->name,
-                     norm_family.members[*norm]->name);
+                     field_norm_family.members[*norm]->name);
             if (strcmp(text, name) == 0) return true;
         }
     return false;

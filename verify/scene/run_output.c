@@ -16,7 +16,7 @@ json_t *run_errors_json(const struct run_result *result)
     for (int field = 0; field < FIELDS; field++) {
         json_t *norms = json_object();
         for (int norm = 0; norm < NORMS; norm++)
-            set_number(norms, norm_family.members[norm]->name,
+            set_number(norms, field_norm_family.members[norm]->name,
                        run_error(result, (enum field)field, (enum norm)norm));
         json_object_set_new(errors, field_family.members[field]->name, norms);
     }

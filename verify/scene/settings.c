@@ -20,13 +20,13 @@
         name, label, paper                                                                         \
     }
 
-const struct family lattice_family = {
+const struct family settings_lattice_family = {
     "lattices", "where particles start",
     MEMBERS(MEMBER("uniform", "the centre of each particle's share of the gas", ""),
             MEMBER("clustered", "in pairs, a tenth of the spacing apart", ""),
             MEMBER("coincident", "in pairs at one place", "")),
     3};
-const struct family skip_family = {
+const struct family settings_skip_family = {
     "skips", "work left out",
     MEMBERS(MEMBER("auto", "what no signal has reached, where the result allows it", ""),
             MEMBER("none", "every particle at every step", "")),
@@ -53,7 +53,7 @@ int setting_find(const char *name)
 
 static bool may_be_auto(const struct setting_key *key)
 {
-    return strcmp(key->fallback, "auto") == 0 && key->family != &skip_family;
+    return strcmp(key->fallback, "auto") == 0 && key->family != &settings_skip_family;
 }
 
 void setting_allowed(const struct setting_key *key, char *text, size_t size)

@@ -49,7 +49,7 @@ struct settings {
 
 enum lattice { LATTICE_UNIFORM, LATTICE_CLUSTERED, LATTICE_COINCIDENT };
 enum skip { SKIP_AUTO, SKIP_NONE };
-extern const struct family problem_family, lattice_family, skip_family;
+extern const struct family problem_family, settings_lattice_family, settings_skip_family;
 
 /* Position of the key called name, or -1. */
 int setting_find(const char *name);

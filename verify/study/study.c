@@ -134,7 +134,7 @@ static double error_of(const json_t *run, int field, int norm)
 {
     const json_t *fields = json_object_get(run, "errors");
     return value_member(json_object_get(fields, field_family.members[field]->name),
-                        norm_family.members[norm]->name);
+                        field_norm_family.members[norm]->name);
 }
 
 static void read_functionals(struct study_result *result, struct study_level *level,

@@ -17,8 +17,8 @@ static json_t *level_json(const struct study *study, const struct study_level *l
     for (int f = 0; f < FIELDS; f++) {
         json_t *norms = json_object(), *spreads = json_object();
         for (int m = 0; m < NORMS; m++) {
-            set(norms, norm_family.members[m]->name, level->errors[f][m]);
-            set(spreads, norm_family.members[m]->name, level->spread[f][m]);
+            set(norms, field_norm_family.members[m]->name, level->errors[f][m]);
+            set(spreads, field_norm_family.members[m]->name, level->spread[f][m]);
         }
         json_object_set_new(errors, field_family.members[f]->name, norms);
         json_object_set_new(spread, field_family.members[f]->name, spreads);
@@ -47,9 +47,9 @@ static json_t *order_json(const struct study_order *order, int field, int norm)
                       result_number(order->gate.high), "bound", result_number(order->gate.bound));
     json_t *item = json_pack(
         "{s:s, s:s, s:o, s:o, s:o, s:o, s:s, s:o, s:s}", "field", field_family.members[field]->name,
-        "norm", norm_family.members[norm]->name, "order", result_number(order->fit.order), "low",
-        result_number(order->fit.low), "high", result_number(order->fit.high), "pairwise", pairwise,
-        "class", order_class_name(order->fit.class), "gate", gate, "status",
+        "norm", field_norm_family.members[norm]->name, "order", result_number(order->fit.order),
+        "low", result_number(order->fit.low), "high", result_number(order->fit.high), "pairwise",
+        pairwise, "class", order_class_name(order->fit.class), "gate", gate, "status",
         gate_names[order->status]);
     if (order->status == GATE_FAIL) json_object_set_new(item, "why", json_string(order->why));
     return item;

@@ -9,7 +9,7 @@
 #include <stddef.h>
 
 struct user_figures;
-struct check_run; /* collects the subjects and figures of one check; see suite.c */
+struct check_run; /* collects the subjects and figures of one check; see check_run.h */
 
 /* One figure. subject: where (kernel, dimension, h, point ...), printf-like; passes if value <=
  * bound (a NaN fails). floor: the noise below which the figure means nothing (0: exact). */

@@ -51,7 +51,7 @@ static double look(struct walk *walk, double q)
     double ratio = 0;
     for (int i = 0; i < 2; i++) {
         const struct series_fit *fit = list[i].fit;
-        const double error = fabs(list[i].got - series_value(fit, x)) / list[i].scale;
+        const double error = fabs(list[i].got - pieces_series_value(fit, x)) / list[i].scale;
         const double floor = fit->noise * fit->reach / list[i].scale + pieces->epsilon;
         const double bound = fmin(margin * floor, cap);
         ratio = fmax(ratio, isnan(error) ? (double)INFINITY : error / bound);

@@ -34,7 +34,7 @@ static void radial_piece(const struct pieces *pieces, double a, double b, double
     for (int j = 0; j < PIECES_NODES; j += 3) {
         double floor;
         const double x = pieces_node(pieces, j), q = a + half * (1 + x);
-        const double slope = series_slope(&fit, x, &floor) / (half * h);
+        const double slope = pieces_series_slope(&fit, x, &floor) / (half * h);
         const double error = fabs(slope - slopes[j]);
         const double scale = fabs(unit) * pieces->max_dw;
         floor =
@@ -70,7 +70,7 @@ static void width_point(const struct pieces *pieces, double a, double b, double 
     for (int j = 0; j < PIECES_NODES; j++)
         values[j] = kernel_value(kernel, r, middle + half * pieces_node(pieces, j), dim);
     pieces_fit(pieces, values, &fit);
-    const double slope = series_slope(&fit, (h - middle) / half, &floor) / half;
+    const double slope = pieces_series_slope(&fit, (h - middle) / half, &floor) / half;
     const double error = fabs(slope - kernel_dh(kernel, r, h, dim));
     floor = floor / half / scale + 8 * pieces->epsilon;
     property_keep(worst, error / scale, fmin(margin * floor, most(pieces)), floor, "h %g, q %.6g",

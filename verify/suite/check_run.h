@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Inside of the suite: what one run of a check collects. */
+#ifndef SPHPROOF_CHECK_RUN_H
+#define SPHPROOF_CHECK_RUN_H
+
+#include "suite.h"
+
+/* A right subject; copy: where it is the run's own. */
+struct subject {
+    const void *given;
+    void *copy;
+};
+
+struct check_run {
+    const struct check *check;
+    struct subject *subjects;
+    struct figure *figures;
+    struct series *series;
+    size_t subject_count, figure_count, series_count;
+    double began; /* of the figure being measured */
+    bool no_memory;
+    bool mutant, rejected;
+};
+
+#endif
