@@ -36,12 +36,13 @@ struct check_sink {
     struct property_sink sink;
     struct check_run *run;
     const struct pieces *pieces;
+    bool failed;
 };
 
 static void take(struct property_sink *sink, double value, double bound, double floor,
                  const char *where, bool skipped)
 {
-    const struct check_sink *context = (const struct check_sink *)sink;
+    struct check_sink *context = (struct check_sink *)sink;
     const struct kernel *kernel = context->pieces->kernel;
     char name[64];
     if (kernel->order)
@@ -53,6 +54,27 @@ static void take(struct property_sink *sink, double value, double bound, double 
     else
         check_measure(context->run, value, bound, floor, "%s, dim %d, %s", name,
                       context->pieces->dim, where);
+    context->failed = context->failed || !(skipped || value <= bound);
+}
+
+/* For the plot of a failure: w, dw, and what dw should be. */
+static void show_shape(struct check_run *run, const struct kernel *kernel, int dim)
+{
+    enum { POINTS = 421 };
+    const double reach = 1.05, step = 1e-6;
+    double q[POINTS], w[POINTS], dw[POINTS], slope[POINTS];
+    char label[128];
+    for (int i = 0; i < POINTS; i++) {
+        q[i] = fmax(reach * i / (POINTS - 1), step);
+        w[i] = kernel->w(kernel, q[i], dim);
+        dw[i] = kernel->dw(kernel, q[i], dim);
+        slope[i] = (kernel->w(kernel, q[i] + step, dim) - kernel->w(kernel, q[i] - step, dim)) /
+                   (2 * step);
+    }
+    snprintf(label, sizeof label, "w of %.60s, dim %d", kernel->member.name, dim);
+    check_series(run, label, POINTS, q, w);
+    check_series(run, "dw", POINTS, q, dw);
+    check_series(run, "slope of w", POINTS, q, slope);
 }
 
 /* The user's kernel has been measured elsewhere. */
@@ -82,6 +104,7 @@ static void measure(struct check_run *run, const void *subject_, const char *nam
         pass_on(run, check_kernel_plugin, name);
         return;
     }
+    bool shown = false;
     for (int dim = 1; dim <= KERNEL_DIM_MAX; dim++) {
         struct pieces pieces;
         if (pieces_find(&pieces, kernel, dim, NULL, NULL)) {
@@ -89,8 +112,9 @@ static void measure(struct check_run *run, const void *subject_, const char *nam
                           dim);
             continue;
         }
-        struct check_sink context = {{take}, run, &pieces};
+        struct check_sink context = {{take}, run, &pieces, false};
         property(&pieces, &context.sink);
+        if (context.failed && !shown) shown = true, show_shape(run, kernel, dim);
         pieces_free(&pieces);
     }
 }

@@ -8,6 +8,7 @@
 
 #include "check_registry.h"
 #include "command.h"
+#include "headline.h"
 #include "output.h"
 #include "progress.h"
 #include "result.h"
@@ -21,6 +22,7 @@ enum { FOLDER_LENGTH = 1000 };
 static const struct command_option verify_options[] = {
     {"mutants", NULL, "also run the mutants: wrong variants that the checks must reject"},
     {"slow", NULL, "also run the checks that take more than a few seconds"},
+    {"details", NULL, "show every figure that fails, not only what it comes to"},
     {"first", NULL, "stop after the first check that fails"},
     {"kernel-plugin", "F.so", "check a kernel of your own as well (see `sphproof kernel --help`)"},
     {"junit", "FILE", "write a JUnit file"},
@@ -69,6 +71,7 @@ static enum status write_results(const struct suite *suite, const struct options
     if (options->json && !status) {
         json_t *document = result_new("verify");
         suite_output_json(suite, document);
+        json_object_set_new(document, "failures", headline_list(suite));
         status = result_write(document, options->json, error);
         json_decref(document);
     }
@@ -116,8 +119,9 @@ static enum status run(const struct options *options, int n, char **arguments, s
     user_figures_free(&user);
     if (status != STATUS_OK && status != STATUS_CHECK_FAILED) return status;
 
-    if (options->speak) suite_output_table(&suite, stdout, options->color);
-    if (suite.failed) keep_failures(&suite, options);
+    if (options->speak)
+        suite_output_table(&suite, stdout, options->color, options_value(options, "details"));
+    keep_failures(&suite, options);
     const enum status written = write_results(&suite, options, error);
     suite_free(&suite);
     return written ? written : status;
@@ -125,7 +129,7 @@ static enum status run(const struct options *options, int n, char **arguments, s
 
 const struct command command_verify = {
     .name = "verify",
-    .synopsis = "[GROUP ...] [--mutants] [--slow] [--first]",
+    .synopsis = "[GROUP ...] [--mutants] [--slow] [--first] [--details]",
     .help = "check kernels, gradients, solver, exact solutions and norms\n\n"
             "Every check states a property, the measured value, its bound and the noise floor.\n"
             "Without a GROUP all groups run. Exit status 1 if a figure is beyond its bound or,\n"

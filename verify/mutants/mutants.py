@@ -28,7 +28,7 @@ PATIENCE = 120  # seconds that one verification may take
 
 class Mutant:
     def __init__(self, name):
-        self.name, self.fault, self.group, self.test, self.file = name, "", "", "", ""
+        self.name, self.fault, self.group, self.test, self.file, self.also = name, "", "", "", "", ""
         self.old, self.new = [], []
 
     def apply(self, tree):
@@ -58,7 +58,7 @@ def read_list():
                 mutants[-1].new.append(line[2:])
             elif ": " in line and not line.startswith("#"):
                 key, value = line.split(": ", 1)
-                if key not in ("fault", "group", "test", "file"):
+                if key not in ("fault", "group", "test", "also", "file"):
                     sys.exit("%s:%d: unknown key '%s'" % (LIST, number, key))
                 setattr(mutants[-1], key, value)
             elif line and not line.startswith("#"):
@@ -120,6 +120,8 @@ class Worker:
 
     def verify(self, mutant):
         """The exit status of what must notice it: a group of checks, a script, a test in C."""
+        if mutant.also:
+            demand(["ninja", "-C", self.build, mutant.also])
         if mutant.group:
             command = [self.program, "verify", *mutant.group.split(), "--first", "--quiet", "--failures",
                        os.path.join(self.build, "failures")]

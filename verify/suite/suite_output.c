@@ -6,12 +6,14 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
+#include "headline.h"
 #include "output.h"
 #include "plot.h"
 #include "result.h"
 
-enum { FAILURES_SHOWN = 12, SERIES_SHOWN = 8, PATH_LENGTH = 1024 };
+enum { SERIES_SHOWN = 8, PATH_LENGTH = 1024 };
 
 static const char *const status_names[] = {"pass", "fail", "skip"};
 
@@ -57,19 +59,17 @@ static void print_margin(const struct figure *figure, FILE *stream)
 
 static void print_failures(const struct suite *suite, const struct tally *t, FILE *stream)
 {
-    size_t shown = 0;
     for (size_t i = t->begin; i < t->end; i++) {
         const struct figure *figure = &suite->figures[i];
-        if (figure->status != FIGURE_FAIL || shown++ >= FAILURES_SHOWN) continue;
+        if (figure->status != FIGURE_FAIL) continue;
         fprintf(stream, "        %s: got %.6g, bound %.3g, floor %.2g\n", figure->subject,
                 figure->value, figure->bound, figure->floor);
     }
-    if (shown > FAILURES_SHOWN)
-        fprintf(stream, "        ... and %zu more\n", shown - FAILURES_SHOWN);
     fprintf(stream, "        property: %s\n", t->check->property);
 }
 
-static void print_check(const struct suite *suite, const struct tally *t, FILE *stream, bool color)
+static void print_check(const struct suite *suite, const struct tally *t, FILE *stream, bool color,
+                        bool details)
 {
     const char *end = paint(color, "\033[0m");
     if (!t->worst)
@@ -83,7 +83,7 @@ static void print_check(const struct suite *suite, const struct tally *t, FILE *
         fprintf(stream, " %9.2g %7zu %7.2f\n", t->worst->floor, t->end - t->begin - t->skipped,
                 t->seconds);
     }
-    if (t->failed) print_failures(suite, t, stream);
+    if (t->failed && details) print_failures(suite, t, stream);
 }
 
 /* How far beyond the bound the faintest rejected mutant of a check lies; infinite where the bound
@@ -116,7 +116,7 @@ static void print_mutants(const struct suite *suite, FILE *stream, bool color)
     }
 }
 
-void suite_output_table(const struct suite *suite, FILE *stream, bool color)
+void suite_output_table(const struct suite *suite, FILE *stream, bool color, bool details)
 {
     const char *group = "";
     for (size_t i = 0; i < suite->figure_count;) {
@@ -126,7 +126,7 @@ void suite_output_table(const struct suite *suite, FILE *stream, bool color)
                     paint(color, "\033[1m"), t.check->group, paint(color, "\033[0m"), "value",
                     "bound", "margin", "floor", "figures", "s");
         group = t.check->group;
-        print_check(suite, &t, stream, color);
+        print_check(suite, &t, stream, color, details);
         i = t.end;
     }
     if (suite->outcome_count) print_mutants(suite, stream, color);
@@ -140,6 +140,12 @@ void suite_output_table(const struct suite *suite, FILE *stream, bool color)
             "; %.1f s\nvalue: the figure nearest to its bound; margin: bound/value; floor: "
             "round-off below which it means nothing\n",
             suite->seconds);
+    json_t *headlines = sound ? NULL : headline_list(suite);
+    if (headlines) {
+        fputc('\n', stream);
+        headline_print(headlines, stream, color);
+    }
+    json_decref(headlines);
 }
 
 static json_t *figure_json(const struct figure *figure)
@@ -276,36 +282,83 @@ static json_t *failure_json(const struct suite *suite, const struct tally *t)
     return document;
 }
 
-/* True if there was something to plot and it was plotted. */
-static bool plot_failure(const struct suite *suite, const struct check *check, const char *path)
+/* The data that the check gave along with its figures; 0 curves: it gave none. */
+static size_t curves_of(const struct suite *suite, const struct check *check,
+                        struct plot_series curves[SERIES_SHOWN])
 {
-    struct plot_series curves[SERIES_SHOWN];
     size_t n = 0;
     for (size_t i = 0; i < suite->series_count && n < SERIES_SHOWN; i++) {
         const struct series *s = &suite->series[i];
         if (s->check == check)
             curves[n++] = (struct plot_series){
-                .label = s->label, .kind = PLOT_LINES_POINTS, .n = s->n, .x = s->x, .y = s->y};
+                .label = s->label, .kind = PLOT_LINES, .n = s->n, .x = s->x, .y = s->y};
     }
-    char message[256];
-    const struct plot_panel panel = {
-        .x_label = "x", .y_label = check->name, .series = curves, .series_count = n};
-    const struct plot plot = {.name = check->name,
-                              .title = check->property,
+    return n;
+}
+
+/* Every figure of the check over its bound, in the order of measuring: failing ones lie above 1.
+ * x, low, high: room for all of them. */
+static size_t figures_of(const struct suite *suite, const struct tally *t,
+                         struct plot_series curves[SERIES_SHOWN], double *x, double *low,
+                         double *high)
+{
+    const double least = 1e-6, most = 1e12;
+    const size_t n = t->end - t->begin;
+    for (size_t i = 0; i < n; i++) {
+        const struct figure *figure = &suite->figures[t->begin + i];
+        const double ratio = suite_ratio(figure->value, figure->bound);
+        const double shown = fmin(fmax(ratio, least), most);
+        x[i] = (double)i + 1;
+        low[i] = figure->status == FIGURE_PASS ? shown : (double)NAN;
+        high[i] = figure->status == FIGURE_FAIL ? shown : (double)NAN;
+    }
+    curves[0] =
+        (struct plot_series){.label = "pass", .kind = PLOT_POINTS, .n = n, .x = x, .y = low};
+    curves[1] =
+        (struct plot_series){.label = "fail", .kind = PLOT_POINTS, .n = n, .x = x, .y = high};
+    return 2;
+}
+
+/* The check's data, and its figures over their bounds. True if it was plotted. */
+static bool plot_failure(const struct suite *suite, const struct tally *t, const char *path)
+{
+    const size_t n = t->end - t->begin;
+    struct plot_series data[SERIES_SHOWN], figures[SERIES_SHOWN];
+    double *room = calloc(3 * n + 1, sizeof *room);
+    if (!room) return false;
+    const size_t curves = curves_of(suite, t->check, data);
+    const struct plot_mark bound = {.at = 1, .horizontal = true, .label = "bound"};
+    const struct plot_panel panels[] = {
+        {.x_label = "x",
+         .y_label = t->check->name,
+         .series = data,
+         .series_count = curves,
+         .own_x = true},
+        {.x_label = "figure",
+         .y_label = "value / bound",
+         .y_log = true,
+         .series = figures,
+         .series_count = figures_of(suite, t, figures, room, room + n, room + 2 * n),
+         .marks = &bound,
+         .mark_count = 1,
+         .own_x = true}};
+    const struct plot plot = {.name = t->check->name,
+                              .title = t->check->property,
                               .show_title = true,
-                              .panels = &panel,
-                              .panel_count = 1};
-    char *bytes = NULL;
+                              .panels = curves ? panels : panels + 1,
+                              .panel_count = curves ? 2 : 1};
+    char *bytes = NULL, message[256];
     size_t size;
     struct output output;
-    if (n == 0 || plot_draw(&plot, PLOT_SVG, &bytes, &size, message, sizeof message) != PLOT_OK ||
-        output_open(&output, path, NULL)) {
-        free(bytes);
-        return false;
+    bool drawn = plot_draw(&plot, PLOT_SVG, &bytes, &size, message, sizeof message) == PLOT_OK &&
+                 output_open(&output, path, NULL) == STATUS_OK;
+    if (drawn) {
+        fwrite(bytes, 1, size, output.stream);
+        drawn = output_close(&output, NULL) == STATUS_OK;
     }
-    fwrite(bytes, 1, size, output.stream);
     free(bytes);
-    return output_close(&output, NULL) == STATUS_OK;
+    free(room);
+    return drawn;
 }
 
 enum status suite_output_failures(const struct suite *suite, const char *folder, FILE *stream,
@@ -314,20 +367,23 @@ enum status suite_output_failures(const struct suite *suite, const char *folder,
     enum status status = STATUS_OK;
     for (size_t i = 0; i < suite->figure_count && !status;) {
         const struct tally t = tally_next(suite, i);
+        char data[PATH_LENGTH], plot[PATH_LENGTH];
         i = t.end;
+        snprintf(data, sizeof data, "%s/%s-%s.json", folder, t.check->group, t.check->name);
+        snprintf(plot, sizeof plot, "%s/%s-%s.svg", folder, t.check->group, t.check->name);
+        unlink(data); /* of an earlier fault */
+        unlink(plot);
         if (!t.failed) continue;
         if (mkdir(folder, 0777) && errno != EEXIST)
             return error_set(error, STATUS_ENVIRONMENT, "verify: cannot make the folder '%s': %s",
                              folder, strerror(errno));
-        char path[PATH_LENGTH];
-        snprintf(path, sizeof path, "%s/%s-%s.json", folder, t.check->group, t.check->name);
         json_t *document = failure_json(suite, &t);
-        status = result_write(document, path, error);
+        status = result_write(document, data, error);
         json_decref(document);
-        if (stream && !status) fprintf(stream, "figures and data: %s\n", path);
-        snprintf(path, sizeof path, "%s/%s-%s.svg", folder, t.check->group, t.check->name);
-        if (!status && plot_failure(suite, t.check, path) && stream)
-            fprintf(stream, "plot:             %s\n", path);
+        if (stream && !status) fprintf(stream, "figures and data: %s\n", data);
+        if (!status && plot_failure(suite, &t, plot) && stream)
+            fprintf(stream, "plot:             %s\n", plot);
     }
+    if (!suite->failed) rmdir(folder); /* where nothing else is in it */
     return status;
 }

@@ -9,8 +9,9 @@
 
 #include "suite.h"
 
-/* One line a check (its figure nearest to its bound), failures figure by figure, then mutants. */
-void suite_output_table(const struct suite *suite, FILE *stream, bool color);
+/* One line a check (its figure nearest to its bound), with details failures figure by figure, then
+ * mutants, and at the end what failed, see headline.h. */
+void suite_output_table(const struct suite *suite, FILE *stream, bool color, bool details);
 
 /* Adds checks, mutants and summary to document. */
 void suite_output_json(const struct suite *suite, json_t *document);
@@ -18,9 +19,9 @@ void suite_output_json(const struct suite *suite, json_t *document);
 /* JUnit XML: a test suite for each group, a test case for each figure and each mutant. */
 enum status suite_output_junit(const struct suite *suite, const char *path, struct error *error);
 
-/* Writes folder/GROUP-NAME.json for each failing check (figures, series) and, where the check
- * offers series and gnuplot is there, folder/GROUP-NAME.svg; names them on stream if that is not
- * NULL. The folder is made if needed. */
+/* Writes folder/GROUP-NAME.json for each failing check (figures, series) and, where gnuplot is
+ * there, folder/GROUP-NAME.svg; names them on stream if that is not NULL. The folder is made if
+ * needed; what an earlier run left there of a check that ran now is taken away. */
 enum status suite_output_failures(const struct suite *suite, const char *folder, FILE *stream,
                                   struct error *error);
 

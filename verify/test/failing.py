@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""failing.py SPHPROOF: what a person gets to see of one fault, here of a plug-in kernel whose dw is
+off by 3e-11 in its outer half."""
+import json
+import os
+import subprocess
+import sys
+import tempfile
+
+program = os.path.abspath(sys.argv[1])
+wrong = os.path.join(os.path.dirname(program), "verify/examples/faulty_DW_ELEVENTH_DIGIT.so")
+first_failure = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../first_failure.py")
+faults = []
+
+
+def expect(what, well, got=""):
+    if not well:
+        faults.append("%s: %s" % (what, got))
+
+
+def sphproof(*words):
+    done = subprocess.run([program, "verify", "kernels", "--failures", "failures", *words], capture_output=True,
+                          text=True, timeout=100, check=False)
+    return done.returncode, done.stdout, done.stderr
+
+
+def last_words(log):
+    """Of a build folder whose tests left this log."""
+    os.makedirs("meson-logs", exist_ok=True)
+    with open("meson-logs/testlog.json", "w", encoding="utf-8") as file:
+        file.writelines(json.dumps(line) + "\n" for line in log)
+    done = subprocess.run([sys.executable, first_failure, "."], capture_output=True, text=True, check=True)
+    return done.stdout
+
+
+def main():
+    os.makedirs("verify/test")
+    os.makedirs("failures")
+    stale = "failures/kernels-sign.svg"
+    open(stale, "w", encoding="ascii").close()
+    code, out, _ = sphproof("--kernel-plugin", wrong, "--json", "verify/test/kernels.json")
+    with open("verify/test/kernels.json", encoding="utf-8") as file:
+        document = json.load(file)
+    failing = [c for c in document["checks"] if c["status"] == "fail"]
+    members = {c["subject"].split(",")[0].split(":")[0] for c in failing}
+    headlines = document["failures"]
+    expect("one fault, one headline", code == 1 and len(headlines) == len(members) == 1 < len(failing), headlines)
+    first = headlines[0]
+    expect("the member", first["member"] == "faulty_DW_ELEVENTH_DIGIT", first)
+    expect("the cause", "dw is not the derivative of w" in first["headline"] and
+           first["check"] == "radial_derivative", first)
+    expect("all figures counted", first["figures"] == len(failing), (first["figures"], len(failing)))
+    worst = max(c["value"] / c["bound"] for c in failing if c["name"] == "radial_derivative")
+    expect("how far", abs(first["ratio"] / worst - 1) < 1e-12 and first["value"] > first["bound"], first)
+    expect("where", "dim " in first["place"] and "q 0." in first["place"], first["place"])
+    tail = out.split("\n\n")[-1].splitlines()
+    expect("printed last", tail[0] == first["headline"] and len(tail) < 8, tail)
+    expect("details on demand", sum(" got " in line for line in out.splitlines()) == 1, out)
+    _, details, _ = sphproof("--kernel-plugin", wrong, "--details")
+    expect("every figure with --details", sum(" got " in line for line in details.splitlines()) ==
+           len(failing) + 1, details)
+    expect("what an earlier fault left", not os.path.exists(stale))
+    plots = [name for name in os.listdir("failures") if name.endswith(".svg")]
+    checks = {c["name"] for c in failing}
+    expect("a plot of every failing check", len(plots) == len(checks), plots)
+
+    test = {"name": "sphproof:quick / verify kernels", "result": "FAIL", "starttime": 0}
+    other = {"name": "sphproof:quick / kernel", "result": "FAIL", "starttime": 0, "stderr": "[  ERROR   ] --- 0x1d != 0"}
+    good = dict(other, result="OK")
+    said = last_words([good, other, test]).strip().splitlines()
+    expect("last lines: what", said[1] == first["headline"], said)
+    expect("last lines: how far, where", "times over" in said[2] and first["place"] in said[2], said)
+    plot = [line.split(":", 1)[1].strip() for line in said if "plot:" in line]
+    expect("last lines: plot", len(plot) == 1 and os.path.getsize(plot[0]) > 1000, said)
+    expect("last lines: command", any("./sphproof verify kernels" in line for line in said), said)
+    expect("last lines: all that failed", said[-1] == "2 tests failed: kernel, verify kernels", said)
+    said = last_words([dict(test, starttime=4e9), other])
+    expect("results of an earlier run", first["headline"] not in said and "0x1d != 0" in said and
+           "--print-errorlogs" in said, said)
+    expect("all well", last_words([good]) == "")
+    code, out, _ = sphproof("--json", "verify/test/kernels.json")
+    with open("verify/test/kernels.json", encoding="utf-8") as file:
+        expect("repaired", code == 0 and json.load(file)["failures"] == [] and not os.path.exists("failures"), out)
+
+
+with tempfile.TemporaryDirectory() as folder:
+    os.chdir(folder)
+    main()
+    os.chdir("/")
+print("\n".join(faults) or "a fault is told in a few lines")
+sys.exit(bool(faults))
