@@ -111,6 +111,10 @@ static const struct reading_rule rules[] = {
     {"points", "condition", 0, READING_NEUTRAL, 1e-6, 0},
     {"points", "h", 0, READING_NEUTRAL, 1e-9, 0},
     /* contexts: what follows from settings, what says how sure another figure is */
+    {"precision", "*", OUT},
+    {"resolution", "*", OUT},
+    {"", "negative", OUT},
+    {"", "underflow", OUT},
     {"", "n", OUT},
     {"", "h", OUT},
     {"", "spacing", OUT},

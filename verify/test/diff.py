@@ -36,7 +36,7 @@ def made_by(*words):
 def diff(old, new, *options):
     """Exit status, {path: verdict}."""
     done = sphproof("diff", save("old.json", old), save("new.json", new), *options, "--json", "-")
-    document = json.loads(done.stdout) if done.stdout else {"figures": []}
+    document = json.loads(done.stdout) if done.stdout else {"figures": [], "problem": done.stderr, "summary": {}}
     return done.returncode, {f["path"]: f for f in document["figures"]}, document
 
 
@@ -52,7 +52,7 @@ def moved(document, path, change):
 
 def verdict(what, document, path, name, change, status, expected, *options):
     got, figures, _ = diff(document, moved(document, path, change), *options)
-    seen = figures[name]["verdict"]
+    seen = figures.get(name, {"verdict": "not there"})["verdict"]
     expect(what, (got, seen) == (status, expected), (got, seen))
     others = [p for p, f in figures.items() if f["verdict"] != "same" and p != name]
     expect(what + ", the others", not others, others)
