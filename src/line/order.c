@@ -4,6 +4,7 @@
 
 #include "line.h"
 #include "pass.h"
+#include "sort.h"
 #include "stamp.h"
 
 CLONES static double crossings_in(const struct particles *particles, ptrdiff_t first, ptrdiff_t len)
@@ -28,7 +29,6 @@ bool order_sort(struct particles *particles)
     for (ptrdiff_t i = 0; i < n; i++)
         if (!isfinite(x[i])) return false;
 
-    /* a stable insertion sort: the order is nearly right */
     const double start = x[0];
     for (ptrdiff_t i = 0; i < n; i++) {
         const double shift = -period * floor((x[i] - start) / period);
@@ -36,13 +36,8 @@ bool order_sort(struct particles *particles)
         x_old[i] += shift;
         particles->order[i] = (size_t)i;
     }
-    for (ptrdiff_t i = 1; i < n; i++) {
-        const size_t moving = particles->order[i];
-        ptrdiff_t k = i;
-        for (; k > 0 && x[particles->order[k - 1]] > x[moving]; k--)
-            particles->order[k] = particles->order[k - 1];
-        particles->order[k] = moving;
-    }
+    _Static_assert(sizeof(size_t) <= sizeof(double), "an array of numbers has room for indices");
+    sort_indices(x, (size_t)n, particles->order, (void *)particles->spare);
     particles_permute(particles);
     return true;
 }
