@@ -88,16 +88,44 @@ static enum status execute(void *context, uint64_t times, struct clock_taken *ta
 
 /* --- all of them ------------------------------------------------------------------------------ */
 
-static enum status find_mean_density(const struct run_settings *settings, double *mean,
-                                     struct error *error)
+/* The case's order: the middle of its gate on L1(density), which for shock tubes is a little
+ * below 1. */
+static int order_of(const struct run_settings *settings)
+{
+    const struct case_file *file = &settings->file;
+    for (size_t i = 0; i < file->gate_count; i++) {
+        const struct case_gate *gate = &file->gates[i];
+        if (gate->field != FIELD_DENSITY || gate->norm != NORM_L1) continue;
+        const double middle = (gate->gate.low + gate->gate.high) / 2;
+        return middle > 1 ? (int)lround(middle) : 1;
+    }
+    return 1;
+}
+
+static enum status find_scale(const struct run_settings *settings, struct precision *precision,
+                              struct error *error)
 {
     struct run run;
     double means[NORM_BINS];
     if (run_resolve(&run, settings, error)) return error->status;
     problem_means(&run.problem, FIELD_DENSITY, settings_real(&run.settings, SETTING_t_end),
                   NORM_BINS, means);
-    *mean = gsl_stats_mean(means, 1, NORM_BINS);
+    precision->mean_density = gsl_stats_mean(means, 1, NORM_BINS);
+    precision->signal = gsl_stats_absdev_m(means, 1, NORM_BINS, precision->mean_density);
+    if (!(precision->signal > 1e-12 * precision->mean_density))
+        precision->signal = precision->mean_density;
+    precision->order = order_of(settings);
     return STATUS_OK;
+}
+
+static double merit_of(const struct precision *precision, double error, double cpu_s)
+{
+    return pow(error, 2. / precision->order) * cpu_s;
+}
+
+bool precision_competes(const struct precision_scheme *scheme)
+{
+    return scheme->reference == REFERENCE_NONE || scheme->reference == REFERENCE_GRADED;
 }
 
 /* "kernel=a eta=2" -> "a eta=2": names say themselves what they are. */
@@ -142,7 +170,7 @@ static enum status prepare(const struct precision *precision, const struct sweep
         if (sweep_apply(sweep, i, settings, error)) return error->status;
     } else if (i + 3 == precision->scheme_count && i >= sweep->count) {
         scheme->reference = REFERENCE_GRADED;
-        snprintf(scheme->label, sizeof scheme->label, "graded masses, %s", graded_key);
+        snprintf(scheme->label, sizeof scheme->label, "graded masses %s", graded_key);
         strcpy(scheme->brief, "graded masses");
         if (settings_apply(&settings->settings, 1, (char *const *)&graded_key, error))
             return error->status;
@@ -191,7 +219,7 @@ static void collect(struct precision *precision, const struct bench_subject *sub
         if (scheme->count++ == 0) scheme->first = kept;
         points[kept] = points[i];
         points[kept].time = subjects[i].time;
-        points[kept].relative = points[kept].error / precision->mean_density;
+        points[kept].relative = points[kept].error / precision->signal;
         kept++;
     }
     precision->point_count = kept;
@@ -208,9 +236,9 @@ static enum status judge(struct precision *precision, struct error *error)
     }
     for (size_t i = 0; i < n; i++) {
         cost[i] = precision->points[i].time.cpu_s;
-        wrong[i] = precision->schemes[precision->points[i].scheme].reference
-                       ? (double)NAN
-                       : precision->points[i].error;
+        wrong[i] = precision_competes(&precision->schemes[precision->points[i].scheme])
+                       ? precision->points[i].error
+                       : (double)NAN;
     }
     precision_front(n, cost, wrong, front);
     for (size_t i = 0; i < n; i++) {
@@ -219,15 +247,15 @@ static enum status judge(struct precision *precision, struct error *error)
     }
     for (size_t t = 0; t < PRECISION_TARGETS; t++)
         precision->cheapest[t] =
-            (struct precision_way){precision_targets[t] * precision->mean_density, NAN, 0};
+            (struct precision_way){precision_targets[t] * precision->signal, NAN, 0};
     double plain = NAN;
     for (size_t i = precision->scheme_count; i-- > 0;) {
         struct precision_scheme *scheme = &precision->schemes[i];
         const size_t last = scheme->first + scheme->count - 1;
-        scheme->merit = scheme->count ? wrong[last] * wrong[last] * cost[last] : (double)NAN;
+        scheme->merit = scheme->count ? merit_of(precision, wrong[last], cost[last]) : (double)NAN;
         if (scheme->reference == REFERENCE_SEED_PLAIN) plain = scheme->merit;
         scheme->gain = plain / scheme->merit;
-        for (size_t t = 0; t < PRECISION_TARGETS && !scheme->reference; t++) {
+        for (size_t t = 0; t < PRECISION_TARGETS && precision_competes(scheme); t++) {
             struct precision_way *way = &precision->cheapest[t];
             const double here = precision_cost_of(scheme->count, cost + scheme->first,
                                                   wrong + scheme->first, way->error);
@@ -252,7 +280,7 @@ enum status precision_measure(const struct run_settings *settings, const struct 
     enum status status = STATUS_OK;
     if (!precision->schemes || !precision->points || !subjects || !jobs || !own)
         status = error_set(error, STATUS_ENVIRONMENT, "no memory for %zu points", most);
-    if (!status) status = find_mean_density(settings, &precision->mean_density, error);
+    if (!status) status = find_scale(settings, precision, error);
     size_t n = 0, own_schemes = 0;
     for (size_t i = 0; i < schemes && !status; i++) {
         status = prepare(precision, sweep, i, own, error);
@@ -300,7 +328,7 @@ static json_t *point_json(const struct precision *precision, const struct precis
         result_number(point->time.wall_s), "cpu_s", result_number(point->time.cpu_s), "spread",
         result_number(point->time.spread), "samples", point->time.samples, "pair_interactions",
         result_number(point->pairs), "figure_of_merit",
-        result_number(point->error * point->error * point->time.cpu_s), "on_front",
+        result_number(merit_of(precision, point->error, point->time.cpu_s)), "on_front",
         point->on_front);
     if (scheme->reference)
         json_object_set_new(item, "reference", json_string(references[scheme->reference]));
@@ -337,6 +365,8 @@ void precision_add_json(const struct precision *precision, json_t *document)
     json_object_set_new(document, "case", json_string(precision->settings->file.name));
     json_object_set_new(document, "title", json_string(precision->settings->file.title));
     json_object_set_new(document, "mean_density", result_number(precision->mean_density));
+    json_object_set_new(document, "signal", result_number(precision->signal));
+    json_object_set_new(document, "expected_order", json_integer(precision->order));
     json_object_set_new(document, "points", points);
     json_object_set_new(document, "schemes", schemes);
     json_object_set_new(document, "cheapest", ways);

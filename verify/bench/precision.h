@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Work-precision: what an error costs. Schemes (a sweep) x resolutions on one case, each timed as
- * bench.h says; the Pareto front; the cheapest way to a given error; L1^2 x CPU time, which for a
- * first-order scheme does not depend on the resolution. For comparison the corrected method of the
- * seed program, by the solver and as plain C. The error is the L1 of density. */
+ * bench.h says; the Pareto front; the cheapest way to a given error; L1^(2/p) x CPU time, which at
+ * the case's order p does not depend on the resolution (work grows as n^2). For comparison the
+ * corrected method of the seed program, by the solver and as plain C. The error is the L1 of
+ * density, relative to the signal: how far the exact density is from its own mean. */
 #ifndef SPHPROOF_PRECISION_H
 #define SPHPROOF_PRECISION_H
 
@@ -13,7 +14,7 @@
 #include "sweep.h"
 
 enum { PRECISION_TARGETS = 3, PRECISION_SHORT = 96 };
-extern const double precision_targets[PRECISION_TARGETS]; /* relative to the mean density */
+extern const double precision_targets[PRECISION_TARGETS]; /* relative to the signal */
 
 struct precision_point {
     size_t scheme, n; /* n: as the set-up allowed */
@@ -25,8 +26,9 @@ struct precision_point {
     struct error failure;
 };
 
-/* Curves for comparison, never on the front: the seed program's method by the solver and as plain
- * C; the user's own keys with masses graded towards the jump, where all else has equal masses. */
+/* Curves beside those of the sweep: the seed program's method by the solver and as plain C, for
+ * comparison, never on the front; the user's own keys with masses graded towards the jump, where
+ * all else has equal masses, which compete like any other. */
 enum precision_reference { REFERENCE_NONE, REFERENCE_GRADED, REFERENCE_SEED, REFERENCE_SEED_PLAIN };
 
 struct precision_scheme {
@@ -34,7 +36,7 @@ struct precision_scheme {
     char brief[SWEEP_LABEL]; /* the values alone, for plots */
     enum precision_reference reference;
     size_t first, count; /* its points, n rising; 0 where it is excluded or broke down */
-    double merit;        /* L1^2 x CPU time at the finest n; NaN without points */
+    double merit;        /* L1^(2/p) x CPU time at the finest n; NaN without points */
     double gain;         /* the plain reference's merit over this one's, same ladder */
     char excluded[512];  /* why there is no point */
 };
@@ -47,7 +49,9 @@ struct precision_way {
 
 struct precision {
     const struct run_settings *settings;
-    double mean_density; /* exact, of the measure window at t_end */
+    double mean_density, signal; /* exact, of the measure window at t_end: mean, and mean distance
+                                    from it (or the mean where that is 0) */
+    int order;                   /* of the case: of its gate on L1 of density; 1 without one */
     size_t scheme_count, point_count;
     struct precision_scheme *schemes; /* references last */
     struct precision_point *points;   /* by scheme, then n */
@@ -66,6 +70,9 @@ void precision_free(struct precision *precision);
 void precision_add_json(const struct precision *precision, json_t *document);
 
 /* --- the arithmetic, by itself ---------------------------------------------------------------- */
+
+/* Does a scheme compete for the front and for the cheapest way? */
+bool precision_competes(const struct precision_scheme *scheme);
 
 /* A point is on the front if no other is at most as dear and at most as wrong, and better in one;
  * a point that is not finite never is. */

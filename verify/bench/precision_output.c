@@ -52,7 +52,8 @@ static void print_schemes(const struct precision *precision, const struct precis
     for (size_t i = 0; i < precision->scheme_count; i++)
         if (shown(list[i], i) && strlen(list[i]->brief) > width) width = strlen(list[i]->brief);
     printf("%s%-*s %7s %11s %8s %10s %7s %11s %11s %9s%s\n", style->bold, (int)width, "scheme", "n",
-           "error", "", "CPU s", "spread", "pairs", "L1^2 CPU s", "gain", style->end);
+           "error", "", "CPU s", "spread", "pairs",
+           precision->order == 1 ? "L1^2 CPU s" : "L1 CPU s", "gain", style->end);
     for (size_t i = 0; i < precision->scheme_count; i++) {
         const struct precision_scheme *scheme = list[i];
         if (!shown(scheme, i)) {
@@ -65,11 +66,13 @@ static void print_schemes(const struct precision *precision, const struct precis
                100 * p->time.spread, p->pairs, scheme->merit, scheme->gain);
     }
     if (hidden) printf("... and %zu more (all of them: --json)\n", hidden);
-    printf("%sat the finest n, best first. error: L1 of density, absolute and of the window's mean "
-           "density %.6g;\nCPU s: least of %d samples, all threads; spread: their median above it; "
-           "gain: L1^2 x CPU s of the\nseed program's corrected method in plain C over that of "
-           "the scheme%s\n",
-           style->faint, precision->mean_density, precision->points[0].time.samples, style->end);
+    printf("%sat the finest n, best first. error: L1 of density, absolute and of the signal "
+           "%.6g, the exact density's\nmean distance from its mean %.6g; CPU s: least of %d "
+           "samples, all threads; spread: their median above it;\ngain: L1^(2/p) x CPU s, of "
+           "the seed program's corrected method in plain C over that of the scheme (p = %d, the "
+           "case's order)%s\n",
+           style->faint, precision->signal, precision->mean_density,
+           precision->points[0].time.samples, precision->order, style->end);
     for (size_t i = 0; i < precision->scheme_count; i++)
         if (!list[i]->count) printf("excluded: %s: %s\n", list[i]->label, list[i]->excluded);
 }
@@ -94,7 +97,7 @@ static void print_ways(const struct precision *precision, const struct table_sty
     printf("\n%scheapest way to%s\n", style->bold, style->end);
     for (size_t t = 0; t < PRECISION_TARGETS; t++) {
         const struct precision_way *way = &precision->cheapest[t];
-        printf("  %4.1f %% (L1 = %.2e): ", 100 * precision_targets[t], way->error);
+        printf("  %4.1f %% of the signal (L1 = %.2e): ", 100 * precision_targets[t], way->error);
         if (isfinite(way->cpu_s))
             printf("%.3e CPU s, %s\n", way->cpu_s, precision->schemes[way->scheme].label);
         else
@@ -208,7 +211,7 @@ static enum status draw(const struct picture *picture, const char *case_title, c
     char title[256];
     snprintf(title, sizeof title, "%.200s: what an error costs", case_title);
     const struct plot_panel panel = {.x_label = "CPU time (s)",
-                                     .y_label = "L1 error of density (% of the mean)",
+                                     .y_label = "L1 error of density (% of the signal)",
                                      .x_log = true,
                                      .y_log = true,
                                      .key = PLOT_KEY_END,

@@ -101,6 +101,8 @@ static const struct reading_rule rules[] = {
     {"", "*_star_left", 0, READING_NEUTRAL, 1e-9, 1e-13},
     {"", "*_star_right", 0, READING_NEUTRAL, 1e-9, 1e-13},
     {"", "mean_density", 0, READING_NEUTRAL, 1e-9, 1e-13},
+    {"", "signal", 0, READING_NEUTRAL, 1e-9, 1e-13},
+    {"", "expected_order", OUT},
     {"", "constant", 0, READING_NEUTRAL, 1e-9, 1e-13},
     {"", "class", 0, READING_NEUTRAL, 0, 0},
     {"", "class_declared", 0, READING_NEUTRAL, 0, 0},

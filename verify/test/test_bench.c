@@ -412,6 +412,8 @@ static void test_study(void **state)
     /* eta = 1.1 is below the existence limit of either kernel: excluded */
     assert_int_equal(precision.point_count, 10);
     near_relative(precision.mean_density, 0.5625, 1e-6);
+    near_inside(precision.signal, 0.3, 0.45);
+    assert_int_equal(precision.order, 1);
     size_t on_front = 0;
     for (size_t i = 0; i < precision.point_count; i++) {
         const struct precision_point *p = &precision.points[i];
@@ -419,9 +421,9 @@ static void test_study(void **state)
         if (i && p->scheme == p[-1].scheme) assert_true(p->n > p[-1].n);
         if (i) assert_true(p->scheme >= p[-1].scheme);
         near_inside(p->error, 1e-4, 0.1);
-        near_relative(p->relative, p->error / 0.5625, 1e-6);
+        near_relative(p->relative, p->error / precision.signal, 1e-6);
         on_front += p->on_front;
-        assert_false(p->on_front && precision.schemes[p->scheme].reference);
+        assert_false(p->on_front && precision.schemes[p->scheme].reference > REFERENCE_GRADED);
     }
     assert_true(on_front >= 1);
     for (size_t i = 0; i < precision.scheme_count; i++) {
@@ -432,10 +434,40 @@ static void test_study(void **state)
     assert_int_equal(precision.schemes[4].reference, REFERENCE_GRADED);
     near_inside(precision.points[5].error, 1e-4, 0.8 * precision.points[1].error);
     near_inside(precision.points[5].settings.value[SETTING_mass_ratio].real[0], 0.622, 0.624);
+    /* they have the least error, so they are on the front and the only way to it */
+    assert_true(precision.points[5].on_front && precision_competes(&precision.schemes[4]));
     /* both references compute the same */
     const struct precision_point *seed = &precision.points[6], *plain = &precision.points[8];
     for (size_t l = 0; l < 2; l++) near_relative(plain[l].error, seed[l].error, 1e-8);
     near_relative(precision.schemes[6].gain, 1, 1e-12);
+    precision_free(&precision);
+}
+
+/* A sound wave: errors in parts of the wave, not of the gas that carries it; second order. */
+static void test_signal(void **state)
+{
+    (void)state;
+    static struct run_settings settings;
+    static const size_t ladder[] = {32, 64};
+    struct sweep sweep;
+    struct precision precision;
+    struct error error = {0};
+    const struct bench_rules brief = {.least_s = 1e-6, .most_s = 1, .samples = 1};
+    char *keys[] = {"t_end=0.1", "amplitude=1e-4"};
+    assert_int_equal(run_prepare(&settings, "sound_wave", 2, keys, &error), 0);
+    settings.threads = 1;
+    assert_int_equal(sweep_parse(&sweep, "kernel=quadratic_spline", &error), 0);
+    assert_int_equal(precision_measure(&settings, &sweep, ladder, 2, &brief, &precision, &error),
+                     0);
+    near_relative(precision.signal, 2e-4 / 3.14159265358979, 1e-2); /* means over bins */
+    assert_int_equal(precision.order, 2);
+    near_relative(precision.points[0].relative, precision.points[0].error / precision.signal,
+                  1e-12);
+    /* four times less error, four times the work: merit L1 x CPU says so whatever the resolution */
+    const struct precision_point *finest = &precision.points[1];
+    near_relative(precision.schemes[0].merit, finest->error * finest->time.cpu_s, 1e-12);
+    for (int t = 0; t < PRECISION_TARGETS; t++)
+        near_relative(precision.cheapest[t].error, precision_targets[t] * precision.signal, 1e-12);
     precision_free(&precision);
 }
 
@@ -457,6 +489,7 @@ int main(void)
         cmocka_unit_test(test_promises_are_kept_or_seen_broken),
         cmocka_unit_test(test_scaling),
         cmocka_unit_test(test_study),
+        cmocka_unit_test(test_signal),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
