@@ -7,6 +7,10 @@
 
 #include "stamp.h"
 
+#if SPHPROOF_CLONES && defined __x86_64__
+#include <immintrin.h>
+#endif
+
 #ifdef _OPENMP
 #include <omp.h>
 #endif
@@ -17,7 +21,7 @@ enum {
     SAMPLE = 1000,     /* radii that choose the size of the cells */
     CHUNK = 1 << 18,   /* entries of lists that a thread asks for at once */
     CELLS_A_POINT = 2, /* at most */
-    CROWD = 512        /* points of a cell beyond which it is cut again */
+    BEYOND = 16        /* entries that a vector may write after the end of a list */
 };
 
 /* Memory for lists, in chunks that never move. */
@@ -35,6 +39,11 @@ struct candidates {
     uint8_t *near;
 };
 
+/* The slots of the candidates that are near a point but s itself. Returns how many; the list has
+ * room for all and BEYOND. */
+typedef int32_t find_loop(int dim, const struct candidates *candidates, size_t count,
+                          const float at[3], float radius2, int32_t s, int32_t *list);
+
 struct grid {
     struct grid_box box;
     int threads;
@@ -51,13 +60,15 @@ struct grid {
     float *reach;        /* how far its points and those of others reach across it */
     uint32_t *order;
     double (*position)[4];
-    float *radius; /* of each slot */
+    float *radius;             /* of each slot */
+    float *place[3], *radius2; /* of each slot: from the middle of its cell; radius squared */
     struct grid_list *lists;
     uint32_t *part_begin, *part_cell;
     size_t parts;
     int longest;
     struct pool *pools;
     struct candidates *candidates;
+    find_loop *find;
 };
 
 static void free_all(struct grid *grid)
@@ -66,6 +77,8 @@ static void free_all(struct grid *grid)
     free(grid->order);
     free(grid->position);
     free(grid->radius);
+    free(grid->radius2);
+    for (int a = 0; a < 3; a++) free(grid->place[a]);
     free(grid->lists);
     free(grid->part_begin);
     free(grid->part_cell);
@@ -81,27 +94,17 @@ static bool reserve_points(struct grid *grid, size_t n)
     grid->order = malloc(capacity * sizeof *grid->order);
     grid->position = aligned_alloc(64, (capacity * sizeof *grid->position + 63) / 64 * 64);
     grid->radius = malloc(capacity * sizeof *grid->radius);
+    bool floats = (grid->radius2 = malloc(capacity * sizeof(float)));
+    for (int a = 0; a < 3; a++)
+        floats &= (grid->place[a] = malloc(capacity * sizeof(float))) != NULL;
     grid->lists = malloc(capacity * sizeof *grid->lists);
     grid->part_begin = malloc((capacity + 1) * sizeof *grid->part_begin);
     grid->part_cell = malloc((capacity + 1) * sizeof *grid->part_cell);
-    if (grid->cell_of && grid->order && grid->position && grid->radius && grid->lists &&
+    if (floats && grid->cell_of && grid->order && grid->position && grid->radius && grid->lists &&
         grid->part_begin && grid->part_cell)
         return true;
     grid->capacity = 0;
     return false;
-}
-
-struct grid *grid_create(const struct grid_box *box, size_t n, int threads)
-{
-    struct grid *grid = calloc(1, sizeof *grid);
-    if (!grid) return NULL;
-    grid->box = *box;
-    grid->threads = threads;
-    grid->pools = calloc((size_t)threads, sizeof *grid->pools);
-    grid->candidates = calloc((size_t)threads, sizeof *grid->candidates);
-    if (grid->pools && grid->candidates && reserve_points(grid, n)) return grid;
-    grid_destroy(grid);
-    return NULL;
 }
 
 void grid_destroy(struct grid *grid)
@@ -238,6 +241,32 @@ static double wrapped(double x, double lo, double side)
     return y < lo + side ? y : lo;
 }
 
+/* The coordinates of a cell from its number. */
+static void cell_coordinates(const struct grid *grid, size_t cell, ptrdiff_t c[3])
+{
+    const uint32_t column = grid->column_at[cell / (size_t)grid->cells[0]];
+    c[0] = (ptrdiff_t)(cell % (size_t)grid->cells[0]);
+    c[1] = (ptrdiff_t)column % grid->cells[1];
+    c[2] = (ptrdiff_t)column / grid->cells[1];
+}
+
+/* Single precision is enough for the search where it starts at the middle of a cell. */
+static void place_in_cells(struct grid *grid)
+{
+    const double scale = 1 / grid->unit;
+    for (size_t cell = 0; cell < grid->cell_count; cell++) {
+        ptrdiff_t c[3];
+        if (grid->start[cell] == grid->start[cell + 1]) continue;
+        cell_coordinates(grid, cell, c);
+        for (int a = 0; a < 3; a++) {
+            const double middle = grid->lo[a] + ((double)c[a] + 0.5) * grid->size[a];
+            for (uint32_t s = grid->start[cell]; s < grid->start[cell + 1]; s++)
+                grid->place[a][s] =
+                    a < grid->box.dim ? (float)((grid->position[s][a] - middle) * scale) : 0;
+        }
+    }
+}
+
 /* A counting sort: stable, so that points of a cell keep their order. */
 static void sort_points(struct grid *grid, size_t n, const double *const x[], const double *radius)
 {
@@ -267,7 +296,9 @@ static void sort_points(struct grid *grid, size_t n, const double *const x[], co
                                        : x[a][i];
         grid->position[s][3] = 0;
         grid->radius[s] = (float)(radius[i] / grid->unit * (1 + 1e-5));
+        grid->radius2[s] = grid->radius[s] * grid->radius[s];
     }
+    place_in_cells(grid);
     /* the sentinel: far from everything, at any image */
     for (int a = 0; a < 3; a++) grid->position[n][a] = 0;
     double far = 0;
@@ -398,19 +429,26 @@ static int32_t *pool_take(struct pool *pool, size_t most)
     return pool->chunks[pool->used_chunks - 1] + pool->used;
 }
 
-static bool reserve_candidates(struct candidates *candidates, size_t n)
+/* Room for n more after count, which are kept. */
+static bool reserve_candidates(struct candidates *candidates, size_t count, size_t n)
 {
-    if (n <= candidates->capacity) return true;
-    free(candidates->slot);
-    const size_t capacity = (n + n / 2 + 127) / 64 * 64;
-    char *block = aligned_alloc(64, capacity * (5 * 4 + 1 + 3));
-    candidates->slot = (int32_t *)(void *)block;
-    candidates->capacity = block ? capacity : 0;
+    if (count + n <= candidates->capacity) return true;
+    const size_t capacity = (2 * (count + n) + 127) / 64 * 64;
+    char *block = aligned_alloc(64, capacity * (5 * 4 + 4));
     if (!block) return false;
+    struct candidates grown = {.capacity = capacity, .slot = (int32_t *)(void *)block};
     float *next = (float *)(void *)(block + 4 * capacity);
-    for (int a = 0; a < 3; a++, next += capacity) candidates->x[a] = next;
-    candidates->radius2 = next;
-    candidates->near = (uint8_t *)(void *)(next + capacity);
+    for (int a = 0; a < 3; a++, next += capacity) grown.x[a] = next;
+    grown.radius2 = next;
+    grown.near = (uint8_t *)(void *)(next + capacity);
+    for (int a = 0; a < 3 && count; a++)
+        memcpy(grown.x[a], candidates->x[a], count * sizeof(float));
+    if (count) {
+        memcpy(grown.radius2, candidates->radius2, count * sizeof(float));
+        memcpy(grown.slot, candidates->slot, count * sizeof *grown.slot);
+    }
+    free(candidates->slot);
+    *candidates = grown;
     return true;
 }
 
@@ -439,65 +477,55 @@ static double nearest(double d, double side)
     return d > 0.5 * side ? d - side : d < -0.5 * side ? d + side : d;
 }
 
-/* Copies the points of a run of slots, relative to the middle of the cell. */
-static void copy_run(const struct grid *grid, struct candidates *to, size_t *count, uint32_t begin,
-                     uint32_t end, const double middle[3], bool across)
+/* Copies the points of a cell, moved by what lies between the two cells. */
+static void copy_cell(const struct grid *grid, struct candidates *to, size_t count, size_t cell,
+                      const float moved[3])
 {
-    const double scale = 1 / grid->unit;
-    size_t k = *count;
-    for (uint32_t s = begin; s < end; s++, k++) {
-        for (int a = 0; a < grid->box.dim; a++) {
-            double d = grid->position[s][a] - middle[a];
-            if (across && grid->box.periodic[a]) d = nearest(d, grid->side[a]);
-            to->x[a][k] = (float)(d * scale);
-        }
-        to->radius2[k] = grid->radius[s] * grid->radius[s];
-        to->slot[k] = (int32_t)s;
+    const uint32_t begin = grid->start[cell];
+    const size_t n = grid->start[cell + 1] - begin;
+    for (int a = 0; a < 3; a++) {
+        const float *from = grid->place[a] + begin;
+        float *x = to->x[a] + count;
+        for (size_t k = 0; k < n; k++) x[k] = from[k] + moved[a];
     }
-    *count = k;
+    memcpy(to->radius2 + count, grid->radius2 + begin, n * sizeof(float));
+    for (size_t k = 0; k < n; k++) to->slot[count + k] = (int32_t)(begin + k);
 }
 
 struct region {
     struct look along[3];
     bool across, all; /* images matter; a pair's image must be found for each pair */
-    double middle[3];
 };
 
-/* Gathers the candidates of a cell. Returns how many, in whole 64s the last of which never match;
- * SIZE_MAX: no memory. */
-static size_t find_candidates(const struct grid *grid, const struct region *region,
-                              struct candidates *candidates)
+/* Gathers the candidates of the cell at c. Returns how many, in whole 64s the last of which never
+ * match; SIZE_MAX: no memory. */
+static size_t find_candidates(const struct grid *grid, const ptrdiff_t c[3],
+                              const struct region *region, struct candidates *candidates)
 {
     const struct look *l = region->along;
-    size_t count = 0, most = 0;
-    for (int fill = 0; fill < 2; fill++) {
-        if (fill && !reserve_candidates(candidates, most + 64)) return SIZE_MAX;
-        for (ptrdiff_t kz = 0; kz < l[2].count; kz++)
-            for (ptrdiff_t ky = 0; ky < l[1].count; ky++) {
-                const size_t row = cell_at(grid, (ptrdiff_t[3]){0, folded(grid, 1, l[1].from + ky),
-                                                                folded(grid, 2, l[2].from + kz)});
-                const ptrdiff_t from = l[0].from, to = from + l[0].count, nx = grid->cells[0];
-                /* two or three runs where the edge of the box lies between */
-                const ptrdiff_t run[3][2] = {{from < 0 ? from + nx : nx, nx},
-                                             {from < 0 ? 0 : from, to < nx ? to : nx},
-                                             {0, to > nx ? to - nx : 0}};
-                for (int r = 0; r < 3; r++) {
-                    if (run[r][0] >= run[r][1]) continue;
-                    const uint32_t begin = grid->start[row + (size_t)run[r][0]];
-                    const uint32_t end = grid->start[row + (size_t)run[r][1]];
-                    if (fill)
-                        copy_run(grid, candidates, &count, begin, end, region->middle,
-                                 region->across);
-                    else
-                        most += end - begin;
-                }
+    const double scale = 1 / grid->unit;
+    size_t count = 0;
+    for (ptrdiff_t kz = 0; kz < l[2].count; kz++)
+        for (ptrdiff_t ky = 0; ky < l[1].count; ky++) {
+            const size_t row = cell_at(grid, (ptrdiff_t[3]){0, folded(grid, 1, l[1].from + ky),
+                                                            folded(grid, 2, l[2].from + kz)});
+            float moved[3] = {0, (float)((double)(l[1].from + ky - c[1]) * grid->size[1] * scale),
+                              (float)((double)(l[2].from + kz - c[2]) * grid->size[2] * scale)};
+            for (ptrdiff_t kx = 0; kx < l[0].count; kx++) {
+                const size_t cell = row + (size_t)folded(grid, 0, l[0].from + kx);
+                const size_t n = grid->start[cell + 1] - grid->start[cell];
+                if (!reserve_candidates(candidates, count, n + 64)) return SIZE_MAX;
+                moved[0] = (float)((double)(l[0].from + kx - c[0]) * grid->size[0] * scale);
+                copy_cell(grid, candidates, count, cell, moved);
+                count += n;
             }
-    }
+        }
     const size_t whole = (count + 63) / 64 * 64;
     for (size_t k = count; k < whole; k++) {
         candidates->x[0][k] = 1e18f;
         candidates->x[1][k] = candidates->x[2][k] = 0;
         candidates->radius2[k] = 0;
+        candidates->slot[k] = 0;
     }
     return whole;
 }
@@ -538,40 +566,101 @@ static int32_t collect(const uint8_t *near, size_t count, const int32_t *slot, i
     return found;
 }
 
+static int32_t find_plainly(int dim, const struct candidates *candidates, size_t count,
+                            const float at[3], float radius2, int32_t s, int32_t *list)
+{
+    (dim == 2 ? near_2 : near_3)(count, at, radius2, candidates->x[0], candidates->x[1],
+                                 candidates->x[2], candidates->radius2, candidates->near);
+    return collect(candidates->near, count, candidates->slot, s, list);
+}
+
+#if SPHPROOF_CLONES && defined __x86_64__
+
+/* The same list: lanes that match are moved together in a register. */
+__attribute__((target("avx512f,popcnt"))) static int32_t
+find_by_compressing(int dim, const struct candidates *candidates, size_t count, const float at[3],
+                    float radius2, int32_t s, int32_t *list)
+{
+    const __m512 x0 = _mm512_set1_ps(at[0]), y0 = _mm512_set1_ps(at[1]), z0 = _mm512_set1_ps(at[2]),
+                 own = _mm512_set1_ps(radius2);
+    const __m512i self = _mm512_set1_epi32(s);
+    int32_t found = 0;
+    for (size_t k = 0; k < count; k += 16) {
+        const __m512 dx = _mm512_sub_ps(_mm512_loadu_ps(candidates->x[0] + k), x0),
+                     dy = _mm512_sub_ps(_mm512_loadu_ps(candidates->x[1] + k), y0);
+        __m512 r2 = _mm512_add_ps(_mm512_mul_ps(dx, dx), _mm512_mul_ps(dy, dy));
+        if (dim == 3) {
+            const __m512 dz = _mm512_sub_ps(_mm512_loadu_ps(candidates->x[2] + k), z0);
+            r2 = _mm512_add_ps(r2, _mm512_mul_ps(dz, dz));
+        }
+        const __m512 most = _mm512_max_ps(_mm512_loadu_ps(candidates->radius2 + k), own);
+        const __m512i slot = _mm512_loadu_si512(candidates->slot + k);
+        const __mmask16 near =
+            _mm512_cmp_ps_mask(r2, most, _CMP_LT_OQ) & _mm512_cmpneq_epi32_mask(slot, self);
+        _mm512_storeu_si512(list + found, _mm512_maskz_compress_epi32(near, slot));
+        found += _mm_popcnt_u32(near);
+    }
+    return found;
+}
+
+static find_loop *find_choose(void)
+{
+    return __builtin_cpu_supports("avx512f") ? find_by_compressing : find_plainly;
+}
+
+#else
+
+static find_loop *find_choose(void)
+{
+    return find_plainly;
+}
+
+#endif
+
+struct grid *grid_create(const struct grid_box *box, size_t n, int threads)
+{
+    struct grid *grid = calloc(1, sizeof *grid);
+    if (!grid) return NULL;
+    grid->box = *box;
+    grid->threads = threads;
+    grid->find = find_choose();
+    grid->pools = calloc((size_t)threads, sizeof *grid->pools);
+    grid->candidates = calloc((size_t)threads, sizeof *grid->candidates);
+    if (grid->pools && grid->candidates && reserve_points(grid, n)) return grid;
+    grid_destroy(grid);
+    return NULL;
+}
+
 /* The lists of a cell's points. Returns the longest one, -1: no memory. */
 static int search_cell(struct grid *grid, const ptrdiff_t c[3], size_t active,
                        struct candidates *candidates, struct pool *pool)
 {
     const size_t cell = cell_at(grid, c);
-    const int dim = grid->box.dim;
     if (grid->start[cell] == grid->start[cell + 1]) return 0;
     struct region region = {0};
     for (int a = 0; a < 3; a++) {
         region.along[a] = look_along(grid, a, c[a], grid->reach[cell]);
         region.across |= region.along[a].across;
         region.all |= region.along[a].all;
-        region.middle[a] = grid->lo[a] + ((double)c[a] + 0.5) * grid->size[a];
     }
-    const size_t count = find_candidates(grid, &region, candidates);
+    const size_t count = find_candidates(grid, c, &region, candidates);
     if (count == SIZE_MAX) return -1;
     int longest = 0;
     for (uint32_t s = grid->start[cell]; s < grid->start[cell + 1]; s++) {
         struct grid_list *list = &grid->lists[s];
         *list = (struct grid_list){NULL, 0, region.across};
         if (grid->order[s] >= active) continue;
-        int32_t *slots = pool_take(pool, count + GRID_LANES);
+        int32_t *slots = pool_take(pool, count + BEYOND);
         if (!slots) return -1;
-        float at[3] = {0};
-        for (int a = 0; a < dim; a++)
-            at[a] = (float)((grid->position[s][a] - region.middle[a]) / grid->unit);
-        if (region.all)
-            near_images(grid, s, count, candidates, candidates->near);
-        else
-            (dim == 2 ? near_2 : near_3)(count, at, grid->radius[s] * grid->radius[s],
-                                         candidates->x[0], candidates->x[1], candidates->x[2],
-                                         candidates->radius2, candidates->near);
         list->slots = slots;
-        list->count = collect(candidates->near, count, candidates->slot, (int32_t)s, slots);
+        if (region.all) {
+            near_images(grid, s, count, candidates, candidates->near);
+            list->count = collect(candidates->near, count, candidates->slot, (int32_t)s, slots);
+        } else {
+            const float at[3] = {grid->place[0][s], grid->place[1][s], grid->place[2][s]};
+            list->count = grid->find(grid->box.dim, candidates, count, at, grid->radius2[s],
+                                     (int32_t)s, slots);
+        }
         int32_t end = list->count;
         while (end % GRID_LANES) slots[end++] = (int32_t)grid->n;
         pool->used += (size_t)end;
@@ -587,15 +676,6 @@ static int thread_number(void)
 #else
     return 0;
 #endif
-}
-
-/* The coordinates of a cell from its number. */
-static void cell_coordinates(const struct grid *grid, size_t cell, ptrdiff_t c[3])
-{
-    const uint32_t column = grid->column_at[cell / (size_t)grid->cells[0]];
-    c[0] = (ptrdiff_t)(cell % (size_t)grid->cells[0]);
-    c[1] = (ptrdiff_t)column % grid->cells[1];
-    c[2] = (ptrdiff_t)column / grid->cells[1];
 }
 
 static enum status make_lists(struct grid *grid, size_t active, struct error *error)
