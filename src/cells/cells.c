@@ -62,9 +62,10 @@ struct cells *cells_create(const struct cells_method *method, size_t n)
     struct cells *cells = calloc(1, sizeof *cells);
     if (!cells) return NULL;
     cells->method = *method;
-    cells->gather = gather_choose();
     cells->shapes = shapes_of(method->kernel, method->box.dim, method->stamped);
     lay_out(cells);
+    struct lanes_layout *const layouts[] = {&cells->density, &cells->matrix, &cells->force};
+    for (int k = 0; k < 3; k++) layouts[k]->gather = gather_choose(layouts[k]->size);
     cells->grid = grid_create(&method->box, n, method->threads);
     cells->lanes = calloc((size_t)method->threads, sizeof *cells->lanes);
     if (cells->grid && cells->lanes && reserve_records(cells, n)) return cells;

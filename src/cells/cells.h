@@ -88,8 +88,8 @@ enum cells_outcome {
  * CELLS_OPEN; radius: of cells_arrange, which no width exceeds. Sets h, h_inverse, the sums at them
  * and the outcome. */
 void cells_widths(struct cells *cells, const struct cells_fields *fields,
-                  const struct width_rule *rule, const double *radius, double *h,
-                  double *h_inverse, unsigned char *outcome);
+                  const struct width_rule *rule, const double *radius, double *h, double *h_inverse,
+                  unsigned char *outcome);
 
 /* matrix, condition, slope, projector, as the method needs them. Returns how many particles have
  * too few neighbours for a matrix. */

@@ -118,21 +118,17 @@ static void width_pass(struct cells *cells, const struct cells_fields *fields, s
     double sums[4];
     if (*outcome != CELLS_OPEN) return;
     const int count = lanes_gather(cells, &cells->density, slot, lanes);
-    *outcome = (unsigned char)solve(cells, lanes, count, i,
-                                    cells->method.number ? 1 : fields->m[i],
+    *outcome = (unsigned char)solve(cells, lanes, count, i, cells->method.number ? 1 : fields->m[i],
                                     cells->method.energy_element ? fields->U[i] : 0, sums);
     put_sums(cells, fields, i, sums);
 }
 
 void cells_widths(struct cells *cells, const struct cells_fields *fields,
-                  const struct width_rule *rule, const double *radius, double *h,
-                  double *h_inverse, unsigned char *outcome)
+                  const struct width_rule *rule, const double *radius, double *h, double *h_inverse,
+                  unsigned char *outcome)
 {
-    cells->newton = (struct lanes_newton){.rule = rule,
-                                          .radius = radius,
-                                          .h = h,
-                                          .h_inverse = h_inverse,
-                                          .outcome = outcome};
+    cells->newton = (struct lanes_newton){
+        .rule = rule, .radius = radius, .h = h, .h_inverse = h_inverse, .outcome = outcome};
     fill_records(cells, fields);
     lanes_all(cells, fields, width_pass);
 }

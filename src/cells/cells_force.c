@@ -589,8 +589,50 @@ CLONES static void add_axis(enum energy energy, int count, const struct lanes *l
             e[l] += energy == ENERGY_TOTAL ? pair_energy_flux(a, own_v, v[n])
                                            : pair_heating(a, v[n] - own_v).i;
         }
-    *F = ((f[0] + f[1]) + (f[2] + f[3])) + ((f[4] + f[5]) + (f[6] + f[7]));
-    *de += ((e[0] + e[1]) + (e[2] + e[3])) + ((e[4] + e[5]) + (e[6] + e[7]));
+    *F = TREE(f);
+    *de += TREE(e);
+}
+
+/* All axes at once, where both sides of a pair share its gradient. */
+ALWAYS_INLINE void add_all_body(int dim, enum energy energy, int count, const struct lanes *lanes,
+                                const double *v, const double *theirs, struct totals *totals)
+{
+    const ptrdiff_t stride = lanes->stride;
+    const double *restrict a_i = lane(lanes, LANE_A_I), *restrict a_j = lane(lanes, LANE_A_J),
+                           *restrict K = lane(lanes, LANE_K), *restrict G = lane(lanes, LANE_GX);
+    double f[3][GRID_LANES] = {{0}}, e[GRID_LANES] = {0};
+    for (int k = 0; k < count; k += GRID_LANES)
+#pragma omp simd
+        for (int l = 0; l < GRID_LANES; l++) {
+            const int n = k + l;
+            const struct pair_terms a = {a_i[n] + K[n], a_j[n] + K[n]};
+            double moved = 0;
+            for (int axis = 0; axis < dim; axis++) {
+                const double g = G[axis * stride + n], v_j = theirs[axis * stride + n];
+                f[axis][l] += (a.i + a.j) * g;
+                moved += energy == ENERGY_TOTAL ? pair_energy_flux(a, v[axis], v_j) * g
+                                                : pair_heating(a, v_j - v[axis]).i * g;
+            }
+            e[l] += moved;
+        }
+    for (int axis = 0; axis < dim; axis++) totals->F[axis] = TREE(f[axis]);
+    totals->de = TREE(e);
+}
+
+CLONES static void add_all(int dim, enum energy energy, int count, const struct lanes *lanes,
+                           const double *v, const double *theirs, struct totals *totals)
+{
+    if (dim == 2) {
+        if (energy == ENERGY_TOTAL)
+            add_all_body(2, ENERGY_TOTAL, count, lanes, v, theirs, totals);
+        else
+            add_all_body(2, ENERGY_INTERNAL, count, lanes, v, theirs, totals);
+    } else {
+        if (energy == ENERGY_TOTAL)
+            add_all_body(3, ENERGY_TOTAL, count, lanes, v, theirs, totals);
+        else
+            add_all_body(3, ENERGY_INTERNAL, count, lanes, v, theirs, totals);
+    }
 }
 
 /* The largest signal speed among pairs within max(h_i, h_j), and how many there are. */
@@ -680,13 +722,13 @@ static void force_pass(struct cells *cells, const struct cells_fields *fields, s
              lane(lanes, LANE_A_J));
     add_viscosity(cells, count, lanes, &sides, record);
     struct totals totals = {0};
-    const bool both = method->formulation == FORMULATION_LAGRANGIAN;
-    for (int a = 0; a < dim; a++) {
-        const double *G = lane(lanes, LANE_GX + a);
-        add_axis(method->energy, count, lanes, G, both ? lane(lanes, LANE_GX_I + a) : G,
-                 both ? lane(lanes, LANE_GX_J + a) : G, v[a], theirs + a * lanes->stride,
-                 &totals.F[a], &totals.de);
-    }
+    if (method->formulation == FORMULATION_VANILLA_ICE)
+        add_all(dim, method->energy, count, lanes, v, theirs, &totals);
+    else
+        for (int a = 0; a < dim; a++)
+            add_axis(method->energy, count, lanes, lane(lanes, LANE_GX + a),
+                     lane(lanes, LANE_GX_I + a), lane(lanes, LANE_GX_J + a), v[a],
+                     theirs + a * lanes->stride, &totals.F[a], &totals.de);
     if (method->conductivity > 0)
         totals.de += conducted(dim, count, method->conductivity, &sides, lanes,
                                record[layout->offset[GROUP_VISCOSITY] + 3],

@@ -56,7 +56,7 @@ CLONES static double moment(int count, const double *restrict weight, const doub
     for (int k = 0; k < count; k += GRID_LANES)
 #pragma omp simd
         for (int l = 0; l < GRID_LANES; l++) s[l] += weight[k + l] * x[k + l] * y[k + l];
-    return ((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + (s[6] + s[7]));
+    return TREE(s);
 }
 
 /* sum weight x (v - own). */
@@ -68,7 +68,7 @@ CLONES static double moment_of_difference(int count, const double *restrict weig
     for (int k = 0; k < count; k += GRID_LANES)
 #pragma omp simd
         for (int l = 0; l < GRID_LANES; l++) s[l] += weight[k + l] * x[k + l] * (v[k + l] - own);
-    return ((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + (s[6] + s[7]));
+    return TREE(s);
 }
 
 /* The inverse of the moments with these weights. False: too few neighbours, or all on a line. */

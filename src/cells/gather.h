@@ -11,11 +11,11 @@
 enum { GATHER_GROUP = 4 }; /* doubles; a record holds whole groups, aligned to 32 bytes */
 
 /* out[f * stride + k] = records[slots[k] * size + f], f = 0 .. size-1, k = 0 .. count-1; size in
- * whole groups, count a multiple of 4. */
+ * whole groups, count a multiple of 8; records on boundaries of 32 bytes. */
 typedef void gather_loop(const double *records, int size, const int32_t *slots, int count,
                          double *out, ptrdiff_t stride);
 
-/* The fastest one that this processor runs. */
-gather_loop *gather_choose(void);
+/* The fastest one that this processor runs, for records of this size. */
+gather_loop *gather_choose(int size);
 
 #endif

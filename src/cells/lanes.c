@@ -26,32 +26,59 @@ bool lanes_reserve(struct cells *cells)
     return true;
 }
 
-CLONES static void difference(int count, double at, double side, bool wrapped,
-                              const double *restrict x, double *restrict d)
+/* What find_geometry works on; side 0: an open direction. */
+struct geometry {
+    double at[3], side[3];
+    const double *x[3];
+    double *d[3], *r, *r_inverse;
+};
+
+/* The difference that is nearest to 0: exactly odd, so that both sides of a pair agree. */
+ALWAYS_INLINE double nearest(double d, double side)
 {
     const double half = 0.5 * side;
-    if (wrapped && side > 0) {
-#pragma omp simd
-        for (int k = 0; k < count; k++) {
-            const double plain = x[k] - at;
-            d[k] = plain > half ? plain - side : plain < -half ? plain + side : plain;
-        }
-    } else {
-#pragma omp simd
-        for (int k = 0; k < count; k++) d[k] = x[k] - at;
-    }
+    return d > half ? d - side : d < -half ? d + side : d;
 }
 
 /* 1/r is 0 where points coincide: a pair without a direction. */
-CLONES static void distance(int count, const double *restrict dx, const double *restrict dy,
-                            const double *restrict dz, double *restrict r,
-                            double *restrict r_inverse)
+ALWAYS_INLINE void geometry_body(int dim, bool wrapped, int count, const struct geometry *g)
 {
+    const double x0 = g->at[0], y0 = g->at[1], z0 = g->at[2];
+    const double side_x = g->side[0] > 0 ? g->side[0] : HUGE_VAL,
+                 side_y = g->side[1] > 0 ? g->side[1] : HUGE_VAL,
+                 side_z = g->side[2] > 0 ? g->side[2] : HUGE_VAL;
+    const double *restrict x = g->x[0], *restrict y = g->x[1], *restrict z = g->x[2];
+    double *restrict dx = g->d[0], *restrict dy = g->d[1], *restrict dz = g->d[2],
+                     *restrict r = g->r, *restrict r_inverse = g->r_inverse;
 #pragma omp simd
     for (int k = 0; k < count; k++) {
-        const double r2 = dx[k] * dx[k] + dy[k] * dy[k] + dz[k] * dz[k];
-        r[k] = sqrt(r2);
-        r_inverse[k] = r2 > 0 ? 1 / r[k] : 0;
+        double a = x[k] - x0, b = y[k] - y0, c = dim == 3 ? z[k] - z0 : 0;
+        if (wrapped) {
+            a = nearest(a, side_x);
+            b = nearest(b, side_y);
+            c = dim == 3 ? nearest(c, side_z) : 0;
+        }
+        const double r2 = dim == 3 ? a * a + b * b + c * c : a * a + b * b, root = sqrt(r2);
+        dx[k] = a;
+        dy[k] = b;
+        dz[k] = c;
+        r[k] = root;
+        r_inverse[k] = r2 > 0 ? 1 / root : 0;
+    }
+}
+
+CLONES static void find_geometry(int dim, bool wrapped, int count, const struct geometry *g)
+{
+    if (dim == 2) {
+        if (wrapped)
+            geometry_body(2, true, count, g);
+        else
+            geometry_body(2, false, count, g);
+    } else {
+        if (wrapped)
+            geometry_body(3, true, count, g);
+        else
+            geometry_body(3, false, count, g);
     }
 }
 
@@ -60,14 +87,17 @@ int lanes_gather(const struct cells *cells, const struct lanes_layout *layout, s
 {
     const struct grid_list *list = &grid_lists(cells->grid)[slot];
     const int count = whole_vectors(list->count);
-    cells->gather(cells->records, layout->size, list->slots, count,
-                  lanes->block + LANES_OWN * lanes->stride, lanes->stride);
     const double *at = grid_positions(cells->grid)[slot];
-    for (int a = 0; a < 3; a++)
-        difference(count, at[a], grid_side(cells->grid, a), list->wrapped,
-                   lane_of(lanes, layout, GROUP_PLACE, a), lane(lanes, LANE_DX + a));
-    distance(count, lane(lanes, LANE_DX), lane(lanes, LANE_DY), lane(lanes, LANE_DZ),
-             lane(lanes, LANE_R), lane(lanes, LANE_R_INVERSE));
+    struct geometry g = {.r = lane(lanes, LANE_R), .r_inverse = lane(lanes, LANE_R_INVERSE)};
+    for (int a = 0; a < 3; a++) {
+        g.at[a] = at[a];
+        g.side[a] = grid_side(cells->grid, a);
+        g.x[a] = lane_of(lanes, layout, GROUP_PLACE, a);
+        g.d[a] = lane(lanes, LANE_DX + a);
+    }
+    layout->gather(cells->records, layout->size, list->slots, count,
+                   lanes->block + LANES_OWN * lanes->stride, lanes->stride);
+    find_geometry(cells->method.box.dim, list->wrapped, count, &g);
     return count;
 }
 
@@ -87,9 +117,6 @@ void lanes_all(struct cells *cells, const struct cells_fields *fields, lanes_pas
             if (grid_lists(cells->grid)[slot].slots) pass(cells, fields, slot, lanes);
     }
 }
-
-/* Eight lanes, then in pairs: the same order for every instruction set. */
-#define TREE(s) (((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + (s[6] + s[7])))
 
 CLONES static double sum(const double *restrict values, int count)
 {

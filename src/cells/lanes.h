@@ -29,6 +29,7 @@ enum lanes_group {
 struct lanes_layout {
     int size;           /* doubles of a record */
     int offset[GROUPS]; /* of a group; -1: absent */
+    gather_loop *gather;
 };
 
 /* Arrays of the lanes that loops make. */
@@ -78,7 +79,6 @@ struct lanes_newton {
 struct cells {
     struct cells_method method;
     struct grid *grid;
-    gather_loop *gather;
     struct shapes shapes;
     size_t capacity; /* of records, in particles */
     double *records; /* slot n is the sentinel's */
@@ -111,6 +111,9 @@ bool lanes_reserve(struct cells *cells);
 typedef void lanes_pass(struct cells *cells, const struct cells_fields *fields, size_t slot,
                         struct lanes *lanes);
 void lanes_all(struct cells *cells, const struct cells_fields *fields, lanes_pass *pass);
+
+/* Eight lanes, then in pairs: the same order for every instruction set. */
+#define TREE(s) (((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + (s[6] + s[7])))
 
 /* Sums of count values, count a multiple of GRID_LANES, in a fixed order. */
 double lanes_sum(const double *values, int count);

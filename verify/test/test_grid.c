@@ -148,19 +148,23 @@ static void refuses(void **state)
     grid_destroy(grid);
 }
 
+/* Records of every size that has a loop of its own, and of one that has none. */
 static void gathers(void **state)
 {
-    enum { RECORDS = 37, SIZE = 12, COUNT = 24, STRIDE = 40 };
-    _Alignas(64) double records[RECORDS * SIZE], out[SIZE * STRIDE];
+    enum { RECORDS = 37, LARGEST = 56, COUNT = 24, STRIDE = 40 };
+    static _Alignas(64) double records[RECORDS * LARGEST], out[LARGEST * STRIDE];
     int32_t slots[COUNT];
     (void)state;
-    for (int k = 0; k < RECORDS * SIZE; k++) records[k] = 2.385 * k;
+    for (int k = 0; k < RECORDS * LARGEST; k++) records[k] = 2.385 * k;
     for (int k = 0; k < COUNT; k++) slots[k] = k * 17 % RECORDS;
-    for (int k = 0; k < SIZE * STRIDE; k++) out[k] = -1;
-    gather_choose()(records, SIZE, slots, COUNT, out, STRIDE);
-    for (int f = 0; f < SIZE; f++)
-        for (int k = 0; k < STRIDE; k++)
-            assert_true(out[f * STRIDE + k] == (k < COUNT ? records[slots[k] * SIZE + f] : -1));
+    for (int size = GATHER_GROUP; size <= LARGEST; size += GATHER_GROUP) {
+        for (int k = 0; k < LARGEST * STRIDE; k++) out[k] = -1;
+        gather_choose(size)(records, size, slots, COUNT, out, STRIDE);
+        for (int f = 0; f < LARGEST; f++)
+            for (int k = 0; k < STRIDE; k++)
+                assert_true(out[f * STRIDE + k] ==
+                            (f < size && k < COUNT ? records[slots[k] * size + f] : -1));
+    }
 }
 
 int main(void)
