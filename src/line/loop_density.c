@@ -2,6 +2,7 @@
  * Kernel sums of density, smoothing length and grad-h (CONVENTIONS eqs. 3.1 and 3.9). */
 #include <math.h>
 
+#include "kernel_names.h"
 #include "loops.h"
 #include "stamp.h"
 
@@ -47,23 +48,31 @@ ALWAYS_INLINE void sum_pairs(const struct kernel *kernel, kernel_shape *w, kerne
         sum_pairs(kernel, w, dw, terms, particles, first, len, D, h_inverse, sums);                \
     }
 
-#define STAMP(terms, k)   BODY(k##_##terms, k##_w, k##_dw, terms, CLONES)
-#define KERNEL(name, ...) DENSITY_LIST(STAMP, name)
-#include "kernels.def"
-#undef KERNEL
+#define ENTRY(terms, k) [terms] = k##_##terms,
+
+#ifdef KERNEL_FILE
+
+#define STAMP(terms, k) BODY(k##_##terms, k##_w, k##_dw, terms, CLONES)
+#define KERNEL(name, ...)                                                                          \
+    DENSITY_LIST(STAMP, name)                                                                      \
+    density_loop *const loop_density_##name[DENSITY_TERMS] = {DENSITY_LIST(ENTRY, name)};
+#include KERNEL_FILE
+
+#else
 
 #define UNSTAMPED(terms, k) BODY(k##_##terms, kernel->w, kernel->dw, terms, )
 DENSITY_LIST(UNSTAMPED, any)
 
-#define ENTRY(terms, k) [terms] = k##_##terms,
-static density_loop *const stamped[][DENSITY_TERMS] = {
-#define KERNEL(name, ...) {DENSITY_LIST(ENTRY, name)},
-#include "kernels.def"
-#undef KERNEL
-};
 static density_loop *const unstamped[DENSITY_TERMS] = {DENSITY_LIST(ENTRY, any)};
+
+#define DECLARE(name) extern density_loop *const loop_density_##name[DENSITY_TERMS];
+KERNEL_NAMES(DECLARE)
+#define TABLE(name)   loop_density_##name,
+static density_loop *const *const stamped[] = {KERNEL_NAMES(TABLE)};
 
 density_loop *loop_density(int kernel, enum density_terms terms)
 {
     return kernel < 0 ? unstamped[terms] : stamped[kernel][terms];
 }
+
+#endif

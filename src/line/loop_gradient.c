@@ -4,6 +4,7 @@
  * standard: -C/h^2 w'(r/h), ia: g r w(r/h), g = 1/sum V x^2 w (CONVENTIONS eqs. 4.1 and 4.3). */
 #include <math.h>
 
+#include "kernel_names.h"
 #include "loops.h"
 #include "stamp.h"
 
@@ -60,23 +61,31 @@ ALWAYS_INLINE void gradients_of_pairs(const struct kernel *kernel, kernel_shape 
 #define AT_WIDTH(width, name, label, paper, X, k, g) X(k, g, width)
 #define ALL(X, k)                                    GRADIENT_LINE_LIST(AT_WIDTHS, X, k)
 
+#define ENTRY(k, g, width) [g][width] = k##_##g##_##width,
+
+#ifdef KERNEL_FILE
+
 #define STAMP(k, g, width) BODY(k##_##g##_##width, k##_w, k##_dw, g, width, CLONES)
-#define KERNEL(name, ...)  ALL(STAMP, name)
-#include "kernels.def"
-#undef KERNEL
+#define KERNEL(name, ...)                                                                          \
+    ALL(STAMP, name)                                                                               \
+    gradient_loop *const loop_gradient_##name[GRADIENTS][PAIR_GRADIENTS] = {ALL(ENTRY, name)};
+#include KERNEL_FILE
+
+#else
 
 #define UNSTAMPED(k, g, width) BODY(k##_##g##_##width, kernel->w, kernel->dw, g, width, )
 ALL(UNSTAMPED, any)
 
-#define ENTRY(k, g, width) [g][width] = k##_##g##_##width,
-static gradient_loop *const stamped[][GRADIENTS][PAIR_GRADIENTS] = {
-#define KERNEL(name, ...) {ALL(ENTRY, name)},
-#include "kernels.def"
-#undef KERNEL
-};
 static gradient_loop *const unstamped[GRADIENTS][PAIR_GRADIENTS] = {ALL(ENTRY, any)};
+
+#define DECLARE(name) extern gradient_loop *const loop_gradient_##name[GRADIENTS][PAIR_GRADIENTS];
+KERNEL_NAMES(DECLARE)
+#define TABLE(name)   loop_gradient_##name,
+static gradient_loop *const (*const stamped[])[PAIR_GRADIENTS] = {KERNEL_NAMES(TABLE)};
 
 gradient_loop *loop_gradient(int kernel, enum gradient gradient, int width)
 {
     return kernel < 0 ? unstamped[gradient][width] : stamped[kernel][gradient][width];
 }
+
+#endif

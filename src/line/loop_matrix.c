@@ -4,6 +4,7 @@
  * matrix and gradient: g = 1/sum V x^2 w, G = g x w. */
 #include <math.h>
 
+#include "kernel_names.h"
 #include "loops.h"
 #include "stamp.h"
 
@@ -43,23 +44,31 @@ ALWAYS_INLINE void sum_moments(const struct kernel *kernel, kernel_shape *w,
         sum_moments(kernel, w, terms, particles, first, len, D);                                   \
     }
 
-#define STAMP(terms, k)   BODY(k##_##terms, k##_w, terms, CLONES)
-#define KERNEL(name, ...) MATRIX_LIST(STAMP, name)
-#include "kernels.def"
-#undef KERNEL
+#define ENTRY(terms, k) [terms] = k##_##terms,
+
+#ifdef KERNEL_FILE
+
+#define STAMP(terms, k) BODY(k##_##terms, k##_w, terms, CLONES)
+#define KERNEL(name, ...)                                                                          \
+    MATRIX_LIST(STAMP, name)                                                                       \
+    matrix_loop *const loop_matrix_##name[MATRIX_TERMS] = {MATRIX_LIST(ENTRY, name)};
+#include KERNEL_FILE
+
+#else
 
 #define UNSTAMPED(terms, k) BODY(k##_##terms, kernel->w, terms, )
 MATRIX_LIST(UNSTAMPED, any)
 
-#define ENTRY(terms, k) [terms] = k##_##terms,
-static matrix_loop *const stamped[][MATRIX_TERMS] = {
-#define KERNEL(name, ...) {MATRIX_LIST(ENTRY, name)},
-#include "kernels.def"
-#undef KERNEL
-};
 static matrix_loop *const unstamped[MATRIX_TERMS] = {MATRIX_LIST(ENTRY, any)};
+
+#define DECLARE(name) extern matrix_loop *const loop_matrix_##name[MATRIX_TERMS];
+KERNEL_NAMES(DECLARE)
+#define TABLE(name)   loop_matrix_##name,
+static matrix_loop *const *const stamped[] = {KERNEL_NAMES(TABLE)};
 
 matrix_loop *loop_matrix(int kernel, enum matrix_terms terms)
 {
     return kernel < 0 ? unstamped[terms] : stamped[kernel][terms];
 }
+
+#endif

@@ -86,7 +86,9 @@ struct loops {
  */
 void loops_choose(const struct plan *plan, const struct scheme *scheme, struct loops *loops);
 
-/* The tables, one in each of the four files; kernel: position in kernels.def, -1: unstamped. */
+/* The tables, one in each of the four files; kernel: position in kernels.def, -1: unstamped. The
+ * files that stamp kernels are compiled once with the tables and once for each kernel
+ * (stamp.c.in). */
 density_loop *loop_density(int kernel, enum density_terms terms);
 matrix_loop *loop_matrix(int kernel, enum matrix_terms terms);
 gradient_loop *loop_gradient(int kernel, enum gradient gradient, int width);

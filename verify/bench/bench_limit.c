@@ -5,6 +5,7 @@
 
 #include <math.h>
 
+#include "kernel_names.h"
 #include "stamp.h"
 #include "matrix.h"
 
@@ -64,16 +65,20 @@ ALWAYS_INLINE void sum_up(const struct kernel *kernel, kernel_shape *w, kernel_s
     DIMENSIONS(X, name, position, VECTOR_POSITION, true)                                           \
     DIMENSIONS(X, name, normalised, VECTOR_NORMALISED, true)
 
-#define KERNEL(name, ...) KINDS(BODY, name)
-#include "kernels.def"
-#undef KERNEL
+#ifdef KERNEL_FILE /* one kernel's, see stamp.c.in */
 
 #define ENTRY(name, tag, vector, matrix, dim) [vector][dim - 1] = name##_##tag##_##dim,
-static bench_limit_loop *const loops[][3][KERNEL_DIM_MAX] = {
-#define KERNEL(name, ...) {KINDS(ENTRY, name)},
-#include "kernels.def"
-#undef KERNEL
-};
+#define KERNEL(name, ...)                                                                          \
+    KINDS(BODY, name)                                                                              \
+    bench_limit_loop *const bench_limit_##name[3][KERNEL_DIM_MAX] = {KINDS(ENTRY, name)};
+#include KERNEL_FILE
+
+#else
+
+#define DECLARE(name) extern bench_limit_loop *const bench_limit_##name[3][KERNEL_DIM_MAX];
+KERNEL_NAMES(DECLARE)
+#define TABLE(name)   bench_limit_##name,
+static bench_limit_loop *const (*const loops[])[KERNEL_DIM_MAX] = {KERNEL_NAMES(TABLE)};
 
 bench_limit_loop *bench_limit_find(const struct kernel *kernel, const struct operator_form *form,
                                    int dim)
@@ -105,3 +110,5 @@ bool bench_limit_gradient(const struct kernel *kernel, const struct operator_for
     }
     return true;
 }
+
+#endif

@@ -7,9 +7,13 @@
 
 #include "kernel.h"
 
-#define KERNEL(name, ...)                                                                          \
-    __attribute__((unused)) static kernel_shape *const shapes_##name[] = {name##_w, name##_dw};
-#include "kernels.def"
+/* The right ones that are spoilt here. */
+#define KERNEL(name, ...)
+#include "kernel/cubic_spline.h"
+#include "kernel/quadratic_spline.h"
+#include "kernel/quartic_spline.h"
+#include "kernel/sinc.h"
+#include "kernel/wendland_c2.h"
 #undef KERNEL
 
 #define CUBIC_CONSTANT                                                                             \

@@ -17,7 +17,7 @@ import tempfile
 
 LAYERS = {"src": set(), "reference": set(), "reports": set()}  # of these each knows nobody
 BESIDE = {"verify/test", "verify/fuzz", "verify/examples", "verify"}  # see all, seen by nobody
-GENERATED = {"config.h", "version.h"}
+GENERATED = {"config.h", "kernel_names.h", "version.h"}
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.M)
 ROOM = re.compile(r"^\s*\['(\w+)', \[([^\]]*)\]", re.M)
 
