@@ -115,7 +115,7 @@ static json_t *headline(const struct cause *causes, size_t count, size_t first)
         snprintf(text + used, sizeof text - used, "%s%s", said ? "; " : "", part);
         said++;
     }
-    snprintf(part, sizeof part, "%s", text);
+    snprintf(part, sizeof part, "%.*s", (int)sizeof part - 1, text);
     snprintf(text, sizeof text, "%s: %s", main->member, part);
     snprintf(command, sizeof command, "sphproof verify %s --details%s", check->group,
              check->slow ? " --slow" : "");
