@@ -191,10 +191,29 @@ def check_run(program, case, keys, threads, folder):
     return check_particles(rows) or check_document(document, rows, keys), command, document
 
 
+def same_in_units(path):
+    """Sod's tube in other units, by powers of two: the same answer to the last bit, none refused."""
+    def l1(mass, pressure, length):
+        speed = 2.0 ** ((pressure - mass) // 2)
+        keys = ["left=%.17g 0 %.17g" % (2.0 ** mass, 2.0 ** pressure),
+                "right=%.17g 0 %.17g" % (2.0 ** mass / 8, 2.0 ** pressure / 8),
+                "lo=%.17g" % -2.0 ** length, "hi=%.17g" % 2.0 ** length,
+                "window=%.17g %.17g" % (-2.0 ** length / 2, 2.0 ** length / 2),
+                "t_end=%.17g" % (2.0 ** length / speed / 8)]
+        done = subprocess.run([path, "run", "sod", "n=60", *keys, "--json", "-"], capture_output=True, text=True)
+        return json.loads(done.stdout)["errors"]["density"]["l1"] / 2.0 ** mass if done.stdout else done.stderr
+    seen = [l1(*units) for units in ((0, 0, 0), (20, -26, 17), (-40, 40, -30), (66, -20, 50))]
+    return "" if all(value == seen[0] for value in seen) else "errors in four units: %s" % seen
+
+
 def main():
     program = Program(sys.argv[1])
     count, first = int(sys.argv[2]), int(sys.argv[3]) if len(sys.argv) > 3 else 1
     ended, broken, failed, drifting = 0, 0, 0, []
+    scaled = same_in_units(program.path)
+    if scaled:
+        failed += 1
+        print(scaled)
     with tempfile.TemporaryDirectory() as folder:
         for number in range(first, first + count):
             wrong, command, document = check_run(program.path, *draw(program, number), folder)

@@ -5,6 +5,7 @@
                                   anything is built, right ones reach the program as they are, those
                                   of the nightly jobs, too
    readme.py stories SOURCE WORK  its stories, and all else that it says to type, in a copy of the tree"""
+import json
 import os
 import re
 import shlex
@@ -21,6 +22,14 @@ def keys(program, readme):
     inside = text.split(begin, 1)[1].split(end, 1)[0].strip() if begin in text else ""
     if inside != table:
         sys.exit("README.md: the table of keys differs from `sphproof list keys --markdown`")
+    # what is wrapped for people is whole: compare with what is written for programs
+    keys_ = json.loads(subprocess.run([program, "list", "keys", "--json", "-"], capture_output=True, text=True,
+                                      check=True).stdout)["families"]["keys"]
+    said = " ".join(subprocess.run([program, "list", "keys"], capture_output=True, text=True,
+                                   check=True).stdout.split())
+    for key in keys_:
+        if " ".join(key["label"].split()) not in said or "| %s | %s |" % (key["allowed"], key["label"]) not in table:
+            sys.exit("sphproof list keys: what %s means is cut" % key["name"])
     print("the table of keys is the program's")
 
 

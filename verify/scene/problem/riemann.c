@@ -209,11 +209,10 @@ static bool holds(const struct prepared *p, double t)
 static enum status refuse(const struct prepared *p, double t, double longest, struct error *error)
 {
     return error_set(error, STATUS_BAD_INPUT,
-                     "t_end=%g: by then the mirrored tube at the ends of the periodic box has "
-                     "reached x = %.4g and %.4g, inside the window [%g, %g]; allowed: t_end <= "
-                     "%.4g, or a narrower window",
-                     t, p->domain.lo[0] + front(p, 1, t), p->domain.hi[0] - front(p, -1, t),
-                     p->window.lo[0], p->window.hi[0], longest);
+                     "t_end=%g: the box is periodic, and waves of the mirrored tube at its ends "
+                     "reach the window [%g, %g] at t = %.4g; allowed: t_end <= %.4g, or a narrower "
+                     "window",
+                     t, p->window.lo[0], p->window.hi[0], longest, longest);
 }
 
 /* ---- the place of the shock ---- */
