@@ -45,9 +45,11 @@ static enum status reserve(struct simulation *simulation, struct error *error)
     struct line *line = line_of(simulation);
     const ptrdiff_t reach = RESERVE * line->reach;
     if (reach + 8 > simulation->particles.ghosts) {
-        const enum status status = particles_grow_ghosts(&simulation->particles, reach + 8, error);
+        enum status status = particles_grow_ghosts(&simulation->particles, reach + 8, error);
+        line->ghosts_filled = 0; /* who falls asleep reads ghosts: they are filled at once */
+        if (!status) status = ghosts_of_density(simulation, line->reach + 2, error);
         if (status) return status;
-        line->ghosts_filled = 0;
+        ghosts_of_pairs(simulation);
     }
     return forces_reserve_scratch(simulation, reach, error);
 }
