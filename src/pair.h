@@ -13,6 +13,8 @@
 #ifndef SPHPROOF_PAIR_H
 #define SPHPROOF_PAIR_H
 
+#include <stdbool.h>
+
 #include "scheme.h"
 #include "stamp.h"
 
@@ -66,8 +68,13 @@ ALWAYS_INLINE struct pair_terms pair_pressure(enum formulation formulation,
                                               const struct pair_side *i, const struct pair_side *j,
                                               double G_i, double G_j)
 {
-    return formulation == FORMULATION_VANILLA_ICE ? pair_pressure_vanilla_ice(i, j, G_i)
-                                                  : pair_pressure_lagrangian(i, j, G_i, G_j);
+    switch (formulation) { /* every member of the list: another one does not compile without */
+    case FORMULATION_VANILLA_ICE:
+        return pair_pressure_vanilla_ice(i, j, G_i);
+    case FORMULATION_LAGRANGIAN:
+        return pair_pressure_lagrangian(i, j, G_i, G_j);
+    }
+    return (struct pair_terms){0, 0};
 }
 
 /* --- viscosity -------------------------------------------------------------------------------- */
@@ -108,6 +115,30 @@ ALWAYS_INLINE double pair_closing_at_midpoint(const struct pair_side *i, const s
  * alone, to second order, while shocks (0.1 c and more a pair) do not notice. */
 static const double pair_fade_below = 0.01;
 
+/* What tells a viscosity's pair term from the plain one. Every member of the list has its place
+ * here: another one does not compile without. */
+struct pair_form {
+    bool midpoint, varying, fading;
+};
+
+ALWAYS_INLINE struct pair_form pair_form_of(enum viscosity viscosity)
+{
+    switch (viscosity) {
+    case VISCOSITY_NONE:
+    case VISCOSITY_CONSTANT:
+        return (struct pair_form){0};
+    case VISCOSITY_TIME_DEPENDENT:
+    case VISCOSITY_CULLEN_DEHNEN:
+        return (struct pair_form){.varying = true};
+    case VISCOSITY_RECONSTRUCTED:
+    case VISCOSITY_PROJECTED: /* its shock term */
+        return (struct pair_form){.midpoint = true};
+    case VISCOSITY_FADING:
+        return (struct pair_form){.fading = true};
+    }
+    return (struct pair_form){0};
+}
+
 /* The term m_i m_j PI G/2 that viscosity adds to a_i and to a_j alike (heat in halves), in the form
  * of Monaghan 1992, CONVENTIONS eqs. 5.6 to 5.8: PI = (-alpha cbar mu + beta mu^2)/rhobar, mu =
  * -hbar closing r/(r^2 + 0.01 hbar^2), hbar = (h_i + h_j)/4, 0 where the pair recedes. G: mean of
@@ -116,19 +147,18 @@ ALWAYS_INLINE double pair_viscous(enum viscosity viscosity, const struct pair_nu
                                   const struct pair_side *i, const struct pair_side *j, double r,
                                   double closing, double G)
 {
+    const struct pair_form form = pair_form_of(viscosity);
     double scale = 1;
-    const double w = viscosity == VISCOSITY_RECONSTRUCTED
+    const double w = form.midpoint
                          ? pair_closing_at_midpoint(i, j, r, closing, numbers->near, &scale)
                          : largest(closing, 0);
     /* mu = -t/D2; cbar and rhobar are halves of sums: alpha_half goes with the sum of c, and the
      * 1/2 of the heating with the sum of rho */
     const double h_bar = 0.25 * (i->h + j->h), c_sum = i->c + j->c;
     const double t = h_bar * r * w, D2 = (r * r + 0.01 * (h_bar * h_bar)) * scale;
-    const bool varying = viscosity == VISCOSITY_TIME_DEPENDENT;
-    const double alpha_half = varying ? 0.25 * (i->alpha + j->alpha) : 0.5 * numbers->alpha;
-    const double beta = varying ? 2 * numbers->beta_ratio * alpha_half : numbers->beta;
-    const double c_seen =
-        viscosity == VISCOSITY_FADING ? least(c_sum, w * (2 / pair_fade_below)) : c_sum;
+    const double alpha_half = form.varying ? 0.25 * (i->alpha + j->alpha) : 0.5 * numbers->alpha;
+    const double beta = form.varying ? 2 * numbers->beta_ratio * alpha_half : numbers->beta;
+    const double c_seen = form.fading ? least(c_sum, w * (2 / pair_fade_below)) : c_sum;
     return i->m * j->m * G * t * (alpha_half * c_seen * D2 + beta * t) /
            (D2 * D2 * (i->rho + j->rho));
 }
@@ -140,16 +170,15 @@ ALWAYS_INLINE double pair_viscous_signal(enum viscosity viscosity,
                                          const struct pair_side *i, const struct pair_side *j,
                                          double r, double closing, double G)
 {
+    const struct pair_form form = pair_form_of(viscosity);
     double scale = 1;
-    const double w = viscosity == VISCOSITY_RECONSTRUCTED
+    const double w = form.midpoint
                          ? pair_closing_at_midpoint(i, j, r, closing, numbers->near, &scale)
                          : largest(closing, 0);
     const double speed = w / scale, c_sum = i->c + j->c;
-    const bool varying = viscosity == VISCOSITY_TIME_DEPENDENT;
-    const double alpha_half = varying ? 0.25 * (i->alpha + j->alpha) : 0.5 * numbers->alpha;
-    const double beta = varying ? 2 * numbers->beta_ratio * alpha_half : numbers->beta;
-    const double c_seen =
-        viscosity == VISCOSITY_FADING ? least(c_sum, speed * (2 / pair_fade_below)) : c_sum;
+    const double alpha_half = form.varying ? 0.25 * (i->alpha + j->alpha) : 0.5 * numbers->alpha;
+    const double beta = form.varying ? 2 * numbers->beta_ratio * alpha_half : numbers->beta;
+    const double c_seen = form.fading ? least(c_sum, speed * (2 / pair_fade_below)) : c_sum;
     return i->m * j->m * G * speed * (alpha_half * c_seen + 0.5 * beta * speed) / (i->rho + j->rho);
 }
 

@@ -461,7 +461,9 @@ CLONES static void limit_viscosity(int count, bool squared, double own,
         case VISCOSITY_FADING:                                                                     \
             viscous_body(VISCOSITY_FADING, signal_form, count, numbers, sides, lanes);             \
             break;                                                                                 \
-        default:                                                                                   \
+        case VISCOSITY_NONE:                                                                       \
+        case VISCOSITY_CULLEN_DEHNEN: /* comes as time_dependent */                                \
+        case VISCOSITY_PROJECTED:     /* comes as reconstructed */                                 \
             break;                                                                                 \
         }                                                                                          \
     }

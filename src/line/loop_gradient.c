@@ -11,8 +11,15 @@
 ALWAYS_INLINE double own_gradient(const struct kernel *kernel, kernel_shape *w, kernel_shape *dw,
                                   enum gradient gradient, double g, double r, double h_inverse)
 {
-    return gradient == GRADIENT_IA ? g * (r * w(kernel, r * h_inverse, 1))
-                                   : -g * dw(kernel, r * h_inverse, 1);
+    switch (gradient) { /* every member of the list: another one does not compile without */
+    case GRADIENT_STANDARD:
+        return -g * dw(kernel, r * h_inverse, 1);
+    case GRADIENT_IA:
+        return g * (r * w(kernel, r * h_inverse, 1));
+    case GRADIENT_CORRECTED: /* needs two dimensions */
+        break;
+    }
+    return 0;
 }
 
 ALWAYS_INLINE void gradients_of_pairs(const struct kernel *kernel, kernel_shape *w,
