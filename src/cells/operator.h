@@ -15,15 +15,18 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "families.h"
 #include "family.h"
 #include "kernel.h"
 #include "neighbours.h"
 
-enum pair_vector {
-    VECTOR_GRADIENT,   /* grad_i W = -(x/|x|) dW/dr */
-    VECTOR_POSITION,   /* x W */
-    VECTOR_NORMALISED, /* (grad_i W - (W/S) sum_k V_k grad_i W_k)/S */
-};
+/* VECTOR(symbol, tag), a list as those of families.h: for the enum and for tables of loops. */
+#define VECTOR_LIST(VECTOR, ...)                                                                   \
+    VECTOR(VECTOR_GRADIENT, gradient, __VA_ARGS__)     /* grad_i W = -(x/|x|) dW/dr */             \
+    VECTOR(VECTOR_POSITION, position, __VA_ARGS__)     /* x W */                                   \
+    VECTOR(VECTOR_NORMALISED, normalised, __VA_ARGS__) /* (grad_i W - (W/S) sum V grad W)/S */
+enum pair_vector { VECTOR_LIST(FAMILY_SYMBOL, ) };
+enum { PAIR_VECTORS = 0 VECTOR_LIST(FAMILY_COUNTED, ) };
 
 struct operator_form {
     struct member member;

@@ -51,33 +51,31 @@ ALWAYS_INLINE void sum_up(const struct kernel *kernel, kernel_shape *w, kernel_s
     }
 }
 
-#define BODY(name, tag, vector, matrix, dim)                                                       \
+#define BODY(name, tag, vector, dim)                                                               \
     CLONES static void name##_##tag##_##dim(const struct kernel *kernel,                           \
                                             const struct bench_neighbours *list, double *sums)     \
     {                                                                                              \
-        sum_up(kernel, name##_w, name##_dw, vector, matrix, dim, list, sums);                      \
+        sum_up(kernel, name##_w, name##_dw, vector, vector != VECTOR_GRADIENT, dim, list, sums);   \
     }
-#define DIMENSIONS(X, name, tag, vector, matrix)                                                   \
-    X(name, tag, vector, matrix, 1) X(name, tag, vector, matrix, 2) X(name, tag, vector, matrix, 3)
-/* The kinds of sums that the five operators need. */
-#define KINDS(X, name)                                                                             \
-    DIMENSIONS(X, name, plain, VECTOR_GRADIENT, false)                                             \
-    DIMENSIONS(X, name, position, VECTOR_POSITION, true)                                           \
-    DIMENSIONS(X, name, normalised, VECTOR_NORMALISED, true)
+/* The kinds of sums that the operators need; a matrix where the pair vector is not the gradient. */
+#define DIMENSIONS(vector, tag, X, name)                                                           \
+    X(name, tag, vector, 1) X(name, tag, vector, 2) X(name, tag, vector, 3)
+#define KINDS(X, name) VECTOR_LIST(DIMENSIONS, X, name)
 
 #ifdef KERNEL_FILE /* one kernel's, see stamp.c.in */
 
-#define ENTRY(name, tag, vector, matrix, dim) [vector][dim - 1] = name##_##tag##_##dim,
+#define ENTRY(name, tag, vector, dim) [vector][dim - 1] = name##_##tag##_##dim,
 #define KERNEL(name, ...)                                                                          \
     KINDS(BODY, name)                                                                              \
-    bench_limit_loop *const bench_limit_##name[3][KERNEL_DIM_MAX] = {KINDS(ENTRY, name)};
+    bench_limit_loop *const bench_limit_##name[PAIR_VECTORS][KERNEL_DIM_MAX] = {KINDS(ENTRY, name)};
 #include KERNEL_FILE
 
 #else
 
-#define DECLARE(name) extern bench_limit_loop *const bench_limit_##name[3][KERNEL_DIM_MAX];
+#define DECLARE(name)                                                                              \
+    extern bench_limit_loop *const bench_limit_##name[PAIR_VECTORS][KERNEL_DIM_MAX];
 KERNEL_NAMES(DECLARE)
-#define TABLE(name)   bench_limit_##name,
+#define TABLE(name) bench_limit_##name,
 static bench_limit_loop *const (*const loops[])[KERNEL_DIM_MAX] = {KERNEL_NAMES(TABLE)};
 
 bench_limit_loop *bench_limit_find(const struct kernel *kernel, const struct operator_form *form,
