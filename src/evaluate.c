@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What an evaluation is made of, in its order; the sums know the geometry. */
+#include "hold.h"
 #include "solver.h"
 #include "stamp.h"
 #include "state.h"
@@ -25,8 +26,10 @@ static double prediction(const struct simulation *simulation)
 static enum status prepare(struct simulation *simulation, bool newton, struct error *error)
 {
     const struct sums *sums = simulation->plan.sums;
-    const enum status status = sums->arrange(simulation, error);
-    return status ? status : sums->widths(simulation, newton, prediction(simulation), error);
+    enum status status = sums->arrange(simulation, error);
+    if (!status) status = sums->widths(simulation, newton, prediction(simulation), error);
+    if (!status) hold_state(simulation);
+    return status;
 }
 
 enum status evaluate_state(struct simulation *simulation, struct error *error)
@@ -39,6 +42,20 @@ enum status evaluate_rates(struct simulation *simulation, struct error *error)
 {
     const enum status status = find_primitives(simulation, error);
     return status ? status : evaluate_rates_of_primitives(simulation, error);
+}
+
+/* Force m g, and m g . v of the total energy. */
+static void fall(struct simulation *simulation)
+{
+    const struct particles *a = &simulation->particles;
+    const bool total = simulation->scheme.energy == ENERGY_TOTAL;
+    for (int k = 0; k < a->dim; k++) {
+        const double g = simulation->gravity[k];
+        for (ptrdiff_t i = 0; i < a->n; i++) {
+            a->F[k][i] += a->m[i] * g;
+            if (total) a->de[i] += a->m[i] * g * a->v[k][i];
+        }
+    }
 }
 
 static void limit_time_step(struct simulation *simulation, double rate)
@@ -59,6 +76,8 @@ enum status evaluate_rates_of_primitives(struct simulation *simulation, struct e
         for (ptrdiff_t i = 0; i < a->n; i++) a->h_inverse_old[i] = a->h_inverse_found[i];
     if (plan->matrix || plan->slope) plan->sums->matrix(simulation);
     status = plan->sums->forces(simulation, &rate, error);
+    if (status == STATUS_OK && plan->gravity) fall(simulation);
+    if (status == STATUS_OK) hold_rates(simulation);
     if (status == STATUS_OK) limit_time_step(simulation, rate);
     return status;
 }

@@ -64,6 +64,16 @@
     CHOICE(BALSARA_ON, "on", "viscosity times |div v|/(|div v| + |curl v|)", "Balsara 1995",       \
            __VA_ARGS__)
 
+/* What is at the ends of the box in a direction. */
+#define BOUNDARY_LINE_LIST(CHOICE, ...)                                                            \
+    CHOICE(BOUNDARY_PERIODIC, "periodic", "the other end follows", "", __VA_ARGS__)
+#define BOUNDARY_LIST(CHOICE, ...)                                                                 \
+    BOUNDARY_LINE_LIST(CHOICE, __VA_ARGS__)                                                        \
+    CHOICE(BOUNDARY_OPEN, "open", "nothing: gas may leave into a vacuum", "", __VA_ARGS__)         \
+    CHOICE(BOUNDARY_REFLECTING, "reflecting", "a wall: mirror images of the particles near it",    \
+           "", __VA_ARGS__)                                                                        \
+    CHOICE(BOUNDARY_FIXED, "fixed", "layers of particles whose state is kept", "", __VA_ARGS__)
+
 #define ENERGY_LIST(CHOICE, ...)                                                                   \
     CHOICE(ENERGY_INTERNAL, "internal", "U = m u", "", __VA_ARGS__)                                \
     CHOICE(ENERGY_TOTAL, "total", "E = U + p^2/2m: conserved to round-off", "", __VA_ARGS__)
@@ -98,6 +108,7 @@
     FAMILY(viscosity_form, VISCOSITY_FORM_LIST, VISCOSITY_FORMS, "viscosity_forms",                \
            "what artificial viscosity takes for the closing speed")                                \
     FAMILY(balsara, BALSARA_LIST, BALSARAS, "balsara_factors", "artificial viscosity in shear")    \
+    FAMILY(boundary, BOUNDARY_LIST, BOUNDARIES, "boundaries", "what is at the ends of the box")    \
     FAMILY(energy, ENERGY_LIST, ENERGIES, "energies", "the energy that is integrated")             \
     FAMILY(pair_width, PAIR_WIDTH_LIST, PAIR_WIDTHS, "pair_widths",                                \
            "width at which a pair's gradient is taken")                                            \

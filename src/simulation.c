@@ -6,6 +6,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "hold.h"
 #include "solver.h"
 #include "width.h"
 
@@ -41,7 +42,8 @@ enum status simulation_broke_down(const struct simulation *simulation, ptrdiff_t
 static enum status check_particle(const struct scene *scene, size_t i, struct error *error)
 {
     for (int k = 0; k < scene->dim; k++) {
-        if (!(scene->x[k][i] >= scene->lo[k] && scene->x[k][i] <= scene->hi[k]))
+        const bool open = scene->boundary[k] == BOUNDARY_OPEN && isfinite(scene->x[k][i]);
+        if (!open && !(scene->x[k][i] >= scene->lo[k] && scene->x[k][i] <= scene->hi[k]))
             return error_set(error, STATUS_BAD_INPUT, "particle %zu: %c = %g is outside the box", i,
                              "xyz"[k], scene -> x[k][i]);
         if (!isfinite(scene->v[k][i]))
@@ -68,6 +70,15 @@ static enum status check_scene(const struct scene *scene, struct error *error)
         return error_set(error, STATUS_BAD_INPUT, "gamma = %g: must be > 1", scene->gamma);
     for (int k = 0; k < scene->dim; k++) {
         const double period = scene->hi[k] - scene->lo[k];
+        if (scene->boundary[k] >= scheme_members(&scheme_boundary_family, scene->dim))
+            return error_set(error, STATUS_BAD_INPUT,
+                             "boundary=%s and dimension=1 exclude each other: it is for 2 and 3 "
+                             "dimensions",
+                             scheme_boundary_family.members[scene->boundary[k]]->name);
+        if (!isfinite(scene->gravity[k]) || (scene->dim == 1 && scene->gravity[k] != 0))
+            return error_set(error, STATUS_BAD_INPUT,
+                             "gravity = %g: finite, and 0 in 1 dimension, is needed",
+                             scene->gravity[k]);
         if (!(period > 0) || !isfinite(period))
             return error_set(error, STATUS_BAD_INPUT, "box [%g, %g]: must have a positive length",
                              scene->lo[k], scene->hi[k]);
@@ -128,11 +139,16 @@ static enum status start(struct simulation *simulation, const struct scene *scen
     struct conservation sum;
     for (int k = 0; k < scene->dim; k++) {
         simulation->lo[k] = scene->lo[k];
+        simulation->boundary[k] = scene->boundary[k];
+        simulation->gravity[k] = scene->gravity[k];
+        simulation->plan.gravity |= scene->gravity[k] != 0;
         simulation->particles.period[k] = scene->hi[k] - scene->lo[k];
     }
     set_particles(simulation, scene);
+    enum status status = hold_begin(simulation, error);
+    if (status) return status;
     sums->begin(simulation);
-    enum status status = evaluate_rates(simulation, error);
+    status = evaluate_rates(simulation, error);
     if (status) return status;
     simulation_conservation(simulation, &sum);
     simulation->start_energy = sum.energy;
@@ -170,6 +186,7 @@ void simulation_destroy(struct simulation *simulation)
     if (integrator->free) integrator->free(simulation);
     simulation->plan.sums->free(simulation);
     particles_destroy(&simulation->particles);
+    hold_free(simulation);
     free(simulation->sleep.spans);
     for (int k = 0; k < simulation->plan.dim; k++) free(simulation->wrapped[k]);
     free(simulation->specific_energy);
@@ -284,6 +301,10 @@ void simulation_snapshot(const struct simulation *simulation, struct snapshot *s
     const struct particles *a = &simulation->particles;
     for (int k = 0; k < a->dim; k++) {
         const double lo = simulation->lo[k], period = a->period[k];
+        if (simulation->boundary[k] != BOUNDARY_PERIODIC) {
+            memcpy(simulation->wrapped[k], a->x[k], (size_t)a->n * sizeof(double));
+            continue;
+        }
         for (ptrdiff_t i = 0; i < a->n; i++) {
             const double x = a->x[k][i] - lo;
             const double wrapped = x - period * floor(x / period);
@@ -329,6 +350,7 @@ void simulation_conservation(const struct simulation *simulation, struct conserv
         for (int k = 0; k < a->dim; k++) {
             const long double p = a->p[k][i];
             momentum[k] += p;
+            energy -= (long double)a->m[i] * simulation->gravity[k] * a->x[k][i];
             if (!total) energy += 0.5L * p * p / a->m[i];
         }
     }

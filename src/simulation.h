@@ -12,9 +12,11 @@
 
 /* What is to be computed. Arrays belong to the caller and are copied by simulation_create. */
 struct scene {
-    int dim;             /* 1 (2 and 3: not yet) */
-    double lo[3], hi[3]; /* periodic box */
-    double gamma;        /* ideal gas, > 1 */
+    int dim;                   /* 1, 2 or 3 */
+    double lo[3], hi[3];       /* box */
+    enum boundary boundary[3]; /* in each direction */
+    double gravity[3];         /* constant acceleration; needs 2 or 3 dimensions where not 0 */
+    double gamma;              /* ideal gas, > 1 */
     double t_end;
     size_t n;           /* particles */
     const double *x[3]; /* n each: positions, in the box, any order */

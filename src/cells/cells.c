@@ -79,8 +79,17 @@ void cells_destroy(struct cells *cells)
     for (int t = 0; cells->lanes && t < cells->method.threads; t++) free(cells->lanes[t].block);
     free(cells->lanes);
     free(cells->records);
+    free(cells->images.source);
+    free(cells->images.mirrored);
+    free(cells->images.radius);
+    for (int a = 0; a < 3; a++) free(cells->images.x[a]);
     grid_destroy(cells->grid);
     free(cells);
+}
+
+size_t cells_points(const struct cells *cells)
+{
+    return cells->points;
 }
 
 const struct grid *cells_grid(const struct cells *cells)
@@ -88,13 +97,85 @@ const struct grid *cells_grid(const struct cells *cells)
     return cells->grid;
 }
 
+static bool reserve_images(struct cells_images *images, size_t points)
+{
+    if (points <= images->capacity) return true;
+    const size_t capacity = points + points / 2;
+    double *x[4] = {images->x[0], images->x[1], images->x[2], images->radius};
+    bool there = true;
+    for (int a = 0; a < 4; a++) {
+        double *grown = realloc(x[a], capacity * sizeof *grown);
+        there &= grown != NULL;
+        if (grown) *(a < 3 ? &images->x[a] : &images->radius) = grown;
+    }
+    uint32_t *source = realloc(images->source, capacity * sizeof *source);
+    if (source) images->source = source;
+    unsigned char *mirrored = realloc(images->mirrored, capacity);
+    if (mirrored) images->mirrored = mirrored;
+    if (!there || !source || !mirrored) return false;
+    images->capacity = capacity;
+    return true;
+}
+
+/* Images along one axis of all points so far, those of earlier walls included: in a corner an image
+ * has images of its own. */
+static bool mirror(struct cells *cells, size_t n, int axis, double reach)
+{
+    struct cells_images *images = &cells->images;
+    const double wall[2] = {cells->method.box.lo[axis], cells->method.box.hi[axis]};
+    const size_t before = n + images->count;
+    for (size_t p = 0; p < before; p++)
+        for (int end = 0; end < 2; end++) {
+            const double x = images->x[axis][p];
+            if (!(fabs(x - wall[end]) < reach)) continue;
+            const size_t next = n + images->count;
+            if (!reserve_images(images, next + 1)) return false;
+            for (int a = 0; a < 3; a++) images->x[a][next] = images->x[a][p];
+            images->x[axis][next] = 2 * wall[end] - x;
+            images->radius[next] = images->radius[p];
+            images->source[images->count] = p < n ? (uint32_t)p : images->source[p - n];
+            images->mirrored[images->count] =
+                (unsigned char)((p < n ? 0 : images->mirrored[p - n]) | 1 << axis);
+            images->count++;
+        }
+    return true;
+}
+
+/* All points: the particles, then their images in the walls. */
+static bool find_images(struct cells *cells, const struct cells_fields *fields,
+                        const double *radius)
+{
+    struct cells_images *images = &cells->images;
+    const size_t n = fields->n;
+    double reach = 0;
+    images->count = 0;
+    if (!reserve_images(images, n)) return false;
+    for (int a = 0; a < 3; a++)
+        for (size_t i = 0; i < n; i++)
+            images->x[a][i] = a < cells->method.box.dim ? fields->x[a][i] : 0;
+    for (size_t i = 0; i < n; i++) {
+        images->radius[i] = radius[i];
+        reach = radius[i] > reach ? radius[i] : reach;
+    }
+    for (int a = 0; a < cells->method.box.dim; a++)
+        if (cells->method.wall[a] && !mirror(cells, n, a, reach)) return false;
+    return true;
+}
+
 enum status cells_arrange(struct cells *cells, const struct cells_fields *fields,
                           const double *radius, struct error *error)
 {
+    const bool walls = cells->method.wall[0] || cells->method.wall[1] || cells->method.wall[2];
+    const struct cells_images *images = &cells->images;
+    if (walls && !find_images(cells, fields, radius))
+        return error_set(error, STATUS_ENVIRONMENT, "no memory for %zu particles", fields->n);
+    cells->points = fields->n + images->count;
+    const double *const all[3] = {images->x[0], images->x[1], images->x[2]};
     const enum status status =
-        grid_search(cells->grid, fields->n, fields->n, fields->x, radius, error);
+        grid_search(cells->grid, cells->points, fields->n, walls ? all : fields->x,
+                    walls ? images->radius : radius, error);
     if (status) return status;
-    if (!reserve_records(cells, fields->n) || !lanes_reserve(cells))
+    if (!reserve_records(cells, cells->points) || !lanes_reserve(cells))
         return error_set(error, STATUS_ENVIRONMENT, "no memory for %zu particles", fields->n);
     return STATUS_OK;
 }

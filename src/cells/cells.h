@@ -24,6 +24,7 @@ enum { CELLS_SYMMETRIC = 6, CELLS_SQUARE = 9 };
 /* What the sums are asked for; constant over a run. */
 struct cells_method {
     struct grid_box box;
+    bool wall[3]; /* mirrors particles at both ends of a direction that is not periodic */
     const struct kernel *kernel; /* must outlive the cells */
     bool stamped;                /* kernel loops of its own, where it is a built-in one */
     enum gradient gradient;
@@ -100,6 +101,9 @@ uint64_t cells_forces(struct cells *cells, const struct cells_fields *fields);
 
 /* signal alone, from velocities that have changed since the forces. */
 void cells_signal(struct cells *cells, const struct cells_fields *fields);
+
+/* Slots of the grid: particles, and their images in walls. */
+size_t cells_points(const struct cells *cells);
 
 const struct grid *cells_grid(const struct cells *cells);
 

@@ -9,15 +9,16 @@ static void fill_records(struct cells *cells, const struct cells_fields *fields)
 {
     const struct lanes_layout *layout = &cells->density;
     const double(*place)[4] = grid_positions(cells->grid);
-    const uint32_t *order = grid_order(cells->grid);
     const ptrdiff_t size = layout->size, energy = layout->offset[GROUP_LAGRANGIAN];
 #pragma omp parallel for num_threads(cells->method.threads) if (cells->method.threads > 1)
-    for (size_t s = 0; s <= fields->n; s++) {
+    for (size_t s = 0; s <= cells->points; s++) {
         double *record = cells->records + (ptrdiff_t)s * size;
-        const bool sentinel = s == fields->n;
+        const bool sentinel = s == cells->points;
+        int mirrored;
+        const size_t i = sentinel ? 0 : lanes_source(cells, fields->n, s, &mirrored);
         for (int a = 0; a < 3; a++) record[a] = place[s][a];
-        record[3] = sentinel ? 0 : cells->method.number ? 1 : fields->m[order[s]];
-        if (energy >= 0) record[energy + 2] = sentinel ? 0 : fields->U[order[s]];
+        record[3] = sentinel ? 0 : cells->method.number ? 1 : fields->m[i];
+        if (energy >= 0) record[energy + 2] = sentinel ? 0 : fields->U[i];
     }
 }
 

@@ -22,15 +22,26 @@ static void fill_sentinel(struct cells *cells, size_t n)
     if (layout->offset[GROUP_VISCOSITY] >= 0) record[layout->offset[GROUP_VISCOSITY]] = 1;
 }
 
+/* A symmetric matrix of a particle, or of its image. */
+static void fill_symmetric(int dim, int mirrored, double *const matrix[CELLS_SYMMETRIC], size_t i,
+                           double *group)
+{
+    for (int a = 0; a < dim; a++)
+        for (int b = a; b < dim; b++) {
+            const int k = symmetric_at(dim, a, b);
+            group[k] = lanes_sign(mirrored, a) * lanes_sign(mirrored, b) * matrix[k][i];
+        }
+}
+
 static void fill_record(const struct cells *cells, const struct cells_fields *fields, size_t i,
-                        double *record)
+                        int mirrored, double *record)
 {
     const struct cells_method *method = &cells->method;
     const struct lanes_layout *layout = &cells->force;
     const int *at = layout->offset, dim = method->box.dim;
     record[3] = fields->m[i];
     double *group = record + at[GROUP_MOTION];
-    for (int a = 0; a < 3; a++) group[a] = a < dim ? fields->v[a][i] : 0;
+    for (int a = 0; a < 3; a++) group[a] = a < dim ? lanes_sign(mirrored, a) * fields->v[a][i] : 0;
     group[3] = 1 / fields->h_inverse[i];
     group = record + at[GROUP_GAS];
     group[0] = fields->h_inverse[i];
@@ -54,33 +65,36 @@ static void fill_record(const struct cells *cells, const struct cells_fields *fi
     const int symmetric = dim * (dim + 1) / 2;
     if (at[GROUP_MATRIX] >= 0) {
         group = record + at[GROUP_MATRIX];
-        for (int k = 0; k < symmetric; k++) group[k] = fields->matrix[k][i];
+        fill_symmetric(dim, mirrored, fields->matrix, i, group);
         group[symmetric] = fields->condition[i] <= method->worst_condition;
         for (int k = symmetric + 1; k < (dim == 3 ? 8 : 4); k++) group[k] = 0;
     }
     if (at[GROUP_SLOPE] >= 0) {
         group = record + at[GROUP_SLOPE];
         for (int k = 0; k < (dim == 3 ? 12 : 4); k++)
-            group[k] = k < dim * dim ? fields->slope[k][i] : 0;
+            group[k] = k < dim * dim ? lanes_sign(mirrored, k / dim) *
+                                           lanes_sign(mirrored, k % dim) * fields->slope[k][i]
+                                     : 0;
     }
     if (at[GROUP_PROJECTOR] >= 0) {
         group = record + at[GROUP_PROJECTOR];
-        for (int k = 0; k < (dim == 3 ? 8 : 4); k++)
-            group[k] = k < symmetric ? fields->projector[k][i] : 0;
+        for (int k = symmetric; k < (dim == 3 ? 8 : 4); k++) group[k] = 0;
+        fill_symmetric(dim, mirrored, fields->projector, i, group);
     }
 }
 
 static void fill_records(struct cells *cells, const struct cells_fields *fields)
 {
     const double(*place)[4] = grid_positions(cells->grid);
-    const uint32_t *order = grid_order(cells->grid);
 #pragma omp parallel for num_threads(cells->method.threads) if (cells->method.threads > 1)
-    for (size_t s = 0; s < fields->n; s++) {
+    for (size_t s = 0; s < cells->points; s++) {
         double *record = cells->records + (ptrdiff_t)s * cells->force.size;
         for (int a = 0; a < 3; a++) record[a] = place[s][a];
-        fill_record(cells, fields, order[s], record);
+        int mirrored;
+        const size_t i = lanes_source(cells, fields->n, s, &mirrored);
+        fill_record(cells, fields, i, mirrored, record);
     }
-    fill_sentinel(cells, fields->n);
+    fill_sentinel(cells, cells->points);
 }
 
 /* --- geometry: closing speed, slopes along the pair ------------------------------------------- */

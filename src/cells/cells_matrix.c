@@ -12,18 +12,19 @@ static void fill_records(struct cells *cells, const struct cells_fields *fields)
 {
     const struct lanes_layout *layout = &cells->matrix;
     const double(*place)[4] = grid_positions(cells->grid);
-    const uint32_t *order = grid_order(cells->grid);
     const int dim = cells->method.box.dim;
     const ptrdiff_t size = layout->size, motion = layout->offset[GROUP_MOTION],
                     gas = layout->offset[GROUP_GAS];
 #pragma omp parallel for num_threads(cells->method.threads) if (cells->method.threads > 1)
-    for (size_t s = 0; s <= fields->n; s++) {
+    for (size_t s = 0; s <= cells->points; s++) {
         double *record = cells->records + (ptrdiff_t)s * size;
         for (ptrdiff_t f = 0; f < size; f++) record[f] = 0;
         for (int a = 0; a < 3; a++) record[a] = place[s][a];
-        if (s == fields->n) continue;
-        const size_t i = order[s];
-        for (int a = 0; motion >= 0 && a < dim; a++) record[motion + a] = fields->v[a][i];
+        if (s == cells->points) continue;
+        int mirrored;
+        const size_t i = lanes_source(cells, fields->n, s, &mirrored);
+        for (int a = 0; motion >= 0 && a < dim; a++)
+            record[motion + a] = lanes_sign(mirrored, a) * fields->v[a][i];
         record[gas + 1] = fields->V[i];
     }
 }

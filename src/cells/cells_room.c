@@ -80,7 +80,8 @@ static struct cells_method method_of(const struct simulation *simulation)
     for (int k = 0; k < plan->dim; k++) {
         method.box.lo[k] = simulation->lo[k];
         method.box.hi[k] = simulation->lo[k] + simulation->particles.period[k];
-        method.box.periodic[k] = true;
+        method.box.periodic[k] = simulation->boundary[k] == BOUNDARY_PERIODIC;
+        method.wall[k] = simulation->boundary[k] == BOUNDARY_REFLECTING;
     }
     return method;
 }
@@ -217,9 +218,12 @@ static void sort_memory(struct simulation *simulation)
     struct particles *a = &simulation->particles;
     if (room->sorted && simulation->cost.steps < room->sorted_at + SORT_EVERY) return;
     const uint32_t *order = grid_order(cells_grid(room->cells));
-    for (ptrdiff_t i = 0; i < a->n; i++) a->order[i] = order[i];
+    const size_t slots = cells_points(room->cells);
+    ptrdiff_t place = 0;
+    for (size_t slot = 0; slot < slots; slot++) /* images are nobody's memory */
+        if (order[slot] < (size_t)a->n) a->order[place++] = order[slot];
     memcpy(a->spare, room->radius, (size_t)a->n * sizeof *room->radius);
-    for (ptrdiff_t i = 0; i < a->n; i++) room->radius[i] = a->spare[order[i]];
+    for (ptrdiff_t i = 0; i < a->n; i++) room->radius[i] = a->spare[a->order[i]];
     particles_permute(a);
     room->sorted = true;
     room->sorted_at = simulation->cost.steps;
@@ -307,6 +311,14 @@ static enum status find_roots(struct simulation *simulation, struct error *error
                      simulation->time);
 }
 
+/* What a search in this direction allows. */
+static double most_radius(const struct simulation *simulation, int axis)
+{
+    return simulation->boundary[axis] == BOUNDARY_PERIODIC
+               ? 0.5 * simulation->particles.period[axis]
+               : HUGE_VAL;
+}
+
 static enum status newton_widths(struct simulation *simulation, struct error *error)
 {
     struct room *room = room_of(simulation);
@@ -314,8 +326,8 @@ static enum status newton_widths(struct simulation *simulation, struct error *er
     for (ptrdiff_t i = 0; i < a->n; i++) {
         room->radius[i] = margin * a->h[i];
         for (int k = 0; k < a->dim; k++) /* a first guess may be anything */
-            if (a->h[i] <= 0.5 * a->period[k])
-                room->radius[i] = least(room->radius[i], 0.5 * a->period[k]);
+            if (a->h[i] <= most_radius(simulation, k))
+                room->radius[i] = least(room->radius[i], most_radius(simulation, k));
     }
     enum status status = search_sorted(simulation, error);
     if (status) return status;
@@ -341,7 +353,7 @@ static enum status solve_surprised(struct simulation *simulation, struct error *
         a->h[i] = 1 / a->h_inverse[i];
         room->radius[i] = 2 * a->h[i];
         for (int k = 0; k < a->dim; k++)
-            room->radius[i] = least(room->radius[i], 0.5 * a->period[k]);
+            room->radius[i] = least(room->radius[i], most_radius(simulation, k));
     }
     const enum status status = search(simulation, error);
     if (status) return status;

@@ -80,6 +80,13 @@ struct cells {
     struct cells_method method;
     struct grid *grid;
     struct shapes shapes;
+    size_t points; /* particles and their mirror images: slots run over both */
+    struct cells_images {
+        size_t capacity, count;
+        uint32_t *source;        /* the particle that an image is of */
+        unsigned char *mirrored; /* bit a: along axis a */
+        double *x[3], *radius;   /* of particles and images */
+    } images;
     size_t capacity; /* of records, in particles */
     double *records; /* slot n is the sentinel's */
     struct lanes_layout density, matrix, force;
@@ -97,6 +104,20 @@ static inline double *lane_of(const struct lanes *lanes, const struct lanes_layo
                               enum lanes_group group, int value)
 {
     return lanes->block + (LANES_OWN + layout->offset[group] + value) * lanes->stride;
+}
+
+/* The particle at a slot; mirrored: the axes along which it is an image, as bits. */
+static inline size_t lanes_source(const struct cells *cells, size_t n, size_t slot, int *mirrored)
+{
+    const size_t point = grid_order(cells->grid)[slot];
+    *mirrored = point < n ? 0 : cells->images.mirrored[point - n];
+    return point < n ? point : cells->images.source[point - n];
+}
+
+/* -1 along an axis that is mirrored, else 1; of an entry of a matrix the product of both axes'. */
+static inline double lanes_sign(int mirrored, int axis)
+{
+    return mirrored >> axis & 1 ? -1 : 1;
 }
 
 /* Gathers the records of a slot's list and finds r_j - r_i, r and 1/r. Returns the number of lanes,

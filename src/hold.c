@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "hold.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "solver.h"
+#include "width.h"
+
+static bool at_an_end(const struct simulation *simulation, ptrdiff_t i)
+{
+    const struct particles *a = &simulation->particles;
+    for (int k = 0; k < a->dim; k++) {
+        if (simulation->boundary[k] != BOUNDARY_FIXED) continue;
+        const double from_lo = a->x[k][i] - simulation->lo[k];
+        if (from_lo < a->h[i] || a->period[k] - from_lo < a->h[i]) return true;
+    }
+    return false;
+}
+
+enum status hold_begin(struct simulation *simulation, struct error *error)
+{
+    const struct particles *a = &simulation->particles;
+    bool fixed = false;
+    for (int k = 0; k < a->dim; k++) fixed |= simulation->boundary[k] == BOUNDARY_FIXED;
+    if (!fixed) return STATUS_OK;
+    simulation->held = calloc((size_t)a->n, sizeof *simulation->held);
+    if (!simulation->held)
+        return error_set(error, STATUS_ENVIRONMENT, "no memory for %td particles", a->n);
+    for (ptrdiff_t i = 0; i < a->n; i++) {
+        if (!at_an_end(simulation, i)) continue;
+        /* h = eta (m/rho)^(1/d) */
+        const double side = a->h[i] / simulation->scheme.eta;
+        simulation->held[a->id[i]] = a->m[i] / pow(side, a->dim);
+        for (int k = 0; k < a->dim; k++) {
+            if (simulation->scheme.energy == ENERGY_TOTAL)
+                a->e[i] -= 0.5 * a->p[k][i] * a->p[k][i] * a->m_inverse[i];
+            a->p[k][i] = 0;
+        }
+    }
+    return STATUS_OK;
+}
+
+void hold_state(struct simulation *simulation)
+{
+    const struct particles *a = &simulation->particles;
+    const double *held = simulation->held;
+    const double gamma = simulation->gamma;
+    const struct width_rule rule = {.dim = a->dim, .eta = simulation->scheme.eta};
+    for (ptrdiff_t i = 0; held && i < a->n; i++) {
+        const double rho = held[a->id[i]];
+        if (!(rho > 0)) continue;
+        const double u = a->U[i] * a->m_inverse[i];
+        a->rho[i] = rho;
+        a->V[i] = a->m[i] / rho;
+        a->P[i] = (gamma - 1) * rho * u;
+        a->c[i] = sqrt(gamma * (gamma - 1) * u);
+        a->h[i] = width_of(&rule, a->m[i], rho);
+        a->h_inverse[i] = a->h_inverse_found[i] = a->h_inverse_old[i] = 1 / a->h[i];
+        a->grad_h[i] = 0;
+        a->b[i] = a->P[i] * (a->V[i] * a->V[i] / a->m[i]);
+    }
+}
+
+void hold_rates(struct simulation *simulation)
+{
+    const struct particles *a = &simulation->particles;
+    const double *held = simulation->held;
+    for (ptrdiff_t i = 0; held && i < a->n; i++) {
+        if (!(held[a->id[i]] > 0)) continue;
+        for (int k = 0; k < a->dim; k++) a->F[k][i] = 0;
+        a->de[i] = a->dalpha[i] = 0;
+    }
+}
+
+void hold_free(struct simulation *simulation)
+{
+    free(simulation->held);
+}
