@@ -9,9 +9,9 @@
 
 /* Groups of checks and areas, in the order in which they are shown. */
 static const char *const causes[] = {
-    "kernels",     "gradients", "conservation", "riemann",   "exact",     "norms",
-    "hydro",       "stability", "check",        "detection", "suspicion", "harness",
-    "convergence", "budget",    "study",        "run",       "stress",    "fault",
+    "kernels", "gradients", "conservation", "riemann",   "exact",     "norms",   "hydro",
+    "clouds",  "stability", "check",        "detection", "suspicion", "harness", "convergence",
+    "budget",  "study",     "run",          "stress",    "fault",
 };
 enum { CAUSES = sizeof causes / sizeof *causes };
 

@@ -81,6 +81,10 @@ static enum status check_members(const struct scheme *scheme, int dim, struct er
                          "alpha_u=%g and dimension=1 exclude each other: conductivity is for 2 "
                          "and 3 dimensions",
                          scheme->alpha_u);
+    if (scheme->viscosity == VISCOSITY_CULLEN_DEHNEN)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "viscosity=cullen_dehnen: the solver does not have this switch yet; "
+                         "time_dependent is the one that it has");
     return STATUS_OK;
 }
 

@@ -261,6 +261,7 @@ static double close_all(struct simulation *simulation, bool predicted)
                             .eta = scheme->eta,
                             .follow = predicted ? scheme->integrator->follow : 0};
     const ptrdiff_t batches = (a->n + BATCH_MAX - 1) / BATCH_MAX;
+    const bool number = scheme->volume_element == VOLUME_NUMBER;
     double surprised = 0;
 #pragma omp parallel for num_threads(simulation->threads) reduction(+ : surprised) \
     if (simulation->threads > 1)
@@ -275,10 +276,23 @@ static double close_all(struct simulation *simulation, bool predicted)
             memcpy(sums.Z, room->sum_Z + first, bytes);
             memcpy(sums.Z_dh, room->sum_Z_dh + first, bytes);
         }
-        if (scheme->volume_element == VOLUME_NUMBER) number_to_mass(simulation, first, len, &sums);
+        if (number) number_to_mass(simulation, first, len, &sums);
         surprised += state_close(a, first, len, &simulation->plan, &gas, &sums);
+        /* b = Z P/y^2 with Z = 1, not m */
+        for (int i = 0; number && simulation->plan.grad_h && i < len; i++)
+            a->b[first + i] *= a->m[first + i];
     }
     return surprised;
+}
+
+/* Beyond half of the narrowest periodic side pairs have no single nearest image. */
+static double half_box(const struct simulation *simulation)
+{
+    double half = HUGE_VAL;
+    for (int k = 0; k < simulation->plan.dim; k++)
+        if (simulation->boundary[k] == BOUNDARY_PERIODIC)
+            half = least(half, 0.5 * simulation->particles.period[k]);
+    return half;
 }
 
 /* Looks for the roots of all particles that are open, searching further where one lies beyond. */
@@ -289,6 +303,7 @@ static enum status find_roots(struct simulation *simulation, struct error *error
     const struct scheme *scheme = &simulation->scheme;
     const struct width_rule rule = {a->dim, scheme->eta, scheme->kernel.constant[a->dim],
                                     scheme->h_tolerance};
+    const double half = half_box(simulation);
     for (int try = 0; try < TRIES_MAX; try++) {
         cells_widths(room->cells, &room->fields, &rule, room->radius, a->h, a->h_inverse,
                      room->outcome);
@@ -301,7 +316,9 @@ static enum status find_roots(struct simulation *simulation, struct error *error
             wider = true;
             room->outcome[i] = CELLS_OPEN;
             a->h[i] = room->radius[i];
-            room->radius[i] *= 1.5;
+            /* half of the box is searched before more of it is refused */
+            room->radius[i] =
+                room->radius[i] < half ? least(1.5 * room->radius[i], half) : 1.5 * room->radius[i];
         }
         if (!wider) return STATUS_OK;
         const enum status status = search(simulation, error);
@@ -311,23 +328,14 @@ static enum status find_roots(struct simulation *simulation, struct error *error
                      simulation->time);
 }
 
-/* What a search in this direction allows. */
-static double most_radius(const struct simulation *simulation, int axis)
-{
-    return simulation->boundary[axis] == BOUNDARY_PERIODIC
-               ? 0.5 * simulation->particles.period[axis]
-               : HUGE_VAL;
-}
-
 static enum status newton_widths(struct simulation *simulation, struct error *error)
 {
     struct room *room = room_of(simulation);
     const struct particles *a = &simulation->particles;
+    const double half = half_box(simulation);
     for (ptrdiff_t i = 0; i < a->n; i++) {
-        room->radius[i] = margin * a->h[i];
-        for (int k = 0; k < a->dim; k++) /* a first guess may be anything */
-            if (a->h[i] <= most_radius(simulation, k))
-                room->radius[i] = least(room->radius[i], most_radius(simulation, k));
+        a->h[i] = least(a->h[i], half); /* a first guess may be anything */
+        room->radius[i] = least(margin * a->h[i], half);
     }
     enum status status = search_sorted(simulation, error);
     if (status) return status;
@@ -346,14 +354,13 @@ static enum status solve_surprised(struct simulation *simulation, struct error *
     const struct scheme *scheme = &simulation->scheme;
     const struct width_rule rule = {a->dim, scheme->eta, scheme->kernel.constant[a->dim],
                                     scheme->h_tolerance};
+    const double half = half_box(simulation);
     for (ptrdiff_t i = 0; i < a->n; i++) {
         const bool surprised = state_surprised(a, i);
         room->outcome[i] = surprised ? CELLS_OPEN : CELLS_SOLVED;
         if (!surprised) continue;
         a->h[i] = 1 / a->h_inverse[i];
-        room->radius[i] = 2 * a->h[i];
-        for (int k = 0; k < a->dim; k++)
-            room->radius[i] = least(room->radius[i], most_radius(simulation, k));
+        room->radius[i] = least(2 * a->h[i], half);
     }
     const enum status status = search(simulation, error);
     if (status) return status;

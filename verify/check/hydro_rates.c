@@ -86,7 +86,7 @@ static void judge(struct check_run *run, const struct simulation *simulation,
         compare(&rho, got.rho[i], want->rho);
         compare(&P, got.P[i], want->P);
         compare(&V, got.volume[i], want->V);
-        compare(&F, rates.force[0][i], want->F);
+        compare(&F, rates.force[0][i], want->F[0]);
         compare(&de, rates.energy[i], want->de);
         if (rates.alpha) compare(&dalpha, rates.alpha[i], want->dalpha);
     }

@@ -85,12 +85,12 @@ static void judge(struct check_run *run, const struct simulation *simulation,
     simulation_cost(simulation, &cost);
     for (size_t i = 0; i < got.n; i++) {
         const struct oracle_particle *want = &oracle->particles[got.id[i]];
-        const long double away = got.x[0][i] - want->x;
-        widen(&x, away - oracle->period * roundl(away / oracle->period));
-        outside += !(got.x[0][i] >= (double)oracle->lo &&
-                     got.x[0][i] < (double)(oracle->lo + oracle->period));
-        widen(&v, got.v[0][i] - want->p / want->m);
-        widen(&u, got.u[i] - (want->e - kinetic * want->p * want->p / want->m) / want->m);
+        const long double away = got.x[0][i] - want->x[0];
+        widen(&x, away - oracle->period[0] * roundl(away / oracle->period[0]));
+        outside += !(got.x[0][i] >= (double)oracle->lo[0] &&
+                     got.x[0][i] < (double)(oracle->lo[0] + oracle->period[0]));
+        widen(&v, got.v[0][i] - want->p[0] / want->m);
+        widen(&u, got.u[i] - (want->e - kinetic * want->p[0] * want->p[0] / want->m) / want->m);
         widen(&rho, got.rho[i] - want->rho);
         if (rates.alpha) widen(&alpha, rates.alpha[i] - want->dalpha);
     }

@@ -5,22 +5,17 @@
 #include <stdlib.h>
 
 #include "integrator.h"
-
-static long double larger(long double a, long double b)
-{
-    return a > b ? a : b;
-}
+#include "oracle_parts.h"
 
 /* Has every choice of a scheme its formula here? Switches without a default: a member that joins
- * one of the lists does not compile until it is placed. */
+ * one of the lists does not compile until it is placed. (pair_width: see find_gradients.) */
 static bool covers(const struct scheme *scheme)
 {
     switch (scheme->gradient) {
     case GRADIENT_STANDARD:
     case GRADIENT_IA:
-        break;
     case GRADIENT_CORRECTED:
-        return false;
+        break;
     }
     switch (scheme->formulation) {
     case FORMULATION_VANILLA_ICE:
@@ -30,9 +25,8 @@ static bool covers(const struct scheme *scheme)
     switch (scheme->volume_element) {
     case VOLUME_MASS:
     case VOLUME_ENERGY:
-        break;
     case VOLUME_NUMBER:
-        return false;
+        break;
     }
     switch (scheme->viscosity) {
     case VISCOSITY_NONE:
@@ -40,22 +34,20 @@ static bool covers(const struct scheme *scheme)
     case VISCOSITY_TIME_DEPENDENT:
     case VISCOSITY_RECONSTRUCTED:
     case VISCOSITY_FADING:
+    case VISCOSITY_PROJECTED:
         break;
     case VISCOSITY_CULLEN_DEHNEN:
-    case VISCOSITY_PROJECTED:
         return false;
     }
     switch (scheme->viscosity_form) {
     case VISCOSITY_FORM_MU:
-        break;
     case VISCOSITY_FORM_SIGNAL:
-        return false;
+        break;
     }
     switch (scheme->balsara) {
     case BALSARA_OFF:
-        break;
     case BALSARA_ON:
-        return false;
+        break;
     }
     switch (scheme->energy) {
     case ENERGY_INTERNAL:
@@ -68,7 +60,7 @@ static bool covers(const struct scheme *scheme)
     case H_CORRECTED:
         break;
     }
-    return true; /* pair_width: see mean_gradient; integrator: see oracle_step */
+    return true;
 }
 
 enum status oracle_create(struct oracle *oracle, const struct scene *scene, struct error *error)
@@ -76,30 +68,36 @@ enum status oracle_create(struct oracle *oracle, const struct scene *scene, stru
     *oracle = (struct oracle){0};
     if (!covers(&scene->scheme))
         return error_set(error, STATUS_BAD_INPUT, "oracle: it has no formula for this scheme");
-    *oracle = (struct oracle){.scheme = scene->scheme,
-                              .lo = scene->lo[0],
-                              .period = (long double)scene->hi[0] - scene->lo[0],
-                              .gamma = scene->gamma,
-                              .n = scene->n};
-    oracle->kernel = oracle_kernel_find(&oracle->scheme.kernel);
+    *oracle = (struct oracle){
+        .scheme = scene->scheme, .dim = scene->dim, .gamma = scene->gamma, .n = scene->n};
+    long double share = 1; /* of the box, a particle's */
+    for (int k = 0; k < scene->dim; k++) {
+        oracle->lo[k] = scene->lo[k];
+        oracle->period[k] = (long double)scene->hi[k] - scene->lo[k];
+        share *= oracle->period[k];
+    }
+    share = powl(share / (long double)scene->n, 1.0L / scene->dim);
+    oracle->kernel = oracle_kernel_find(&oracle->scheme.kernel, scene->dim);
     oracle->particles = calloc(scene->n, sizeof *oracle->particles);
     oracle->start = calloc(scene->n, sizeof *oracle->start);
-    if (!oracle->particles || !oracle->start) {
+    oracle->distance = calloc(scene->n * scene->n * 3, sizeof *oracle->distance);
+    if (!oracle->particles || !oracle->start || !oracle->distance) {
         oracle_free(oracle);
         return error_set(error, STATUS_ENVIRONMENT, "oracle: no memory");
     }
     const bool switched = scene->scheme.viscosity == VISCOSITY_TIME_DEPENDENT;
     for (size_t i = 0; i < scene->n; i++) {
         struct oracle_particle *a = &oracle->particles[i];
-        const long double v = scene->v[0] ? scene->v[0][i] : 0;
-        a->x = scene->x[0][i];
         a->m = scene->m[i];
-        a->p = a->m * v;
         a->e = a->m * scene->u[i];
-        if (scene->scheme.energy == ENERGY_TOTAL) a->e += a->m * v * v / 2;
+        for (int k = 0; k < scene->dim; k++) {
+            const long double v = scene->v[k] ? scene->v[k][i] : 0;
+            a->x[k] = scene->x[k][i];
+            a->p[k] = a->m * v;
+            if (scene->scheme.energy == ENERGY_TOTAL) a->e += a->m * v * v / 2;
+        }
         a->alpha = switched ? scene->scheme.alpha_min : scene->scheme.alpha;
-        /* a first guess only: the root is unique */
-        a->h = oracle->period / (long double)scene->n * scene->scheme.eta;
+        a->h = share * scene->scheme.eta; /* a first guess only: the root is unique */
     }
     return STATUS_OK;
 }
@@ -108,70 +106,139 @@ void oracle_free(struct oracle *oracle)
 {
     free(oracle->particles);
     free(oracle->start);
+    free(oracle->distance);
     oracle->particles = oracle->start = NULL;
+    oracle->distance = NULL;
 }
 
-/* x_j - x_i of image k = -1, 0, 1 about the nearest one. */
-static long double separation(const struct oracle *oracle, size_t i, size_t j, int k)
+int oracle_images(const struct oracle *oracle)
 {
-    const long double x = oracle->particles[j].x - oracle->particles[i].x;
-    return x - oracle->period * roundl(x / oracle->period) + k * oracle->period;
+    return oracle->dim == 1 ? 1 : 0;
 }
 
-static long double W(const struct oracle *oracle, long double x, long double h)
+long double oracle_separation(const struct oracle *oracle, const struct oracle_particle *i,
+                              const struct oracle_particle *j, int image, oracle_vector x)
 {
-    return oracle->kernel.constant / h * oracle_kernel_w(&oracle->kernel, fabsl(x) / h);
+    for (int k = 0; k < 3; k++) {
+        x[k] = j->x[k] - i->x[k];
+        if (k < oracle->dim) x[k] -= oracle->period[k] * roundl(x[k] / oracle->period[k]);
+    }
+    x[0] += image * oracle->period[0];
+    return sqrtl(oracle_dot(x, x));
 }
 
-static long double dW_dr(const struct oracle *oracle, long double x, long double h)
+static long double *distance_at(const struct oracle *oracle, size_t i, size_t j, int image)
 {
-    return oracle->kernel.constant / (h * h) * oracle_kernel_dw(&oracle->kernel, fabsl(x) / h);
+    return &oracle->distance[3 * (i * oracle->n + j) + (size_t)(image + 1)];
 }
 
-static long double dW_dh(const struct oracle *oracle, long double x, long double h)
+long double oracle_distance(const struct oracle *oracle, size_t i, size_t j, int image)
 {
-    return -(W(oracle, x, h) + fabsl(x) * dW_dr(oracle, x, h)) / h;
+    return *distance_at(oracle, i, j, image);
 }
 
-/* Kernel sums at particle i of mass and of the volume element, with their derivatives in h. */
-static void sum_density(const struct oracle *oracle, size_t i, long double h, long double *rho,
-                        long double *drho, long double *y, long double *dy)
+static void find_distances(struct oracle *oracle)
 {
-    const bool energy = oracle->scheme.volume_element == VOLUME_ENERGY;
-    *rho = *drho = *y = *dy = 0;
+    oracle_vector x;
+    for (size_t i = 0; i < oracle->n; i++)
+        for (size_t j = 0; j < oracle->n; j++)
+            for (int k = -oracle_images(oracle); k <= oracle_images(oracle); k++)
+                *distance_at(oracle, i, j, k) =
+                    oracle_separation(oracle, &oracle->particles[i], &oracle->particles[j], k, x);
+}
+
+static long double power(long double x, int n)
+{
+    long double y = 1;
+    while (n-- > 0) y *= x;
+    return y;
+}
+
+long double oracle_W(const struct oracle *oracle, long double r, long double h)
+{
+    return oracle->kernel.constant / power(h, oracle->dim) *
+           oracle_kernel_w(&oracle->kernel, r / h);
+}
+
+long double oracle_dW_dr(const struct oracle *oracle, long double r, long double h)
+{
+    return oracle->kernel.constant / power(h, oracle->dim + 1) *
+           oracle_kernel_dw(&oracle->kernel, r / h);
+}
+
+long double oracle_dW_dh(const struct oracle *oracle, long double r, long double h)
+{
+    return -(oracle->dim * oracle_W(oracle, r, h) + r * oracle_dW_dr(oracle, r, h)) / h;
+}
+
+long double oracle_Z(const struct oracle *oracle, const struct oracle_particle *a)
+{
+    switch (oracle->scheme.volume_element) {
+    case VOLUME_ENERGY:
+        return a->U;
+    case VOLUME_NUMBER:
+        return 1;
+    default:
+        return a->m;
+    }
+}
+
+/* The sums of particle i at width h: y, and what h follows, in units of a density (mass; with the
+ * number element m_i n_i); with their derivatives in h. */
+struct sums {
+    long double rho, drho, y, dy;
+};
+
+static struct sums sum_density(const struct oracle *oracle, size_t i, long double h)
+{
+    const struct oracle_particle *a = &oracle->particles[i];
+    const bool number = oracle->scheme.volume_element == VOLUME_NUMBER;
+    struct sums s = {0};
     for (size_t j = 0; j < oracle->n; j++)
-        for (int k = -1; k <= 1; k++) {
+        for (int k = -oracle_images(oracle); k <= oracle_images(oracle); k++) {
             const struct oracle_particle *b = &oracle->particles[j];
-            const long double x = separation(oracle, i, j, k), Z = energy ? b->U : b->m;
-            if (fabsl(x) >= h) continue;
-            *rho += b->m * W(oracle, x, h);
-            *drho += b->m * dW_dh(oracle, x, h);
-            *y += Z * W(oracle, x, h);
-            *dy += Z * dW_dh(oracle, x, h);
+            const long double r = oracle_distance(oracle, i, j, k);
+            if (r >= h) continue;
+            const long double W = oracle_W(oracle, r, h), dW = oracle_dW_dh(oracle, r, h);
+            const long double m = number ? a->m : b->m, Z = oracle_Z(oracle, b);
+            s.rho += m * W;
+            s.drho += m * dW;
+            s.y += Z * W;
+            s.dy += Z * dW;
         }
+    return s;
 }
 
-/* The root of h rho(h) = eta m: the left side rises with h, so bisection cannot fail; Newton steps
- * that leave the bracket are replaced by it. */
+static void keep_sums(const struct oracle *oracle, struct oracle_particle *a, struct sums s)
+{
+    a->rho_sum = s.rho;
+    a->y = s.y;
+    a->grad_h_rho = a->width / (oracle->dim * s.rho) * s.drho;
+    a->grad_h_y = a->width / (oracle->dim * s.rho) * s.dy;
+}
+
+/* The root of h^d rho(h) = eta^d m: the left side rises with h, so bisection cannot fail; Newton
+ * steps that leave the bracket are replaced by it. */
 static enum status solve_h(struct oracle *oracle, size_t i, struct error *error)
 {
     struct oracle_particle *a = &oracle->particles[i];
-    const long double target = oracle->scheme.eta * a->m;
-    long double lo = 0, hi = oracle->period, h = a->h, rho, drho, y, dy;
+    const int d = oracle->dim;
+    const long double target = power(oracle->scheme.eta, d) * a->m;
+    long double lo = 0, hi = 0, h = a->h;
+    for (int k = 0; k < d; k++) hi = fmaxl(hi, oracle->period[k]);
     for (int round = 0; round < 200; round++) {
-        sum_density(oracle, i, h, &rho, &drho, &y, &dy);
-        const long double residual = h * rho - target;
+        const struct sums s = sum_density(oracle, i, h);
+        const long double residual = power(h, d) * s.rho - target;
         if (residual > 0)
             hi = h;
         else
             lo = h;
-        const long double newton = h - residual / (rho + h * drho);
+        const long double slope = power(h, d - 1) * (d * s.rho + h * s.drho);
+        const long double newton = h - residual / slope;
         const long double next = newton > lo && newton < hi ? newton : (lo + hi) / 2;
         if (fabsl(next - h) <= 1e-17L * h || hi - lo <= 1e-17L * hi) {
-            a->h = next;
-            sum_density(oracle, i, a->h, &a->rho_sum, &drho, &a->y, &dy);
-            a->grad_h_rho = a->h / a->rho_sum * drho;
-            a->grad_h_y = a->h / a->rho_sum * dy;
+            a->h = a->width = next;
+            keep_sums(oracle, a, sum_density(oracle, i, next));
             return STATUS_OK;
         }
         h = next;
@@ -184,43 +251,47 @@ static enum status solve_h(struct oracle *oracle, size_t i, struct error *error)
 static void predict_h(struct oracle *oracle, size_t i)
 {
     struct oracle_particle *a = &oracle->particles[i];
-    long double drho, dy, next = a->found + oracle->ahead * (a->found - a->found_before);
-    if (next < a->found / 2) next = a->found / 2;
-    if (next > a->found * 2) next = a->found * 2;
+    long double next = a->found + oracle->ahead * (a->found - a->found_before);
+    next = fminl(fmaxl(next, a->found / 2), a->found * 2);
     a->found_before = a->found;
     a->width = 1 / next;
-    sum_density(oracle, i, a->width, &a->rho_sum, &drho, &a->y, &dy);
-    a->grad_h_rho = a->width / a->rho_sum * drho;
-    a->grad_h_y = a->width / a->rho_sum * dy;
-    a->h = oracle->scheme.eta * a->m / a->rho_sum;
+    const struct sums s = sum_density(oracle, i, a->width);
+    keep_sums(oracle, a, s);
+    a->h = oracle->scheme.eta * powl(a->m / s.rho, 1.0L / oracle->dim);
     a->found = 1 / a->h;
     if (oracle->scheme.h_method != H_CORRECTED) return;
-    /* f(1/h) = 1/h - rho(h)/(eta m): df/d(1/h) = 1 + h^2 drho/dh/(eta m) */
-    const long double slope = 1 + a->width * a->width * drho / (oracle->scheme.eta * a->m);
+    /* f(1/h) = 1/h - (rho(h)/m)^(1/d)/eta: df/d(1/h) = 1 + (h^2/(d rho)) drho/dh/target */
+    const long double slope = 1 + a->width * a->width / (oracle->dim * s.rho) * s.drho * a->found;
     a->found = next + (a->found - next) / slope;
-    if (a->found < next / 2) a->found = next / 2;
-    if (a->found > next * 2) a->found = next * 2;
+    a->found = fminl(fmaxl(a->found, next / 2), next * 2);
 }
 
 /* The pressure follows a volume that was predicted wrong. */
 static long double follow(const struct oracle *oracle, const struct oracle_particle *a)
 {
     const long double weight = oracle->scheme.integrator->follow * (oracle->gamma - 1);
-    return larger(1 - weight * (a->h / a->width - 1), 0.5L);
+    return fmaxl(1 - weight * (power(a->h / a->width, oracle->dim) - 1), 0.5L);
+}
+
+static enum status find_primitives(struct oracle *oracle, struct error *error)
+{
+    const bool total = oracle->scheme.energy == ENERGY_TOTAL;
+    for (size_t i = 0; i < oracle->n; i++) {
+        struct oracle_particle *a = &oracle->particles[i];
+        for (int k = 0; k < 3; k++) a->v[k] = a->p[k] / a->m;
+        a->U = total ? a->e - oracle_dot(a->p, a->p) / (2 * a->m) : a->e;
+        if (!(a->U > 0))
+            return error_set(error, STATUS_BROKE_DOWN, "oracle: particle %zu has U = %Lg", i, a->U);
+    }
+    return STATUS_OK;
 }
 
 static enum status find_state(struct oracle *oracle, struct error *error)
 {
-    const bool total = oracle->scheme.energy == ENERGY_TOTAL;
     const bool energy = oracle->scheme.volume_element == VOLUME_ENERGY;
     const bool predicted = oracle->scheme.h_method != H_NEWTON && oracle->last_dt > 0;
-    for (size_t i = 0; i < oracle->n; i++) {
-        struct oracle_particle *a = &oracle->particles[i];
-        a->v = a->p / a->m;
-        a->U = total ? a->e - a->p * a->p / (2 * a->m) : a->e;
-        if (!(a->U > 0))
-            return error_set(error, STATUS_BROKE_DOWN, "oracle: particle %zu has U = %Lg", i, a->U);
-    }
+    if (find_primitives(oracle, error)) return error->status;
+    find_distances(oracle);
     for (size_t i = 0; i < oracle->n; i++) {
         struct oracle_particle *a = &oracle->particles[i];
         if (predicted) {
@@ -228,127 +299,22 @@ static enum status find_state(struct oracle *oracle, struct error *error)
         } else {
             const enum status status = solve_h(oracle, i, error);
             if (status) return status;
-            a->width = a->h;
             a->found = a->found_before = 1 / a->h;
         }
-        a->V = (energy ? a->U : a->m) / a->y;
+        a->V = oracle_Z(oracle, a) / a->y;
         a->rho = energy ? a->m * a->y / a->U : a->rho_sum;
         a->P = (oracle->gamma - 1) * (energy ? a->y : a->rho * a->U / a->m);
         a->c = sqrtl(oracle->gamma * a->P / a->rho);
         if (predicted && !energy) a->P *= follow(oracle, a);
     }
-    for (size_t i = 0; i < oracle->n; i++) {
-        struct oracle_particle *a = &oracle->particles[i];
-        long double tau = 0, slope = 0;
-        for (size_t j = 0; j < oracle->n; j++)
-            for (int k = -1; k <= 1; k++) {
-                const struct oracle_particle *b = &oracle->particles[j];
-                const long double x = separation(oracle, i, j, k), w = W(oracle, x, a->width);
-                tau += b->V * x * x * w;
-                slope += b->V * (b->v - a->v) * x * w;
-            }
-        a->C = 1 / tau;
-        a->slope = slope / tau;
-    }
+    oracle_find_matrices(oracle);
     return STATUS_OK;
 }
 
-/* grad_i W(r_ij, h) or C x W, as the scheme's gradient says; C belongs to the particle of h. */
-static long double gradient(const struct oracle *oracle, long double x, long double h,
-                            long double C)
+/* How far a particle's pairs reach: in 1D as the last sum has found it. */
+static long double reach(const struct oracle *oracle, const struct oracle_particle *a)
 {
-    if (oracle->scheme.gradient == GRADIENT_IA) return C * x * W(oracle, x, h);
-    return x == 0 ? 0 : -x / fabsl(x) * dW_dr(oracle, x, h);
-}
-
-/* One gradient of the pair at width h. For ia the moments 1/sum V x^2 w, without the factors C_1/h
- * of either particle's own width, are averaged: the shape's width is h alone. */
-static long double single_gradient(const struct oracle *oracle, const struct oracle_particle *a,
-                                   const struct oracle_particle *b, long double x, long double h)
-{
-    return gradient(oracle, x, h, (a->C / a->width + b->C / b->width) / 2 * h);
-}
-
-static long double mean_gradient(const struct oracle *oracle, const struct oracle_particle *a,
-                                 const struct oracle_particle *b, long double x)
-{
-    switch (oracle->scheme.pair_width) {
-    case PAIR_WIDTH_MAX:
-        return single_gradient(oracle, a, b, x, larger(a->width, b->width));
-    case PAIR_WIDTH_HARMONIC:
-        return single_gradient(oracle, a, b, x, 2 * a->width * b->width / (a->width + b->width));
-    case PAIR_WIDTH_MEAN:
-        break;
-    }
-    return (gradient(oracle, x, a->width, a->C) + gradient(oracle, x, b->width, b->C)) / 2;
-}
-
-/* v_ij as the viscosity sees it: reconstructed at the midpoint (Rosswog 2020), and never so that
- * viscosity would cool. */
-static long double viscous_velocity(const struct oracle *oracle, const struct oracle_particle *a,
-                                    const struct oracle_particle *b, long double x)
-{
-    const long double v_ij = a->v - b->v;
-    if (oracle->scheme.viscosity != VISCOSITY_RECONSTRUCTED) return v_ij;
-    if (v_ij * x <= 0) return 0;
-    const long double sum = a->slope + b->slope;
-    long double phi = sum == 0 ? 0 : 4 * a->slope * b->slope / (sum * sum);
-    phi = phi < 0 ? 0 : phi > 1 ? 1 : phi;
-    const long double q = fabsl(x) / larger(a->width, b->width),
-                      near = 1 / (long double)oracle->scheme.eta;
-    if (q < near) phi *= expl(-((q - near) / 0.2L) * ((q - near) / 0.2L));
-    return v_ij + phi / 2 * sum * x;
-}
-
-static long double viscous_pressure(const struct oracle *oracle, const struct oracle_particle *a,
-                                    const struct oracle_particle *b, long double x)
-{
-    const struct scheme *scheme = &oracle->scheme;
-    if (scheme->viscosity == VISCOSITY_NONE) return 0;
-    /* r_ij = -x */
-    const long double approach = -viscous_velocity(oracle, a, b, x) * x;
-    if (approach >= 0) return 0;
-    const long double h = (a->h + b->h) / 4, rho = (a->rho + b->rho) / 2;
-    const long double mu = h * approach / (x * x + 0.01L * h * h);
-    long double c = (a->c + b->c) / 2;
-    /* fading: no more than 100 times the speed at which the pair closes */
-    if (scheme->viscosity == VISCOSITY_FADING && c > 100 * -approach / fabsl(x))
-        c = 100 * -approach / fabsl(x);
-    const bool switched = scheme->viscosity == VISCOSITY_TIME_DEPENDENT;
-    const long double alpha = (a->alpha + b->alpha) / 2;
-    const long double beta =
-        switched ? alpha * ((long double)scheme->beta / scheme->alpha) : (long double)scheme->beta;
-    return (-alpha * c * mu + beta * mu * mu) / rho;
-}
-
-/* f_ij of the grad-h factors: of particle a in its pair with b. */
-static long double grad_h_factor(const struct oracle *oracle, const struct oracle_particle *a,
-                                 const struct oracle_particle *b)
-{
-    if (oracle->scheme.volume_element == VOLUME_MASS) return 1 / (1 + a->grad_h_rho);
-    return 1 - b->m / b->U * a->grad_h_y / (1 + a->grad_h_rho);
-}
-
-static void add_pair(struct oracle *oracle, struct oracle_particle *a,
-                     const struct oracle_particle *b, long double x)
-{
-    const bool energy = oracle->scheme.volume_element == VOLUME_ENERGY;
-    const long double Zi = energy ? a->U : a->m, Zj = energy ? b->U : b->m, v_ij = a->v - b->v;
-    const long double G = mean_gradient(oracle, a, b, x);
-    if (oracle->scheme.formulation == FORMULATION_VANILLA_ICE) {
-        a->F -= Zi * Zj * (a->P + b->P) / (a->y * b->y) * G;
-        a->dU += a->P * Zi * Zj / (a->y * b->y) * v_ij * G;
-    } else {
-        const long double Gi = gradient(oracle, x, a->width, a->C);
-        const long double Gj = gradient(oracle, x, b->width, b->C);
-        const long double fi = grad_h_factor(oracle, a, b), fj = grad_h_factor(oracle, b, a);
-        a->F -= Zi * Zj * (fi * a->P / (a->y * a->y) * Gi + fj * b->P / (b->y * b->y) * Gj);
-        a->dU += fi * a->P / (a->y * a->y) * Zi * Zj * v_ij * Gi;
-    }
-    const long double PI = viscous_pressure(oracle, a, b, x);
-    a->F -= a->m * b->m * PI * G;
-    a->dU += a->m * b->m * PI * v_ij * G / 2;
-    a->div_v -= b->V * v_ij * G;
+    return oracle->dim == 1 ? a->h : a->width;
 }
 
 void oracle_signals(struct oracle *oracle)
@@ -357,36 +323,51 @@ void oracle_signals(struct oracle *oracle)
         struct oracle_particle *a = &oracle->particles[i];
         a->signal = 2 * a->c;
         for (size_t j = 0; j < oracle->n; j++)
-            for (int k = -1; k <= 1; k++) {
+            for (int k = -oracle_images(oracle); k <= oracle_images(oracle); k++) {
                 const struct oracle_particle *b = &oracle->particles[j];
-                const long double x = separation(oracle, i, j, k);
-                if (x == 0 || fabsl(x) >= larger(a->h, b->h)) continue;
-                /* e_ij . v_ij with e_ij = -x/|x| */
-                const long double radial = -(a->p / a->m - b->p / b->m) * x / fabsl(x);
-                a->signal = larger(a->signal, a->c + b->c - 3 * (radial < 0 ? radial : 0));
+                oracle_vector x;
+                const long double r = oracle_distance(oracle, i, j, k);
+                if ((j == i && k == 0) || r >= fmaxl(reach(oracle, a), reach(oracle, b))) continue;
+                oracle_separation(oracle, a, b, k, x);
+                /* e_ij . v_ij with e_ij = -x/r */
+                long double radial = 0;
+                for (int c = 0; c < 3 && r > 0; c++)
+                    radial -= (a->p[c] / a->m - b->p[c] / b->m) * x[c] / r;
+                a->signal = fmaxl(a->signal, a->c + b->c - 3 * fminl(radial, 0));
             }
     }
+}
+
+/* The rates of one particle from all its pairs. */
+static void find_rates(struct oracle *oracle, size_t i)
+{
+    const struct scheme *scheme = &oracle->scheme;
+    struct oracle_particle *a = &oracle->particles[i];
+    a->F[0] = a->F[1] = a->F[2] = a->dU = a->div_v = 0;
+    a->neighbours = 0;
+    for (size_t j = 0; j < oracle->n; j++)
+        for (int k = -oracle_images(oracle); k <= oracle_images(oracle); k++) {
+            const struct oracle_particle *b = &oracle->particles[j];
+            oracle_vector x;
+            const long double r = oracle_distance(oracle, i, j, k);
+            if ((j == i && k == 0) || r >= fmaxl(a->width, b->width)) continue;
+            oracle_separation(oracle, a, b, k, x);
+            a->neighbours += r < a->width;
+            oracle_add_pair(oracle, a, b, x);
+        }
+    a->de = scheme->energy == ENERGY_TOTAL ? oracle_dot(a->v, a->F) + a->dU : a->dU;
+    const long double growth = fmaxl(-a->div_v, 0) * fmaxl(scheme->alpha_max - a->alpha, 0);
+    const long double tau = a->h / (0.2L * a->c);
+    a->dalpha = scheme->viscosity == VISCOSITY_TIME_DEPENDENT
+                    ? growth - (a->alpha - scheme->alpha_min) / tau
+                    : 0;
 }
 
 enum status oracle_evaluate(struct oracle *oracle, struct error *error)
 {
     const enum status status = find_state(oracle, error);
     if (status) return status;
-    const struct scheme *scheme = &oracle->scheme;
-    for (size_t i = 0; i < oracle->n; i++) {
-        struct oracle_particle *a = &oracle->particles[i];
-        a->F = a->dU = a->div_v = 0;
-        for (size_t j = 0; j < oracle->n; j++)
-            for (int k = -1; k <= 1; k++)
-                if (j != i || k != 0)
-                    add_pair(oracle, a, &oracle->particles[j], separation(oracle, i, j, k));
-        a->de = scheme->energy == ENERGY_TOTAL ? a->v * a->F + a->dU : a->dU;
-        const long double growth = larger(-a->div_v, 0) * larger(scheme->alpha_max - a->alpha, 0);
-        const long double tau = a->h / (0.2L * a->c);
-        a->dalpha = scheme->viscosity == VISCOSITY_TIME_DEPENDENT
-                        ? growth - (a->alpha - scheme->alpha_min) / tau
-                        : 0;
-    }
+    for (size_t i = 0; i < oracle->n; i++) find_rates(oracle, i);
     oracle_signals(oracle);
     return STATUS_OK;
 }

@@ -1,38 +1,54 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The oracle: the equations of density, smoothing length, force, energy and time stepping written
- * down once more, in 1D, straight from the text, in long double, with loops over all pairs and
- * images. Slow and plain on purpose; shares types with src, but no code. */
+ * down once more, for 1, 2 and 3 dimensions, straight from the text, in long double, with loops
+ * over all pairs and images. Slow and plain on purpose; shares types with src, but no code. */
 #ifndef SPHPROOF_ORACLE_H
 #define SPHPROOF_ORACLE_H
 
 #include "oracle_kernel.h"
 #include "simulation.h"
 
+typedef long double oracle_vector[3]; /* components beyond the dimension are 0 */
+
+struct oracle_matrix {
+    oracle_vector row[3];
+};
+
 struct oracle_particle {
     /* state: position (unwrapped), mass, momentum, energy (U or E as the scheme says), viscosity */
-    long double x, m, p, e, alpha;
+    oracle_vector x, p;
+    long double m, e, alpha;
     /* of the state */
-    long double v, U, h, width, rho_sum, y, V, rho, P, c;
+    oracle_vector v;
+    long double U, h, width, rho_sum, y, V, rho, P, c;
     long double found, found_before;  /* 1/h of the last two density sums */
-    long double grad_h_rho, grad_h_y; /* h/rho_sum times d rho_sum/dh, dy/dh */
-    long double C;                    /* 1/sum V x^2 W */
-    long double slope;                /* linear_exact gradient of v */
+    long double grad_h_rho, grad_h_y; /* h/(d rho_sum) times d rho_sum/dh, dy/dh */
+    struct oracle_matrix C;           /* inverse of the moments of the gradient in use */
+    long double condition;            /* of those moments, in the 2-norm; standard: 0 */
+    bool ill;                         /* beyond the bound: pairs use the standard gradient */
+    struct oracle_matrix L;           /* linear_exact gradient of v: d v_a/d x_b at [a][b] */
+    struct oracle_matrix projector;   /* onto the direction of the local shear */
+    long double balsara;
     /* rates dp/dt, dU/dt, d(e)/dt, dalpha/dt; divergence of v; signal speed */
-    long double F, dU, de, dalpha, div_v, signal;
+    oracle_vector F;
+    long double dU, de, dalpha, div_v, signal;
+    size_t neighbours; /* others with r < h */
 };
 
 struct oracle {
     struct scheme scheme;
     struct oracle_kernel kernel;
-    long double lo, period, gamma, time;
+    int dim;
+    oracle_vector lo, period;
+    long double gamma, time;
     long double last_dt, ahead; /* h_method predicted: by how many last changes of 1/h */
     size_t n, steps;
     struct oracle_particle *particles; /* in the scene's order */
     struct oracle_particle *start;     /* n, workspace of the integrators */
+    long double *distance;             /* n n 3: of each pair and image, of the last evaluation */
 };
 
-/* Takes a 1D scene; the oracle must stay where it is. STATUS_ENVIRONMENT: no memory. Free with
- * oracle_free. */
+/* The oracle must stay where it is. STATUS_ENVIRONMENT: no memory. Free with oracle_free. */
 enum status oracle_create(struct oracle *oracle, const struct scene *scene, struct error *error);
 void oracle_free(struct oracle *oracle);
 

@@ -7,16 +7,17 @@
 #include "kernel.h"
 
 struct oracle_kernel {
-    long double constant; /* C_1: W = C_1/h w(r/h) in 1D */
+    long double constant; /* C_d: W = C_d/h^d w(r/h) */
     long double (*w)(int parameter, long double q);
     long double (*dw)(int parameter, long double q);
-    int parameter;               /* of a spline: its M_n; of sinc_n: n */
+    int dim;
+    int parameter;               /* of a spline: its M_n; of sinc_n: n; of Wendland's: the power */
     const struct kernel *source; /* of a kernel that the oracle does not know: itself; else NULL */
 };
 
-/* The kernel in 1D, by its name. One that the oracle does not know, such as a new one, is taken as
- * it is: then the sums are judged, not the kernel (group kernels does that). */
-struct oracle_kernel oracle_kernel_find(const struct kernel *source);
+/* The kernel in dim dimensions, by its name. One that the oracle does not know, such as a new one,
+ * is taken as it is: then the sums are judged, not the kernel (group kernels does that). */
+struct oracle_kernel oracle_kernel_find(const struct kernel *source, int dim);
 
 /* w and dw/dq at q >= 0. */
 long double oracle_kernel_w(const struct oracle_kernel *kernel, long double q);

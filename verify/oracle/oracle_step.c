@@ -1,20 +1,22 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Time stepping of the oracle: each integrator in its textbook form. y stands for the state
  * (x, p, e, alpha), L(y) for its rates (p/m, F, de, dalpha). */
-#include "oracle.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "integrator.h"
+#include "oracle_parts.h"
 
 /* result = a + rates * dt, rates being those now in the particles; a, result may be them. */
 static void advance(struct oracle *oracle, const struct oracle_particle *a, long double dt)
 {
     for (size_t i = 0; i < oracle->n; i++) {
         struct oracle_particle *b = &oracle->particles[i];
-        b->x = a[i].x + b->p / b->m * dt;
-        b->p = a[i].p + b->F * dt;
+        for (int k = 0; k < 3; k++) {
+            b->x[k] = a[i].x[k] + b->p[k] / b->m * dt;
+            b->p[k] = a[i].p[k] + b->F[k] * dt;
+        }
         b->e = a[i].e + b->de * dt;
         b->alpha = a[i].alpha + b->dalpha * dt;
     }
@@ -31,8 +33,10 @@ static void mix(struct oracle *oracle, long double weight)
     for (size_t i = 0; i < oracle->n; i++) {
         struct oracle_particle *b = &oracle->particles[i];
         const struct oracle_particle *a = &oracle->start[i];
-        b->x = weight * a->x + (1 - weight) * b->x;
-        b->p = weight * a->p + (1 - weight) * b->p;
+        for (int k = 0; k < 3; k++) {
+            b->x[k] = weight * a->x[k] + (1 - weight) * b->x[k];
+            b->p[k] = weight * a->p[k] + (1 - weight) * b->p[k];
+        }
         b->e = weight * a->e + (1 - weight) * b->e;
         b->alpha = weight * a->alpha + (1 - weight) * b->alpha;
     }
@@ -46,18 +50,20 @@ static enum status leapfrog(struct oracle *oracle, long double dt, struct error 
     remember(oracle);
     for (size_t i = 0; i < oracle->n; i++) {
         struct oracle_particle *a = &oracle->particles[i];
-        half[i].p += a->F * dt / 2;
+        for (int k = 0; k < 3; k++) {
+            half[i].p[k] += a->F[k] * dt / 2;
+            a->x[k] += half[i].p[k] / a->m * dt;
+            a->p[k] += a->F[k] * dt;
+        }
         half[i].e += a->de * dt / 2;
         half[i].alpha += a->dalpha * dt / 2;
-        a->x += half[i].p / a->m * dt;
-        a->p += a->F * dt;
         a->e += a->de * dt;
         a->alpha += a->dalpha * dt;
     }
     const enum status status = oracle_evaluate(oracle, error);
     for (size_t i = 0; i < oracle->n; i++) {
         struct oracle_particle *a = &oracle->particles[i];
-        a->p = half[i].p + a->F * dt / 2;
+        for (int k = 0; k < 3; k++) a->p[k] = half[i].p[k] + a->F[k] * dt / 2;
         a->e = half[i].e + a->de * dt / 2;
         a->alpha = half[i].alpha + a->dalpha * dt / 2;
     }
@@ -76,10 +82,12 @@ static enum status symplectic_euler(struct oracle *oracle, long double dt, struc
 {
     for (size_t i = 0; i < oracle->n; i++) {
         struct oracle_particle *a = &oracle->particles[i];
-        a->p += a->F * dt;
+        for (int k = 0; k < 3; k++) {
+            a->p[k] += a->F[k] * dt;
+            a->x[k] += a->p[k] / a->m * dt;
+        }
         a->e += a->de * dt;
         a->alpha += a->dalpha * dt;
-        a->x += a->p / a->m * dt;
     }
     return oracle_evaluate(oracle, error);
 }
@@ -132,18 +140,20 @@ static enum status predicted_midpoint(struct oracle *oracle, long double dt, str
     for (size_t i = 0; i < oracle->n; i++) {
         struct oracle_particle *b = &oracle->particles[i];
         const struct oracle_particle *a = &oracle->start[i];
-        const long double before = total ? a->p * a->p / (2 * a->m) : 0;
-        const long double now = total ? b->p * b->p / (2 * b->m) : 0;
+        const long double before = total ? oracle_dot(a->p, a->p) / (2 * a->m) : 0;
+        const long double now = total ? oracle_dot(b->p, b->p) / (2 * b->m) : 0;
         if (b->e - now < (a->e - before) / 2) b->e = (a->e - before) / 2 + now;
     }
     const enum status status = oracle_evaluate(oracle, error);
     for (size_t i = 0; i < oracle->n; i++) {
         struct oracle_particle *b = &oracle->particles[i];
         const struct oracle_particle *a = &oracle->start[i];
-        b->p = a->p + b->F * dt;
+        for (int k = 0; k < 3; k++) {
+            b->p[k] = a->p[k] + b->F[k] * dt;
+            b->x[k] = a->x[k] + (a->p[k] + b->p[k]) / (2 * b->m) * dt;
+        }
         b->e = a->e + b->de * dt;
         b->alpha = a->alpha + b->dalpha * dt;
-        b->x = a->x + (a->p + b->p) / (2 * b->m) * dt;
     }
     return status;
 }
@@ -200,14 +210,25 @@ long double oracle_time_step(const struct oracle *oracle)
     return oracle->scheme.cfl * least;
 }
 
+/* The first step: a part of that, and not longer than accelerations allow. */
+static long double first_step(const struct oracle *oracle)
+{
+    const double part = oracle->scheme.integrator->first_step;
+    long double dt = oracle_time_step(oracle) * (part > 0 ? part : 1);
+    for (size_t i = 0; i < oracle->n; i++) {
+        const struct oracle_particle *a = &oracle->particles[i];
+        const long double pull = sqrtl(oracle_dot(a->F, a->F)) / a->m;
+        dt = fminl(dt, oracle->scheme.cfl * sqrtl(a->width / pull));
+    }
+    return dt;
+}
+
 enum status oracle_run(struct oracle *oracle, long double t_end, struct error *error)
 {
     enum status status = oracle_evaluate(oracle, error);
     while (!status && oracle->time < t_end) {
         const long double left = t_end - oracle->time;
-        long double dt = oracle_time_step(oracle);
-        const double part = oracle->scheme.integrator->first_step;
-        if (oracle->steps == 0 && part > 0) dt *= part;
+        long double dt = oracle->steps ? oracle_time_step(oracle) : first_step(oracle);
         if (dt >= left)
             dt = left;
         else if (2 * dt >= left)

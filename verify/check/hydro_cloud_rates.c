@@ -1,0 +1,286 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Density, smoothing length, force, heating and time step of disordered clouds in 2D and 3D against
+ * the oracle, for the choices that stand in the sums: every geometry of a pair with one physics,
+ * and every physics with one geometry, turn by turn; in the slow suite every one with every other
+ * in 2D. */
+#include <math.h>
+
+#include "check.h"
+#include "hydro_cloud.h"
+#include "hydro_scene.h"
+#include "oracle.h"
+#include "worst.h"
+
+/* Boxes of three to four widths in 2D; in 3D hardly more than two. */
+static size_t side_of(int dim)
+{
+    return dim == 2 ? 9 : 6;
+}
+
+/* A scheme in a dimension; or what a mutant does to the solver's scene, where the scheme is
+ * hydro_cloud_scheme() with a geometry and physics of its own. */
+struct cloud_subject {
+    void (*spoil)(struct scene *scene);
+    int dim;
+    struct scheme scheme;
+};
+
+static void add(struct check_run *run, int dim, struct scheme scheme)
+{
+    const struct cloud_subject subject = {NULL, dim, scheme};
+    struct error error;
+    if (!scheme_check(&scheme, dim, &error)) check_subject(run, &subject, sizeof subject);
+}
+
+/* In 3D, where the oracle takes four times as long, fewer of them. */
+static void add_kernels(struct check_run *run, int dim)
+{
+    for (size_t k = 0; k < kernel_family.n; k++)
+        for (size_t g = 0; g < hydro_cloud_geometries(); g += dim == 2 ? 7 : 14) {
+            struct scheme s = hydro_cloud_scheme(dim);
+            const double eta = s.eta;
+            hydro_set_kernel(&s, kernel_family.members[k]->name);
+            s.eta = eta;
+            hydro_cloud_geometry(&s, g + k % 7);
+            if (s.formulation == FORMULATION_LAGRANGIAN) s.pair_width = PAIR_WIDTH_MEAN;
+            add(run, dim, s);
+        }
+}
+
+static void subjects(struct check_run *run)
+{
+    const size_t geometries = hydro_cloud_geometries(), physics = hydro_cloud_physics();
+    for (int dim = 2; dim <= 3; dim++) {
+        for (size_t g = 0; g < geometries; g++) {
+            struct scheme s = hydro_cloud_scheme(dim);
+            hydro_cloud_geometry(&s, g);
+            hydro_cloud_physic(&s, g % physics);
+            add(run, dim, s);
+        }
+        for (size_t p = 0; p < physics; p += dim == 2 ? 1 : 5) {
+            struct scheme s = hydro_cloud_scheme(dim);
+            hydro_cloud_geometry(&s, p * 5 % (geometries / PAIR_WIDTHS)); /* width mean */
+            hydro_cloud_physic(&s, p);
+            add(run, dim, s);
+        }
+        add_kernels(run, dim);
+    }
+}
+
+static void all_subjects(struct check_run *run)
+{
+    for (size_t g = 0; g < hydro_cloud_geometries(); g++)
+        for (size_t p = 0; p < hydro_cloud_physics(); p++) {
+            struct scheme s = hydro_cloud_scheme(2);
+            hydro_cloud_geometry(&s, g);
+            hydro_cloud_physic(&s, p);
+            add(run, 2, s);
+        }
+}
+
+/* Largest |got - want| over the particles, relative to the largest |want|. */
+struct comparison {
+    double error, scale;
+};
+
+static void compare(struct comparison *c, double got, long double want)
+{
+    worst_keep(&c->error, (double)fabsl(got - want));
+    c->scale = fmax(c->scale, (double)fabsl(want));
+}
+
+static void report(struct check_run *run, const struct comparison *c, double bound, double floor,
+                   const char *quantity, const char *where)
+{
+    check_measure(run, c->scale > 0 ? c->error / c->scale : c->error, bound, floor, "%s, %s",
+                  quantity, where);
+}
+
+static void judge(struct check_run *run, const struct simulation *simulation,
+                  const struct oracle *oracle, const char *where)
+{
+    struct snapshot got;
+    struct rates rates;
+    simulation_snapshot(simulation, &got);
+    simulation_rates(simulation, &rates);
+    struct comparison h = {0}, rho = {0}, P = {0}, V = {0}, F = {0}, de = {0}, dalpha = {0};
+    for (size_t i = 0; i < got.n; i++) {
+        const struct oracle_particle *want = &oracle->particles[got.id[i]];
+        compare(&h, got.h[i], want->h);
+        compare(&rho, got.rho[i], want->rho);
+        compare(&P, got.P[i], want->P);
+        compare(&V, got.volume[i], want->V);
+        for (int a = 0; a < oracle->dim; a++) compare(&F, rates.force[a][i], want->F[a]);
+        compare(&de, rates.energy[i], want->de);
+        if (rates.alpha) compare(&dalpha, rates.alpha[i], want->dalpha);
+    }
+    if (got.n != oracle->n) h.error = (double)NAN;
+    /* in src the damping of close pairs is a series, good to 8e-7 of itself at its end */
+    const bool series = oracle->scheme.viscosity == VISCOSITY_RECONSTRUCTED ||
+                        oracle->scheme.viscosity == VISCOSITY_PROJECTED;
+    const double bound = series ? 1e-10 : 1e-12, floor = series ? 1e-12 : 2e-14;
+    report(run, &h, 1e-13, 2e-15, "smoothing length", where);
+    report(run, &rho, 1e-13, 2e-15, "density", where);
+    report(run, &P, 1e-13, 2e-15, "pressure", where);
+    report(run, &V, 1e-13, 2e-15, "volume", where);
+    report(run, &F, bound, floor, "force", where);
+    report(run, &de, bound, floor, "rate of energy", where);
+    if (oracle->scheme.viscosity == VISCOSITY_TIME_DEPENDENT)
+        report(run, &dalpha, 1e-12, 2e-14, "rate of alpha", where);
+    const double step = (double)oracle_time_step(oracle);
+    check_measure(run, fabs(rates.time_step / step - 1), 1e-13, 2e-15, "time step, %s", where);
+}
+
+static struct cloud_subject of_mutant(const struct cloud_subject *mutant);
+
+static void measure(struct check_run *run, const void *subject)
+{
+    const struct cloud_subject *given = subject;
+    const struct cloud_subject s = given->spoil ? of_mutant(given) : *given;
+    static struct hydro_cloud cloud;
+    hydro_cloud_sheared(&cloud, s.dim, side_of(s.dim));
+    struct scene scene = hydro_cloud_scene(&cloud, &s.scheme);
+    struct oracle oracle;
+    struct simulation *simulation = NULL;
+    struct error error = {0};
+    char where[CLOUD_TEXT];
+    hydro_cloud_describe(&s.scheme, s.dim, where);
+    enum status status = oracle_create(&oracle, &scene, &error);
+    if (!status) {
+        status = oracle_evaluate(&oracle, &error);
+        if (s.spoil) s.spoil(&scene);
+        if (!status) status = simulation_create(&scene, &simulation, &error);
+        if (!status) judge(run, simulation, &oracle, where);
+        simulation_destroy(simulation);
+        oracle_free(&oracle);
+    }
+    if (status) check_measure(run, 1, 0, 0, "%s: %s", where, error.message);
+}
+
+/* --- mutants ---------------------------------------------------------------------------------- */
+
+static void wrong_constant(struct scene *scene)
+{
+    scene->scheme.kernel.constant[scene->dim] *= 1 + 1e-9;
+}
+
+static void other_eta(struct scene *scene)
+{
+    scene->scheme.eta *= 1 + 1e-9;
+}
+
+static void loose_h(struct scene *scene)
+{
+    scene->scheme.h_tolerance = 1e-5;
+}
+
+static void corrected_for_ia(struct scene *scene)
+{
+    scene->scheme.gradient = GRADIENT_CORRECTED;
+}
+
+static void vanilla_for_lagrangian(struct scene *scene)
+{
+    scene->scheme.formulation = FORMULATION_VANILLA_ICE;
+}
+
+static void mass_for_number(struct scene *scene)
+{
+    scene->scheme.volume_element = VOLUME_MASS;
+}
+
+static void mu_for_signal(struct scene *scene)
+{
+    scene->scheme.viscosity_form = VISCOSITY_FORM_MU;
+}
+
+static void without_balsara(struct scene *scene)
+{
+    scene->scheme.balsara = BALSARA_OFF;
+}
+
+static void without_floor(struct scene *scene)
+{
+    scene->scheme.balsara_floor = 0;
+}
+
+static void less_noise(struct scene *scene)
+{
+    scene->scheme.noise *= 1 - 1e-7;
+}
+
+static void less_conductivity(struct scene *scene)
+{
+    scene->scheme.alpha_u *= 1 - 1e-9;
+}
+
+static void float_beta(struct scene *scene)
+{
+    scene->scheme.beta = (double)(float)scene->scheme.beta;
+}
+
+static void reconstructed_only(struct scene *scene)
+{
+    scene->scheme.viscosity = VISCOSITY_RECONSTRUCTED;
+}
+
+#define SPOIL(how, d, ...)                                                                         \
+    (&(const struct cloud_subject){.spoil = how, .dim = d, .scheme = {__VA_ARGS__}})
+static const struct check_mutant mutants[] = {
+    {"cloud_kernel_constant", "kernel's constant off by 1e-9",
+     SPOIL(wrong_constant, 2, .alpha_u = 0)},
+    {"cloud_eta", "h too large by 1e-9", SPOIL(other_eta, 3, .alpha_u = 0)},
+    {"cloud_loose_h", "h solved to 1e-5 only", SPOIL(loose_h, 2, .alpha_u = 0)},
+    {"cloud_gradient", "corrected where ia is asked for",
+     SPOIL(corrected_for_ia, 3, .gradient = GRADIENT_IA)},
+    {"cloud_formulation", "vanilla_ice where lagrangian is asked for",
+     SPOIL(vanilla_for_lagrangian, 3, .formulation = FORMULATION_LAGRANGIAN)},
+    {"cloud_element", "mass element where number is asked for",
+     SPOIL(mass_for_number, 2, .volume_element = VOLUME_NUMBER)},
+    {"cloud_form", "viscosity by mu where the signal form is asked for",
+     SPOIL(mu_for_signal, 2, .viscosity_form = VISCOSITY_FORM_SIGNAL)},
+    {"cloud_balsara", "no Balsara factor", SPOIL(without_balsara, 3, .balsara = BALSARA_ON)},
+    {"cloud_balsara_floor", "Balsara factor without its floor",
+     SPOIL(without_floor, 2, .balsara = BALSARA_ON)},
+    {"cloud_noise", "projected: nu off by 1e-7",
+     SPOIL(less_noise, 3, .viscosity = VISCOSITY_PROJECTED)},
+    {"cloud_projected", "reconstructed for projected",
+     SPOIL(reconstructed_only, 2, .viscosity = VISCOSITY_PROJECTED)},
+    {"cloud_conductivity", "alpha_u off by 1e-9", SPOIL(less_conductivity, 2, .alpha_u = 0.71)},
+    {"cloud_beta_float", "beta off in the seventh digit", SPOIL(float_beta, 3, .alpha_u = 0)},
+    {0},
+};
+
+static struct cloud_subject of_mutant(const struct cloud_subject *mutant)
+{
+    struct cloud_subject s = {mutant->spoil, mutant->dim, hydro_cloud_scheme(mutant->dim)};
+    s.scheme.gradient = mutant->scheme.gradient;
+    s.scheme.formulation = mutant->scheme.formulation;
+    s.scheme.volume_element = mutant->scheme.volume_element;
+    s.scheme.viscosity_form = mutant->scheme.viscosity_form;
+    s.scheme.balsara = mutant->scheme.balsara;
+    s.scheme.alpha_u = mutant->scheme.alpha_u;
+    if (mutant->scheme.viscosity) s.scheme.viscosity = mutant->scheme.viscosity;
+    return s;
+}
+
+#define PROPERTY "rho, h, P, dp/dt, de/dt, dalpha/dt, dt in 2D and 3D equal the oracle's"
+
+const struct check check_hydro_cloud_rates = {
+    .group = "clouds",
+    .name = "rates",
+    .property = PROPERTY,
+    .subjects = subjects,
+    .measure = measure,
+    .mutants = mutants,
+};
+
+const struct check check_hydro_cloud_rates_all = {
+    .group = "clouds",
+    .name = "rates_all",
+    .property = PROPERTY ", for every combination in 2D",
+    .slow = true,
+    .subjects = all_subjects,
+    .measure = measure,
+    .mutants = mutants,
+};

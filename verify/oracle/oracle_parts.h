@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Inside of the oracle: geometry and kernels, the state of each particle, the terms of each pair.
+ */
+#ifndef SPHPROOF_ORACLE_PARTS_H
+#define SPHPROOF_ORACLE_PARTS_H
+
+#include "oracle.h"
+
+/* In 1D h may be wider than half of the box: the images -1, 0, 1 about the nearest one count. */
+int oracle_images(const struct oracle *oracle);
+/* x = r_j - r_i of an image about the nearest one; returns its length. */
+long double oracle_separation(const struct oracle *oracle, const struct oracle_particle *i,
+                              const struct oracle_particle *j, int image, oracle_vector x);
+
+/* The same length of particles i and j, as found at the start of the evaluation. */
+long double oracle_distance(const struct oracle *oracle, size_t i, size_t j, int image);
+
+/* W, dW/dr and dW/dh at a distance r. */
+long double oracle_W(const struct oracle *oracle, long double r, long double h);
+long double oracle_dW_dr(const struct oracle *oracle, long double r, long double h);
+long double oracle_dW_dh(const struct oracle *oracle, long double r, long double h);
+
+long double oracle_dot(const oracle_vector a, const oracle_vector b);
+void oracle_product(const struct oracle_matrix *A, const oracle_vector x, oracle_vector Ax);
+
+/* What the density sum adds up. */
+long double oracle_Z(const struct oracle *oracle, const struct oracle_particle *a);
+
+/* The weight of a gradient by matrix, in the matrix and in the pair vector. */
+long double oracle_weight(const struct oracle *oracle, long double r, long double h);
+
+/* Moments, velocity gradients and what follows from them, for all particles. */
+void oracle_find_matrices(struct oracle *oracle);
+
+/* Adds what pair (a, b) does to a; x = r_b - r_a. */
+void oracle_add_pair(const struct oracle *oracle, struct oracle_particle *a,
+                     const struct oracle_particle *b, const oracle_vector x);
+
+#endif
