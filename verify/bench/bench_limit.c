@@ -12,6 +12,13 @@
 /* Places of the sums. */
 enum { PF = 0, P = 3, PX = 6, W = 15, WF = 16, WX = 17, USED = 20 };
 
+/* The kinds of sums that the operators need; a matrix where the pair vector is not the gradient. */
+#define DIMENSIONS(vector, tag, X, name)                                                           \
+    X(name, tag, vector, 1) X(name, tag, vector, 2) X(name, tag, vector, 3)
+#define KINDS(X, name) VECTOR_LIST(DIMENSIONS, X, name)
+
+#ifdef KERNEL_FILE /* one kernel's, see stamp.c.in */
+
 ALWAYS_INLINE void sum_up(const struct kernel *kernel, kernel_shape *w, kernel_shape *dw,
                           enum pair_vector vector, bool matrix, int dim,
                           const struct bench_neighbours *list, double *restrict sums)
@@ -57,12 +64,6 @@ ALWAYS_INLINE void sum_up(const struct kernel *kernel, kernel_shape *w, kernel_s
     {                                                                                              \
         sum_up(kernel, name##_w, name##_dw, vector, vector != VECTOR_GRADIENT, dim, list, sums);   \
     }
-/* The kinds of sums that the operators need; a matrix where the pair vector is not the gradient. */
-#define DIMENSIONS(vector, tag, X, name)                                                           \
-    X(name, tag, vector, 1) X(name, tag, vector, 2) X(name, tag, vector, 3)
-#define KINDS(X, name) VECTOR_LIST(DIMENSIONS, X, name)
-
-#ifdef KERNEL_FILE /* one kernel's, see stamp.c.in */
 
 #define ENTRY(name, tag, vector, dim) [vector][dim - 1] = name##_##tag##_##dim,
 #define KERNEL(name, ...)                                                                          \

@@ -20,6 +20,11 @@ VERIFIED = ["none", "sign_narrow", "abort_in_dh", "exit_42", "loop_first"]
 RIGHT = ["wendland_c8", "gaussian", "super_gaussian", "table", "table_12", "table_4000"]
 
 
+# a sanitizer's malloc shall fail as any other where memory ends
+for name in "ASAN_OPTIONS", "TSAN_OPTIONS":
+    os.environ[name] = os.environ.get(name, "") + ":allocator_may_return_null=1"
+
+
 def read_table():
     with open(TABLE) as f:
         lines = [line.strip("\n") for line in f if line.strip() and not line.startswith("#")]
