@@ -11,9 +11,10 @@
 #include "page_time.h"
 #include "value.h"
 
-enum { QUANTITIES = 3 };
+enum { QUANTITIES = 4, PRESSURE = 2, ENERGY = 3 };
 
-static const char *const quantities[QUANTITIES] = {"density", "velocity", "pressure"};
+static const char *const quantities[QUANTITIES] = {"density", "velocity", "pressure",
+                                                   "internal_energy"};
 
 /* Numbers of an array, malloced; *n is raised to its size if larger. NULL: no memory or no array.
  */
@@ -24,6 +25,15 @@ static double *numbers(const json_t *array, size_t *n)
     for (size_t i = 0; values && i < size; i++) values[i] = value_real(json_array_get(array, i));
     *n = values ? size : 0;
     return values;
+}
+
+/* Internal energy of n gases of density rho and pressure P, malloced; NULL: no memory, or not both.
+ */
+static double *energies(const double *rho, const double *P, size_t n, double gamma)
+{
+    double *u = rho && P && n ? malloc(n * sizeof *u) : NULL;
+    for (size_t i = 0; u && i < n; i++) u[i] = P[i] / ((gamma - 1) * rho[i]);
+    return u;
 }
 
 /* What the plots of one case are drawn from; owned arrays. */
@@ -38,31 +48,36 @@ struct curves {
 static void add_curve(struct curves *curves, const json_t *run)
 {
     const json_t *profile = json_object_get(run, "profile");
+    const double gamma = value_inner(run, "settings", "gamma");
     size_t k = curves->runs, n = 0, length;
     if (!profile || k == PAGE_SCHEMES) return;
     curves->label[k] = value_text(run, "label");
     curves->x[k] = numbers(json_object_get(profile, "x"), &n);
     curves->n[k] = n;
-    for (int q = 0; q < QUANTITIES; q++) {
+    for (int q = 0; q < ENERGY; q++) {
         char name[64];
         snprintf(name, sizeof name, "exact_%s", quantities[q]);
-        double *value = numbers(json_object_get(profile, quantities[q]), &length);
-        double *residual = numbers(json_object_get(profile, name), &n);
-        curves->value[k][q] = value;
-        curves->residual[k][q] = residual;
+        curves->value[k][q] = numbers(json_object_get(profile, quantities[q]), &length);
+        curves->residual[k][q] = numbers(json_object_get(profile, name), &n);
         if (length < curves->n[k]) curves->n[k] = length;
         if (n < curves->n[k]) curves->n[k] = n;
-        for (size_t i = 0; value && residual && i < n && i < length; i++)
-            residual[i] = value[i] - residual[i];
     }
+    double *const *value = curves->value[k], **residual = curves->residual[k];
+    curves->value[k][ENERGY] = energies(value[0], value[PRESSURE], curves->n[k], gamma);
+    residual[ENERGY] = energies(residual[0], residual[PRESSURE], curves->n[k], gamma);
+    for (int q = 0; q < QUANTITIES; q++)
+        for (size_t i = 0; value[q] && residual[q] && i < curves->n[k]; i++)
+            residual[q][i] = value[q][i] - residual[q][i];
     curves->runs++;
     const json_t *exact = json_object_get(profile, "exact");
     if (curves->exact_x || !exact) return;
     curves->exact_x = numbers(json_object_get(exact, "x"), &curves->exact_n);
-    for (int q = 0; q < QUANTITIES; q++) {
+    for (int q = 0; q < ENERGY; q++) {
         curves->exact[q] = numbers(json_object_get(exact, quantities[q]), &n);
         if (n < curves->exact_n) curves->exact_n = n;
     }
+    curves->exact[ENERGY] =
+        energies(curves->exact[0], curves->exact[PRESSURE], curves->exact_n, gamma);
 }
 
 static void free_curves(struct curves *curves)
@@ -81,7 +96,7 @@ static void free_curves(struct curves *curves)
 static void plot_profiles(struct page_writer *writer, const char *case_name,
                           const struct curves *curves)
 {
-    static const char *const labels[] = {"density", "velocity", "pressure"};
+    static const char *const labels[] = {"density", "velocity", "pressure", "internal energy"};
     struct plot_series series[QUANTITIES][PAGE_SCHEMES + 1];
     struct plot_panel panels[QUANTITIES] = {0};
     for (int q = 0; q < QUANTITIES; q++) {
@@ -110,7 +125,8 @@ static void plot_profiles(struct page_writer *writer, const char *case_name,
     char name[96];
     page_plot_name(name, sizeof name, case_name, "profiles");
     const struct plot plot = {.name = name,
-                              .title = "Profiles of density, velocity and pressure",
+                              .title =
+                                  "Profiles of density, velocity, pressure and internal energy",
                               .panels = panels,
                               .panel_count = QUANTITIES};
     page_plot(writer, &plot, "Each point is a particle; the line is the exact solution.");
@@ -119,7 +135,8 @@ static void plot_profiles(struct page_writer *writer, const char *case_name,
 static void plot_residuals(struct page_writer *writer, const char *case_name,
                            const struct curves *curves)
 {
-    static const char *const labels[] = {"Δ density", "Δ velocity", "Δ pressure"};
+    static const char *const labels[] = {"Δ density", "Δ velocity", "Δ pressure",
+                                         "Δ internal energy"};
     static const struct plot_mark zero = {0, true, NULL};
     struct plot_series series[QUANTITIES][PAGE_SCHEMES];
     struct plot_panel panels[QUANTITIES] = {0};
@@ -148,10 +165,19 @@ static void plot_residuals(struct page_writer *writer, const char *case_name,
     page_plot(writer, &plot, "The same particles minus the exact solution.");
 }
 
+static void percent_cell(struct buffer *to, double part)
+{
+    if (isfinite(part))
+        buffer_format(to, "<td class=\"n\">%.2g %%</td>", 100 * part);
+    else
+        buffer_add(to, "<td class=\"n\">—</td>");
+}
+
 static void run_table(struct buffer *to, const json_t *const *runs, size_t count)
 {
     html_table(to, "runs",
-               "scheme|#n|#L1 density|#L1 velocity|#L1 pressure|#mass|#momentum|#energy|#steps|"
+               "scheme|#n|#L1 density|#L1 velocity|#L1 pressure|#L1 internal "
+               "energy|#mass|#momentum|#energy|#steps|"
                "#CPU s|");
     for (size_t k = 0; k < count; k++) {
         const json_t *errors = json_object_get(runs[k], "errors");
@@ -170,6 +196,113 @@ static void run_table(struct buffer *to, const json_t *const *runs, size_t count
         buffer_add(to, "</td></tr>\n");
     }
     html_table_end(to);
+}
+
+/* ---- what a profile does that the exact solution does not ---- */
+
+static void range(const double *values, size_t n, double *low, double *high)
+{
+    *low = (double)INFINITY;
+    *high = -(double)INFINITY;
+    for (size_t i = 0; values && i < n; i++) {
+        *low = fmin(*low, values[i]);
+        *high = fmax(*high, values[i]);
+    }
+}
+
+/* How far the particles go beyond the exact solution's range, in parts of it. */
+static double overshoot(const struct curves *curves, size_t k, int q)
+{
+    double low, high, exact_low, exact_high;
+    range(curves->exact[q], curves->exact_n, &exact_low, &exact_high);
+    range(curves->value[k][q], curves->n[k], &low, &high);
+    return fmax(0, fmax(high - exact_high, exact_low - low)) / (exact_high - exact_low);
+}
+
+/* Where density jumps and pressure does not; NaN: nowhere. The exact curve has two points at a
+ * jump. */
+static double contact_of(const struct curves *curves)
+{
+    const double *rho = curves->exact[0], *P = curves->exact[PRESSURE];
+    double low, high, most = 0, at = (double)NAN;
+    range(rho, curves->exact_n, &low, &high);
+    for (size_t i = 0; rho && P && i + 1 < curves->exact_n; i++) {
+        const double jump = fabs(rho[i + 1] - rho[i]);
+        if (jump < 0.01 * (high - low) || jump <= most || fabs(P[i + 1] - P[i]) > 1e-6 * fabs(P[i]))
+            continue;
+        most = jump;
+        at = (curves->exact_x[i] + curves->exact_x[i + 1]) / 2;
+    }
+    return at;
+}
+
+/* The largest error of pressure within four widths of the contact, in parts of the pressure there.
+ */
+static double pressure_blip(const struct curves *curves, size_t k, double contact, double h)
+{
+    double most = (double)NAN;
+    const double *P = curves->value[k][PRESSURE], *error = curves->residual[k][PRESSURE];
+    for (size_t i = 0; P && error && i < curves->n[k]; i++)
+        if (fabs(curves->x[k][i] - contact) <= 4 * h)
+            most = fmax(isnan(most) ? 0 : most, fabs(error[i] / (P[i] - error[i])));
+    return most;
+}
+
+static void shape_table(struct buffer *to, const struct curves *curves, const json_t *const *runs)
+{
+    const double contact = contact_of(curves);
+    html_table(to, "shape",
+               "scheme|#density|#velocity|#pressure|#internal energy|#pressure at the contact");
+    for (size_t k = 0; k < curves->runs; k++) {
+        buffer_add(to, "<tr>");
+        html_cell(to, curves->label[k]);
+        for (int q = 0; q < QUANTITIES; q++) percent_cell(to, overshoot(curves, k, q));
+        percent_cell(to, pressure_blip(curves, k, contact, value_member(runs[k], "h")));
+        buffer_add(to, "</tr>\n");
+    }
+    html_table_end(to);
+    buffer_add(to, "<p class=\"note\">How far particles go beyond the range of the exact solution, "
+                   "in parts of that range; and the largest error of pressure within 4 h of the "
+                   "contact, where pressure should not notice that density jumps.</p>\n");
+}
+
+/* ---- one case ---- */
+
+static bool is_well(const json_t *const *runs, size_t run_count, const json_t *const *studies,
+                    size_t study_count)
+{
+    bool well = true;
+    for (size_t i = 0; i < run_count; i++)
+        well = well && !strcmp(value_text(runs[i], "status"), "ok");
+    for (size_t i = 0; i < study_count; i++) {
+        const char *status = value_text(studies[i], "status");
+        well = well && !*value_text(studies[i], "suspicion") && strcmp(status, "fail") != 0 &&
+               strcmp(status, "broke_down") != 0;
+    }
+    return well;
+}
+
+/* What is seen of a case that is folded. */
+static void case_head(struct buffer *to, const char *name, const json_t *title,
+                      const json_t *const *studies, size_t study_count, bool well)
+{
+    buffer_format(to, "<details class=\"case\"%s><summary><h3><code>",
+                  well ? "" : " open=\"open\"");
+    buffer_escape(to, name);
+    buffer_add(to, "</code> <span>");
+    buffer_escape(to, title ? json_string_value(title) : "");
+    buffer_add(to, "</span></h3>");
+    html_status(to, well ? "ok" : "fail");
+    for (size_t k = 0; k < study_count; k++) {
+        const json_t *order = page_study_order(studies[k], "density", "l1");
+        buffer_add(to, k ? ", " : " <span class=\"note\">order of L1(density): ");
+        buffer_escape(to, value_text(studies[k], "label"));
+        buffer_format(to, " %.2f ± %.2f", value_member(order, "order"),
+                      (value_member(order, "high") - value_member(order, "low")) / 2);
+    }
+    /* the link to a case ends within it, which opens it */
+    buffer_format(to, "%s</summary>\n<div class=\"figures\" id=\"case-%s\">\n",
+                  study_count ? "</span>" : "", name);
 }
 
 /* One case: everything that the results have on it. */
@@ -191,11 +324,8 @@ static void one_case(struct page_writer *writer, const json_t *results, const ch
         if (strcmp(value_text(entry, "case"), name) || study_count == PAGE_SCHEMES) continue;
         studies[study_count++] = entry;
     }
-    buffer_format(to, "<h3 id=\"case-%s\"><code>", name);
-    buffer_escape(to, name);
-    buffer_add(to, "</code> <span>");
-    buffer_escape(to, title ? json_string_value(title) : "");
-    buffer_add(to, "</span></h3>\n<div class=\"figures\">\n");
+    case_head(to, name, title, studies, study_count,
+              is_well(runs, run_count, studies, study_count));
     if (curves.runs) plot_profiles(writer, name, &curves);
     if (curves.runs) plot_residuals(writer, name, &curves);
     buffer_add(to, "</div>\n");
@@ -204,6 +334,10 @@ static void one_case(struct page_writer *writer, const json_t *results, const ch
         buffer_add(to, "<h4>Errors, conservation and cost of the runs above</h4>\n");
         run_table(to, runs, run_count);
     }
+    if (curves.runs && curves.runs == run_count) {
+        buffer_add(to, "<h4>Overshoots</h4>\n");
+        shape_table(to, &curves, runs);
+    }
     buffer_add(to, "<div class=\"figures\">\n");
     page_time(writer, name, runs, run_count);
     buffer_add(to, "<div>");
@@ -211,7 +345,7 @@ static void one_case(struct page_writer *writer, const json_t *results, const ch
         html_command(to, value_text(runs[i], "label"), value_text(runs[i], "reproduce"));
     for (i = 0; i < study_count; i++)
         html_command(to, "convergence", value_text(studies[i], "reproduce"));
-    buffer_add(to, "</div></div>\n");
+    buffer_add(to, "</div></div></details>\n");
     free_curves(&curves);
 }
 

@@ -162,11 +162,14 @@ void page_detection(struct page_writer *writer, const json_t *verify)
     }
     json_array_foreach(mutants, i, entry) caught +=
         json_is_true(json_object_get(entry, "detected"));
-    buffer_format(to,
-                  "<p>A check is worth what it rejects. %zu deliberate faults were put before the "
-                  "checks, %zu were caught.</p>\n<details%s><summary>Every fault, and the figure "
-                  "that gave it away</summary>\n",
-                  n, caught, caught < n ? " open=\"open\"" : "");
+    buffer_format(
+        to,
+        "<p>A check is worth what it rejects. %.0f deliberate faults, each put before "
+        "every check that must notice it: %zu trials, %zu caught; %.0f of the faults were "
+        "caught in all of theirs.</p>\n<details%s><summary>Every fault, and the figure "
+        "that gave it away</summary>\n",
+        value_inner(verify, "summary", "mutants"), n, caught,
+        value_inner(verify, "summary", "detected"), caught < n ? " open=\"open\"" : "");
     html_table(to, "mutants", "fault|check|#value|#bound|caught");
     for (int round = 0; round < 2; round++) { /* those that slipped through come first */
         json_array_foreach(mutants, i, entry)

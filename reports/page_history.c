@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "html.h"
 #include "page_part.h"
@@ -151,12 +152,41 @@ static const json_t *first_worse(const json_t *figures)
     return NULL;
 }
 
+/* Seconds since 1970 of "2026-01-31T12:00:00Z"; NaN: none. */
+static double seconds_of(const char *date)
+{
+    struct tm tm = {0};
+    if (sscanf(date, "%d-%d-%dT%d:%d:%d", &tm.tm_year, &tm.tm_mon, &tm.tm_mday, &tm.tm_hour,
+               &tm.tm_min, &tm.tm_sec) != 6)
+        return (double)NAN;
+    tm.tm_year -= 1900;
+    tm.tm_mon -= 1;
+    return (double)timegm(&tm);
+}
+
+/* "24 minutes before". */
+static void how_long(struct buffer *to, const json_t *since, const json_t *results)
+{
+    static const struct {
+        double seconds;
+        const char *name;
+    } units[] = {{86400, "day"}, {3600, "hour"}, {60, "minute"}, {1, "second"}};
+    const double passed =
+        seconds_of(value_text(results, "date")) - seconds_of(value_text(since, "date"));
+    size_t u = 0;
+    if (!(passed >= 0)) return;
+    while (u < 3 && passed < 2 * units[u].seconds) u++;
+    const double count = floor(passed / units[u].seconds);
+    buffer_format(to, ", %.0f %s%s before", count, units[u].name, count == 1 ? "" : "s");
+}
+
 void page_since(struct buffer *to, const json_t *results)
 {
     const json_t *since = json_object_get(json_object_get(results, "history"), "since");
     if (!json_is_object(since)) return;
-    buffer_add(to, "<p class=\"facts\"><a href=\"#history\">Since last night</a> (git ");
+    buffer_add(to, "<p class=\"facts\"><a href=\"#history\">Since the last report</a> (git ");
     revision(to, value_text(since, "git"));
+    how_long(to, since, results);
     buffer_add(to, "): ");
     since_words(to, since);
     const json_t *worst = first_worse(json_object_get(since, "figures"));
@@ -174,10 +204,10 @@ void page_since(struct buffer *to, const json_t *results)
 
 static void since_section(struct buffer *to, const json_t *since)
 {
-    static const char *const verdicts[] = {"worse", "better", "incomparable"};
+    static const char *const verdicts[] = {"worse", "incomparable", "better"};
     const json_t *figures = json_object_get(since, "figures");
     size_t rows = 0;
-    buffer_add(to, "<h3>Since last night</h3><p>Against ");
+    buffer_add(to, "<h3>Since the last report</h3><p>Against ");
     buffer_escape(to, value_text(since, "date"));
     buffer_add(to, ", git ");
     revision(to, value_text(since, "git"));
@@ -185,7 +215,7 @@ static void since_section(struct buffer *to, const json_t *since)
     since_words(to, since);
     buffer_add(to, ".</p>\n");
     if (!json_array_size(figures)) return;
-    html_table(to, "since", "|figure|#last night|#now|#change");
+    html_table(to, "since", "|figure|#before|#now|#change");
     for (size_t v = 0; v < 3; v++) since_rows(to, figures, verdicts[v], &rows);
     html_table_end(to);
     if (rows == SHOWN) buffer_add(to, "<p>All of them are in results.json.</p>");

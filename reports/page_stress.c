@@ -177,6 +177,9 @@ static void cell(struct buffer *to, const json_t *entry)
     buffer_add(to, *value_text(entry, "reason") ? ": " : "");
     buffer_escape(to, value_text(entry, "command"));
     buffer_add(to, "\">");
+    /* not by its colour alone */
+    if (!strcmp(outcome, "inaccurate")) buffer_add(to, "≉ ");
+    if (!strcmp(outcome, "wrong")) buffer_add(to, "≠ ");
     const bool measured = is_number(entry, "measured"), predicted = is_number(entry, "predicted");
     if (measured) html_number(to, value_member(entry, "measured"));
     if (measured && predicted) buffer_add(to, " <span>of ");
@@ -281,7 +284,7 @@ void page_stress(struct page_writer *writer, const json_t *stress)
                "<p>A number is the L1 error of density over its mean (<code>quiet</code>: the "
                "drift of energy; <code>limits</code>, <code>steps</code>: measured of "
                "predicted); a colour is the outcome: <span class=\"map\"><span class=\"ok\"> ok "
-               "</span> <span class=\"inaccurate\"> inaccurate </span> <span "
+               "</span> <span class=\"inaccurate\"> ≉ inaccurate </span> <span "
                "class=\"broke_down\"> broke down </span></span>. A pointer resting on a cell shows "
                "its reason and its "
                "command.</p>\n");

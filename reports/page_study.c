@@ -10,13 +10,21 @@
 #include "page_budget.h"
 #include "value.h"
 
-enum { LEVELS = 64 };
+enum { LEVELS = 64, PLOTTED = 3 };
+
+static const char *const plotted[PLOTTED] = {"density", "velocity", "pressure"};
+
+/* L1 of one quantity: measured, least-squares fit, and what the 95 % interval of its order allows,
+ * about the middle of the ladder. */
+struct fitted {
+    double error[LEVELS], fit[LEVELS], low[LEVELS], high[LEVELS];
+};
 
 struct study {
     const json_t *document;
     size_t levels;
-    double n[LEVELS], error[LEVELS], fit[LEVELS];
-    double order;
+    double n[LEVELS];
+    struct fitted of[PLOTTED];
 };
 
 const json_t *page_study_order(const json_t *study, const char *field, const char *norm)
@@ -31,77 +39,122 @@ const json_t *page_study_order(const json_t *study, const char *field, const cha
     return NULL;
 }
 
+static void fit(struct study *study, int quantity)
+{
+    struct fitted *of = &study->of[quantity];
+    const json_t *order = page_study_order(study->document, plotted[quantity], "l1");
+    const double count = (double)study->levels, slope = value_member(order, "order");
+    const double half = (value_member(order, "high") - value_member(order, "low")) / 2;
+    double sum_n = 0, sum_error = 0;
+    for (size_t i = 0; i < study->levels; i++) {
+        sum_n += log(study->n[i]);
+        sum_error += log(of->error[i]);
+    }
+    for (size_t i = 0; i < study->levels; i++) {
+        const double from_middle = log(study->n[i]) - sum_n / count;
+        of->fit[i] = exp(sum_error / count - slope * from_middle);
+        of->low[i] = of->fit[i] * exp(-half * fabs(from_middle));
+        of->high[i] = of->fit[i] * exp(half * fabs(from_middle));
+    }
+}
+
 static void read_study(struct study *study, const json_t *document)
 {
     size_t i;
     const json_t *level;
     *study = (struct study){.document = document};
-    double sum_n = 0, sum_error = 0;
     json_array_foreach(json_object_get(document, "levels"), i, level)
     {
+        const json_t *errors = json_object_get(level, "errors");
         if (study->levels == LEVELS) break;
-        double n = value_member(level, "n");
-        double error = value_inner(json_object_get(level, "errors"), "density", "l1");
-        study->n[study->levels] = n;
-        study->error[study->levels++] = error;
-        sum_n += log(n);
-        sum_error += log(error);
+        for (int q = 0; q < PLOTTED; q++)
+            study->of[q].error[study->levels] = value_inner(errors, plotted[q], "l1");
+        study->n[study->levels++] = value_member(level, "n");
     }
-    study->order = value_member(page_study_order(document, "density", "l1"), "order");
-    double count = (double)study->levels;
-    for (i = 0; i < study->levels; i++)
-        study->fit[i] = exp(sum_error / count - study->order * (log(study->n[i]) - sum_n / count));
+    for (int q = 0; q < PLOTTED; q++) fit(study, q);
+}
+
+/* The series of one panel: bands first, so that they lie below. */
+static size_t add_series(struct plot_series *series, const struct study *studies, size_t count,
+                         int quantity)
+{
+    size_t used = 0;
+    for (int round = 0; round < 2; round++)
+        for (size_t k = 0; k < count; k++) {
+            const struct study *study = &studies[k];
+            const struct fitted *of = &study->of[quantity];
+            struct plot_series one = {
+                .n = study->levels, .x = study->n, .color = (int)k + 1, .y = of->error};
+            if (round == 0) {
+                one.kind = PLOT_BAND;
+                one.low = of->low;
+                one.high = of->high;
+                series[used++] = one;
+                continue;
+            }
+            one.kind = PLOT_POINTS;
+            one.label = value_text(study->document, "label");
+            series[used++] = one;
+            one.kind = PLOT_LINES;
+            one.label = NULL;
+            one.y = of->fit;
+            series[used++] = one;
+        }
+    return used;
+}
+
+/* Reference slopes, below the curves; the second only where it does not squash them. */
+static size_t add_slopes(struct plot_slope slopes[2], const struct study *studies, size_t count,
+                         const struct study *ladder, int quantity)
+{
+    double lowest = (double)INFINITY, at = (double)INFINITY;
+    for (size_t k = 0; k < count; k++) {
+        const struct study *study = &studies[k];
+        if (study->levels) at = fmin(at, study->of[quantity].error[0]);
+        for (size_t i = 0; i < study->levels; i++)
+            lowest = fmin(lowest, study->of[quantity].error[i]);
+    }
+    const double first = ladder->n[0], last = ladder->n[ladder->levels - 1];
+    if (!isfinite(at) || !(at > 0)) return 0;
+    slopes[0] = (struct plot_slope){first, last, 0.7 * at, -1, "order 1"};
+    slopes[1] = (struct plot_slope){first, last, 0.7 * at, -2, "order 2"};
+    return at * pow(last / first, -1.5) > lowest ? 2 : 1;
 }
 
 static void plot_convergence(struct page_writer *writer, const char *case_name,
                              const struct study *studies, size_t count)
 {
-    struct plot_series series[2 * PAGE_SCHEMES];
-    size_t used = 0, widest = 0;
-    double lowest = (double)INFINITY, slopes_at = (double)INFINITY;
-    for (size_t k = 0; k < count; k++) {
-        const struct study *study = &studies[k];
-        series[used++] = (struct plot_series){.label = value_text(study->document, "label"),
-                                              .kind = PLOT_POINTS,
-                                              .n = study->levels,
-                                              .x = study->n,
-                                              .y = study->error,
-                                              .color = (int)k + 1};
-        series[used++] = (struct plot_series){.kind = PLOT_LINES,
-                                              .n = study->levels,
-                                              .x = study->n,
-                                              .y = study->fit,
-                                              .color = (int)k + 1};
-        if (study->levels > studies[widest].levels) widest = k;
-        if (study->levels && study->error[0] < slopes_at) slopes_at = study->error[0];
-        for (size_t i = 0; i < study->levels; i++) lowest = fmin(lowest, study->error[i]);
+    struct plot_series series[PLOTTED][3 * PAGE_SCHEMES];
+    struct plot_slope slopes[PLOTTED][2];
+    struct plot_panel panels[PLOTTED];
+    char labels[PLOTTED][32], name[96];
+    const struct study *ladder = studies;
+    for (size_t k = 1; k < count; k++)
+        if (studies[k].levels > ladder->levels) ladder = &studies[k];
+    if (!ladder->levels) return;
+    for (int q = 0; q < PLOTTED; q++) {
+        snprintf(labels[q], sizeof labels[q], "L1 of %s", plotted[q]);
+        panels[q] = (struct plot_panel){.x_label = "number of particles n",
+                                        .y_label = labels[q],
+                                        .x_log = true,
+                                        .y_log = true,
+                                        .x_ticks = ladder->n,
+                                        .x_tick_count = ladder->levels,
+                                        .key = q ? PLOT_KEY_NONE : PLOT_KEY_TOP,
+                                        .series = series[q],
+                                        .slopes = slopes[q]};
+        panels[q].series_count = add_series(series[q], studies, count, q);
+        panels[q].slope_count = add_slopes(slopes[q], studies, count, ladder, q);
     }
-    const struct study *ladder = &studies[widest];
-    if (!ladder->levels || !isfinite(slopes_at)) return;
-    double first = ladder->n[0], last = ladder->n[ladder->levels - 1];
-    /* Reference slopes start below the curves; the second only where it does not squash them. */
-    struct plot_slope slopes[2] = {{first, last, 0.7 * slopes_at, -1, "order 1"},
-                                   {first, last, 0.7 * slopes_at, -2, "order 2"}};
-    size_t slope_count = slopes_at * pow(last / first, -1.5) > lowest ? 2 : 1;
-    const struct plot_panel panel = {.x_label = "number of particles n",
-                                     .y_label = "L1 error of density",
-                                     .x_log = true,
-                                     .y_log = true,
-                                     .x_ticks = ladder->n,
-                                     .x_tick_count = ladder->levels,
-                                     .key = PLOT_KEY_END,
-                                     .series = series,
-                                     .series_count = used,
-                                     .slopes = slopes,
-                                     .slope_count = slope_count};
-    char name[96];
     page_plot_name(name, sizeof name, case_name, "convergence");
     const struct plot plot = {.name = name,
-                              .title = "Convergence of the density error",
-                              .panels = &panel,
-                              .panel_count = 1};
+                              .title =
+                                  "Convergence of the errors of density, velocity and pressure",
+                              .panels = panels,
+                              .panel_count = PLOTTED};
     page_plot(writer, &plot,
-              "Points are measured, lines are least-squares fits, dashes have the named order.");
+              "Points are measured, lines are least-squares fits; the shade is the 95 % interval "
+              "of the order, dashes have the named order.");
 }
 
 static void error_table(struct buffer *to, const struct study *studies, size_t count)
@@ -121,7 +174,7 @@ static void error_table(struct buffer *to, const struct study *studies, size_t c
     for (size_t i = 0; i < longest->levels; i++) {
         buffer_format(to, "<tr><td class=\"n\">%.0f</td>", longest->n[i]);
         for (size_t k = 0; k < count; k++)
-            html_cell_number(to, i < studies[k].levels ? studies[k].error[i] : (double)NAN);
+            html_cell_number(to, i < studies[k].levels ? studies[k].of[0].error[i] : (double)NAN);
         buffer_add(to, "</tr>\n");
     }
     buffer_add(to, "<tr class=\"total\"><th>order</th>");
@@ -212,6 +265,21 @@ static void percent_cell(struct buffer *to, double part)
     buffer_add(to, isfinite(part) ? " %</td>" : "—</td>");
 }
 
+/* The class of a scalar is of its differences from level to level, which may grow where its error
+ * falls: then that is said. */
+static const char *class_words(const json_t *entry)
+{
+    const char *class = value_text(entry, "class");
+    const json_t *values = json_object_get(entry, "values");
+    const double exact = value_member(entry, "exact");
+    bool nearer = json_array_size(values) > 1;
+    for (size_t i = 1; i < json_array_size(values); i++)
+        nearer = nearer && fabs(value_real(json_array_get(values, i)) - exact) <
+                               fabs(value_real(json_array_get(values, i - 1)) - exact);
+    if (strcmp(class, "diverging") != 0) return class;
+    return nearer ? "its error falls, by irregular steps" : "its steps do not get smaller";
+}
+
 /* Scalars of the final state: what they tend to, and how sure that is. */
 static void functional_table(struct buffer *to, const struct study *studies, size_t count)
 {
@@ -240,7 +308,7 @@ static void functional_table(struct buffer *to, const struct study *studies, siz
             html_cell_number(to, value_member(entry, "order"));
             percent_cell(to, value_member(entry, "gci"));
             percent_cell(to, value_member(entry, "gci_coarse"));
-            html_cell(to, value_text(entry, "class"));
+            html_cell(to, class_words(entry));
             buffer_add(to, "</tr>\n");
         }
     html_table_end(to);

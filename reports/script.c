@@ -372,7 +372,7 @@ void script_make(struct buffer *to, const struct plot *plot, enum script_termina
         quote(to, output);
         buffer_add(to, "\n");
     }
-    buffer_add(to, "set encoding utf8\nset datafile missing 'NaN'\n");
+    buffer_add(to, "set encoding utf8\n");
     if (!data) {
         data = "$data";
         buffer_add(to, "$data << END_OF_DATA\n");

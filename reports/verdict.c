@@ -198,6 +198,19 @@ static void judge_stress(struct tally *tally, const json_t *failure)
     fail(tally, "stress", value_text(failure, "name"), &detail, value_text(failure, "command"));
 }
 
+/* What survived in the report before and breaks down now. That more breaks down than ever is seen
+ * in no bound. */
+static void judge_since(struct tally *tally, const json_t *figure)
+{
+    if (strcmp(value_text(figure, "new"), "broke_down") ||
+        strcmp(value_text(figure, "verdict"), "worse"))
+        return;
+    struct buffer detail = {0};
+    buffer_format(&detail, "it was '%s' in the report before", value_text(figure, "old"));
+    buffer_add(&detail, ", and breaks down now");
+    fail(tally, "stress", value_text(figure, "path"), &detail, "sphproof stress");
+}
+
 /* What the world did to the program; a fault that could not be brought about does not count. */
 static void judge_fault(struct tally *tally, const json_t *fault)
 {
@@ -256,6 +269,9 @@ json_t *verdict_make(const json_t *results)
         judge_stress(&tally, entry);
     }
     judge_faults(&tally, json_object_get(results, "faults"));
+
+    const json_t *since = json_object_get(json_object_get(results, "history"), "since");
+    json_array_foreach(json_object_get(since, "figures"), i, entry) judge_since(&tally, entry);
 
     struct buffer words = {0};
     bool checked = tally.figures_passed + tally.gates_passed + tally.runs > 0;

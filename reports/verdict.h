@@ -18,7 +18,8 @@
  *   faults          what verify/test/faults.py wrote: "date", "git", "faults": [{"fault", "part",
  *                   "exit", "status": "pass", "fail" or "skip", "detail", "message",
  *                   "command"}]
- *   history         what verify/report/history.h tells: nights, since, trends, changes
+ *   history         what verify/report/history.h tells: nights, since, trends, changes; what
+ *                   survived before and breaks down since is a failure
  *   verdict         what verdict_make returned */
 #ifndef SPHPROOF_VERDICT_H
 #define SPHPROOF_VERDICT_H

@@ -324,7 +324,7 @@ static json_t *point_json(const struct precision *precision, const struct precis
     json_t *item = json_pack(
         "{s:s, s:o, s:I, s:o, s:o, s:o, s:o, s:o, s:i, s:o, s:o, s:b}", "scheme", scheme->label,
         "settings", settings_json(&point->settings), "n", (json_int_t)point->n, "error",
-        result_number(point->error), "relative_error", result_number(point->relative), "wall_s",
+        result_number(point->error), "error_over_signal", result_number(point->relative), "wall_s",
         result_number(point->time.wall_s), "cpu_s", result_number(point->time.cpu_s), "spread",
         result_number(point->time.spread), "samples", point->time.samples, "pair_interactions",
         result_number(point->pairs), "figure_of_merit",

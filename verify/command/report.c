@@ -17,6 +17,7 @@
 #include "result.h"
 #include "summary.h"
 #include "text.h"
+#include "verdict.h"
 #include "value.h"
 
 enum { PATH_LENGTH = 4096, JOBS_MAX = 1024 };

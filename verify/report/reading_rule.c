@@ -70,7 +70,7 @@ static const struct reading_rule rules[] = {
     {"functionals", "reference", OUT},
     {"functionals", "*", 0, READING_EXACT, 0.05, 1e-13},
     {"functionals_exact", "*", 0, READING_NEUTRAL, 1e-9, 1e-13},
-    {"", "relative_error", 0, READING_PART, 1e-3, 1e-13}, /* the same as error */
+    {"", "error_over_signal", 0, READING_PART, 1e-3, 1e-13}, /* the same as error */
     {"", "error", 0, READING_ERROR, 1e-3, 1e-13},
     {"", "error_*", 0, READING_ERROR, 1e-2, 1e-12},
     {"", "*momentum_defect", 0, READING_ERROR, 0.1, 1e-12},

@@ -143,6 +143,131 @@ static void bad_page(void **state)
     judge_page(unsound(), contents, sizeof contents / sizeof *contents);
 }
 
+static char *page_of(json_t *results)
+{
+    struct page page;
+    assert_true(page_make(&page, results));
+    char *html = strdup(page.html);
+    page_free(&page);
+    json_decref(results);
+    return html;
+}
+
+/* A case is folded, unless something is wrong with it. */
+static void folded_cases(void **state)
+{
+    (void)state;
+    json_t *results = sound();
+    char *good = page_of(results);
+    assert_non_null(strstr(good, "<details class=\"case\"><summary>"));
+    assert_non_null(strstr(good, "ia 1.00 ± 0.10"));
+    results = sound();
+    json_t *run = json_array_get(json_object_get(results, "runs"), 0);
+    json_object_set_new(run, "status", json_string("broke_down"));
+    char *bad = page_of(judged(results));
+    assert_non_null(strstr(bad, "<details class=\"case\" open=\"open\"><summary>"));
+    free(good);
+    free(bad);
+}
+
+/* One profile: density from 2 to 1 at x = 0, where pressure is 4 and one particle has 5. */
+static void overshoots(void **state)
+{
+    (void)state;
+    json_t *results = sound();
+    json_t *run = json_array_get(json_object_get(results, "runs"), 0);
+    json_object_set_new(run, "settings", json_pack("{s:f}", "gamma", 1.5));
+    json_object_set_new(run, "h", json_real(0.1));
+    json_object_set_new(
+        run, "profile",
+        json_pack("{s:[f,f,f], s:[f,f,f], s:[f,f,f], s:[f,f,f], s:[f,f,f], s:[f,f,f], s:[f,f,f],"
+                  " s:{s:[f,f,f,f], s:[f,f,f,f], s:[f,f,f,f], s:[f,f,f,f]}}",
+                  "x", -0.9, -0.1, 0.9, "density", 2.25, 2., 1., "velocity", 0., 0., 0., "pressure",
+                  9., 5., 4., "exact_density", 2., 2., 1., "exact_velocity", 0., 0., 0.,
+                  "exact_pressure", 4., 4., 4., "exact", "x", -1., 0., 0., 1., "density", 2., 2.,
+                  1., 1., "velocity", 0., 0., 0., 0., "pressure", 4., 4., 4., 4.));
+    char *html = page_of(results);
+    const char *table = strstr(html, "Overshoots");
+    assert_non_null(table);
+    /* 0.25 of 1; the particle at the contact is off by 1 of 4, the one with 9 is far from it */
+    assert_non_null(strstr(table, "<td class=\"n\">25 %</td><td class=\"n\">—</td>"));
+    assert_non_null(strstr(table, "<td class=\"n\">25 %</td></tr>"));
+    free(html);
+}
+
+/* What was reported a while ago was not last night. */
+static void since(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *before, *words;
+    } pairs[] = {{"2001-02-03T03:36:00Z", "24 minutes before"},
+                 {"2001-02-03T03:59:59Z", "1 second before"},
+                 {"2001-02-02T04:00:00Z", "24 hours before"},
+                 {"2001-01-31T04:00:00Z", "3 days before"}};
+    for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
+        json_t *results = sound();
+        json_object_set_new(results, "date", json_string("2001-02-03T04:00:00Z"));
+        json_object_set_new(results, "history",
+                            json_pack("{s:{s:s, s:s, s:[], s:i}, s:[]}", "since", "date",
+                                      pairs[i].before, "git", "def", "figures", "same", 3,
+                                      "nights"));
+        char *html = page_of(results);
+        if (!strstr(html, pairs[i].words)) fail_msg("the page lacks: %s", pairs[i].words);
+        assert_null(strstr(html, "ince last night"));
+        free(html);
+    }
+}
+
+/* What survived in the report before and breaks down now is a failure. */
+static void broke_since(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *old, *new, *verdict;
+        size_t failures;
+    } pairs[] = {{"ok", "broke_down", "worse", 1},
+                 {"broke_down", "ok", "better", 0},
+                 {"ok", "inaccurate", "worse", 0}};
+    for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
+        json_t *results = sound();
+        json_object_set_new(results, "history",
+                            json_pack("{s:{s:s, s:[{s:s, s:s, s:s, s:s}]}}", "since", "date", "x",
+                                      "figures", "path", "stress.cells[noh, r, c].outcome", "old",
+                                      pairs[i].old, "new", pairs[i].new, "verdict",
+                                      pairs[i].verdict));
+        judged(results);
+        const json_t *failures = json_object_get(json_object_get(results, "verdict"), "failures");
+        assert_int_equal(json_array_size(failures), pairs[i].failures);
+        json_decref(results);
+    }
+}
+
+/* Not by a colour alone; a scalar whose error falls does not diverge; one count of faults. */
+static void words(void **state)
+{
+    (void)state;
+    json_t *results = sound(), *scalar, *checks = json_object_get(results, "verify");
+    scalar = json_array_get(
+        json_object_get(json_array_get(json_object_get(results, "studies"), 0), "functionals"), 0);
+    json_object_set_new(scalar, "class", json_string("diverging"));
+    json_object_set_new(scalar, "exact", json_real(0.95));
+    json_array_append(json_object_get(checks, "mutants"),
+                      json_array_get(json_object_get(checks, "mutants"), 0));
+    json_object_set_new(results, "stress",
+                        json_pack("{s:[{s:s, s:s, s:s, s:s, s:f}], s:[{s:s, s:s, s:[s], s:[s]}]}",
+                                  "cells", "group", "noh", "row", "r", "column", "c", "outcome",
+                                  "inaccurate", "measured", 0.5, "groups", "name", "noh", "title",
+                                  "t", "rows", "r", "columns", "c"));
+    char *html = page_of(results);
+    assert_non_null(strstr(html, "its error falls, by irregular steps"));
+    assert_null(strstr(html, ">diverging<"));
+    assert_non_null(strstr(html, "1 deliberate faults"));
+    assert_non_null(strstr(html, "2 trials, 2 caught"));
+    assert_non_null(strstr(html, "≉ 0.5"));
+    free(html);
+}
+
 /* Results with nothing in them still make a page, and no verdict out of nothing. */
 static void empty_page(void **state)
 {
@@ -283,10 +408,19 @@ static void unreadable(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(good_page),   cmocka_unit_test(bad_page),
-        cmocka_unit_test(empty_page),  cmocka_unit_test(page_without_gnuplot),
-        cmocka_unit_test(junit),       cmocka_unit_test(summary),
-        cmocka_unit_test(cause_first), cmocka_unit_test(unreadable),
+        cmocka_unit_test(good_page),
+        cmocka_unit_test(bad_page),
+        cmocka_unit_test(folded_cases),
+        cmocka_unit_test(overshoots),
+        cmocka_unit_test(since),
+        cmocka_unit_test(words),
+        cmocka_unit_test(broke_since),
+        cmocka_unit_test(empty_page),
+        cmocka_unit_test(page_without_gnuplot),
+        cmocka_unit_test(junit),
+        cmocka_unit_test(summary),
+        cmocka_unit_test(cause_first),
+        cmocka_unit_test(unreadable),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

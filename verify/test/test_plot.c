@@ -213,13 +213,34 @@ static void markup(void **state)
     assert_non_null(markup_network("<img src=\"https://example.org/\"/>"));
 }
 
+/* Where a value is missing the line ends, and begins again after it. */
+static void gap(void **state)
+{
+    (void)state;
+    static const double at[] = {1, 2, 3, 4, 5}, gapped[] = {1, 2, NAN, 4, 5};
+    const struct plot_series line = {.kind = PLOT_LINES, .n = 5, .x = at, .y = gapped};
+    const struct plot_panel panel = {
+        .x_label = "x", .y_label = "y", .series = &line, .series_count = 1};
+    const struct plot plot = {.name = "gap", .title = "gap", .panels = &panel, .panel_count = 1};
+    char *svg, message[256];
+    if (!have_gnuplot()) skip();
+    assert_int_equal(plot_svg(&plot, &svg, message, sizeof message), PLOT_OK);
+    const char *end = strstr(svg, "class=\"plot_1\""), *path = end;
+    assert_non_null(end);
+    while (path > svg && strncmp(path, "<path", 5) != 0) path--;
+    size_t moves = 0;
+    for (; path < end; path++) moves += *path == 'M';
+    assert_int_equal(moves, 2);
+    free(svg);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(inline_svg), cmocka_unit_test(documents),
         cmocka_unit_test(source),     cmocka_unit_test(formats),
         cmocka_unit_test(processes),  cmocka_unit_test(missing_gnuplot),
-        cmocka_unit_test(markup),
+        cmocka_unit_test(markup),     cmocka_unit_test(gap),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
