@@ -122,6 +122,11 @@ static void measure(struct check_run *run, const void *subject)
         check_skip(run, "%s: %s", where, error.message);
         return;
     }
+    const char *lacks = oracle_lacks(&scheme);
+    if (lacks) {
+        check_skip(run, "%s: the oracle has no %s", where, lacks);
+        return;
+    }
     enum status status = oracle_create(&oracle, &scene, &error);
     if (!status) {
         status = oracle_evaluate(&oracle, &error);

@@ -142,9 +142,9 @@ static void measure(struct check_run *run, const void *subject)
     struct error error = {0};
     char where[HYDRO_TEXT];
     hydro_describe(&s.scheme, where);
-    if (!oracle_knows(s.scheme.integrator)) {
-        check_skip(run, "%s: the oracle has no steps of this integrator (oracle/oracle_step.c)",
-                   where);
+    const char *lacks = oracle_lacks(&s.scheme);
+    if (lacks) {
+        check_skip(run, "%s: the oracle has no %s", where, lacks);
         return;
     }
     enum status status = oracle_create(&oracle, &scene, &error);

@@ -323,7 +323,7 @@ static void measure_limits(struct check_run *run, const void *subject)
     for (size_t k = 0; k < kernel_family.n; k++) {
         struct kernel kernel;
         kernel_select(&kernel, kernel_family.members[k]->name, 5, NULL);
-        for (int g = 0; g < 2; g++) {
+        for (size_t g = 0; g < scheme_members(&scheme_gradient_family, 1); g++) {
             const struct limit limit = {kernel.member.name, (enum gradient)g, kernel.stable_eta[g]};
             measure_limit(run, &limit);
         }

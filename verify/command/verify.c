@@ -49,7 +49,8 @@ static enum status choose_groups(int n, char **arguments, struct error *error)
     enum status status = names ? STATUS_OK : error_set(error, STATUS_ENVIRONMENT, "no memory");
     for (int i = 0; i < n && !status; i++) {
         bool known = false;
-        for (size_t j = 0; j < count; j++) known = known || strcmp(names[j], arguments[i]) == 0;
+        for (size_t j = 0; j < check_registry_count; j++)
+            known = known || suite_names(arguments[i], check_registry[j]);
         if (!known) status = text_unknown(error, "verify", "group", arguments[i], names, count);
     }
     free(names);
@@ -129,13 +130,15 @@ static enum status run(const struct options *options, int n, char **arguments, s
 
 const struct command command_verify = {
     .name = "verify",
-    .synopsis = "[GROUP ...] [--mutants] [--slow] [--first] [--details]",
+    .synopsis = "[GROUP|GROUP/CHECK ...] [--mutants] [--slow] [--first] [--details]",
     .help = "check kernels, gradients, solver, exact solutions and norms\n\n"
             "Every check states a property, the measured value, its bound and the noise floor.\n"
-            "Without a GROUP all groups run. Exit status 1 if a figure is beyond its bound or,\n"
-            "with --mutants, if a deliberately wrong variant is not rejected.",
+            "Without a GROUP all groups run; GROUP/CHECK is one of its checks. Exit status 1 if a\n"
+            "figure is beyond its bound or, with --mutants, if a deliberately wrong variant is not\n"
+            "rejected.",
     .run = run,
     .options = verify_options,
     .examples = "sphproof verify\nsphproof verify kernels gradients\n"
+                "sphproof verify hydro/time_stepping\n"
                 "sphproof verify --mutants --json verify.json --junit verify.xml",
 };

@@ -157,11 +157,18 @@ static void count_mutants(struct suite *suite)
     }
 }
 
+bool suite_names(const char *name, const struct check *check)
+{
+    const size_t length = strcspn(name, "/");
+    return strlen(check->group) == length && strncmp(name, check->group, length) == 0 &&
+           (!name[length] || strcmp(name + length + 1, check->name) == 0);
+}
+
 static bool chosen(const struct check *check, const struct suite_choice *choice)
 {
     if (check->slow && !choice->slow) return false;
     for (size_t i = 0; i < choice->group_count; i++)
-        if (strcmp(check->group, choice->groups[i]) == 0) return true;
+        if (suite_names(choice->groups[i], check)) return true;
     return choice->group_count == 0;
 }
 

@@ -41,7 +41,7 @@ struct suite {
 };
 
 struct suite_choice {
-    const char *const *groups; /* NULL: all */
+    const char *const *groups; /* GROUP or GROUP/NAME; NULL: all */
     size_t group_count;
     bool slow, mutants;
     bool first; /* stop after the first check that fails */
@@ -58,6 +58,9 @@ void suite_free(struct suite *suite);
 
 /* value/bound of a figure, the measure of how near it is to failing; infinite for a NaN. */
 double suite_ratio(double value, double bound);
+
+/* Does GROUP or GROUP/NAME mean this check? */
+bool suite_names(const char *name, const struct check *check);
 
 /* The distinct groups of checks[0..count-1], in order, and their number; to be freed. NULL: no
  * memory. */

@@ -1,0 +1,562 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Every row of the README's table "Adding things" holds: in a copy of the tree a member of each kind is
+added by the file and the line that the row names, and nothing else; it must then build, be listed, run,
+be checked and be part of a report. A fault put into it must be noticed where the checks judge it.
+
+  adding.py SOURCE WORK [WORD ...]   WORD: only rows whose name contains one of them
+
+All rows share one copy and one build (-O0); what one adds stays for the next. Exit status 1: a row
+does not hold, or the table has a row without a test here."""
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import time
+
+
+class Failed(Exception):
+    pass
+
+
+class Tree:
+    """A copy of the tree with its build."""
+
+    def __init__(self, source, work):
+        self.root, self.folder = os.path.join(work, "tree"), os.path.join(work, "build")
+        self.work, self.before = work, {}
+        shutil.rmtree(work, ignore_errors=True)
+        shutil.copytree(source, self.root, ignore=shutil.ignore_patterns("build*", ".git", "out", "__pycache__"))
+        self.call(["meson", "setup", self.folder, self.root, "-Doptimization=0", "-Dclones=false",
+                   "-Dslow=false"])
+        self.build()
+
+    def call(self, command, status=0):
+        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, cwd=self.work)
+        if done.returncode != status:
+            raise Failed("%s\nexit status %d, expected %d:\n%s"
+                         % (" ".join(command), done.returncode, status, done.stdout[-4000:]))
+        return done.stdout
+
+    def build(self):
+        self.call(["ninja", "-C", self.folder, "sphproof"])
+
+    def program(self, *words, status=0):
+        return self.call([os.path.join(self.folder, "sphproof")] + list(words), status)
+
+    # ---- changes; undo takes back those since the last keep ----
+
+    def path(self, name):
+        return os.path.join(self.root, name)
+
+    def read(self, name):
+        with open(self.path(name)) as f:
+            return f.read()
+
+    def write(self, name, text):
+        path = self.path(name)
+        self.before.setdefault(name, self.read(name) if os.path.exists(path) else None)
+        with open(path, "w") as f:
+            f.write(text)
+
+    def new(self, name, text):
+        if os.path.exists(self.path(name)):
+            raise Failed("%s is there already" % name)
+        self.write(name, text.lstrip("\n"))
+
+    def append(self, name, line):
+        self.write(name, self.read(name).rstrip("\n") + "\n" + line + "\n")
+
+    def replace(self, name, old, new):
+        text = self.read(name)
+        if old not in text:
+            raise Failed("%s has no '%s'" % (name, old))
+        self.write(name, text.replace(old, new))
+
+    def keep(self):
+        self.before = {}
+
+    def undo(self):
+        for name, text in self.before.items():
+            if text is None:
+                os.remove(self.path(name))
+            else:
+                with open(self.path(name), "w") as f:
+                    f.write(text)
+        self.before = {}
+
+    # ---- what must be seen ----
+
+    def listed(self, family, name):
+        if not re.search(r"^  %s " % re.escape(name), self.program("list", family), re.M):
+            raise Failed("`sphproof list %s` does not name %s" % (family, name))
+
+    def checks(self, *names, status=0):
+        """What `verify` says of these checks, as a list."""
+        path = os.path.join(self.work, "verify.json")
+        self.program("verify", *names, "--quiet", "--json", path, "--failures", os.path.join(self.work, "failures"),
+                     status=status)
+        with open(path) as f:
+            return json.load(f)["checks"]
+
+    def checked(self, subject, *names):
+        """Each of these checks has measured the new member; returns how many figures."""
+        figures = [c for c in self.checks(*names) if re.search(r"\b%s\b" % re.escape(subject), c["subject"])]
+        for name in names:
+            mine = [c for c in figures if name in (c["group"], c["group"] + "/" + c["name"])]
+            if not [c for c in mine if c["status"] == "pass"]:
+                raise Failed("verify %s has measured nothing on %s" % (name, subject))
+        return len(figures)
+
+    def rejected(self, *names):
+        """One of these checks fails."""
+        if not [c for c in self.checks(*names, status=1) if c["status"] == "fail"]:
+            raise Failed("the fault passed %s" % " ".join(names))
+
+    def reported(self, pattern):
+        names = self.program("report", "--list")
+        if not re.search(pattern, names, re.M):
+            raise Failed("a report would compute nothing that is called '%s'" % pattern)
+
+
+ROWS = {}
+
+
+def row(name):
+    def add(test):
+        ROWS[name] = test
+        return test
+    return add
+
+
+@row("kernel")
+def kernel(tree):
+    tree.new("src/kernel/wendland_c8.h", r"""
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Wendland C8: w = (1-q)^10 (1 + 10 q + 42 q^2 + 90 q^3 + 429/5 q^4). */
+#ifndef KERNEL_WENDLAND_C8_H
+#define KERNEL_WENDLAND_C8_H
+
+static inline double wendland_c8_w(const struct kernel *kernel, double q, int dim)
+{
+    (void)kernel, (void)dim;
+    const double a = 1 - q > 0 ? 1 - q : 0, a2 = a * a, a4 = a2 * a2;
+    return a4 * a4 * a2 * (1 + q * (10 + q * (42 + q * (90 + q * (429. / 5)))));
+}
+
+static inline double wendland_c8_dw(const struct kernel *kernel, double q, int dim)
+{
+    (void)kernel, (void)dim;
+    const double a = 1 - q > 0 ? 1 - q : 0, a2 = a * a, a4 = a2 * a2;
+    return -26 * q * (a4 * a4 * a) * (1 + q * (9 + q * (159. / 5 + q * (231. / 5))));
+}
+
+#endif
+KERNEL(wendland_c8, .member = {"wendland_c8", "Wendland C8", "Wendland 1995"},
+       .constant = {0, 525. / 256, 40 / (3 * M_PI), 1785 / (64 * M_PI)}, .smoothness = {0, 8, 8, 8},
+       .default_eta = 4)
+""")
+    tree.append("src/kernels.def", '#include "kernel/wendland_c8.h"')
+    tree.build()
+    tree.listed("kernels", "wendland_c8")
+    tree.program("kernel", "wendland_c8", "--dim", "3")
+    tree.program("run", "sod", "kernel=wendland_c8", "n=100", "--quiet")
+    tree.checked("wendland_c8", "kernels")
+    tree.reported("^kernel wendland_c8, dim 2$")
+    tree.reported("^stress limits: wendland_c8, ia$")
+    tree.keep()
+    tree.replace("src/kernel/wendland_c8.h", "40 / (3 * M_PI)", "40.001 / (3 * M_PI)")
+    tree.build()
+    tree.rejected("kernels/normalisation")
+    tree.undo()
+
+
+@row("integrator")
+def integrator(tree):
+    tree.new("src/integrator/ralston.h", r"""
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Ralston's second-order method: y1 = y + 2/3 dt L(y); y = y + dt (L(y) + 3 L(y1))/4. */
+#ifndef INTEGRATOR_RALSTON_H
+#define INTEGRATOR_RALSTON_H
+
+#include "integrator/runge_kutta.h"
+
+static enum status ralston_step(struct simulation *simulation, double dt, struct error *error)
+{
+    runge_kutta_begin(simulation);
+    const enum status status = runge_kutta_stage(simulation, 0, 1, 2. / 3, dt, error);
+    return status ? status : runge_kutta_stage(simulation, 0.375, 0.625, 0.75, dt, error);
+}
+
+#endif
+INTEGRATOR(ralston, .member = {"ralston", "Runge-Kutta, least error bound", "Ralston 1962"}, .order = 2,
+           .evaluations = 2, .cfl = 0.3, .ends_evaluated = true)
+""")
+    tree.append("src/integrators.def", '#include "integrator/ralston.h"')
+    tree.build()
+    tree.listed("integrators", "ralston")
+    tree.program("run", "sod", "integrator=ralston", "n=100", "--quiet")
+    tree.checked("ralston", "hydro/integrator_order", "hydro/conservation", "hydro/stops")
+    skipped = [c for c in tree.checks("hydro/time_stepping", "stability/steps")
+               if c["status"] == "skip" and "ralston" in c["subject"]]
+    if len({c["name"] for c in skipped}) != 2:
+        raise Failed("what has no second writing of ralston's steps does not say so")
+    tree.reported("^stress steps: ralston, 2$")
+    tree.keep()
+    tree.replace("src/integrator/ralston.h", "0.375, 0.625, 0.75", "0.4, 0.6, 0.75")
+    tree.build()
+    tree.rejected("hydro/integrator_order")
+    tree.undo()
+
+
+@row("gradient operator (clouds)")
+def operator(tree):
+    line = ('OPERATOR(plain_corrected, VECTOR_GRADIENT, true, true, 2, 2, "gradient of the kernel, corrected", '
+            '"Randles & Libersky 1996")')
+    tree.append("src/cells/operators.def", line)
+    tree.build()
+    tree.listed("operators", "plain_corrected")
+    tree.checked("plain_corrected", "gradients/brute_force", "gradients/exactness", "gradients/fourier",
+                 "gradients/invariance")
+    tree.reported("^league of operators$")
+    tree.keep()
+    tree.replace("src/cells/operators.def", line, line.replace("true, true", "false, true"))
+    tree.build()
+    tree.rejected("gradients/exactness")
+    tree.undo()
+
+
+@row("choice in the pair loop (gradient, formulation, viscosity)")
+def viscosity(tree):
+    tree.replace("src/pair.h", "viscosity == VISCOSITY_FADING ?",
+                 "viscosity == VISCOSITY_QUADRATIC ? 0 : viscosity == VISCOSITY_FADING ?")
+    text = tree.read("src/families.h")
+    last = re.search(r'    CHOICE\(VISCOSITY_FADING.*?__VA_ARGS__\)', text, re.S).group()
+    tree.replace("src/families.h", last, last + ' CHOICE(VISCOSITY_QUADRATIC, "quadratic", "quadratic in '
+                 'compression", "von Neumann & Richtmyer 1950", __VA_ARGS__)')
+    tree.build()
+    tree.listed("viscosities", "quadratic")
+    tree.program("run", "sod", "viscosity=quadratic", "n=100", "--quiet")
+    tree.checked("viscosity quadratic", "hydro/conservation", "hydro/stamped")
+    rates = [c for c in tree.checks("hydro/rates") if "viscosity quadratic" in c["subject"]]
+    if not rates or {c["status"] for c in rates} != {"skip"}:
+        raise Failed("the oracle does not know of this viscosity, and does not say so")
+    tree.reported("^checks of hydro$")
+
+
+@row("exact solution, for a problem to use")
+def exact(tree):
+    tree.new("reference/entropy_wave.h", r"""
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * An entropy wave: density is carried along, velocity and pressure are uniform. */
+#ifndef REFERENCE_ENTROPY_WAVE_H
+#define REFERENCE_ENTROPY_WAVE_H
+
+/* rho0 (1 + amplitude sin(2 pi (x - v t)/length)). */
+double entropy_wave_density(double rho0, double amplitude, double length, double v, double x, double t);
+
+#endif
+""")
+    tree.new("reference/entropy_wave.c", r"""
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "entropy_wave.h"
+
+#include <math.h>
+
+double entropy_wave_density(double rho0, double amplitude, double length, double v, double x, double t)
+{
+    return rho0 * (1 + amplitude * sin(2 * M_PI * (x - v * t) / length));
+}
+""")
+    tree.replace("reference/meson.build", "  'simple_wave.c',\n", "  'entropy_wave.c',\n  'simple_wave.c',\n")
+    tree.build()  # a problem that uses it comes next
+
+
+@row("problem: particles, exact solution, functionals")
+def problem(tree):
+    if not os.path.exists(tree.path("reference/entropy_wave.h")):
+        exact(tree)
+    tree.new("verify/scene/problem/entropy_wave.c", r"""
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * An entropy wave in a periodic box; particles in equal cells, whose masses carry the density. */
+#include "entropy_wave.h"
+
+#include "functional.h"
+#include "problem.h"
+
+struct wave {
+    double rho0, v0, P0, amplitude, length;
+};
+
+static enum status prepare(struct prepared *p, struct settings *settings, struct error *error)
+{
+    const double *gas = settings->value[SETTING_background].real;
+    if (problem_check_state(settings, SETTING_background, error)) return error->status;
+    *(struct wave *)p->own.bytes = (struct wave){
+        gas[0], gas[1], gas[2], settings_real(settings, SETTING_amplitude),
+        (p->domain.hi[0] - p->domain.lo[0]) / settings_real(settings, SETTING_waves)};
+    return STATUS_OK;
+}
+
+static void sample(const struct prepared *p, const double x[3], double t, struct problem_state *state)
+{
+    const struct wave *w = (const struct wave *)p->own.bytes;
+    const double rho = entropy_wave_density(w->rho0, w->amplitude, w->length, w->v0,
+                                            x[0] - p->domain.lo[0], t);
+    *state = (struct problem_state){.rho = rho, .v = {w->v0}, .P = w->P0, .u = w->P0 / ((p->gamma - 1) * rho)};
+}
+
+static enum status fill(const struct prepared *p, const struct settings *settings, struct initial *initial,
+                        struct error *error)
+{
+    const size_t n = (size_t)settings_real(settings, SETTING_n);
+    const double lo = p->domain.lo[0], cell = (p->domain.hi[0] - lo) / (double)n;
+    if (initial_allocate(initial, 1, n, error)) return error->status;
+    for (size_t i = 0; i < n; i++) {
+        struct problem_state state;
+        initial->x[0][i] = lo + ((double)i + 0.5) * cell;
+        sample(p, (double[3]){initial->x[0][i]}, 0, &state);
+        initial->m[i] = state.rho * cell;
+        initial->v[0][i] = state.v[0];
+        initial->u[i] = state.u;
+        initial->rho[i] = state.rho;
+    }
+    return STATUS_OK;
+}
+
+static const struct problem_key keys[] = {{SETTING_background, ROLE_NEEDED},
+                                          {SETTING_amplitude, ROLE_NEEDED},
+                                          {SETTING_waves, ROLE_OPTIONAL}};
+
+const struct problem problem_entropy_wave = {
+    .member = {"entropy_wave", "density that is carried along", ""},
+    .reference = "entropy_wave",
+    .least_dim = 1,
+    .most_dim = 1,
+    .smooth = true,
+    .keys = keys,
+    .key_count = sizeof keys / sizeof *keys,
+    .prepare = prepare,
+    .sample = sample,
+    .fill = fill,
+    .random = initial_is_shaken,
+    .functionals = {&functional_mean_internal_energy, &functional_mean_pressure},
+};
+""")
+    tree.append("verify/scene/problems.def", "PROBLEM(entropy_wave)")
+    tree.build()
+    if "entropy_wave" not in tree.program("list", "keys"):
+        raise Failed("`sphproof list keys` does not name the problem")
+    path = os.path.join(tree.work, "wave.ini")
+    with open(path, "w") as f:
+        f.write(WAVE)
+    out = os.path.join(tree.work, "run.json")
+    tree.program("run", path, "n=64", "--quiet", "--json", out)
+    with open(out) as f:
+        errors = json.load(f)["errors"]["density"]
+    if not 0 < errors["l1"] < 0.02:
+        raise Failed("the error of density is %g" % errors["l1"])
+    tree.program("converge", path, "--n", "32,48,64,96", "--quiet")
+
+
+WAVE = """
+[case]
+title = An entropy wave
+dimension = 1
+reference = entropy_wave
+
+[initial]
+kind = entropy_wave
+background = 1 0.5 1
+amplitude = 0.2
+
+[run]
+t_end = 0.1
+n = 64
+
+[measure]
+window = -1 1
+fields = density velocity pressure internal_energy
+
+[converge]
+n = 32 48 64 96
+
+[report]
+compare = no
+"""
+
+
+@row("case")
+def case(tree):
+    sod = tree.read("cases/sod.ini")
+    tree.new("cases/weak_tube.ini", sod.replace("Sod's shock tube", "A weak shock tube")
+             .replace("right = 0.125 0 0.1", "right = 0.5 0 0.5"))
+    tree.replace("cases/meson.build", "  'lax.ini',\n", "  'lax.ini',\n  'weak_tube.ini',\n")
+    tree.build()
+    tree.listed("cases", "weak_tube")
+    tree.program("run", "weak_tube", "n=100", "--quiet")
+    tree.reported("^profile of weak_tube$")
+    tree.reported("^weak_tube, n = 396$")
+    tree.reported("^work-precision of weak_tube$")
+    tree.keep()
+    tree.replace("cases/weak_tube.ini", "n = 450", "n = 450\nm = 3")
+    tree.build()
+    tree.program("run", "weak_tube", status=2)
+    tree.undo()
+
+
+CHECK = r"""
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Adding a check. */
+#include "check.h"
+
+#include <math.h>
+
+static double half(double x)
+{
+    return x / 2;
+}
+
+static double third(double x)
+{
+    return x / 3;
+}
+
+struct halving {
+    double (*half)(double x);
+};
+
+static void measure(struct check_run *run, const void *subject)
+{
+    static const struct halving right = {half};
+    const struct halving *s = subject ? subject : &right;
+    check_measure(run, fabs(2 * s->half(2.385) - 2.385), 1e-15, 0, "twice the half of 2.385");
+}
+
+static const struct check_mutant mutants[] = {
+    {"third_for_half", "a third in place of the half", &(struct halving){third}},
+    {0},
+};
+
+const struct check check_norms_halves = {
+    .group = "norms",
+    .name = "halves",
+    .property = "2 (x/2) = x",
+    .measure = measure,
+    .mutants = mutants,
+};
+"""
+
+
+@row("check, with the mutants it must reject")
+def check(tree):
+    tree.new("verify/check/halves.c", CHECK)
+    tree.append("verify/check/checks.def", "CHECK(halves, norms_halves)")
+    tree.build()
+    tree.listed("checks", "halves")
+    tree.listed("mutants", "third_for_half")
+    tree.checked("2.385", "norms/halves")
+    if "caught  third_for_half" not in tree.program("verify", "norms", "--mutants"):
+        raise Failed("the mutant was not tried")
+    tree.reported("^checks of norms$")
+    tree.keep()
+    tree.replace("verify/check/halves.c", "x / 3", "x / 2")
+    tree.build()
+    if "vacuous" not in tree.program("verify", "norms/halves", "--mutants", "--failures",
+                                     os.path.join(tree.work, "failures"), status=1):
+        raise Failed("a check that rejects nothing was not called vacuous")
+    tree.undo()
+
+
+@row("source mutant")
+def source_mutant(tree):
+    tree.append("verify/mutants/mutants.txt", """
+[src_norm_twice]
+fault: twice L1, less the NaN
+group: norms
+file: verify/statistics/norm.c
+- %s
++ %s"""
+                % (L1, L1.replace("=", "= 2 *", 1)))
+    script = tree.path("verify/mutants/mutants.py")
+    tree.call([sys.executable, script, "check", tree.root, os.path.join(tree.work, "mutants")])
+    sys.path.insert(0, os.path.dirname(script))
+    import mutants
+    added = [m for m in mutants.read_list() if m.name == "src_norm_twice"]
+    worker = object.__new__(mutants.Worker)  # with the copy and the build that are there
+    worker.tree, worker.build = tree.root, tree.folder
+    worker.program = os.path.join(tree.folder, "sphproof")
+    outcome = worker.judge(added[0])
+    if outcome != "caught":
+        raise Failed("the mutant was not noticed: %s" % outcome)
+
+
+L1 = "    norms.l1 = norms.l1 / weight + poison;"
+
+
+@row("command")
+def command(tree):
+    tree.new("verify/command/greet.c", r"""
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * sphproof greet. */
+#include <stdio.h>
+
+#include "command.h"
+
+static enum status run(const struct options *options, int n, char **arguments, struct error *error)
+{
+    if (n != 1) return command_usage(options, error, "whom?");
+    if (options->speak) printf("hello, %s\n", arguments[0]);
+    return STATUS_OK;
+}
+
+const struct command command_greet = {
+    .name = "greet", .synopsis = "WHOM", .help = "says hello", .run = run, .examples = "sphproof greet you"};
+""")
+    tree.append("verify/command/commands.def", "COMMAND(greet)")
+    tree.build()
+    if "greet" not in tree.program("--help"):
+        raise Failed("`sphproof --help` does not name it")
+    if tree.program("greet", "you") != "hello, you\n":
+        raise Failed("it says something else")
+    tree.program("greet", status=2)
+    tree.program("greet", "--loud", "you", status=2)
+
+
+def rows_of(readme):
+    """The first column of the table, from the README."""
+    with open(readme) as f:
+        section = f.read().split("## Adding things", 1)[1].split("\n## ", 1)[0]
+    return [line.split("|")[1].strip() for line in section.split("\n")
+            if line.startswith("| ") and not line.startswith("| what")]
+
+
+def main():
+    source, work, words = sys.argv[1], os.path.abspath(sys.argv[2]), sys.argv[3:]
+    rows = rows_of(os.path.join(source, "README.md"))
+    bad = ["the README has a row '%s' without a test" % r for r in rows if r not in ROWS]
+    bad += ["there is a test of '%s', but no such row in the README" % r for r in ROWS if r not in rows]
+    began = time.time()
+    tree = Tree(source, work)
+    print("%-62s %6.1f s" % ("copy and first build", time.time() - began), flush=True)
+    tried = [r for r in ROWS if not words or any(w in r for w in words)]
+    for name in tried:
+        start = time.time()
+        try:
+            ROWS[name](tree)
+            tree.keep()
+            outcome = "ok"
+        except Failed as failed:
+            tree.undo()
+            outcome = "FAILED"
+            bad.append("%s: %s" % (name, failed))
+        print("%-62s %6.1f s  %s" % (name, time.time() - start, outcome), flush=True)
+    print("%d rows, %d complaints; %.0f s" % (len(tried), len(bad), time.time() - began))
+    for text in bad:
+        print("\n" + text)
+    return 1 if bad or not tried else 0
+
+
+sys.exit(main())
