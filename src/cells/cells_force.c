@@ -457,25 +457,18 @@ CLONES static void limit_viscosity(int count, bool squared, double own,
     }
 }
 
+#define VISCOUS_CASE(symbol, name, label, paper, signal_form)                                      \
+    case symbol:                                                                                   \
+        viscous_body(symbol, signal_form, count, numbers, sides, lanes);                           \
+        break;
+
 #define VISCOUS(name, signal_form)                                                                 \
     CLONES static void name(enum viscosity viscosity, int count,                                   \
                             const struct pair_numbers *numbers, const struct sides *sides,         \
                             const struct lanes *lanes)                                             \
     {                                                                                              \
         switch (viscosity) {                                                                       \
-        case VISCOSITY_CONSTANT:                                                                   \
-            viscous_body(VISCOSITY_CONSTANT, signal_form, count, numbers, sides, lanes);           \
-            break;                                                                                 \
-        case VISCOSITY_TIME_DEPENDENT:                                                             \
-            viscous_body(VISCOSITY_TIME_DEPENDENT, signal_form, count, numbers, sides, lanes);     \
-            break;                                                                                 \
-        case VISCOSITY_RECONSTRUCTED:                                                              \
-            viscous_body(VISCOSITY_RECONSTRUCTED, signal_form, count, numbers, sides, lanes);      \
-            break;                                                                                 \
-        case VISCOSITY_FADING:                                                                     \
-            viscous_body(VISCOSITY_FADING, signal_form, count, numbers, sides, lanes);             \
-            break;                                                                                 \
-        case VISCOSITY_NONE:                                                                       \
+            VISCOSITY_LINE_LIST(VISCOUS_CASE, signal_form)                                         \
         case VISCOSITY_CULLEN_DEHNEN: /* comes as time_dependent */                                \
         case VISCOSITY_PROJECTED:     /* comes as reconstructed */                                 \
             break;                                                                                 \

@@ -9,7 +9,7 @@
 
 /* Has every choice of a scheme its formula here? Switches without a default: a member that joins
  * one of the lists does not compile until it is placed. (pair_width: see find_gradients.) */
-static bool covers(const struct scheme *scheme)
+bool oracle_covers(const struct scheme *scheme)
 {
     switch (scheme->gradient) {
     case GRADIENT_STANDARD:
@@ -60,13 +60,13 @@ static bool covers(const struct scheme *scheme)
     case H_CORRECTED:
         break;
     }
-    return true;
+    return oracle_covers_step(scheme->integrator);
 }
 
 enum status oracle_create(struct oracle *oracle, const struct scene *scene, struct error *error)
 {
     *oracle = (struct oracle){0};
-    if (!covers(&scene->scheme))
+    if (!oracle_covers(&scene->scheme))
         return error_set(error, STATUS_BAD_INPUT, "oracle: it has no formula for this scheme");
     *oracle = (struct oracle){
         .scheme = scene->scheme, .dim = scene->dim, .gamma = scene->gamma, .n = scene->n};

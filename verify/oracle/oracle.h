@@ -61,9 +61,9 @@ void oracle_signals(struct oracle *oracle);
 /* The time step of the present signal speeds. */
 long double oracle_time_step(const struct oracle *oracle);
 
-/* The name of what a scheme asks for and is not written here a second time (gradient, formulation,
- * volume element, viscosity, integrator); NULL: all is. */
-const char *oracle_lacks(const struct scheme *scheme);
+/* Is everything that a scheme asks for written here a second time; the steps of this integrator? */
+bool oracle_covers(const struct scheme *scheme);
+bool oracle_covers_step(const struct integrator *integrator);
 
 /* Advances by dt; rates must be there, and are when it returns. STATUS_BAD_INPUT: an integrator
  * that the oracle does not know. */

@@ -180,32 +180,9 @@ static step_function *find_step(const struct integrator *integrator)
     return NULL;
 }
 
-/* Members of a family as bits. */
-#define BIT(member) (1UL << (member))
-
-static const char *unless(unsigned long known, const struct family *family, int member)
+bool oracle_covers_step(const struct integrator *integrator)
 {
-    return known >> member & 1 ? NULL : family->members[member]->name;
-}
-
-const char *oracle_lacks(const struct scheme *s)
-{
-    const char *lacks = find_step(s->integrator) ? NULL : s->integrator->member.name;
-    if (!lacks)
-        lacks = unless(BIT(GRADIENT_STANDARD) | BIT(GRADIENT_IA), &scheme_gradient_family,
-                       s->gradient);
-    if (!lacks)
-        lacks = unless(BIT(FORMULATION_VANILLA_ICE) | BIT(FORMULATION_LAGRANGIAN),
-                       &scheme_formulation_family, s->formulation);
-    if (!lacks)
-        lacks = unless(BIT(VOLUME_MASS) | BIT(VOLUME_ENERGY), &scheme_volume_element_family,
-                       s->volume_element);
-    if (!lacks)
-        lacks = unless(BIT(VISCOSITY_NONE) | BIT(VISCOSITY_CONSTANT) |
-                           BIT(VISCOSITY_TIME_DEPENDENT) | BIT(VISCOSITY_RECONSTRUCTED) |
-                           BIT(VISCOSITY_FADING),
-                       &scheme_viscosity_family, s->viscosity);
-    return lacks;
+    return find_step(integrator) != NULL;
 }
 
 enum status oracle_step(struct oracle *oracle, long double dt, struct error *error)
