@@ -242,9 +242,9 @@ def viscosity(tree):
     tree.replace("src/pair.h", "form.fading ?", "form.quadratic ? 0 : form.fading ?")
     tree.replace("verify/oracle/oracle.c", "    case VISCOSITY_FADING:\n",
                  "    case VISCOSITY_FADING:\n    case VISCOSITY_QUADRATIC:\n")
-    tree.replace("verify/oracle/oracle.c", "    long double c = (a->c + b->c) / 2;\n",
-                 "    long double c = (a->c + b->c) / 2;\n"
-                 "    if (scheme->viscosity == VISCOSITY_QUADRATIC) c = 0;\n")
+    fading = "    if (scheme->viscosity == VISCOSITY_FADING) c = "
+    tree.replace("verify/oracle/oracle_pair.c", fading,
+                 "    if (scheme->viscosity == VISCOSITY_QUADRATIC) c = 0;\n" + fading)
     tree.build()
     tree.listed("viscosities", "quadratic")
     tree.program("run", "sod", "viscosity=quadratic", "n=100", "--quiet")
