@@ -7,15 +7,20 @@
 #include "solver.h"
 #include "width.h"
 
-static bool at_an_end(const struct simulation *simulation, ptrdiff_t i)
+/* In place of a density: kept, but its own sums are complete. */
+#define HELD_BY_ITS_SUMS (-1.)
+
+/* Distance from the nearest end that is fixed, in smoothing lengths. */
+static double from_end(const struct simulation *simulation, ptrdiff_t i)
 {
     const struct particles *a = &simulation->particles;
+    double least = HUGE_VAL;
     for (int k = 0; k < a->dim; k++) {
         if (simulation->boundary[k] != BOUNDARY_FIXED) continue;
         const double from_lo = a->x[k][i] - simulation->lo[k];
-        if (from_lo < a->h[i] || a->period[k] - from_lo < a->h[i]) return true;
+        least = fmin(least, fmin(from_lo, a->period[k] - from_lo) / a->h[i]);
     }
-    return false;
+    return least;
 }
 
 enum status hold_begin(struct simulation *simulation, struct error *error)
@@ -28,10 +33,11 @@ enum status hold_begin(struct simulation *simulation, struct error *error)
     if (!simulation->held)
         return error_set(error, STATUS_ENVIRONMENT, "no memory for %td particles", a->n);
     for (ptrdiff_t i = 0; i < a->n; i++) {
-        if (!at_an_end(simulation, i)) continue;
+        const double depth = from_end(simulation, i);
+        if (!(depth < 3)) continue;
         /* h = eta (m/rho)^(1/d) */
         const double side = a->h[i] / simulation->scheme.eta;
-        simulation->held[a->id[i]] = a->m[i] / pow(side, a->dim);
+        simulation->held[a->id[i]] = depth < 1 ? a->m[i] / pow(side, a->dim) : HELD_BY_ITS_SUMS;
         for (int k = 0; k < a->dim; k++) {
             if (simulation->scheme.energy == ENERGY_TOTAL)
                 a->e[i] -= 0.5 * a->p[k][i] * a->p[k][i] * a->m_inverse[i];
@@ -57,7 +63,6 @@ void hold_state(struct simulation *simulation)
         a->c[i] = sqrt(gamma * (gamma - 1) * u);
         a->h[i] = width_of(&rule, a->m[i], rho);
         a->h_inverse[i] = a->h_inverse_found[i] = a->h_inverse_old[i] = 1 / a->h[i];
-        a->grad_h[i] = 0;
         a->b[i] = a->P[i] * (a->V[i] * a->V[i] / a->m[i]);
     }
 }
@@ -67,7 +72,7 @@ void hold_rates(struct simulation *simulation)
     const struct particles *a = &simulation->particles;
     const double *held = simulation->held;
     for (ptrdiff_t i = 0; held && i < a->n; i++) {
-        if (!(held[a->id[i]] > 0)) continue;
+        if (held[a->id[i]] == 0) continue;
         for (int k = 0; k < a->dim; k++) a->F[k][i] = 0;
         a->de[i] = a->dalpha[i] = 0;
     }

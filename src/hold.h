@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Layers of particles whose state is kept, at the ends of directions with boundary=fixed: those
- * that start within their own smoothing length of an end. They do not move, their density is what
- * the scene says (their own sums see the emptiness outside), and they push others as gas in that
- * state would. */
+ * that start within three times their smoothing length of an end. They do not move and keep their
+ * energy. The outermost third, whose own sums see the emptiness outside, has the density that the
+ * scene says; the others' sums are complete, so that moving particles next to the layer feel gas
+ * like their own. */
 #ifndef SPHPROOF_HOLD_H
 #define SPHPROOF_HOLD_H
 

@@ -62,10 +62,11 @@ __attribute__((format(printf, 3, 4))) static void warn(char *text, size_t size, 
     va_end(arguments);
 }
 
-static void find_warnings(const struct scheme *scheme, char *text, size_t size)
+static void find_warnings(const struct scheme *scheme, int dim, char *text, size_t size)
 {
-    const double unity = scheme->kernel.unity_width, eta = scheme->eta;
-    const double limit = scheme->kernel.stable_eta[scheme->gradient];
+    /* known in 1D */
+    const double unity = dim == 1 ? scheme->kernel.unity_width : 0, eta = scheme->eta;
+    const double limit = dim == 1 ? scheme->kernel.stable_eta[scheme->gradient] : 0;
     const double off = unity > 0 ? fabs(eta / unity - fmax(1, round(eta / unity))) * unity : 0;
     text[0] = '\0';
     if (off > 0.03 * eta)
@@ -85,17 +86,31 @@ static void find_warnings(const struct scheme *scheme, char *text, size_t size)
              "energy=total: should the flow get cold (u << v^2), U = E - p^2/2m loses digits");
 }
 
+/* How particles find each other. */
+static void explain_neighbours(const struct scene *scene, struct writer *writer)
+{
+    bool walls = false;
+    if (scene->dim == 1) {
+        line(writer, "order", true,
+             "neighbours are a contiguous range; sorted anew only if particles cross", "");
+        line(writer, "ghost copies", true, "periodic images, so that no loop knows of a boundary",
+             "");
+        return;
+    }
+    for (int k = 0; k < scene->dim; k++) walls |= scene->boundary[k] == BOUNDARY_REFLECTING;
+    line(writer, "neighbour lists", true,
+         "a grid of cells and a list for each particle, made anew at every evaluation", "");
+    line(writer, "mirror images", walls, "boundary=reflecting: particles near a wall",
+         "no reflecting wall");
+}
+
 size_t plan_explain(const struct scene *scene, struct plan_line *lines, size_t max, char *warnings,
                     size_t warnings_size)
 {
     const struct scheme *scheme = &scene->scheme;
     const struct plan plan = plan_make(scheme, scene->dim, scene->skip, !scene->unstamped);
     struct writer writer = {lines, 0, max};
-    line(&writer, "order", true,
-         "neighbours are a contiguous range; sorted anew only if particles "
-         "cross",
-         "");
-    line(&writer, "ghost copies", true, "periodic images, so that no loop knows of a boundary", "");
+    explain_neighbours(scene, &writer);
     line(&writer, "smoothing length by Newton", plan.newton,
          "h = eta m/rho to h_tolerance at every evaluation",
          plan.correct ? "h_method=corrected: 1/h extrapolated from the last two density sums, each "
@@ -109,18 +124,31 @@ size_t plan_explain(const struct scene *scene, struct plan_line *lines, size_t m
          "formulation=vanilla_ice has none");
     line(&writer, "moment matrix", plan.matrix, "gradient=ia: sum V x^2 W",
          "gradient=standard needs none");
-    line(&writer, "velocity gradient", plan.slope, "viscosity=reconstructed", "no reconstruction");
-    line(&writer, "pair forces", true, "half loop, antisymmetric fluxes", "");
+    line(&writer, "velocity gradient", plan.slope,
+         plan.balsara ? "for the Balsara factor of the viscosity"
+                      : "for the midpoint velocities of the viscosity",
+         "no viscosity needs it");
+    line(&writer, "pair forces", true,
+         scene->dim == 1 ? "half loop, antisymmetric fluxes"
+                         : "each pair from both sides, opposite to the last bit",
+         "");
     line(&writer, "artificial viscosity", plan.viscosity, "inside the pair loop", "viscosity=none");
     line(&writer, "evolution of alpha", plan.alpha, "viscosity=time_dependent, with div v",
          "alpha is constant");
     line(&writer, "signal speed", plan.signal_pass,
          "the integrator changes velocities after the last force", "comes with the pair forces");
+    if (scene->dim > 1) {
+        const double *g = scene->gravity;
+        line(&writer, "conductivity", scheme->alpha_u > 0, "alpha_u > 0, inside the pair loop",
+             "alpha_u=0");
+        line(&writer, "gravity", g[0] != 0 || g[1] != 0 || g[2] != 0, "added to the forces",
+             "gravity=0");
+    }
     line(&writer, "sleep", plan.sleep,
          "skip=auto: no sums where no signal has been; equal to tolerance 1e-10",
          "skip=none: every particle at every step");
     line(&writer, "final state", !scheme->integrator->ends_evaluated,
          "density and equation of state once more at t_end", "the last evaluation was at t_end");
-    if (warnings && warnings_size) find_warnings(scheme, warnings, warnings_size);
+    if (warnings && warnings_size) find_warnings(scheme, scene->dim, warnings, warnings_size);
     return writer.count;
 }

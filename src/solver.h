@@ -23,7 +23,7 @@ struct simulation {
     double lo[3];           /* of the box */
     enum boundary boundary[3];
     double gravity[3];
-    double *held; /* by id: density of a particle whose state is kept, 0 for others; NULL: none */
+    double *held; /* by id, see hold.c: 0 for particles that move; NULL: all do */
     double gamma, time, t_end;
     double time_step;     /* limit found by the last signal speeds */
     double dt, dt_before; /* of the step in progress or the last one, and the one before; 0: none */

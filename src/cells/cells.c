@@ -163,7 +163,7 @@ static bool find_images(struct cells *cells, const struct cells_fields *fields,
 }
 
 enum status cells_arrange(struct cells *cells, const struct cells_fields *fields,
-                          const double *radius, struct error *error)
+                          const double *radius, const unsigned char *asleep, struct error *error)
 {
     const bool walls = cells->method.wall[0] || cells->method.wall[1] || cells->method.wall[2];
     const struct cells_images *images = &cells->images;
@@ -173,7 +173,7 @@ enum status cells_arrange(struct cells *cells, const struct cells_fields *fields
     const double *const all[3] = {images->x[0], images->x[1], images->x[2]};
     const enum status status =
         grid_search(cells->grid, cells->points, fields->n, walls ? all : fields->x,
-                    walls ? images->radius : radius, error);
+                    walls ? images->radius : radius, asleep, error);
     if (status) return status;
     if (!reserve_records(cells, cells->points) || !lanes_reserve(cells))
         return error_set(error, STATUS_ENVIRONMENT, "no memory for %zu particles", fields->n);

@@ -70,9 +70,10 @@ struct cells;
 struct cells *cells_create(const struct cells_method *method, size_t n);
 void cells_destroy(struct cells *cells);
 
-/* Finds who is near whom, to max(radius_i, radius_j). Errors as grid_search. */
+/* Finds who is near whom, to max(radius_i, radius_j); particles that sleep (NULL: nobody) get no
+ * sums until the next call. Errors as grid_search. */
 enum status cells_arrange(struct cells *cells, const struct cells_fields *fields,
-                          const double *radius, struct error *error);
+                          const double *radius, const unsigned char *asleep, struct error *error);
 
 /* sum_m ... at the widths 1/h_inverse. */
 void cells_density(struct cells *cells, const struct cells_fields *fields);

@@ -27,7 +27,10 @@ struct room {
     double *radius, *balsara;
     double *sum_m, *sum_m_dh, *sum_Z, *sum_Z_dh;
     unsigned char *outcome;
-    uint64_t sorted_at; /* steps */
+    unsigned char *disturbed;
+    unsigned char *asleep; /* of each particle; NULL: nobody ever sleeps */
+    double *kept;          /* 1/h of those who sleep */
+    uint64_t sorted_at;    /* steps */
     bool sorted;
     size_t fallen_back;
 };
@@ -95,9 +98,10 @@ static bool allocate_arrays(struct simulation *simulation, size_t n)
     const struct plan *plan = &simulation->plan;
     const size_t dim = (size_t)plan->dim, symmetric = dim * (dim + 1) / 2;
     const bool projected = simulation->scheme.viscosity == VISCOSITY_PROJECTED;
-    double **of[8 + 2 * CELLS_SYMMETRIC + CELLS_SQUARE];
+    double **of[9 + 2 * CELLS_SYMMETRIC + CELLS_SQUARE];
     size_t count = 0;
     of[count++] = &room->radius;
+    of[count++] = &room->kept;
     of[count++] = &room->sum_m;
     of[count++] = &room->sum_m_dh;
     if (plan->energy_sum) of[count++] = &room->sum_Z, of[count++] = &room->sum_Z_dh;
@@ -163,6 +167,8 @@ static void free_room(struct simulation *simulation)
     cells_destroy(room->cells);
     free(room->block);
     free(room->outcome);
+    free(room->asleep);
+    free(room->disturbed);
     free(room);
 }
 
@@ -202,13 +208,21 @@ static enum status search(struct simulation *simulation, struct error *error)
 {
     struct room *room = room_of(simulation);
     const struct particles *a = &simulation->particles;
-    const enum status status = cells_arrange(room->cells, &room->fields, room->radius, error);
+    const enum status status =
+        cells_arrange(room->cells, &room->fields, room->radius, room->asleep, error);
     if (status != STATUS_BAD_INPUT || simulation->cost.steps == 0) return status;
     ptrdiff_t widest = 0;
     for (ptrdiff_t i = 1; i < a->n; i++)
         if (!(room->radius[i] <= room->radius[widest])) widest = i;
     return simulation_broke_down(simulation, widest, "smoothing length", room->radius[widest],
                                  error);
+}
+
+static void permute(struct particles *particles, double *array)
+{
+    const size_t n = (size_t)particles->n;
+    memcpy(particles->spare, array, n * sizeof *array);
+    for (size_t i = 0; i < n; i++) array[i] = particles->spare[particles->order[i]];
 }
 
 /* Particles that are near each other in space become so in memory, now and then. */
@@ -222,8 +236,11 @@ static void sort_memory(struct simulation *simulation)
     ptrdiff_t place = 0;
     for (size_t slot = 0; slot < slots; slot++) /* images are nobody's memory */
         if (order[slot] < (size_t)a->n) a->order[place++] = order[slot];
-    memcpy(a->spare, room->radius, (size_t)a->n * sizeof *room->radius);
-    for (ptrdiff_t i = 0; i < a->n; i++) room->radius[i] = a->spare[a->order[i]];
+    permute(a, room->radius);
+    permute(a, room->kept);
+    for (ptrdiff_t i = 0; room->asleep && i < a->n; i++)
+        room->outcome[i] = room->asleep[a->order[i]];
+    if (room->asleep) memcpy(room->asleep, room->outcome, (size_t)a->n);
     particles_permute(a);
     room->sorted = true;
     room->sorted_at = simulation->cost.steps;
@@ -378,6 +395,8 @@ static enum status predicted_widths(struct simulation *simulation, double ratio,
     const struct particles *a = &simulation->particles;
     for (ptrdiff_t first = 0; first < a->n; first += BATCH_MAX)
         width_predict(a, first, batch_len(a, first), ratio);
+    for (ptrdiff_t i = 0; room->asleep && i < a->n; i++)
+        if (room->asleep[i]) a->h_inverse[i] = room->kept[i];
     for (ptrdiff_t i = 0; i < a->n; i++) room->radius[i] = 1 / a->h_inverse[i];
     const enum status status = search_sorted(simulation, error);
     if (status) return status;
@@ -450,22 +469,68 @@ static double signal(struct simulation *simulation)
     return rate_of_all(simulation);
 }
 
-/* --- sleep: nobody does, yet ------------------------------------------------------------------ */
+/* --- sleep ------------------------------------------------------------------------------------ */
 
-static enum status sleep_begin_all_awake(struct simulation *simulation, struct error *error)
+/* Layers of reaches around a disturbance that must be awake: it passes through density and forces
+ * in one step. */
+enum { WAKE_LAYERS = 2 };
+
+/* Only what is at rest may sleep: in a shear flow on a lattice forces vanish, too, and neighbours
+ * change all the same. */
+static void mark_disturbed(struct simulation *simulation)
+{
+    struct room *room = room_of(simulation);
+    const struct particles *a = &simulation->particles;
+    for (ptrdiff_t i = 0; i < a->n; i++)
+        room->disturbed[i] = !room->asleep[i] && (sleep_disturbed(simulation, i, 1) ||
+                                                  !(particles_norm(a, a->p, i) <= 0));
+}
+
+static ptrdiff_t count_awake(const struct room *room, ptrdiff_t n)
+{
+    ptrdiff_t awake = n;
+    for (ptrdiff_t i = 0; room->asleep && i < n; i++) awake -= room->asleep[i];
+    return awake;
+}
+
+static enum status begin_sleep(struct simulation *simulation, struct error *error)
 {
     struct sleep *sleep = &simulation->sleep;
+    struct room *room = room_of(simulation);
+    const struct particles *a = &simulation->particles;
+    const size_t n = (size_t)a->n;
+    /* for the integrators everybody moves: sleepers have no rates */
     sleep->spans = malloc(sizeof *sleep->spans);
     if (!sleep->spans) return error_set(error, STATUS_ENVIRONMENT, "no memory");
-    sleep->spans[0] = (struct span){0, simulation->particles.n};
+    sleep->spans[0] = (struct span){0, a->n};
     sleep->span_count = 1;
-    sleep->awake_count = simulation->particles.n;
+    sleep->awake_count = a->n;
+    if (!simulation->plan.sleep || simulation->plan.gravity) return STATUS_OK;
+    unsigned char *asleep = calloc(n, 1);
+    room->disturbed = calloc(n, 1);
+    if (!asleep || !room->disturbed) {
+        free(asleep);
+        return error_set(error, STATUS_ENVIRONMENT, "no memory for %zu particles", n);
+    }
+    room->asleep = asleep;
+    mark_disturbed(simulation);
+    memset(asleep, 1, n);
+    grid_wake(cells_grid(room->cells), room->disturbed, WAKE_LAYERS, asleep);
+    for (ptrdiff_t i = 0; i < a->n; i++) {
+        room->kept[i] = a->h_inverse[i];
+        if (asleep[i]) sleep_begin(simulation, i, 1);
+    }
+    sleep->awake_count = count_awake(room, a->n);
     return STATUS_OK;
 }
 
-static void sleep_update(struct simulation *simulation)
+static void update_sleep(struct simulation *simulation)
 {
-    (void)simulation;
+    struct room *room = room_of(simulation);
+    if (!room->asleep || simulation->sleep.awake_count == simulation->particles.n) return;
+    mark_disturbed(simulation);
+    grid_wake(cells_grid(room->cells), room->disturbed, WAKE_LAYERS, room->asleep);
+    simulation->sleep.awake_count = count_awake(room, simulation->particles.n);
 }
 
 const struct sums cells_sums = {
@@ -481,6 +546,6 @@ const struct sums cells_sums = {
     .matrix = matrix,
     .forces = forces,
     .signal = signal,
-    .sleep_begin = sleep_begin_all_awake,
-    .sleep_update = sleep_update,
+    .sleep_begin = begin_sleep,
+    .sleep_update = update_sleep,
 };

@@ -52,12 +52,13 @@ struct grid {
     double unit; /* what single precision is used in: the usual radius */
     ptrdiff_t cells[3];
     size_t cell_count, cell_capacity, column_capacity;
-    uint32_t *column;    /* y + cells[1] z -> rank of the column of cells along x */
-    uint32_t *column_at; /* and back */
-    uint32_t *start;     /* first slot of each cell, and the end */
-    uint32_t *cell_of;   /* of each point */
-    float *widest;       /* largest radius of the cell's points; in units, as all floats here */
-    float *reach;        /* how far its points and those of others reach across it */
+    uint32_t *column;     /* y + cells[1] z -> rank of the column of cells along x */
+    uint32_t *column_at;  /* and back */
+    uint32_t *start;      /* first slot of each cell, and the end */
+    uint32_t *cell_of;    /* of each point */
+    float *widest;        /* largest radius of the cell's points; in units, as all floats here */
+    float *reach;         /* how far its points and those of others reach across it */
+    unsigned char *marks; /* two of each cell, for grid_wake */
     uint32_t *order;
     double (*position)[4];
     float *radius;             /* of each slot */
@@ -66,6 +67,8 @@ struct grid {
     uint32_t *part_begin, *part_cell;
     size_t parts;
     int longest;
+    size_t active;               /* points that may have lists */
+    const unsigned char *asleep; /* of the last search */
     struct pool *pools;
     struct candidates *candidates;
     find_loop *find;
@@ -124,6 +127,7 @@ void grid_destroy(struct grid *grid)
     free(grid->start);
     free(grid->widest);
     free(grid->reach);
+    free(grid->marks);
     free(grid);
 }
 
@@ -210,10 +214,12 @@ static enum status lay_cells(struct grid *grid, size_t n, const double *radius, 
         free(grid->widest);
         free(grid->reach);
         grid->cell_capacity = 2 * grid->cell_count + 1;
+        free(grid->marks);
+        grid->marks = malloc(2 * grid->cell_capacity);
         grid->start = malloc(grid->cell_capacity * sizeof *grid->start);
         grid->widest = malloc(grid->cell_capacity * sizeof *grid->widest);
         grid->reach = malloc(grid->cell_capacity * sizeof *grid->reach);
-        if (!grid->start || !grid->widest || !grid->reach) grid->cell_capacity = 0;
+        if (!grid->start || !grid->widest || !grid->reach || !grid->marks) grid->cell_capacity = 0;
     }
     if (!grid->column_capacity || !grid->cell_capacity)
         return error_set(error, STATUS_ENVIRONMENT, "no memory for %zu cells", grid->cell_count);
@@ -631,9 +637,15 @@ struct grid *grid_create(const struct grid_box *box, size_t n, int threads)
     return NULL;
 }
 
+static bool is_active(const struct grid *grid, uint32_t slot)
+{
+    const uint32_t point = grid->order[slot];
+    return point < grid->active && !(grid->asleep && grid->asleep[point]);
+}
+
 /* The lists of a cell's points. Returns the longest one, -1: no memory. */
-static int search_cell(struct grid *grid, const ptrdiff_t c[3], size_t active,
-                       struct candidates *candidates, struct pool *pool)
+static int search_cell(struct grid *grid, const ptrdiff_t c[3], struct candidates *candidates,
+                       struct pool *pool)
 {
     const size_t cell = cell_at(grid, c);
     if (grid->start[cell] == grid->start[cell + 1]) return 0;
@@ -643,13 +655,18 @@ static int search_cell(struct grid *grid, const ptrdiff_t c[3], size_t active,
         region.across |= region.along[a].across;
         region.all |= region.along[a].all;
     }
+    bool any = false;
+    for (uint32_t s = grid->start[cell]; s < grid->start[cell + 1]; s++) {
+        grid->lists[s] = (struct grid_list){NULL, 0, region.across};
+        any |= is_active(grid, s);
+    }
+    if (!any) return 0;
     const size_t count = find_candidates(grid, c, &region, candidates);
     if (count == SIZE_MAX) return -1;
     int longest = 0;
     for (uint32_t s = grid->start[cell]; s < grid->start[cell + 1]; s++) {
         struct grid_list *list = &grid->lists[s];
-        *list = (struct grid_list){NULL, 0, region.across};
-        if (grid->order[s] >= active) continue;
+        if (!is_active(grid, s)) continue;
         int32_t *slots = pool_take(pool, count + BEYOND);
         if (!slots) return -1;
         list->slots = slots;
@@ -678,7 +695,7 @@ static int thread_number(void)
 #endif
 }
 
-static enum status make_lists(struct grid *grid, size_t active, struct error *error)
+static enum status make_lists(struct grid *grid, struct error *error)
 {
     for (int t = 0; t < grid->threads; t++) grid->pools[t].used_chunks = grid->pools[t].used = 0;
     int longest = 0;
@@ -690,7 +707,7 @@ static enum status make_lists(struct grid *grid, size_t active, struct error *er
         for (size_t cell = grid->part_cell[p]; cell < grid->part_cell[p + 1]; cell++) {
             ptrdiff_t c[3];
             cell_coordinates(grid, cell, c);
-            const int found = search_cell(grid, c, active, &grid->candidates[t], &grid->pools[t]);
+            const int found = search_cell(grid, c, &grid->candidates[t], &grid->pools[t]);
             enough = enough && found >= 0;
             longest = found > longest ? found : longest;
         }
@@ -700,7 +717,7 @@ static enum status make_lists(struct grid *grid, size_t active, struct error *er
 }
 
 enum status grid_search(struct grid *grid, size_t n, size_t active, const double *const x[],
-                        const double *radius, struct error *error)
+                        const double *radius, const unsigned char *asleep, struct error *error)
 {
     if (n == 0 || n >= INT32_MAX)
         return error_set(error, STATUS_BAD_INPUT, "%zu particles: allowed are 1 to 2^31 - 2", n);
@@ -713,7 +730,54 @@ enum status grid_search(struct grid *grid, size_t n, size_t active, const double
     sort_points(grid, n, x, radius);
     find_reaches(grid);
     cut_parts(grid);
-    return make_lists(grid, active, error);
+    grid->asleep = asleep;
+    grid->active = active;
+    return make_lists(grid, error);
+}
+
+/* Marks the cells within k cells along one axis of a marked one. */
+static void spread(const struct grid *grid, int axis, ptrdiff_t k, const unsigned char *from,
+                   unsigned char *to)
+{
+    ptrdiff_t c[3];
+    for (c[2] = 0; c[2] < grid->cells[2]; c[2]++)
+        for (c[1] = 0; c[1] < grid->cells[1]; c[1]++)
+            for (c[0] = 0; c[0] < grid->cells[0]; c[0]++) {
+                if (!from[cell_at(grid, c)]) continue;
+                ptrdiff_t near[3] = {c[0], c[1], c[2]};
+                const ptrdiff_t most = k < grid->cells[axis] ? k : grid->cells[axis] - 1;
+                for (ptrdiff_t step = -most; step <= most; step++) {
+                    near[axis] = c[axis] + step;
+                    if (grid->box.periodic[axis])
+                        near[axis] = folded(grid, axis, near[axis]);
+                    else if (near[axis] < 0 || near[axis] >= grid->cells[axis])
+                        continue;
+                    to[cell_at(grid, near)] = 1;
+                }
+            }
+}
+
+void grid_wake(const struct grid *grid, const unsigned char *disturbed, int layers,
+               unsigned char *asleep)
+{
+    float most = 0;
+    unsigned char *from = grid->marks, *to = grid->marks + grid->cell_count;
+    memset(from, 0, grid->cell_count);
+    for (size_t cell = 0; cell < grid->cell_count; cell++) {
+        most = grid->reach[cell] > most ? grid->reach[cell] : most;
+        for (uint32_t s = grid->start[cell]; s < grid->start[cell + 1]; s++)
+            if (grid->order[s] < grid->active && disturbed[grid->order[s]]) from[cell] = 1;
+    }
+    for (int a = 0; a < grid->box.dim; a++) {
+        memset(to, 0, grid->cell_count);
+        spread(grid, a, layers * cells_within(grid, a, most), from, to);
+        unsigned char *const next = from;
+        from = to;
+        to = next;
+    }
+    for (size_t cell = 0; cell < grid->cell_count; cell++)
+        for (uint32_t s = grid->start[cell]; from[cell] && s < grid->start[cell + 1]; s++)
+            if (grid->order[s] < grid->active) asleep[grid->order[s]] = 0;
 }
 
 const uint32_t *grid_order(const struct grid *grid)

@@ -35,12 +35,13 @@ struct grid; /* private to grid.c but for what the functions below give */
 struct grid *grid_create(const struct grid_box *box, size_t n, int threads);
 void grid_destroy(struct grid *grid);
 
-/* Sorts n points and finds the list of each of the first `active` ones (the others are only found).
- * x: dim arrays of n, any real positions on periodic axes; radius: n search radii.
+/* Sorts n points and finds the list of each of the first `active` ones (the others are only found)
+ * that does not sleep; asleep: a flag for each of those, or NULL. x: dim arrays of n, any real
+ * positions on periodic axes; radius: n search radii.
  * STATUS_BAD_INPUT: a position or a radius is not finite, or a radius exceeds half a periodic side
  * (the message names the point); STATUS_ENVIRONMENT: no memory. */
 enum status grid_search(struct grid *grid, size_t n, size_t active, const double *const x[],
-                        const double *radius, struct error *error);
+                        const double *radius, const unsigned char *asleep, struct error *error);
 
 /* Of the last search. Slots run over the points in the order of their cells; the sentinel is slot
  * n. position: slot -> {x, y, z (0 in 2D), 0}, wrapped into the box on periodic axes. */
@@ -48,7 +49,11 @@ const uint32_t *grid_order(const struct grid *grid); /* slot -> point, n of them
 const double (*grid_positions(const struct grid *grid))[4];
 const struct grid_list *grid_lists(const struct grid *grid); /* of each slot; count 0: not active */
 double grid_side(const struct grid *grid, int axis);         /* period, 0: open */
-int grid_longest(const struct grid *grid);                   /* list, in whole vectors */
+/* Wakes whoever is in a cell that comes within `layers` reaches of a cell with a disturbed point:
+ * clears their flag. n of each flag. */
+void grid_wake(const struct grid *grid, const unsigned char *disturbed, int layers,
+               unsigned char *asleep);
+int grid_longest(const struct grid *grid); /* list, in whole vectors */
 
 /* Parts of the slots for threads to share: at most 256 slots each, independent of the number of
  * threads. begin: parts + 1 slots. */

@@ -112,7 +112,7 @@ static void lists_hold_every_pair(void **state)
         assert_non_null(grid);
         const double *const x[] = {p->x[0], p->x[1], p->x[2]};
         const size_t active = k % 4 ? p->n : p->n / 2 + 1;
-        const enum status status = grid_search(grid, p->n, active, x, p->radius, &error);
+        const enum status status = grid_search(grid, p->n, active, x, p->radius, NULL, &error);
         if (status) fail_msg("draw %d: %s", k, error.message);
         compare(p, grid, active, &compared);
         sound++;
@@ -134,17 +134,17 @@ static void refuses(void **state)
     struct grid *grid = grid_create(&box, 3, 1);
     (void)state;
     assert_non_null(grid);
-    assert_int_equal(grid_search(grid, 3, 3, at, radius, &error), STATUS_OK);
+    assert_int_equal(grid_search(grid, 3, 3, at, radius, NULL, &error), STATUS_OK);
     radius[2] = 0.51;
-    assert_int_equal(grid_search(grid, 3, 3, at, radius, &error), STATUS_BAD_INPUT);
+    assert_int_equal(grid_search(grid, 3, 3, at, radius, NULL, &error), STATUS_BAD_INPUT);
     assert_non_null(strstr(error.message, "particle 2 reaches as far as 0.51"));
     radius[2] = NAN;
-    assert_int_equal(grid_search(grid, 3, 3, at, radius, &error), STATUS_BAD_INPUT);
+    assert_int_equal(grid_search(grid, 3, 3, at, radius, NULL, &error), STATUS_BAD_INPUT);
     radius[2] = 0.1;
     y[1] = INFINITY;
-    assert_int_equal(grid_search(grid, 3, 3, at, radius, &error), STATUS_BAD_INPUT);
+    assert_int_equal(grid_search(grid, 3, 3, at, radius, NULL, &error), STATUS_BAD_INPUT);
     assert_non_null(strstr(error.message, "position of particle 1"));
-    assert_int_equal(grid_search(grid, 0, 0, at, radius, &error), STATUS_BAD_INPUT);
+    assert_int_equal(grid_search(grid, 0, 0, at, radius, NULL, &error), STATUS_BAD_INPUT);
     grid_destroy(grid);
 }
 
