@@ -52,6 +52,7 @@ void hold_state(struct simulation *simulation)
     const struct particles *a = &simulation->particles;
     const double *held = simulation->held;
     const double gamma = simulation->gamma;
+    const enum volume_element element = simulation->scheme.volume_element;
     const struct width_rule rule = {.dim = a->dim, .eta = simulation->scheme.eta};
     for (ptrdiff_t i = 0; held && i < a->n; i++) {
         const double rho = held[a->id[i]];
@@ -63,7 +64,10 @@ void hold_state(struct simulation *simulation)
         a->c[i] = sqrt(gamma * (gamma - 1) * u);
         a->h[i] = width_of(&rule, a->m[i], rho);
         a->h_inverse[i] = a->h_inverse_found[i] = a->h_inverse_old[i] = 1 / a->h[i];
-        a->b[i] = a->P[i] * (a->V[i] * a->V[i] / a->m[i]);
+        const double Z = element == VOLUME_NUMBER   ? 1
+                         : element == VOLUME_ENERGY ? a->U[i]
+                                                    : a->m[i];
+        a->b[i] = a->P[i] * (a->V[i] * a->V[i] / Z);
     }
 }
 

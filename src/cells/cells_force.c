@@ -57,7 +57,7 @@ static void fill_record(const struct cells *cells, const struct cells_fields *fi
     }
     if (at[GROUP_LAGRANGIAN] >= 0) {
         group = record + at[GROUP_LAGRANGIAN];
-        group[0] = fields->b[i] * (method->number ? fields->m[i] : 1); /* Z P/y^2 with Z = 1 */
+        group[0] = fields->b[i];
         group[1] = fields->grad_h[i];
         group[2] = method->energy_element ? fields->U[i] : method->number ? 1 : fields->m[i];
         group[3] = 0;
