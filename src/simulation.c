@@ -336,6 +336,11 @@ void simulation_rates(const struct simulation *simulation, struct rates *rates)
                             .time_step = simulation->time_step};
 }
 
+void simulation_describe(const struct simulation *simulation, double *neighbours, double *condition)
+{
+    simulation->plan.sums->describe(simulation, neighbours, condition);
+}
+
 void simulation_conservation(const struct simulation *simulation, struct conservation *sums)
 {
     const struct particles *a = &simulation->particles;

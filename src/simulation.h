@@ -85,6 +85,11 @@ enum status simulation_run(struct simulation *simulation, double t_end,
                            simulation_progress *progress, void *context, struct error *error);
 void simulation_snapshot(const struct simulation *simulation, struct snapshot *snapshot);
 void simulation_rates(const struct simulation *simulation, struct rates *rates);
+/* In the order of the snapshot, right after simulation_create: how many particles are within h of
+ * each, itself and images included; condition number of its moment matrix in the 2-norm, NaN where
+ * the gradient has none, beyond 1000 where the standard gradient stands in for it. */
+void simulation_describe(const struct simulation *simulation, double *neighbours,
+                         double *condition);
 void simulation_conservation(const struct simulation *simulation, struct conservation *sums);
 void simulation_cost(const struct simulation *simulation, struct simulation_cost *cost);
 void simulation_destroy(struct simulation *simulation);

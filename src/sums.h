@@ -44,6 +44,9 @@ struct sums {
     enum status (*forces)(struct simulation *simulation, double *rate, struct error *error);
     /* signal of every awake particle from v, c, h; returns the largest signal speed / h. */
     double (*signal)(struct simulation *simulation);
+    /* Of each particle, after the rates: how many are within h of it, itself and images included;
+     * condition number of its moment matrix in the 2-norm, NaN where its gradient has none. */
+    void (*describe)(const struct simulation *simulation, double *neighbours, double *condition);
 
     /* Who sleeps: from the first rates, and after every step. Fill simulation->sleep. */
     enum status (*sleep_begin)(struct simulation *simulation, struct error *error);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "lanes.h"
+#include "matrix.h"
 
 static void add_groups(struct lanes_layout *layout, enum lanes_group first, int count)
 {
@@ -178,4 +179,44 @@ enum status cells_arrange(struct cells *cells, const struct cells_fields *fields
     if (!reserve_records(cells, cells->points) || !lanes_reserve(cells))
         return error_set(error, STATUS_ENVIRONMENT, "no memory for %zu particles", fields->n);
     return STATUS_OK;
+}
+
+/* x_b - x_a along an axis, of the nearest image. */
+static double separation(const struct cells *cells, size_t a, size_t b, int axis)
+{
+    const double side = grid_side(cells->grid, axis);
+    const double d = grid_positions(cells->grid)[b][axis] - grid_positions(cells->grid)[a][axis];
+    return side > 0 ? d - side * round(d / side) : d;
+}
+
+static double condition_of(const struct cells *cells, const struct cells_fields *fields, size_t i)
+{
+    const int dim = cells->method.box.dim;
+    double inverse[CELLS_SQUARE];
+    if (cells->method.gradient == GRADIENT_STANDARD) return nan("");
+    if (!(fields->condition[i] <= cells->method.worst_condition)) return fields->condition[i];
+    for (int a = 0; a < dim; a++)
+        for (int b = 0; b < dim; b++)
+            inverse[a * dim + b] = fields->matrix[symmetric_at(dim, a, b)][i];
+    return matrix_condition(dim, inverse); /* that of the matrix, too */
+}
+
+void cells_describe(const struct cells *cells, const struct cells_fields *fields,
+                    double *neighbours, double *condition)
+{
+    for (size_t slot = 0; slot < cells->points; slot++) {
+        const size_t i = grid_order(cells->grid)[slot];
+        const struct grid_list *list = &grid_lists(cells->grid)[slot];
+        if (i >= fields->n) continue;
+        neighbours[i] = 1;
+        condition[i] = condition_of(cells, fields, i);
+        for (int32_t k = 0; k < list->count; k++) {
+            double r2 = 0;
+            for (int a = 0; a < cells->method.box.dim; a++) {
+                const double d = separation(cells, slot, (size_t)list->slots[k], a);
+                r2 += d * d;
+            }
+            neighbours[i] += sqrt(r2) * fields->h_inverse[i] < 1;
+        }
+    }
 }

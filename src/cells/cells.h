@@ -93,8 +93,8 @@ void cells_widths(struct cells *cells, const struct cells_fields *fields,
                   const struct width_rule *rule, const double *radius, double *h, double *h_inverse,
                   unsigned char *outcome);
 
-/* matrix, condition, slope, projector, as the method needs them. Returns how many particles have
- * too few neighbours for a matrix. */
+/* matrix, condition, slope, projector, as the method needs them; slopes of a particle whose matrix
+ * is not to be used are 0. Returns how many particles have no matrix for their gradient. */
 size_t cells_matrix(struct cells *cells, const struct cells_fields *fields);
 
 /* F, de, div_v, signal. Returns the number of pairs within max(h_i, h_j). */
@@ -102,6 +102,11 @@ uint64_t cells_forces(struct cells *cells, const struct cells_fields *fields);
 
 /* signal alone, from velocities that have changed since the forces. */
 void cells_signal(struct cells *cells, const struct cells_fields *fields);
+
+/* Of each particle: how many are within h of it, itself and images included, and the condition
+ * number of its matrix in the 2-norm (gradient=standard: NaN). For reports: not a fast loop. */
+void cells_describe(const struct cells *cells, const struct cells_fields *fields,
+                    double *neighbours, double *condition);
 
 /* Slots of the grid: particles, and their images in walls. */
 size_t cells_points(const struct cells *cells);

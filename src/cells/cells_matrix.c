@@ -72,10 +72,13 @@ CLONES static double moment_of_difference(int count, const double *restrict weig
     return TREE(s);
 }
 
-/* The inverse of the moments with these weights. False: too few neighbours, or all on a line. */
-static bool invert_moments(int dim, int count, const struct lanes *lanes, const double *weight,
-                           double inverse[CELLS_SQUARE], double *condition)
+/* The inverse of the moments with these weights. False where it is not to be used (CONVENTIONS eq.
+ * 4.7): too few neighbours, or nearly on a line or in a plane. *condition is that of Frobenius'
+ * norm, which is never less than the 2-norm's; that is found where it decides. */
+static bool invert_moments(const struct cells_method *method, int count, const struct lanes *lanes,
+                           const double *weight, double inverse[CELLS_SQUARE], double *condition)
 {
+    const int dim = method->box.dim;
     double moments[CELLS_SQUARE] = {0};
     for (int a = 0; a < dim; a++)
         for (int b = a; b < dim; b++)
@@ -88,8 +91,9 @@ static bool invert_moments(int dim, int count, const struct lanes *lanes, const 
         norm += moments[k] * moments[k];
         norm_inverse += inverse[k] * inverse[k];
     }
-    *condition = sqrt(norm * norm_inverse); /* Frobenius: dim for a multiple of the unit matrix */
-    return true;
+    *condition = sqrt(norm) * sqrt(norm_inverse);
+    if (!(*condition <= method->worst_condition)) *condition = matrix_condition(dim, moments);
+    return *condition <= method->worst_condition;
 }
 
 /* P = kappa M^2/tr M^2 with M = L L^T and kappa = smoothstep((s - 0.7)/0.25),
@@ -151,7 +155,7 @@ static void matrix_pass(struct cells *cells, const struct cells_fields *fields, 
     if (method->gradient == GRADIENT_IA || method->velocity_gradient) {
         cells->shapes.w(method->kernel, (size_t)count, q, w);
         product(count, V, w, weight);
-        sound = invert_moments(dim, count, lanes, weight, inverse, &condition);
+        sound = invert_moments(method, count, lanes, weight, inverse, &condition);
     }
     if (method->velocity_gradient)
         velocity_gradient(cells, fields, i, count, lanes, weight, inverse, sound);
@@ -160,15 +164,13 @@ static void matrix_pass(struct cells *cells, const struct cells_fields *fields, 
         cells->shapes.dw(method->kernel, (size_t)count, q, w);
         slope_weight(count, 1 / fields->h_inverse[i], lane(lanes, LANE_R_INVERSE), w);
         product(count, V, w, weight);
-        sound = invert_moments(dim, count, lanes, weight, inverse, &condition);
+        sound = invert_moments(method, count, lanes, weight, inverse, &condition);
     }
     fields->condition[i] = condition;
-    sound = sound && condition <= method->worst_condition;
     for (int a = 0; a < dim; a++)
         for (int b = a; b < dim; b++)
             fields->matrix[symmetric_at(dim, a, b)][i] =
                 sound ? 0.5 * (inverse[a * dim + b] + inverse[b * dim + a]) : 0;
-    if (!sound) fields->condition[i] = HUGE_VAL;
 }
 
 size_t cells_matrix(struct cells *cells, const struct cells_fields *fields)

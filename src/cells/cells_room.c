@@ -17,7 +17,7 @@ enum {
 /* How far beyond a first guess the search for a root may go without a second search. */
 static const double margin = 1.25;
 
-/* Beyond this condition number (Frobenius) of a moment matrix its inverse points anywhere. */
+/* Beyond this condition number of a moment matrix, in the 2-norm, its inverse points anywhere. */
 static const double worst_condition = 1e3;
 
 struct room {
@@ -469,6 +469,12 @@ static double signal(struct simulation *simulation)
     return rate_of_all(simulation);
 }
 
+static void describe(const struct simulation *simulation, double *neighbours, double *condition)
+{
+    const struct room *room = room_of(simulation);
+    cells_describe(room->cells, &room->fields, neighbours, condition);
+}
+
 /* --- sleep ------------------------------------------------------------------------------------ */
 
 /* Layers of reaches around a disturbance that must be awake: it passes through density and forces
@@ -546,6 +552,7 @@ const struct sums cells_sums = {
     .matrix = matrix,
     .forces = forces,
     .signal = signal,
+    .describe = describe,
     .sleep_begin = begin_sleep,
     .sleep_update = update_sleep,
 };

@@ -2,6 +2,7 @@
  * The descriptor of the sums in 1D, and their room. */
 #include "line.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 enum { GHOSTS_AT_START = 64, RESERVE = 8 };
@@ -54,6 +55,24 @@ static enum status reserve(struct simulation *simulation, struct error *error)
     return forces_reserve_scratch(simulation, reach, error);
 }
 
+static double count_within(const struct particles *a, ptrdiff_t i, ptrdiff_t step)
+{
+    double count = 0;
+    for (ptrdiff_t j = i + step; j >= -a->ghosts && j < a->n + a->ghosts; j += step, count++)
+        if (!(fabs(a->x[0][j] - a->x[0][i]) * a->h_inverse[i] < 1)) break;
+    return count;
+}
+
+/* A matrix of 1D is a number. */
+static void describe(const struct simulation *simulation, double *neighbours, double *condition)
+{
+    const struct particles *a = &simulation->particles;
+    for (ptrdiff_t i = 0; i < a->n; i++) {
+        neighbours[i] = 1 + count_within(a, i, -1) + count_within(a, i, 1);
+        condition[i] = simulation->plan.matrix ? 1 : nan("");
+    }
+}
+
 const struct sums line_sums = {
     .name = "line",
     .dim_min = 1,
@@ -67,6 +86,7 @@ const struct sums line_sums = {
     .matrix = forces_matrix,
     .forces = forces_sum,
     .signal = forces_signal,
+    .describe = describe,
     .sleep_begin = groups_begin,
     .sleep_update = groups_update,
 };

@@ -41,6 +41,7 @@ struct oracle {
     int dim;
     oracle_vector lo, period;
     long double gamma, time;
+    bool without_grad_h;        /* wrong on purpose: set after oracle_create */
     long double last_dt, ahead; /* h_method predicted: by how many last changes of 1/h */
     size_t n, steps;
     struct oracle_particle *particles; /* in the scene's order */

@@ -141,6 +141,7 @@ static long double noise_pressure(const struct oracle *oracle, const struct orac
 static long double grad_h_factor(const struct oracle *oracle, const struct oracle_particle *a,
                                  const struct oracle_particle *b)
 {
+    if (oracle->without_grad_h) return 1;
     if (oracle->scheme.volume_element != VOLUME_ENERGY) return 1 / (1 + a->grad_h_rho);
     return 1 - b->m / b->U * a->grad_h_y / (1 + a->grad_h_rho);
 }

@@ -40,7 +40,7 @@ enum status run_resolve(struct run *run, const struct run_settings *asked, struc
     return status ? status : settings_scheme(&run->settings, dim, &run->scheme, error);
 }
 
-static struct scene scene_of(const struct run *run, const struct initial *initial)
+struct scene run_scene(const struct run *run, const struct initial *initial)
 {
     const struct domain *domain = &run->problem.domain;
     return (struct scene){
@@ -74,7 +74,7 @@ static enum status begin(const struct run *run, struct run_result *result, struc
     if ((!run->asked.any_window && (status = problem_check_time(&run->problem, t_end, error))) ||
         (status = initial_create(initial, &run->problem, &run->settings, error)))
         return status;
-    const struct scene scene = scene_of(run, initial);
+    const struct scene scene = run_scene(run, initial);
     result->n = initial->n;
     result->plan_count =
         plan_explain(&scene, result->plan, RUN_PLAN_MAX, result->warnings, sizeof result->warnings);
@@ -271,7 +271,7 @@ static enum status simulate(const struct run *run, struct run_result *result,
     const struct run_settings *asked = &run->asked;
     struct simulation *simulation = NULL;
     struct outcome outcome = {0};
-    const struct scene scene = scene_of(run, initial);
+    const struct scene scene = run_scene(run, initial);
     enum status status = simulation_create(&scene, &simulation, &outcome.reason);
     if (status == STATUS_BROKE_DOWN) return broke_down_at_start(result, &outcome.reason);
     if (status) {
@@ -298,7 +298,7 @@ static enum status simulate_plainly(const struct run *run, struct run_result *re
 {
     struct plain plain;
     struct outcome outcome = {0};
-    const struct scene scene = scene_of(run, initial);
+    const struct scene scene = run_scene(run, initial);
     outcome.status = plain_run(&plain, &scene, &outcome.reason);
     outcome.start = plain.start;
     outcome.end = plain.end;

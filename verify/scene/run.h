@@ -79,6 +79,9 @@ enum status run_prepare(struct run_settings *settings, const char *case_name, in
 /* STATUS_BAD_INPUT: keys that cannot be together, or that no problem or scheme can be made of. */
 enum status run_resolve(struct run *run, const struct run_settings *asked, struct error *error);
 
+/* What the solver is given; initial: of the run's problem. */
+struct scene run_scene(const struct run *run, const struct initial *initial);
+
 /* Runs. STATUS_OK and STATUS_BROKE_DOWN leave a result (run_free it), anything else none:
  * STATUS_BAD_INPUT where the exact solution does not hold in the window up to t_end. */
 enum status run_execute(const struct run *run, struct run_result *result, struct error *error);

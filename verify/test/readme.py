@@ -45,6 +45,10 @@ PLACES = {
     "sphproof gradient cloud.csv --operator ia --kernel wendland_c2 --dim 2 --eta 2":
         "printf 'x,y,volume,f\\n0,0,1,2\\n1,0,1,3\\n0,1,1,4\\n1,1,1,5\\n' >cloud.csv; "
         "sphproof gradient cloud.csv --operator ia --kernel wendland_c2 --dim 2 --eta 2",
+    "sphproof rates particles.csv lo=0 hi=1 --check theirs.csv":
+        "printf 'x,vx,m,u\\n0.1,0,1,1\\n0.4,0,1,1\\n0.6,0,1,1\\n0.9,0,1,1\\n' >particles.csv; "
+        "sphproof rates particles.csv lo=0 hi=1 --csv theirs.csv; "
+        "sphproof rates particles.csv lo=0 hi=1 --check theirs.csv",
     "python3 verify/test/faults.py build/sphproof PART": None,  # test `faults`
     "reports/run": None, "reports/run --nightly": None, "reports/compare main": None,  # tests `README: scripts`, `reports/compare`
     "verify/run --full": None, "verify/run --nightly": None,

@@ -18,7 +18,8 @@ LAYERS = ("src", "reference", "reports", "verify", "cases")
 TEXTS = (".c", ".h", ".def", ".py", ".sh", ".md", ".txt", ".ini", ".build", ".options")
 SKIP = {os.path.join("reports", "out"), os.path.join("verify", "fuzz", "corpus")}
 # made by the build or a run, or given by the system, or an example's file that the user has
-FOREIGN = {"config.h", "version.h", "cmocka.h", "summary.md", "my_kernel.c", "file.c", "cloud.csv"}
+FOREIGN = {"config.h", "version.h", "cmocka.h", "summary.md", "my_kernel.c", "file.c", "cloud.csv",
+           "particles.csv", "theirs.csv"}
 
 COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.S)
 # a file called *.c or *.h, or a path; capitals are placeholders (NAME.h, F.csv)

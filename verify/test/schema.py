@@ -120,6 +120,7 @@ COMMANDS = [
     ["run", "sound_wave", "n=32", "t_end=0.1"],
     ["run", "sod", "n=60", "--explain"],
     ["run", "two_rarefactions", "n=60", "cfl=50"],
+    ["rates", "sod", "n=60"],
     ["converge", "sod", "--n", "20,40,60,80", "t_end=0.1"],
     ["converge", "sod", "--n", "20,40,60,80", "t_end=0.05", "--vary", "gradient"],
     ["bench", "--n", "20,40", "t_end=0.05", "--vary", "gradient", *BRIEF],

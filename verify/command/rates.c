@@ -1,0 +1,360 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * sphproof rates: one evaluation of particles that a file or a case gives, and the judgement of
+ * rates that another code computed on them. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "command.h"
+#include "output.h"
+#include "particle_file.h"
+#include "rate_check.h"
+#include "result.h"
+#include "run.h"
+#include "text.h"
+
+enum { ROWS_SHOWN = 20, KEYS_MAX = 256 };
+
+struct request {
+    const char *source;
+    bool from_file;
+    struct settings settings;
+    struct particle_file file;
+    struct initial initial;
+    struct scene scene;
+    struct csv theirs;
+    double tolerance;
+};
+
+/* ---- input ---- */
+
+static enum status take_numbers(const char *key, const char *text, int dim, double values[3],
+                                struct error *error)
+{
+    if (text_reals(text, " \t,", 1, values)) {
+        for (int a = 1; a < dim; a++) values[a] = values[0];
+        return STATUS_OK;
+    }
+    if (text_reals(text, " \t,", (size_t)dim, values)) return STATUS_OK;
+    return error_set(error, STATUS_BAD_INPUT, "%s=%.60s: allowed: one number or %d", key, text,
+                     dim);
+}
+
+static enum status take_boundaries(const char *text, int dim, enum boundary boundary[3],
+                                   struct error *error)
+{
+    char words[64];
+    int count = 0;
+    snprintf(words, sizeof words, "%s", text);
+    for (char *rest = words, *word; (word = strtok_r(rest, " \t,", &rest)) && count < 4; count++) {
+        const int member = family_index(&scheme_boundary_family, word);
+        if (member < 0)
+            return text_unknown_member(error, "rates", "boundary", word, &scheme_boundary_family);
+        if (count < 3) boundary[count] = (enum boundary)member;
+    }
+    for (int a = 1; count == 1 && a < dim; a++) boundary[a] = boundary[0];
+    if (count != 1 && count != dim)
+        return error_set(error, STATUS_BAD_INPUT, "boundary=%.60s: allowed: one word or %d", text,
+                         dim);
+    for (int a = 0; a < dim; a++)
+        if (boundary[a] == BOUNDARY_FIXED)
+            return error_set(error, STATUS_BAD_INPUT,
+                             "boundary=fixed: a file does not say which particles are kept: "
+                             "allowed: periodic open reflecting");
+    return STATUS_OK;
+}
+
+/* Keys of the box, which a file lacks; others are left in rest. */
+static enum status take_box(struct request *r, int n, char **arguments, char **rest, int *left,
+                            struct error *error)
+{
+    const int dim = r->file.dim;
+    bool lo = false, hi = false;
+    *left = 0;
+    for (int k = 0; k < n; k++) {
+        const char *text = strchr(arguments[k], '=');
+        const size_t length = text ? (size_t)(text++ - arguments[k]) : 0;
+        enum status status = STATUS_OK;
+        if (length == 2 && !strncmp(arguments[k], "lo", 2))
+            status = take_numbers("lo", text, dim, r->scene.lo, error), lo = true;
+        else if (length == 2 && !strncmp(arguments[k], "hi", 2))
+            status = take_numbers("hi", text, dim, r->scene.hi, error), hi = true;
+        else if (length == 7 && !strncmp(arguments[k], "gravity", 7))
+            status = take_numbers("gravity", text, dim, r->scene.gravity, error);
+        else if (length == 8 && !strncmp(arguments[k], "boundary", 8))
+            status = take_boundaries(text, dim, r->scene.boundary, error);
+        else
+            rest[(*left)++] = arguments[k];
+        if (status) return status;
+    }
+    for (int a = 0; a < dim; a++)
+        if ((!lo || !hi) && r->scene.boundary[a] != BOUNDARY_OPEN)
+            return error_set(error, STATUS_BAD_INPUT,
+                             "%.200s: lo and hi are needed: the box of boundary=%s, such as lo=0 "
+                             "hi=1",
+                             r->source, scheme_boundary_family.members[r->scene.boundary[a]]->name);
+    for (int a = 0; a < dim; a++)
+        if ((lo || hi) && !(r->scene.lo[a] < r->scene.hi[a]))
+            return error_set(error, STATUS_BAD_INPUT, "lo = %g, hi = %g: allowed: lo < hi",
+                             r->scene.lo[a], r->scene.hi[a]);
+    return STATUS_OK;
+}
+
+/* Rates are to be compared: h is found to round-off, unless somebody says otherwise. */
+static enum status sharpen(struct settings *settings, struct error *error)
+{
+    if (settings->value[SETTING_h_tolerance].source != SOURCE_FALLBACK) return STATUS_OK;
+    return settings_set(settings, SETTING_h_tolerance, "1e-14", SOURCE_FALLBACK, NULL, error);
+}
+
+static enum status take_file(struct request *r, int n, char **arguments, struct error *error)
+{
+    char *rest[KEYS_MAX];
+    int left;
+    if (n > KEYS_MAX) return error_set(error, STATUS_BAD_INPUT, "rates: %d keys are too many", n);
+    enum status status = particle_file_read(r->source, &r->file, error);
+    if (!status) status = take_box(r, n, arguments, rest, &left, error);
+    if (status) return status;
+    settings_init(&r->settings);
+    if ((status = settings_apply(&r->settings, left, rest, error))) return status;
+    for (int k = 0; k < SETTINGS; k++)
+        if (r->settings.value[k].source == SOURCE_USER && k != SETTING_gamma &&
+            strcmp(setting_keys[k].section, "scheme") != 0)
+            return error_set(error, STATUS_BAD_INPUT,
+                             "%s says nothing about the particles of a file: allowed: the keys of "
+                             "the scheme, gamma, lo, hi, boundary, gravity",
+                             setting_keys[k].name);
+    if ((status = sharpen(&r->settings, error)) ||
+        (status = settings_scheme(&r->settings, r->file.dim, &r->scene.scheme, error)))
+        return status;
+    r->scene.gamma = settings_real(&r->settings, SETTING_gamma);
+    return particle_file_fill(&r->file, r->source, &r->scene, error);
+}
+
+static enum status take_case(struct request *r, int n, char **arguments, struct error *error)
+{
+    struct run_settings asked;
+    struct run run;
+    enum status status = run_prepare(&asked, r->source, n, arguments, error);
+    if (!status) status = sharpen(&asked.settings, error);
+    if (!status) status = run_resolve(&run, &asked, error);
+    if (!status) status = initial_create(&r->initial, &run.problem, &run.settings, error);
+    if (status) return status;
+    r->settings = run.settings;
+    r->scene = run_scene(&run, &r->initial);
+    return STATUS_OK;
+}
+
+static enum status take_request(const struct options *options, int n, char **arguments,
+                                struct request *r, struct error *error)
+{
+    const char *check = options_value(options, "check"),
+               *tolerance = options_value(options, "tolerance");
+    if (n < 1) return command_usage(options, error, "particles are needed: a file or a case");
+    r->source = arguments[0];
+    r->tolerance = 1e-9;
+    if (tolerance && !check)
+        return error_set(error, STATUS_BAD_INPUT, "rates: --tolerance belongs to --check");
+    if (tolerance && !(text_real(tolerance, &r->tolerance) && r->tolerance > 0))
+        return error_set(error, STATUS_BAD_INPUT,
+                         "rates: --tolerance '%.40s': allowed: a number above 0", tolerance);
+    const size_t length = strlen(r->source);
+    r->from_file = length > 4 && strcmp(r->source + length - 4, ".csv") == 0;
+    enum status status = (r->from_file ? take_file : take_case)(r, n - 1, arguments + 1, error);
+    if (!status && check) status = csv_read(check, &r->theirs, error);
+    r->scene.threads = options->threads;
+    r->scene.skip = false;
+    return status;
+}
+
+/* ---- output ---- */
+
+static void print_table(const struct request *r, const struct rate_table *t)
+{
+    printf("%s, %dD, %zu particles; one evaluation, code units\n", r->source, t->dim, t->n);
+    if (r->file.ignored[0]) printf("columns that are not read: %s\n", r->file.ignored);
+    printf("\n%8s %13s %13s %13s", "particle", "h", "rho", "P");
+    for (int a = 0; a < t->dim; a++) printf("        dp%c/dt", "xyz"[a]);
+    printf(" %13s %6s %9s\n", "dU/dt", "neighb", "condition");
+    for (size_t i = 0; i < t->n && i < ROWS_SHOWN; i++) {
+        printf("%8zu %13.6g %13.6g %13.6g", i, t->h[i], t->rho[i], t->P[i]);
+        for (int a = 0; a < t->dim; a++) printf(" %13.6g", t->force[a][i]);
+        printf(" %13.6g %6.0f", t->dU[i], t->neighbours[i]);
+        if (isnan(t->condition[i]))
+            printf(" %9s\n", "");
+        else
+            printf(" %9.3g\n", t->condition[i]);
+    }
+    if (t->n > ROWS_SHOWN)
+        printf("     ... %zu more; all of them with --csv or --json\n", t->n - ROWS_SHOWN);
+    printf("\nsums: force (");
+    for (int a = 0; a < t->dim; a++) printf("%s%.3g", a ? ", " : "", t->sum_force[a]);
+    printf("), power %.3g\n", t->power);
+}
+
+static void print_check(const struct rate_check *check)
+{
+    printf("\n%-8s %10s %10s %9s  %s\n", "quantity", "worst", "rms", "particle", "likely cause");
+    for (size_t k = 0; k < check->count; k++) {
+        const struct rate_comparison *c = &check->columns[k];
+        printf("%-8s %10.3g %10.3g %9zu  %s%s\n", c->quantity, c->worst, c->rms, c->particle,
+               c->good ? "" : "FAIL ", c->cause);
+    }
+}
+
+static enum status write_csv(const char *path, const struct request *r, const struct rate_table *t,
+                             struct error *error)
+{
+    struct output output;
+    if (output_open(&output, path, error)) return error->status;
+    fprintf(output.stream, "h,rho,P");
+    for (int a = 0; a < t->dim; a++) fprintf(output.stream, ",a%c", "xyz"[a]);
+    fprintf(output.stream, ",du\n");
+    for (size_t i = 0; i < t->n; i++) {
+        fprintf(output.stream, "%.17g,%.17g,%.17g", t->h[i], t->rho[i], t->P[i]);
+        for (int a = 0; a < t->dim; a++)
+            fprintf(output.stream, ",%.17g", t->force[a][i] / r->scene.m[i]);
+        fprintf(output.stream, ",%.17g\n", t->dU[i] / r->scene.m[i]);
+    }
+    return output_close(&output, error);
+}
+
+static json_t *vector(int dim, const double *const *values, size_t i)
+{
+    json_t *array = json_array();
+    for (int a = 0; a < dim; a++) json_array_append_new(array, result_number(values[a][i]));
+    return array;
+}
+
+static json_t *particles_json(const struct request *r, const struct rate_table *t)
+{
+    json_t *particles = json_array();
+    const double *const force[3] = {t->force[0], t->force[1], t->force[2]};
+    for (size_t i = 0; i < t->n; i++)
+        json_array_append_new(
+            particles,
+            json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:i, s:o}", "x",
+                      vector(t->dim, r->scene.x, i), "h", result_number(t->h[i]), "rho",
+                      result_number(t->rho[i]), "P", result_number(t->P[i]), "force",
+                      vector(t->dim, force, i), "dU", result_number(t->dU[i]), "neighbours",
+                      (int)t->neighbours[i], "condition",
+                      isnan(t->condition[i]) ? json_null() : result_number(t->condition[i])));
+    return particles;
+}
+
+/* The scheme as used; of a file's particles the box and gamma, too. */
+static json_t *used_settings(const struct request *r)
+{
+    json_t *all = settings_json(&r->settings), *used = json_object(), *boundary = json_array();
+    const double *const ends[] = {r->scene.lo, r->scene.hi, r->scene.gravity};
+    static const char *const names[] = {"lo", "hi", "gravity"};
+    if (!r->from_file) {
+        json_decref(used), json_decref(boundary);
+        return all;
+    }
+    for (int k = 0; k < SETTINGS; k++)
+        if (k == SETTING_gamma || strcmp(setting_keys[k].section, "scheme") == 0)
+            json_object_set(used, setting_keys[k].name, json_object_get(all, setting_keys[k].name));
+    for (int k = 0; k < 3; k++) {
+        json_t *values = json_array();
+        for (int a = 0; a < r->scene.dim; a++) json_array_append_new(values, json_real(ends[k][a]));
+        json_object_set_new(used, names[k], values);
+    }
+    for (int a = 0; a < r->scene.dim; a++)
+        json_array_append_new(
+            boundary, json_string(scheme_boundary_family.members[r->scene.boundary[a]]->name));
+    json_object_set_new(used, "boundary", boundary);
+    json_decref(all);
+    return used;
+}
+
+static json_t *comparison_json(const struct rate_check *check)
+{
+    json_t *comparison = json_array();
+    for (size_t k = 0; k < check->count; k++) {
+        const struct rate_comparison *c = &check->columns[k];
+        json_array_append_new(
+            comparison, json_pack("{s:s, s:o, s:o, s:i, s:s?}", "quantity", c->quantity, "worst",
+                                  result_number(c->worst), "rms", result_number(c->rms), "particle",
+                                  (int)c->particle, "likely_cause", c->cause[0] ? c->cause : NULL));
+    }
+    return comparison;
+}
+
+static enum status write_json(const struct options *options, const struct request *r,
+                              const struct rate_table *t, const struct rate_check *check,
+                              struct error *error)
+{
+    json_t *document = result_new("rates");
+    const double *const sums[3] = {&t->sum_force[0], &t->sum_force[1], &t->sum_force[2]};
+    json_t *content = json_pack("{s:i, s:o, s:o, s:{s:o, s:o}}", "dim", t->dim, "settings",
+                                used_settings(r), "particles", particles_json(r, t), "sums",
+                                "force", vector(t->dim, sums, 0), "power", result_number(t->power));
+    if (check->count) {
+        json_object_set_new(content, "comparison", comparison_json(check));
+        json_object_set_new(content, "status", json_string(check->good ? "pass" : "fail"));
+    }
+    enum status status;
+    if (!document || !content || json_object_update(document, content))
+        status = error_set(error, STATUS_ENVIRONMENT, "no memory for the result");
+    else
+        status = result_write(document, options->json, error);
+    json_decref(document);
+    json_decref(content);
+    return status;
+}
+
+/* ---- the command ---- */
+
+static enum status run(const struct options *options, int n, char **arguments, struct error *error)
+{
+    struct request r = {0};
+    struct rate_table table = {0};
+    struct rate_check check = {.good = true};
+    const char *csv = options_value(options, "csv"), *theirs = options_value(options, "check");
+    enum status status = take_request(options, n, arguments, &r, error);
+    if (!status && csv) status = output_probe(csv, error);
+    if (!status) status = rate_table_make(&table, &r.scene, error);
+    if (!status && theirs)
+        status = rate_check_make(&check, theirs, &r.theirs, &r.scene, &table, r.tolerance, error);
+    if (!status) {
+        if (options->speak) {
+            print_table(&r, &table);
+            if (theirs) print_check(&check);
+        }
+        if (csv) status = write_csv(csv, &r, &table, error);
+        if (!status && options->json) status = write_json(options, &r, &table, &check, error);
+        if (!status && !check.good) status = STATUS_CHECK_FAILED;
+    }
+    rate_table_free(&table);
+    csv_free(&r.theirs);
+    particle_file_free(&r.file);
+    initial_free(&r.initial);
+    return status;
+}
+
+static const struct command_option own_options[] = {
+    {"csv", "F.csv", "write h,rho,P,ax[,ay[,az]],du of every particle, in their order"},
+    {"check", "THEIRS.csv", "judge what another code computed: any of these columns"},
+    {"tolerance", "T", "of --check, relative; a and du to their largest (default 1e-9)"},
+    {NULL, NULL, NULL},
+};
+
+const struct command command_rates = {
+    .name = "rates",
+    .synopsis = "PARTICLES.csv|CASE [KEY=VALUE ...]",
+    .help =
+        "one evaluation, nothing moves: h, rho, P, dp/dt, dU/dt of every particle\n"
+        "A file holds columns x[,y[,z]], vx[,vy[,vz]], m, u in any order; its header gives the\n"
+        "dimension. Beside the keys of the scheme and gamma it needs its box: lo and hi (one\n"
+        "number, or one for each direction), boundary (periodic, open or reflecting; one word or\n"
+        "one each), gravity. h is found to 1e-14 unless h_tolerance says otherwise. With --check\n"
+        "the exit status is 1 if a column departs by more than the tolerance; choices of the\n"
+        "scheme are then changed one by one to see which of them explains it.",
+    .run = run,
+    .options = own_options,
+    .examples = "sphproof rates particles.csv lo=0 hi=1 kernel=cubic_spline eta=2.4\n"
+                "sphproof rates particles.csv lo=0 hi=1 --csv ours.csv\n"
+                "sphproof rates particles.csv lo=0 hi=1 --check theirs.csv --tolerance 1e-8\n"
+                "sphproof rates sod n=450 --json rates.json",
+};

@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Particles from a CSV file: columns x[,y[,z]], vx[,vy[,vz]], m, u in any order; the header gives
+ * the dimension. */
+#ifndef SPHPROOF_PARTICLE_FILE_H
+#define SPHPROOF_PARTICLE_FILE_H
+
+#include "csv.h"
+#include "simulation.h"
+
+struct particle_file {
+    struct csv csv;
+    int dim;
+    const double *x[3], *v[3], *m, *u; /* csv.rows each, into csv */
+    char ignored[160];                 /* other columns, "a b c" */
+};
+
+/* STATUS_BAD_INPUT: file, line and column of what is wrong. Free with particle_file_free, also
+ * after a failure. */
+enum status particle_file_read(const char *path, struct particle_file *file, struct error *error);
+void particle_file_free(struct particle_file *file);
+
+/* The particles as a scene's, whose box and boundary are set: an open direction without a box (lo =
+ * hi) gets one around them. STATUS_BAD_INPUT: one is outside. */
+enum status particle_file_fill(const struct particle_file *file, const char *path,
+                               struct scene *scene, struct error *error);
+
+#endif

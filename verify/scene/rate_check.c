@@ -1,0 +1,275 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "rate_check.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "oracle.h"
+#include "worst.h"
+
+enum { ORACLE_MOST = 1500 }; /* particles: it looks at all pairs */
+
+static const char *const names[RATE_COLUMNS] = {"h", "rho", "P", "ax", "ay", "az", "du"};
+
+/* A quantity of a particle as the file has it. */
+static double value(const struct rate_table *table, const double *m, int column, size_t i)
+{
+    switch (column) {
+    case 0:
+        return table->h[i];
+    case 1:
+        return table->rho[i];
+    case 2:
+        return table->P[i];
+    case 6:
+        return table->dU[i] / m[i];
+    default:
+        return table->force[column - 3][i] / m[i];
+    }
+}
+
+/* What differences of a column are relative to. */
+static double scale_of(const struct rate_table *table, const double *m, int column, size_t i)
+{
+    if (column < 3) return fabs(value(table, m, column, i));
+    double most = 0;
+    for (size_t k = 0; k < table->n; k++) {
+        double size = 0;
+        const int first = column == 6 ? 6 : 3, last = column == 6 ? 6 : 2 + table->dim;
+        for (int c = first; c <= last; c++) size = hypot(size, value(table, m, c, k));
+        most = fmax(most, size);
+    }
+    return most;
+}
+
+static double relative(double difference, double scale)
+{
+    return difference == 0 ? 0 : difference / scale;
+}
+
+/* Fills all but the cause. */
+static void compare(struct rate_comparison *c, const double *theirs, const struct rate_table *ours,
+                    const double *m, int column)
+{
+    const double common = column < 3 ? 0 : scale_of(ours, m, column, 0);
+    double sum = 0;
+    c->worst = 0;
+    c->particle = 0;
+    for (size_t i = 0; i < ours->n; i++) {
+        const double scale = column < 3 ? scale_of(ours, m, column, i) : common;
+        const double d = relative(fabs(theirs[i] - value(ours, m, column, i)), scale);
+        if (!(d <= c->worst)) c->particle = i;
+        worst_keep(&c->worst, d);
+        sum += d * d;
+    }
+    c->rms = sqrt(sum / (double)ours->n);
+}
+
+/* --- causes ----------------------------------------------------------------------------------- */
+
+typedef void change(struct scene *scene);
+
+#define CHANGE(name, key, value)                                                                   \
+    static void name(struct scene *scene)                                                          \
+    {                                                                                              \
+        scene->key = value;                                                                        \
+    }
+CHANGE(no_viscosity, scheme.viscosity, VISCOSITY_NONE)
+CHANGE(constant_viscosity, scheme.viscosity, VISCOSITY_CONSTANT)
+CHANGE(no_beta, scheme.beta, 0)
+CHANGE(beta_alpha, scheme.beta, scene->scheme.alpha)
+CHANGE(twice_alpha, scheme.alpha, 2 * scene->scheme.alpha)
+CHANGE(half_alpha, scheme.alpha, 0.5 * scene->scheme.alpha)
+CHANGE(mu_form, scheme.viscosity_form, VISCOSITY_FORM_MU)
+CHANGE(signal_form, scheme.viscosity_form, VISCOSITY_FORM_SIGNAL)
+CHANGE(with_balsara, scheme.balsara, BALSARA_ON)
+CHANGE(without_balsara, scheme.balsara, BALSARA_OFF)
+CHANGE(width_max, scheme.pair_width, PAIR_WIDTH_MAX)
+CHANGE(width_mean, scheme.pair_width, PAIR_WIDTH_MEAN)
+CHANGE(width_harmonic, scheme.pair_width, PAIR_WIDTH_HARMONIC)
+CHANGE(standard, scheme.gradient, GRADIENT_STANDARD)
+CHANGE(ia, scheme.gradient, GRADIENT_IA)
+CHANGE(corrected, scheme.gradient, GRADIENT_CORRECTED)
+CHANGE(vanilla_ice, scheme.formulation, FORMULATION_VANILLA_ICE)
+CHANGE(lagrangian, scheme.formulation, FORMULATION_LAGRANGIAN)
+CHANGE(mass, scheme.volume_element, VOLUME_MASS)
+CHANGE(energy, scheme.volume_element, VOLUME_ENERGY)
+CHANGE(number, scheme.volume_element, VOLUME_NUMBER)
+CHANGE(conduction, scheme.alpha_u, 0)
+CHANGE(gamma_5_3, gamma, 5. / 3)
+CHANGE(gamma_7_5, gamma, 1.4)
+CHANGE(half_eta, scheme.eta, 0.5 * scene->scheme.eta)
+CHANGE(twice_eta, scheme.eta, 2 * scene->scheme.eta)
+#undef CHANGE
+
+static void open_box(struct scene *scene)
+{
+    for (int a = 0; a < scene->dim; a++) scene->boundary[a] = BOUNDARY_OPEN;
+}
+
+static const struct {
+    change *make;
+    const char *cause;
+} changes[] = {
+    {no_viscosity, "viscosity: they have none"},
+    {constant_viscosity, "viscosity: theirs is constant"},
+    {no_beta, "viscosity: theirs has no quadratic term (beta = 0)"},
+    {beta_alpha, "viscosity: beta = alpha in theirs"},
+    {twice_alpha, "viscosity: alpha is twice ours"},
+    {half_alpha, "viscosity: alpha is half of ours"},
+    {mu_form, "viscosity: theirs is of the form mu"},
+    {signal_form, "viscosity: theirs is of the form signal"},
+    {with_balsara, "viscosity: theirs has a Balsara factor"},
+    {without_balsara, "viscosity: theirs has no Balsara factor"},
+    {width_max, "pair width: theirs is max(h_i, h_j)"},
+    {width_mean, "pair width: theirs is the mean of both gradients"},
+    {width_harmonic, "pair width: theirs is the harmonic mean"},
+    {standard, "gradient: theirs is standard"},
+    {ia, "gradient: theirs is ia"},
+    {corrected, "gradient: theirs is corrected"},
+    {vanilla_ice, "pressure: their formulation is vanilla_ice"},
+    {lagrangian, "pressure: their formulation is lagrangian, with grad-h factors"},
+    {mass, "volume element: theirs is mass"},
+    {energy, "volume element: theirs is energy"},
+    {number, "volume element: theirs is number"},
+    {conduction, "conductivity: they have none"},
+    {gamma_5_3, "gamma: theirs is 5/3"},
+    {gamma_7_5, "gamma: theirs is 1.4"},
+    {half_eta, "eta: theirs is half of ours (h is the support radius here)"},
+    {twice_eta, "eta: theirs is twice ours (h is the support radius here)"},
+    {open_box, "boundary: theirs is open"},
+};
+
+/* Is it explained: as good as asked for, or a thousand times better than before? */
+static void propose(struct rate_check *check, const double *const theirs[RATE_COLUMNS],
+                    const struct rate_table *changed, const double *m, double tolerance,
+                    const char *cause)
+{
+    for (size_t k = 0; k < check->count; k++) {
+        struct rate_comparison *c = &check->columns[k], now = *c;
+        int column = 0;
+        while (names[column] != c->quantity) column++;
+        if (c->good || c->cause[0]) continue;
+        compare(&now, theirs[column], changed, m, column);
+        if (now.worst <= fmax(tolerance, 1e-3 * c->worst))
+            snprintf(c->cause, sizeof c->cause, "%s", cause);
+    }
+}
+
+/* Rates without grad-h factors: the solver has no such choice, the oracle has. */
+static void propose_no_grad_h(struct rate_check *check, const double *const theirs[RATE_COLUMNS],
+                              const struct scene *scene, const struct rate_table *ours,
+                              double tolerance)
+{
+    struct oracle oracle;
+    struct rate_table changed = *ours;
+    if (scene->scheme.formulation != FORMULATION_LAGRANGIAN || scene->n > ORACLE_MOST) return;
+    for (int a = 0; a < scene->dim; a++)
+        if (scene->boundary[a] != BOUNDARY_PERIODIC || scene->gravity[a] != 0) return;
+    double *storage = changed.storage = NULL;
+    if (oracle_create(&oracle, scene, NULL)) return;
+    oracle.without_grad_h = true;
+    if (!oracle_evaluate(&oracle, NULL) &&
+        (storage = malloc(4 * scene->n * sizeof *storage)) != NULL) {
+        for (int a = 0; a < 3; a++) changed.force[a] = storage + (size_t)a * scene->n;
+        changed.dU = storage + 3 * scene->n;
+        for (size_t i = 0; i < scene->n; i++) {
+            for (int a = 0; a < 3; a++) changed.force[a][i] = (double)oracle.particles[i].F[a];
+            changed.dU[i] = (double)oracle.particles[i].dU;
+        }
+        propose(check, theirs, &changed, scene->m, tolerance,
+                "grad-h: their lagrangian formulation has no grad-h factors");
+    }
+    free(storage);
+    oracle_free(&oracle);
+}
+
+/* Differences that show in the numbers themselves: a factor, a term that is left out. */
+static void explain_plainly(struct rate_comparison *c, const double *theirs, int column,
+                            const struct scene *scene, const struct rate_table *ours,
+                            double tolerance)
+{
+    const struct kernel *kernel = &scene->scheme.kernel;
+    const double close = fmax(tolerance, 1e-3 * c->worst);
+    const double scale = column < 3 ? 0 : scale_of(ours, scene->m, column, 0);
+    double ratio = 0, weight = 0, off[4] = {0};
+    for (size_t i = 0; i < ours->n; i++) {
+        const double mine = value(ours, scene->m, column, i), size = column < 3 ? mine : scale;
+        const double own = scene->m[i] * kernel->constant[scene->dim] *
+                           kernel->w(kernel, 0, scene->dim) / pow(ours->h[i], scene->dim);
+        ratio += theirs[i] * mine / (size * size);
+        weight += mine * mine / (size * size);
+        worst_keep(&off[0], fabs(theirs[i] + own - mine) / size);
+        worst_keep(&off[1], fabs(theirs[i] - scene->m[i] * mine) / size);
+        worst_keep(&off[2], fabs(theirs[i] + mine) / size);
+    }
+    ratio /= weight;
+    for (size_t i = 0; i < ours->n; i++) {
+        const double mine = value(ours, scene->m, column, i), size = column < 3 ? mine : scale;
+        worst_keep(&off[3], fabs(theirs[i] - ratio * mine) / size);
+    }
+    const bool element_of_energy = scene->scheme.volume_element == VOLUME_ENERGY;
+    if (column == 1 && !element_of_energy && off[0] <= close)
+        snprintf(c->cause, RATE_CAUSE, "self-contribution: they leave out m W(0)");
+    else if (column >= 3 && off[1] <= close)
+        snprintf(c->cause, RATE_CAUSE, "they give %s: %s = that over m",
+                 column == 6 ? "dU/dt" : "dp/dt", c->quantity);
+    else if (column >= 3 && off[2] <= close)
+        snprintf(c->cause, RATE_CAUSE, "the sign is the other one");
+    else if (off[3] <= close)
+        snprintf(c->cause, RATE_CAUSE, "theirs is %.9g times ours everywhere", ratio);
+}
+
+static void find_causes(struct rate_check *check, const double *const theirs[RATE_COLUMNS],
+                        const struct scene *scene, const struct rate_table *ours, double tolerance)
+{
+    for (size_t k = 0; k < sizeof changes / sizeof *changes; k++) {
+        struct scene changed = *scene;
+        struct rate_table table;
+        changes[k].make(&changed);
+        if (!rate_table_make(&table, &changed, NULL))
+            propose(check, theirs, &table, scene->m, tolerance, changes[k].cause);
+        rate_table_free(&table);
+    }
+    propose_no_grad_h(check, theirs, scene, ours, tolerance);
+    const char *first = NULL; /* that is wrong; what comes after it follows from it */
+    for (size_t k = 0; k < check->count; k++) {
+        struct rate_comparison *c = &check->columns[k];
+        int column = 0;
+        while (names[column] != c->quantity) column++;
+        if (c->good) continue;
+        if (!c->cause[0]) explain_plainly(c, theirs[column], column, scene, ours, tolerance);
+        if (!c->cause[0] && first && column >= 2)
+            snprintf(c->cause, RATE_CAUSE, "it follows from %s, or there is more than one", first);
+        if (!first && column < 3) first = c->quantity;
+    }
+}
+
+enum status rate_check_make(struct rate_check *check, const char *path, const struct csv *theirs,
+                            const struct scene *scene, const struct rate_table *ours,
+                            double tolerance, struct error *error)
+{
+    const double *columns[RATE_COLUMNS] = {NULL};
+    *check = (struct rate_check){.good = true};
+    if (theirs->rows != ours->n)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "%.200s: %zu rows: allowed: one for each of the %zu particles, in their "
+                         "order",
+                         path, theirs->rows, ours->n);
+    for (int column = 0; column < RATE_COLUMNS; column++) {
+        const int k = csv_column(theirs, names[column]);
+        if (k < 0 || (column >= 3 && column < 6 && column - 3 >= ours->dim)) continue;
+        struct rate_comparison *c = &check->columns[check->count++];
+        columns[column] = theirs->values[k];
+        c->quantity = names[column];
+        compare(c, columns[column], ours, scene->m, column);
+        c->good = c->worst <= tolerance;
+        check->good &= c->good;
+    }
+    if (check->count == 0)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "%.200s:1: nothing to compare: allowed: any of h rho P ax ay az du", path);
+    if (!check->good) find_causes(check, columns, scene, ours, tolerance);
+    return STATUS_OK;
+}

@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Rates that another code computed, against ours; and what the difference may come from: choices of
+ * a scheme are changed one by one until its rates come out. */
+#ifndef SPHPROOF_RATE_CHECK_H
+#define SPHPROOF_RATE_CHECK_H
+
+#include "csv.h"
+#include "rate_table.h"
+
+enum { RATE_COLUMNS = 7, RATE_CAUSE = 160 };
+
+struct rate_comparison {
+    const char *quantity; /* h rho P ax ay az du */
+    double worst, rms; /* |theirs - ours|, relative: h, rho, P to ours, a and du to the largest */
+    size_t particle;   /* the worst one, from 0 */
+    bool good;
+    char cause[RATE_CAUSE]; /* "" where nothing explains the difference, or there is none */
+};
+
+struct rate_check {
+    size_t count;
+    struct rate_comparison columns[RATE_COLUMNS];
+    bool good;
+};
+
+/* Compares the columns of THEIRS.csv with the table of the scene. STATUS_BAD_INPUT: none of the
+ * columns, or another number of rows. */
+enum status rate_check_make(struct rate_check *check, const char *path, const struct csv *theirs,
+                            const struct scene *scene, const struct rate_table *ours,
+                            double tolerance, struct error *error);
+
+#endif

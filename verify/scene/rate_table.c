@@ -1,0 +1,75 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "rate_table.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { ARRAYS = 9 };
+
+static bool allocate(struct rate_table *table)
+{
+    const size_t n = table->n;
+    double *next = table->storage = calloc(ARRAYS * n, sizeof *next);
+    double **const arrays[ARRAYS] = {&table->h,          &table->rho,       &table->P,
+                                     &table->neighbours, &table->condition, &table->force[0],
+                                     &table->force[1],   &table->dU,        &table->force[2]};
+    if (!next) return false;
+    for (int k = 0; k < ARRAYS; k++, next += n) *arrays[k] = next;
+    return true;
+}
+
+/* Puts the solver's order back into the scene's; dE = v . F + dU where it is E that is integrated.
+ */
+static void take(struct rate_table *table, const struct simulation *simulation, bool total,
+                 const double *neighbours, const double *condition)
+{
+    struct snapshot s;
+    struct rates rates;
+    long double force[3] = {0}, power = 0;
+    simulation_snapshot(simulation, &s);
+    simulation_rates(simulation, &rates);
+    for (size_t k = 0; k < s.n; k++) {
+        const size_t i = s.id[k];
+        long double work = 0;
+        table->h[i] = s.h[k];
+        table->rho[i] = s.rho[k];
+        table->P[i] = s.P[k];
+        table->neighbours[i] = neighbours[k];
+        table->condition[i] = condition[k];
+        for (int a = 0; a < table->dim; a++) {
+            table->force[a][i] = rates.force[a][k];
+            force[a] += rates.force[a][k];
+            work += (long double)s.v[a][k] * rates.force[a][k];
+        }
+        table->dU[i] = (double)(total ? rates.energy[k] - work : rates.energy[k]);
+        power += total ? rates.energy[k] : rates.energy[k] + work;
+    }
+    for (int a = 0; a < 3; a++) table->sum_force[a] = (double)force[a];
+    table->power = (double)power;
+}
+
+enum status rate_table_make(struct rate_table *table, const struct scene *scene,
+                            struct error *error)
+{
+    *table = (struct rate_table){.dim = scene->dim, .n = scene->n};
+    struct simulation *simulation = NULL;
+    const enum status status = simulation_create(scene, &simulation, error);
+    if (status) return status;
+    double *described = malloc(2 * scene->n * sizeof *described);
+    const bool there = described && allocate(table);
+    if (there) {
+        simulation_describe(simulation, described, described + scene->n);
+        take(table, simulation, scene->scheme.energy == ENERGY_TOTAL, described,
+             described + scene->n);
+    }
+    free(described);
+    simulation_destroy(simulation);
+    return there ? STATUS_OK
+                 : error_set(error, STATUS_ENVIRONMENT, "no memory for %zu particles", scene->n);
+}
+
+void rate_table_free(struct rate_table *table)
+{
+    free(table->storage);
+    *table = (struct rate_table){0};
+}

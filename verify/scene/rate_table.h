@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * One evaluation: what the solver finds of particles that do not move, in the order of the scene.
+ */
+#ifndef SPHPROOF_RATE_TABLE_H
+#define SPHPROOF_RATE_TABLE_H
+
+#include "simulation.h"
+
+struct rate_table {
+    int dim;
+    size_t n;
+    double *h, *rho, *P, *force[3], *dU; /* n each; force = dp/dt, dU/dt of U = m u */
+    double *neighbours, *condition;      /* see simulation_describe */
+    double sum_force[3], power;          /* sums; power: of the total energy */
+    double *storage;
+};
+
+/* STATUS_BAD_INPUT: the scene is none; STATUS_BROKE_DOWN: no sound state; STATUS_ENVIRONMENT: no
+ * memory. Free with rate_table_free, also after a failure. */
+enum status rate_table_make(struct rate_table *table, const struct scene *scene,
+                            struct error *error);
+void rate_table_free(struct rate_table *table);
+
+#endif
