@@ -18,9 +18,11 @@ const char *order_class_name(enum order_class class)
     return names[class];
 }
 
-static enum order_class classify(const struct order_fit *fit, double coarsest)
+static enum order_class classify(const struct order_fit *fit, double ratio)
 {
-    if (!(fit->finest < coarsest)) return ORDER_DIVERGING;
+    const double whole = log(fit->coarsest / fit->finest) / log(ratio);
+    if (fabs(whole) < ORDER_FLAT) return ORDER_FLOOR_LIMITED;
+    if (!(whole > 0)) return ORDER_DIVERGING;
     const size_t last = fit->n - 2;
     double best = fit->pairwise[0];
     bool falls = fit->pairwise[last] > 0;
@@ -35,14 +37,72 @@ static enum order_class classify(const struct order_fit *fit, double coarsest)
     return falls ? ORDER_ASYMPTOTIC : ORDER_OSCILLATING;
 }
 
-enum status order_fit(size_t n, const double *spacing, const double *error, const double *variance,
-                      struct order_fit *fit, struct error *failure)
+/* The slope of a straight line through n points, and what is known of its error. */
+struct line {
+    double slope, half;
+};
+
+/* Without replicates the scatter about the line is the only measure of noise. */
+static double half_by_scatter(size_t n, double slope_variance, double chi2)
+{
+    const double freedom = (double)(n - 2);
+    return gsl_cdf_tdist_Pinv(0.975, freedom) * sqrt(slope_variance * chi2 / freedom);
+}
+
+/* With them, the slope is sum c_i y_i and its variance sum c_i^2 s_i^2, with the degrees of freedom
+ * of Satterthwaite (Biometrics Bull. 2, 110, 1946) and Welch (1947). */
+static double half_by_replicates(size_t n, const double *x, const double *weight,
+                                 const struct order_noise *noise)
+{
+    double sum = 0, centre = 0, squares = 0, total = 0, parts = 0;
+    for (size_t i = 0; i < n; i++) sum += weight[i], centre += weight[i] * x[i];
+    centre /= sum;
+    for (size_t i = 0; i < n; i++) squares += weight[i] * (x[i] - centre) * (x[i] - centre);
+    for (size_t i = 0; i < n; i++) {
+        const double c = weight[i] * (x[i] - centre) / squares, part = c * c * noise->variance[i];
+        total += part;
+        parts += part * part / (double)(noise->replicates - 1);
+    }
+    return gsl_cdf_tdist_Pinv(0.975, total * total / parts) * sqrt(total);
+}
+
+/* Weights 1/variance; a variance from few replicates is drawn towards the mean of all, or the
+ * level whose replicates agree by accident would have all the weight. false: no noise at all. */
+static bool weigh(size_t n, const struct order_noise *noise, double *weight)
+{
+    const double known = (double)(noise->replicates - 1), drawn = 24; /* by simulation: orders.c */
+    double mean = 0;
+    for (size_t i = 0; i < n; i++) mean += noise->variance[i] / (double)n;
+    for (size_t i = 0; i < n; i++)
+        weight[i] = (known + drawn) / (known * noise->variance[i] + drawn * mean);
+    return mean > 0;
+}
+
+static struct line fit_line(size_t n, const double *x, const double *y,
+                            const struct order_noise *noise)
+{
+    double weight[ORDER_LEVELS_MAX], c0, c1, cov00, cov01, cov11, chi2;
+    const bool noisy = noise && weigh(n, noise, weight);
+    for (size_t i = 0; i < n && !noisy; i++) weight[i] = 1;
+    gsl_fit_wlinear(x, 1, weight, 1, y, 1, n, &c0, &c1, &cov00, &cov01, &cov11, &chi2);
+    const double scatter = half_by_scatter(n, cov11, chi2);
+    if (!noisy) return (struct line){c1, scatter};
+    /* Levels that lie farther off the line than their noise can explain (an F test at 1 %): what
+     * is left is curvature, of which replicates know nothing. */
+    const double freedom = (double)(n - 2), known = (double)(n * (noise->replicates - 1));
+    const bool curved = gsl_cdf_fdist_Q(chi2 / freedom, freedom, known) < 0.01;
+    const double half = half_by_replicates(n, x, weight, noise);
+    return (struct line){c1, curved ? fmax(half, scatter) : half};
+}
+
+enum status order_fit(size_t n, const double *spacing, const double *error,
+                      const struct order_noise *noise, struct order_fit *fit, struct error *failure)
 {
     if (n < ORDER_LEVELS_MIN || n > ORDER_LEVELS_MAX)
         return error_set(failure, STATUS_BAD_INPUT,
                          "an order needs %d to %d resolutions, there are %zu", ORDER_LEVELS_MIN,
                          ORDER_LEVELS_MAX, n);
-    double x[ORDER_LEVELS_MAX], y[ORDER_LEVELS_MAX], weight[ORDER_LEVELS_MAX];
+    double x[ORDER_LEVELS_MAX], y[ORDER_LEVELS_MAX];
     bool sound = true;
     for (size_t i = 0; i < n; i++) {
         if (!(spacing[i] > 0 && (i == 0 || spacing[i] < spacing[i - 1])))
@@ -51,26 +111,19 @@ enum status order_fit(size_t n, const double *spacing, const double *error, cons
                              spacing[i]);
         x[i] = log(spacing[i]);
         y[i] = log(error[i]);
-        weight[i] = variance ? 1 / variance[i] : 1;
-        sound = sound && isfinite(y[i]) && isfinite(weight[i]);
+        sound = sound && isfinite(y[i]) && (!noise || isfinite(noise->variance[i]));
     }
     *fit = (struct order_fit){.order = NAN, .low = NAN, .high = NAN, .n = n};
+    fit->coarsest = error[0];
     fit->finest = error[n - 1];
     for (size_t i = 0; i + 1 < n; i++)
         fit->pairwise[i] = sound ? (y[i + 1] - y[i]) / (x[i + 1] - x[i]) : (double)NAN;
-    fit->class = sound ? classify(fit, error[0]) : ORDER_DIVERGING;
+    fit->class = sound ? classify(fit, spacing[0] / spacing[n - 1]) : ORDER_DIVERGING;
     if (!sound) return STATUS_OK;
-
-    double c0, c1, cov00, cov01, cov11, chi2;
-    gsl_fit_wlinear(x, 1, weight, 1, y, 1, n, &c0, &c1, &cov00, &cov01, &cov11, &chi2);
-    /* Without variances the scatter about the line is the only measure of noise; with them it can
-     * only widen the interval (curvature is not in the replicates). */
-    const double freedom = (double)(n - 2);
-    const double scale = variance ? fmax(1, chi2 / freedom) : chi2 / freedom;
-    const double half = gsl_cdf_tdist_Pinv(0.975, freedom) * sqrt(cov11 * scale);
-    fit->order = c1;
-    fit->low = c1 - half;
-    fit->high = c1 + half;
+    const struct line line = fit_line(n, x, y, noise);
+    fit->order = line.slope;
+    fit->low = line.slope - line.half;
+    fit->high = line.slope + line.half;
     return STATUS_OK;
 }
 
@@ -122,24 +175,46 @@ static double richardson_order(struct richardson *r)
     return p;
 }
 
-struct order_extrapolation order_extrapolate(const double spacing[3], const double value[3])
+/* How the errors of three values fall whose differences promise the order p (NaN: none), where the
+ * exact value lies outside of what they extrapolate to. */
+static enum order_class class_by_errors(const double spacing[3], const double value[3],
+                                        double exact, double p)
+{
+    const double error[3] = {fabs(value[0] - exact), fabs(value[1] - exact),
+                             fabs(value[2] - exact)};
+    const double last = log(error[1] / error[2]) / log(spacing[1] / spacing[2]);
+    const double whole = log(error[0] / error[2]) / log(spacing[0] / spacing[2]);
+    if (fabs(whole) < ORDER_FLAT || last < p / 3) return ORDER_FLOOR_LIMITED;
+    return error[0] > error[1] && error[1] > error[2] ? ORDER_PREASYMPTOTIC : ORDER_DIVERGING;
+}
+
+struct order_extrapolation order_extrapolate(const double spacing[3], const double value[3],
+                                             double exact)
 {
     struct order_extrapolation result = {NAN, NAN, NAN, NAN, ORDER_DIVERGING};
     const double fine = value[2] - value[1], coarse = value[1] - value[0];
-    const double ratio = coarse / fine;
-    if (!isfinite(ratio)) return result;
+    const double ratio = coarse / fine, round_off = 1e-13 * fabs(value[2]);
+    const double safety = 1.25;
+    if (!isfinite(fine) || !isfinite(coarse)) return result;
+    if (fabs(fine) <= round_off && fabs(coarse) <= round_off) result.class = ORDER_FLOOR_LIMITED;
+    if (!isfinite(ratio) || result.class == ORDER_FLOOR_LIMITED) return result;
     if (!(ratio > 0)) {
         result.class = ORDER_OSCILLATING;
         return result;
     }
     struct richardson r = {log(spacing[1] / spacing[2]), log(spacing[0] / spacing[1]), log(ratio)};
     const double p = richardson_order(&r);
+    const double gci = safety * fabs(fine / value[2]) / expm1(r.fine * p);
+    const bool reached = fabs(value[2] - exact) <= gci * fabs(value[2]) + round_off;
+    if (!isnan(exact) && !(isfinite(p) && reached)) {
+        result.class = class_by_errors(spacing, value, exact, p);
+        return result;
+    }
     if (!isfinite(p)) return result;
-    const double safety = 1.25;
     result.class = ORDER_ASYMPTOTIC;
     result.order = p;
     result.value = value[2] + fine / expm1(r.fine * p);
-    result.gci_fine = safety * fabs(fine / value[2]) / expm1(r.fine * p);
+    result.gci_fine = gci;
     result.gci_coarse = safety * fabs(coarse / value[1]) / expm1(r.coarse * p);
     return result;
 }

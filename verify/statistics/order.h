@@ -15,10 +15,11 @@
 enum { ORDER_LEVELS_MIN = 4, ORDER_LEVELS_MAX = 64 };
 
 #define ORDER_CLASS_LIST(CLASS)                                                                    \
-    CLASS(ASYMPTOTIC, "asymptotic")       /* falls from level to level */                          \
-    CLASS(FLOOR_LIMITED, "floor-limited") /* fell, and then stopped falling */                     \
-    CLASS(OSCILLATING, "oscillating")     /* falls on the whole, not from level to level */        \
-    CLASS(DIVERGING, "diverging")         /* does not fall, or is not finite */
+    CLASS(ASYMPTOTIC, "asymptotic")        /* falls from level to level */                         \
+    CLASS(FLOOR_LIMITED, "floor-limited")  /* does not fall any more, or never did */              \
+    CLASS(PREASYMPTOTIC, "pre-asymptotic") /* falls, but not yet to the exact value as promised */ \
+    CLASS(OSCILLATING, "oscillating")      /* falls on the whole, not from level to level */       \
+    CLASS(DIVERGING, "diverging")          /* does not fall, or is not finite */
 
 enum order_class {
 #define CLASS(name, text) ORDER_##name,
@@ -33,7 +34,7 @@ struct order_fit {
     double order, low, high; /* slope and its 95 % interval; NaN if an error is 0 or not finite */
     size_t n;                /* levels, coarsest first */
     double pairwise[ORDER_LEVELS_MAX - 1]; /* between levels i and i + 1 */
-    double finest;                         /* error at the finest level */
+    double coarsest, finest;               /* errors at the ends */
     enum order_class class;
 };
 
@@ -46,11 +47,23 @@ enum { ORDER_GATE_TEXT = 160 };
 /* The widest interval with which an order still says something: half of its width. */
 #define ORDER_HALF_WIDTH_MAX 0.15
 
-/* spacing, error: n >= 4 levels, spacing strictly falling. variance: of log(error) at each level,
- * from replicates, > 0; NULL: equal weights. STATUS_BAD_INPUT: too few levels, spacings not
- * falling. */
-enum status order_fit(size_t n, const double *spacing, const double *error, const double *variance,
-                      struct order_fit *fit, struct error *failure);
+/* An order nearer to 0 than this over the whole ladder is none: the error sits on a floor. */
+#define ORDER_FLAT 0.1
+
+/* What replicates say of the noise: variance of the mean log(error) at each level (the replicates'
+ * own divided by their number, >= 2 at each level). */
+struct order_noise {
+    const double *variance;
+    size_t replicates;
+};
+
+/* spacing, error: n >= 4 levels, spacing strictly falling. With noise (error: geometric means of
+ * the replicates) levels weigh by their variances, and the interval comes from these, unless the
+ * levels do not lie on a line; without (NULL) weights are equal and the interval comes from the
+ * scatter about the line. STATUS_BAD_INPUT: too few levels, spacings not falling. */
+enum status order_fit(size_t n, const double *spacing, const double *error,
+                      const struct order_noise *noise, struct order_fit *fit,
+                      struct error *failure);
 
 /* Inside the gate AND half-width <= ORDER_HALF_WIDTH_MAX AND finest error <= bound. why (may be
  * NULL, else ORDER_GATE_TEXT bytes): the first condition that fails, "" if none does. */
@@ -60,10 +73,12 @@ struct order_extrapolation {
     double order;                /* observed; NaN unless the class is asymptotic */
     double value;                /* extrapolated to spacing 0; NaN likewise */
     double gci_fine, gci_coarse; /* fractions of the value, safety factor 1.25 */
-    enum order_class class;      /* asymptotic, oscillating or diverging */
+    enum order_class class;
 };
 
-/* Of a functional at three levels, coarsest first, spacings strictly falling. */
-struct order_extrapolation order_extrapolate(const double spacing[3], const double value[3]);
+/* Of a functional at three levels, coarsest first, spacings strictly falling. exact: its exact
+ * value, NaN where nobody knows it; what converges to something else is not called asymptotic. */
+struct order_extrapolation order_extrapolate(const double spacing[3], const double value[3],
+                                             double exact);
 
 #endif

@@ -13,9 +13,6 @@
 
 /* An order lost to the lattice sums shows a relative error of this many floors at most. */
 static const double floor_reach = 20;
-/* Of a level's variance over replicates, at least this part of the mean over levels: few seeds can
- * agree by accident. */
-static const double variance_least = 0.1;
 
 bool study_is_random(const struct settings *settings)
 {
@@ -221,33 +218,22 @@ static enum status read_levels(struct study *study, size_t c, const struct pool 
 
 /* ---- judging ---- */
 
-/* Variances of the mean log(error); false where there are no replicates. */
-static bool variances(const struct study *study, const struct study_result *result, int f, int m,
-                      double *variance)
-{
-    double mean = 0;
-    for (size_t l = 0; l < result->level_count; l++) {
-        const double spread = result->levels[l].spread[f][m];
-        variance[l] = spread * spread / (double)study->seeds;
-        mean += variance[l] / (double)result->level_count;
-    }
-    for (size_t l = 0; l < result->level_count; l++)
-        variance[l] = fmax(variance[l], variance_least * mean);
-    return study->seeds > 1 && mean > 0;
-}
-
 static enum status fit_orders(const struct study *study, struct study_result *result,
                               struct error *error)
 {
     double spacing[CASE_LADDER_MAX], errors[CASE_LADDER_MAX], variance[CASE_LADDER_MAX];
+    const struct order_noise noise = {variance, study->seeds};
     const size_t n = result->level_count;
     for (size_t l = 0; l < n; l++) spacing[l] = result->levels[l].spacing;
     for (int f = 0; f < FIELDS; f++)
         for (int m = 0; m < NORMS; m++) {
-            const bool known = variances(study, result, f, m, variance);
-            for (size_t l = 0; l < n; l++) errors[l] = result->levels[l].errors[f][m];
-            if (order_fit(n, spacing, errors, known ? variance : NULL, &result->orders[f][m].fit,
-                          error))
+            for (size_t l = 0; l < n; l++) {
+                const double spread = result->levels[l].spread[f][m];
+                errors[l] = result->levels[l].errors[f][m];
+                variance[l] = spread * spread / (double)study->seeds;
+            }
+            if (order_fit(n, spacing, errors, study->seeds > 1 ? &noise : NULL,
+                          &result->orders[f][m].fit, error))
                 return error->status;
         }
     const struct regions *regions = result->levels[0].budget.regions;
@@ -270,7 +256,7 @@ static void extrapolate(struct study_result *result)
     for (size_t i = 0; i < result->functional_count; i++) {
         const double values[3] = {last[0].functionals[i], last[1].functionals[i],
                                   last[2].functionals[i]};
-        result->functionals[i] = order_extrapolate(spacing, values);
+        result->functionals[i] = order_extrapolate(spacing, values, result->functional_exact[i]);
     }
 }
 

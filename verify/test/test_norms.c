@@ -8,6 +8,8 @@
 #include <string.h>
 #include <cmocka.h>
 
+#include <gsl/gsl_cdf.h>
+
 #include "near.h"
 #include "norm.h"
 #include "order.h"
@@ -82,13 +84,23 @@ static void test_order_interval(void **state)
     near_relative(fit.finest, exp(2 + e), 1e-15);
     assert_int_equal(fit.class, ORDER_ASYMPTOTIC);
 
-    /* Replicates noisier than the scatter widen the interval, quieter ones do not shrink it. */
+    /* Replicates that differ by more than the scatter: s^2/Sxx, Satterthwaite's degrees of freedom
+     * from c_i^2 = (0.3, 0.1, 0.1, 0.3)^2: (0.2)^2 8/(2 0.3^4 + 2 0.1^4). Quieter ones leave the
+     * scatter, which they cannot explain. */
     const double noisy[] = {0.01, 0.01, 0.01, 0.01}, quiet[] = {1e-9, 1e-9, 1e-9, 1e-9};
+    const struct order_noise loud = {noisy, 9}, faint = {quiet, 9};
+    const double freedom = 0.04 * 8 / (2 * 0.0081 + 2 * 0.0001);
     struct order_fit replicated;
-    assert_int_equal(order_fit(4, spacing, error, noisy, &replicated, NULL), STATUS_OK);
-    near_relative((replicated.high - replicated.low) / 2, t_975_2() * sqrt(0.01 / 5), 1e-12);
-    assert_int_equal(order_fit(4, spacing, error, quiet, &replicated, NULL), STATUS_OK);
+    assert_int_equal(order_fit(4, spacing, error, &loud, &replicated, NULL), STATUS_OK);
+    near_relative((replicated.high - replicated.low) / 2,
+                  gsl_cdf_tdist_Pinv(0.975, freedom) * sqrt(0.01 / 5), 1e-12);
+    assert_int_equal(order_fit(4, spacing, error, &faint, &replicated, NULL), STATUS_OK);
     near_relative(replicated.high - replicated.low, fit.high - fit.low, 1e-9);
+    /* replicates all alike: no noise to weigh by */
+    const double none[4] = {0};
+    assert_int_equal(
+        order_fit(4, spacing, error, &(struct order_noise){none, 9}, &replicated, NULL), STATUS_OK);
+    near_relative(replicated.high - replicated.low, fit.high - fit.low, 1e-12);
 }
 
 static void test_order_bad_levels(void **state)
@@ -140,7 +152,7 @@ static void test_classes(void **state)
     assert_int_equal(class_of((double[]){16, 8, 4, 3.6, 3.7}), ORDER_FLOOR_LIMITED);
     assert_int_equal(class_of((double[]){16, 4, 8, 1, 2}), ORDER_OSCILLATING);
     assert_int_equal(class_of((double[]){1, 2, 4, 8, 16}), ORDER_DIVERGING);
-    assert_int_equal(class_of((double[]){1, 1, 1, 1, 1}), ORDER_DIVERGING);
+    assert_int_equal(class_of((double[]){1, 1, 1, 1, 1}), ORDER_FLOOR_LIMITED);
     assert_int_equal(class_of((double[]){4, 2, 1, 0.5, NAN}), ORDER_DIVERGING);
     assert_int_equal(class_of((double[]){4, 2, 1, 0.5, 0}), ORDER_DIVERGING);
 }
@@ -150,7 +162,7 @@ static void test_richardson_nasa(void **state)
 {
     (void)state;
     const struct order_extrapolation e =
-        order_extrapolate((double[]){4, 2, 1}, (double[]){0.96178, 0.96854, 0.97050});
+        order_extrapolate((double[]){4, 2, 1}, (double[]){0.96178, 0.96854, 0.97050}, NAN);
     assert_int_equal(e.class, ORDER_ASYMPTOTIC);
     near_absolute(e.order, 1.786170, 5e-7);
     near_absolute(e.value, 0.9713003, 5e-8);
@@ -164,7 +176,7 @@ static void test_richardson_unequal_ratios(void **state)
     const double spacing[] = {0.1, 0.06, 0.025}, p = 1.37;
     double value[3];
     for (int i = 0; i < 3; i++) value[i] = 2.385 - 0.7 * pow(spacing[i], p);
-    const struct order_extrapolation e = order_extrapolate(spacing, value);
+    const struct order_extrapolation e = order_extrapolate(spacing, value, NAN);
     near_relative(e.order, p, 1e-11);
     near_relative(e.value, 2.385, 1e-13);
 }
@@ -173,13 +185,13 @@ static void test_richardson_classes(void **state)
 {
     (void)state;
     const double spacing[] = {4, 2, 1};
-    struct order_extrapolation e = order_extrapolate(spacing, (double[]){1, 2, 1.5});
+    struct order_extrapolation e = order_extrapolate(spacing, (double[]){1, 2, 1.5}, NAN);
     assert_true(e.class == ORDER_OSCILLATING && isnan(e.value));
-    e = order_extrapolate(spacing, (double[]){1, 2, 4});
+    e = order_extrapolate(spacing, (double[]){1, 2, 4}, NAN);
     assert_true(e.class == ORDER_DIVERGING && isnan(e.value));
-    e = order_extrapolate(spacing, (double[]){1, 1, 1});
-    assert_true(e.class == ORDER_DIVERGING && isnan(e.value));
-    e = order_extrapolate(spacing, (double[]){1, 2, NAN});
+    e = order_extrapolate(spacing, (double[]){1, 1, 1}, NAN);
+    assert_true(e.class == ORDER_FLOOR_LIMITED && isnan(e.value));
+    e = order_extrapolate(spacing, (double[]){1, 2, NAN}, NAN);
     assert_true(e.class == ORDER_DIVERGING && isnan(e.value));
 }
 

@@ -115,24 +115,20 @@ static void replicates(void **state)
     const double mean = sum / 4, variance = (squares - 4 * mean * mean) / 3;
     near_relative(level->errors[FIELD_DENSITY][NORM_L1], exp(mean), 1e-12);
     near_relative(level->spread[FIELD_DENSITY][NORM_L1], sqrt(variance), 1e-9);
-    /* the interval is at least what the spread alone makes of it */
-    double sxx = 0, sx = 0, weights = 0, mean_variance = 0;
+    /* the interval is that of means of four */
+    double spacing[4], errors[4], variances[4];
+    const struct order_noise noise = {variances, 4};
+    struct order_fit want;
     for (size_t l = 0; l < 4; l++) {
         const double s = result->levels[l].spread[FIELD_DENSITY][NORM_L1];
-        mean_variance += s * s / 4 / 4;
+        spacing[l] = result->levels[l].spacing;
+        errors[l] = result->levels[l].errors[FIELD_DENSITY][NORM_L1];
+        variances[l] = s * s / 4;
     }
-    for (size_t l = 0; l < 4; l++) {
-        const double s = result->levels[l].spread[FIELD_DENSITY][NORM_L1];
-        const double w = 1 / fmax(s * s / 4, 0.1 * mean_variance),
-                     x = log(result->levels[l].spacing);
-        weights += w;
-        sx += w * x;
-        sxx += w * x * x;
-    }
-    const double slope_variance = 1 / (sxx - sx * sx / weights);
+    assert_int_equal(order_fit(4, spacing, errors, &noise, &want, NULL), STATUS_OK);
     const struct order_fit *fit = &result->orders[FIELD_DENSITY][NORM_L1].fit;
-    const double student = 4.302652729911275; /* 97.5 %, two degrees of freedom */
-    near_below(student * sqrt(slope_variance), (fit->high - fit->low) / 2 * (1 + 1e-9));
+    near_relative(fit->order, want.order, 1e-12);
+    near_relative(fit->high - fit->low, want.high - want.low, 1e-12);
     assert_int_equal(result->still_status, GATE_NONE); /* a random start is noisy */
     study_free(&study);
 
