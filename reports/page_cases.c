@@ -185,7 +185,7 @@ static void run_table(struct buffer *to, const json_t *const *runs, size_t count
         html_cell(to, value_text(runs[k], "label"));
         html_cell_number(to, value_member(runs[k], "n"));
         for (int q = 0; q < QUANTITIES; q++)
-            html_cell_number(to, value_inner(errors, quantities[q], "l1"));
+            html_cell_number(to, value_inner(errors, quantities[q], "l1_cut"));
         html_cell_number(to, value_inner(runs[k], "conservation", "mass"));
         html_cell_number(to, value_inner(runs[k], "conservation", "momentum"));
         html_cell_number(to, value_inner(runs[k], "conservation", "energy"));
@@ -294,7 +294,7 @@ static void case_head(struct buffer *to, const char *name, const json_t *title,
     buffer_add(to, "</span></h3>");
     html_status(to, well ? "ok" : "fail");
     for (size_t k = 0; k < study_count; k++) {
-        const json_t *order = page_study_order(studies[k], "density", "l1");
+        const json_t *order = page_study_order(studies[k], "density", "l1_cut");
         buffer_add(to, k ? ", " : " <span class=\"note\">order of L1(density): ");
         buffer_escape(to, value_text(studies[k], "label"));
         buffer_format(to, " %.2f ± %.2f", value_member(order, "order"),

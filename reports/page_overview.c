@@ -63,11 +63,11 @@ static void row(struct buffer *to, const json_t *results, const json_t *first,
         const json_t *study = find(studies, name, labels[k]);
         levels = json_object_get(study, "levels");
         const json_t *finest = json_array_get(levels, json_array_size(levels) - 1);
-        html_cell_number(to, value_inner(json_object_get(finest, "errors"), "density", "l1"));
+        html_cell_number(to, value_inner(json_object_get(finest, "errors"), "density", "l1_cut"));
         const char *now = status_of(study, find(runs, name, labels[k]));
         if (strcmp(now, "ok")) status = now;
     }
-    const json_t *order = page_study_order(first, "density", "l1");
+    const json_t *order = page_study_order(first, "density", "l1_cut");
     buffer_format(to, "<td class=\"n\">%.2f ± %.2f</td>", value_member(order, "order"),
                   (value_member(order, "high") - value_member(order, "low")) / 2);
     html_cell_number(to, value_inner(run, "conservation", "momentum"));

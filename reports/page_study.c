@@ -42,7 +42,7 @@ const json_t *page_study_order(const json_t *study, const char *field, const cha
 static void fit(struct study *study, int quantity)
 {
     struct fitted *of = &study->of[quantity];
-    const json_t *order = page_study_order(study->document, plotted[quantity], "l1");
+    const json_t *order = page_study_order(study->document, plotted[quantity], "l1_cut");
     const double count = (double)study->levels, slope = value_member(order, "order");
     const double half = (value_member(order, "high") - value_member(order, "low")) / 2;
     double sum_n = 0, sum_error = 0;
@@ -68,7 +68,7 @@ static void read_study(struct study *study, const json_t *document)
         const json_t *errors = json_object_get(level, "errors");
         if (study->levels == LEVELS) break;
         for (int q = 0; q < PLOTTED; q++)
-            study->of[q].error[study->levels] = value_inner(errors, plotted[q], "l1");
+            study->of[q].error[study->levels] = value_inner(errors, plotted[q], "l1_cut");
         study->n[study->levels++] = value_member(level, "n");
     }
     for (int q = 0; q < PLOTTED; q++) fit(study, q);
@@ -179,7 +179,7 @@ static void error_table(struct buffer *to, const struct study *studies, size_t c
     }
     buffer_add(to, "<tr class=\"total\"><th>order</th>");
     for (size_t k = 0; k < count; k++) {
-        const json_t *order = page_study_order(studies[k].document, "density", "l1");
+        const json_t *order = page_study_order(studies[k].document, "density", "l1_cut");
         buffer_format(to, "<td class=\"n\">%.2f ± %.2f</td>", value_member(order, "order"),
                       (value_member(order, "high") - value_member(order, "low")) / 2);
     }
@@ -205,8 +205,11 @@ static void gate_words(struct buffer *to, const json_t *gate)
 
 static const char *norm_name(const char *norm)
 {
-    static const char *const names[][2] = {
-        {"l1", "L1"}, {"l2", "L2"}, {"linf", "L∞"}, {"particle_mean", "particle mean"}};
+    static const char *const names[][2] = {{"l1_cut", "L1"},
+                                           {"l1", "L1, whole volumes"},
+                                           {"l2", "L2"},
+                                           {"linf", "L∞"},
+                                           {"particle_mean", "particle mean"}};
     for (size_t k = 0; k < sizeof names / sizeof *names; k++)
         if (!strcmp(norm, names[k][0])) return names[k][1];
     return "error";
@@ -220,7 +223,7 @@ static void order_rows(struct buffer *to, const struct study *study)
     {
         const char *status = value_text(order, "status");
         bool gated = json_is_object(json_object_get(order, "gate"));
-        bool shown = !strcmp(value_text(order, "norm"), "l1");
+        bool shown = !strcmp(value_text(order, "norm"), "l1_cut");
         if (!gated && !shown && strcmp(status, "fail")) continue;
         buffer_add(to, "<tr>");
         html_cell(to, value_text(study->document, "label"));

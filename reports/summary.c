@@ -37,12 +37,12 @@ static void orders(struct buffer *to, const json_t *studies)
         json_array_foreach(json_object_get(study, "orders"), j, order)
         {
             if (strcmp(value_text(order, "field"), "density") ||
-                strcmp(value_text(order, "norm"), "l1"))
+                strcmp(value_text(order, "norm"), "l1_cut"))
                 continue;
             buffer_format(to, "| %s | %s | %.2f | %.2f to %.2f | ", value_text(study, "case"),
                           value_text(study, "label"), value_member(order, "order"),
                           value_member(order, "low"), value_member(order, "high"));
-            html_number(to, value_inner(json_object_get(finest, "errors"), "density", "l1"));
+            html_number(to, value_inner(json_object_get(finest, "errors"), "density", "l1_cut"));
             buffer_add(to, " |\n");
         }
     }

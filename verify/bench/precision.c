@@ -78,7 +78,7 @@ static enum status execute(void *context, uint64_t times, struct clock_taken *ta
         taken->wall_s += result.cost.wall_s;
         taken->cpu_s += result.cost.cpu_s;
         job->point->n = result.n;
-        job->point->error = result.errors[FIELD_DENSITY].l1;
+        job->point->error = result.errors[FIELD_DENSITY].l1_cut;
         job->point->pairs = (double)result.cost.pair_interactions;
         job->point->settings = result.settings;
         run_free(&result);
@@ -95,7 +95,8 @@ static int order_of(const struct run_settings *settings)
     const struct case_file *file = &settings->file;
     for (size_t i = 0; i < file->gate_count; i++) {
         const struct case_gate *gate = &file->gates[i];
-        if (gate->field != FIELD_DENSITY || gate->norm != NORM_L1) continue;
+        if (gate->field != FIELD_DENSITY || (gate->norm != NORM_L1 && gate->norm != NORM_L1_CUT))
+            continue;
         const double middle = (gate->gate.low + gate->gate.high) / 2;
         return middle > 1 ? (int)lround(middle) : 1;
     }

@@ -284,10 +284,15 @@ static void measure_errors_again(struct check_run *run, const void *subject)
     for (int f = 0; f < FIELDS; f++) {
         const double *value = fields[wrong && wrong->field == f ? FIELD_DENSITY : f];
         long double l1 = 0, l2 = 0, linf = 0, mean = 0, weight = 0, count = 0;
+        long double cut = 0, length = 0;
         for (size_t i = 0; i < s->n; i++) {
-            if (fabs(s->x[0][i]) > 0.5) continue;
             const long double error =
                 fabsl(value[i] - exact_of(&tube, f, s->x[0][i], 0.2 + (wrong ? wrong->late : 0)));
+            const long double beyond = fabsl(s->x[0][i]) + s->volume[i] / 2.L - 0.5L;
+            const long double inside = s->volume[i] - fmaxl(0, beyond);
+            cut += fmaxl(0, inside) * error;
+            length += fmaxl(0, inside);
+            if (fabs(s->x[0][i]) > 0.5) continue;
             weight += s->volume[i];
             l1 += s->volume[i] * error;
             l2 += s->volume[i] * error * error;
@@ -296,7 +301,7 @@ static void measure_errors_again(struct check_run *run, const void *subject)
             count += 1;
         }
         const double want[NORMS] = {(double)(l1 / weight), (double)sqrtl(l2 / weight), (double)linf,
-                                    (double)(mean / count)};
+                                    (double)(mean / count), (double)(cut / length)};
         for (int k = 0; k < NORMS; k++)
             check_measure(run, fabs(run_error(&result, (enum field)f, (enum norm)k) / want[k] - 1),
                           1e-12, 2e-14, "%s of %s", field_norm_family.members[k]->name,

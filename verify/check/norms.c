@@ -46,8 +46,11 @@ static struct norms norms_oracle(size_t n, const double *x, const double window[
         mean += error;
         inside++;
     }
-    return (struct norms){(double)(l1 / weight), (double)sqrtl(l2 / weight), (double)linf,
-                          (double)(mean / (long double)inside), inside};
+    return (struct norms){.l1 = (double)(l1 / weight),
+                          .l2 = (double)sqrtl(l2 / weight),
+                          .linf = (double)linf,
+                          .particle_mean = (double)(mean / (long double)inside),
+                          .n = inside};
 }
 
 static double relative(double value, double expected)
@@ -193,6 +196,97 @@ const struct check check_norms_fields = {
     .property = "L1 = sum V|e| / sum V, L2 = sqrt(sum V e^2 / sum V), Linf = max|e| in the window",
     .measure = measure_fields,
     .mutants = fields_mutants,
+};
+
+typedef double cut_function(size_t n, const double *x, const double window[2], double period,
+                            const double *volume, const double *value, const double *exact);
+
+struct cut_subject {
+    cut_function *cut;
+};
+
+/* Cells that fill the box [-1, 1] side by side, moved by shift and wrapped; the error is 1 + x^2 at
+ * a cell's centre. */
+static double cut_of_shifted(cut_function *cut, const double window[2], double shift)
+{
+    double x[CELLS], volume[CELLS], value[CELLS], exact[CELLS];
+    graded_cells(CELLS, x, volume);
+    for (size_t i = 0; i < CELLS; i++) {
+        x[i] += shift;
+        if (x[i] >= 1) x[i] -= 2;
+        exact[i] = 2.385;
+        value[i] = exact[i] + (i % 2 ? 1 : -1) * (1 + x[i] * x[i]);
+    }
+    return cut(CELLS, x, window, 2, volume, value, exact);
+}
+
+static void measure_cut(struct check_run *run, const void *subject)
+{
+    static const struct cut_subject right = {norm_l1_cut};
+    cut_function *cut = (subject ? (const struct cut_subject *)subject : &right)->cut;
+    /* one cell of [0, 1] of which a quarter is inside, one that is inside, one that is not */
+    const double x[] = {0.5, 1.25, 9}, volume[] = {1, 0.5, 1}, value[] = {3, 1, 70};
+    const double exact[] = {1, 0.5, 0}, window[] = {0.75, 2};
+    check_measure(run, relative(cut(3, x, window, 20, volume, value, exact), (0.5 + 0.25) / 0.75),
+                  1e-14, 4e-16, "a quarter of one cell, the whole of another");
+    check_measure(run,
+                  relative(cut(2, (double[]){0.1, 9.9}, (double[]){0, 10}, 10, volume,
+                               (double[]){3, 1}, exact),
+                           (1 * 2 + 0.5 * 0.5) / 1.5),
+                  1e-14, 4e-16, "a window that is the whole box cuts nothing");
+    check_measure(run, relative(cut_of_shifted(cut, (double[]){-0.5, 0.5}, 0), 1 + 0.25 / 3), 1e-4,
+                  1e-5, "cells side by side: the mean over the window");
+    /* continuous as cells cross the edges: the coarse ones are 0.02 wide */
+    double jump = 0;
+    for (int i = 0; i < 400; i++)
+        jump = fmax(jump, fabs(cut_of_shifted(cut, (double[]){-0.5, 0.5}, 1e-4 * (i + 1)) -
+                               cut_of_shifted(cut, (double[]){-0.5, 0.5}, 1e-4 * i)));
+    check_measure(run, jump, 2e-4, 2e-5, "change for a shift of a 200th of a cell");
+    const double nan = (double)NAN;
+    check_measure(run,
+                  !isnan(cut(3, (double[]){nan, 1.25, 9}, window, 20, volume, value, exact)) +
+                      !isnan(cut(3, x, window, 20, volume, (double[]){3, nan, 1}, exact)) +
+                      !isnan(cut(3, x, window, 20, (double[]){1, 0.5, nan}, value, exact)) +
+                      !isnan(cut(1, x + 2, window, 20, volume, value, exact)),
+                  0, 0, "a NaN, or nothing in the window, is NaN");
+}
+
+static double not_cut(size_t n, const double *x, const double window[2], double period,
+                      const double *volume, const double *value, const double *exact)
+{
+    (void)period;
+    return norm_errors(n, x, window, volume, value, exact).l1;
+}
+
+static double without_images(size_t n, const double *x, const double window[2], double period,
+                             const double *volume, const double *value, const double *exact)
+{
+    (void)period;
+    return norm_l1_cut(n, x, window, 1e9, volume, value, exact);
+}
+
+static double cut_by_centre(size_t n, const double *x, const double window[2], double period,
+                            const double *volume, const double *value, const double *exact)
+{
+    double wide[CELLS];
+    for (size_t i = 0; i < n; i++) wide[i] = 2 * volume[i];
+    return norm_l1_cut(n, x, window, period, wide, value, exact);
+}
+
+static const struct check_mutant cut_mutants[] = {
+    {"l1_cut_nothing", "whole volumes of whatever lies inside", &(struct cut_subject){not_cut}},
+    {"l1_cut_no_images", "cells do not go on at the other end of the box",
+     &(struct cut_subject){without_images}},
+    {"l1_cut_radius", "volumes taken for half widths", &(struct cut_subject){cut_by_centre}},
+    {0},
+};
+
+const struct check check_norms_cut = {
+    .group = "norms",
+    .name = "l1_cut",
+    .property = "L1 with cells cut at the window's edge is continuous in all positions",
+    .measure = measure_cut,
+    .mutants = cut_mutants,
 };
 
 typedef double binned_function(size_t n, const double *x, const double window[2],

@@ -33,7 +33,7 @@ static void print_ladder(const struct case_file *file, const struct study_result
         const struct study_level *level = &result->levels[i];
         printf("%10zu %12.4e", level->n, level->h);
         for (int field = 0; field < FIELDS; field++)
-            if (file->fields[field]) printf(" %15.4e", level->errors[field][NORM_L1]);
+            if (file->fields[field]) printf(" %15.4e", level->errors[field][NORM_L1_CUT]);
         printf(" %10.3g\n", level->cpu_s);
     }
 }
@@ -46,7 +46,8 @@ static void print_orders(const struct case_file *file, const struct study_result
     for (int field = 0; field < FIELDS; field++)
         for (int norm = 0; norm < NORMS; norm++) {
             const struct study_order *order = &result->orders[field][norm];
-            if (order->status == GATE_NONE && (norm != NORM_L1 || !file->fields[field])) continue;
+            if (order->status == GATE_NONE && (norm != NORM_L1_CUT || !file->fields[field]))
+                continue;
             char name[40];
             snprintf(name, sizeof name, "%s_%s", field_family.members[field]->name,
                      field_norm_family.members[norm]->name);
@@ -132,9 +133,10 @@ static void print_study(const struct case_file *file, const struct study_result 
     printf("%s%s%s: %s%s%s\n", style.bold, file->name, style.end, file->title, *label ? ", " : "",
            label);
     print_ladder(file, result, &style);
-    printf("%serrors: L1 = sum V|q - exact|/sum V over the measure window, code units; h: mean "
-           "there%s\n",
-           style.faint, style.end);
+    printf(
+        "%serrors: L1 = sum V|q - exact|/sum V over the measure window, volumes cut at its edge, "
+        "code units; h: mean there%s\n",
+        style.faint, style.end);
     print_orders(file, result, &style);
     printf("%sorder: least squares of log(error) against log(box/n), Student t%s\n", style.faint,
            style.end);

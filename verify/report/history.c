@@ -220,9 +220,9 @@ static json_t *trends(const json_t *nights, const json_t *results)
         const json_t *finest = json_array_get(levels, json_array_size(levels) - 1);
         char error[PATH_LENGTH], order[PATH_LENGTH];
         const double n = value_member(finest, "n");
-        snprintf(error, sizeof error, "studies[%s, %s].levels[n %.10g].errors.density.l1", name,
+        snprintf(error, sizeof error, "studies[%s, %s].levels[n %.10g].errors.density.l1_cut", name,
                  label, n);
-        snprintf(order, sizeof order, "studies[%s, %s].orders[density, l1].order", name, label);
+        snprintf(order, sizeof order, "studies[%s, %s].orders[density, l1_cut].order", name, label);
         json_array_append_new(list,
                               json_pack("{s:s, s:s, s:o, s:o, s:o}", "case", name, "label", label,
                                         "n", result_number(n), "error", series_of(nights, error),

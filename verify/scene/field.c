@@ -21,5 +21,6 @@ const struct family field_norm_family = {
     "norms", "error norms over the measure window",
     MEMBERS(MEMBER("l1", "sum V |q - exact| / sum V"),
             MEMBER("l2", "sqrt(sum V (q - exact)^2 / sum V)"), MEMBER("linf", "max |q - exact|"),
-            MEMBER("particle_mean", "sum |q - exact| / number of particles")),
+            MEMBER("particle_mean", "sum |q - exact| / number of particles"),
+            MEMBER("l1_cut", "L1 with volumes cut at the window's edge")),
     NORMS};

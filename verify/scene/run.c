@@ -175,6 +175,10 @@ static enum status measure_errors(struct run_result *result, struct error *error
     for (int field = 0; field < FIELDS; field++)
         result->errors[field] =
             norm_errors(s->n, s->x[0], window, s->volume, measured[field], exact[field]);
+    for (int field = 0; field < FIELDS; field++)
+        result->errors[field].l1_cut =
+            norm_l1_cut(s->n, s->x[0], window, domain_length(&result->problem.domain, 0), s->volume,
+                        measured[field], exact[field]);
     suspect(result, measured, exact);
     budget_measure(&result->problem, s, exact, &result->budget);
     free(values);
@@ -239,7 +243,8 @@ static enum status broke_down_at_start(struct run_result *result, const struct e
         result->errors[field] = (struct norms){.l1 = (double)NAN,
                                                .l2 = (double)NAN,
                                                .linf = (double)NAN,
-                                               .particle_mean = (double)NAN};
+                                               .particle_mean = (double)NAN,
+                                               .l1_cut = (double)NAN};
     return STATUS_OK;
 }
 
@@ -337,6 +342,7 @@ void run_free(struct run_result *result)
 double run_error(const struct run_result *result, enum field field, enum norm norm)
 {
     const struct norms *errors = &result->errors[field];
-    const double values[NORMS] = {errors->l1, errors->l2, errors->linf, errors->particle_mean};
+    const double values[NORMS] = {errors->l1, errors->l2, errors->linf, errors->particle_mean,
+                                  errors->l1_cut};
     return values[norm];
 }

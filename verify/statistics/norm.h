@@ -12,6 +12,7 @@ enum { NORM_BINS = 20, NORM_BINS_MAX = 64 };
 
 struct norms {
     double l1, l2, linf, particle_mean; /* NaN where no particle lies in the window */
+    double l1_cut;                      /* see norm_l1_cut; where nobody has cut anything: l1 */
     size_t n;                           /* particles in the window */
 };
 
@@ -19,6 +20,12 @@ struct norms {
  * window[0] <= x <= window[1]. A NaN among the values makes every norm NaN. */
 struct norms norm_errors(size_t n, const double *x, const double window[2], const double *volume,
                          const double *value, const double *exact);
+
+/* L1 with volumes cut at the window's edge (on a line): each particle fills the cell of the length
+ * volume[i] about x[i], and w_i is what of it lies in the window, also of its images a period away.
+ * L1 jumps where a particle crosses the edge, by its volume times its error; this does not. */
+double norm_l1_cut(size_t n, const double *x, const double window[2], double period,
+                   const double *volume, const double *value, const double *exact);
 
 /* An exact solution at one instant. */
 typedef double norm_field(const void *context, double x);
