@@ -1,0 +1,246 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What dissipates in 2D and 3D: artificial viscosity and conductivity of the pairs of one particle.
+ * Closing speeds, slopes and gradients are there. */
+#include <math.h>
+
+#include "sides.h"
+#include "stamp.h"
+
+/* x . L x/r^2 for the particle's own L, and for the neighbours'. */
+CLONES static void slopes_along(int dim, int count, const struct lanes *lanes, const double *own,
+                                const double *theirs)
+{
+    const ptrdiff_t stride = lanes->stride;
+    const double *dx = lane(lanes, LANE_DX), *r_inverse = lane(lanes, LANE_R_INVERSE);
+    double *restrict slope_i = lane(lanes, LANE_SLOPE_I), *restrict slope_j =
+                                                              lane(lanes, LANE_SLOPE_J);
+    for (int k = 0; k < count; k++) slope_i[k] = slope_j[k] = 0;
+    for (int a = 0; a < dim; a++)
+        for (int b = 0; b < dim; b++) {
+            const double *restrict xa = dx + a * stride, *restrict xb = dx + b * stride,
+                                   *restrict L = theirs + (a * dim + b) * stride;
+            const double L_own = own[a * dim + b];
+#pragma omp simd
+            for (int k = 0; k < count; k++) {
+                const double xx = (xa[k] * r_inverse[k]) * (xb[k] * r_inverse[k]);
+                slope_i[k] += L_own * xx;
+                slope_j[k] += L[k] * xx;
+            }
+        }
+}
+
+/* K, what viscosity adds to a_i and a_j alike, for G = 1. */
+ALWAYS_INLINE void viscous_body(enum viscosity viscosity, bool signal_form, int count,
+                                const struct pair_numbers *numbers, const struct sides *sides,
+                                const struct lanes *lanes)
+{
+    const struct pair_numbers n = *numbers;
+    const double own_m = sides->own.m, own_h = sides->own.h, own_h_inverse = sides->own.h_inverse,
+                 own_c = sides->own.c, own_rho = sides->own.rho, own_alpha = sides->own.alpha;
+    const double *restrict m = sides->m, *restrict h = sides->h,
+                           *restrict h_inverse = sides->h_inverse, *restrict c = sides->c,
+                           *restrict rho = sides->rho, *restrict alpha = sides->alpha,
+                           *restrict slope_i = lane(lanes, LANE_SLOPE_I),
+                           *restrict slope_j = lane(lanes, LANE_SLOPE_J),
+                           *restrict r = lane(lanes, LANE_R),
+                           *restrict closing = lane(lanes, LANE_CLOSING);
+    const bool varying = viscosity == VISCOSITY_TIME_DEPENDENT;
+    const bool sloped = viscosity == VISCOSITY_RECONSTRUCTED;
+    double *restrict K = lane(lanes, LANE_K);
+#pragma omp simd
+    for (int k = 0; k < count; k++) {
+        const struct pair_side i = {.m = own_m,
+                                    .h = own_h,
+                                    .h_inverse = own_h_inverse,
+                                    .c = own_c,
+                                    .rho = own_rho,
+                                    .alpha = own_alpha,
+                                    .slope = sloped ? slope_i[k] : 0};
+        const struct pair_side j = {.m = m[k],
+                                    .h = h[k],
+                                    .h_inverse = h_inverse[k],
+                                    .c = c[k],
+                                    .rho = rho[k],
+                                    .alpha = varying ? alpha[k] : 0,
+                                    .slope = sloped ? slope_j[k] : 0};
+        K[k] = signal_form ? pair_viscous_signal(viscosity, &n, &i, &j, r[k], closing[k], 1)
+                           : pair_viscous(viscosity, &n, &i, &j, r[k], closing[k], 1);
+    }
+}
+
+/* Times the mean Balsara factor of the pair, or its square. */
+CLONES static void limit_viscosity(int count, bool squared, double own,
+                                   const double *restrict theirs, double *restrict K)
+{
+#pragma omp simd
+    for (int k = 0; k < count; k++) {
+        const double f = 0.5 * (own + theirs[k]);
+        K[k] *= squared ? f * f : f;
+    }
+}
+
+#define VISCOUS_CASE(symbol, name, label, paper, signal_form)                                      \
+    case symbol:                                                                                   \
+        viscous_body(symbol, signal_form, count, numbers, sides, lanes);                           \
+        break;
+
+#define VISCOUS(name, signal_form)                                                                 \
+    CLONES static void name(enum viscosity viscosity, int count,                                   \
+                            const struct pair_numbers *numbers, const struct sides *sides,         \
+                            const struct lanes *lanes)                                             \
+    {                                                                                              \
+        switch (viscosity) {                                                                       \
+            VISCOSITY_LINE_LIST(VISCOUS_CASE, signal_form)                                         \
+        case VISCOSITY_CULLEN_DEHNEN: /* comes as time_dependent */                                \
+        case VISCOSITY_PROJECTED:     /* comes as reconstructed */                                 \
+            break;                                                                                 \
+        }                                                                                          \
+    }
+VISCOUS(viscous_mu, false)
+VISCOUS(viscous_signal, true)
+
+/* minus v_ij . G, which heats where it is positive: v_ij . Gbar. */
+CLONES static void find_approach(int dim, int count, const struct lanes *lanes, const double *v,
+                                 const double *theirs, double *restrict approach)
+{
+    const ptrdiff_t stride = lanes->stride;
+    const double *G = lane(lanes, LANE_GX);
+    for (int k = 0; k < count; k++) approach[k] = 0;
+    for (int a = 0; a < dim; a++) {
+        const double *restrict Ga = G + a * stride, *restrict va = theirs + a * stride;
+        const double own = v[a];
+#pragma omp simd
+        for (int k = 0; k < count; k++) approach[k] -= (own - va[k]) * Ga[k];
+    }
+}
+
+/* Viscosity that would cool is left out: with a matrix a pair may approach against its gradient. */
+CLONES static void never_cool(int count, const double *restrict approach, double *restrict K)
+{
+#pragma omp simd
+    for (int k = 0; k < count; k++) K[k] = approach[k] > 0 ? K[k] : 0;
+}
+
+/* The linear term of viscosity=projected, of both signs (CONVENTIONS, projected):
+ * PI = -nu cbar e . (1 - P_ij) u_ij/rhobar, u_ij = v_ij + (L_i + L_j) x/2, e = -x/r. */
+CLONES static void project_noise(int dim, int count, double nu, const struct sides *sides,
+                                 const struct lanes *lanes, const double *const own[3],
+                                 const double *const theirs[3])
+{
+    const ptrdiff_t stride = lanes->stride;
+    const double *x = lane(lanes, LANE_DX), *restrict r_inverse = lane(lanes, LANE_R_INVERSE);
+    const double *restrict m = sides->m, *restrict c = sides->c, *restrict rho = sides->rho;
+    double *restrict s = lane(lanes, LANE_SPARE), *restrict K = lane(lanes, LANE_K);
+    double *restrict u = lane(lanes, LANE_W), *restrict e = lane(lanes, LANE_W_J);
+    const double own_m = sides->own.m, own_c = sides->own.c, own_rho = sides->own.rho;
+    for (int k = 0; k < count; k++) s[k] = 0;
+    for (int a = 0; a < dim; a++) {
+        const double *restrict va = theirs[0] + a * stride;
+        const double own_v = own[0][a];
+#pragma omp simd
+        for (int k = 0; k < count; k++) u[k] = own_v - va[k];
+        for (int b = 0; b < dim; b++) {
+            const double *restrict L = theirs[1] + (a * dim + b) * stride, *restrict xb =
+                                                                               x + b * stride;
+            const double own_L = own[1][a * dim + b];
+#pragma omp simd
+            for (int k = 0; k < count; k++) u[k] += 0.5 * (own_L + L[k]) * xb[k];
+        }
+        /* e - P e along this axis, with P symmetric */
+        const double *restrict xa = x + a * stride;
+#pragma omp simd
+        for (int k = 0; k < count; k++) e[k] = xa[k];
+        for (int b = 0; b < dim; b++) {
+            const double *restrict P = theirs[2] + symmetric_at(dim, a, b) * stride, *restrict xb =
+                                                                                         x +
+                                                                                         b * stride;
+            const double own_P = own[2][symmetric_at(dim, a, b)];
+#pragma omp simd
+            for (int k = 0; k < count; k++) e[k] -= 0.5 * (own_P + P[k]) * xb[k];
+        }
+#pragma omp simd
+        for (int k = 0; k < count; k++) s[k] += e[k] * u[k];
+    }
+    /* K = m_i m_j PI/2, and e . (1 - P) u = -s/r */
+#pragma omp simd
+    for (int k = 0; k < count; k++)
+        K[k] +=
+            own_m * m[k] * (0.5 * nu) * (own_c + c[k]) * (s[k] * r_inverse[k]) / (own_rho + rho[k]);
+}
+
+/* Conductivity (Price 2008), into heat: sum_j m_i m_j alpha_u v_u (u_i - u_j)/rhobar e_ij . Gbar.
+ */
+CLONES static double conducted(int dim, int count, double alpha_u, const struct sides *sides,
+                               const struct lanes *lanes, double own_u, const double *restrict u)
+{
+    const ptrdiff_t stride = lanes->stride;
+    const double *x = lane(lanes, LANE_DX),
+                 *G = lane(lanes, LANE_GX), *restrict r_inverse = lane(lanes, LANE_R_INVERSE);
+    const double *restrict m = sides->m, *restrict rho = sides->rho, *restrict P = sides->P;
+    const double own_m = sides->own.m, own_P = sides->own.P, own_rho = sides->own.rho;
+    double *restrict s = lane(lanes, LANE_SPARE);
+    for (int k = 0; k < count; k++) s[k] = 0;
+    for (int a = 0; a < dim; a++) {
+        const double *restrict xa = x + a * stride, *restrict Ga = G + a * stride;
+#pragma omp simd
+        for (int k = 0; k < count; k++) s[k] += xa[k] * Ga[k];
+    }
+#pragma omp simd
+    for (int k = 0; k < count; k++) {
+        const double rho_bar = 0.5 * (own_rho + rho[k]);
+        const double speed = sqrt(fabs(own_P - P[k]) / rho_bar);
+        const double along_pair = least(s[k] * r_inverse[k], 0);
+        s[k] = own_m * m[k] * alpha_u * speed * (own_u - u[k]) / rho_bar * along_pair;
+    }
+    return lanes_sum(s, count);
+}
+
+double cells_conduction(const struct cells *cells, int count, const struct sides *sides,
+                        const struct lanes *lanes, double own_u, const double *u)
+{
+    return conducted(cells->method.box.dim, count, cells->method.conductivity, sides, lanes, own_u,
+                     u);
+}
+
+void cells_viscosity(const struct cells *cells, int count, const struct lanes *lanes,
+                     const struct sides *sides, const double *record)
+{
+    const struct cells_method *method = &cells->method;
+    const struct lanes_layout *layout = &cells->force;
+    const int dim = method->box.dim;
+    double *K = lane(lanes, LANE_K);
+    if (method->viscosity == VISCOSITY_NONE) {
+        for (int k = 0; k < count; k++) K[k] = 0;
+        return;
+    }
+    if (method->viscosity == VISCOSITY_RECONSTRUCTED)
+        slopes_along(dim, count, lanes, record + layout->offset[GROUP_SLOPE],
+                     lane_of(lanes, layout, GROUP_SLOPE, 0));
+    (method->signal_form ? viscous_signal : viscous_mu)(method->viscosity, count, &method->numbers,
+                                                        sides, lanes);
+    if (method->balsara)
+        limit_viscosity(count, method->projected, sides->own_balsara, sides->balsara, K);
+    if (method->viscosity == VISCOSITY_RECONSTRUCTED) {
+        double *approach = lane(lanes, LANE_SPARE);
+        find_approach(dim, count, lanes, record + layout->offset[GROUP_MOTION],
+                      lane_of(lanes, layout, GROUP_MOTION, 0), approach);
+        never_cool(count, approach, K);
+    }
+    if (method->projected)
+        project_noise(dim, count, method->noise, sides, lanes,
+                      (const double *const[3]){record + layout->offset[GROUP_MOTION],
+                                               record + layout->offset[GROUP_SLOPE],
+                                               record + layout->offset[GROUP_PROJECTOR]},
+                      (const double *const[3]){lane_of(lanes, layout, GROUP_MOTION, 0),
+                                               lane_of(lanes, layout, GROUP_SLOPE, 0),
+                                               lane_of(lanes, layout, GROUP_PROJECTOR, 0)});
+}
+
+/* sum_j V_j v_ij . G, which is div v of CONVENTIONS with the pair gradient. */
+double cells_divergence(int dim, int count, const struct lanes *lanes, const struct sides *sides,
+                        const double *v, const double *theirs)
+{
+    double *approach = lane(lanes, LANE_SPARE);
+    find_approach(dim, count, lanes, v, theirs, approach);
+    return -lanes_dot(sides->V, approach, count);
+}

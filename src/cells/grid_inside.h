@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Inside of a grid: shared by its cells (grid.c) and its lists (grid_lists.c). */
+#ifndef SPHPROOF_GRID_INSIDE_H
+#define SPHPROOF_GRID_INSIDE_H
+
+#include <math.h>
+
+#include "grid.h"
+
+enum {
+    TILE = 8,          /* columns of a tile, each way */
+    PART = 256,        /* slots of a part at most, but for a cell that holds more */
+    SAMPLE = 1000,     /* radii that choose the size of the cells */
+    CHUNK = 1 << 18,   /* entries of lists that a thread asks for at once */
+    CELLS_A_POINT = 2, /* at most */
+    BEYOND = 16        /* entries that a vector may write after the end of a list */
+};
+
+/* Memory for lists, in chunks that never move. */
+struct pool {
+    int32_t **chunks;
+    size_t *sizes;
+    size_t count, used_chunks, used; /* chunks there are; in use; entries used of the last one */
+};
+
+/* What one thread needs for the cell that it works on: candidates of its points. */
+struct candidates {
+    size_t capacity;
+    float *x[3], *radius2;
+    int32_t *slot;
+    uint8_t *near;
+};
+
+/* The slots of the candidates that are near a point but s itself. Returns how many; the list has
+ * room for all and BEYOND. */
+typedef int32_t find_loop(int dim, const struct candidates *candidates, size_t count,
+                          const float at[3], float radius2, int32_t s, int32_t *list);
+
+struct grid {
+    struct grid_box box;
+    int threads;
+    size_t n, capacity;
+    double lo[3], side[3], size[3], cell_inverse[3]; /* side: period or extent */
+    double unit; /* what single precision is used in: the usual radius */
+    ptrdiff_t cells[3];
+    size_t cell_count, cell_capacity, column_capacity;
+    uint32_t *column;     /* y + cells[1] z -> rank of the column of cells along x */
+    uint32_t *column_at;  /* and back */
+    uint32_t *start;      /* first slot of each cell, and the end */
+    uint32_t *cell_of;    /* of each point */
+    float *widest;        /* largest radius of the cell's points; in units, as all floats here */
+    float *reach;         /* how far its points and those of others reach across it */
+    unsigned char *marks; /* two of each cell, for grid_wake */
+    uint32_t *order;
+    double (*position)[4];
+    float *radius;             /* of each slot */
+    float *place[3], *radius2; /* of each slot: from the middle of its cell; radius squared */
+    struct grid_list *lists;
+    uint32_t *part_begin, *part_cell;
+    size_t parts;
+    int longest;
+    size_t active;               /* points that may have lists */
+    const unsigned char *asleep; /* of the last search */
+    struct pool *pools;
+    struct candidates *candidates;
+    find_loop *find;
+};
+
+static inline size_t grid_cell_at(const struct grid *grid, const ptrdiff_t c[3])
+{
+    return (size_t)grid->column[c[1] + grid->cells[1] * c[2]] * (size_t)grid->cells[0] +
+           (size_t)c[0];
+}
+
+/* The coordinates of a cell from its number. */
+static inline void grid_cell_coordinates(const struct grid *grid, size_t cell, ptrdiff_t c[3])
+{
+    const uint32_t column = grid->column_at[cell / (size_t)grid->cells[0]];
+    c[0] = (ptrdiff_t)(cell % (size_t)grid->cells[0]);
+    c[1] = (ptrdiff_t)column % grid->cells[1];
+    c[2] = (ptrdiff_t)column / grid->cells[1];
+}
+
+/* Cells on either side along an axis that a radius, in units, covers. */
+static inline ptrdiff_t grid_cells_within(const struct grid *grid, int axis, double radius)
+{
+    if (!(grid->size[axis] > 0)) return 0;
+    const double k = ceil(radius * grid->unit * grid->cell_inverse[axis]);
+    return k < (double)grid->cells[axis] ? (ptrdiff_t)k : grid->cells[axis];
+}
+
+/* The cells that the points of a cell look through on one axis: from, count; across: the edge of a
+ * periodic box lies between; all: the axis has no more cells, so that images must be compared. */
+struct look {
+    ptrdiff_t from, count;
+    bool across, all;
+};
+
+static inline struct look grid_look_along(const struct grid *grid, int axis, ptrdiff_t at,
+                                          double radius)
+{
+    const ptrdiff_t k = grid_cells_within(grid, axis, radius), cells = grid->cells[axis];
+    struct look look = {at - k, 2 * k + 1, false, false};
+    if (axis < grid->box.dim && grid->box.periodic[axis]) {
+        look.all = look.count >= cells;
+        look.across = look.all || look.from < 0 || at + k >= cells;
+        if (look.all) look = (struct look){0, cells, true, true};
+        return look;
+    }
+    if (look.from < 0) look.from = 0;
+    const ptrdiff_t end = at + k + 1 < cells ? at + k + 1 : cells;
+    look.count = end - look.from;
+    return look;
+}
+
+static inline ptrdiff_t grid_folded(const struct grid *grid, int axis, ptrdiff_t c)
+{
+    return c < 0 ? c + grid->cells[axis] : c >= grid->cells[axis] ? c - grid->cells[axis] : c;
+}
+
+/* --- grid_lists.c ----------------------------------------------------------------------------- */
+
+/* The fastest loop that this processor runs. */
+find_loop *grid_find_choose(void);
+
+/* Lists of all active points, from the cells. STATUS_ENVIRONMENT: no memory. */
+enum status grid_make_lists(struct grid *grid, struct error *error);
+
+#endif

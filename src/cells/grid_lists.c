@@ -1,0 +1,308 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The neighbour lists of a grid: the points of the cells around are copied next to each other, in
+ * single precision and relative to the cell, and tested together. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "grid_inside.h"
+#include "stamp.h"
+
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+#if SPHPROOF_CLONES && defined __x86_64__
+#include <immintrin.h>
+#endif
+
+static int32_t *pool_take(struct pool *pool, size_t most)
+{
+    if (pool->used_chunks == 0 || pool->used + most > pool->sizes[pool->used_chunks - 1]) {
+        while (pool->used_chunks < pool->count && pool->sizes[pool->used_chunks] < most)
+            pool->used_chunks++;
+        if (pool->used_chunks == pool->count) {
+            const size_t size = most > CHUNK ? most : CHUNK;
+            int32_t **chunks = realloc(pool->chunks, (pool->count + 1) * sizeof *chunks);
+            if (!chunks) return NULL;
+            pool->chunks = chunks;
+            size_t *sizes = realloc(pool->sizes, (pool->count + 1) * sizeof *sizes);
+            if (!sizes) return NULL;
+            pool->sizes = sizes;
+            pool->chunks[pool->count] = malloc(size * sizeof **chunks);
+            if (!pool->chunks[pool->count]) return NULL;
+            pool->sizes[pool->count++] = size;
+        }
+        pool->used_chunks++;
+        pool->used = 0;
+    }
+    return pool->chunks[pool->used_chunks - 1] + pool->used;
+}
+
+/* Room for n more after count, which are kept. */
+static bool reserve_candidates(struct candidates *candidates, size_t count, size_t n)
+{
+    if (count + n <= candidates->capacity) return true;
+    const size_t capacity = (2 * (count + n) + 127) / 64 * 64;
+    char *block = aligned_alloc(64, capacity * (5 * 4 + 4));
+    if (!block) return false;
+    struct candidates grown = {.capacity = capacity, .slot = (int32_t *)(void *)block};
+    float *next = (float *)(void *)(block + 4 * capacity);
+    for (int a = 0; a < 3; a++, next += capacity) grown.x[a] = next;
+    grown.radius2 = next;
+    grown.near = (uint8_t *)(void *)(next + capacity);
+    for (int a = 0; a < 3 && count; a++)
+        memcpy(grown.x[a], candidates->x[a], count * sizeof(float));
+    if (count) {
+        memcpy(grown.radius2, candidates->radius2, count * sizeof(float));
+        memcpy(grown.slot, candidates->slot, count * sizeof *grown.slot);
+    }
+    free(candidates->slot);
+    *candidates = grown;
+    return true;
+}
+
+/* Which candidates are near the point at x? `near` gets 0 or 1; count in whole 64s. */
+#define NEAR(name, dim)                                                                            \
+    CLONES static void name(size_t count, const float at[3], float radius2,                        \
+                            const float *restrict x, const float *restrict y,                      \
+                            const float *restrict z, const float *restrict other,                  \
+                            uint8_t *restrict near)                                                \
+    {                                                                                              \
+        const float x0 = at[0], y0 = at[1], z0 = at[2];                                            \
+        _Pragma("omp simd") for (size_t k = 0; k < count; k++)                                     \
+        {                                                                                          \
+            const float dx = x[k] - x0, dy = y[k] - y0, dz = dim == 3 ? z[k] - z0 : 0;             \
+            const float r2 = dim == 3 ? dx * dx + dy * dy + dz * dz : dx * dx + dy * dy;           \
+            const float most = other[k] > radius2 ? other[k] : radius2;                            \
+            near[k] = r2 < most;                                                                   \
+        }                                                                                          \
+    }
+NEAR(near_2, 2)
+NEAR(near_3, 3)
+
+/* The difference of two positions that is nearest to 0. */
+static double nearest(double d, double side)
+{
+    return d > 0.5 * side ? d - side : d < -0.5 * side ? d + side : d;
+}
+
+/* Copies the points of a cell, moved by what lies between the two cells. */
+static void copy_cell(const struct grid *grid, struct candidates *to, size_t count, size_t cell,
+                      const float moved[3])
+{
+    const uint32_t begin = grid->start[cell];
+    const size_t n = grid->start[cell + 1] - begin;
+    for (int a = 0; a < 3; a++) {
+        const float *from = grid->place[a] + begin;
+        float *x = to->x[a] + count;
+        for (size_t k = 0; k < n; k++) x[k] = from[k] + moved[a];
+    }
+    memcpy(to->radius2 + count, grid->radius2 + begin, n * sizeof(float));
+    for (size_t k = 0; k < n; k++) to->slot[count + k] = (int32_t)(begin + k);
+}
+
+struct region {
+    struct look along[3];
+    bool across, all; /* images matter; a pair's image must be found for each pair */
+};
+
+/* Gathers the candidates of the cell at c. Returns how many, in whole 64s the last of which never
+ * match; SIZE_MAX: no memory. */
+static size_t find_candidates(const struct grid *grid, const ptrdiff_t c[3],
+                              const struct region *region, struct candidates *candidates)
+{
+    const struct look *l = region->along;
+    const double scale = 1 / grid->unit;
+    size_t count = 0;
+    for (ptrdiff_t kz = 0; kz < l[2].count; kz++)
+        for (ptrdiff_t ky = 0; ky < l[1].count; ky++) {
+            const size_t row =
+                grid_cell_at(grid, (ptrdiff_t[3]){0, grid_folded(grid, 1, l[1].from + ky),
+                                                  grid_folded(grid, 2, l[2].from + kz)});
+            float moved[3] = {0, (float)((double)(l[1].from + ky - c[1]) * grid->size[1] * scale),
+                              (float)((double)(l[2].from + kz - c[2]) * grid->size[2] * scale)};
+            for (ptrdiff_t kx = 0; kx < l[0].count; kx++) {
+                const size_t cell = row + (size_t)grid_folded(grid, 0, l[0].from + kx);
+                const size_t n = grid->start[cell + 1] - grid->start[cell];
+                if (!reserve_candidates(candidates, count, n + 64)) return SIZE_MAX;
+                moved[0] = (float)((double)(l[0].from + kx - c[0]) * grid->size[0] * scale);
+                copy_cell(grid, candidates, count, cell, moved);
+                count += n;
+            }
+        }
+    const size_t whole = (count + 63) / 64 * 64;
+    for (size_t k = count; k < whole; k++) {
+        candidates->x[0][k] = 1e18f;
+        candidates->x[1][k] = candidates->x[2][k] = 0;
+        candidates->radius2[k] = 0;
+        candidates->slot[k] = 0;
+    }
+    return whole;
+}
+
+/* In a box hardly wider than the radii: the nearest image pair by pair. */
+static void near_images(const struct grid *grid, uint32_t s, size_t count,
+                        const struct candidates *candidates, uint8_t *near)
+{
+    for (size_t k = 0; k < count; k++) {
+        const bool filling = !(candidates->x[0][k] < 1e17f);
+        const int32_t j = filling ? (int32_t)s : candidates->slot[k];
+        double r2 = 0;
+        for (int a = 0; a < grid->box.dim; a++) {
+            double d = grid->position[j][a] - grid->position[s][a];
+            if (grid->box.periodic[a]) d = nearest(d, grid->side[a]);
+            r2 += d * d;
+        }
+        const double radius = fmax(grid->radius[s], grid->radius[j]) * grid->unit;
+        near[k] = !filling && r2 < radius * radius;
+    }
+}
+
+/* Slots of the marked candidates but s itself. Returns how many. */
+static int32_t collect(const uint8_t *near, size_t count, const int32_t *slot, int32_t s,
+                       int32_t *list)
+{
+    int32_t found = 0;
+    for (size_t k = 0; k < count; k += 8) {
+        uint64_t marks;
+        memcpy(&marks, near + k, 8);
+        while (marks) {
+            const int32_t j = slot[k + (size_t)__builtin_ctzll(marks) / 8];
+            marks &= marks - 1;
+            list[found] = j;
+            found += j != s;
+        }
+    }
+    return found;
+}
+
+static int32_t find_plainly(int dim, const struct candidates *candidates, size_t count,
+                            const float at[3], float radius2, int32_t s, int32_t *list)
+{
+    (dim == 2 ? near_2 : near_3)(count, at, radius2, candidates->x[0], candidates->x[1],
+                                 candidates->x[2], candidates->radius2, candidates->near);
+    return collect(candidates->near, count, candidates->slot, s, list);
+}
+
+#if SPHPROOF_CLONES && defined __x86_64__
+
+/* The same list: lanes that match are moved together in a register. */
+__attribute__((target("avx512f,popcnt"))) static int32_t
+find_by_compressing(int dim, const struct candidates *candidates, size_t count, const float at[3],
+                    float radius2, int32_t s, int32_t *list)
+{
+    const __m512 x0 = _mm512_set1_ps(at[0]), y0 = _mm512_set1_ps(at[1]), z0 = _mm512_set1_ps(at[2]),
+                 own = _mm512_set1_ps(radius2);
+    const __m512i self = _mm512_set1_epi32(s);
+    int32_t found = 0;
+    for (size_t k = 0; k < count; k += 16) {
+        const __m512 dx = _mm512_sub_ps(_mm512_loadu_ps(candidates->x[0] + k), x0),
+                     dy = _mm512_sub_ps(_mm512_loadu_ps(candidates->x[1] + k), y0);
+        __m512 r2 = _mm512_add_ps(_mm512_mul_ps(dx, dx), _mm512_mul_ps(dy, dy));
+        if (dim == 3) {
+            const __m512 dz = _mm512_sub_ps(_mm512_loadu_ps(candidates->x[2] + k), z0);
+            r2 = _mm512_add_ps(r2, _mm512_mul_ps(dz, dz));
+        }
+        const __m512 most = _mm512_max_ps(_mm512_loadu_ps(candidates->radius2 + k), own);
+        const __m512i slot = _mm512_loadu_si512(candidates->slot + k);
+        const __mmask16 near =
+            _mm512_cmp_ps_mask(r2, most, _CMP_LT_OQ) & _mm512_cmpneq_epi32_mask(slot, self);
+        _mm512_storeu_si512(list + found, _mm512_maskz_compress_epi32(near, slot));
+        found += _mm_popcnt_u32(near);
+    }
+    return found;
+}
+
+find_loop *grid_find_choose(void)
+{
+    return __builtin_cpu_supports("avx512f") ? find_by_compressing : find_plainly;
+}
+
+#else
+
+find_loop *grid_find_choose(void)
+{
+    return find_plainly;
+}
+
+#endif
+
+static bool is_active(const struct grid *grid, uint32_t slot)
+{
+    const uint32_t point = grid->order[slot];
+    return point < grid->active && !(grid->asleep && grid->asleep[point]);
+}
+
+/* The lists of a cell's points. Returns the longest one, -1: no memory. */
+static int search_cell(struct grid *grid, const ptrdiff_t c[3], struct candidates *candidates,
+                       struct pool *pool)
+{
+    const size_t cell = grid_cell_at(grid, c);
+    if (grid->start[cell] == grid->start[cell + 1]) return 0;
+    struct region region = {0};
+    for (int a = 0; a < 3; a++) {
+        region.along[a] = grid_look_along(grid, a, c[a], grid->reach[cell]);
+        region.across |= region.along[a].across;
+        region.all |= region.along[a].all;
+    }
+    bool any = false;
+    for (uint32_t s = grid->start[cell]; s < grid->start[cell + 1]; s++) {
+        grid->lists[s] = (struct grid_list){NULL, 0, region.across};
+        any |= is_active(grid, s);
+    }
+    if (!any) return 0;
+    const size_t count = find_candidates(grid, c, &region, candidates);
+    if (count == SIZE_MAX) return -1;
+    int longest = 0;
+    for (uint32_t s = grid->start[cell]; s < grid->start[cell + 1]; s++) {
+        struct grid_list *list = &grid->lists[s];
+        if (!is_active(grid, s)) continue;
+        int32_t *slots = pool_take(pool, count + BEYOND);
+        if (!slots) return -1;
+        list->slots = slots;
+        if (region.all) {
+            near_images(grid, s, count, candidates, candidates->near);
+            list->count = collect(candidates->near, count, candidates->slot, (int32_t)s, slots);
+        } else {
+            const float at[3] = {grid->place[0][s], grid->place[1][s], grid->place[2][s]};
+            list->count = grid->find(grid->box.dim, candidates, count, at, grid->radius2[s],
+                                     (int32_t)s, slots);
+        }
+        int32_t end = list->count;
+        while (end % GRID_LANES) slots[end++] = (int32_t)grid->n;
+        pool->used += (size_t)end;
+        if (end > longest) longest = end;
+    }
+    return longest;
+}
+
+static int thread_number(void)
+{
+#ifdef _OPENMP
+    return omp_get_thread_num();
+#else
+    return 0;
+#endif
+}
+
+enum status grid_make_lists(struct grid *grid, struct error *error)
+{
+    for (int t = 0; t < grid->threads; t++) grid->pools[t].used_chunks = grid->pools[t].used = 0;
+    int longest = 0;
+    bool enough = true;
+#pragma omp parallel for num_threads(grid->threads) schedule(dynamic) reduction(max : longest) \
+    reduction(&& : enough) if (grid->threads > 1)
+    for (size_t p = 0; p < grid->parts; p++) {
+        const int t = thread_number();
+        for (size_t cell = grid->part_cell[p]; cell < grid->part_cell[p + 1]; cell++) {
+            ptrdiff_t c[3];
+            grid_cell_coordinates(grid, cell, c);
+            const int found = search_cell(grid, c, &grid->candidates[t], &grid->pools[t]);
+            enough = enough && found >= 0;
+            longest = found > longest ? found : longest;
+        }
+    }
+    grid->longest = longest;
+    return enough ? STATUS_OK : error_set(error, STATUS_ENVIRONMENT, "no memory for neighbours");
+}
