@@ -113,23 +113,32 @@ static const struct same_subject with_one_ulp = {one_ulp}, with_one_ulp_mass = {
                                  with_swapped_kernel = {swapped_kernel},
                                  with_swapped_forms = {swapped_forms};
 
+/* A run, and the same one done otherwise. */
+struct same_run {
+    const struct scheme *scheme;
+    const struct hydro_state *state;
+    double t_end, bound;
+    int threads; /* the other one's; and: */
+    bool unstamped, skip;
+    const char *what;
+};
+
 static void compare(struct check_run *run, const struct same_subject *subject,
-                    const struct scheme *scheme, const struct hydro_state *state, int threads,
-                    bool unstamped, bool skip, double t_end, double bound, const char *what)
+                    const struct same_run *same)
 {
     static struct hydro_state other;
     struct error error = {0};
     char where[HYDRO_TEXT];
-    other = *state;
-    const struct scene first = hydro_scene(state, scheme);
-    struct scene second = hydro_scene(&other, scheme);
-    second.threads = threads;
-    second.unstamped = unstamped;
-    second.skip = skip;
+    other = *same->state;
+    const struct scene first = hydro_scene(same->state, same->scheme);
+    struct scene second = hydro_scene(&other, same->scheme);
+    second.threads = same->threads;
+    second.unstamped = same->unstamped;
+    second.skip = same->skip;
     if (subject) subject->spoil(&second, &other);
-    hydro_describe(scheme, where);
-    check_measure(run, difference(&first, &second, false, t_end, &error), bound, 0, "%s, %s%s%s",
-                  what, where, error.message[0] ? ": " : "", error.message);
+    hydro_describe(same->scheme, where);
+    check_measure(run, difference(&first, &second, false, same->t_end, &error), same->bound, 0,
+                  "%s, %s%s%s", same->what, where, error.message[0] ? ": " : "", error.message);
 }
 
 static void measure_threads(struct check_run *run, const void *subject)
@@ -146,8 +155,14 @@ static void measure_threads(struct check_run *run, const void *subject)
     /* odd, and enough for threads to be used at all: src/solver.h, WORTH_A_THREAD */
     hydro_disordered(&state, 2113);
     for (int threads = 2; threads <= 7; threads += 5) {
-        compare(run, subject, &standard, &state, threads, false, false, 2e-4, 0, "n 2113");
-        compare(run, subject, &fancy, &state, threads, false, false, 2e-4, 0, "n 2113");
+        struct same_run same = {.scheme = &standard,
+                                .state = &state,
+                                .t_end = 2e-4,
+                                .threads = threads,
+                                .what = "n 2113"};
+        compare(run, subject, &same);
+        same.scheme = &fancy;
+        compare(run, subject, &same);
     }
 }
 
@@ -218,8 +233,14 @@ static void measure_skip(struct check_run *run, const void *subject)
             scheme.gradient = GRADIENT_IA;
             scheme.viscosity = VISCOSITY_RECONSTRUCTED;
         }
-        compare(run, subject, &scheme, &state, 1, false, true, t_end, bound,
-                c & 1 ? "moving tube" : "tube at rest");
+        compare(run, subject,
+                &(struct same_run){.scheme = &scheme,
+                                   .state = &state,
+                                   .t_end = t_end,
+                                   .bound = bound,
+                                   .threads = 1,
+                                   .skip = true,
+                                   .what = c & 1 ? "moving tube" : "tube at rest"});
         measure_skipped_run(run, &state, &scheme, t_end);
     }
 }
@@ -289,10 +310,17 @@ static void measure_stamped(struct check_run *run, const void *subject)
                 hydro_set_kernel(&s, kernel_family.members[k]->name);
                 hydro_combine(&s, c);
                 s.pair_width = (enum pair_width)p;
+                const struct same_run same = {.scheme = &s,
+                                              .state = &state,
+                                              .t_end = 1e-4,
+                                              .bound = 1e-12,
+                                              .threads = 1,
+                                              .unstamped = true,
+                                              .what = "unstamped"};
                 if (scheme_check(&s, 1, &error))
                     excluded++;
                 else
-                    compare(run, subject, &s, &state, 1, true, false, 1e-4, 1e-12, "unstamped");
+                    compare(run, subject, &same);
             }
             if (excluded)
                 check_skip(run, "%s, width %s: %zu of %zu schemes: %s",

@@ -92,7 +92,9 @@ def main():
                         print("%s, %s, %d threads: %s differ from those of %s\n    sphproof run %s"
                               % (compiler, name, threads, what, first[1], run))
     print("%d builds, %d runs each: %d differ" % (builds, len(RUNS) * len(THREADS), wrong))
-    sys.exit(wrong > 0)
+    if builds < 2:
+        print("one build and another are needed: nothing was compared")
+    sys.exit(wrong > 0 or builds < 2)
 
 
 main()

@@ -56,6 +56,7 @@ subprocess.run(["gnuplot", plots[0] + ".gp"], cwd=os.path.join(folder, "plots"),
 expect("a plot drawn again:", "<svg" in read("plots", plots[0] + ".svg"))
 
 commands = [d["reproduce"] for d in results["runs"] + results["studies"] + results["kernels"]]
+expect("commands of the page:", len(commands) > 50, len(commands))
 for command in commands:
     expect("a command of the page:", command in page, command)
 again = subprocess.run([program] + commands[1].split()[1:] + ["--json", "-"], capture_output=True,

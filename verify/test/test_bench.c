@@ -17,6 +17,7 @@
 #include "bench_skips.h"
 #include "near.h"
 #include "precision.h"
+#include "worst.h"
 
 /* --- the timing core, on a clock of our own --------------------------------------------------- */
 
@@ -284,7 +285,7 @@ static void compare_plain(const char *name, int n, char *const *more)
                                 a->h[i] / b->h[k] - 1,           a->P[i] / b->P[k] - 1,
                                 a->volume[i] / b->volume[k] - 1, a->m[i] / b->m[k] - 1};
         for (size_t q = 0; q < sizeof wrong / sizeof *wrong; q++)
-            if (!(fabs(wrong[q]) <= worst)) worst = fabs(wrong[q]);
+            worst_keep(&worst, fabs(wrong[q]));
         moved = fmax(moved, fabs(b->v[0][k]));
     }
     near_below(worst, 1e-9);
