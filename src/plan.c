@@ -41,8 +41,8 @@ struct writer {
 static void line(struct writer *writer, const char *pass, bool runs, const char *why_runs,
                  const char *why_not)
 {
-    if (writer->count == writer->max) return;
-    struct plan_line *next = &writer->lines[writer->count++];
+    if (writer->count++ >= writer->max) return;
+    struct plan_line *next = &writer->lines[writer->count - 1];
     next->pass = pass;
     next->runs = runs;
     snprintf(next->why, sizeof next->why, "%s", runs ? why_runs : why_not);

@@ -65,7 +65,7 @@ struct conservation { /* sums over all particles; extensive, code units */
         angular_momentum[3], energy;
 };
 
-/* Builds the plan for a scene into lines (at most max), returns their number; runs nothing.
+/* Builds the plan for a scene into lines (at most max), returns how many it has; runs nothing.
  * warnings (may be NULL): one text, "" if none, e.g. eta off a partition-of-unity width. */
 size_t plan_explain(const struct scene *scene, struct plan_line *lines, size_t max, char *warnings,
                     size_t warnings_size);

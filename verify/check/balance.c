@@ -38,7 +38,7 @@ static size_t break_points(const struct side *side, const double range[2], doubl
     size_t n = 0;
     points[n++] = range[0];
     points[n++] = range[1];
-    for (size_t i = 0; i < paths->n && i < BALANCE_PATHS; i++) {
+    for (size_t i = 0; i < paths->n; i++) {
         const double s = paths->speeds[i];
         const double kink =
             side->in_time ? (side->fixed - paths->x0) / s : paths->x0 + s * side->fixed;
@@ -76,13 +76,13 @@ double balance_defect(const struct flow *flow, const double x[2], const double t
 {
     double sum[LAWS] = {0}, size[LAWS] = {0}, worst = 0;
     gsl_integration_glfixed_table *rule = gsl_integration_glfixed_table_alloc(POINTS);
-    if (!rule) return (double)NAN;
-    for (int end = 0; end < 2; end++) {
+    if (!rule || paths->n > BALANCE_PATHS) worst = (double)NAN;
+    for (int end = 0; end < 2 && !isnan(worst); end++) {
         const double sign = end ? 1 : -1;
         integrate(&(struct side){flow, paths, t[end], false}, rule, x, sign, sum, size);
         integrate(&(struct side){flow, paths, x[end], true}, rule, t, sign, sum, size);
     }
-    gsl_integration_glfixed_table_free(rule);
+    if (rule) gsl_integration_glfixed_table_free(rule);
     for (size_t law = 0; law < LAWS; law++) {
         const double defect = size[law] == 0 ? 0 : fabs(sum[law]) / size[law];
         worst_keep(&worst, defect);

@@ -27,7 +27,7 @@ enum { BALANCE_PATHS = 16 };
 
 /* |change of content + net outflow| of mass, momentum and energy over [x[0], x[1]] x [t[0], t[1]],
  * the worst of the three, each relative to the sum of the magnitudes that went into it. NaN: no
- * memory, or the flow has a NaN. */
+ * memory, more paths, or the flow has a NaN. */
 double balance_defect(const struct flow *flow, const double x[2], const double t[2],
                       const struct flow_paths *paths);
 

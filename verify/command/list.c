@@ -18,6 +18,8 @@
 #include "table.h"
 #include "text.h"
 
+enum { ALLOWED_MAX = 4096 };
+
 /* A family made at run time, from a registry whose members are not struct member; made once. */
 struct made {
     struct family family;
@@ -151,7 +153,7 @@ static void print_family(const struct family *family, const struct table_style *
 
 static void print_key(const struct setting_key *key, const struct table_style *style)
 {
-    char allowed[256];
+    char allowed[ALLOWED_MAX];
     setting_allowed(key, allowed, sizeof allowed);
     printf("  %s%s%s [%s]%s%s\n", style->bold, key->name, style->end, key->fallback,
            *key->unit ? " in " : "", key->unit);
@@ -164,7 +166,7 @@ static void print_keys_markdown(void)
 {
     printf("| key | default | unit | allowed | meaning |\n|---|---|---|---|---|\n");
     for (int i = 0; i < SETTINGS; i++) {
-        char allowed[256];
+        char allowed[ALLOWED_MAX];
         const struct setting_key *key = &setting_keys[i];
         setting_allowed(key, allowed, sizeof allowed);
         printf("| `%s` | `%s` | %s | %s | %s |\n", key->name, key->fallback, key->unit, allowed,
@@ -181,7 +183,7 @@ static json_t *family_json(const struct family *family)
                                  "paper", member->paper);
         const int key = strcmp(family->name, "keys") == 0 ? setting_find(member->name) : -1;
         if (key >= 0) {
-            char allowed[256];
+            char allowed[ALLOWED_MAX];
             setting_allowed(&setting_keys[key], allowed, sizeof allowed);
             json_object_set_new(item, "default", json_string(setting_keys[key].fallback));
             json_object_set_new(item, "unit", json_string(setting_keys[key].unit));

@@ -18,7 +18,7 @@
 /* What a figure may move by without having changed: an error relatively, an order absolutely. */
 static const double error_noise = 0.01, order_noise = 0.03;
 static const double error_least = 1e-15; /* a logarithm needs one */
-enum { CHANGES_PER_FIGURE = 8, PATH_LENGTH = 1024, GROUPS = 256 };
+enum { PATH_LENGTH = 1024 };
 
 /* ---- this night's line ---- */
 
@@ -252,7 +252,7 @@ static void add_changes(const struct reading *reading, const json_t *nights, jso
 {
     double value[HISTORY_NIGHTS_MAX];
     size_t night[HISTORY_NIGHTS_MAX], n = 0;
-    struct trend_change found[CHANGES_PER_FIGURE];
+    struct trend_change found[HISTORY_NIGHTS_MAX]; /* no more than nights */
     const bool order = reading->kind == READING_ORDER;
     for (size_t i = 0; i < json_array_size(nights) && i < HISTORY_NIGHTS_MAX; i++) {
         const json_t *figures = json_object_get(json_array_get(nights, i), "figures");
@@ -264,7 +264,7 @@ static void add_changes(const struct reading *reading, const json_t *nights, jso
     }
     const size_t count = trend_changes(
         n, value, order ? fmax(order_noise, reading->noise) : fmax(error_noise, reading->noise),
-        found, CHANGES_PER_FIGURE);
+        found, HISTORY_NIGHTS_MAX);
     for (size_t c = 0; c < count; c++)
         json_array_append_new(changes, change_json(reading, nights, night, &found[c]));
 }

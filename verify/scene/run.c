@@ -78,7 +78,9 @@ static enum status begin(const struct run *run, struct run_result *result, struc
     result->n = initial->n;
     result->plan_count =
         plan_explain(&scene, result->plan, RUN_PLAN_MAX, result->warnings, sizeof result->warnings);
-    return STATUS_OK;
+    if (result->plan_count <= RUN_PLAN_MAX) return STATUS_OK;
+    return error_set(error, STATUS_ENVIRONMENT, "a plan of %zu passes, more than %d",
+                     result->plan_count, RUN_PLAN_MAX);
 }
 
 enum status run_explain(const struct run *run, struct run_result *result, struct error *error)

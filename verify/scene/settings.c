@@ -66,6 +66,7 @@ void setting_allowed(const struct setting_key *key, char *text, size_t size)
         for (size_t i = 0; i < key->family->n && used < size; i++)
             used +=
                 (size_t)snprintf(text + used, size - used, " %s", key->family->members[i]->name);
+        if (used >= size && size > 4) memcpy(text + size - 5, " ...", 5); /* not cut in silence */
         return;
     }
     snprintf(text, size, "%s%s%s%s%s %s %.10g %s %.10g%s", what, key->count > 1 ? " (" : "",
