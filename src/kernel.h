@@ -32,6 +32,7 @@ struct kernel {
     double stable_eta[GRADIENTS];
     /* Defaults in 1D, as measured (see scheme_default); 0: as for other kernels. */
     double default_eta;
+    double cloud_eta;               /* the same in 2D and 3D; 0: default_eta */
     struct {                        /* with integrators that predict */
         double alpha;               /* viscosity that suffices */
         double cfl;                 /* times eta: steps that are stable with no more than that */

@@ -38,11 +38,12 @@ struct scheme {
 
 /* What the maker of a scheme leaves open. */
 struct scheme_open {
+    bool kernel, gradient, volume_element, viscosity, viscosity_form, balsara;
     bool eta, alpha, beta, cfl, energy, pair_width, h_method;
 };
 
-/* Fills what is open from the descriptors of the kernel, the integrator and the other choices, all
- * of which are there. Numbers that were measured in 1D are used in 1D alone. */
+/* Fills what is open: choices with those of the best scheme that was measured in so many dimensions,
+ * then numbers from the descriptors of what has been chosen. */
 void scheme_default(struct scheme *scheme, const struct scheme_open *open, int dim);
 
 /* How many members of a family have a form in dim dimensions: they stand first in its list. */

@@ -341,6 +341,31 @@ void simulation_describe(const struct simulation *simulation, double *neighbours
     simulation->plan.sums->describe(simulation, neighbours, condition);
 }
 
+/* sum r x p, sum |r x p| and sum |r| m c. */
+static void add_turning(const struct simulation *simulation, struct conservation *sums)
+{
+    const struct particles *a = &simulation->particles;
+    long double turning[3] = {0}, scale = 0, sound = 0;
+    for (ptrdiff_t i = 0; i < a->n; i++) {
+        double r[3] = {0}, p[3] = {0}, square = 0;
+        for (int k = 0; k < a->dim; k++) {
+            const double x = a->x[k][i] - simulation->lo[k], period = a->period[k];
+            const bool wraps = simulation->boundary[k] == BOUNDARY_PERIODIC;
+            r[k] = x - period * ((wraps ? floor(x / period) : 0) + 0.5);
+            p[k] = a->p[k][i];
+            square += r[k] * r[k];
+        }
+        const double L[3] = {r[1] * p[2] - r[2] * p[1], r[2] * p[0] - r[0] * p[2],
+                             r[0] * p[1] - r[1] * p[0]};
+        for (int k = 0; k < 3; k++) turning[k] += L[k];
+        scale += sqrt(L[0] * L[0] + L[1] * L[1] + L[2] * L[2]);
+        sound += sqrt(square) * a->m[i] * a->c[i];
+    }
+    for (int k = 0; k < 3; k++) sums->angular_momentum[k] = (double)turning[k];
+    sums->angular_scale = (double)scale;
+    sums->turning_scale = (double)sound;
+}
+
 void simulation_conservation(const struct simulation *simulation, struct conservation *sums)
 {
     const struct particles *a = &simulation->particles;
@@ -366,6 +391,7 @@ void simulation_conservation(const struct simulation *simulation, struct conserv
         .sound_scale = (double)sound,
         .energy = (double)energy,
     };
+    if (a->dim > 1) add_turning(simulation, sums);
 }
 
 void simulation_cost(const struct simulation *simulation, struct simulation_cost *cost)

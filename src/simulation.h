@@ -61,8 +61,9 @@ struct rates {
 };
 
 struct conservation { /* sums over all particles; extensive, code units */
-    double mass, momentum[3], momentum_scale /* sum |p| */, sound_scale /* sum m c */,
-        angular_momentum[3], energy;
+    double mass, momentum[3], momentum_scale /* sum |p| */, sound_scale /* sum m c */, energy;
+    /* about the middle of the box, of positions wrapped into it where it is periodic; 0 in 1D */
+    double angular_momentum[3], angular_scale /* sum |r x p| */, turning_scale /* sum |r| m c */;
 };
 
 /* Builds the plan for a scene into lines (at most max), returns how many it has; runs nothing.

@@ -183,6 +183,6 @@ static void predicted_midpoint_synchronise(struct simulation *simulation)
 INTEGRATOR(predicted_midpoint,
            .member = {"predicted_midpoint", "midpoint with predicted rates, one evaluation a step",
                       "van Leer 1979"},
-           .order = 2, .evaluations = 1, .cfl = 0.8, .cfl_per_width = true, .predicts = true,
-           .follow = 1.5, .first_step = 0.25, .create = predicted_midpoint_create,
+           .order = 2, .evaluations = 1, .cfl = 0.8, .cloud_cfl = 1.4, .cfl_per_width = true,
+           .predicts = true, .follow = 1.5, .first_step = 0.25, .create = predicted_midpoint_create,
            .free = predicted_midpoint_free, .synchronise = predicted_midpoint_synchronise)

@@ -24,4 +24,4 @@ static inline double cubic_spline_dw(const struct kernel *kernel, double q, int 
 KERNEL(cubic_spline, .member = {"cubic_spline", "cubic B-spline M4", "Monaghan & Lattanzio 1985"},
        .constant = {0, 4. / 3, 40 / (7 * M_PI), 8 / M_PI}, .knot_count = 1,
        .knots = (const double[]){0.5}, .smoothness = {0, 2, 2, 2}, .unity_width = 2,
-       .default_eta = 2, .stable_eta = {[GRADIENT_IA] = 4})
+       .default_eta = 2, .cloud_eta = 2.4, .stable_eta = {[GRADIENT_IA] = 4})

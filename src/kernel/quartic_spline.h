@@ -25,4 +25,5 @@ static inline double quartic_spline_dw(const struct kernel *kernel, double q, in
 KERNEL(quartic_spline, .member = {"quartic_spline", "quartic B-spline M5", "Schoenberg 1946"},
        .constant = {0, 3125. / 768, 46875 / (2398 * M_PI), 15625 / (512 * M_PI)}, .knot_count = 2,
        .knots = (const double[]){0.2, 0.6}, .smoothness = {0, 3, 3, 3}, .unity_width = 2.5,
-       .default_eta = 2.5, .stable_eta = {[GRADIENT_STANDARD] = 5, [GRADIENT_IA] = 5.94})
+       .default_eta = 2.5, .cloud_eta = 2.8,
+       .stable_eta = {[GRADIENT_STANDARD] = 5, [GRADIENT_IA] = 5.94})

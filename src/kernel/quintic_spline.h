@@ -27,4 +27,4 @@ static inline double quintic_spline_dw(const struct kernel *kernel, double q, in
 KERNEL(quintic_spline, .member = {"quintic_spline", "quintic B-spline M6", "Schoenberg 1946"},
        .constant = {0, 243. / 40, 15309 / (478 * M_PI), 2187 / (40 * M_PI)}, .knot_count = 2,
        .knots = (const double[]){1. / 3, 2. / 3}, .smoothness = {0, 4, 4, 4}, .unity_width = 3,
-       .default_eta = 3, .stable_eta = {[GRADIENT_IA] = 6.01})
+       .default_eta = 3, .cloud_eta = 3, .stable_eta = {[GRADIENT_IA] = 6.01})

@@ -22,4 +22,4 @@ static inline double wendland_c2_dw(const struct kernel *kernel, double q, int d
 #endif
 KERNEL(wendland_c2, .member = {"wendland_c2", "Wendland C2", "Wendland 1995"},
        .constant = {0, 5. / 4, 7 / M_PI, 21 / (2 * M_PI)}, .smoothness = {0, 2, 2, 2},
-       .default_eta = 2.5, .stable_eta = {[GRADIENT_IA] = 3.01})
+       .default_eta = 2.5, .cloud_eta = 3, .stable_eta = {[GRADIENT_IA] = 3.01})

@@ -24,4 +24,4 @@ static inline double wendland_c4_dw(const struct kernel *kernel, double q, int d
 #endif
 KERNEL(wendland_c4, .member = {"wendland_c4", "Wendland C4", "Wendland 1995"},
        .constant = {0, 3. / 2, 9 / M_PI, 495 / (32 * M_PI)}, .smoothness = {0, 4, 4, 4},
-       .default_eta = 3, .stable_eta = {[GRADIENT_IA] = 8.17})
+       .default_eta = 3, .cloud_eta = 3.6, .stable_eta = {[GRADIENT_IA] = 8.17})

@@ -24,4 +24,4 @@ static inline double wendland_c6_dw(const struct kernel *kernel, double q, int d
 #endif
 KERNEL(wendland_c6, .member = {"wendland_c6", "Wendland C6", "Wendland 1995"},
        .constant = {0, 55. / 32, 78 / (7 * M_PI), 1365 / (64 * M_PI)}, .smoothness = {0, 6, 6, 6},
-       .default_eta = 3.5)
+       .default_eta = 3.5, .cloud_eta = 4.8)

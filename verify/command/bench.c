@@ -171,18 +171,22 @@ static enum status kernels(struct request *request, struct error *error)
 static struct run_settings *all_cases(const struct request *request, size_t *count,
                                       struct error *error)
 {
+    size_t most = 0;
     *count = 0;
-    while (!request->case_name && case_builtins[*count].name) ++*count;
-    if (request->case_name) *count = 1;
-    struct run_settings *cases = calloc(*count, sizeof *cases);
-    if (!cases) error_set(error, STATUS_ENVIRONMENT, "no memory for %zu cases", *count);
-    for (size_t c = 0; cases && c < *count; c++) {
-        const char *name = request->case_name ? request->case_name : case_builtins[c].name;
+    while (!request->case_name && case_builtins[most].name) most++;
+    if (request->case_name) most = 1;
+    struct run_settings *cases = calloc(most, sizeof *cases);
+    if (!cases) error_set(error, STATUS_ENVIRONMENT, "no memory for %zu cases", most);
+    for (size_t k = 0; cases && k < most; k++) {
+        const char *name = request->case_name ? request->case_name : case_builtins[k].name;
+        const size_t c = *count;
         if (run_prepare(&cases[c], name, request->n, request->arguments, error)) {
             free(cases);
             return NULL;
         }
         cases[c].threads = request->options->threads;
+        /* work is left out in 1D only */
+        *count += request->case_name || cases[c].file.dimension == 1;
     }
     return cases;
 }

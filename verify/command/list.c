@@ -118,6 +118,9 @@ PLAIN(volume_element, scheme_volume_element)
 PLAIN(integrator, integrator)
 PLAIN(operator, operator)
 PLAIN(viscosity, scheme_viscosity)
+PLAIN(viscosity_form, scheme_viscosity_form)
+PLAIN(balsara, scheme_balsara)
+PLAIN(lattice, settings_lattice)
 PLAIN(energy, scheme_energy)
 PLAIN(pair_width, scheme_pair_width)
 PLAIN(h_method, scheme_h_method)
@@ -133,6 +136,9 @@ static const struct family *(*const lists[])(void) = {cases,
                                                       volume_element_list,
                                                       integrator_list,
                                                       viscosity_list,
+                                                      viscosity_form_list,
+                                                      balsara_list,
+                                                      lattice_list,
                                                       energy_list,
                                                       pair_width_list,
                                                       h_method_list,
@@ -248,7 +254,8 @@ const struct command command_list = {
     .synopsis = "[FAMILY]",
     .help = "the names of cases, kernels, gradients, keys ..., one line each\n"
             "FAMILY: cases problems kernels gradients formulations volume_elements integrators\n"
-            "viscosities energies pair_widths h_methods fields norms checks mutants keys",
+            "viscosities viscosity_forms balsara_factors lattices energies pair_widths h_methods "
+            "fields norms checks mutants keys",
     .run = run,
     .options = own_options,
     .examples = "sphproof list\nsphproof list kernels\nsphproof list keys",

@@ -34,35 +34,81 @@ static void print_head(const struct run_settings *settings, const struct run_res
     table_wrap("", line);
 }
 
+static void print_norms(const char *name, const struct norms *e, const char *unit)
+{
+    printf("%-16s %12.4e %12.4e %12.4e %14.4e  %s\n", name, e->l1, e->l2, e->linf, e->particle_mean,
+           unit);
+}
+
+static void describe_window(const struct window *window, char *text, size_t size)
+{
+    int used = 0;
+    if (window->radius > 0) used = snprintf(text, size, "|x - centre| <= %g in ", window->radius);
+    for (int d = 0; d < window->dim && used < (int)size; d++)
+        used += snprintf(text + used, size - (size_t)used, "%s[%g, %g]", d ? " x " : "",
+                         window->lo[d], window->hi[d]);
+}
+
+/* Scalars of the state, beside what they should be. */
+static void print_functionals(const struct run_result *result, const struct table_style *style)
+{
+    if (result->functional_count == 0) return;
+    printf("\n%s%-16s %14s %14s%s\n", style->bold, "at the end", "measured", "reference",
+           style->end);
+    for (size_t i = 0; i < result->functional_count; i++) {
+        const struct run_functional *f = &result->functionals[i];
+        char exact[24] = "unknown";
+        if (!isnan(f->exact)) snprintf(exact, sizeof exact, "%.8g", f->exact);
+        printf("%-16s %14.8g %14s\n", f->name, f->value, exact);
+    }
+}
+
 static void print_errors(const struct run_settings *settings, const struct run_result *result,
                          const struct table_style *style)
 {
-    static const char *const units[FIELDS] = {"mass/length", "length/time", "mass/(length time^2)",
-                                              "(length/time)^2"};
-    const struct window *window = &result->problem.window;
+    /* by dimension: densities are per length, area or volume */
+    static const char *const units[3][FIELDS] = {
+        {"mass/length", "length/time", "mass/(length time^2)", "(length/time)^2"},
+        {"mass/length^2", "length/time", "mass/time^2", "(length/time)^2"},
+        {"mass/length^3", "length/time", "mass/(length time^2)", "(length/time)^2"}};
+    const int dim = result->problem.domain.dim;
+    const struct problem *problem = result->problem.problem;
+    char window[160];
+    describe_window(&result->problem.window, window, sizeof window);
+    if (problem->fieldless) {
+        printf("\nno errors of fields: after the start nothing is exact\n");
+        return;
+    }
     printf("\n%s%-16s %12s %12s %12s %14s  %s%s\n", style->bold, "error", "L1", "L2", "Linf",
            "particle mean", "unit", style->end);
     for (int field = 0; field < FIELDS; field++) {
         const struct norms *e = &result->errors[field];
         if (!settings->file.fields[field]) continue;
-        printf("%-16s %12.4e %12.4e %12.4e %14.4e  %s\n", field_family.members[field]->name, e->l1,
-               e->l2, e->linf, e->particle_mean, units[field]);
+        print_norms(field_family.members[field]->name, e, units[dim - 1][field]);
     }
-    printf("%-16s %12.4e  mean over %d bins of |mean density - mean exact density|\n",
-           "density, binned", result->binned_density_l1, NORM_BINS);
+    if (problem->circular) {
+        print_norms("  azimuthal", &result->azimuthal, units[dim - 1][FIELD_VELOCITY]);
+        print_norms("  radial", &result->radial, units[dim - 1][FIELD_VELOCITY]);
+    }
+    if (dim == 1)
+        printf("%-16s %12.4e  mean over %d bins of |mean density - mean exact density|\n",
+               "density, binned", result->binned_density_l1, NORM_BINS);
     printf("%sL1 = sum V|q - exact|/sum V, L2 = sqrt(sum V (q - exact)^2/sum V), Linf = max "
-           "|q - exact|,\nparticle mean = sum |q - exact|/N: over the %zu particles in [%g, %g] at "
+           "|q - exact|,\nparticle mean = sum |q - exact|/N: over the %zu particles in %s at "
            "t = %g; V = volume; code units%s\n",
-           style->faint, result->errors[0].n, window->lo[0], window->hi[0], result->time,
-           style->end);
+           style->faint, result->errors[0].n, window, result->time, style->end);
 }
 
 static void print_rest(const struct run_result *result, const struct table_style *style)
 {
     const struct simulation_cost *cost = &result->cost;
-    printf("\n%sconservation%s     mass %.1e  momentum %.1e  energy %.1e  (relative, t = %g "
+    char turning[48] = "";
+    if (result->problem.domain.dim > 1)
+        snprintf(turning, sizeof turning, "angular momentum %.1e  ", result->angular_momentum);
+    printf("\n%sconservation%s     mass %.1e  momentum %.1e  %senergy %.1e  (relative, t = %g "
            "against 0)\n",
-           style->bold, style->end, result->mass, result->momentum, result->energy, result->time);
+           style->bold, style->end, result->mass, result->momentum, turning, result->energy,
+           result->time);
     printf("%scost%s             %.4g s wall, %.4g s CPU, %llu steps, %llu particle updates (%llu "
            "skipped),\n                 %llu pair interactions, %.1f MB\n",
            style->bold, style->end, cost->wall_s, cost->cpu_s, (unsigned long long)cost->steps,
@@ -227,6 +273,7 @@ static enum status present(const struct options *options, const struct run_setti
         print_head(settings, result, &style);
         printf("n=%zu t=%g\n", result->n, result->time);
         print_errors(settings, result, &style);
+        if (result->problem.domain.dim > 1) print_functionals(result, &style);
         print_rest(result, &style);
     }
     /* what cannot be written takes nothing else with it; the first trouble is told */
@@ -272,7 +319,8 @@ static enum status run_case(const struct options *options, int n, char **argumen
 }
 
 static const struct command_option own_options[] = {
-    {"snapshot", "FILE", "write the particles at the end: x,vx,m,rho,u,P,h, one line each"},
+    {"snapshot", "FILE",
+     "write the particles at the end: x,vx,m,rho,u,P,h (x,y,vx,vy ...), one line each"},
     {"plot", "FILE.svg|.png", "draw the profiles over the exact solution (needs gnuplot)"},
     {"explain", NULL, "print the plan: what would run and why; run nothing"},
     {NULL, NULL, NULL},

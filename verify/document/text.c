@@ -28,6 +28,22 @@ bool text_integer(const char *text, double *value)
     return true;
 }
 
+bool text_count(const char *text, double *value)
+{
+    char word[WORD_MAX];
+    double base, exponent;
+    const char *power = strchr(text, '^');
+    if (!power) return text_integer(text, value);
+    const size_t length = (size_t)(power - text);
+    if (length >= sizeof word) return false;
+    memcpy(word, text, length);
+    word[length] = '\0';
+    if (!text_integer(word, &base) || !text_integer(power + 1, &exponent) || !(exponent >= 1))
+        return false;
+    *value = pow(base, exponent);
+    return isfinite(*value);
+}
+
 bool text_reals(const char *text, const char *separators, size_t n, double *values)
 {
     for (size_t i = 0;; i++) {

@@ -108,15 +108,26 @@ static enum status add_piece(struct report *report, struct report_piece piece, s
     return report_piece_add(&report->pool, kept, error);
 }
 
-/* Every built-in case with every scheme. */
+/* The cases that a report has pages for: those in 1D. */
+static enum status find_cases(struct report *report, struct error *error)
+{
+    for (const struct case_builtin *builtin = case_builtins; builtin->name; builtin++) {
+        struct case_file file;
+        if (case_load(&file, builtin->name, error)) return error->status;
+        if (file.dimension > 1) continue;
+        if (!list_grow(&report->cases, report->case_count, sizeof *report->cases))
+            return error_set(error, STATUS_ENVIRONMENT, "no memory for the cases");
+        report->cases[report->case_count++] = (struct reported){.name = builtin->name};
+    }
+    return STATUS_OK;
+}
+
+/* Every case with every scheme. */
 static enum status add_cases(struct report *report, struct error *error)
 {
-    while (case_builtins[report->case_count].name) report->case_count++;
-    report->cases = calloc(report->case_count, sizeof *report->cases);
-    if (!report->cases) return error_set(error, STATUS_ENVIRONMENT, "no memory for the cases");
+    if (find_cases(report, error)) return error->status;
     for (size_t c = 0; c < report->case_count; c++) {
         struct reported *of = &report->cases[c];
-        of->name = case_builtins[c].name;
         for (int s = 0; s < SCHEMES; s++) {
             struct report_piece run = {
                 .kind = REPORT_RUN, .where = of->name, .case_number = c, .scheme = s};

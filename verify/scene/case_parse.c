@@ -99,7 +99,7 @@ static void set_ladder(struct parser *parser, const char *value)
     snprintf(copy, sizeof copy, "%s", value);
     for (char *word = strtok_r(copy, " \t,", &rest); word; word = strtok_r(NULL, " \t,", &rest)) {
         double n;
-        if (!text_integer(word, &n) || n < key->lo || n > key->hi ||
+        if (!text_count(word, &n) || n < key->lo || n > key->hi ||
             file->ladder_count == CASE_LADDER_MAX ||
             (file->ladder_count && n <= (double)file->ladder[file->ladder_count - 1])) {
             fail_value(parser, "n", value, "rising numbers of particles, at least four");
@@ -148,8 +148,9 @@ static void set_extra(struct parser *parser, enum extra extra, const char *value
         snprintf(file->title, sizeof file->title, "%s", value);
         return;
     case EXTRA_dimension:
-        if (strcmp(value, "1") != 0) fail_value(parser, "dimension", value, "1");
-        file->dimension = 1;
+        if (!(*value >= '1' && *value <= '3') || value[1])
+            fail_value(parser, "dimension", value, "1 2 3");
+        file->dimension = file->settings.dim = *value - '0';
         return;
     case EXTRA_reference:
         set_reference(parser, value);
@@ -324,7 +325,7 @@ static enum status missing_key(struct parser *parser, enum setting key)
  */
 static enum status check_keys(struct parser *parser)
 {
-    static const enum setting always[] = {SETTING_kind, SETTING_t_end, SETTING_window};
+    static const enum setting always[] = {SETTING_kind, SETTING_t_end};
     const struct settings *settings = &parser->file->settings;
     const struct problem *problem = problem_of(settings);
     for (int i = 0; i < EXTRA_fields; i++)

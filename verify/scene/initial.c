@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "lattice.h"
 #include "problem.h"
 
 enum status initial_allocate(struct initial *initial, int dim, size_t n, struct error *error)
@@ -25,7 +26,7 @@ enum status initial_allocate(struct initial *initial, int dim, size_t n, struct 
 static void pair_up(struct initial *initial, const struct settings *settings)
 {
     const int lattice = settings_choice(settings, SETTING_lattice);
-    if (lattice == LATTICE_UNIFORM) return;
+    if (lattice != LATTICE_CLUSTERED && lattice != LATTICE_COINCIDENT) return;
     const double part = lattice == LATTICE_CLUSTERED ? 0.05 : 0;
     double *x = initial->x[0];
     for (size_t i = 0; i + 1 < initial->n; i++) {
@@ -39,7 +40,8 @@ static void pair_up(struct initial *initial, const struct settings *settings)
 
 bool initial_is_shaken(const struct settings *settings)
 {
-    return settings_real(settings, SETTING_jitter) > 0;
+    return settings_real(settings, SETTING_jitter) > 0 ||
+           settings_choice(settings, SETTING_lattice) == LATTICE_RANDOM;
 }
 
 static double spacing(const struct initial *initial, size_t i)
@@ -48,13 +50,19 @@ static double spacing(const struct initial *initial, size_t i)
     return initial->dim == 1 ? volume : initial->dim == 2 ? sqrt(volume) : cbrt(volume);
 }
 
+static double into_box(const struct domain *domain, int d, double x)
+{
+    const double length = domain_length(domain, d);
+    return x < domain->lo[d] ? x + length : x >= domain->hi[d] ? x - length : x;
+}
+
 /* Moves each particle in each direction by up to jitter times its share of the space: on a line
  * their order stays. */
 static enum status shake(struct initial *initial, const struct domain *domain,
                          const struct settings *settings)
 {
     const double jitter = settings_real(settings, SETTING_jitter);
-    if (!initial_is_shaken(settings)) return STATUS_OK;
+    if (!(jitter > 0)) return STATUS_OK;
     gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
     if (!random) return STATUS_ENVIRONMENT;
     gsl_rng_set(random, (unsigned long)settings_real(settings, SETTING_seed));
@@ -62,10 +70,64 @@ static enum status shake(struct initial *initial, const struct domain *domain,
         for (int d = 0; d < initial->dim; d++) {
             double *x = &initial->x[d][i];
             *x += jitter * spacing(initial, i) * (2 * gsl_rng_uniform(random) - 1);
+            if (initial->dim > 1) *x = into_box(domain, d, *x);
             *x = fmin(fmax(*x, domain->lo[d]), nextafter(domain->hi[d], domain->lo[d]));
         }
     gsl_rng_free(random);
     return STATUS_OK;
+}
+
+/* What the sample says of particle i; its mass stays. */
+static void take_sample(struct initial *initial, const struct prepared *p, size_t i)
+{
+    struct problem_state state;
+    double x[3] = {0};
+    for (int d = 0; d < initial->dim; d++) x[d] = initial->x[d][i];
+    p->problem->sample(p, x, 0, &state);
+    for (int d = 0; d < initial->dim; d++) initial->v[d][i] = state.v[d];
+    initial->u[i] = state.u;
+    initial->rho[i] = state.rho;
+}
+
+void initial_lay(struct initial *initial, const struct prepared *p, const struct lattice_plan *plan,
+                 size_t first, const struct settings *settings)
+{
+    double *x[3] = {NULL}, share = 1. / (double)plan->n;
+    for (int d = 0; d < initial->dim; d++) {
+        x[d] = initial->x[d] + first;
+        share *= domain_length(&plan->box, d);
+    }
+    lattice_points(plan, (unsigned long)settings_real(settings, SETTING_seed), x);
+    for (size_t i = first; i < first + plan->n; i++) {
+        take_sample(initial, p, i);
+        initial->m[i] = initial->rho[i] * share;
+    }
+}
+
+enum status initial_fill(const struct prepared *p, const struct settings *settings,
+                         struct initial *initial, struct error *error)
+{
+    struct lattice_plan plan;
+    const enum lattice kind = (enum lattice)settings_choice(settings, SETTING_lattice);
+    const size_t n = (size_t)settings_real(settings, SETTING_n);
+    if (lattice_plan_make(&plan, &p->domain, kind, n, error) ||
+        initial_allocate(initial, p->domain.dim, plan.n, error))
+        return error->status;
+    initial_lay(initial, p, &plan, 0, settings);
+    return STATUS_OK;
+}
+
+/* In 2D and 3D particles that jitter moves carry the flow of where they come to be: displaced
+ * particles, not a noisy gas. Beside a jump they stay what they are. */
+static void resample(struct initial *initial, const struct prepared *p,
+                     const struct settings *settings)
+{
+    if (initial->dim == 1) return;
+    for (size_t i = 0; i < initial->n; i++) {
+        if (p->problem->smooth && settings_real(settings, SETTING_jitter) > 0)
+            take_sample(initial, p, i);
+        for (int d = 0; d < initial->dim; d++) initial->v[d][i] += p->boost[d];
+    }
 }
 
 enum status initial_create(struct initial *initial, const struct prepared *p,
@@ -82,6 +144,7 @@ enum status initial_create(struct initial *initial, const struct prepared *p,
         initial_free(initial);
         return error_set(error, STATUS_ENVIRONMENT, "no memory for random numbers");
     }
+    resample(initial, p, settings);
     return STATUS_OK;
 }
 

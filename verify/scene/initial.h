@@ -22,6 +22,17 @@ struct initial {
 /* Room for n particles, for a problem's fill. STATUS_ENVIRONMENT: no memory. */
 enum status initial_allocate(struct initial *initial, int dim, size_t n, struct error *error);
 
+/* For a problem's fill: about n particles on the lattice of the settings over a box with one gas's
+ * sample, from initial->x[.][first] on; their number is that of lattice_plan_make. Masses carry the
+ * sample's density at equal volumes. */
+struct lattice_plan;
+void initial_lay(struct initial *initial, const struct prepared *p, const struct lattice_plan *plan,
+                 size_t first, const struct settings *settings);
+
+/* A problem's whole fill, where all of the domain is laid so. */
+enum status initial_fill(const struct prepared *p, const struct settings *settings,
+                         struct initial *initial, struct error *error);
+
 /* The particles of a prepared problem, moved as the keys lattice and jitter ask; settings:
  * resolved. STATUS_BAD_INPUT: the problem cannot fill its domain with them. */
 enum status initial_create(struct initial *initial, const struct prepared *p,

@@ -42,6 +42,8 @@ static const struct crystal *crystal_of(enum lattice kind)
 {
     switch (kind) {
     case LATTICE_SQUARE:
+    case LATTICE_CUBIC:
+    case LATTICE_JITTERED:
         return &square;
     case LATTICE_HEXAGONAL:
         return &hexagonal;
@@ -58,7 +60,7 @@ enum status lattice_plan_make(struct lattice_plan *plan, const struct domain *bo
                               enum lattice kind, size_t n, struct error *error)
 {
     const struct crystal *crystal = crystal_of(kind);
-    const char *name = lattice_family.members[kind]->name;
+    const char *name = settings_lattice_family.members[kind]->name;
     *plan = (struct lattice_plan){.box = *box, .kind = kind, .n = n};
     if (!crystal) return STATUS_OK;
     if (box->dim < crystal->least_dim)

@@ -49,47 +49,121 @@ enum status problem_check_state(const struct settings *settings, enum setting ke
                      state[0] == 0 ? " (particles cannot fill a vacuum)" : "");
 }
 
+static const enum setting vectors[] = {SETTING_lo, SETTING_hi, SETTING_boost, SETTING_direction};
+
+/* A vector has one number, or one for each direction. */
+static enum status check_vectors(const struct settings *settings, int dim, struct error *error)
+{
+    for (size_t k = 0; k < sizeof vectors / sizeof *vectors; k++) {
+        const int given = settings->value[vectors[k]].given;
+        char text[SETTING_TEXT_MAX];
+        if (given == 1 || given == dim) continue;
+        settings_text(settings, vectors[k], text);
+        return error_set(error, STATUS_BAD_INPUT,
+                         "%s=\"%s\": one number for all directions or one each is needed, and the "
+                         "case has %d of them",
+                         setting_keys[vectors[k]].name, text, dim);
+    }
+    return STATUS_OK;
+}
+
+static enum status check_box(const struct domain *domain, const struct settings *settings,
+                             struct error *error)
+{
+    const double *window = settings->value[SETTING_window].real;
+    for (int d = 0; d < domain->dim; d++)
+        if (!(domain->lo[d] < domain->hi[d]))
+            return error_set(error, STATUS_BAD_INPUT, "lo=%g hi=%g: lo < hi is needed",
+                             domain->lo[d], domain->hi[d]);
+    if (settings->value[SETTING_window].automatic ||
+        (domain->lo[0] <= window[0] && window[0] < window[1] && window[1] <= domain->hi[0]))
+        return STATUS_OK;
+    return error_set(error, STATUS_BAD_INPUT,
+                     "window=\"%g %g\": two rising numbers in the box [%g, %g] are needed",
+                     window[0], window[1], domain->lo[0], domain->hi[0]);
+}
+
 /* What concerns two keys, neither of them the problem's own. */
 static enum status check_together(const struct prepared *p, const struct settings *settings,
                                   struct error *error)
 {
     const struct problem *problem = p->problem;
-    const double lo = p->domain.lo[0], hi = p->domain.hi[0];
-    const double *window = settings->value[SETTING_window].real;
-    if (!(lo < hi))
-        return error_set(error, STATUS_BAD_INPUT, "lo=%g hi=%g: lo < hi is needed", lo, hi);
-    if (!(lo <= window[0] && window[0] < window[1] && window[1] <= hi))
-        return error_set(error, STATUS_BAD_INPUT,
-                         "window=\"%g %g\": two rising numbers in the box [%g, %g] are needed",
-                         window[0], window[1], lo, hi);
-    if (!(p->domain.dim >= problem->least_dim && p->domain.dim <= problem->most_dim))
+    const int dim = p->domain.dim;
+    if (!(dim >= problem->least_dim && dim <= problem->most_dim))
         return error_set(error, STATUS_BAD_INPUT,
                          "%s has no form in %d dimensions; allowed: %d to %d", problem->member.name,
-                         p->domain.dim, problem->least_dim, problem->most_dim);
-    for (int i = 0; i < SETTINGS; i++)
-        if (settings->value[i].source == SOURCE_USER && !problem_reads(problem, (enum setting)i))
+                         dim, problem->least_dim, problem->most_dim);
+    if (check_vectors(settings, dim, error) || check_box(&p->domain, settings, error))
+        return error->status;
+    for (int i = 0; i < SETTINGS; i++) {
+        if (settings->value[i].source != SOURCE_USER) continue;
+        if (!problem_reads(problem, (enum setting)i))
             return error_set(error, STATUS_BAD_INPUT,
                              "key %s and an initial state of kind %s exclude each other: it has "
                              "no such thing",
                              setting_keys[i].name, problem->member.name);
+        if (settings_foreign(settings, (enum setting)i))
+            return error_set(error, STATUS_BAD_INPUT,
+                             "key %s and dimension=%d exclude each other: it is for %s",
+                             setting_keys[i].name, dim, dim > 1 ? "1" : "2 and 3");
+    }
+    for (int d = 0; d < dim; d++)
+        if (p->boost[d] != 0 && !problem->carried)
+            return error_set(error, STATUS_BAD_INPUT,
+                             "key boost and an initial state of kind %s exclude each other: it is "
+                             "not periodic, and would be carried out of its window",
+                             problem->member.name);
     return STATUS_OK;
+}
+
+/* Where particles start if nobody says it, and whether there is such a thing. */
+static enum status choose_lattice(struct settings *settings, int dim, struct error *error)
+{
+    static const enum lattice usual[] = {LATTICE_UNIFORM, LATTICE_SQUARE, LATTICE_CUBIC};
+    static const unsigned char dims[LATTICES] = {
+        /* a bit for each */
+        [LATTICE_UNIFORM] = 1, [LATTICE_CLUSTERED] = 1, [LATTICE_COINCIDENT] = 1,
+        [LATTICE_SQUARE] = 2,  [LATTICE_CUBIC] = 4,     [LATTICE_HEXAGONAL] = 6,
+        [LATTICE_FCC] = 4,     [LATTICE_BCC] = 4,       [LATTICE_JITTERED] = 6,
+        [LATTICE_RANDOM] = 6};
+    struct setting_value *lattice = &settings->value[SETTING_lattice],
+                         *jitter = &settings->value[SETTING_jitter];
+    if (lattice->automatic) lattice->choice = usual[dim - 1];
+    if (jitter->automatic) jitter->real[0] = lattice->choice == LATTICE_JITTERED ? 0.2 : 0;
+    if (dims[lattice->choice] & 1 << (dim - 1)) return STATUS_OK;
+    return error_set(error, STATUS_BAD_INPUT, "lattice=%s has no form in %d dimension%s",
+                     settings_lattice_family.members[lattice->choice]->name, dim,
+                     dim > 1 ? "s" : "");
+}
+
+static void set_domain(struct prepared *p, const struct settings *settings, int dim)
+{
+    p->domain.dim = p->window.dim = dim;
+    for (int d = 0; d < dim; d++) {
+        p->domain.lo[d] = p->window.lo[d] = settings_along(settings, SETTING_lo, d);
+        p->domain.hi[d] = p->window.hi[d] = settings_along(settings, SETTING_hi, d);
+        p->window.centre[d] = 0.5 * (p->domain.lo[d] + p->domain.hi[d]);
+        p->boost[d] = dim > 1 ? settings_along(settings, SETTING_boost, d) : 0;
+    }
+    p->window.radius = dim > 1 ? settings_real(settings, SETTING_window_radius) : 0;
+    if (settings->value[SETTING_window].automatic) return;
+    p->window.lo[0] = settings->value[SETTING_window].real[0];
+    p->window.hi[0] = settings->value[SETTING_window].real[1];
 }
 
 enum status problem_prepare_as(struct prepared *p, const struct problem *problem,
                                struct settings *settings, int dim, struct error *error)
 {
-    *p = (struct prepared){.problem = problem,
-                           .domain = {.dim = dim},
-                           .window = {.dim = dim},
-                           .gamma = settings_real(settings, SETTING_gamma)};
-    for (int d = 0; d < dim; d++) {
-        p->domain.lo[d] = p->window.lo[d] = settings_real(settings, SETTING_lo);
-        p->domain.hi[d] = p->window.hi[d] = settings_real(settings, SETTING_hi);
-    }
-    p->window.lo[0] = settings->value[SETTING_window].real[0];
-    p->window.hi[0] = settings->value[SETTING_window].real[1];
-    if (check_together(p, settings, error)) return error->status;
-    return problem->prepare(p, settings, error);
+    *p = (struct prepared){.problem = problem, .gamma = settings_real(settings, SETTING_gamma)};
+    settings->dim = dim;
+    set_domain(p, settings, dim);
+    if (check_together(p, settings, error) || choose_lattice(settings, dim, error) ||
+        problem->prepare(p, settings, error))
+        return error->status;
+    settings->value[SETTING_window].real[0] = p->window.lo[0];
+    settings->value[SETTING_window].real[1] = p->window.hi[0];
+    settings->value[SETTING_window_radius].real[0] = p->window.radius;
+    return STATUS_OK;
 }
 
 enum status problem_prepare(struct prepared *p, struct settings *settings, int dim,
@@ -98,10 +172,26 @@ enum status problem_prepare(struct prepared *p, struct settings *settings, int d
     return problem_prepare_as(p, problem_of(settings), settings, dim, error);
 }
 
+/* x where it would be without boost, in the box. */
+static void carry_back(const struct prepared *p, const double x[3], double t, double place[3])
+{
+    for (int d = 0; d < 3; d++) {
+        place[d] = x[d];
+        if (p->boost[d] == 0) continue;
+        const double lo = p->domain.lo[d], length = domain_length(&p->domain, d);
+        const double from_lo = x[d] - p->boost[d] * t - lo;
+        place[d] = lo + (from_lo - length * floor(from_lo / length));
+    }
+}
+
 void problem_sample(const struct prepared *p, const double x[3], double t,
                     struct problem_state *state)
 {
-    p->problem->sample(p, x, t, state);
+    double place[3];
+    carry_back(p, x, t, place);
+    p->problem->sample(p, place, t, state);
+    for (int d = 0; d < p->domain.dim; d++)
+        if (p->boost[d] != 0) state->v[d] += p->boost[d];
 }
 
 double problem_field(const struct problem_state *state, enum field field)
@@ -146,5 +236,21 @@ enum status problem_check_time(const struct prepared *p, double t, struct error 
 
 void problem_place(const struct prepared *p, const struct snapshot *s, size_t i, double x[3])
 {
-    for (int d = 0; d < 3; d++) x[d] = d < p->domain.dim ? s->x[d][i] : 0;
+    double place[3];
+    for (int d = 0; d < 3; d++) place[d] = d < p->domain.dim ? s->x[d][i] : 0;
+    carry_back(p, place, s->time, x);
+}
+
+void problem_velocity(const struct prepared *p, const struct snapshot *s, size_t i, double v[3])
+{
+    for (int d = 0; d < 3; d++) v[d] = d < p->domain.dim ? s->v[d][i] - p->boost[d] : 0;
+}
+
+void problem_circular(const struct prepared *p, const double x[3], const double v[3],
+                      double *azimuthal, double *radial)
+{
+    const double dx = x[0] - p->window.centre[0], dy = x[1] - p->window.centre[1];
+    const double R = hypot(dx, dy);
+    *azimuthal = R > 0 ? (dx * v[1] - dy * v[0]) / R : 0;
+    *radial = R > 0 ? (dx * v[0] + dy * v[1]) / R : 0;
 }

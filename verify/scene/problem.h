@@ -25,7 +25,8 @@ struct problem_state {
 struct prepared {
     const struct problem *problem;
     struct domain domain;
-    struct window window; /* where errors are measured */
+    struct window window; /* where errors are measured; its centre: the middle of the domain */
+    double boost[3];      /* added to all velocities: the solution and the window move along */
     double gamma;
     /* What the problem works out once and then works with (solved jumps, an eigenmode ...). */
     union {
@@ -69,17 +70,21 @@ struct problem {
     struct member member;  /* in cases: kind = NAME */
     const char *reference; /* exact solution, as case files name it */
     int least_dim, most_dim;
-    bool smooth;                    /* neither jumps nor shocks, for as long as it is solved */
+    bool carried;   /* exact everywhere in the periodic box, so that it may be boosted */
+    bool circular;  /* flows round the middle of the domain: azimuthal and radial errors */
+    bool fieldless; /* of t > 0 only functionals are known: there are no errors of fields */
+    bool smooth;    /* neither jumps nor shocks, for as long as it is solved */
     const struct problem_key *keys; /* its own, beside those of every run */
     size_t key_count;
-    /* Checks its own keys, gives those that are automatic a value, fills p->own; domain, window and
-     * gamma are there. STATUS_BAD_INPUT: what is wrong with them, or why nothing is exact. */
+    /* Checks its own keys, gives those that are automatic a value, fills p->own; domain, boost and
+     * gamma are there, and a window which it may replace unless the user asked for one.
+     * STATUS_BAD_INPUT: what is wrong with them, or why nothing is exact. */
     enum status (*prepare)(struct prepared *p, struct settings *settings, struct error *error);
     /* The state at x and t: the initial one at t = 0, the exact one after that. Where the exact gas
      * is a vacuum: rho, P and u 0, and a velocity that joins its edges. */
     void (*sample)(const struct prepared *p, const double x[3], double t,
                    struct problem_state *state);
-    /* Particles of the initial state, undisturbed: see initial_allocate. */
+    /* Particles of the initial state, undisturbed and without boost: see initial_allocate. */
     enum status (*fill)(const struct prepared *p, const struct settings *settings,
                         struct initial *initial, struct error *error);
     /* Is the sample at t exact in the whole window: no wave from an image of the domain has come
@@ -125,7 +130,13 @@ enum status problem_check_time(const struct prepared *p, double t, struct error 
 enum status problem_check_state(const struct settings *settings, enum setting key,
                                 struct error *error);
 
-/* Position of particle i. */
+/* Position and velocity of particle i, without what the boost has done. */
 void problem_place(const struct prepared *p, const struct snapshot *s, size_t i, double x[3]);
+void problem_velocity(const struct prepared *p, const struct snapshot *s, size_t i, double v[3]);
+
+/* Parts along the circle round the window's centre, and away from it, of a vector at x in a plane.
+ * At the centre itself: 0. */
+void problem_circular(const struct prepared *p, const double x[3], const double v[3],
+                      double *azimuthal, double *radial);
 
 #endif

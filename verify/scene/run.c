@@ -91,7 +91,7 @@ enum status run_explain(const struct run *run, struct run_result *result, struct
     return status;
 }
 
-/* Particles start in the order of their numbers, round the box. */
+/* On a line particles start in the order of their numbers, round the box. */
 static size_t count_crossed(const struct snapshot *snapshot)
 {
     size_t crossed = 0;
@@ -100,94 +100,187 @@ static size_t count_crossed(const struct snapshot *snapshot)
     return crossed;
 }
 
+/* Particles that were carried through the end of the box come last: positions shall rise. */
+static void copy_line(const struct snapshot *seen, const double *from, double *to)
+{
+    size_t first = 0;
+    for (size_t i = 1; i < seen->n; i++)
+        if (seen->x[0][i] < seen->x[0][i - 1]) first = i;
+    memcpy(to, from + first, (seen->n - first) * sizeof(double));
+    memcpy(to + seen->n - first, from, first * sizeof(double));
+}
+
+/* In the order of their numbers, as they have started. */
+static void copy_cloud(const struct snapshot *seen, const double *from, double *to)
+{
+    for (size_t i = 0; i < seen->n; i++) to[seen->id[i]] = from[i];
+}
+
 static enum status keep_snapshot(struct run_result *result, const struct snapshot *snapshot,
                                  struct error *error)
 {
     const struct snapshot seen = *snapshot;
-    const double *const from[] = {seen.x[0], seen.v[0], seen.m, seen.rho,
-                                  seen.u,    seen.P,    seen.h, seen.volume};
-    const double **const to[] = {&result->snapshot.x[0], &result->snapshot.v[0],
-                                 &result->snapshot.m,    &result->snapshot.rho,
-                                 &result->snapshot.u,    &result->snapshot.P,
-                                 &result->snapshot.h,    &result->snapshot.volume};
-    enum { ARRAYS = sizeof from / sizeof *from };
-    result->storage = malloc(ARRAYS * seen.n * sizeof(double));
+    struct snapshot *kept = &result->snapshot;
+    const struct domain *domain = &result->problem.domain;
+    const double *from[12];
+    const double **to[12];
+    size_t arrays = 0;
+    double volume = 1;
+    for (int d = 0; d < domain->dim; d++) {
+        from[arrays] = seen.x[d], to[arrays++] = &kept->x[d];
+        from[arrays] = seen.v[d], to[arrays++] = &kept->v[d];
+        volume *= domain_length(domain, d);
+    }
+    const double *const scalars[] = {seen.m, seen.rho, seen.u, seen.P, seen.h, seen.volume};
+    const double **const places[] = {&kept->m, &kept->rho, &kept->u,
+                                     &kept->P, &kept->h,   &kept->volume};
+    for (size_t k = 0; k < sizeof scalars / sizeof *scalars; k++)
+        from[arrays] = scalars[k], to[arrays++] = places[k];
+    result->storage = malloc(arrays * seen.n * sizeof(double));
     if (!result->storage) return error_set(error, STATUS_ENVIRONMENT, "no memory for a snapshot");
-    /* particles that were carried through the end of the box come last: positions shall rise */
-    size_t first = 0;
-    for (size_t i = 1; i < seen.n; i++)
-        if (seen.x[0][i] < seen.x[0][i - 1]) first = i;
-    for (size_t i = 0; i < ARRAYS; i++) {
+    for (size_t i = 0; i < arrays; i++) {
         double *copy = result->storage + i * seen.n;
-        memcpy(copy, from[i] + first, (seen.n - first) * sizeof(double));
-        memcpy(copy + seen.n - first, from[i], first * sizeof(double));
+        (domain->dim == 1 ? copy_line : copy_cloud)(&seen, from[i], copy);
         *to[i] = copy;
     }
-    result->snapshot.n = seen.n;
-    result->crossed = count_crossed(snapshot);
-    const struct domain *domain = &result->problem.domain;
-    result->spacing = (domain->hi[0] - domain->lo[0]) / (double)seen.n;
-    result->snapshot.time = result->time = seen.time;
+    kept->n = seen.n;
+    result->crossed = domain->dim == 1 ? count_crossed(snapshot) : 0;
+    result->spacing =
+        domain->dim == 1 ? volume / (double)seen.n : pow(volume / (double)seen.n, 1. / domain->dim);
+    kept->time = result->time = seen.time;
     return STATUS_OK;
 }
 
-/* The exact fields at the particles, field by field; malloced, NULL: no memory. */
-static double *exact_fields(const struct run_result *result)
+/* What errors are measured of, n numbers each. */
+struct comparison {
+    double *exact[FIELDS];            /* of the fields at the particles; velocity: along x */
+    double *place;                    /* 0 in the window, 2 beside it, NaN nowhere */
+    double *none;                     /* 0 */
+    double *jump;                     /* |v - exact v| */
+    double *azimuthal[2], *radial[2]; /* measured, exact */
+    double *storage;
+};
+
+static bool compare(struct comparison *of, const struct run_result *result)
 {
+    const struct prepared *p = &result->problem;
     const struct snapshot *s = &result->snapshot;
-    struct problem_state state;
-    double x[3], *exact = malloc(FIELDS * s->n * sizeof *exact);
-    for (size_t i = 0; exact && i < s->n; i++) {
-        problem_place(&result->problem, s, i, x);
-        problem_sample(&result->problem, x, result->time, &state);
-        for (int field = 0; field < FIELDS; field++)
-            exact[(size_t)field * s->n + i] = problem_field(&state, (enum field)field);
+    double *next = of->storage = calloc((FIELDS + 7) * s->n, sizeof *next);
+    double **const arrays[] = {&of->place,        &of->none,      &of->jump,     &of->azimuthal[0],
+                               &of->azimuthal[1], &of->radial[0], &of->radial[1]};
+    if (!next) return false;
+    for (int f = 0; f < FIELDS; f++, next += s->n) of->exact[f] = next;
+    for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++, next += s->n) *arrays[k] = next;
+    for (size_t i = 0; i < s->n; i++) {
+        struct problem_state state;
+        double x[3] = {0}, place[3], v[3], exact_v[3] = {0}, squares = 0, nowhere = 0;
+        for (int d = 0; d < p->domain.dim; d++) x[d] = s->x[d][i], nowhere += 0 * x[d];
+        problem_sample(p, x, result->time, &state);
+        for (int f = 0; f < FIELDS; f++) of->exact[f][i] = problem_field(&state, (enum field)f);
+        problem_place(p, s, i, place);
+        problem_velocity(p, s, i, v);
+        for (int d = 0; d < p->domain.dim; d++) {
+            exact_v[d] = state.v[d] - p->boost[d];
+            squares += (v[d] - exact_v[d]) * (v[d] - exact_v[d]);
+        }
+        of->place[i] = nowhere + (window_contains(&p->window, place) ? 0 : 2);
+        of->jump[i] = sqrt(squares);
+        if (!p->problem->circular) continue;
+        problem_circular(p, place, v, &of->azimuthal[0][i], &of->radial[0][i]);
+        problem_circular(p, place, exact_v, &of->azimuthal[1][i], &of->radial[1][i]);
     }
-    return exact;
+    return true;
 }
 
-/* Is a field nearer another one's exact values than its own? Positions rise. */
-static void suspect(struct run_result *result, const double *const *measured,
-                    const double *const *exact)
+/* Is a field nearer another one's exact values than its own? */
+static enum status suspect(struct run_result *result, const double *const *measured,
+                           const struct comparison *of, struct error *error)
 {
     static const char *const names[] = {"density", "velocity", "pressure", "energy"};
     const struct snapshot *s = &result->snapshot;
-    const struct window *window = &result->problem.window;
-    const double *inside[2][FIELDS];
-    size_t first = 0, end = s->n; /* the window's particles */
-    while (first < end && s->x[0][first] < window->lo[0]) first++;
-    while (end > first && s->x[0][end - 1] > window->hi[0]) end--;
+    double *inside = malloc((2 * FIELDS + 1) * s->n * sizeof *inside); /* the window's particles */
+    double *volume = inside + 2 * FIELDS * s->n;
+    const double *value[FIELDS], *exact[FIELDS];
+    size_t n = 0;
+    if (!inside) return error_set(error, STATUS_ENVIRONMENT, "no memory for the errors");
     for (size_t field = 0; field < FIELDS; field++) {
-        inside[0][field] = measured[field] + first;
-        inside[1][field] = exact[field] + first;
+        value[field] = inside + field * s->n;
+        exact[field] = inside + (FIELDS + field) * s->n;
     }
-    suspicion_swapped(FIELDS, names, end - first, s->volume + first, inside[0], inside[1],
-                      result->suspicion);
+    for (size_t i = 0; i < s->n; i++) {
+        if (of->place[i] > 1) continue;
+        for (size_t field = 0; field < FIELDS; field++) {
+            inside[field * s->n + n] = measured[field][i];
+            inside[(FIELDS + field) * s->n + n] = of->exact[field][i];
+        }
+        volume[n++] = s->volume[i];
+    }
+    suspicion_swapped(FIELDS, names, n, volume, value, exact, result->suspicion);
+    free(inside);
+    return STATUS_OK;
+}
+
+static const struct norms no_norms = {.l1 = (double)NAN,
+                                      .l2 = (double)NAN,
+                                      .linf = (double)NAN,
+                                      .particle_mean = (double)NAN,
+                                      .l1_cut = (double)NAN};
+
+/* On a line: also what bins and regions say. */
+static void measure_line(struct run_result *result, const double *const *measured,
+                         const struct comparison *of)
+{
+    const struct snapshot *s = &result->snapshot;
+    const double window[2] = {result->problem.window.lo[0], result->problem.window.hi[0]};
+    double means[NORM_BINS];
+    for (int field = 0; field < FIELDS; field++)
+        result->errors[field] =
+            norm_errors(s->n, s->x[0], window, s->volume, measured[field], of->exact[field]);
+    for (int field = 0; field < FIELDS; field++)
+        result->errors[field].l1_cut =
+            norm_l1_cut(s->n, s->x[0], window, domain_length(&result->problem.domain, 0), s->volume,
+                        measured[field], of->exact[field]);
+    problem_means(&result->problem, FIELD_DENSITY, result->time, NORM_BINS, means);
+    result->binned_density_l1 =
+        norm_binned_l1(s->n, s->x[0], window, s->volume, s->rho, NORM_BINS, means);
+}
+
+static void measure_cloud(struct run_result *result, const double *const *measured,
+                          const struct comparison *of)
+{
+    static const double window[2] = {-1, 1};
+    const struct snapshot *s = &result->snapshot;
+    for (int field = 0; field < FIELDS; field++) {
+        const bool vector = field == FIELD_VELOCITY;
+        result->errors[field] =
+            norm_errors(s->n, of->place, window, s->volume, vector ? of->jump : measured[field],
+                        vector ? of->none : of->exact[field]);
+    }
+    result->binned_density_l1 = (double)NAN;
+    if (!result->problem.problem->circular) return;
+    result->azimuthal =
+        norm_errors(s->n, of->place, window, s->volume, of->azimuthal[0], of->azimuthal[1]);
+    result->radial = norm_errors(s->n, of->place, window, s->volume, of->radial[0], of->radial[1]);
 }
 
 static enum status measure_errors(struct run_result *result, struct error *error)
 {
     const struct snapshot *s = &result->snapshot;
     const double *const measured[FIELDS] = {s->rho, s->v[0], s->P, s->u};
-    const double window[2] = {result->problem.window.lo[0], result->problem.window.hi[0]};
-    double means[NORM_BINS];
-    double *values = exact_fields(result);
-    if (!values) return error_set(error, STATUS_ENVIRONMENT, "no memory for the errors");
-    const double *const exact[] = {values, values + s->n, values + 2 * s->n, values + 3 * s->n};
-    for (int field = 0; field < FIELDS; field++)
-        result->errors[field] =
-            norm_errors(s->n, s->x[0], window, s->volume, measured[field], exact[field]);
-    for (int field = 0; field < FIELDS; field++)
-        result->errors[field].l1_cut =
-            norm_l1_cut(s->n, s->x[0], window, domain_length(&result->problem.domain, 0), s->volume,
-                        measured[field], exact[field]);
-    suspect(result, measured, exact);
-    budget_measure(&result->problem, s, exact, &result->budget);
-    free(values);
-    problem_means(&result->problem, FIELD_DENSITY, result->time, NORM_BINS, means);
-    result->binned_density_l1 =
-        norm_binned_l1(s->n, s->x[0], window, s->volume, s->rho, NORM_BINS, means);
-    return STATUS_OK;
+    struct comparison of;
+    result->azimuthal = result->radial = no_norms;
+    if (result->problem.problem->fieldless) {
+        for (int field = 0; field < FIELDS; field++) result->errors[field] = no_norms;
+        result->binned_density_l1 = (double)NAN;
+        return STATUS_OK;
+    }
+    if (!compare(&of, result))
+        return error_set(error, STATUS_ENVIRONMENT, "no memory for the errors");
+    (result->problem.domain.dim == 1 ? measure_line : measure_cloud)(result, measured, &of);
+    const enum status status = suspect(result, measured, &of, error);
+    budget_measure(&result->problem, s, (const double *const *)of.exact, &result->budget);
+    free(of.storage);
+    return status;
 }
 
 static void measure_functionals(struct run_result *result)
@@ -210,6 +303,7 @@ static void measure_conservation(struct run_result *result, const struct conserv
     const struct trace_drift drift = trace_drift(start, end, end);
     result->mass = drift.mass;
     result->momentum = drift.momentum;
+    result->angular_momentum = drift.angular_momentum;
     result->energy = drift.energy;
 }
 
@@ -240,13 +334,10 @@ static enum status broke_down_at_start(struct run_result *result, const struct e
 {
     result->status = STATUS_BROKE_DOWN;
     snprintf(result->message, sizeof result->message, "%s", reason->message);
-    result->binned_density_l1 = result->mass = result->momentum = result->energy = (double)NAN;
-    for (int field = 0; field < FIELDS; field++)
-        result->errors[field] = (struct norms){.l1 = (double)NAN,
-                                               .l2 = (double)NAN,
-                                               .linf = (double)NAN,
-                                               .particle_mean = (double)NAN,
-                                               .l1_cut = (double)NAN};
+    result->binned_density_l1 = (double)NAN;
+    result->mass = result->momentum = result->angular_momentum = result->energy = (double)NAN;
+    result->azimuthal = result->radial = no_norms;
+    for (int field = 0; field < FIELDS; field++) result->errors[field] = no_norms;
     return STATUS_OK;
 }
 

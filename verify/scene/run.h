@@ -54,12 +54,15 @@ struct run_result {
     struct prepared problem;
     size_t n;
     double time;
-    struct norms errors[FIELDS]; /* at time; NaN where no particle is in the window */
-    double binned_density_l1;
+    struct norms errors[FIELDS]; /* at time; NaN where no particle is in the window; of the velocity
+                                    in 2D and 3D: |v - exact| */
+    struct norms azimuthal, radial; /* of the velocity of a circular flow */
+    double binned_density_l1;       /* in 1D */
     size_t crossed;       /* neighbours of the start that are not next to each other any more */
-    double spacing, h;    /* box/n; mean smoothing length in the window, by volume */
+    double spacing, h;    /* (box/n)^(1/d); mean smoothing length in the window, by volume */
     struct budget budget; /* L1 by regions of the problem */
-    double mass, momentum, energy; /* conservation: relative, >= 0: see trace_drift */
+    /* conservation: relative, >= 0: see trace_drift */
+    double mass, momentum, angular_momentum, energy;
     struct simulation_cost cost;
     double peak_rss; /* bytes, of the process so far */
     struct plan_line plan[RUN_PLAN_MAX];
@@ -103,7 +106,8 @@ void run_add_plan(const struct run_settings *settings, const struct run_result *
 
 double run_error(const struct run_result *result, enum field field, enum norm norm);
 
-/* Header and one line a particle: x,vx,m,rho,u,P,h. */
+/* Header and one line a particle: x,vx,m,rho,u,P,h; in 2D and 3D x,y,vx,vy, ..., in the order in
+ * which particles have started. */
 enum status run_write_snapshot(const struct run_result *result, const char *path,
                                struct error *error);
 

@@ -10,17 +10,30 @@ static void set_number(json_t *object, const char *name, double value)
     json_object_set_new(object, name, result_number(value));
 }
 
+static json_t *norms_json(const struct norms *of, bool known)
+{
+    const double values[NORMS] = {of->l1, of->l2, of->linf, of->particle_mean, of->l1_cut};
+    json_t *norms = json_object();
+    for (int norm = 0; norm < NORMS; norm++)
+        json_object_set_new(norms, field_norm_family.members[norm]->name,
+                            known ? result_number(values[norm]) : json_null());
+    return norms;
+}
+
 json_t *run_errors_json(const struct run_result *result)
 {
+    const struct problem *problem = result->problem.problem;
     json_t *errors = json_object();
-    for (int field = 0; field < FIELDS; field++) {
-        json_t *norms = json_object();
-        for (int norm = 0; norm < NORMS; norm++)
-            set_number(norms, field_norm_family.members[norm]->name,
-                       run_error(result, (enum field)field, (enum norm)norm));
-        json_object_set_new(errors, field_family.members[field]->name, norms);
+    for (int field = 0; field < FIELDS; field++)
+        json_object_set_new(errors, field_family.members[field]->name,
+                            norms_json(&result->errors[field], !problem->fieldless));
+    if (problem->circular) {
+        json_object_set_new(errors, "azimuthal", norms_json(&result->azimuthal, true));
+        json_object_set_new(errors, "radial", norms_json(&result->radial, true));
     }
-    set_number(errors, "binned_density_l1", result->binned_density_l1);
+    json_object_set_new(errors, "binned_density_l1",
+                        result->problem.domain.dim == 1 ? result_number(result->binned_density_l1)
+                                                        : json_null());
     return errors;
 }
 
@@ -29,7 +42,9 @@ static json_t *conservation_json(const struct run_result *result)
     json_t *object = json_object();
     set_number(object, "mass", result->mass);
     set_number(object, "momentum", result->momentum);
-    json_object_set_new(object, "angular_momentum", json_null());
+    json_object_set_new(object, "angular_momentum",
+                        result->problem.domain.dim == 1 ? json_null()
+                                                        : result_number(result->angular_momentum));
     set_number(object, "energy", result->energy);
     return object;
 }
@@ -97,9 +112,17 @@ enum status run_write_snapshot(const struct run_result *result, const char *path
     const struct snapshot *s = &result->snapshot;
     struct output output;
     if (output_open(&output, path, error)) return error->status;
-    fprintf(output.stream, "x,vx,m,rho,u,P,h\n");
+    const int dim = result->problem.domain.dim;
+    const double *columns[12];
+    int count = 0;
+    for (int d = 0; d < dim; d++) columns[count++] = s->x[d];
+    for (int d = 0; d < dim; d++) columns[count++] = s->v[d];
+    const double *const rest[] = {s->m, s->rho, s->u, s->P, s->h};
+    for (size_t k = 0; k < sizeof rest / sizeof *rest; k++) columns[count++] = rest[k];
+    static const char *const names[] = {"x,vx", "x,y,vx,vy", "x,y,z,vx,vy,vz"};
+    fprintf(output.stream, "%s,m,rho,u,P,h\n", names[dim - 1]);
     for (size_t i = 0; i < s->n; i++)
-        fprintf(output.stream, "%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g\n", s->x[0][i],
-                s->v[0][i], s->m[i], s->rho[i], s->u[i], s->P[i], s->h[i]);
+        for (int k = 0; k < count; k++)
+            fprintf(output.stream, "%.17g%c", columns[k][i], k + 1 < count ? ',' : '\n');
     return output_close(&output, error);
 }

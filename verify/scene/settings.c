@@ -22,10 +22,19 @@
 
 const struct family settings_lattice_family = {
     "lattices", "where particles start",
-    MEMBERS(MEMBER("uniform", "the centre of each particle's share of the gas", ""),
-            MEMBER("clustered", "in pairs, a tenth of the spacing apart", ""),
-            MEMBER("coincident", "in pairs at one place", "")),
-    3};
+    MEMBERS(MEMBER("uniform", "1D: the centre of each particle's share of the gas", ""),
+            MEMBER("clustered", "1D: in pairs, a tenth of the spacing apart", ""),
+            MEMBER("coincident", "1D: in pairs at one place", ""),
+            MEMBER("square", "2D: square lattice", "Kittel 2005"),
+            MEMBER("cubic", "3D: simple cubic lattice", "Kittel 2005"),
+            MEMBER("hexagonal", "2D, 3D: closest packing, in layers", "Kittel 2005"),
+            MEMBER("fcc", "3D: face-centred cubic lattice", "Kittel 2005"),
+            MEMBER("bcc", "3D: body-centred cubic lattice", "Kittel 2005"),
+            MEMBER("jittered", "2D, 3D: square or cubic, each particle displaced at random", ""),
+            MEMBER("random", "2D, 3D: quasi-random points", "Sobol 1967")),
+    LATTICES};
+static const struct family answer_family = {
+    "answers", "no or yes", MEMBERS(MEMBER("no", "", ""), MEMBER("yes", "", "")), 2};
 const struct family settings_skip_family = {
     "skips", "work left out",
     MEMBERS(MEMBER("auto", "what no signal has reached, where the result allows it", ""),
@@ -33,9 +42,11 @@ const struct family settings_skip_family = {
     2};
 
 #define INTEGER    SETTING_INTEGER, 1
+#define COUNT      SETTING_COUNT, 1
 #define REAL       SETTING_REAL, 1
 #define CHOICE     SETTING_CHOICE, 1
 #define REALS(n)   SETTING_REALS, n
+#define VECTOR     SETTING_VECTOR, SETTING_REALS_MAX
 #define FROM(...)  false, __VA_ARGS__
 #define ABOVE(...) true, __VA_ARGS__
 const struct setting_key setting_keys[SETTINGS] = {
@@ -60,7 +71,9 @@ void setting_allowed(const struct setting_key *key, char *text, size_t size)
 {
     char what[24] = "a number";
     if (key->type == SETTING_INTEGER) snprintf(what, sizeof what, "an integer");
+    if (key->type == SETTING_COUNT) snprintf(what, sizeof what, "an integer, or 64^2,");
     if (key->type == SETTING_REALS) snprintf(what, sizeof what, "%d numbers", key->count);
+    if (key->type == SETTING_VECTOR) snprintf(what, sizeof what, "1, 2 or 3 numbers");
     if (key->type == SETTING_CHOICE) {
         size_t used = (size_t)snprintf(text, size, "one of%s", may_be_auto(key) ? " auto" : "");
         for (size_t i = 0; i < key->family->n && used < size; i++)
@@ -69,10 +82,10 @@ void setting_allowed(const struct setting_key *key, char *text, size_t size)
         if (used >= size && size > 4) memcpy(text + size - 5, " ...", 5); /* not cut in silence */
         return;
     }
-    snprintf(text, size, "%s%s%s%s%s %s %.10g %s %.10g%s", what, key->count > 1 ? " (" : "",
-             key->count > 1 ? key->unit : "", key->count > 1 ? ")" : "", "",
-             key->above ? "above" : "from", key->lo, key->above ? "up to" : "to", key->hi,
-             may_be_auto(key) ? ", or auto" : "");
+    const bool tuple = key->type == SETTING_REALS;
+    snprintf(text, size, "%s%s%s%s %s %.10g %s %.10g%s", what, tuple ? " (" : "",
+             tuple ? key->unit : "", tuple ? ")" : "", key->above ? "above" : "from", key->lo,
+             key->above ? "up to" : "to", key->hi, may_be_auto(key) ? ", or auto" : "");
 }
 
 void settings_init(struct settings *settings)
@@ -106,10 +119,12 @@ enum status settings_set(struct settings *settings, enum setting which, const ch
                          enum setting_source source, const char *where, struct error *error)
 {
     const struct setting_key *key = &setting_keys[which];
-    struct setting_value value = {.source = source};
-    bool good;
+    struct setting_value value = {.source = source, .given = key->count};
+    bool good = false;
     if (may_be_auto(key) && strcmp(text, "auto") == 0) {
         value.automatic = true;
+        if (key->type == SETTING_CHOICE || key->type == SETTING_VECTOR)
+            value.given = key->type == SETTING_VECTOR;
         settings->value[which] = value;
         return STATUS_OK;
     }
@@ -118,7 +133,11 @@ enum status settings_set(struct settings *settings, enum setting which, const ch
         value.choice = family_index(key->family, text);
         if (value.choice < 0)
             return text_unknown_member(error, where, key->name, text, key->family);
+        value.given = 0;
         good = true;
+        break;
+    case SETTING_COUNT:
+        good = text_count(text, &value.real[0]);
         break;
     case SETTING_INTEGER:
         good = text_integer(text, &value.real[0]);
@@ -129,11 +148,14 @@ enum status settings_set(struct settings *settings, enum setting which, const ch
     case SETTING_REALS:
         good = text_reals(text, " \t,", (size_t)key->count, value.real);
         break;
+    case SETTING_VECTOR:
+        for (value.given = 0; !good && value.given < key->count;)
+            good = text_reals(text, " \t,", (size_t)++value.given, value.real);
+        break;
     default:
-        good = false;
+        break;
     }
-    for (int i = 0; i < key->count && good && key->type != SETTING_CHOICE; i++)
-        good = in_range(key, value.real[i]);
+    for (int i = 0; i < value.given && good; i++) good = in_range(key, value.real[i]);
     if (!good) return refuse(error, where, key, text);
     settings->value[which] = value;
     return STATUS_OK;
@@ -170,14 +192,34 @@ double settings_real(const struct settings *settings, enum setting key)
     return settings->value[key].real[0];
 }
 
+double settings_along(const struct settings *settings, enum setting key, int direction)
+{
+    const struct setting_value *value = &settings->value[key];
+    return value->real[value->given > 1 ? direction : 0];
+}
+
 int settings_choice(const struct settings *settings, enum setting key)
 {
     return settings->value[key].choice;
 }
 
+/* Keys that say nothing in 1D. */
+static bool needs_a_plane(enum setting key)
+{
+    return key == SETTING_direction || key == SETTING_boost || key == SETTING_viscosity_form ||
+           key == SETTING_balsara || key == SETTING_balsara_floor || key == SETTING_noise ||
+           key == SETTING_alpha_u || key == SETTING_window_radius;
+}
+
+static bool needs_a_line(enum setting key)
+{
+    return key == SETTING_grade || key == SETTING_grade_ratio;
+}
+
 bool settings_foreign(const struct settings *settings, enum setting key)
 {
-    return !problem_reads(problem_of(settings), key);
+    return !problem_reads(problem_of(settings), key) ||
+           (settings->dim == 1 && needs_a_plane(key)) || (settings->dim > 1 && needs_a_line(key));
 }
 
 /* What the scheme's keys say; what they leave open is told apart. */
@@ -194,6 +236,8 @@ static enum status read_scheme(const struct settings *settings, struct scheme *s
         .formulation = (enum formulation)CHOICE_OF(formulation),
         .volume_element = (enum volume_element)CHOICE_OF(volume_element),
         .viscosity = (enum viscosity)CHOICE_OF(viscosity),
+        .viscosity_form = (enum viscosity_form)CHOICE_OF(viscosity_form),
+        .balsara = (enum balsara)CHOICE_OF(balsara),
         .energy = (enum energy)CHOICE_OF(energy),
         .pair_width = (enum pair_width)CHOICE_OF(pair_width),
         .h_method = (enum h_method)CHOICE_OF(h_method),
@@ -202,11 +246,20 @@ static enum status read_scheme(const struct settings *settings, struct scheme *s
         .beta = REAL_OF(beta),
         .alpha_min = REAL_OF(alpha_min),
         .alpha_max = REAL_OF(alpha_max),
+        .balsara_floor = REAL_OF(balsara_floor),
+        .noise = REAL_OF(noise),
+        .alpha_u = REAL_OF(alpha_u),
         .eta = REAL_OF(eta),
         .cfl = REAL_OF(cfl),
         .h_tolerance = REAL_OF(h_tolerance),
     };
     *open = (struct scheme_open){
+        .kernel = IS_AUTO(kernel),
+        .gradient = IS_AUTO(gradient),
+        .volume_element = IS_AUTO(volume_element),
+        .viscosity = IS_AUTO(viscosity),
+        .viscosity_form = IS_AUTO(viscosity_form),
+        .balsara = IS_AUTO(balsara),
         .eta = IS_AUTO(eta),
         .alpha = IS_AUTO(alpha),
         .beta = IS_AUTO(beta),
@@ -233,9 +286,20 @@ static void write_scheme(struct settings *settings, const struct scheme *scheme)
                    {SETTING_cfl, scheme->cfl}};
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
         settings->value[numbers[i].key].real[0] = numbers[i].real;
-    settings->value[SETTING_energy].choice = (int)scheme->energy;
-    settings->value[SETTING_pair_width].choice = (int)scheme->pair_width;
-    settings->value[SETTING_h_method].choice = (int)scheme->h_method;
+    const struct {
+        enum setting key;
+        int choice;
+    } choices[] = {{SETTING_kernel, family_index(&kernel_family, scheme->kernel.member.name)},
+                   {SETTING_gradient, (int)scheme->gradient},
+                   {SETTING_volume_element, (int)scheme->volume_element},
+                   {SETTING_viscosity, (int)scheme->viscosity},
+                   {SETTING_viscosity_form, (int)scheme->viscosity_form},
+                   {SETTING_balsara, (int)scheme->balsara},
+                   {SETTING_energy, (int)scheme->energy},
+                   {SETTING_pair_width, (int)scheme->pair_width},
+                   {SETTING_h_method, (int)scheme->h_method}};
+    for (size_t i = 0; i < sizeof choices / sizeof *choices; i++)
+        settings->value[choices[i].key].choice = choices[i].choice;
 }
 
 enum status settings_scheme(struct settings *settings, int dim, struct scheme *scheme,
@@ -257,7 +321,7 @@ void settings_text(const struct settings *settings, enum setting which, char tex
         return;
     }
     int used = 0;
-    for (int i = 0; i < key->count; i++) {
+    for (int i = 0; i < value->given; i++) {
         char number[32];
         /* the shortest text that reads back as the same number */
         for (int digits = 6; digits <= 17; digits++) {
@@ -283,14 +347,16 @@ json_t *settings_json(const struct settings *settings)
             item = json_string(key->family->members[value->choice]->name);
             break;
         case SETTING_INTEGER:
+        case SETTING_COUNT:
             item = json_integer((json_int_t)value->real[0]);
             break;
-        case SETTING_REAL:
-            item = json_real(value->real[0]);
-            break;
         default:
+            if (value->given == 1 && key->type != SETTING_REALS) {
+                item = json_real(value->real[0]);
+                break;
+            }
             item = json_array();
-            for (int j = 0; j < key->count; j++)
+            for (int j = 0; j < value->given; j++)
                 json_array_append_new(item, json_real(value->real[j]));
         }
         json_object_set_new(object, key->name, item);

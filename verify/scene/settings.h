@@ -18,13 +18,22 @@ enum setting {
     SETTINGS
 };
 
-enum setting_type { SETTING_INTEGER, SETTING_REAL, SETTING_CHOICE, SETTING_REALS };
+/* COUNT: an integer that may be written 64^2. VECTOR: one number for each direction, or one for
+ * all. */
+enum setting_type {
+    SETTING_INTEGER,
+    SETTING_COUNT,
+    SETTING_REAL,
+    SETTING_CHOICE,
+    SETTING_REALS,
+    SETTING_VECTOR
+};
 enum { SETTING_REALS_MAX = 3, SETTING_TEXT_MAX = 96 };
 
 struct setting_key {
     const char *name, *section; /* section of a case file */
     enum setting_type type;
-    int count;  /* numbers of a SETTING_REALS, else 1 */
+    int count;  /* numbers of a SETTING_REALS, at most of a SETTING_VECTOR, else 1 */
     bool above; /* lo itself is not allowed */
     double lo, hi;
     const char *fallback;
@@ -39,15 +48,29 @@ enum setting_source { SOURCE_FALLBACK, SOURCE_CASE, SOURCE_USER };
 struct setting_value {
     enum setting_source source;
     bool automatic;                 /* the user, the case or the fallback says auto */
-    double real[SETTING_REALS_MAX]; /* INTEGER, REAL: real[0] */
+    double real[SETTING_REALS_MAX]; /* INTEGER, COUNT, REAL: real[0] */
+    int given;                      /* numbers in real; 0: a CHOICE */
     int choice;                     /* position in the family */
 };
 
 struct settings {
+    int dim; /* of the case; 0: not known yet */
     struct setting_value value[SETTINGS];
 };
 
-enum lattice { LATTICE_UNIFORM, LATTICE_CLUSTERED, LATTICE_COINCIDENT };
+enum lattice {
+    LATTICE_UNIFORM, /* these three in 1D only */
+    LATTICE_CLUSTERED,
+    LATTICE_COINCIDENT,
+    LATTICE_SQUARE, /* 2D; its form in 3D is called cubic */
+    LATTICE_CUBIC,
+    LATTICE_HEXAGONAL,
+    LATTICE_FCC, /* these two in 3D only */
+    LATTICE_BCC,
+    LATTICE_JITTERED,
+    LATTICE_RANDOM,
+    LATTICES
+};
 enum skip { SKIP_AUTO, SKIP_NONE };
 extern const struct family problem_family, settings_lattice_family, settings_skip_family;
 
@@ -74,6 +97,9 @@ enum status settings_scheme(struct settings *settings, int dim, struct scheme *s
                             struct error *error);
 
 double settings_real(const struct settings *settings, enum setting key);
+
+/* The number of a SETTING_VECTOR for a direction: its own, or the one that all have. */
+double settings_along(const struct settings *settings, enum setting key, int direction);
 int settings_choice(const struct settings *settings, enum setting key);
 
 /* The value as one would type it, full precision. */
@@ -83,7 +109,7 @@ void settings_text(const struct settings *settings, enum setting key, char text[
  * reference. */
 json_t *settings_json(const struct settings *settings);
 
-/* Is the key without meaning for the problem (left for a sound wave)? */
+/* Is the key without meaning for the problem (left for a sound wave) or in so many dimensions? */
 bool settings_foreign(const struct settings *settings, enum setting key);
 
 #endif

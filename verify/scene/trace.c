@@ -32,14 +32,23 @@ void trace_add(struct trace *trace, double time, const struct conservation *sums
     if (trace->count > TRACE_MAX) thin(trace);
 }
 
+/* |a - b| over a scale, or over another one beside which the first vanishes. */
+static double change(const double a[3], const double b[3], double scale, double other)
+{
+    const double squares = (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]);
+    const double first = fabs(a[0] - b[0]);
+    const double size = squares > 0 ? sqrt(first * first + squares) : first;
+    return size / (scale > 1e-12 * other ? scale : other);
+}
+
 struct trace_drift trace_drift(const struct conservation *start, const struct conservation *now,
                                const struct conservation *end)
 {
-    const double tiny = 1e-12 * end->sound_scale;
-    const double scale = end->momentum_scale > tiny ? end->momentum_scale : end->sound_scale;
     return (struct trace_drift){
         .mass = fabs(now->mass - start->mass) / start->mass,
-        .momentum = fabs(now->momentum[0] - start->momentum[0]) / scale,
+        .momentum = change(now->momentum, start->momentum, end->momentum_scale, end->sound_scale),
+        .angular_momentum = change(now->angular_momentum, start->angular_momentum,
+                                   end->angular_scale, end->turning_scale),
         .energy = fabs(now->energy - start->energy) / fabs(start->energy),
     };
 }

@@ -22,9 +22,10 @@ struct trace {
 };
 
 /* Differences from the start, relative and >= 0: of mass and energy to their start; momentum in
- * units of sum |p| at the end or, where that vanishes, of mass times sound speed. */
+ * units of sum |p| at the end or, where that vanishes, of mass times sound speed; angular momentum
+ * in units of sum |r x p| or of the same. */
 struct trace_drift {
-    double mass, momentum, energy;
+    double mass, momentum, angular_momentum, energy;
 };
 struct trace_drift trace_drift(const struct conservation *start, const struct conservation *now,
                                const struct conservation *end);

@@ -145,12 +145,13 @@ enum status sweep_ladder(const char *text, size_t least, size_t ladder[CASE_LADD
         const size_t length = strcspn(rest, ",");
         double value;
         snprintf(word, sizeof word, "%.*s", (int)length, rest);
-        if (length >= sizeof word || !text_integer(word, &value) ||
+        if (length >= sizeof word || !text_count(word, &value) ||
             !(value >= key->lo && value <= key->hi))
-            return error_set(error, STATUS_BAD_INPUT,
-                             "--n: '%.40s': allowed: integers from %.10g to %.10g, separated by "
-                             "commas",
-                             word, key->lo, key->hi);
+            return error_set(
+                error, STATUS_BAD_INPUT,
+                "--n: '%.40s': allowed: integers (or 64^2) from %.10g to %.10g, separated by "
+                "commas",
+                word, key->lo, key->hi);
         if (n == CASE_LADDER_MAX)
             return error_set(error, STATUS_BAD_INPUT, "--n: at most %d resolutions",
                              CASE_LADDER_MAX);

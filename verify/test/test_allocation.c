@@ -116,6 +116,10 @@ static void test_no_calls(void **state)
     for (const struct case_builtin *file = case_builtins; file->name; file++)
         for (size_t s = 0; s < sizeof schemes / sizeof *schemes; s++) {
             char keys[256] = "n=100 ";
+            struct case_file of;
+            struct error error;
+            if (case_load(&of, file->name, &error)) fail_msg("%s", error.message);
+            if (of.dimension > 1) continue; /* lists of neighbours are as long as they come to be */
             strcat(keys, schemes[s]);
             if (calls_in(file->name, keys, 1, NULL))
                 fail_msg("%s %s: %d calls of malloc, calloc, realloc, aligned_alloc or free",

@@ -116,7 +116,7 @@ static void built_in_cases_are_sound(void **state)
     for (const struct case_builtin *b = case_builtins; b->name; b++, n++) {
         assert_int_equal(case_load(&file, b->name, &error), STATUS_OK);
         assert_string_equal(file.name, b->name);
-        assert_true(file.ladder_count >= 4 && file.gate_count >= 1);
+        if (file.dimension == 1) assert_true(file.ladder_count >= 4 && file.gate_count >= 1);
     }
     assert_true(n >= 6);
 }
@@ -126,9 +126,11 @@ static void damaged_cases_are_survived(void **state)
 {
     static const char noise[] = "\n[]=;:# \t\r0aZ.,-\"";
     unsigned random = 2385;
+    size_t builtins = 0;
     (void)state;
+    while (case_builtins[builtins].name) builtins++;
     for (int round = 0; round < 4000; round++) {
-        const struct case_builtin *builtin = &case_builtins[round % 6];
+        const struct case_builtin *builtin = &case_builtins[(size_t)round % builtins];
         const size_t length = strlen(builtin->text);
         char *text = strdup(builtin->text);
         assert_non_null(text);

@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Two uniform gases that meet in the middle of the box (Toro 2009, ch. 4). The box is periodic, so
  * a mirrored tube starts at its ends; the window has to stay clear of it. Particles have equal
- * masses, cell-centred on each side, or are graded towards the jumps. */
+ * masses, cell-centred on each side, or are graded towards the jumps; in 2D and 3D each gas has a
+ * lattice of its own, of a spacing that gives equal masses. */
 #include "riemann.h"
 
 #include <math.h>
 
 #include "functional.h"
+#include "lattice.h"
 #include "problem.h"
 
 struct tube {
@@ -42,7 +44,11 @@ static enum status prepare(struct prepared *p, struct settings *settings, struct
     const double *left = settings->value[SETTING_left].real;
     const double *right = settings->value[SETTING_right].real;
     struct setting_value *mass_ratio = &settings->value[SETTING_mass_ratio];
-    tube->x0 = 0.5 * (p->domain.lo[0] + p->domain.hi[0]);
+    tube->x0 = p->window.centre[0];
+    if (settings->value[SETTING_window].automatic)
+        for (int side = -1; side <= 1; side += 2)
+            *(side < 0 ? &p->window.lo[0] : &p->window.hi[0]) =
+                tube->x0 + side * 0.25 * domain_length(&p->domain, 0);
     if (problem_check_state(settings, SETTING_left, error) ||
         problem_check_state(settings, SETTING_right, error) ||
         solve(&tube->main, p->gamma, left, right, error) ||
@@ -144,9 +150,39 @@ static void fill_side(struct initial *initial, const struct side *side, double g
     }
 }
 
+/* Half of the domain, and how many particles are to be there. */
+static enum status plan_side(struct lattice_plan *plan, const struct prepared *p, bool right,
+                             size_t n, enum lattice kind, struct error *error)
+{
+    struct domain half = p->domain;
+    *(right ? &half.lo[0] : &half.hi[0]) = tube_of(p)->x0;
+    return lattice_plan_make(plan, &half, kind, n, error);
+}
+
+static enum status fill_cloud(const struct prepared *p, const struct settings *settings,
+                              struct initial *initial, struct error *error)
+{
+    const double ratio = settings_real(settings, SETTING_mass_ratio);
+    const double left = settings->value[SETTING_left].real[0];
+    const double right = settings->value[SETTING_right].real[0] / ratio;
+    const enum lattice kind = (enum lattice)settings_choice(settings, SETTING_lattice);
+    const size_t n = (size_t)settings_real(settings, SETTING_n);
+    const double share = fmin(fmax(round((double)n * left / (left + right)), 1), (double)(n - 1));
+    const size_t n_left = (size_t)share;
+    struct lattice_plan sides[2];
+    if (plan_side(&sides[0], p, false, n_left, kind, error) ||
+        plan_side(&sides[1], p, true, n - n_left, kind, error) ||
+        initial_allocate(initial, p->domain.dim, sides[0].n + sides[1].n, error))
+        return error->status;
+    initial_lay(initial, p, &sides[0], 0, settings);
+    initial_lay(initial, p, &sides[1], sides[0].n, settings);
+    return STATUS_OK;
+}
+
 static enum status fill(const struct prepared *p, const struct settings *settings,
                         struct initial *initial, struct error *error)
 {
+    if (p->domain.dim > 1) return fill_cloud(p, settings, initial, error);
     const double x0 = tube_of(p)->x0, lo = p->domain.lo[0], hi = p->domain.hi[0];
     const double *left = settings->value[SETTING_left].real;
     const double *right = settings->value[SETTING_right].real;
@@ -219,7 +255,7 @@ static enum status refuse(const struct prepared *p, double t, double longest, st
 
 static bool shock_runs_right(const struct prepared *p)
 {
-    return tube_of(p)->main.right_wave == RIEMANN_SHOCK;
+    return p->domain.dim == 1 && tube_of(p)->main.right_wave == RIEMANN_SHOCK;
 }
 
 /* Where the pressure, seen from the right, first passes the mean of both sides of the shock. */
@@ -242,6 +278,35 @@ static double shock_exact(const struct prepared *p, double t)
 
 static const struct functional shock_position = {"shock_position", shock_runs_right, shock_measured,
                                                  shock_exact};
+
+/* ---- in 2D and 3D: what moves across the flow, in gas that waves have passed ---- */
+
+static bool has_width(const struct prepared *p)
+{
+    return p->domain.dim > 1;
+}
+
+static double transverse_measured(const struct prepared *p, const struct snapshot *s)
+{
+    const struct riemann_solution *tube = &tube_of(p)->main;
+    double sum = 0, volume = 0;
+    for (size_t i = 0; i < s->n; i++) {
+        const double x = s->x[0][i] - tube_of(p)->x0;
+        if (!(x > tube->left_head * s->time && x < tube->right_head * s->time)) continue;
+        for (int d = 1; d < p->domain.dim; d++) sum += s->volume[i] * s->v[d][i] * s->v[d][i];
+        volume += s->volume[i];
+    }
+    return volume > 0 ? sqrt(sum / volume) : 0;
+}
+
+static double transverse_exact(const struct prepared *p, double t)
+{
+    (void)p, (void)t;
+    return 0;
+}
+
+static const struct functional transverse_noise = {"transverse_noise", has_width,
+                                                   transverse_measured, transverse_exact};
 
 /* ---- regions of the error budget ---- */
 
@@ -325,7 +390,7 @@ const struct problem problem_riemann = {
     .member = {"riemann", "two uniform gases that meet in the middle of the box", "Toro 2009"},
     .reference = "riemann",
     .least_dim = 1,
-    .most_dim = 1,
+    .most_dim = 3,
     .keys = keys,
     .key_count = sizeof keys / sizeof *keys,
     .prepare = prepare,
@@ -334,6 +399,7 @@ const struct problem problem_riemann = {
     .holds = holds,
     .refuse = refuse,
     .random = initial_is_shaken,
-    .functionals = {&functional_mean_internal_energy, &functional_mean_pressure, &shock_position},
+    .functionals = {&functional_mean_internal_energy, &functional_mean_pressure, &shock_position,
+                    &transverse_noise},
     .regions = &regions,
 };

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * A simple wave that runs to the right through a uniform gas and is exact at any amplitude until it
- * breaks (Landau & Lifshitz 1987, section 101): `waves` wavelengths in the box. Particles of equal
- * masses, whose positions carry the density exactly. */
+ * breaks (Landau & Lifshitz 1987, section 101): `waves` wavelengths in the box; in 2D and 3D in a
+ * `direction` of integers, so that it is periodic in the box. Particles of equal masses, whose
+ * positions carry the density exactly. */
 #include "simple_wave.h"
 
 #include <math.h>
@@ -9,25 +10,72 @@
 #include "functional.h"
 #include "problem.h"
 
-_Static_assert(sizeof(struct simple_wave) <= PROBLEM_OWN_BYTES, "a wave fits");
+struct plane_wave {
+    struct simple_wave wave;
+    double n[3]; /* unit vector of its direction */
+};
+_Static_assert(sizeof(struct plane_wave) <= PROBLEM_OWN_BYTES, "a wave fits");
 
 static const struct simple_wave *wave_of(const struct prepared *p)
 {
-    return (const struct simple_wave *)p->own.bytes;
+    return &((const struct plane_wave *)p->own.bytes)->wave;
+}
+
+static const double *direction_of(const struct prepared *p)
+{
+    return ((const struct plane_wave *)p->own.bytes)->n;
+}
+
+/* How far x lies from the domain's corner along the wave. */
+static double along(const struct prepared *p, const double x[3])
+{
+    const double *n = direction_of(p);
+    if (p->domain.dim == 1) return x[0] - p->domain.lo[0];
+    double s = 0;
+    for (int d = 0; d < p->domain.dim; d++) s += n[d] * (x[d] - p->domain.lo[d]);
+    return s;
+}
+
+/* Wave numbers direction/side of the box, times waves: sets the unit vector and the wavelength. */
+static enum status find_direction(const struct prepared *p, struct settings *settings, double n[3],
+                                  double *length, struct error *error)
+{
+    struct setting_value *direction = &settings->value[SETTING_direction];
+    const int dim = p->domain.dim;
+    const double waves = settings_real(settings, SETTING_waves);
+    double square = 0;
+    if (direction->automatic) {
+        direction->given = dim;
+        for (int d = 0; d < dim; d++) direction->real[d] = d == 0;
+    }
+    for (int d = 0; d < dim; d++) {
+        const double whole = settings_along(settings, SETTING_direction, d);
+        if (whole != nearbyint(whole))
+            return error_set(error, STATUS_BAD_INPUT,
+                             "direction: %g is no integer, and the wave would not be periodic",
+                             whole);
+        n[d] = whole / domain_length(&p->domain, d);
+        square += n[d] * n[d];
+    }
+    if (square == 0)
+        return error_set(error, STATUS_BAD_INPUT, "direction=\"0\": the wave runs nowhere");
+    for (int d = 0; d < dim; d++) n[d] /= sqrt(square);
+    *length = dim == 1 ? domain_length(&p->domain, 0) / waves : 1 / (waves * sqrt(square));
+    return STATUS_OK;
 }
 
 static enum status prepare(struct prepared *p, struct settings *settings, struct error *error)
 {
-    struct simple_wave *wave = (struct simple_wave *)p->own.bytes;
+    struct plane_wave *plane = (struct plane_wave *)p->own.bytes;
+    struct simple_wave *wave = &plane->wave;
     const double *gas = settings->value[SETTING_background].real;
     if (problem_check_state(settings, SETTING_background, error)) return error->status;
     *wave = (struct simple_wave){.gamma = p->gamma,
                                  .rho0 = gas[0],
                                  .v0 = gas[1],
                                  .P0 = gas[2],
-                                 .amplitude = settings_real(settings, SETTING_amplitude),
-                                 .length = (p->domain.hi[0] - p->domain.lo[0]) /
-                                           settings_real(settings, SETTING_waves)};
+                                 .amplitude = settings_real(settings, SETTING_amplitude)};
+    if (find_direction(p, settings, plane->n, &wave->length, error)) return error->status;
     const char *fault = simple_wave_fault(wave);
     return fault ? error_set(error, STATUS_BAD_INPUT, "no exact solution: %s", fault) : STATUS_OK;
 }
@@ -35,8 +83,10 @@ static enum status prepare(struct prepared *p, struct settings *settings, struct
 static void sample(const struct prepared *p, const double x[3], double t,
                    struct problem_state *state)
 {
-    const struct simple_wave_state s = simple_wave_sample(wave_of(p), x[0] - p->domain.lo[0], t);
+    const struct simple_wave_state s = simple_wave_sample(wave_of(p), along(p, x), t);
     *state = (struct problem_state){.rho = s.rho, .v = {s.v}, .P = s.P, .u = s.u};
+    for (int d = 0; p->domain.dim > 1 && d < p->domain.dim; d++)
+        state->v[d] = s.v * direction_of(p)[d];
 }
 
 /* Position x (from lo) with mass between lo and x equal to `mass`: Newton on
@@ -54,9 +104,37 @@ static double wave_position(const struct simple_wave *wave, double mass)
     return x;
 }
 
+/* Lattice points, displaced along the wave as on a line. */
+static enum status fill_cloud(const struct prepared *p, const struct settings *settings,
+                              struct initial *initial, struct error *error)
+{
+    const struct simple_wave *wave = wave_of(p);
+    const enum status status = initial_fill(p, settings, initial, error);
+    double mass = wave->rho0;
+    for (int d = 0; d < p->domain.dim; d++) mass *= domain_length(&p->domain, d);
+    for (size_t i = 0; !status && i < initial->n; i++) {
+        double x[3] = {0};
+        struct problem_state state;
+        for (int d = 0; d < initial->dim; d++) x[d] = initial->x[d][i];
+        const double s = along(p, x), shift = wave_position(wave, s * wave->rho0) - s;
+        for (int d = 0; d < initial->dim; d++) {
+            const double lo = p->domain.lo[d], length = domain_length(&p->domain, d);
+            const double from_lo = x[d] + shift * direction_of(p)[d] - lo;
+            x[d] = initial->x[d][i] = lo + (from_lo - length * floor(from_lo / length));
+        }
+        sample(p, x, 0, &state);
+        for (int d = 0; d < initial->dim; d++) initial->v[d][i] = state.v[d];
+        initial->m[i] = mass / (double)initial->n;
+        initial->u[i] = state.u;
+        initial->rho[i] = state.rho;
+    }
+    return status;
+}
+
 static enum status fill(const struct prepared *p, const struct settings *settings,
                         struct initial *initial, struct error *error)
 {
+    if (p->domain.dim > 1) return fill_cloud(p, settings, initial, error);
     const struct simple_wave *wave = wave_of(p);
     const size_t n = (size_t)settings_real(settings, SETTING_n);
     const double lo = p->domain.lo[0], mass = wave->rho0 * (p->domain.hi[0] - lo) / (double)n;
@@ -96,11 +174,11 @@ struct mode {
     double a, b, volume;
 };
 
-static void mode_add(struct mode *mode, const struct prepared *p, double x, double volume,
+static void mode_add(struct mode *mode, const struct prepared *p, const double x[3], double volume,
                      double rho)
 {
     const struct simple_wave *wave = wave_of(p);
-    const double phase = 2 * M_PI * (x - p->domain.lo[0]) / wave->length;
+    const double phase = 2 * M_PI * along(p, x) / wave->length;
     mode->a += volume * (rho - wave->rho0) * cos(phase);
     mode->b += volume * (rho - wave->rho0) * sin(phase);
     mode->volume += volume;
@@ -114,18 +192,27 @@ static double mode_size(const struct mode *mode, const struct prepared *p)
 static double mode_measured(const struct prepared *p, const struct snapshot *s)
 {
     struct mode mode = {0};
-    for (size_t i = 0; i < s->n; i++) mode_add(&mode, p, s->x[0][i], s->volume[i], s->rho[i]);
+    for (size_t i = 0; i < s->n; i++) {
+        double x[3];
+        problem_place(p, s, i, x);
+        mode_add(&mode, p, x, s->volume[i], s->rho[i]);
+    }
     return mode_size(&mode, p);
 }
 
 static double mode_exact(const struct prepared *p, double t)
 {
-    const double lo = p->domain.lo[0], step = (p->domain.hi[0] - lo) / MODE_POINTS;
+    const bool line = p->domain.dim == 1; /* along the wave, as long as it is */
+    const double length = line ? domain_length(&p->domain, 0) : wave_of(p)->length;
+    const double step = length / MODE_POINTS;
     struct mode mode = {0};
     for (int i = 0; i < MODE_POINTS; i++) { /* smooth and periodic: converges at once */
-        const double x = lo + (i + 0.5) * step;
+        const double way = (i + 0.5) * step;
         struct problem_state state;
-        sample(p, (double[3]){x}, t, &state);
+        double x[3] = {p->domain.lo[0] + way};
+        for (int d = 0; !line && d < p->domain.dim; d++)
+            x[d] = p->domain.lo[d] + way * direction_of(p)[d];
+        sample(p, x, t, &state);
         mode_add(&mode, p, x, step, state.rho);
     }
     return mode_size(&mode, p);
@@ -135,13 +222,15 @@ static const struct functional mode_amplitude = {"mode_amplitude", NULL, mode_me
 
 static const struct problem_key keys[] = {{SETTING_background, ROLE_NEEDED},
                                           {SETTING_amplitude, ROLE_NEEDED},
-                                          {SETTING_waves, ROLE_OPTIONAL}};
+                                          {SETTING_waves, ROLE_OPTIONAL},
+                                          {SETTING_direction, ROLE_OPTIONAL}};
 
 const struct problem problem_sound_wave = {
     .member = {"sound_wave", "a simple wave that runs to the right", "Landau & Lifshitz 1987"},
     .reference = "simple_wave",
     .least_dim = 1,
-    .most_dim = 1,
+    .most_dim = 3,
+    .carried = true,
     .smooth = true,
     .keys = keys,
     .key_count = sizeof keys / sizeof *keys,

@@ -1,0 +1,83 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Smooth shear layers whose instability grows (McNally, Lyra & Passy 2012): nothing is exact after
+ * the start, but the amplitude of the growing mode is known to many digits. In a box of another
+ * side than 1 all takes as many times as long. Particles of equal spacing, whose masses follow the
+ * density. */
+#include "kelvin_helmholtz.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "problem.h"
+
+static enum status prepare(struct prepared *p, struct settings *settings, struct error *error)
+{
+    (void)settings;
+    const double width = domain_length(&p->domain, 0), height = domain_length(&p->domain, 1);
+    if (fabs(width - height) <= 1e-12 * width) return STATUS_OK;
+    return error_set(error, STATUS_BAD_INPUT,
+                     "lo, hi: the layers lie in a square box, and this one has sides of %g and %g",
+                     width, height);
+}
+
+/* x in the unit box. */
+static void to_unit(const struct prepared *p, const double x[3], double unit[2])
+{
+    for (int d = 0; d < 2; d++) unit[d] = (x[d] - p->domain.lo[d]) / domain_length(&p->domain, d);
+}
+
+static void sample(const struct prepared *p, const double x[3], double t,
+                   struct problem_state *state)
+{
+    double unit[2];
+    to_unit(p, x, unit);
+    const struct kelvin_helmholtz_state s = kelvin_helmholtz_start(unit[0], unit[1]);
+    (void)t;
+    *state = (struct problem_state){
+        .rho = s.rho, .v = {s.v[0], s.v[1]}, .P = s.P, .u = s.P / ((p->gamma - 1) * s.rho)};
+}
+
+static double amplitude_measured(const struct prepared *p, const struct snapshot *s)
+{
+    double *x = malloc(3 * s->n * sizeof *x), *y = x + s->n, *vy = y + s->n;
+    if (!x) return NAN;
+    for (size_t i = 0; i < s->n; i++) {
+        double place[3], unit[2], v[3];
+        problem_place(p, s, i, place);
+        problem_velocity(p, s, i, v);
+        to_unit(p, place, unit);
+        x[i] = unit[0];
+        y[i] = unit[1];
+        vy[i] = v[1];
+    }
+    const double M = kelvin_helmholtz_amplitude(s->n, x, y, vy, s->volume);
+    free(x);
+    return M;
+}
+
+/* The reference is for a gas of its gamma. */
+static double amplitude_reference(const struct prepared *p, double t)
+{
+    return fabs(p->gamma - 5. / 3) <= 1e-6
+               ? kelvin_helmholtz_reference(t / domain_length(&p->domain, 0))
+               : (double)NAN;
+}
+
+static const struct functional mode_amplitude = {"mode_amplitude", NULL, amplitude_measured,
+                                                 amplitude_reference};
+
+const struct problem problem_kelvin_helmholtz = {
+    .member = {"kelvin_helmholtz", "smooth shear layers whose instability grows",
+               "McNally, Lyra & Passy 2012"},
+    .reference = "kelvin_helmholtz",
+    .least_dim = 2,
+    .most_dim = 2,
+    .carried = true,
+    .fieldless = true,
+    .smooth = true,
+    .prepare = prepare,
+    .sample = sample,
+    .fill = initial_fill,
+    .random = initial_is_shaken,
+    .functionals = {&mode_amplitude},
+};

@@ -1,0 +1,158 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * A square of dense gas in a periodic box of thin gas of the same pressure (Saitoh & Makino 2013):
+ * nothing may move, and no corner may be rounded. Particles of equal spacing, whose masses have the
+ * ratio of the densities, or of equal masses on lattices of two spacings. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "functional.h"
+#include "lattice.h"
+#include "problem.h"
+
+static const double thin = 1, pressure = 2.5;
+
+struct square {
+    double dense;
+    struct domain inside;
+};
+_Static_assert(sizeof(struct square) <= PROBLEM_OWN_BYTES, "a square fits");
+
+static const struct square *square_of(const struct prepared *p)
+{
+    return (const struct square *)p->own.bytes;
+}
+
+/* Half the box in each direction, in its middle. */
+static enum status prepare(struct prepared *p, struct settings *settings, struct error *error)
+{
+    struct square *square = (struct square *)p->own.bytes;
+    (void)error;
+    square->dense = thin * settings_real(settings, SETTING_contrast);
+    square->inside.dim = p->domain.dim;
+    for (int d = 0; d < p->domain.dim; d++) {
+        const double quarter = 0.25 * domain_length(&p->domain, d);
+        square->inside.lo[d] = p->domain.lo[d] + quarter;
+        square->inside.hi[d] = p->domain.hi[d] - quarter;
+    }
+    return STATUS_OK;
+}
+
+static bool is_inside(const struct square *square, const double x[3])
+{
+    for (int d = 0; d < square->inside.dim; d++)
+        if (!(x[d] >= square->inside.lo[d] && x[d] < square->inside.hi[d])) return false;
+    return true;
+}
+
+static void sample(const struct prepared *p, const double x[3], double t,
+                   struct problem_state *state)
+{
+    const struct square *square = square_of(p);
+    const double rho = is_inside(square, x) ? square->dense : thin;
+    (void)t;
+    *state =
+        (struct problem_state){.rho = rho, .P = pressure, .u = pressure / ((p->gamma - 1) * rho)};
+}
+
+/* ---- equal masses: each gas on a lattice of its own, the thin one with a hole ---- */
+
+/* Keeps the first of `count` particles on and those after it that are outside of the square. */
+static size_t cut_out(struct initial *initial, const struct square *square, size_t first,
+                      size_t count)
+{
+    size_t kept = first;
+    for (size_t i = first; i < first + count; i++) {
+        double x[3] = {0};
+        for (int d = 0; d < initial->dim; d++) x[d] = initial->x[d][i];
+        if (is_inside(square, x)) continue;
+        for (int d = 0; d < initial->dim; d++) {
+            initial->x[d][kept] = x[d];
+            initial->v[d][kept] = initial->v[d][i];
+        }
+        initial->m[kept] = initial->m[i];
+        initial->u[kept] = initial->u[i];
+        initial->rho[kept++] = initial->rho[i];
+    }
+    return kept;
+}
+
+/* Brings the masses of a gas to what its volume holds. */
+static void fill_up(struct initial *initial, size_t first, size_t end, double mass)
+{
+    for (size_t i = first; i < end; i++) initial->m[i] = mass / (double)(end - first);
+}
+
+static enum status fill_equal_masses(const struct prepared *p, const struct settings *settings,
+                                     struct initial *initial, struct error *error)
+{
+    const struct square *square = square_of(p);
+    const enum lattice kind = (enum lattice)settings_choice(settings, SETTING_lattice);
+    struct lattice_plan dense, around;
+    double volume = 1, inner = 1;
+    for (int d = 0; d < p->domain.dim; d++) {
+        volume *= domain_length(&p->domain, d);
+        inner *= domain_length(&square->inside, d);
+    }
+    const double all = square->dense * inner + thin * (volume - inner);
+    const double n = settings_real(settings, SETTING_n);
+    if (lattice_plan_make(&dense, &square->inside, kind,
+                          (size_t)fmax(1, round(n * square->dense * inner / all)), error) ||
+        lattice_plan_make(&around, &p->domain, kind,
+                          (size_t)fmax(1, round(n * thin * volume / all)), error) ||
+        initial_allocate(initial, p->domain.dim, dense.n + around.n, error))
+        return error->status;
+    initial_lay(initial, p, &dense, 0, settings);
+    initial_lay(initial, p, &around, dense.n, settings);
+    initial->n = cut_out(initial, square, dense.n, around.n);
+    fill_up(initial, 0, dense.n, square->dense * inner);
+    fill_up(initial, dense.n, initial->n, thin * (volume - inner));
+    return STATUS_OK;
+}
+
+/* One lattice for all, with edges of the square between its planes: four times one for a quarter of
+ * the box. */
+static enum status fill_equal_spacing(const struct prepared *p, const struct settings *settings,
+                                      struct initial *initial, struct error *error)
+{
+    const enum lattice kind = (enum lattice)settings_choice(settings, SETTING_lattice);
+    struct domain quarter = p->domain;
+    struct lattice_plan plan;
+    double n = settings_real(settings, SETTING_n);
+    for (int d = 0; d < quarter.dim; d++, n /= 4)
+        quarter.hi[d] = quarter.lo[d] + 0.25 * domain_length(&quarter, d);
+    if (lattice_plan_make(&plan, &quarter, kind, (size_t)fmax(1, round(n)), error))
+        return error->status;
+    plan.box = p->domain;
+    for (int d = 0; d < quarter.dim; d++) {
+        plan.cells[d] *= 4;
+        plan.n *= 4;
+    }
+    if (initial_allocate(initial, quarter.dim, plan.n, error)) return error->status;
+    initial_lay(initial, p, &plan, 0, settings);
+    return STATUS_OK;
+}
+
+static enum status fill(const struct prepared *p, const struct settings *settings,
+                        struct initial *initial, struct error *error)
+{
+    const bool equal_masses = settings_choice(settings, SETTING_equal_masses);
+    return (equal_masses ? fill_equal_masses : fill_equal_spacing)(p, settings, initial, error);
+}
+
+static const struct problem_key keys[] = {{SETTING_contrast, ROLE_OPTIONAL},
+                                          {SETTING_equal_masses, ROLE_PARTICLES}};
+
+const struct problem problem_square = {
+    .member = {"square", "a dense square in thin gas of the same pressure", "Saitoh & Makino 2013"},
+    .reference = "square",
+    .least_dim = 2,
+    .most_dim = 3,
+    .carried = true,
+    .keys = keys,
+    .key_count = sizeof keys / sizeof *keys,
+    .prepare = prepare,
+    .sample = sample,
+    .fill = fill,
+    .random = initial_is_shaken,
+    .functionals = {&functional_velocity_rms},
+};
