@@ -201,6 +201,13 @@ ALWAYS_INLINE double pair_energy_flux(struct pair_terms a, double v_i, double v_
 
 /* --- time step -------------------------------------------------------------------------------- */
 
+/* Is a distance r inside the wider of two supports? By the widths that sums are taken at (1/h):
+ * neighbours are looked for within those, so that whoever counts is always found. */
+ALWAYS_INLINE bool pair_within(double r, double h_inverse_i, double h_inverse_j)
+{
+    return r * least(h_inverse_i, h_inverse_j) < 1;
+}
+
 /* Signal speed, CONVENTIONS eq. 5.14 (Monaghan 1997; Springel 2005). */
 ALWAYS_INLINE double pair_signal_speed(double c_i, double c_j, double closing)
 {

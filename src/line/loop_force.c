@@ -90,8 +90,9 @@ ALWAYS_INLINE double pairs_at(ptrdiff_t d, enum formulation formulation, enum vi
             e_j[i] = heating.j;
         }
         /* of both particles: speed/h, and 2c/h of the left one alone */
-        const double speed =
-            r < largest(left.h, right.h) ? pair_signal_speed(left.c, right.c, closing) : 0;
+        const double speed = pair_within(r, left.h_inverse, right.h_inverse)
+                                 ? pair_signal_speed(left.c, right.c, closing)
+                                 : 0;
         s[i] =
             largest(2 * left.c * left.h_inverse, speed * largest(left.h_inverse, right.h_inverse));
     }

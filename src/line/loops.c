@@ -37,14 +37,16 @@ void loops_choose(const struct plan *plan, const struct scheme *scheme, struct l
 void loops_signal(const struct particles *particles, ptrdiff_t first, int len, ptrdiff_t D)
 {
     const double *x = particles->x[0] + first, *v = particles->v[0] + first,
-                 *c = particles->c + first, *h = particles->h + first;
+                 *c = particles->c + first, *h_inverse = particles->h_inverse + first;
     double *signal = particles->signal + first;
     for (int i = 0; i < len; i++) signal[i] = 2 * c[i];
     for (ptrdiff_t d = 1; d <= D; d++)
         for (int i = 0; i < len; i++) {
             const double right = pair_signal_speed(c[i], c[i + d], v[i] - v[i + d]);
             const double left = pair_signal_speed(c[i], c[i - d], v[i - d] - v[i]);
-            if (x[i + d] - x[i] < largest(h[i], h[i + d])) signal[i] = largest(signal[i], right);
-            if (x[i] - x[i - d] < largest(h[i], h[i - d])) signal[i] = largest(signal[i], left);
+            if (pair_within(x[i + d] - x[i], h_inverse[i], h_inverse[i + d]))
+                signal[i] = largest(signal[i], right);
+            if (pair_within(x[i] - x[i - d], h_inverse[i], h_inverse[i - d]))
+                signal[i] = largest(signal[i], left);
         }
 }

@@ -311,12 +311,6 @@ static enum status find_state(struct oracle *oracle, struct error *error)
     return STATUS_OK;
 }
 
-/* How far a particle's pairs reach: in 1D as the last sum has found it. */
-static long double reach(const struct oracle *oracle, const struct oracle_particle *a)
-{
-    return oracle->dim == 1 ? a->h : a->width;
-}
-
 void oracle_signals(struct oracle *oracle)
 {
     for (size_t i = 0; i < oracle->n; i++) {
@@ -327,7 +321,7 @@ void oracle_signals(struct oracle *oracle)
                 const struct oracle_particle *b = &oracle->particles[j];
                 oracle_vector x;
                 const long double r = oracle_distance(oracle, i, j, k);
-                if ((j == i && k == 0) || r >= fmaxl(reach(oracle, a), reach(oracle, b))) continue;
+                if ((j == i && k == 0) || r >= fmaxl(a->width, b->width)) continue;
                 oracle_separation(oracle, a, b, k, x);
                 /* e_ij . v_ij with e_ij = -x/r */
                 long double radial = 0;
