@@ -35,7 +35,7 @@ static void add(struct check_run *run, int dim, struct scheme scheme)
 static void add_kernels(struct check_run *run, int dim)
 {
     for (size_t k = 0; k < kernel_family.n; k++)
-        for (size_t g = 0; g < hydro_cloud_geometries(); g += dim == 2 ? 7 : 14) {
+        for (size_t g = 0; g < hydro_cloud_geometries(); g += dim == 2 ? 7 : 21) {
             struct scheme s = hydro_cloud_scheme(dim);
             const double eta = s.eta;
             hydro_set_kernel(&s, kernel_family.members[k]->name);
@@ -56,7 +56,7 @@ static void subjects(struct check_run *run)
             hydro_cloud_physic(&s, g % physics);
             add(run, dim, s);
         }
-        for (size_t p = 0; p < physics; p += dim == 2 ? 1 : 5) {
+        for (size_t p = 0; p < physics; p += dim == 2 ? 1 : 9) {
             struct scheme s = hydro_cloud_scheme(dim);
             hydro_cloud_geometry(&s, p * 5 % (geometries / PAIR_WIDTHS)); /* width mean */
             hydro_cloud_physic(&s, p);
