@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { LINE = 19, KEY_SAMPLE = 55, STACK_GAP = 36 };
+enum { LINE = 19, KEY_SAMPLE = 55, STACK_GAP = 36, BEFORE_PANEL = 92 };
 static const double LETTER = 7.7;      /* mean width of a letter of 14 px */
 static const double KEY_LETTER = 10.0; /* what gnuplot reserves for one in the key */
 
@@ -98,6 +98,15 @@ static void ranges(struct layout_panel *at, const struct plot_panel *panel)
     finish(&at->y, panel->y_min, panel->y_max, air);
 }
 
+/* Shrinks a panel, at its right or its bottom, until a unit is as long on both axes. */
+static void equalise(struct layout_panel *at)
+{
+    const double x = at->x.max - at->x.min, y = at->y.max - at->y.min;
+    const double scale = fmin((at->right - at->left) / x, (at->bottom - at->top) / y);
+    at->right = at->left + scale * x;
+    at->bottom = at->top + scale * y;
+}
+
 /* Room at the right for the names at the ends of curves. */
 static double end_width(const struct plot_panel *panel)
 {
@@ -133,7 +142,7 @@ void layout_make(struct layout *layout, const struct plot *plot)
     size_t n = plot->panel_count;
     layout->width = plot->width ? plot->width : 560;
     layout->height = plot->height ? plot->height : n == 1 ? 350 : 90 + 165 * (int)n;
-    layout->left = 92;
+    layout->left = BEFORE_PANEL;
     double room = 18;
     for (size_t k = 0; k < n; k++) {
         const struct plot_panel *panel = &plot->panels[k];
@@ -152,12 +161,24 @@ void layout_make(struct layout *layout, const struct plot *plot)
     double each = (bottom - top - gap * ((double)n - 1) - STACK_GAP * stacks) / (double)n;
     for (size_t k = 0; k < n; k++) {
         struct layout_panel *at = &layout->panels[k];
-        if (k > 0) top += each + gap + (plot->panels[k].own_x ? STACK_GAP : 0);
-        at->top = top + (plot->panels[k].title ? LINE : 0);
-        at->bottom = top + each;
+        if (plot->beside) {
+            const double slot = (double)layout->width / (double)n;
+            at->left = slot * (double)k + BEFORE_PANEL;
+            at->right = slot * (double)(k + 1) - room;
+            at->top = top + (plot->panels[k].title ? LINE : 0);
+            at->bottom = bottom;
+        } else {
+            if (k > 0) top += each + gap + (plot->panels[k].own_x ? STACK_GAP : 0);
+            at->left = layout->left;
+            at->right = layout->right;
+            at->top = top + (plot->panels[k].title ? LINE : 0);
+            at->bottom = top + each;
+        }
         ranges(at, &plot->panels[k]);
+        if (plot->panels[k].equal) equalise(at);
     }
-    for (size_t first = 0, k = 1; k <= n; k++) { /* a stack shares the widest x axis */
+    for (size_t first = 0, k = 1; k <= n && !plot->beside;
+         k++) { /* a stack shares the widest x axis */
         if (k < n && !plot->panels[k].own_x) {
             layout->panels[first].x.min =
                 fmin(layout->panels[first].x.min, layout->panels[k].x.min);

@@ -12,14 +12,15 @@ struct layout_axis {
 
 struct layout_panel {
     struct layout_axis x, y;
-    double top, bottom; /* pixels from the top of the picture */
+    double left, right; /* pixels from the left of the picture */
+    double top, bottom; /* pixels from its top */
 };
 
 enum { LAYOUT_PANELS = 8, LAYOUT_FONT = 14 };
 
 struct layout {
     int width, height;
-    double left, right; /* pixels: the panels' edges */
+    double left, right; /* pixels: where the first panel begins and the last one ends */
     int key_columns, key_rows;
     struct layout_panel panels[LAYOUT_PANELS];
 };

@@ -57,6 +57,8 @@ struct plot_heat {
     bool log;          /* logarithmic colour scale */
     const char *const *categories;
     size_t category_count;
+    bool image;     /* cells are even on linear axes: drawn as an image, kept as a bare matrix */
+    bool diverging; /* the middle of the colours is 0, and both signs reach equally far */
 };
 
 enum plot_key {
@@ -69,6 +71,7 @@ struct plot_panel {
     const char *title;             /* or NULL */
     const char *x_label, *y_label; /* with units; x_label of a stack is taken from the last panel */
     bool own_x;                    /* begins a new stack with an x axis of its own */
+    bool equal;                    /* a unit is as long on both axes */
     bool x_log, y_log;
     double x_min, x_max, y_min, y_max; /* min == max: from the data */
     const double *x_ticks;             /* where log axes should have labels; NULL: automatic */
@@ -91,6 +94,7 @@ struct plot {
     const struct plot_panel
         *panels; /* stacked from top to bottom; two or more share their x axis (see own_x) */
     size_t panel_count;
+    bool beside; /* instead: panels from left to right, each with its own axes */
 };
 
 /* An <svg> element for inlining in HTML (no prolog, ids prefixed with the plot's name, colours by

@@ -36,9 +36,24 @@ static double edge(const double *centres, size_t n, size_t i, int side, bool log
     return inside ? centres[i] + half : centres[i] - half;
 }
 
+/* One line a row of cells, from the bottom to the top. */
+static void image_data(struct buffer *to, const struct plot_heat *heat)
+{
+    buffer_format(to, "# %zu rows of %zu cells\n", heat->ny, heat->nx);
+    for (size_t j = 0; j < heat->ny; j++) {
+        for (size_t i = 0; i < heat->nx; i++) number(to, heat->z[j * heat->nx + i]);
+        buffer_add(to, "\n");
+    }
+    buffer_add(to, "\n\n");
+}
+
 static void heat_data(struct buffer *to, const struct plot_panel *panel)
 {
     const struct plot_heat *heat = panel->heat;
+    if (heat->image) {
+        image_data(to, heat);
+        return;
+    }
     buffer_add(to, "# x y x_low x_high y_low y_high value\n");
     for (size_t j = 0; j < heat->ny; j++) {
         for (size_t i = 0; i < heat->nx; i++) {
@@ -165,13 +180,14 @@ static void axis_names(struct buffer *to, const struct layout *layout, size_t p,
         buffer_add(to, "set label ");
         quote(to, panel->y_label);
         buffer_format(to, " at screen %.5f, screen %.5f center rotate textcolor rgb '%s'\n",
-                      12.0 / layout->width, 1 - (at->top + at->bottom) / 2 / layout->height, ink);
+                      (at->left - 80) / layout->width,
+                      1 - (at->top + at->bottom) / 2 / layout->height, ink);
     }
     if (panel->x_label && last) {
         buffer_add(to, "set label ");
         quote(to, panel->x_label);
         buffer_format(to, " at screen %.5f, screen %.5f center textcolor rgb '%s'\n",
-                      (layout->left + layout->right) / 2 / layout->width,
+                      (at->left + at->right) / 2 / layout->width,
                       1 - (at->bottom + 38) / layout->height, ink);
     }
 }
@@ -225,7 +241,7 @@ static void end_labels(struct buffer *to, const struct layout *layout, size_t p,
         buffer_add(to, "set label ");
         quote(to, series->label);
         buffer_format(to, " at screen %.5f, screen %.5f left textcolor rgb '%s'\n",
-                      (layout->right + 9) / layout->width, 1 - pixels[k] / layout->height,
+                      (layout->panels[p].right + 9) / layout->width, 1 - pixels[k] / layout->height,
                       style_series(series->color, next));
     }
 }
@@ -234,10 +250,30 @@ static void end_labels(struct buffer *to, const struct layout *layout, size_t p,
 static const char *const viridis =
     "set palette defined (0 '#440154', 1 '#3b528b', 2 '#21918c', 3 '#5ec962', 4 '#fde725')\n";
 
+/* Blue, white, red: 0 is white; even in lightness to both sides. */
+static const char *const blue_to_red =
+    "set palette defined (0 '#2166ac', 1 '#92c5de', 2 '#f7f7f7', 3 '#f4a582', 4 '#b2182b')\n";
+
 static const char *const next_curve = ", \\\n  ";
+
+static void image(struct buffer *to, const struct plot_heat *heat, const char *data, size_t index)
+{
+    const double dx =
+        heat->nx > 1 ? (heat->x[heat->nx - 1] - heat->x[0]) / ((double)heat->nx - 1) : 1;
+    const double dy =
+        heat->ny > 1 ? (heat->y[heat->ny - 1] - heat->y[0]) / ((double)heat->ny - 1) : 1;
+    buffer_format(to,
+                  "%s index %zu matrix using (%.10g + %.10g*$1):(%.10g + %.10g*$2):3 with image "
+                  "notitle",
+                  data, index, heat->x[0], dx, heat->y[0], dy);
+}
 
 static void heat(struct buffer *to, const struct plot_heat *heat, const char *data, size_t index)
 {
+    if (heat->image) {
+        image(to, heat, data, index);
+        return;
+    }
     if (!heat->category_count)
         buffer_format(to,
                       "%s index %zu using 1:2:3:4:5:6:7 with boxxyerror notitle fillstyle solid "
@@ -297,17 +333,41 @@ static void curve(struct buffer *to, const struct plot_series *series, const cha
     }
 }
 
+/* The bar is 14 pixels wide, as high as the panel. */
+static void color_scale(struct buffer *to, const struct plot_heat *heat,
+                        const struct layout *layout, const struct layout_panel *at)
+{
+    const char *ink = style_colors[STYLE_plot_ink].light;
+    double reach = 0;
+    for (size_t k = 0; k < heat->nx * heat->ny; k++)
+        if (isfinite(heat->z[k])) reach = fmax(reach, fabs(heat->z[k]));
+    buffer_add(to, heat->diverging ? blue_to_red : viridis);
+    if (heat->diverging && reach > 0)
+        buffer_format(to, "set cbrange [%.10g:%.10g]\n", -reach, reach);
+    else
+        buffer_add(to, "set cbrange [*:*]\n");
+    buffer_format(to, "%s logscale cb\nset cblabel ", heat->log ? "set" : "unset");
+    quote(to, heat->label);
+    buffer_format(to,
+                  " textcolor rgb '%s'\nset colorbox user origin screen %.5f, screen %.5f size "
+                  "screen %.5f, screen %.5f noborder\nset cbtics textcolor rgb '%s'\n",
+                  ink, (at->right + 12) / layout->width, 1 - at->bottom / layout->height,
+                  14.0 / layout->width, (at->bottom - at->top) / layout->height, ink);
+}
+
 static void panel_script(struct buffer *to, const struct plot *plot, const struct layout *layout,
                          size_t p, const char *data, size_t *index)
 {
     const struct plot_panel *panel = &plot->panels[p];
     const struct layout_panel *at = &layout->panels[p];
-    bool last = p + 1 == plot->panel_count || panel[1].own_x; /* of its stack */
+    bool last = plot->beside || p + 1 == plot->panel_count || panel[1].own_x; /* of its stack */
     const char *ink = style_colors[STYLE_plot_ink].light;
     buffer_add(to, "\nunset arrow\nunset label\n");
+    buffer_format(to, "set lmargin at screen %.5f\nset rmargin at screen %.5f\n",
+                  at->left / layout->width, at->right / layout->width);
     buffer_format(to, "set tmargin at screen %.5f\nset bmargin at screen %.5f\n",
                   1 - at->top / layout->height, 1 - at->bottom / layout->height);
-    axis(to, 'x', &at->x, layout->right - layout->left, last, panel->x_ticks, panel->x_tick_count);
+    axis(to, 'x', &at->x, at->right - at->left, last, panel->x_ticks, panel->x_tick_count);
     axis(to, 'y', &at->y, at->bottom - at->top, true, NULL, 0);
     axis_names(to, layout, p, panel, last);
     marks(to, panel);
@@ -333,14 +393,7 @@ static void panel_script(struct buffer *to, const struct plot *plot, const struc
         buffer_add(to, "unset key\n");
     if (panel->key == PLOT_KEY_END) end_labels(to, layout, p, panel);
     if (panel->heat && !panel->heat->category_count) {
-        buffer_add(to, viridis);
-        buffer_format(to, "%s logscale cb\nset cblabel ", panel->heat->log ? "set" : "unset");
-        quote(to, panel->heat->label);
-        buffer_format(to,
-                      " textcolor rgb '%s'\nset colorbox user origin screen %.5f, screen %.5f size "
-                      "screen 0.025, screen %.5f noborder\nset cbtics textcolor rgb '%s'\n",
-                      ink, (layout->right + 12) / layout->width, 1 - at->bottom / layout->height,
-                      (at->bottom - at->top) / layout->height, ink);
+        color_scale(to, panel->heat, layout, at);
     }
     buffer_add(to, "plot ");
     if (panel->heat) heat(to, panel->heat, data, (*index)++);
@@ -382,10 +435,8 @@ void script_make(struct buffer *to, const struct plot *plot, enum script_termina
     buffer_format(to,
                   "set border 3 linecolor rgb '%s'\n"
                   "set grid ytics linetype 1 dashtype solid linewidth 0.7 linecolor rgb '%s'\n"
-                  "set errorbars small\n"
-                  "set lmargin at screen %.5f\nset rmargin at screen %.5f\n",
-                  style_colors[STYLE_plot_axis].light, style_colors[STYLE_plot_grid].light,
-                  layout.left / layout.width, layout.right / layout.width);
+                  "set errorbars small\n",
+                  style_colors[STYLE_plot_axis].light, style_colors[STYLE_plot_grid].light);
     if (plot->panel_count > 1) buffer_add(to, "set multiplot\n");
     size_t index = 0;
     for (size_t p = 0; p < plot->panel_count; p++) panel_script(to, plot, &layout, p, data, &index);

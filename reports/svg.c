@@ -111,6 +111,9 @@ static void put_attribute(struct buffer *to, const struct attribute *attribute, 
         buffer_format(to, " id=\"%s-%.*s\"", prefix, (int)value.n, value.at);
     } else if (is(name, "xlink:href") && value.n && value.at[0] == '#') {
         buffer_format(to, " href=\"#%s-%.*s\"", prefix, (int)value.n - 1, value.at + 1);
+    } else if (is(name, "xlink:href")) { /* an image, with its bytes */
+        put(to, "href", value);
+        buffer_add(to, " style=\"image-rendering:pixelated\"");
     } else {
         char copy[64];
         snprintf(copy, sizeof copy, "%.*s", (int)name.n, name.at);

@@ -12,9 +12,8 @@
 #include "picture.h"
 #include "progress.h"
 #include "result.h"
+#include "run_plot.h"
 #include "table.h"
-
-enum { PLOT_POINTS_EXACT = 1001 };
 
 static void print_head(const struct run_settings *settings, const struct run_result *result,
                        const struct table_style *style)
@@ -66,11 +65,6 @@ static void print_functionals(const struct run_result *result, const struct tabl
 static void print_errors(const struct run_settings *settings, const struct run_result *result,
                          const struct table_style *style)
 {
-    /* by dimension: densities are per length, area or volume */
-    static const char *const units[3][FIELDS] = {
-        {"mass/length", "length/time", "mass/(length time^2)", "(length/time)^2"},
-        {"mass/length^2", "length/time", "mass/time^2", "(length/time)^2"},
-        {"mass/length^3", "length/time", "mass/(length time^2)", "(length/time)^2"}};
     const int dim = result->problem.domain.dim;
     const struct problem *problem = result->problem.problem;
     char window[160];
@@ -84,11 +78,11 @@ static void print_errors(const struct run_settings *settings, const struct run_r
     for (int field = 0; field < FIELDS; field++) {
         const struct norms *e = &result->errors[field];
         if (!settings->file.fields[field]) continue;
-        print_norms(field_family.members[field]->name, e, units[dim - 1][field]);
+        print_norms(field_family.members[field]->name, e, field_unit((enum field)field, dim));
     }
     if (problem->circular) {
-        print_norms("  azimuthal", &result->azimuthal, units[dim - 1][FIELD_VELOCITY]);
-        print_norms("  radial", &result->radial, units[dim - 1][FIELD_VELOCITY]);
+        print_norms("  azimuthal", &result->azimuthal, field_unit(FIELD_VELOCITY, dim));
+        print_norms("  radial", &result->radial, field_unit(FIELD_VELOCITY, dim));
     }
     if (dim == 1)
         printf("%-16s %12.4e  mean over %d bins of |mean density - mean exact density|\n",
@@ -123,79 +117,6 @@ static void print_plan(const struct run_result *result, const struct table_style
     for (size_t i = 0; i < result->plan_count; i++)
         printf("%-28s %-6s %s\n", result->plan[i].pass, result->plan[i].runs ? "yes" : "no",
                result->plan[i].why);
-}
-
-/* One field over x: particles in the window on top of the exact solution. */
-struct profile {
-    struct plot_series series[2];
-    double *storage;
-};
-
-static bool profile_fill(struct profile *profile, const struct run_result *result, enum field field)
-{
-    const struct snapshot *s = &result->snapshot;
-    const struct window *window = &result->problem.window;
-    const double *const values[FIELDS] = {s->rho, s->v[0], s->P, s->u};
-    const size_t exact_n = PLOT_POINTS_EXACT;
-    profile->storage = malloc(2 * (exact_n + s->n) * sizeof(double));
-    if (!profile->storage) return false;
-    double *exact_x = profile->storage, *exact_y = exact_x + exact_n, *x = exact_y + exact_n,
-           *y = x + s->n;
-    for (size_t i = 0; i < exact_n; i++) {
-        struct problem_state state;
-        exact_x[i] =
-            window->lo[0] + (window->hi[0] - window->lo[0]) * (double)i / (double)(exact_n - 1);
-        problem_sample(&result->problem, (double[3]){exact_x[i]}, result->time, &state);
-        exact_y[i] = problem_field(&state, field);
-    }
-    size_t n = 0;
-    for (size_t i = 0; i < s->n; i++)
-        if (window_contains(window, (double[3]){s->x[0][i]})) {
-            x[n] = s->x[0][i];
-            y[n++] = values[field][i];
-        }
-    profile->series[0] = (struct plot_series){.label = "exact",
-                                              .kind = PLOT_LINES,
-                                              .n = exact_n,
-                                              .x = exact_x,
-                                              .y = exact_y,
-                                              .color = PLOT_NEUTRAL};
-    profile->series[1] = (struct plot_series){
-        .label = "particles", .kind = PLOT_POINTS, .n = n, .x = x, .y = y, .size = 0.5};
-    return true;
-}
-
-static enum status draw(const struct run_settings *settings, const struct run_result *result,
-                        const char *path, struct error *error)
-{
-    static const char *const labels[FIELDS] = {"density", "velocity", "pressure",
-                                               "internal energy"};
-    struct profile profiles[FIELDS] = {0};
-    struct plot_panel panels[FIELDS] = {0};
-    size_t n = 0;
-    char title[256];
-    enum status status = STATUS_OK;
-    for (int field = 0; field < FIELDS; field++) {
-        if (!settings->file.fields[field]) continue;
-        if (!profile_fill(&profiles[n], result, (enum field)field)) {
-            status = error_set(error, STATUS_ENVIRONMENT, "--plot %.150s: no memory", path);
-            goto end;
-        }
-        panels[n] = (struct plot_panel){.x_label = "x (code units)",
-                                        .y_label = labels[field],
-                                        .key = n ? PLOT_KEY_NONE : PLOT_KEY_TOP,
-                                        .series = profiles[n].series,
-                                        .series_count = 2};
-        n++;
-    }
-    snprintf(title, sizeof title, "%s, n = %zu, t = %g", settings->file.title, result->n,
-             result->time);
-    const struct plot plot = {
-        .name = "run", .title = title, .show_title = true, .panels = panels, .panel_count = n};
-    status = picture_write(&plot, path, error);
-end:
-    for (size_t i = 0; i < FIELDS; i++) free(profiles[i].storage);
-    return status;
 }
 
 static enum status check_files(const struct options *options, struct error *error)
@@ -280,7 +201,7 @@ static enum status present(const struct options *options, const struct run_setti
     struct error trouble[3] = {0};
     write_json(options, settings, result, &trouble[0]);
     if (snapshot) run_write_snapshot(result, snapshot, &trouble[1]);
-    if (plot) draw(settings, result, plot, &trouble[2]);
+    if (plot) run_plot(settings, result, plot, &trouble[2]);
     for (size_t i = 0; i < sizeof trouble / sizeof *trouble; i++)
         if (trouble[i].status) {
             *error = trouble[i];
@@ -321,7 +242,8 @@ static enum status run_case(const struct options *options, int n, char **argumen
 static const struct command_option own_options[] = {
     {"snapshot", "FILE",
      "write the particles at the end: x,vx,m,rho,u,P,h (x,y,vx,vy ...), one line each"},
-    {"plot", "FILE.svg|.png", "draw the profiles over the exact solution (needs gnuplot)"},
+    {"plot", "FILE.svg|.png",
+     "draw the profiles over the exact solution; in 2D and 3D maps (needs gnuplot)"},
     {"explain", NULL, "print the plan: what would run and why; run nothing"},
     {NULL, NULL, NULL},
 };

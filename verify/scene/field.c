@@ -24,3 +24,12 @@ const struct family field_norm_family = {
             MEMBER("particle_mean", "sum |q - exact| / number of particles"),
             MEMBER("l1_cut", "L1 with volumes cut at the window's edge")),
     NORMS};
+
+const char *field_unit(enum field field, int dim)
+{
+    static const char *const units[3][FIELDS] = {
+        {"mass/length", "length/time", "mass/(length time^2)", "(length/time)^2"},
+        {"mass/length^2", "length/time", "mass/time^2", "(length/time)^2"},
+        {"mass/length^3", "length/time", "mass/(length time^2)", "(length/time)^2"}};
+    return units[dim - 1][field];
+}

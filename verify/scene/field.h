@@ -11,6 +11,9 @@ enum field { FIELD_DENSITY, FIELD_VELOCITY, FIELD_PRESSURE, FIELD_INTERNAL_ENERG
 enum norm { NORM_L1, NORM_L2, NORM_LINF, NORM_PARTICLE_MEAN, NORM_L1_CUT, NORMS };
 extern const struct family field_family, field_norm_family;
 
+/* In code units, by dimension: densities are per length, area or volume. */
+const char *field_unit(enum field field, int dim);
+
 /* The box, periodic in each direction; lo < hi where d < dim. */
 struct domain {
     int dim;

@@ -26,7 +26,8 @@ static const struct plot_series series[] = {
 };
 static const struct plot_slope slope = {100, 800, 1e-2, -1, "first order"};
 static const struct plot_mark mark = {300, false, "here"};
-static const struct plot_heat heat = {4, 1, x, low, high, "rate", true, NULL, 0};
+static const struct plot_heat heat = {
+    .nx = 4, .ny = 1, .x = x, .y = low, .z = high, .label = "rate", .log = true};
 static const struct plot_panel panels[] = {
     {.y_label = "L1",
      .x_log = true,
@@ -47,8 +48,13 @@ static const struct plot_panel panels[] = {
 };
 static const struct plot_panel map = {.x_label = "x", .y_label = "y", .heat = &heat};
 
-static const struct plot stack = {"stack-of_2", "two & panels", true, 0, 0, panels, 2};
-static const struct plot heated = {"heated", "a map", false, 0, 0, &map, 1};
+static const struct plot stack = {.name = "stack-of_2",
+                                  .title = "two & panels",
+                                  .show_title = true,
+                                  .panels = panels,
+                                  .panel_count = 2};
+static const struct plot heated = {
+    .name = "heated", .title = "a map", .panels = &map, .panel_count = 1};
 
 static bool have_gnuplot(void)
 {

@@ -1,0 +1,14 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What sphproof run --plot draws: on a line profiles over the exact solution, in 2D maps of
+ * density, speed and the error of the case's first field where it is known, in 3D a slice of two
+ * mean distances of particles through the middle of the box. */
+#ifndef SPHPROOF_RUN_PLOT_H
+#define SPHPROOF_RUN_PLOT_H
+
+#include "run.h"
+
+/* STATUS_ENVIRONMENT: no gnuplot, no memory, or path cannot be written. */
+enum status run_plot(const struct run_settings *settings, const struct run_result *result,
+                     const char *path, struct error *error);
+
+#endif

@@ -1,0 +1,96 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "map.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* As many cells as particles fit in a row. */
+static size_t cells_along(double length, double spacing)
+{
+    const double fit = round(length / spacing);
+    return fit >= MAP_CELLS ? MAP_CELLS : fit >= 1 ? (size_t)fit : 1;
+}
+
+static void place(struct map *map, const struct domain *domain, const struct snapshot *s, size_t i)
+{
+    const size_t cells[2] = {map->nx, map->ny};
+    size_t at[2];
+    map->cell[i] = map->nx * map->ny;
+    if (domain->dim == 3 && !(s->x[2][i] >= map->slice[0] && s->x[2][i] < map->slice[1])) return;
+    for (int d = 0; d < 2; d++) {
+        const double x = s->x[d][i];
+        if (!(x >= map->lo[d] && x <= map->hi[d])) return;
+        at[d] = (size_t)((x - map->lo[d]) / (map->hi[d] - map->lo[d]) * (double)cells[d]);
+        if (at[d] >= cells[d]) at[d] = cells[d] - 1;
+    }
+    map->cell[i] = at[1] * map->nx + at[0];
+    map->count[map->cell[i]]++;
+    map->seen++;
+}
+
+enum status map_create(struct map *map, const struct domain *domain, const struct snapshot *s,
+                       struct error *error)
+{
+    double volume = 1;
+    *map = (struct map){.n = s->n};
+    for (int d = 0; d < domain->dim; d++) volume *= domain_length(domain, d);
+    const double spacing = pow(volume / (double)s->n, 1. / domain->dim);
+    for (int d = 0; d < 2; d++) map->lo[d] = domain->lo[d], map->hi[d] = domain->hi[d];
+    if (domain->dim == 3) {
+        const double middle = (domain->lo[2] + domain->hi[2]) / 2;
+        map->slice[0] = middle - spacing;
+        map->slice[1] = middle + spacing;
+    }
+    map->nx = cells_along(domain_length(domain, 0), spacing);
+    map->ny = cells_along(domain_length(domain, 1), spacing);
+    const size_t cells = map->nx * map->ny;
+    double *centres = map->storage =
+        calloc(map->nx + map->ny + cells + s->n,
+               sizeof(double) > sizeof(size_t) ? sizeof(double) : sizeof(size_t));
+    if (!centres) return error_set(error, STATUS_ENVIRONMENT, "no memory for a map");
+    map->x = centres;
+    map->y = centres + map->nx;
+    map->count = (size_t *)(void *)(centres + map->nx + map->ny);
+    map->cell = map->count + cells;
+    for (size_t k = 0; k < map->nx; k++)
+        map->x[k] = map->lo[0] + domain_length(domain, 0) * ((double)k + 0.5) / (double)map->nx;
+    for (size_t k = 0; k < map->ny; k++)
+        map->y[k] = map->lo[1] + domain_length(domain, 1) * ((double)k + 0.5) / (double)map->ny;
+    for (size_t i = 0; i < s->n; i++) place(map, domain, s, i);
+    return STATUS_OK;
+}
+
+void map_free(struct map *map)
+{
+    free(map->storage);
+    map->storage = NULL;
+}
+
+/* Mean over the cells that hold particles on the square ring around cell (i, j). */
+static double ring_mean(const struct map *map, const double *z, ptrdiff_t i, ptrdiff_t j,
+                        ptrdiff_t ring)
+{
+    double sum = 0, n = 0;
+    for (ptrdiff_t b = j - ring; b <= j + ring; b++)
+        for (ptrdiff_t a = i - ring; a <= i + ring; a++) {
+            if (labs(a - i) < ring && labs(b - j) < ring) continue;
+            if (a < 0 || b < 0 || a >= (ptrdiff_t)map->nx || b >= (ptrdiff_t)map->ny) continue;
+            const size_t k = (size_t)b * map->nx + (size_t)a;
+            if (map->count[k]) sum += z[k], n++;
+        }
+    return n > 0 ? sum / n : (double)NAN;
+}
+
+void map_mean(const struct map *map, const double *values, double *z)
+{
+    const size_t cells = map->nx * map->ny;
+    for (size_t k = 0; k < cells; k++) z[k] = 0;
+    for (size_t i = 0; i < map->n; i++)
+        if (map->cell[i] < cells) z[map->cell[i]] += values[i] / (double)map->count[map->cell[i]];
+    for (size_t k = 0; k < cells; k++) {
+        if (map->count[k]) continue;
+        z[k] = (double)NAN;
+        for (ptrdiff_t ring = 1; ring <= MAP_REACH && isnan(z[k]); ring++)
+            z[k] = ring_mean(map, z, (ptrdiff_t)(k % map->nx), (ptrdiff_t)(k / map->nx), ring);
+    }
+}

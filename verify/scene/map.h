@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Maps of a state: particles of a plane, or of a slice through the middle of a box, in cells that
+ * are about as wide as particles are apart, at most MAP_CELLS in a direction. Code units. */
+#ifndef SPHPROOF_MAP_H
+#define SPHPROOF_MAP_H
+
+#include <stddef.h>
+
+#include "field.h"
+#include "simulation.h"
+
+enum { MAP_CELLS = 256 };
+
+struct map {
+    size_t nx, ny;
+    double lo[2], hi[2];  /* what is mapped: the domain, in x and y */
+    double slice[2];      /* from .. to in z (3D only) */
+    size_t n, seen;       /* particles; those that are in a cell */
+    double *x, *y;        /* nx and ny: centres of cells */
+    size_t *count, *cell; /* nx ny: particles in a cell; n: the cell of each, nx ny: in none */
+    void *storage;
+};
+
+/* Particles of a state in a domain of 2 or 3 dimensions. A cell holds its lower edges; the last one
+ * of a row or column also its upper edge. STATUS_ENVIRONMENT: no memory; else map_free. */
+enum status map_create(struct map *map, const struct domain *domain, const struct snapshot *s,
+                       struct error *error);
+void map_free(struct map *map);
+
+/* z[j nx + i]: mean of the n values over the particles in cell (i, j); in an empty one the mean of
+ * the nearest cells that hold any; NaN where there are none within MAP_REACH cells: a void. */
+enum { MAP_REACH = 4 };
+void map_mean(const struct map *map, const double *values, double *z);
+
+#endif
