@@ -13,7 +13,7 @@
 #include "table.h"
 #include "text.h"
 
-enum { SEEDS_DEFAULT = 3, JOBS_MAX = 1024 };
+enum { JOBS_MAX = 1024 };
 
 static void show_progress(void *context, const char *what, size_t done, size_t total, double share)
 {
@@ -22,18 +22,23 @@ static void show_progress(void *context, const char *what, size_t done, size_t t
     progress_share(progress, done, total, share);
 }
 
-static void print_ladder(const struct case_file *file, const struct study_result *result,
+static void print_ladder(const struct study *study, const struct study_result *result,
                          const struct table_style *style)
 {
+    const struct case_file *file = &study->settings.file;
     printf("%s%10s %12s", style->bold, "n", "h");
     for (int field = 0; field < FIELDS; field++)
-        if (file->fields[field]) printf(" %15s", field_family.members[field]->name);
+        if (file->fields[field]) printf(" %17s", field_family.members[field]->name);
     printf(" %10s%s\n", "CPU s", style->end);
     for (size_t i = 0; i < result->level_count; i++) {
         const struct study_level *level = &result->levels[i];
         printf("%10zu %12.4e", level->n, level->h);
         for (int field = 0; field < FIELDS; field++)
-            if (file->fields[field]) printf(" %15.4e", level->errors[field][NORM_L1_CUT]);
+            if (file->fields[field] && study->replicates > 1)
+                printf(" %11.4e +-%2.0f%%", level->errors[field][NORM_L1_CUT],
+                       100 * level->spread[field][NORM_L1_CUT]);
+            else if (file->fields[field])
+                printf(" %17.4e", level->errors[field][NORM_L1_CUT]);
         printf(" %10.3g\n", level->cpu_s);
     }
 }
@@ -104,14 +109,15 @@ static void print_budget(const struct study_result *result, const struct table_s
     const struct study_level *finest = &result->levels[result->level_count - 1];
     const struct regions *regions = finest->budget.regions;
     if (!regions) return;
+    double whole = 0;
+    for (size_t r = 0; regions->names[r]; r++) whole += finest->budget.l1[r][FIELD_DENSITY];
     printf("%s%-22s %12s %7s  %s%s\n", style->bold, "L1 of density from", "finest", "share",
            "order, 95 % interval", style->end);
     for (size_t r = 0; regions->names[r]; r++) {
         const double part = finest->budget.l1[r][FIELD_DENSITY];
         const struct order_fit *fit = &result->regions[r];
         if (part == 0) continue;
-        printf("%-22s %12.4e %6.1f%%", regions->names[r], part,
-               100 * part / finest->errors[FIELD_DENSITY][NORM_L1]);
+        printf("%-22s %12.4e %6.1f%%", regions->names[r], part, 100 * part / whole);
         if (fit->n) printf("  %.3f [%6.3f, %6.3f]", fit->order, fit->low, fit->high);
         printf("\n");
     }
@@ -126,20 +132,25 @@ static void print_budget(const struct study_result *result, const struct table_s
            style->end);
 }
 
-static void print_study(const struct case_file *file, const struct study_result *result,
+static void print_study(const struct study *study, const struct study_result *result,
                         const char *label, const struct options *options)
 {
     const struct table_style style = table_style(options->color);
+    const struct case_file *file = &study->settings.file;
+    const bool random = study_is_random(&result->settings);
     printf("%s%s%s: %s%s%s\n", style.bold, file->name, style.end, file->title, *label ? ", " : "",
            label);
-    print_ladder(file, result, &style);
+    print_ladder(study, result, &style);
     printf(
         "%serrors: L1 = sum V|q - exact|/sum V over the measure window, volumes cut at its edge, "
         "code units; h: mean there%s\n",
         style.faint, style.end);
+    if (study->replicates > 1)
+        printf("%sgeometric means of %zu runs, %s, and their standard deviation%s\n", style.faint,
+               study->replicates, random ? "each with another seed" : "n within 2.5 %", style.end);
     print_orders(file, result, &style);
-    printf("%sorder: least squares of log(error) against log(box/n), Student t%s\n", style.faint,
-           style.end);
+    printf("%sorder: least squares of log(error) against log(box/n), Student t%s%s\n", style.faint,
+           study->replicates > 1 ? ", weights and intervals from the deviations" : "", style.end);
     print_floor(result, &style);
     print_functionals(result, &style);
     print_budget(result, &style);
@@ -159,7 +170,7 @@ static void print_all(const struct study *study, const struct options *options)
         else if (result->status == STATUS_BROKE_DOWN)
             printf("%s%sbroke down: %s\n\n", label, *label ? ": " : "", result->message);
         else
-            print_study(&study->settings.file, result, label, options);
+            print_study(study, result, label, options);
     }
     const struct table_style style = table_style(options->color);
     if (study->suspicion[0]) printf("%ssuspicious: %s%s\n", style.bad, study->suspicion, style.end);
@@ -185,23 +196,24 @@ static enum status take_ladder(struct study *study, const struct options *option
     return STATUS_OK;
 }
 
-static enum status take_seeds(struct study *study, const struct options *options,
-                              struct error *error)
+static enum status take_replicates(struct study *study, const struct options *options,
+                                   struct error *error)
 {
-    const char *text = options_value(options, "seeds");
-    double seeds = study_is_random(&study->settings.settings) ? SEEDS_DEFAULT : 1;
+    const char *text = options_value(options, "replicates");
+    double replicates = (double)study_replicates(&study->settings);
     for (size_t k = 0; k < study->sweep.key_count; k++) {
         if (study->sweep.keys[k].key != SETTING_seed) continue;
         if (text)
             return error_set(error, STATUS_BAD_INPUT,
-                             "converge: --seeds and --vary seed exclude each other");
-        seeds = 1;
+                             "converge: --replicates and --vary seed exclude each other");
+        replicates = 1;
     }
-    if (text && !(text_integer(text, &seeds) && seeds >= 1 && seeds <= STUDY_SEEDS_MAX))
+    if (text &&
+        !(text_integer(text, &replicates) && replicates >= 1 && replicates <= STUDY_REPLICATES_MAX))
         return error_set(error, STATUS_BAD_INPUT,
-                         "converge: --seeds '%.40s': allowed: an integer from 1 to %d", text,
-                         STUDY_SEEDS_MAX);
-    study->seeds = (size_t)seeds;
+                         "converge: --replicates '%.40s': allowed: an integer from 1 to %d", text,
+                         STUDY_REPLICATES_MAX);
+    study->replicates = (size_t)replicates;
     return STATUS_OK;
 }
 
@@ -252,7 +264,7 @@ static enum status run(const struct options *options, int n, char **arguments, s
     if (n < 1) return command_usage(options, error, "a case is needed (`sphproof list cases`)");
     if (run_prepare(&study.settings, arguments[0], n - 1, arguments + 1, error) ||
         sweep_parse(&study.sweep, options_value(options, "vary"), error) ||
-        take_ladder(&study, options, error) || take_seeds(&study, options, error) ||
+        take_ladder(&study, options, error) || take_replicates(&study, options, error) ||
         take_jobs(options, &settings, error) ||
         (folder && cache_open(&cache, folder, false, error)))
         return error->status;
@@ -281,7 +293,9 @@ static enum status run(const struct options *options, int n, char **arguments, s
 static const struct command_option own_options[] = {
     {"n", "N1,N2,...", "numbers of particles, at least four distinct ones (default: the case's)"},
     {"vary", "KEY[=A,B][,...]", "repeat for every member of a family, or for these values"},
-    {"seeds", "R", "replicates where the start is random (default there: 3); they widen intervals"},
+    {"replicates", "R",
+     "runs of each level: with other seeds where the start is random (default there: 3), else "
+     "with n within 2.5 % (default: 9, of smooth solutions 1)"},
     {"jobs", "J", "runs side by side (default 1); results do not depend on it"},
     {"cache", "DIR", "keep each run there, and do not repeat what is there already"},
     {NULL, NULL, NULL},
@@ -298,6 +312,6 @@ const struct command command_converge = {
     .examples = "sphproof converge sod\n"
                 "sphproof converge sod --n 100,200,400,800 kernel=cubic_spline eta=2\n"
                 "sphproof converge sod --vary kernel=cubic_spline,wendland_c2,gradient\n"
-                "sphproof converge sound_wave jitter=0.1 --seeds 5 --jobs 2\n"
+                "sphproof converge sound_wave jitter=0.1 --replicates 5 --jobs 2\n"
                 "sphproof converge sound_wave --json orders.json",
 };

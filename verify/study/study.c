@@ -19,16 +19,31 @@ bool study_is_random(const struct settings *settings)
     return problem_of(settings)->random(settings);
 }
 
-/* ---- planning ---- */
-
-static struct run *run_at(const struct study *study, size_t combination, size_t level, size_t seed)
+size_t study_replicates(const struct run_settings *settings)
 {
-    return &study->runs[(combination * study->level_count + level) * study->seeds + seed];
+    if (study_is_random(&settings->settings)) return 3;
+    return settings->file.dimension > 1 || problem_of(&settings->settings)->smooth ? 1 : 9;
 }
 
-static size_t job_at(const struct study *study, size_t combination, size_t level, size_t seed)
+size_t study_neighbour(size_t n, size_t replicates, size_t r)
 {
-    return study->jobs[run_at(study, combination, level, seed) - study->runs];
+    if (replicates < 2) return n;
+    const size_t step = (size_t)fmax(1, round(0.05 * (double)n / (double)(replicates - 1)));
+    const size_t away = (r + 1) / 2 * step, most = replicates / 2 * step;
+    if (n < most + 4) return n + r * step; /* the least that a run can have is 4 */
+    return r % 2 ? n + away : n - away;
+}
+
+/* ---- planning ---- */
+
+static struct run *run_at(const struct study *study, size_t combination, size_t level, size_t r)
+{
+    return &study->runs[(combination * study->level_count + level) * study->replicates + r];
+}
+
+static size_t job_at(const struct study *study, size_t combination, size_t level, size_t r)
+{
+    return study->jobs[run_at(study, combination, level, r) - study->runs];
 }
 
 static enum status set_integer(struct run_settings *settings, enum setting key, double value,
@@ -54,11 +69,14 @@ static enum status make_runs(struct study *study, size_t c, const struct run_set
                              struct error *error)
 {
     const double seed = settings_real(&base->settings, SETTING_seed);
+    const bool random = study_is_random(&base->settings);
     for (size_t l = 0; l < study->level_count; l++)
-        for (size_t r = 0; r < study->seeds; r++) {
+        for (size_t r = 0; r < study->replicates; r++) {
             struct run_settings asked = *base;
-            if (set_integer(&asked, SETTING_n, (double)study->ladder[l], error) ||
-                (r && set_integer(&asked, SETTING_seed, seed + (double)r, error)) ||
+            const size_t n =
+                random ? study->ladder[l] : study_neighbour(study->ladder[l], study->replicates, r);
+            if (set_integer(&asked, SETTING_n, (double)n, error) ||
+                (r && random && set_integer(&asked, SETTING_seed, seed + (double)r, error)) ||
                 run_resolve(run_at(study, c, l, r), &asked, error))
                 return error->status;
         }
@@ -81,14 +99,9 @@ static enum status plan_combination(struct study *study, size_t c, struct pool *
     const struct run *finest = run_at(study, c, study->level_count - 1, 0);
     result->settings = finest->settings;
     result->scheme = finest->scheme;
-    if (study->seeds > 1 && !study_is_random(&result->settings))
-        return error_set(error, STATUS_BAD_INPUT,
-                         "%zu seeds: the initial state is not random; allowed: one seed, or "
-                         "jitter > 0",
-                         study->seeds);
     if (try_coarsest(run_at(study, c, 0, 0), error)) return error->status;
     for (size_t l = 0; l < study->level_count; l++)
-        for (size_t r = 0; r < study->seeds; r++) {
+        for (size_t r = 0; r < study->replicates; r++) {
             const struct run *run = run_at(study, c, l, r);
             if (run_job_add(pool, run, &study->jobs[run - study->runs], error))
                 return error->status;
@@ -98,7 +111,7 @@ static enum status plan_combination(struct study *study, size_t c, struct pool *
 
 enum status study_plan(struct study *study, struct pool *pool, struct error *error)
 {
-    const size_t runs = study->sweep.count * study->level_count * study->seeds;
+    const size_t runs = study->sweep.count * study->level_count * study->replicates;
     study->results = calloc(study->sweep.count, sizeof *study->results);
     study->runs = calloc(runs, sizeof *study->runs);
     study->jobs = calloc(runs, sizeof *study->jobs);
@@ -151,17 +164,29 @@ static void read_functionals(struct study_result *result, struct study_level *le
     result->functional_count = i;
 }
 
-static void read_run(struct study_result *result, struct study_level *level, const json_t *run,
-                     double weight)
+/* Means of squares and products over the replicates of a level: x = log(spacing), y = log(error).
+ */
+struct moments {
+    double xx, xy[FIELDS][NORMS], yy[FIELDS][NORMS];
+};
+
+static void read_run(struct study_result *result, struct study_level *level,
+                     struct moments *moments, const json_t *run, double weight)
 {
-    level->n = (size_t)value_member(run, "n");
-    level->spacing = value_member(run, "spacing");
+    const size_t n = (size_t)value_member(run, "n");
+    const double x = log(value_member(run, "spacing"));
+    if (!level->n) level->n = level->n_range[0] = level->n_range[1] = n;
+    if (n < level->n_range[0]) level->n_range[0] = n;
+    if (n > level->n_range[1]) level->n_range[1] = n;
+    level->spacing += weight * x;
     level->h += weight * value_member(run, "h");
+    moments->xx += weight * x * x;
     for (int f = 0; f < FIELDS; f++)
         for (int m = 0; m < NORMS; m++) {
-            const double value = log(error_of(run, f, m));
-            level->errors[f][m] += weight * value;
-            level->spread[f][m] += weight * value * value;
+            const double y = log(error_of(run, f, m));
+            level->errors[f][m] += weight * y;
+            moments->xy[f][m] += weight * x * y;
+            moments->yy[f][m] += weight * y * y;
         }
     level->binned_density_l1 +=
         weight * log(value_member(json_object_get(run, "errors"), "binned_density_l1"));
@@ -174,20 +199,41 @@ static void read_run(struct study_result *result, struct study_level *level, con
         snprintf(result->suspicion, sizeof result->suspicion, "%s", suspicion);
 }
 
-/* From sums of logarithms and their squares to geometric means and standard deviations; a single
- * run keeps its own bits. */
-static void close_level(struct study_level *level, const json_t *first, size_t seeds)
+/* From means of logarithms to geometric means; a single run keeps its own bits. */
+static void close_level(struct study_level *level, const json_t *first, size_t replicates)
 {
-    const double freedom = seeds > 1 ? (double)seeds / (double)(seeds - 1) : 0;
+    const bool single = replicates == 1;
+    level->spacing = single ? value_member(first, "spacing") : exp(level->spacing);
+    for (int f = 0; f < FIELDS; f++)
+        for (int m = 0; m < NORMS; m++)
+            level->errors[f][m] = single ? error_of(first, f, m) : exp(level->errors[f][m]);
+    level->binned_density_l1 =
+        single ? value_member(json_object_get(first, "errors"), "binned_density_l1")
+               : exp(level->binned_density_l1);
+}
+
+/* The spreads of sound levels. Replicates with other n have another error, too: what they scatter
+ * is measured about a line of the slope that the whole ladder has. */
+static void find_spreads(struct study_result *result, const struct moments *moments,
+                         size_t replicates)
+{
+    const struct study_level *coarsest = &result->levels[0],
+                             *finest = &result->levels[result->level_count - 1];
+    const double freedom = (double)replicates / (double)(replicates - 1);
     for (int f = 0; f < FIELDS; f++)
         for (int m = 0; m < NORMS; m++) {
-            const double mean = level->errors[f][m], squares = level->spread[f][m];
-            level->spread[f][m] = sqrt(freedom * fmax(0, squares - mean * mean));
-            level->errors[f][m] = seeds > 1 ? exp(mean) : error_of(first, f, m);
+            const double slope = log(coarsest->errors[f][m] / finest->errors[f][m]) /
+                                 log(coarsest->spacing / finest->spacing);
+            const double p = isfinite(slope) ? slope : 0;
+            for (size_t l = 0; l < result->level_count; l++) {
+                struct study_level *level = &result->levels[l];
+                const double x = log(level->spacing), y = log(level->errors[f][m]);
+                const double squares = moments[l].yy[f][m] - y * y -
+                                       2 * p * (moments[l].xy[f][m] - x * y) +
+                                       p * p * (moments[l].xx - x * x);
+                level->spread[f][m] = sqrt(freedom * (squares < 0 ? 0 : squares));
+            }
         }
-    level->binned_density_l1 =
-        seeds > 1 ? exp(level->binned_density_l1)
-                  : value_member(json_object_get(first, "errors"), "binned_density_l1");
 }
 
 /* Levels in order, up to the first that broke down. */
@@ -195,9 +241,10 @@ static enum status read_levels(struct study *study, size_t c, const struct pool 
                                struct error *error)
 {
     struct study_result *result = &study->results[c];
+    struct moments moments[CASE_LADDER_MAX] = {0};
     for (size_t l = 0; l < study->level_count; l++) {
         struct study_level *level = &result->levels[l];
-        for (size_t r = 0; r < study->seeds; r++) {
+        for (size_t r = 0; r < study->replicates; r++) {
             const struct pool_job *job = &pool->jobs[job_at(study, c, l, r)];
             if (job->error.status == STATUS_BROKE_DOWN) {
                 result->status = STATUS_BROKE_DOWN;
@@ -208,11 +255,12 @@ static enum status read_levels(struct study *study, size_t c, const struct pool 
             if (job->error.status || !job->document)
                 return error_set(error, job->error.status ? job->error.status : STATUS_ENVIRONMENT,
                                  "%s", job->error.message);
-            read_run(result, level, job->document, 1 / (double)study->seeds);
+            read_run(result, level, &moments[l], job->document, 1 / (double)study->replicates);
         }
-        close_level(level, pool->jobs[job_at(study, c, l, 0)].document, study->seeds);
+        close_level(level, pool->jobs[job_at(study, c, l, 0)].document, study->replicates);
         result->level_count++;
     }
+    if (study->replicates > 1) find_spreads(result, moments, study->replicates);
     return STATUS_OK;
 }
 
@@ -222,7 +270,7 @@ static enum status fit_orders(const struct study *study, struct study_result *re
                               struct error *error)
 {
     double spacing[CASE_LADDER_MAX], errors[CASE_LADDER_MAX], variance[CASE_LADDER_MAX];
-    const struct order_noise noise = {variance, study->seeds};
+    const struct order_noise noise = {variance, study->replicates};
     const size_t n = result->level_count;
     for (size_t l = 0; l < n; l++) spacing[l] = result->levels[l].spacing;
     for (int f = 0; f < FIELDS; f++)
@@ -230,9 +278,9 @@ static enum status fit_orders(const struct study *study, struct study_result *re
             for (size_t l = 0; l < n; l++) {
                 const double spread = result->levels[l].spread[f][m];
                 errors[l] = result->levels[l].errors[f][m];
-                variance[l] = spread * spread / (double)study->seeds;
+                variance[l] = spread * spread / (double)study->replicates;
             }
-            if (order_fit(n, spacing, errors, study->seeds > 1 ? &noise : NULL,
+            if (order_fit(n, spacing, errors, study->replicates > 1 ? &noise : NULL,
                           &result->orders[f][m].fit, error))
                 return error->status;
         }

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Studies: any case, any combination of schemes, a ladder of resolutions, replicates over seeds
- * where the initial state is random. Every run is a job of a pool; from the runs come orders with
- * their 95 % interval, gates, functionals with Richardson extrapolation and GCI, error budgets, and
- * whatever looks too good to be true. */
+ * Studies: any case, any combination of schemes, a ladder of resolutions, replicates of each: over
+ * seeds where the initial state is random, else over numbers of particles within 2.5 % of the
+ * level's. (Where a shock lies among the particles at the end changes from n to n: the error of
+ * one n is a draw, with strong shocks from a distribution 14 % wide.) Every run is a job of a pool;
+ * from the runs come orders with their 95 % interval, gates, functionals with Richardson
+ * extrapolation and GCI, error budgets, and whatever looks too good to be true. */
 #ifndef SPHPROOF_STUDY_H
 #define SPHPROOF_STUDY_H
 
@@ -15,14 +17,17 @@
 #include "suspicion.h"
 #include "sweep.h"
 
-enum { STUDY_SEEDS_MAX = 64 };
+enum { STUDY_REPLICATES_MAX = 64 };
 
-/* Means over the replicates of one resolution; of errors the geometric mean. */
+/* Means over the replicates of one resolution; of errors and spacings the geometric mean. */
 struct study_level {
-    size_t n;
+    size_t n;          /* of the first replicate */
+    size_t n_range[2]; /* of all */
     double spacing, h; /* box/n; mean smoothing length in the window: lengths */
     double errors[FIELDS][NORMS], binned_density_l1;
-    double spread[FIELDS][NORMS]; /* standard deviation of log(error) over the replicates */
+    /* Standard deviation of log(error) over the replicates, about a line of the ladder's slope
+     * where they differ in n. */
+    double spread[FIELDS][NORMS];
     double cpu_s;
     struct budget budget;
     double functionals[PROBLEM_FUNCTIONALS_MAX];
@@ -65,7 +70,7 @@ struct study {
     struct run_settings settings; /* n, seed and what varies are set for each run */
     struct sweep sweep;
     size_t ladder[CASE_LADDER_MAX], level_count; /* rising, at least ORDER_LEVELS_MIN */
-    size_t seeds;                                /* replicates, >= 1 */
+    size_t replicates;                           /* of each level, >= 1: study_replicates */
     /* from study_plan and study_judge: */
     enum status status;             /* the worst of the results */
     struct study_result *results;   /* sweep.count */
@@ -74,8 +79,8 @@ struct study {
     char suspicion[SUSPICION_TEXT]; /* a setting that changes nothing */
 };
 
-/* Adds the runs to the pool. STATUS_BAD_INPUT: settings that no run could have; replicates of a
- * state that is not random. The study must stay where it is until study_free. */
+/* Adds the runs to the pool. STATUS_BAD_INPUT: settings that no run could have. The study must stay
+ * where it is until study_free. */
 enum status study_plan(struct study *study, struct pool *pool, struct error *error);
 
 /* After pool_run: fills and judges the results. The gates are the case's; a bound belongs to the
@@ -91,6 +96,14 @@ bool study_suspect_same(const char *what, const struct study_result *a,
 
 /* Is the initial state random, so that a seed makes a difference? */
 bool study_is_random(const struct settings *settings);
+
+/* How many replicates a case needs: 3 of a random start, 9 where the solution jumps (in 1D; in more
+ * dimensions a lattice has few numbers of particles), 1 of what is smooth. */
+size_t study_replicates(const struct run_settings *settings);
+
+/* The number of particles of replicate r: the level's own, then in turns above and below, all of
+ * them within 2.5 %; next neighbours where that is less than a particle each. */
+size_t study_neighbour(size_t n, size_t replicates, size_t r);
 
 /* Adds "levels", "orders", "functionals", "floors", "budgets", "excluded", and "message" and
  * "suspicion" where there are any, to a converge document. */

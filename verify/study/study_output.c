@@ -28,8 +28,13 @@ static json_t *level_json(const struct study *study, const struct study_level *l
                              result_number(level->h), "spacing", result_number(level->spacing),
                              "errors", errors, "cpu_s", result_number(level->cpu_s), "budget",
                              budget_json(&level->budget));
-    json_object_set_new(item, "replicates", json_integer((json_int_t)study->seeds));
-    if (study->seeds > 1) json_object_set(item, "spread", spread);
+    json_object_set_new(item, "replicates", json_integer((json_int_t)study->replicates));
+    if (study->replicates > 1) {
+        json_object_set(item, "spread", spread);
+        json_object_set_new(
+            item, "n_range",
+            json_pack("[I, I]", (json_int_t)level->n_range[0], (json_int_t)level->n_range[1]));
+    }
     json_decref(spread);
     return item;
 }
@@ -82,12 +87,14 @@ static json_t *budget_orders_json(const struct study_result *result)
 {
     const struct study_level *finest = &result->levels[result->level_count - 1];
     json_t *regions = json_array();
+    double whole = 0; /* of arithmetic means: not the geometric one of the whole */
+    for (size_t r = 0; finest->budget.regions->names[r]; r++)
+        whole += finest->budget.l1[r][FIELD_DENSITY];
     for (size_t r = 0; finest->budget.regions->names[r]; r++) {
         const struct order_fit *fit = &result->regions[r];
         const double part = finest->budget.l1[r][FIELD_DENSITY];
         json_t *region = json_pack("{s:s, s:o, s:o}", "region", finest->budget.regions->names[r],
-                                   "l1", result_number(part), "share",
-                                   result_number(part / finest->errors[FIELD_DENSITY][NORM_L1]));
+                                   "l1", result_number(part), "share", result_number(part / whole));
         if (fit->n) {
             set(region, "order", fit->order);
             set(region, "low", fit->low);

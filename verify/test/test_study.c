@@ -23,7 +23,7 @@ static enum status make(struct study *study, const char *name, const char *keys,
     struct pool pool = {0};
     const struct pool_settings settings = {.jobs = jobs};
     int n = 0;
-    *study = (struct study){.level_count = 4, .seeds = seeds};
+    *study = (struct study){.level_count = 4, .replicates = seeds};
     memcpy(study->ladder, ladder, sizeof ladder);
     strcpy(text, keys);
     for (char *word; (word = strtok_r(rest, " ", &rest));) arguments[n++] = word;
@@ -131,11 +131,67 @@ static void replicates(void **state)
     near_relative(fit->high - fit->low, want.high - want.low, 1e-12);
     assert_int_equal(result->still_status, GATE_NONE); /* a random start is noisy */
     study_free(&study);
+}
 
-    struct error error = {0};
-    assert_int_equal(make(&study, "sod", "", NULL, 2, 1, &error), STATUS_BAD_INPUT);
-    assert_non_null(strstr(error.message, "not random"));
+/* Where no seed makes a difference, replicates have other n: the same means and orders by hand. */
+static void neighbours(void **state)
+{
+    (void)state;
+    static const size_t of_60[] = {60, 61, 59}, of_200[] = {200, 205, 195};
+    for (size_t r = 0; r < 3; r++) {
+        assert_int_equal(study_neighbour(200, 3, r), of_200[r]);
+        assert_int_equal(study_neighbour(60, 9, r), of_60[r]);
+    }
+    assert_int_equal(study_neighbour(5, 9, 0), 5); /* never fewer than 4 particles */
+    assert_int_equal(study_neighbour(5, 9, 8), 13);
+    assert_int_equal(study_neighbour(8, 9, 8), 4);
+    assert_int_equal(study_neighbour(200, 1, 0), 200);
+
+    struct study study = made("sod", "t_end=0.1", NULL, 3, 2);
+    const struct study_result *result = &study.results[0];
+    const struct study_level *level = &result->levels[1], *coarsest = &result->levels[0],
+                             *finest = &result->levels[3];
+    assert_true(level->n == 60 && level->n_range[0] == 58 && level->n_range[1] == 62);
+    double x[3], y[3], spacing = 0, error = 0;
+    for (int r = 0; r < 3; r++) {
+        char n[32];
+        snprintf(n, sizeof n, "n=%d", (int[]){60, 62, 58}[r]);
+        struct run_result run = ran("sod", 2, (char *[]){"t_end=0.1", n});
+        x[r] = log(run.spacing);
+        y[r] = log(run.errors[FIELD_VELOCITY].l1_cut);
+        spacing += x[r] / 3;
+        error += y[r] / 3;
+        run_free(&run);
+    }
+    near_relative(level->spacing, exp(spacing), 1e-13);
+    near_relative(level->errors[FIELD_VELOCITY][NORM_L1_CUT], exp(error), 1e-13);
+    const double slope = log(coarsest->errors[FIELD_VELOCITY][NORM_L1_CUT] /
+                             finest->errors[FIELD_VELOCITY][NORM_L1_CUT]) /
+                         log(coarsest->spacing / finest->spacing);
+    double squares = 0;
+    for (int r = 0; r < 3; r++) squares += pow(y[r] - error - slope * (x[r] - spacing), 2);
+    near_relative(level->spread[FIELD_VELOCITY][NORM_L1_CUT], sqrt(squares / 2), 1e-6);
     study_free(&study);
+    /* errors that fall with n and do nothing else do not scatter */
+    struct study smooth = made("sound_wave", "t_end=0.1", NULL, 3, 2);
+    near_below(smooth.results[0].levels[2].spread[FIELD_DENSITY][NORM_L1_CUT], 5e-3);
+    study_free(&smooth);
+}
+
+static void replicates_by_default(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name, *key;
+        size_t replicates;
+    } cases[] = {{"sod", "n=100", 9}, {"sound_wave", "n=100", 1}, {"sod", "jitter=0.1", 3}};
+    for (size_t i = 0; i < 3; i++) {
+        struct run_settings settings;
+        assert_int_equal(
+            run_prepare(&settings, cases[i].name, 1, (char *[]){(char *)cases[i].key}, NULL),
+            STATUS_OK);
+        assert_int_equal(study_replicates(&settings), cases[i].replicates);
+    }
 }
 
 static void budgets_add_up(void **state)
@@ -253,6 +309,8 @@ int main(void)
         cmocka_unit_test(any_number_of_processes),
         cmocka_unit_test(levels_are_runs),
         cmocka_unit_test(replicates),
+        cmocka_unit_test(neighbours),
+        cmocka_unit_test(replicates_by_default),
         cmocka_unit_test(budgets_add_up),
         cmocka_unit_test(still_gas_that_moves),
         cmocka_unit_test(settings_without_effect),
