@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "result.h"
+#include "study.h"
 
 const double precision_targets[PRECISION_TARGETS] = {0.01, 0.003, 0.001};
 
@@ -65,6 +66,48 @@ struct job {
     struct run run;
     struct precision_point *point;
 };
+
+static enum status error_at(const struct run *run, double *value, struct error *error)
+{
+    struct run_result result;
+    const enum status status = run_execute(run, &result, error);
+    *value = status ? (double)NAN : result.errors[FIELD_DENSITY].l1_cut;
+    if (!status || status == STATUS_BROKE_DOWN) run_free(&result);
+    return status;
+}
+
+/* The error over the replicates that a study of the case has, brought to the point's own n by the
+ * case's order: the first is there, the others are run once, and not timed; five are enough, for
+ * errors are compared over a factor of ten. Of a random start the point's own seed counts. */
+static enum status average(struct job *job, int order, struct error *error)
+{
+    const size_t n = (size_t)settings_real(&job->run.settings, SETTING_n);
+    const size_t wanted = study_replicates(&job->run.asked), most = 5;
+    const size_t replicates = study_is_random(&job->run.settings) ? 1
+                              : wanted < most                     ? wanted
+                                                                  : most;
+    double sum = 0, squares = 0;
+    for (size_t r = 0; r < replicates; r++) {
+        const size_t near = study_neighbour(n, replicates, r);
+        char key[40], *keys[] = {key};
+        double value = job->point->error;
+        struct run other;
+        struct run_settings asked = job->run.asked;
+        asked.plain = false; /* the same method, and faster */
+        snprintf(key, sizeof key, "n=%zu", near);
+        if (r && (settings_apply(&asked.settings, 1, keys, error) ||
+                  run_resolve(&other, &asked, error) || error_at(&other, &value, error)))
+            return error->status;
+        const double y = log(value) + order * log((double)near / (double)n);
+        sum += y / (double)replicates;
+        squares += y * y / (double)replicates;
+    }
+    if (replicates < 2) return STATUS_OK;
+    const double freedom = (double)replicates / (double)(replicates - 1);
+    job->point->error = exp(sum);
+    job->point->error_spread = sqrt(freedom * fmax(0, squares - sum * sum));
+    return STATUS_OK;
+}
 
 static enum status execute(void *context, uint64_t times, struct clock_taken *taken,
                            struct error *error)
@@ -204,15 +247,18 @@ static enum status add_level(struct job *job, struct run_settings *settings, siz
 
 /* Points of schemes that broke down go away, the others close up. */
 static void collect(struct precision *precision, const struct bench_subject *subjects,
-                    const struct job *jobs)
+                    struct job *jobs)
 {
     struct precision_point *points = precision->points;
     size_t kept = 0;
     for (size_t i = 0; i < precision->point_count; i++) {
         struct precision_scheme *scheme = &precision->schemes[points[i].scheme];
-        if (subjects[i].failure.status && !scheme->excluded[0])
-            snprintf(scheme->excluded, sizeof scheme->excluded, "n = %g: %.450s",
-                     settings_real(&jobs[i].run.settings, SETTING_n), subjects[i].failure.message);
+        struct error failure = subjects[i].failure;
+        if (scheme->excluded[0] ||
+            (!failure.status && !average(&jobs[i], precision->order, &failure)))
+            continue;
+        snprintf(scheme->excluded, sizeof scheme->excluded, "n = %g: %.450s",
+                 settings_real(&jobs[i].run.settings, SETTING_n), failure.message);
     }
     for (size_t i = 0; i < precision->point_count; i++) {
         struct precision_scheme *scheme = &precision->schemes[points[i].scheme];
@@ -323,9 +369,10 @@ static json_t *point_json(const struct precision *precision, const struct precis
     static const char *const references[] = {"", "graded", "seed", "seed_plain"};
     const struct precision_scheme *scheme = &precision->schemes[point->scheme];
     json_t *item = json_pack(
-        "{s:s, s:o, s:I, s:o, s:o, s:o, s:o, s:o, s:i, s:o, s:o, s:b}", "scheme", scheme->label,
-        "settings", settings_json(&point->settings), "n", (json_int_t)point->n, "error",
-        result_number(point->error), "error_over_signal", result_number(point->relative), "wall_s",
+        "{s:s, s:o, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:i, s:o, s:o, s:b}", "scheme",
+        scheme->label, "settings", settings_json(&point->settings), "n", (json_int_t)point->n,
+        "error", result_number(point->error), "error_over_signal", result_number(point->relative),
+        "error_spread", result_number(point->error_spread), "wall_s",
         result_number(point->time.wall_s), "cpu_s", result_number(point->time.cpu_s), "spread",
         result_number(point->time.spread), "samples", point->time.samples, "pair_interactions",
         result_number(point->pairs), "figure_of_merit",

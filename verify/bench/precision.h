@@ -18,8 +18,9 @@ extern const double precision_targets[PRECISION_TARGETS]; /* relative to the sig
 
 struct precision_point {
     size_t scheme, n; /* n: as the set-up allowed */
-    double error, relative;
-    double pairs; /* pair interactions */
+    double error, relative; /* geometric mean over neighbouring n where the solution jumps */
+    double error_spread;    /* standard deviation of its logarithm; 0 of a single n */
+    double pairs;           /* pair interactions */
     bool on_front;
     struct settings settings; /* as used, resolved */
     struct bench_time time;

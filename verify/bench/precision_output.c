@@ -51,8 +51,8 @@ static void print_schemes(const struct precision *precision, const struct precis
     size_t width = 24, hidden = 0;
     for (size_t i = 0; i < precision->scheme_count; i++)
         if (shown(list[i], i) && strlen(list[i]->brief) > width) width = strlen(list[i]->brief);
-    printf("%s%-*s %7s %11s %8s %10s %7s %11s %11s %9s%s\n", style->bold, (int)width, "scheme", "n",
-           "error", "", "CPU s", "spread", "pairs",
+    printf("%s%-*s %7s %11s %8s %4s %10s %7s %11s %11s %9s%s\n", style->bold, (int)width, "scheme",
+           "n", "error", "", "+-", "CPU s", "spread", "pairs",
            precision->order == 1 ? "L1^2 CPU s" : "L1 CPU s", "gain", style->end);
     for (size_t i = 0; i < precision->scheme_count; i++) {
         const struct precision_scheme *scheme = list[i];
@@ -61,13 +61,14 @@ static void print_schemes(const struct precision *precision, const struct precis
             continue;
         }
         const struct precision_point *p = &precision->points[scheme->first + scheme->count - 1];
-        printf("%-*s %7zu %11.4e %7.3f%% %10.3e %6.0f%% %11.3e %11.3e %9.3g\n", (int)width,
-               scheme->brief, p->n, p->error, 100 * p->relative, p->time.cpu_s,
-               100 * p->time.spread, p->pairs, scheme->merit, scheme->gain);
+        printf("%-*s %7zu %11.4e %7.3f%% %3.0f%% %10.3e %6.0f%% %11.3e %11.3e %9.3g\n", (int)width,
+               scheme->brief, p->n, p->error, 100 * p->relative, 100 * p->error_spread,
+               p->time.cpu_s, 100 * p->time.spread, p->pairs, scheme->merit, scheme->gain);
     }
     if (hidden) printf("... and %zu more (all of them: --json)\n", hidden);
     printf("%sat the finest n, best first. error: L1 of density, absolute and of the signal "
-           "%.6g, the exact density's\nmean distance from its mean %.6g; CPU s: least of %d "
+           "%.6g, the exact density's\nmean distance from its mean %.6g; +-: its deviation over "
+           "neighbouring n, of which it is the mean; CPU s: least of %d "
            "samples, all threads; spread: their median above it;\ngain: L1^(2/p) x CPU s, of "
            "the seed program's corrected method in plain C over that of the scheme (p = %d, the "
            "case's order)%s\n",

@@ -72,6 +72,7 @@ static const struct reading_rule rules[] = {
     {"functionals_exact", "*", 0, READING_NEUTRAL, 1e-9, 1e-13},
     {"", "error_over_signal", 0, READING_PART, 1e-3, 1e-13}, /* the same as error */
     {"", "error", 0, READING_ERROR, 1e-3, 1e-13},
+    {"", "error_spread", OUT},
     {"", "error_*", 0, READING_ERROR, 1e-2, 1e-12},
     {"", "*momentum_defect", 0, READING_ERROR, 0.1, 1e-12},
     {"", "order", 0, READING_ORDER, 0.02, 0},

@@ -202,6 +202,8 @@ BAD = [
     ("converge sod --n 100,200,x,400", 2, "--n", "x", "integers"),
     ("converge sod --n 1,2,3,4", 2, "--n", "from 4"),
     ("converge sod n=100", 2, "n", "--n"),
+    ("converge sod --replicates 0", 2, "--replicates", "from 1"),
+    ("converge sod --replicates 3 --vary seed=1,2", 2, "--replicates", "exclude"),
     ("converge sod --vary kernl", 2, "kernl", "did you mean 'kernel'"),
     ("converge sod --vary kernel=cubic", 2, "cubic", "cubic_spline"),
     ("converge sod --vary eta", 2, "eta", "values"),
