@@ -31,11 +31,13 @@ static enum status solve(struct riemann_solution *solution, double gamma, const 
 }
 
 /* Right over left so that spacings are equal either side of the contact, within limits: beyond, one
- * side is resolved at the other's cost (measured on sod, sod_standard, lax and strong_shock). */
+ * side is resolved at the other's cost (measured on sod, sod_standard, lax and strong_shock). The
+ * limits are reciprocal, or a mirrored tube would be another problem. */
 static double mass_ratio_at_contact(const struct riemann_solution *tube)
 {
     if (tube->vacuum) return 1;
-    return fmin(fmax(tube->rho_star_right / tube->rho_star_left, 0.5), 1.5);
+    const double most = 1.5;
+    return fmin(fmax(tube->rho_star_right / tube->rho_star_left, 1 / most), most);
 }
 
 static enum status prepare(struct prepared *p, struct settings *settings, struct error *error)
