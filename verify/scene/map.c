@@ -66,9 +66,10 @@ void map_free(struct map *map)
     map->storage = NULL;
 }
 
-/* Mean over the cells that hold particles on the square ring around cell (i, j). */
-static double ring_mean(const struct map *map, const double *z, ptrdiff_t i, ptrdiff_t j,
-                        ptrdiff_t ring)
+/* Mean over the cells that hold particles on the square ring around cell (i, j); false: none does.
+ */
+static bool ring_mean(const struct map *map, const double *z, ptrdiff_t i, ptrdiff_t j,
+                      ptrdiff_t ring, double *mean)
 {
     double sum = 0, n = 0;
     for (ptrdiff_t b = j - ring; b <= j + ring; b++)
@@ -78,7 +79,8 @@ static double ring_mean(const struct map *map, const double *z, ptrdiff_t i, ptr
             const size_t k = (size_t)b * map->nx + (size_t)a;
             if (map->count[k]) sum += z[k], n++;
         }
-    return n > 0 ? sum / n : (double)NAN;
+    if (n > 0) *mean = sum / n;
+    return n > 0;
 }
 
 void map_mean(const struct map *map, const double *values, double *z)
@@ -90,7 +92,9 @@ void map_mean(const struct map *map, const double *values, double *z)
     for (size_t k = 0; k < cells; k++) {
         if (map->count[k]) continue;
         z[k] = (double)NAN;
-        for (ptrdiff_t ring = 1; ring <= MAP_REACH && isnan(z[k]); ring++)
-            z[k] = ring_mean(map, z, (ptrdiff_t)(k % map->nx), (ptrdiff_t)(k / map->nx), ring);
+        ptrdiff_t ring = 1;
+        while (ring <= MAP_REACH &&
+               !ring_mean(map, z, (ptrdiff_t)(k % map->nx), (ptrdiff_t)(k / map->nx), ring, &z[k]))
+            ring++;
     }
 }

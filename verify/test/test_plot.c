@@ -11,6 +11,8 @@
 #include <signal.h>
 #include <time.h>
 
+#include "layout.h"
+#include "map.h"
 #include "markup.h"
 #include "plot.h"
 #include "process.h"
@@ -240,6 +242,94 @@ static void gap(void **state)
     free(svg);
 }
 
+/* Each particle is in one cell, also on an edge between cells and on the box's own; those outside,
+ * beside the slice, or nowhere are in none. */
+static void map_counts(void **state)
+{
+    (void)state;
+    static const double at[3][8] = {{0, 0.5, 1, 0.25, 0.25, 0.5, -0.1, NAN},
+                                    {0, 0.5, 1, 0.25, 0.75, 0, 0.5, 0.5},
+                                    {0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5}};
+    static const size_t cell[] = {0, 4, 8, 0, 6, 1, 9, 9};
+    struct error error = {0};
+    struct snapshot s = {.n = 8, .x = {at[0], at[1]}};
+    const struct domain square = {.dim = 2, .hi = {1, 1}}, box = {.dim = 3, .hi = {1, 1, 1}};
+    struct map grid;
+    assert_int_equal(map_create(&grid, &square, &s, &error), STATUS_OK);
+    assert_int_equal(grid.nx, 3); /* the root of 8, rounded */
+    assert_int_equal(grid.ny, 3);
+    size_t counted = 0;
+    for (size_t k = 0; k < grid.nx * grid.ny; k++) counted += grid.count[k];
+    assert_int_equal(counted, grid.seen);
+    assert_int_equal(grid.seen, 6);
+    for (size_t i = 0; i < s.n; i++) assert_int_equal(grid.cell[i], cell[i]);
+    map_free(&grid);
+    /* a slice as thick as two distances: all of a box of 2^3, its upper end excepted */
+    s.x[2] = at[0];
+    assert_int_equal(map_create(&grid, &box, &s, &error), STATUS_OK);
+    assert_int_equal(grid.seen, 5);
+    map_free(&grid);
+}
+
+/* A cell has the mean of its particles, an empty one that of its nearest neighbours. */
+static void map_means(void **state)
+{
+    (void)state;
+    static const double at[2][4] = {{0.1, 0.2, 0.9, 0.8}, {0.1, 0.2, 0.9, 0.1}};
+    static const double values[] = {1, 3, 8, 5};
+    struct error error = {0};
+    const struct snapshot s = {.n = 4, .x = {at[0], at[1]}};
+    const struct domain square = {.dim = 2, .hi = {1, 1}};
+    struct map grid;
+    double z[4];
+    assert_int_equal(map_create(&grid, &square, &s, &error), STATUS_OK);
+    assert_int_equal(grid.nx * grid.ny, 4);
+    map_mean(&grid, values, z);
+    const double expected[] = {2, 5, 5, 8}; /* (2 + 5 + 8)/3 where none is */
+    for (size_t k = 0; k < 4; k++) assert_true(fabs(z[k] - expected[k]) <= 1e-14);
+    map_free(&grid);
+}
+
+/* An image is a bare matrix, and the script says where its cells are; a unit is as long on both
+ * axes; panels beside each other do not overlap. */
+static void images(void **state)
+{
+    (void)state;
+    static const double left[] = {0.5, 1.5, 2.5}, up[] = {1, 3}, z[] = {-1, 2, 3, 4, NAN, 6};
+    const struct plot_heat image = {
+        .nx = 3, .ny = 2, .x = left, .y = up, .z = z, .image = true, .diverging = true};
+    const struct plot_panel one = {.heat = &image, .equal = true, .own_x = true};
+    const struct plot_panel two[] = {one, one};
+    const struct plot plot = {.name = "image",
+                              .title = "image",
+                              .width = 900,
+                              .height = 350,
+                              .panels = two,
+                              .panel_count = 2,
+                              .beside = true};
+    char *script, *data;
+    assert_true(plot_source(&plot, &script, &data));
+    assert_non_null(strstr(script, "index 1 matrix using (0.5 + 1*$1):(1 + 2*$2):3 with image"));
+    assert_non_null(strstr(script, "set cbrange [-6:6]"));
+    assert_non_null(strstr(data, "\n -1 2 3\n 4 NaN 6\n"));
+    free(script);
+    free(data);
+    struct layout layout;
+    layout_make(&layout, &plot);
+    for (int k = 0; k < 2; k++) {
+        const struct layout_panel *at = &layout.panels[k];
+        assert_true(fabs((at->right - at->left) / 3 - (at->bottom - at->top) / 4) <= 1e-9);
+    }
+    assert_true(layout.panels[0].right < layout.panels[1].left);
+    char *svg, message[256], fault[256];
+    if (!have_gnuplot()) skip();
+    assert_int_equal(plot_svg(&plot, &svg, message, sizeof message), PLOT_OK);
+    if (!markup_well_formed(svg, fault, sizeof fault)) fail_msg("%s", fault);
+    assert_int_equal(occurrences(svg, " href=\"data:image/png;base64,"), 2);
+    assert_null(strstr(svg, "xlink"));
+    free(svg);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -247,6 +337,8 @@ int main(void)
         cmocka_unit_test(source),     cmocka_unit_test(formats),
         cmocka_unit_test(processes),  cmocka_unit_test(missing_gnuplot),
         cmocka_unit_test(markup),     cmocka_unit_test(gap),
+        cmocka_unit_test(map_counts), cmocka_unit_test(map_means),
+        cmocka_unit_test(images),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
