@@ -86,16 +86,13 @@
            "", __VA_ARGS__)
 
 /* How h is found: by Newton to h_tolerance at every evaluation, or predicted from the last steps
- * with a single density sum; corrected: what that sum asks for goes through a Newton step before
- * it predicts. At a jump of density that is needed with wide kernels: the error of 1/h is mapped by
- * s = -(h/rho) drho/dh from prediction to sum, and extrapolation is unstable where s < -1/3. */
+ * with a single density sum, which goes through one Newton step before it predicts the next. */
 #define H_METHOD_LIST(CHOICE, ...)                                                                 \
     CHOICE(H_NEWTON, "newton", "root of h = eta (m/rho)^(1/d) at every evaluation", "",            \
            __VA_ARGS__)                                                                            \
-    CHOICE(H_PREDICTED, "predicted", "extrapolated from the last steps, one density sum", "",      \
-           __VA_ARGS__)                                                                            \
-    CHOICE(H_CORRECTED, "corrected",                                                               \
-           "the same, with a Newton step from that sum for the next ones", "", __VA_ARGS__)
+    CHOICE(H_PREDICTED, "predicted",                                                               \
+           "extrapolated from the last steps; one density sum, and a Newton step for the next",    \
+           "", __VA_ARGS__)
 
 /* FAMILY(name, list, number of members, plural, title): enum name, scheme_name_family. */
 #define FAMILY_LIST(FAMILY)                                                                        \

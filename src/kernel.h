@@ -37,7 +37,6 @@ struct kernel {
         double alpha;               /* viscosity that suffices */
         double cfl;                 /* times eta: steps that are stable with no more than that */
         enum pair_width pair_width; /* of the standard gradient */
-        bool uncorrected;           /* a predicted h stays near its root without Newton's help */
     } predicted;
     int order; /* n of sinc_n; 0 for the others */
     /* A plug-in's own functions (see verify/kernel/plugin.h); NULL for the built-in kernels. */

@@ -28,7 +28,7 @@
     SCALAR(U, "internal energy")                                                                   \
     SCALAR(h, "smoothing length = support radius")                                                 \
     SCALAR(h_inverse, "1/h")                                                                       \
-    SCALAR(h_inverse_found, "1/h = (rho/m)^(1/d)/eta of the last density sum")                     \
+    SCALAR(h_inverse_found, "1/h by a Newton step from the last density sum")                      \
     SCALAR(h_inverse_old, "and of the one before")                                                 \
     SCALAR(grad_h, "1 - f of the grad-h factor")                                                   \
     SCALAR(V, "volume Z/y")                                                                        \

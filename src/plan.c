@@ -16,7 +16,6 @@ struct plan plan_make(const struct scheme *scheme, int dim, bool skip, bool stam
         .sums = sums_find(dim),
         .stamped = stamped,
         .newton = scheme->h_method == H_NEWTON,
-        .correct = scheme->h_method == H_CORRECTED,
         .energy_sum = scheme->volume_element == VOLUME_ENERGY,
         .grad_h = scheme->formulation == FORMULATION_LAGRANGIAN,
         .matrix = scheme->gradient != GRADIENT_STANDARD,
@@ -113,9 +112,8 @@ size_t plan_explain(const struct scene *scene, struct plan_line *lines, size_t m
     explain_neighbours(scene, &writer);
     line(&writer, "smoothing length by Newton", plan.newton,
          "h = eta m/rho to h_tolerance at every evaluation",
-         plan.correct ? "h_method=corrected: 1/h extrapolated from the last two density sums, each "
-                        "with a Newton step"
-                      : "h_method=predicted: 1/h extrapolated from the last two density sums");
+         "h_method=predicted: 1/h extrapolated from the last two density sums, each with a Newton "
+         "step");
     line(&writer, "density sum", true, plan.newton ? "inside the Newton iteration" : "one a step",
          "");
     line(&writer, "energy sum", plan.energy_sum, "volume_element=energy: P from the sum of U",

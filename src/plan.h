@@ -14,7 +14,6 @@ struct plan {
     const struct sums *sums; /* the way to sum over neighbours; NULL: none for the dimension */
     bool stamped;            /* loops compiled for the choices; else all is looked up (oracle) */
     bool newton;             /* h by Newton at every evaluation; else predicted */
-    bool correct;            /* predicted h with a Newton step */
     bool energy_sum;         /* second kernel sum, of U */
     bool grad_h;             /* grad-h factors */
     bool matrix;             /* moment matrix of the Integral Approach */

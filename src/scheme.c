@@ -44,10 +44,7 @@ void scheme_default(struct scheme *scheme, const struct scheme_open *open, int d
     if (open->alpha)
         scheme->alpha = own && kernel->predicted.alpha > 0 ? kernel->predicted.alpha : 1;
     if (open->beta) scheme->beta = 2 * scheme->alpha;
-    if (open->h_method)
-        scheme->h_method = !predicts || !vanilla                  ? H_NEWTON
-                           : own && kernel->predicted.uncorrected ? H_PREDICTED
-                                                                  : H_CORRECTED;
+    if (open->h_method) scheme->h_method = predicts && vanilla ? H_PREDICTED : H_NEWTON;
     if (open->pair_width)
         scheme->pair_width = !predicts || !vanilla                          ? PAIR_WIDTH_MEAN
                              : scheme->viscosity == VISCOSITY_RECONSTRUCTED ? PAIR_WIDTH_HARMONIC

@@ -62,17 +62,12 @@ ALWAYS_INLINE double root(double x, int dim)
     return dim == 1 ? x : dim == 2 ? sqrt(x) : cbrt(x);
 }
 
-ALWAYS_INLINE double off_by(double ratio)
-{
-    return largest(ratio - 1, 1 - ratio);
-}
+/* The slope of eq. 3.10 near the existence limit of h, where Newton's step has no length. */
+static const double least_slope = 0.25;
 
-/* A predicted width may be off by this part. */
-static const double surprise_max = 0.3;
-
-ALWAYS_INLINE double close_body(const struct particles *particles, ptrdiff_t first, int len,
-                                bool energy_sum, bool own_gradient, int dim, const struct gas *gas,
-                                const struct density_sums *restrict sums)
+ALWAYS_INLINE void close_body(const struct particles *particles, ptrdiff_t first, int len,
+                              bool energy_sum, bool own_gradient, int dim, const struct gas *gas,
+                              const struct density_sums *restrict sums)
 {
     const double *restrict m = particles->m + first, *restrict U = particles->U + first,
                            *restrict h_inverse = particles->h_inverse + first,
@@ -83,59 +78,43 @@ ALWAYS_INLINE double close_body(const struct particles *particles, ptrdiff_t fir
                      *restrict c = particles->c + first, *restrict g = particles->g + first;
     const double constant = gas->constant, eta_inverse = 1 / gas->eta, gamma_1 = gas->gamma - 1;
     const double follow = gas->follow * gamma_1;
-    double surprised = 0;
-#pragma omp simd reduction(+ : surprised)
+#pragma omp simd
     for (int i = 0; i < len; i++) {
-        const double scale = constant * power(h_inverse[i], dim), sum = scale * sums->m[i];
-        const double u = U[i] * m_inverse[i];
-        found[i] = root(sum * m_inverse[i], dim) * eta_inverse;
+        const double s = h_inverse[i], scale = constant * power(s, dim), sum = scale * sums->m[i];
+        const double u = U[i] * m_inverse[i], asked = root(sum * m_inverse[i], dim) * eta_inverse;
+        /* 1/h as one step of CONVENTIONS eq. 3.10 finds it, no further than a factor of 2 away;
+         * its division serves the volume, too: share = 1/(slope sum) */
+        const double at = dim * (s * sums->m[i]);
+        const double slope = largest(at - asked * sums->m_dh[i], least_slope * at);
+        const double share = 1 / (slope * sum);
+        found[i] = largest(0.5 * s, least(2 * s, s + (asked - s) * (at * (sum * share))));
         if (energy_sum) {
             const double y = scale * sums->Z[i];
             V[i] = U[i] / y;
             rho[i] = m[i] / V[i];
             P[i] = gamma_1 * y;
-            h[i] = 1 / found[i];
+            h[i] = 1 / asked;
         } else {
-            V[i] = m[i] / sum;
+            V[i] = m[i] * (slope * share);
             rho[i] = sum;
             h[i] = gas->eta * root(V[i], dim);
-            P[i] = gamma_1 * sum * u *
-                   largest(0.5, 1 + follow * (1 - power(h[i] * h_inverse[i], dim)));
+            P[i] = gamma_1 * sum * u * largest(0.5, 1 + follow * (1 - power(h[i] * s, dim)));
         }
-        surprised += off_by(h[i] * h_inverse[i]) > surprise_max ? 1. : 0.;
         c[i] = sqrt(gas->gamma * gamma_1 * u);
-        if (own_gradient) g[i] = scale * h_inverse[i];
-    }
-    return surprised;
-}
-
-/* 1/h as a step of CONVENTIONS eq. 3.10 from the width of the sums finds it, no further than a
- * factor of 2 away: close to the existence limit of h the step has no length. */
-CLONES static void correct_width(const struct particles *particles, ptrdiff_t first, int len,
-                                 const struct density_sums *restrict sums)
-{
-    const double *restrict h_inverse = particles->h_inverse + first;
-    double *restrict found = particles->h_inverse_found + first;
-    const double d = particles->dim;
-#pragma omp simd
-    for (int i = 0; i < len; i++) {
-        const double at = d * (h_inverse[i] * sums->m[i]);
-        const double root =
-            h_inverse[i] + (found[i] - h_inverse[i]) * at / (at - found[i] * sums->m_dh[i]);
-        found[i] = largest(least(root, 2 * h_inverse[i]), 0.5 * h_inverse[i]);
+        if (own_gradient) g[i] = scale * s;
     }
 }
 
 /* Nearly all batches are full: a constant trip count has no remainder loop. */
 #define BODY(energy_sum, own_gradient, dim)                                                        \
-    CLONES static double close_##energy_sum##_##own_gradient##_##dim(                              \
+    CLONES static void close_##energy_sum##_##own_gradient##_##dim(                                \
         const struct particles *particles, ptrdiff_t first, int len, const struct gas *gas,        \
         const struct density_sums *sums)                                                           \
     {                                                                                              \
         if (len == BATCH_MAX)                                                                      \
-            return close_body(particles, first, BATCH_MAX, energy_sum, own_gradient, dim, gas,     \
-                              sums);                                                               \
-        return close_body(particles, first, len, energy_sum, own_gradient, dim, gas, sums);        \
+            close_body(particles, first, BATCH_MAX, energy_sum, own_gradient, dim, gas, sums);     \
+        else                                                                                       \
+            close_body(particles, first, len, energy_sum, own_gradient, dim, gas, sums);           \
     }
 #define DIMENSIONS(X, energy_sum, own_gradient)                                                    \
     X(energy_sum, own_gradient, 1) X(energy_sum, own_gradient, 2) X(energy_sum, own_gradient, 3)
@@ -143,8 +122,8 @@ CLONES static void correct_width(const struct particles *particles, ptrdiff_t fi
 ALL(BODY)
 #undef BODY
 
-typedef double close_loop(const struct particles *particles, ptrdiff_t first, int len,
-                          const struct gas *gas, const struct density_sums *sums);
+typedef void close_loop(const struct particles *particles, ptrdiff_t first, int len,
+                        const struct gas *gas, const struct density_sums *sums);
 #define ENTRY(energy_sum, own_gradient, dim)                                                       \
     [energy_sum][own_gradient][dim - 1] = close_##energy_sum##_##own_gradient##_##dim,
 static close_loop *const close_loops[2][2][3] = {ALL(ENTRY)};
@@ -166,19 +145,12 @@ static void find_grad_h(const struct particles *particles, ptrdiff_t first, int 
     }
 }
 
-double state_close(const struct particles *particles, ptrdiff_t first, int len,
-                   const struct plan *plan, const struct gas *gas, const struct density_sums *sums)
+void state_close(const struct particles *particles, ptrdiff_t first, int len,
+                 const struct plan *plan, const struct gas *gas, const struct density_sums *sums)
 {
-    const double surprised = close_loops[plan->energy_sum][plan->own_gradient][particles->dim - 1](
-        particles, first, len, gas, sums);
-    if (plan->correct) correct_width(particles, first, len, sums);
+    close_loops[plan->energy_sum][plan->own_gradient][particles->dim - 1](particles, first, len,
+                                                                          gas, sums);
     if (plan->grad_h) find_grad_h(particles, first, len, plan->energy_sum, sums);
-    return surprised;
-}
-
-bool state_surprised(const struct particles *particles, ptrdiff_t i)
-{
-    return off_by(particles->h[i] * particles->h_inverse[i]) > surprise_max;
 }
 
 void state_dalpha(const struct particles *particles, ptrdiff_t first, int len,

@@ -20,14 +20,11 @@ struct gas {
 };
 
 /* Equation of state of len <= BATCH_MAX particles, from their sums at h_inverse: P, c, V, rho
- * (CONVENTIONS eqs. 1.1, 3.1 to 3.3); h as the sum of mass has found it; with them
- * g, b and grad_h where the plan wants them. Returns how many widths that were predicted are far
- * from those. */
-double state_close(const struct particles *particles, ptrdiff_t first, int len,
-                   const struct plan *plan, const struct gas *gas, const struct density_sums *sums);
-
-/* Is the width of particle i that was predicted far from the one that the sum has found? */
-bool state_surprised(const struct particles *particles, ptrdiff_t i);
+ * (CONVENTIONS eqs. 1.1, 3.1 to 3.3); h as the sum of mass asks for it, and h_inverse_found, a
+ * Newton step nearer to the root (eq. 3.11); with them g, b and grad_h where the plan wants them.
+ */
+void state_close(const struct particles *particles, ptrdiff_t first, int len,
+                 const struct plan *plan, const struct gas *gas, const struct density_sums *sums);
 
 /* Time-dependent viscosity, CONVENTIONS eq. 5.9 (Morris & Monaghan 1997):
  * dalpha/dt = max(-div v, 0)(alpha_max - alpha) - (alpha - alpha_min)/tau, tau = h/(0.2 c). */

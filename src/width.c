@@ -74,7 +74,7 @@ ALWAYS_INLINE void predict(const struct particles *particles, ptrdiff_t first, i
 #pragma omp simd
     for (int i = 0; i < len; i++) {
         const double next = found[i] + ratio * (found[i] - last[i]);
-        h_inverse[i] = largest(0.5 * found[i], least(2 * found[i], next));
+        h_inverse[i] = largest(0.8 * found[i], least(1.25 * found[i], next));
         last[i] = found[i];
     }
 }

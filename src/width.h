@@ -49,7 +49,8 @@ int width_without_root(const struct width_rule *rule, int len, const double *m,
                        const struct density_sums *sums, const double *h, const double *h_inverse);
 
 /* 1/h for the next density sum (eq. 3.11): as last found, extrapolated by ratio times its last
- * change, no further than a factor of 2 away. */
+ * change, no further than a quarter of itself: clumps that fly apart in their first steps (jittered
+ * starts) would else be given widths, and time steps, far too long. */
 void width_predict(const struct particles *particles, ptrdiff_t first, int len, double ratio);
 
 #endif

@@ -266,6 +266,14 @@ static void number_to_mass(const struct simulation *simulation, ptrdiff_t first,
     }
 }
 
+/* A predicted width may be off by this part. */
+static const double surprise_max = 0.3;
+
+static bool is_surprised(const struct particles *particles, ptrdiff_t i)
+{
+    return fabs(particles->h[i] * particles->h_inverse[i] - 1) > surprise_max;
+}
+
 /* The equation of state of all particles, from their sums. Returns how many predicted widths are
  * far from what they should be. */
 static double close_all(struct simulation *simulation, bool predicted)
@@ -294,7 +302,8 @@ static double close_all(struct simulation *simulation, bool predicted)
             memcpy(sums.Z_dh, room->sum_Z_dh + first, bytes);
         }
         if (number) number_to_mass(simulation, first, len, &sums);
-        surprised += state_close(a, first, len, &simulation->plan, &gas, &sums);
+        state_close(a, first, len, &simulation->plan, &gas, &sums);
+        for (int i = 0; i < len; i++) surprised += is_surprised(a, first + i) ? 1 : 0;
         /* b = Z P/y^2 with Z = 1, not m */
         for (int i = 0; number && simulation->plan.grad_h && i < len; i++)
             a->b[first + i] *= a->m[first + i];
@@ -373,7 +382,7 @@ static enum status solve_surprised(struct simulation *simulation, struct error *
                                     scheme->h_tolerance};
     const double half = half_box(simulation);
     for (ptrdiff_t i = 0; i < a->n; i++) {
-        const bool surprised = state_surprised(a, i);
+        const bool surprised = is_surprised(a, i);
         room->outcome[i] = surprised ? CELLS_OPEN : CELLS_SOLVED;
         if (!surprised) continue;
         a->h[i] = 1 / a->h_inverse[i];

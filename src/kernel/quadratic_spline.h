@@ -25,4 +25,4 @@ KERNEL(quadratic_spline, .member = {"quadratic_spline", "quadratic B-spline M3",
        .knots = (const double[]){1. / 3}, .smoothness = {0, 1, 1, 1}, .unity_width = 1.5,
        .default_eta = 1.5, .cloud_eta = 2,
        .stable_eta = {[GRADIENT_STANDARD] = 3, [GRADIENT_IA] = 3.64},
-       .predicted = {.alpha = 0.75, .cfl = 1.1, .pair_width = PAIR_WIDTH_MAX, .uncorrected = true})
+       .predicted = {.alpha = 0.75, .cfl = 1.1, .pair_width = PAIR_WIDTH_MAX})

@@ -6,6 +6,30 @@
 #include "loops.h"
 #include "stamp.h"
 
+/* The pairs at offset d, on both sides. The first offset sets the sums, with the particle itself,
+ * the others add to them. */
+ALWAYS_INLINE void pairs_at(bool add, ptrdiff_t d, const struct kernel *kernel, kernel_shape *w,
+                            kernel_shape *dw, enum density_terms terms, const double *restrict x,
+                            const double *restrict m, const double *restrict U, int count,
+                            const double *restrict h_inverse, struct density_sums *restrict sums)
+{
+    const double w0 = w(kernel, 0, 1);
+#pragma omp simd
+    for (int i = 0; i < count; i++) {
+        const double q_right = (x[i + d] - x[i]) * h_inverse[i];
+        const double q_left = (x[i] - x[i - d]) * h_inverse[i];
+        const double w_right = w(kernel, q_right, 1), w_left = w(kernel, q_left, 1);
+        const double dh_right = w_right + q_right * dw(kernel, q_right, 1);
+        const double dh_left = w_left + q_left * dw(kernel, q_left, 1);
+        const double m_0 = m[i] * w0, Z_0 = U[i] * w0;
+        sums->m[i] = (add ? sums->m[i] : m_0) + (m[i + d] * w_right + m[i - d] * w_left);
+        sums->m_dh[i] = (add ? sums->m_dh[i] : m_0) + (m[i + d] * dh_right + m[i - d] * dh_left);
+        if (terms == DENSITY_MASS) continue;
+        sums->Z[i] = (add ? sums->Z[i] : Z_0) + (U[i + d] * w_right + U[i - d] * w_left);
+        sums->Z_dh[i] = (add ? sums->Z_dh[i] : Z_0) + (U[i + d] * dh_right + U[i - d] * dh_left);
+    }
+}
+
 ALWAYS_INLINE void sum_pairs(const struct kernel *kernel, kernel_shape *w, kernel_shape *dw,
                              enum density_terms terms, const struct particles *particles,
                              ptrdiff_t first, int len, ptrdiff_t D,
@@ -13,31 +37,10 @@ ALWAYS_INLINE void sum_pairs(const struct kernel *kernel, kernel_shape *w, kerne
 {
     const double *restrict x = particles->x[0] + first, *restrict m = particles->m + first,
                            *restrict U = particles->U + first;
-    const double w0 = w(kernel, 0, 1);
     const int count = whole_vectors(len);
-    for (int i = 0; i < count; i++) {
-        sums->m[i] = m[i] * w0;
-        if (terms >= DENSITY_DERIVATIVE) sums->m_dh[i] = m[i] * w0;
-        if (terms >= DENSITY_ENERGY) sums->Z[i] = sums->Z_dh[i] = U[i] * w0;
-    }
-    for (ptrdiff_t d = 1; d <= D; d++) {
-#pragma omp simd
-        for (int i = 0; i < count; i++) {
-            const double q_right = (x[i + d] - x[i]) * h_inverse[i];
-            const double q_left = (x[i] - x[i - d]) * h_inverse[i];
-            const double w_right = w(kernel, q_right, 1), w_left = w(kernel, q_left, 1);
-            sums->m[i] += m[i + d] * w_right + m[i - d] * w_left;
-            if (terms >= DENSITY_DERIVATIVE) {
-                const double dh_right = w_right + q_right * dw(kernel, q_right, 1);
-                const double dh_left = w_left + q_left * dw(kernel, q_left, 1);
-                sums->m_dh[i] += m[i + d] * dh_right + m[i - d] * dh_left;
-                if (terms >= DENSITY_ENERGY) {
-                    sums->Z[i] += U[i + d] * w_right + U[i - d] * w_left;
-                    sums->Z_dh[i] += U[i + d] * dh_right + U[i - d] * dh_left;
-                }
-            }
-        }
-    }
+    pairs_at(false, 1, kernel, w, dw, terms, x, m, U, count, h_inverse, sums);
+    for (ptrdiff_t d = 2; d <= D; d++)
+        pairs_at(true, d, kernel, w, dw, terms, x, m, U, count, h_inverse, sums);
 }
 
 #define BODY(function, w, dw, terms, attributes)                                                   \

@@ -20,11 +20,7 @@ void loops_choose(const struct plan *plan, const struct scheme *scheme, struct l
                                                       : 2,
                     .near = 1 / scheme->eta},
     };
-    loops->density_newton =
-        loop_density(kernel, plan->energy_sum ? DENSITY_ENERGY : DENSITY_DERIVATIVE);
-    loops->density = plan->energy_sum || plan->grad_h || plan->correct
-                         ? loops->density_newton
-                         : loop_density(kernel, DENSITY_VALUE);
+    loops->density = loop_density(kernel, plan->energy_sum ? DENSITY_ENERGY : DENSITY_MASS);
     if (plan->matrix || plan->slope)
         loops->matrix = loop_matrix(kernel, !plan->slope   ? MATRIX_MOMENT
                                             : plan->matrix ? MATRIX_BOTH

@@ -20,9 +20,8 @@ enum { FORCE_STRIPS = 6 }; /* of scratch, in a pair force */
 
 /* Like the lists of families.h: enum and table of stamps from one list. */
 #define DENSITY_LIST(TERMS, ...)                                                                   \
-    TERMS(DENSITY_VALUE, __VA_ARGS__)      /* sum m w */                                           \
-    TERMS(DENSITY_DERIVATIVE, __VA_ARGS__) /* and sum m (w + q w') */                              \
-    TERMS(DENSITY_ENERGY, __VA_ARGS__)     /* and the same two with Z = U */
+    TERMS(DENSITY_MASS, __VA_ARGS__)   /* sum m w, sum m (w + q w') */                             \
+    TERMS(DENSITY_ENERGY, __VA_ARGS__) /* and the same two with Z = U */
 enum density_terms { DENSITY_LIST(FAMILY_SYMBOL, ) };
 enum { DENSITY_TERMS = 0 DENSITY_LIST(FAMILY_COUNTED, ) };
 
@@ -65,9 +64,8 @@ size_t loop_force_scratch(ptrdiff_t D);
 /* --- choosing ------------------------------------------------------------------------------- */
 
 struct loops {
-    density_loop *density;        /* the terms that the scheme needs at every evaluation */
-    density_loop *density_newton; /* with at least the derivative in h */
-    matrix_loop *matrix;          /* NULL where nothing needs it */
+    density_loop *density;
+    matrix_loop *matrix; /* NULL where nothing needs it */
     gradient_loop *gradient;
     force_loop *force;
     /* what the pair forces read beside the particles */

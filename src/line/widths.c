@@ -32,8 +32,8 @@ static ptrdiff_t solve_range(struct simulation *simulation, struct range *range,
     for (int i = 0; i < range->len; i++) h_inverse[i] = 1 / h[i];
     for (int step = 0; step < WIDTH_STEPS_MAX; step++) {
         if (!reach_cover(simulation, range)) return NO_GHOSTS;
-        line->loops.density_newton(&simulation->scheme.kernel, a, range->first, range->len,
-                                   range->reach, h_inverse, sums);
+        line->loops.density(&simulation->scheme.kernel, a, range->first, range->len, range->reach,
+                            h_inverse, sums);
         if (!width_step(&rule, range->len, m, sums, &bracket, h, h_inverse)) return SOLVED;
     }
     const int without_root = width_without_root(&rule, range->len, m, sums, h, h_inverse);
@@ -56,17 +56,16 @@ static ptrdiff_t sum_range(struct simulation *simulation, struct range *range,
     return SOLVED;
 }
 
-/* The equation of state of a range. Returns how many predictions have failed. */
-static double close_range(struct simulation *simulation, const struct range *range,
-                          const struct density_sums *sums)
+/* The equation of state of a range. */
+static void close_range(struct simulation *simulation, const struct range *range,
+                        const struct density_sums *sums)
 {
     const bool predicted = range->predicted == line_of(simulation)->density_passes;
     const struct gas gas = {.gamma = simulation->gamma,
                             .constant = simulation->scheme.kernel.constant[1],
                             .eta = simulation->scheme.eta,
                             .follow = predicted ? simulation->scheme.integrator->follow : 0};
-    return state_close(&simulation->particles, range->first, range->len, &simulation->plan, &gas,
-                       sums);
+    state_close(&simulation->particles, range->first, range->len, &simulation->plan, &gas, sums);
 }
 
 static void conclude(const struct line *line, struct range *range, ptrdiff_t result,
@@ -91,60 +90,6 @@ static void newton_pass(struct simulation *simulation, struct range *range, stru
     conclude(line, range, result, tally);
 }
 
-/* h -> eta m/rho(h) is no contraction where the density changes by orders of magnitude within a
- * width: predictions there diverge. Where one has failed the root is looked for, from the predicted
- * width on. A root at half or twice that width or beyond (particles that all but meet in the first
- * half of a step) is not taken. The pressure follows the volume that U was predicted with, whether
- * the width jumps to its root or not. Each particle decides for itself, so that nothing depends on
- * its range. */
-static ptrdiff_t find_roots(struct simulation *simulation, struct range *range,
-                            const double *predicted, bool *jumps, struct density_sums *sums)
-{
-    const struct particles *a = &simulation->particles;
-    const ptrdiff_t first = range->first;
-    struct density_sums roots;
-    const ptrdiff_t result = solve_range(simulation, range, &roots);
-    for (int i = 0; i < range->len; i++) {
-        const double ratio = a->h[first + i] * predicted[i];
-        jumps[i] &= result == SOLVED && ratio > 0.5 && ratio < 2;
-        if (!jumps[i]) {
-            a->h_inverse[first + i] = predicted[i];
-            continue;
-        }
-        sums->m[i] = roots.m[i];
-        sums->m_dh[i] = roots.m_dh[i];
-        sums->Z[i] = roots.Z[i];
-        sums->Z_dh[i] = roots.Z_dh[i];
-    }
-    return result;
-}
-
-static ptrdiff_t solve_surprised(struct simulation *simulation, struct range *range,
-                                 struct density_sums *sums)
-{
-    const struct particles *a = &simulation->particles;
-    const ptrdiff_t first = range->first;
-    const double follow = simulation->scheme.integrator->follow * (simulation->gamma - 1);
-    double predicted[BATCH_MAX]; /* 1/h */
-    bool jumps[BATCH_MAX];
-    for (int i = 0; i < range->len; i++) {
-        predicted[i] = a->h_inverse[first + i];
-        jumps[i] = state_surprised(a, first + i);
-        a->h[first + i] = 1 / predicted[i];
-    }
-    if (find_roots(simulation, range, predicted, jumps, sums) == NO_GHOSTS) return NO_GHOSTS;
-    close_range(simulation, range, sums);
-    for (ptrdiff_t i = first; i < first + range->len; i++) {
-        if (!jumps[i - first]) continue;
-        const double factor = largest(0.5, 1 + follow * (1 - a->h[i] * predicted[i - first]));
-        a->h_inverse_old[i] = a->h_inverse_found[i];
-        if (simulation->plan.energy_sum) continue;
-        a->P[i] *= factor;
-        if (simulation->plan.grad_h) a->b[i] *= factor;
-    }
-    return SOLVED;
-}
-
 static void predicted_pass(struct simulation *simulation, struct range *range, struct tally *tally)
 {
     const struct line *line = line_of(simulation);
@@ -152,8 +97,7 @@ static void predicted_pass(struct simulation *simulation, struct range *range, s
     ptrdiff_t result = SOLVED;
     if (range->done != line->density_passes) {
         result = sum_range(simulation, range, &sums);
-        if (result == SOLVED && close_range(simulation, range, &sums) > 0)
-            result = solve_surprised(simulation, range, &sums);
+        if (result == SOLVED) close_range(simulation, range, &sums);
     }
     conclude(line, range, result, tally);
 }

@@ -27,7 +27,7 @@ static struct scheme scheme_of(int dim, const struct integrator *integrator, int
     s.energy = c ? ENERGY_TOTAL : ENERGY_INTERNAL;
     s.gradient = c == 1 ? GRADIENT_IA : c == 2 ? GRADIENT_CORRECTED : GRADIENT_STANDARD;
     s.volume_element = c == 1 ? VOLUME_NUMBER : c == 2 ? VOLUME_ENERGY : VOLUME_MASS;
-    s.h_method = c == 1 ? H_CORRECTED : c == 2 ? H_PREDICTED : H_NEWTON;
+    s.h_method = c == 1 ? H_PREDICTED : c == 2 ? H_PREDICTED : H_NEWTON;
     if (c == 0) s.balsara = BALSARA_ON;
     if (c == 2) s.alpha_u = 0.71;
     return s;

@@ -37,7 +37,7 @@ static void subjects(struct check_run *run)
             s.energy = c % 2 ? ENERGY_TOTAL : ENERGY_INTERNAL;
             if (c == 2 || c == 3) s.gradient = GRADIENT_IA;
             if (c >= 7) { /* widths that are predicted, once as by default */
-                s.h_method = c == 7 ? H_PREDICTED : H_CORRECTED;
+                s.h_method = H_PREDICTED;
                 s.pair_width = c == 7 ? PAIR_WIDTH_MAX : PAIR_WIDTH_HARMONIC;
                 if (c == 7) hydro_set_kernel(&s, "quadratic_spline");
                 if (c == 8) s.gradient = GRADIENT_IA, s.viscosity = VISCOSITY_RECONSTRUCTED;

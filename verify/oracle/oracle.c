@@ -57,7 +57,6 @@ bool oracle_covers(const struct scheme *scheme)
     switch (scheme->h_method) {
     case H_NEWTON:
     case H_PREDICTED:
-    case H_CORRECTED:
         break;
     }
     return oracle_covers_step(scheme->integrator);
@@ -246,23 +245,23 @@ static enum status solve_h(struct oracle *oracle, size_t i, struct error *error)
     return error_set(error, STATUS_BROKE_DOWN, "oracle: particle %zu has no smoothing length", i);
 }
 
-/* h_method predicted, corrected: one sum at 1/h extrapolated from the last two, kept within a
- * factor of 2. The sums and gradients keep that width, h itself is what the sum asks for. */
+/* h_method predicted: one sum at 1/h extrapolated from the last two, by a quarter at most; a
+ * Newton step from it for the next. The sums and gradients keep that width, h itself is what the
+ * sum asks for. */
 static void predict_h(struct oracle *oracle, size_t i)
 {
     struct oracle_particle *a = &oracle->particles[i];
     long double next = a->found + oracle->ahead * (a->found - a->found_before);
-    next = fminl(fmaxl(next, a->found / 2), a->found * 2);
+    next = fminl(fmaxl(next, 0.8L * a->found), 1.25L * a->found);
     a->found_before = a->found;
     a->width = 1 / next;
     const struct sums s = sum_density(oracle, i, a->width);
     keep_sums(oracle, a, s);
     a->h = oracle->scheme.eta * powl(a->m / s.rho, 1.0L / oracle->dim);
     a->found = 1 / a->h;
-    if (oracle->scheme.h_method != H_CORRECTED) return;
     /* f(1/h) = 1/h - (rho(h)/m)^(1/d)/eta: df/d(1/h) = 1 + (h^2/(d rho)) drho/dh/target */
     const long double slope = 1 + a->width * a->width / (oracle->dim * s.rho) * s.drho * a->found;
-    a->found = next + (a->found - next) / slope;
+    a->found = next + (a->found - next) / fmaxl(slope, 0.25L);
     a->found = fminl(fmaxl(a->found, next / 2), next * 2);
 }
 

@@ -18,7 +18,7 @@ enum { WAVES = 64 };
 struct wave_step {
     struct stability_response r;
     double h, dt, s[STATES];
-    bool predicted, corrected;
+    bool predicted;
     double follow; /* dU for a volume that was predicted wrong, over h times the error of 1/h */
     double ratio;  /* how far the next width is extrapolated: 1; 0 in the first step */
 };
@@ -32,8 +32,7 @@ static void evaluate(struct wave_step *w)
         s[LAST] = s[FOUND];
         s[FOUND] = w->r.found_x * s[X] + w->r.found_h * H;
         U += w->follow * w->h * (s[FOUND] - expected);
-        if (w->corrected)
-            s[FOUND] = expected + (s[FOUND] - expected) / (1 + w->r.found_h * w->h * w->h);
+        s[FOUND] = expected + (s[FOUND] - expected) / fmax(1 + w->r.found_h * w->h * w->h, 0.25);
     } else {
         H = -w->r.found_x * s[X] / (1 / (w->h * w->h) + w->r.found_h);
     }
@@ -158,7 +157,6 @@ static struct wave_step begin(const struct stability *lattice, double dt)
     return (struct wave_step){.h = lattice->h,
                               .dt = dt,
                               .ratio = 1,
-                              .corrected = lattice->scheme.h_method == H_CORRECTED,
                               .follow = lattice->scheme.volume_element == VOLUME_MASS
                                             ? lattice->scheme.integrator->follow *
                                                   (lattice->gamma - 1) * lattice->u
