@@ -128,7 +128,7 @@ static enum status choose_lattice(struct settings *settings, int dim, struct err
         [LATTICE_RANDOM] = 6};
     struct setting_value *lattice = &settings->value[SETTING_lattice],
                          *jitter = &settings->value[SETTING_jitter];
-    if (lattice->automatic) lattice->choice = usual[dim - 1];
+    if (lattice->automatic) lattice->choice = (int)usual[dim - 1];
     if (jitter->automatic) jitter->real[0] = lattice->choice == LATTICE_JITTERED ? 0.2 : 0;
     if (dims[lattice->choice] & 1 << (dim - 1)) return STATUS_OK;
     return error_set(error, STATUS_BAD_INPUT, "lattice=%s has no form in %d dimension%s",

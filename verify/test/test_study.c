@@ -72,7 +72,7 @@ static struct run_result ran(const char *name, int n, char **arguments)
 {
     struct run_settings settings;
     struct run run;
-    struct run_result result;
+    struct run_result result = {0};
     struct error error = {0};
     if (run_prepare(&settings, name, n, arguments, &error) ||
         run_resolve(&run, &settings, &error) || run_execute(&run, &result, &error))
