@@ -13,6 +13,7 @@
 #include "near.h"
 #include "norm.h"
 #include "order.h"
+#include "worst.h"
 
 static void test_norms_by_hand(void **state)
 {
@@ -195,9 +196,22 @@ static void test_richardson_classes(void **state)
     assert_true(e.class == ORDER_DIVERGING && isnan(e.value));
 }
 
+static void test_worst(void **state)
+{
+    (void)state;
+    double worst = 0;
+    worst_keep(&worst, 2);
+    worst_keep(&worst, 1);
+    near_relative(worst, 2, 1e-15);
+    worst_keep(&worst, NAN);
+    worst_keep(&worst, 3);
+    assert_true(isnan(worst));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_worst),
         cmocka_unit_test(test_norms_by_hand),
         cmocka_unit_test(test_norms_of_nothing_and_nan),
         cmocka_unit_test(test_bins),

@@ -14,6 +14,11 @@
 #include "result.h"
 #include "study.h"
 
+/* Changes a run's document before it is judged: what the judges make of figures that a sound solver
+ * does not have. */
+typedef void tamper(json_t *run, size_t level);
+static tamper *tampering;
+
 /* A study of a case with keys, over a small ladder; its pool is run with so many processes. */
 static enum status make(struct study *study, const char *name, const char *keys, const char *vary,
                         size_t seeds, int jobs, struct error *error)
@@ -31,6 +36,8 @@ static enum status make(struct study *study, const char *name, const char *keys,
     if (!status) status = sweep_parse(&study->sweep, vary, error);
     if (!status) status = study_plan(study, &pool, error);
     if (!status) status = pool_run(&pool, &settings, error);
+    for (size_t l = 0; l < pool.count && tampering && !status; l++)
+        tampering(pool.jobs[l].document, l);
     if (!status) status = study_judge(study, &pool, error);
     pool_free(&pool);
     return status;
@@ -90,6 +97,8 @@ static void levels_are_runs(void **state)
     for (int f = 0; f < FIELDS; f++)
         for (int m = 0; m < NORMS; m++)
             assert_true(level->errors[f][m] == run_error(&run, (enum field)f, (enum norm)m));
+    assert_true(level->spacing == 2. / 80 &&
+                level->spacing == run.spacing); /* of the box [-1, 1] */
     assert_true(level->h == run.h && level->binned_density_l1 == run.binned_density_l1);
     run_free(&run);
     study_free(&study);
@@ -321,6 +330,136 @@ static void what_is_not_well(void **state)
     study_free(&some);
 }
 
+static void set_error(json_t *run, const char *field, const char *norm, double value)
+{
+    json_t *errors = json_object_get(json_object_get(run, "errors"), field);
+    json_object_set_new(errors, norm, result_number(value));
+}
+
+static void of_first_order(json_t *run, size_t level)
+{
+    (void)level;
+    set_error(run, "density", "l1_cut", 1e-3 * json_number_value(json_object_get(run, "spacing")));
+}
+
+static void of_half_order(json_t *run, size_t level)
+{
+    (void)level;
+    const double spacing = json_number_value(json_object_get(run, "spacing"));
+    set_error(run, "density", "l1_cut", 1e-3 * sqrt(spacing));
+}
+
+static void too_large(json_t *run, size_t level)
+{
+    (void)level;
+    set_error(run, "density", "l1_cut", 9 * json_number_value(json_object_get(run, "spacing")));
+}
+
+static void nan_at_one_level(json_t *run, size_t level)
+{
+    of_first_order(run, level);
+    if (level == 1) set_error(run, "density", "l1_cut", (double)NAN);
+}
+
+static void zero_at_one_level(json_t *run, size_t level)
+{
+    of_first_order(run, level);
+    if (level == 3) set_error(run, "velocity", "l1", 0);
+}
+
+static void same_at_two_levels(json_t *run, size_t level)
+{
+    of_first_order(run, level);
+    if (level == 0 || level == 3) set_error(run, "pressure", "l1", 0.125);
+}
+
+static void moved_gas(json_t *run, size_t level)
+{
+    of_first_order(run, level);
+    json_object_set_new(json_object_get(run, "budget"), "still", result_number(level ? 0 : 2e-3));
+}
+
+static void suspected_run(json_t *run, size_t level)
+{
+    of_first_order(run, level);
+    if (level == 2) json_object_set_new(run, "suspicion", json_string("a run suspects itself"));
+}
+
+static void judges_see(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *what;
+        tamper *tamper;
+        enum status status;
+        enum study_gate gate, still;
+        const char *suspicion;
+    } cases[] = {
+        {"first order", of_first_order, STATUS_OK, GATE_PASS, GATE_PASS, ""},
+        {"half an order", of_half_order, STATUS_CHECK_FAILED, GATE_FAIL, GATE_PASS, ""},
+        {"too large", too_large, STATUS_CHECK_FAILED, GATE_FAIL, GATE_PASS, ""},
+        {"a NaN", nan_at_one_level, STATUS_CHECK_FAILED, GATE_FAIL, GATE_PASS, ""},
+        {"an error of 0", zero_at_one_level, STATUS_CHECK_FAILED, GATE_PASS, GATE_PASS,
+         "velocity: the error at level 3 is exactly 0"},
+        {"twice the same", same_at_two_levels, STATUS_CHECK_FAILED, GATE_PASS, GATE_PASS,
+         "pressure: levels 0 and 3"},
+        {"still gas", moved_gas, STATUS_CHECK_FAILED, GATE_PASS, GATE_FAIL, ""},
+        {"a suspected run", suspected_run, STATUS_CHECK_FAILED, GATE_PASS, GATE_PASS,
+         "a run suspects itself"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        tampering = cases[i].tamper;
+        struct study study = made("sod", "t_end=0.1", NULL, 1, 2);
+        tampering = NULL;
+        const struct study_result *result = &study.results[0];
+        const struct study_order *order = &result->orders[FIELD_DENSITY][NORM_L1_CUT];
+        if (study.status != cases[i].status || result->status != cases[i].status ||
+            order->status != cases[i].gate || result->still_status != cases[i].still ||
+            strncmp(result->suspicion, cases[i].suspicion, strlen(cases[i].suspicion)) != 0 ||
+            !*result->suspicion != !*cases[i].suspicion)
+            fail_msg("%s: status %d, gate %d, still gas %d, '%s'", cases[i].what, study.status,
+                     order->status, result->still_status, result->suspicion);
+        /* the bound belongs to the case's own finest level, 1584: farther up it is wider */
+        near_relative(order->gate.bound, 1.5e-3 * pow(1584. / 120, 0.85), 1e-12);
+        assert_true(order->gate.low == 0.85 && order->gate.high == 1.1);
+        assert_int_equal(result->orders[FIELD_VELOCITY][NORM_L1_CUT].status, GATE_NONE);
+        study_free(&study);
+    }
+    /* one bad combination of many is not lost */
+    tampering = of_half_order;
+    struct study study = made("sod", "t_end=0.1", "eta=0.5,1.5,2", 1, 2);
+    tampering = NULL;
+    assert_int_equal(study.status, STATUS_CHECK_FAILED);
+    study_free(&study);
+}
+
+/* Lattice sums: what floor there is, and whether it is what has taken the order away. */
+static void floors(void **state)
+{
+    (void)state;
+    struct study lost = made("sound_wave", "t_end=0.1 kernel=cubic_spline eta=4.8", NULL, 1, 2);
+    const struct study_result *result = &lost.results[0];
+    near_inside(result->floor_density, 5.1e-4, 5.2e-4);
+    near_inside(result->floor_gradient, 3.0e-3, 3.2e-3);
+    assert_true(result->floor_explains);
+    assert_int_equal(result->orders[FIELD_DENSITY][NORM_L1_CUT].fit.class, ORDER_FLOOR_LIMITED);
+    bool seen = false;
+    for (size_t i = 0; i < result->functional_count; i++)
+        if (strcmp(result->functional_names[i], "mean_pressure") == 0) {
+            assert_int_equal(result->functionals[i].class, ORDER_FLOOR_LIMITED);
+            seen = true;
+        }
+    assert_true(seen);
+    study_free(&lost);
+    /* an order that is lost for another reason, where the sums are exact */
+    tampering = of_half_order;
+    struct study other = made("sod", "t_end=0.1", NULL, 1, 2);
+    tampering = NULL;
+    near_below(fabs(other.results[0].floor_density), 1e-13);
+    assert_false(other.results[0].floor_explains);
+    study_free(&other);
+}
+
 static void functionals_know_their_exact_values(void **state)
 {
     (void)state;
@@ -348,6 +487,8 @@ int main(void)
         cmocka_unit_test(still_gas_that_moves),
         cmocka_unit_test(settings_without_effect),
         cmocka_unit_test(what_is_not_well),
+        cmocka_unit_test(judges_see),
+        cmocka_unit_test(floors),
         cmocka_unit_test(functionals_know_their_exact_values),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
