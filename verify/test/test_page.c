@@ -25,9 +25,10 @@ static const char *const results_text =
     " [1, 1, 1], 'exact_velocity': [0, 0, 0], 'exact_pressure': [1, 1, 1], 'exact': {'x': [0, 2],"
     " 'density': [1, 1], 'velocity': [0, 0], 'pressure': [1, 1]}}}],"
     "'studies': [{'case': 'sod', 'label': 'ia', 'reproduce': 'sphproof converge sod',"
-    " 'levels': [{'n': 100, 'errors': {'density': {'l1_cut': 0.01}}}, {'n': 200, 'errors': "
-    "{'density':"
-    " {'l1_cut': 0.005}}}], 'orders': [{'field': 'density', 'norm': 'l1_cut', 'order': 1.0, 'low': "
+    " 'levels': [{'n': 100, 'errors': {'density': {'l1_cut': 0.01}}, 'replicates': 9, 'spread':"
+    " {'density': {'l1_cut': 0.151}}}, {'n': 200, 'errors': {'density': {'l1_cut': 0.005}},"
+    " 'replicates': 9, 'spread': {'density': {'l1_cut': 0.02}}}], 'orders': [{'field': 'density', "
+    "'norm': 'l1_cut', 'order': 1.0, 'low': "
     "0.9,"
     " 'high': 1.1, 'pairwise': [1.0], 'gate': {'low': 0.9, 'high': 1.1, 'bound': 0.02},"
     " 'status': 'pass'}], 'functionals': [{'name': 'mean_pressure', 'values': [0.97050, 0.96854,"
@@ -164,6 +165,10 @@ static void folded_cases(void **state)
     char *good = page_of(results);
     assert_non_null(strstr(good, "<details class=\"case\"><summary>"));
     assert_non_null(strstr(good, "ia 1.00 ± 0.10"));
+    /* a mean says what one run may be off it, where that is much */
+    assert_non_null(strstr(good, " ± 15 %</td>"));
+    assert_null(strstr(good, " ± 2 %</td>"));
+    assert_non_null(strstr(good, "Means over 9 runs"));
     results = sound();
     json_t *run = json_array_get(json_object_get(results, "runs"), 0);
     json_object_set_new(run, "status", json_string("broke_down"));
