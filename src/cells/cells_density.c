@@ -22,12 +22,6 @@ static void fill_records(struct cells *cells, const struct cells_fields *fields)
     }
 }
 
-CLONES static void scale(int count, const double *restrict r, double h_inverse, double *restrict q)
-{
-#pragma omp simd
-    for (int k = 0; k < count; k++) q[k] = r[k] * h_inverse;
-}
-
 /* In place of w': d w + q w'. */
 CLONES static void derivative(int count, double dim, const double *restrict q,
                               const double *restrict w, double *restrict dw)
@@ -43,7 +37,7 @@ static void sum_at(const struct cells *cells, const struct lanes *lanes, int cou
     const struct kernel *kernel = cells->method.kernel;
     const int dim = cells->method.box.dim;
     double *q = lane(lanes, LANE_Q), *w = lane(lanes, LANE_W), *dw = lane(lanes, LANE_W_J);
-    scale(count, lane(lanes, LANE_R), h_inverse, q);
+    lanes_scale(count, lane(lanes, LANE_R), h_inverse, q);
     cells->shapes.w(kernel, (size_t)count, q, w);
     cells->shapes.dw(kernel, (size_t)count, q, dw);
     derivative(count, dim, q, w, dw);

@@ -29,12 +29,6 @@ static void fill_records(struct cells *cells, const struct cells_fields *fields)
     }
 }
 
-CLONES static void scale(int count, const double *restrict r, double h_inverse, double *restrict q)
-{
-#pragma omp simd
-    for (int k = 0; k < count; k++) q[k] = r[k] * h_inverse;
-}
-
 /* -w'(q)/q, the weight of gradient=corrected; 0 where points coincide. */
 CLONES static void slope_weight(int count, double h, const double *restrict r_inverse,
                                 double *restrict dw)
@@ -150,7 +144,7 @@ static void matrix_pass(struct cells *cells, const struct cells_fields *fields, 
     const double *V = lane_of(lanes, &cells->matrix, GROUP_GAS, 1);
     double *q = lane(lanes, LANE_Q), *w = lane(lanes, LANE_W), *weight = lane(lanes, LANE_W_J);
     double inverse[CELLS_SQUARE], condition = 0;
-    scale(count, lane(lanes, LANE_R), fields->h_inverse[i], q);
+    lanes_scale(count, lane(lanes, LANE_R), fields->h_inverse[i], q);
     bool sound = false;
     if (method->gradient == GRADIENT_IA || method->velocity_gradient) {
         cells->shapes.w(method->kernel, (size_t)count, q, w);

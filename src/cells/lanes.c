@@ -136,6 +136,13 @@ CLONES static double dot(const double *restrict a, const double *restrict b, int
     return TREE(s);
 }
 
+CLONES static void scale_stamped(int count, const double *restrict r, double h_inverse,
+                                 double *restrict q)
+{
+#pragma omp simd
+    for (int k = 0; k < count; k++) q[k] = r[k] * h_inverse;
+}
+
 /* Stamped functions are static, and the public ones call them: clang 14 gives the dispatched symbol
  * a name of its own, so that another file would not find it. */
 double lanes_sum(const double *values, int count)
@@ -146,4 +153,9 @@ double lanes_sum(const double *values, int count)
 double lanes_dot(const double *a, const double *b, int count)
 {
     return dot(a, b, count);
+}
+
+void lanes_scale(int count, const double *r, double h_inverse, double *q)
+{
+    scale_stamped(count, r, h_inverse, q);
 }

@@ -140,6 +140,9 @@ void lanes_all(struct cells *cells, const struct cells_fields *fields, lanes_pas
 double lanes_sum(const double *values, int count);
 double lanes_dot(const double *a, const double *b, int count);
 
+/* q = r/h. */
+void lanes_scale(int count, const double *r, double h_inverse, double *q);
+
 /* Position of the entry (a, b) of a symmetric matrix. */
 static inline int symmetric_at(int dim, int a, int b)
 {
