@@ -57,7 +57,7 @@ static void measure(struct check_run *run, const void *subject)
     expect(run, s->zero(LEVELS, (const double[]){3, 2, 1, 0}, NULL), true, "0 at the finest level");
     expect(run, s->repeated(LEVELS, (const double[]){2, 3, 1, 2}, NULL), true,
            "the same error at the ends");
-    expect(run, s->idle("eta", 0, NULL, NULL, NULL), false, "nothing to compare");
+    expect(run, s->idle("eta", 0, honest, honest, NULL), false, "nothing to compare");
     expect(run, s->zero(LEVELS, tiny, NULL), false, "errors of round-off");
     expect(run, s->repeated(LEVELS, repeated, NULL), true, "the same error at levels 1 and 3");
     expect(run, s->repeated(LEVELS, close, NULL), false, "errors near each other");
