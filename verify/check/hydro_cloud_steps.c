@@ -120,9 +120,9 @@ static void newton(struct scene *scene)
     scene->scheme.h_method = H_NEWTON;
 }
 
-static void not_corrected(struct scene *scene)
+static void wider(struct scene *scene)
 {
-    scene->scheme.h_method = H_PREDICTED;
+    scene->scheme.eta *= 1 + 1e-6;
 }
 
 static void other_cfl(struct scene *scene)
@@ -133,7 +133,7 @@ static void other_cfl(struct scene *scene)
 #define SPOIL(how) (&(const struct cloud_steps_subject){.spoil = how})
 static const struct check_mutant mutants[] = {
     {"cloud_steps_newton", "h by Newton where it is to be predicted", SPOIL(newton)},
-    {"cloud_steps_predicted", "predicted h without its Newton step", SPOIL(not_corrected)},
+    {"cloud_steps_eta", "eta too large by 1e-6", SPOIL(wider)},
     {"cloud_steps_cfl", "cfl too large by 1e-6", SPOIL(other_cfl)},
     {0},
 };
