@@ -10,17 +10,26 @@
 #include "solver.h"
 #include "width.h"
 
-/* A time step that is so much shorter than another of the same run will not get it anywhere; nor
- * will a run that has visited so many more pairs than its particles would in steps of that length:
- * they have clumped, and steps have become short, for ever. */
-static const double collapse = 1e-9, pairs_at_least = 1e7, pairs_each = 1000;
+/* A time step that is so much shorter than another of the same run will not get it anywhere. */
+static const double collapse = 1e-9;
 
 static bool collapsed(const struct simulation *simulation, double dt)
 {
-    const double largest = simulation->largest_dt, n = (double)simulation->particles.n;
-    return !(dt > collapse * largest && simulation->time + dt > simulation->time) ||
-           (double)simulation->cost.pair_interactions >
-               pairs_at_least + pairs_each * n * simulation->t_end / largest;
+    return !(dt > collapse * simulation->largest_dt && simulation->time + dt > simulation->time);
+}
+
+/* Nor will one whose particles have clumped while its steps have become short. A particle of a
+ * healthy run visits all n at most, and longest steps are not a hundred times the usual ones:
+ * LeBlanc's problem with equal numbers of particles has the most known, 2.8 n. */
+static enum status check_work(const struct simulation *simulation, struct error *error)
+{
+    const double n = (double)simulation->particles.n, most = 1e5 + 100 * n;
+    const double steps = 1 + simulation->t_end / simulation->largest_dt;
+    if ((double)simulation->cost.pair_interactions <= most * n * steps) return STATUS_OK;
+    return error_set(error, STATUS_BROKE_DOWN,
+                     "broke down at t = %.9g: more than %.9g pair interactions a particle for each "
+                     "of the longest steps (%.9g) to t_end",
+                     simulation->time, most, simulation->largest_dt);
 }
 
 static double seconds(clockid_t clock)
@@ -273,6 +282,7 @@ static enum status advance(struct simulation *simulation, struct error *error)
     cost->particle_updates += (uint64_t)simulation->sleep.awake_count;
     cost->skipped_particle_updates +=
         (uint64_t)(simulation->particles.n - simulation->sleep.awake_count);
+    if (check_work(simulation, error)) return error->status;
     const bool look = simulation->scheme.energy == ENERGY_INTERNAL && cost->steps % 128 == 0;
     return look ? check_energy(simulation, error) : STATUS_OK;
 }

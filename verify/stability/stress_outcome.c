@@ -19,6 +19,7 @@ const char *stress_outcome_breakdown(const char *message)
     static const char *const kinds[][2] = {{"internal energy", "negative energy"},
                                            {"smoothing length", "h without root"},
                                            {"time step", "time step collapse"},
+                                           {"pair interactions", "too much work"},
                                            {"position", "NaN"},
                                            {"crashed", "crash"}};
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
