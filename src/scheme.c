@@ -21,10 +21,10 @@ static void default_choices(struct scheme *scheme, const struct scheme_open *ope
     if (open->kernel)
         kernel_select(&scheme->kernel, line ? "quadratic_spline" : "wendland_c4", 5, &none);
     if (open->gradient) scheme->gradient = line ? GRADIENT_STANDARD : GRADIENT_IA;
-    if (open->volume_element) scheme->volume_element = line ? VOLUME_MASS : VOLUME_NUMBER;
     if (open->viscosity) scheme->viscosity = line ? VISCOSITY_CONSTANT : VISCOSITY_PROJECTED;
     const bool projected = scheme->viscosity == VISCOSITY_PROJECTED,
                sloped = projected || scheme->viscosity == VISCOSITY_RECONSTRUCTED;
+    if (open->volume_element) scheme->volume_element = projected ? VOLUME_NUMBER : VOLUME_MASS;
     if (open->viscosity_form)
         scheme->viscosity_form = sloped && !line ? VISCOSITY_FORM_SIGNAL : VISCOSITY_FORM_MU;
     if (open->balsara) scheme->balsara = projected ? BALSARA_ON : BALSARA_OFF;
