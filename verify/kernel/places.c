@@ -80,10 +80,12 @@ void places_free(struct places *places)
     *places = (struct places){0};
 }
 
+/* Its size: a compiler may add the opposite of what the source subtracts. */
 static int keep(double value, double *list, int n)
 {
-    if (!(value > 1e-9 && value < 1) || n == PLACES_CONSTANTS_MAX) return n;
-    list[n] = value;
+    const double q = fabs(value);
+    if (!(q > 1e-9 && q < 1) || n == PLACES_CONSTANTS_MAX) return n;
+    list[n] = q;
     return n + 1;
 }
 

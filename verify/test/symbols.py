@@ -50,7 +50,8 @@ def exported(nm, library):
     for line in out.stdout.splitlines():
         match = re.match(r".*[:\[/]([^:\[\]/]+\.o(?:bj)?)\]?:\s*[0-9a-fA-F]*\s+(\w)\s+(\S+)$", line)
         if match and match[2] in EXPORTED:
-            name = match[3].split(".")[0]
+            # clang gives the dispatch of a static function over instruction sets a global name
+            name = "" if match[3].endswith(".resolver") else match[3].split(".")[0]
             if name and not name.startswith("_"):
                 yield match[1], name
 
