@@ -22,6 +22,7 @@ enum stress_kind {
     STRESS_LIMIT,   /* limits of eta: predicted, and found by noise runs */
     STRESS_STEP,    /* largest c dt/dx of an integrator: the same */
     STRESS_PAIRING, /* onset of pairing in 2D and 3D: predicted */
+    STRESS_AMPLIFY, /* what becomes of round-off: a run, and one whose start was moved a little */
 };
 
 struct stress_group {
@@ -31,8 +32,9 @@ struct stress_group {
     const char *row_title, *column_title; /* of the map */
     const struct family *row_family; /* a row for each member, whose key is the row's title; or */
     const struct stress_entry *rows; /* these; neither: stress_schemes */
-    const struct stress_entry *columns; /* entries end with a NULL label */
+    const struct stress_entry *columns; /* entries end with a NULL label; NULL: stress_tubes */
     double bound;                       /* of what is measured: above it is inaccurate */
+    const char *known; /* STRESS_AMPLIFY: why the default scheme may miss it; NULL: it may not */
 };
 
 extern const struct stress_group stress_groups[];

@@ -189,5 +189,38 @@ const struct stress_group stress_groups[] = {
          {"lagr. std energy", "volume_element=energy;formulation=lagrangian", false},
          {"lagr. ia energy", "volume_element=energy;formulation=lagrangian;gradient=ia", false}),
      .bound = 0.1},
+    {.member = {"tubes", "shock tubes drawn at random", ""},
+     .case_name = "sod",
+     .keys = "window=-0.5 0.5",
+     .column_title = "tube",
+     .bound = 0.3},
+    {.member = {"amplification", "what a start moved by 1e-13 of the spacing comes to", ""},
+     .kind = STRESS_AMPLIFY,
+     .case_name = "sod",
+     .keys = "window=-0.49871 0.49913;n=400", /* no particle on an edge */
+     .column_title = "tube",
+     .columns = ENTRIES(
+         {"sod", "left=1 0 1;right=0.125 0 0.1;t_end=0.2", false},
+         {"contact 100:1", "left=1 0.1 1;right=0.01 0.1 1;t_end=0.04", false},
+         {"8:1, hot", "left=1 0 1;right=0.125 0 10;t_end=0.047", false},
+         {"1:4, cold", "left=0.278 0 0.02835;right=1.11617 0 7.7112e-5;t_end=1.19", false},
+         {"1:4, warm", "left=0.618 -0.09 0.9982;right=2.63577 -0.023 0.00715809;t_end=0.31", false},
+         {"Mach 3", "left=1 2.222 0.7142857;right=1 -2.222 0.7142857;t_end=0.15", false}),
+     .bound = 1e4},
+    {.member = {"fronts", "the same, of shocks that two streams make", ""},
+     .kind = STRESS_AMPLIFY,
+     .case_name = "sod",
+     .keys = "window=-0.49871 0.49913;n=800",
+     .column_title = "Mach number",
+     .columns =
+         ENTRIES({"1.2", "left=1 0.3056 0.7142857;right=1 -0.3056 0.7142857;t_end=0.35", false},
+                 {"1.5", "left=1 0.6944 0.7142857;right=1 -0.6944 0.7142857;t_end=0.28", false},
+                 {"1.8", "left=1 1.037 0.7142857;right=1 -1.037 0.7142857;t_end=0.24", false},
+                 {"2.5", "left=1 1.75 0.7142857;right=1 -1.75 0.7142857;t_end=0.18", false},
+                 {"4", "left=1 3.125 0.7142857;right=1 -3.125 0.7142857;t_end=0.11", false},
+                 {"10", "left=1 8.25 0.7142857;right=1 -8.25 0.7142857;t_end=0.045", false}),
+     .bound = 1e4,
+     .known = "the quadratic spline's fronts of one to two particles let perturbations grow by 1.2 "
+              "for every particle that they pass, at Mach 1.6 to 2.2 and beyond 3.5"},
 };
 const size_t stress_group_count = sizeof stress_groups / sizeof *stress_groups;
