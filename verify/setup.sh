@@ -119,11 +119,12 @@ setup_report() {
     mkdir -p "$out"
 }
 
-# setup_watch LOG: says every ten seconds (on a terminal every second) how far ninja is.
+# setup_watch LOG: says every ten seconds (on a terminal every second) how far ninja is. Its sleep
+# outlives it: it must not keep the output open, or whoever reads that through a pipe waits for it.
 setup_watch() {
     every=10 begin='   ' end='\n'
     if [ -t 1 ]; then every=1 begin='\r   ' end='\033[K'; fi
-    while sleep "$every"; do
+    while sleep "$every" >/dev/null 2>&1; do
         printf "$begin%s$end" "$(sed -n '$s/^\(\[[0-9/]*\]\) .*/\1 compiled/p' "$1")"
     done
 }

@@ -266,17 +266,8 @@ static void number_to_mass(const struct simulation *simulation, ptrdiff_t first,
     }
 }
 
-/* A predicted width may be off by this part. */
-static const double surprise_max = 0.3;
-
-static bool is_surprised(const struct particles *particles, ptrdiff_t i)
-{
-    return fabs(particles->h[i] * particles->h_inverse[i] - 1) > surprise_max;
-}
-
-/* The equation of state of all particles, from their sums. Returns how many predicted widths are
- * far from what they should be. */
-static double close_all(struct simulation *simulation, bool predicted)
+/* The equation of state of all particles, from their sums. */
+static void close_all(struct simulation *simulation, bool predicted)
 {
     const struct room *room = room_of(simulation);
     const struct particles *a = &simulation->particles;
@@ -287,9 +278,7 @@ static double close_all(struct simulation *simulation, bool predicted)
                             .follow = predicted ? scheme->integrator->follow : 0};
     const ptrdiff_t batches = (a->n + BATCH_MAX - 1) / BATCH_MAX;
     const bool number = scheme->volume_element == VOLUME_NUMBER;
-    double surprised = 0;
-#pragma omp parallel for num_threads(simulation->threads) reduction(+ : surprised) \
-    if (simulation->threads > 1)
+#pragma omp parallel for num_threads(simulation->threads) if (simulation->threads > 1)
     for (ptrdiff_t b = 0; b < batches; b++) {
         struct density_sums sums;
         const ptrdiff_t first = b * BATCH_MAX;
@@ -303,12 +292,10 @@ static double close_all(struct simulation *simulation, bool predicted)
         }
         if (number) number_to_mass(simulation, first, len, &sums);
         state_close(a, first, len, &simulation->plan, &gas, &sums);
-        for (int i = 0; i < len; i++) surprised += is_surprised(a, first + i) ? 1 : 0;
         /* b = Z P/y^2 with Z = 1, not m */
         for (int i = 0; number && simulation->plan.grad_h && i < len; i++)
             a->b[first + i] *= a->m[first + i];
     }
-    return surprised;
 }
 
 /* Beyond half of the narrowest periodic side pairs have no single nearest image. */
@@ -371,32 +358,6 @@ static enum status newton_widths(struct simulation *simulation, struct error *er
     return status;
 }
 
-/* Where a prediction has failed the root is looked for, as in 1D: from the predicted width on, and
- * no further than by a factor of 2. */
-static enum status solve_surprised(struct simulation *simulation, struct error *error)
-{
-    struct room *room = room_of(simulation);
-    const struct particles *a = &simulation->particles;
-    const struct scheme *scheme = &simulation->scheme;
-    const struct width_rule rule = {a->dim, scheme->eta, scheme->kernel.constant[a->dim],
-                                    scheme->h_tolerance};
-    const double half = half_box(simulation);
-    for (ptrdiff_t i = 0; i < a->n; i++) {
-        const bool surprised = is_surprised(a, i);
-        room->outcome[i] = surprised ? CELLS_OPEN : CELLS_SOLVED;
-        if (!surprised) continue;
-        a->h[i] = 1 / a->h_inverse[i];
-        room->radius[i] = least(2 * a->h[i], half);
-    }
-    const enum status status = search(simulation, error);
-    if (status) return status;
-    cells_widths(room->cells, &room->fields, &rule, room->radius, a->h, a->h_inverse,
-                 room->outcome);
-    close_all(simulation, true);
-    for (ptrdiff_t i = 0; i < a->n; i++) a->h_inverse_old[i] = a->h_inverse_found[i];
-    return STATUS_OK;
-}
-
 static enum status predicted_widths(struct simulation *simulation, double ratio,
                                     struct error *error)
 {
@@ -410,7 +371,8 @@ static enum status predicted_widths(struct simulation *simulation, double ratio,
     const enum status status = search_sorted(simulation, error);
     if (status) return status;
     cells_density(room->cells, &room->fields);
-    return close_all(simulation, true) > 0 ? solve_surprised(simulation, error) : STATUS_OK;
+    close_all(simulation, true);
+    return STATUS_OK;
 }
 
 static enum status widths(struct simulation *simulation, bool newton, double ratio,
