@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What an evaluation is made of, in its order; the sums know the geometry. */
+#include "breakdown.h"
 #include "hold.h"
 #include "solver.h"
 #include "stamp.h"
@@ -13,7 +14,7 @@ static enum status find_primitives(struct simulation *simulation, struct error *
     if (state_primitives(a, 0, a->n, kinetic) <= 0) return STATUS_OK;
     ptrdiff_t i = 0;
     while (a->U[i] > 0) i++;
-    return simulation_broke_down(simulation, i, "internal energy", a->U[i], error);
+    return breakdown_of(simulation, i, "internal energy", a->U[i], error);
 }
 
 /* The interval to the present density sum, against the last one: half a step each side. */

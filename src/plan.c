@@ -32,6 +32,14 @@ struct plan plan_make(const struct scheme *scheme, int dim, bool skip, bool stam
     };
 }
 
+struct plan plan_of_scene(const struct scene *scene)
+{
+    struct plan plan = plan_make(&scene->scheme, scene->dim, scene->skip, !scene->unstamped);
+    for (int k = 0; k < scene->dim; k++) plan.gravity |= scene->gravity[k] != 0;
+    plan.sleep &= !plan.gravity; /* nobody is at rest */
+    return plan;
+}
+
 struct writer {
     struct plan_line *lines;
     size_t count, max;
@@ -107,7 +115,7 @@ size_t plan_explain(const struct scene *scene, struct plan_line *lines, size_t m
                     size_t warnings_size)
 {
     const struct scheme *scheme = &scene->scheme;
-    const struct plan plan = plan_make(scheme, scene->dim, scene->skip, !scene->unstamped);
+    const struct plan plan = plan_of_scene(scene);
     struct writer writer = {lines, 0, max};
     explain_neighbours(scene, &writer);
     line(&writer, "smoothing length by Newton", plan.newton,
@@ -136,15 +144,13 @@ size_t plan_explain(const struct scene *scene, struct plan_line *lines, size_t m
     line(&writer, "signal speed", plan.signal_pass,
          "the integrator changes velocities after the last force", "comes with the pair forces");
     if (scene->dim > 1) {
-        const double *g = scene->gravity;
         line(&writer, "conductivity", scheme->alpha_u > 0, "alpha_u > 0, inside the pair loop",
              "alpha_u=0");
-        line(&writer, "gravity", g[0] != 0 || g[1] != 0 || g[2] != 0, "added to the forces",
-             "gravity=0");
+        line(&writer, "gravity", plan.gravity, "added to the forces", "gravity=0");
     }
     line(&writer, "sleep", plan.sleep,
          "skip=auto: no sums where no signal has been; equal to tolerance 1e-10",
-         "skip=none: every particle at every step");
+         plan.gravity ? "gravity: nobody is at rest" : "skip=none: every particle at every step");
     line(&writer, "final state", !scheme->integrator->ends_evaluated,
          "density and equation of state once more at t_end", "the last evaluation was at t_end");
     if (warnings && warnings_size) find_warnings(scheme, scene->dim, warnings, warnings_size);

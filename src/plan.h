@@ -27,6 +27,11 @@ struct plan {
     bool sleep;              /* leave out particles that no signal has reached */
 };
 
+struct scene; /* see simulation.h */
+
+/* What a scene needs. */
+struct plan plan_of_scene(const struct scene *scene);
+
 /* What the scheme needs in dim dimensions; skip: leave out work that cannot change the result. */
 struct plan plan_make(const struct scheme *scheme, int dim, bool skip, bool stamped);
 

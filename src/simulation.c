@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "breakdown.h"
 #include "simulation.h"
 
 #include <math.h>
@@ -37,15 +38,6 @@ static double seconds(clockid_t clock)
     struct timespec now;
     clock_gettime(clock, &now);
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
-enum status simulation_broke_down(const struct simulation *simulation, ptrdiff_t i,
-                                  const char *quantity, double value, struct error *error)
-{
-    const struct particles *a = &simulation->particles;
-    return error_set(error, STATUS_BROKE_DOWN,
-                     "broke down at t = %.9g: %s of particle %zu at x = %.9g is %.9g",
-                     simulation->time, quantity, a->id[i], a->x[0][i], value);
 }
 
 static enum status check_particle(const struct scene *scene, size_t i, struct error *error)
@@ -150,7 +142,6 @@ static enum status start(struct simulation *simulation, const struct scene *scen
         simulation->lo[k] = scene->lo[k];
         simulation->boundary[k] = scene->boundary[k];
         simulation->gravity[k] = scene->gravity[k];
-        simulation->plan.gravity |= scene->gravity[k] != 0;
         simulation->particles.period[k] = scene->hi[k] - scene->lo[k];
     }
     set_particles(simulation, scene);
@@ -176,7 +167,7 @@ enum status simulation_create(const struct scene *scene, struct simulation **res
     simulation->wall_start = seconds(CLOCK_MONOTONIC);
     simulation->cpu_start = seconds(CLOCK_PROCESS_CPUTIME_ID);
     simulation->scheme = scene->scheme;
-    simulation->plan = plan_make(&simulation->scheme, scene->dim, scene->skip, !scene->unstamped);
+    simulation->plan = plan_of_scene(scene);
     simulation->gamma = scene->gamma;
     simulation->threads = scene->threads > 1 ? scene->threads : 1;
     status = allocate(simulation, (ptrdiff_t)scene->n, error);
@@ -267,8 +258,8 @@ static enum status advance(struct simulation *simulation, struct error *error)
     simulation->largest_dt = fmax(simulation->largest_dt, dt);
     /* in the last step t_end alone decides, however near it is */
     if (!last && collapsed(simulation, dt))
-        return simulation_broke_down(simulation, limiting_particle(simulation),
-                                     "collapsed time step", dt, error);
+        return breakdown_of(simulation, limiting_particle(simulation), "collapsed time step", dt,
+                            error);
     simulation->dt_before = simulation->dt;
     simulation->dt = dt;
     const enum status status = simulation->scheme.integrator->step(simulation, dt, error);

@@ -55,8 +55,4 @@ double simulation_next_step(const struct simulation *simulation, double time);
 /* The time after a step dt from the present time. */
 double simulation_time_after(const struct simulation *simulation, double dt);
 
-/* A breakdown at particle i: quantity = value, at the current time. Returns STATUS_BROKE_DOWN. */
-enum status simulation_broke_down(const struct simulation *simulation, ptrdiff_t i,
-                                  const char *quantity, double value, struct error *error);
-
 #endif

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "breakdown.h"
 #include "cells.h"
 #include "solver.h"
 #include "stamp.h"
@@ -193,7 +194,7 @@ static enum status arrange(struct simulation *simulation, struct error *error)
     for (int k = 0; k < a->dim; k++)
         for (ptrdiff_t i = 0; i < a->n; i++)
             if (!isfinite(a->x[k][i]))
-                return simulation_broke_down(simulation, i, "position", a->x[k][i], error);
+                return breakdown_of(simulation, i, "position", a->x[k][i], error);
     if (room->cells) return STATUS_OK;
     /* the box is known by now */
     const struct cells_method method = method_of(simulation);
@@ -214,7 +215,7 @@ static enum status search(struct simulation *simulation, struct error *error)
     ptrdiff_t widest = 0;
     for (ptrdiff_t i = 1; i < a->n; i++)
         if (!(room->radius[i] <= room->radius[widest])) widest = i;
-    return simulation_broke_down(simulation, widest, "smoothing length", room->radius[widest],
+    return breakdown_of(simulation, widest, "smoothing length", room->radius[widest],
                                  error);
 }
 
@@ -323,7 +324,7 @@ static enum status find_roots(struct simulation *simulation, struct error *error
         bool wider = false;
         for (ptrdiff_t i = 0; i < a->n; i++) {
             if (room->outcome[i] == CELLS_NO_ROOT)
-                return simulation_broke_down(simulation, i, "smoothing length (no root was found)",
+                return breakdown_of(simulation, i, "smoothing length (no root was found)",
                                              a->h[i], error);
             if (room->outcome[i] != CELLS_WIDER) continue;
             wider = true;
@@ -482,7 +483,7 @@ static enum status begin_sleep(struct simulation *simulation, struct error *erro
     sleep->spans[0] = (struct span){0, a->n};
     sleep->span_count = 1;
     sleep->awake_count = a->n;
-    if (!simulation->plan.sleep || simulation->plan.gravity) return STATUS_OK;
+    if (!simulation->plan.sleep) return STATUS_OK;
     unsigned char *asleep = calloc(n, 1);
     room->disturbed = calloc(n, 1);
     if (!asleep || !room->disturbed) {

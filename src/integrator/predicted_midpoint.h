@@ -20,6 +20,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "breakdown.h"
 #include "solver.h"
 #include "stamp.h"
 #include "width.h"
@@ -146,7 +147,7 @@ static enum status name_unsound(const struct simulation *simulation, struct erro
     for (ptrdiff_t i = 0;; i++) {
         double U = a->e[i];
         for (int k = 0; k < a->dim; k++) U -= kinetic * a->p[k][i] * a->p[k][i] * a->m_inverse[i];
-        if (!(U > 0)) return simulation_broke_down(simulation, i, "internal energy", U, error);
+        if (!(U > 0)) return breakdown_of(simulation, i, "internal energy", U, error);
     }
 }
 

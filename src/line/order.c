@@ -2,6 +2,7 @@
  * The order of positions. */
 #include <math.h>
 
+#include "breakdown.h"
 #include "line.h"
 #include "pass.h"
 #include "sort.h"
@@ -94,7 +95,7 @@ enum status order_arrange(struct simulation *simulation, struct error *error)
     if (!order_sort(a))
         for (ptrdiff_t i = 0; i < a->n; i++)
             if (!isfinite(a->x[0][i]))
-                return simulation_broke_down(simulation, i, "position", a->x[0][i], error);
+                return breakdown_of(simulation, i, "position", a->x[0][i], error);
     line_of(simulation)->ghosts_filled = 0; /* of the masses */
     if (simulation->sleep.on) groups_wake_all(simulation);
     return STATUS_OK;

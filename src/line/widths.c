@@ -3,6 +3,7 @@
  * predicted width. */
 #include <math.h>
 
+#include "breakdown.h"
 #include "line.h"
 #include "pass.h"
 #include "stamp.h"
@@ -109,7 +110,7 @@ static enum status too_wide(const struct simulation *simulation, struct error *e
     ptrdiff_t widest = 0;
     for (ptrdiff_t i = 1; i < a->n; i++)
         if (!(a->h_inverse[i] >= a->h_inverse[widest])) widest = i;
-    return simulation_broke_down(simulation, widest, "smoothing length", 1 / a->h_inverse[widest],
+    return breakdown_of(simulation, widest, "smoothing length", 1 / a->h_inverse[widest],
                                  error);
 }
 
@@ -130,7 +131,7 @@ enum status widths_find(struct simulation *simulation, bool newton, double ratio
         if (status) return status;
         const struct tally found = pass_all(simulation, pass);
         if (found.without_root < PTRDIFF_MAX)
-            return simulation_broke_down(simulation, found.without_root,
+            return breakdown_of(simulation, found.without_root,
                                          "smoothing length (no root was found)",
                                          simulation->particles.h[found.without_root], error);
         line->reach = found.reach;
