@@ -7,7 +7,7 @@
 
 #include "riemann.h"
 
-enum { TUBES = 60, TUBES_QUICK = 10, LABEL = 8, KEYS = 160 };
+enum { TUBES = 60, TUBES_QUICK = 10, LABEL = 12, KEYS = 160 };
 
 static double log_uniform(gsl_rng *rng, double low, double high)
 {

@@ -39,7 +39,8 @@ PLACES = {
     "sphproof converge sod kernel=cubic_spline eta=4.8":
         "sphproof converge sod kernel=cubic_spline eta=4.8  # exit 1",  # its gate is not for this scheme
     "sphproof run CASE": "sphproof run sod",
-    "sphproof run CASE n=1602 [KEYS]": "sphproof run sod n=1602 viscosity=fading",
+    "sphproof run sound_wave n=512 [KEYS]": "sphproof run sound_wave n=512 viscosity=fading",
+    "sphproof converge CASE --n 402,804,1206,1602 [KEYS]": "sphproof converge sod --n 402,804,1206,1602",
     "sphproof diff OLD.json NEW.json": "sphproof run sod --json a.json; sphproof diff a.json a.json",
     "sphproof kernel ./mine.so --dim 3": "sphproof kernel build/verify/examples/wendland_c8.so --dim 3",
     "sphproof gradient cloud.csv --operator ia --kernel wendland_c2 --dim 2 --eta 2":

@@ -48,6 +48,9 @@ static void draw(gsl_rng *rng, struct points *p)
             p->x[a][i] = p->box.lo[a] + side * at;
             /* positions need not lie in a periodic box */
             if (p->box.periodic[a]) p->x[a][i] += side * ((double)gsl_rng_uniform_int(rng, 5) - 2);
+            /* just below the lower edge: in round-off, the upper one */
+            if (p->box.periodic[a] && gsl_rng_uniform(rng) < 0.02)
+                p->x[a][i] = p->box.lo[a] - 1e-18 * side;
         }
         p->radius[i] = usual * (gsl_rng_uniform(rng) < 0.1 ? contrast : 1);
     }
