@@ -36,14 +36,14 @@ static void unreadable(struct tally *tally, const char *what, const char *messag
     fail(tally, "harness", what, &detail, "sphproof report --force");
 }
 
-enum answer { FAIL, PASS, SKIP };
+enum answer { FAIL, PASS, SKIP, KNOWN };
 
-/* The status of an entry; `skip` is its word for neither. One that is none of these is a failure
- * of its own and counts as SKIP. */
+/* The status of an entry; `skip` is its word for neither; what is known to fail fails nothing. One
+ * that is none of these is a failure of its own and counts as SKIP. */
 static enum answer answer_of(struct tally *tally, const json_t *entry, const char *skip,
                              const char *what)
 {
-    const char *const words[] = {"fail", "pass", skip, NULL};
+    const char *const words[] = {"fail", "pass", skip, "known", NULL};
     char message[VALUE_MESSAGE];
     const int word = value_need_word(entry, "status", words, message);
     if (word >= 0) return (enum answer)word;

@@ -61,11 +61,15 @@ static void print_orders(const struct case_file *file, const struct study_result
             for (size_t i = 0; i + 1 < order->fit.n; i++) printf(" %.2f", order->fit.pairwise[i]);
             printf("\n");
             if (order->status == GATE_NONE) continue;
-            const bool good = order->status == GATE_PASS;
+            const bool good = order->status == GATE_PASS, known = order->status == GATE_KNOWN;
             printf("    gate: order in [%g, %g], error at n = %zu at most %.3g: %s%s%s%s%s\n",
                    order->gate.low, order->gate.high, result->levels[result->level_count - 1].n,
-                   order->gate.bound, good ? style->good : style->bad, good ? "pass" : "FAIL",
+                   order->gate.bound, good ? style->good : style->bad,
+                   good    ? "pass"
+                   : known ? "known to fail"
+                           : "FAIL",
                    style->end, good ? "" : ": ", order->why);
+            if (known) printf("    known: %s\n", order->known);
         }
 }
 

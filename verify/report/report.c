@@ -85,12 +85,11 @@ static enum status add_study(struct report *report, struct reported *of, int s,
     struct case_file *file = &study->settings.file;
     study->settings = *settings;
     if (sweep_parse(&study->sweep, NULL, error)) return error->status;
-    if (s && !file->compare) file->gate_count = 0;
     for (size_t i = 0; i < file->gate_count && s; i++) file->gates[i].gate.bound *= compared_bound;
     memcpy(study->ladder, file->ladder, sizeof study->ladder);
     study->level_count = file->ladder_count;
     study->replicates = study_replicates(settings);
-    if (report->nightly && file->deepen && study->level_count < CASE_LADDER_MAX)
+    if (report->nightly && study->level_count < CASE_LADDER_MAX)
         add_level(study, of->more, sizeof of->more);
     return study_plan(study, &report->pool, error);
 }

@@ -22,9 +22,7 @@ enum { LINE_LENGTH_MAX = 180 };
     EXTRA(measure, fields)                                                                         \
     EXTRA(measure, exact)                                                                          \
     EXTRA(converge, n)                                                                             \
-    EXTRA(report, compare)                                                                         \
-    EXTRA(report, bench)                                                                           \
-    EXTRA(report, deepen)
+    EXTRA(report, bench)
 #define EXTRA_SYMBOL(section, name) EXTRA_##name,
 #define EXTRA_ENTRY(section, name)  {#section, #name},
 enum extra { EXTRA_LIST(EXTRA_SYMBOL) EXTRAS };
@@ -164,14 +162,8 @@ static void set_extra(struct parser *parser, enum extra extra, const char *value
     case EXTRA_n:
         set_ladder(parser, value);
         return;
-    case EXTRA_compare:
-        set_flag(parser, "compare", value, &file->compare);
-        return;
     case EXTRA_bench:
         set_flag(parser, "bench", value, &file->bench);
-        return;
-    case EXTRA_deepen:
-        set_flag(parser, "deepen", value, &file->deepen);
         return;
     default:
         return;
@@ -194,15 +186,28 @@ static bool gate_name(const char *name, int *field, int *norm)
 static void set_gate(struct parser *parser, int field, int norm, const char *name,
                      const char *value)
 {
+    static const char mark[] = "known:";
     double numbers[3];
+    char text[256];
     struct case_file *file = parser->file;
+    struct case_gate *gate = &file->gates[file->gate_count];
     if (!first_time(parser, &parser->seen_gates[field * NORMS + norm], name)) return;
-    if (!text_reals(value, " \t,", 3, numbers) || !(numbers[0] < numbers[1]) || !(numbers[2] > 0)) {
-        fail_value(parser, name, value, "least order, greatest order, bound of the finest error");
+    const char *known = strstr(value, mark), *why = known ? known + strlen(mark) : "";
+    snprintf(text, sizeof text, "%.*s", known ? (int)(known - value) : 200, value);
+    for (size_t n = strlen(text); n && text[n - 1] == ' '; n--) text[n - 1] = '\0';
+    while (*why == ' ') why++;
+    if (!text_reals(text, " \t,", 3, numbers) || !(numbers[0] < numbers[1]) || !(numbers[2] > 0) ||
+        (known && !*why) || strlen(why) >= sizeof gate->known) {
+        fail_value(
+            parser, name, value,
+            "least order, greatest order, bound of the finest error; after them `known: WHY` "
+            "in less than 160 characters, if it is known to fail");
         return;
     }
-    file->gates[file->gate_count++] = (struct case_gate){
-        (enum field)field, (enum norm)norm, {numbers[0], numbers[1], numbers[2]}};
+    *gate = (struct case_gate){
+        (enum field)field, (enum norm)norm, {numbers[0], numbers[1], numbers[2]}, ""};
+    snprintf(gate->known, sizeof gate->known, "%s", why);
+    file->gate_count++;
 }
 
 /* A key that is not allowed in its section: says where it belongs, or what is near. */
@@ -362,8 +367,7 @@ enum status case_parse(struct case_file *file, const char *path, const char *tex
         .file = file, .path = path, .text = text, .end = text + length, .error = error};
     const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path;
     const char *dot = strrchr(base, '.');
-    *file = (struct case_file){
-        .fields = {true, true, true, true}, .compare = true, .bench = true, .deepen = true};
+    *file = (struct case_file){.fields = {true, true, true, true}, .bench = true};
     snprintf(file->name, sizeof file->name, "%.*s", dot ? (int)(dot - base) : (int)strlen(base),
              base);
     status_clean(file->name);

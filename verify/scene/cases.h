@@ -14,11 +14,13 @@
 
 enum { CASE_LADDER_MAX = ORDER_LEVELS_MAX, CASE_GATES_MAX = FIELDS * NORMS };
 
-/* A gate of [converge]: `density_l1 = LOW HIGH BOUND`. */
+/* A gate of [converge]: `density_l1 = LOW HIGH BOUND`, or `... known: WHY` of a weakness that is
+ * shown and fails nothing. */
 struct case_gate {
     enum field field;
     enum norm norm;
     struct order_gate gate;
+    char known[160]; /* why it is expected to fail; "" if it is not */
 };
 
 struct case_file {
@@ -31,9 +33,7 @@ struct case_file {
     size_t ladder[CASE_LADDER_MAX], ladder_count;
     struct case_gate gates[CASE_GATES_MAX];
     size_t gate_count;
-    /* In a report: other schemes are compared and get the gates, too, with a wider bound of the
-     * error; what an error costs is measured; a night adds a level to the ladder. */
-    bool compare, bench, deepen;
+    bool bench; /* a report measures what an error costs */
 };
 
 /* The built-in cases, in the order of a report; ends with a NULL name. */

@@ -325,7 +325,9 @@ static void judge_gates(struct study_result *result, const struct case_file *fil
             order->gate.bound *= pow(fmax(1, coarser), gate->gate.low);
         }
         order->status = order_passes(&order->fit, &order->gate, order->why) ? GATE_PASS : GATE_FAIL;
-        if (order->status == GATE_PASS) continue;
+        order->known = gate->known;
+        if (order->status == GATE_FAIL && *gate->known) order->status = GATE_KNOWN;
+        if (order->status != GATE_FAIL) continue;
         result->status = STATUS_CHECK_FAILED;
         result->floor_explains |= !(order->fit.order >= order->gate.low) &&
                                   finest->errors[gate->field][gate->norm] <= floor_reach * floor;

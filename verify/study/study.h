@@ -33,13 +33,15 @@ struct study_level {
     double functionals[PROBLEM_FUNCTIONALS_MAX];
 };
 
-enum study_gate { GATE_NONE, GATE_PASS, GATE_FAIL };
+/* GATE_KNOWN: fails, as the case says that it does. */
+enum study_gate { GATE_NONE, GATE_PASS, GATE_FAIL, GATE_KNOWN };
 
 struct study_order {
     struct order_fit fit;
     enum study_gate status;
     struct order_gate gate;    /* bound: at the ladder's finest level; see study_judge */
     char why[ORDER_GATE_TEXT]; /* the condition that fails */
+    const char *known;         /* why it is known to fail, "" if it is not; the case's */
 };
 
 /* One scheme over the ladder. */

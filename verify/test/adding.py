@@ -393,9 +393,6 @@ fields = density velocity pressure internal_energy
 
 [converge]
 n = 32 48 64 96
-
-[report]
-compare = no
 """
 
 

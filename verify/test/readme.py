@@ -39,6 +39,7 @@ PLACES = {
     "sphproof converge sod kernel=cubic_spline eta=4.8":
         "sphproof converge sod kernel=cubic_spline eta=4.8  # exit 1",  # its gate is not for this scheme
     "sphproof run CASE": "sphproof run sod",
+    "sphproof run CASE n=64^2": "sphproof run gresho n=24^2 t_end=0.1",
     "sphproof run sound_wave n=512 [KEYS]": "sphproof run sound_wave n=512 viscosity=fading",
     "sphproof converge CASE --n 402,804,1206,1602 [KEYS]": "sphproof converge sod --n 402,804,1206,1602",
     "sphproof diff OLD.json NEW.json": "sphproof run sod --json a.json; sphproof diff a.json a.json",
@@ -125,6 +126,8 @@ def scripts(program, source, work):
         code, out, said = run("mkdir -p a nights/report; touch nights/report/faults.json a/faults.json; " +
                               in_source(line).replace("--nightly", "--nightly --out nights/report"
                                                       if "--out" not in line else "--nightly"))
+        if not os.path.exists(os.path.join(work, "words")):
+            sys.exit("%s: exit %d, the program was not called\n%s%s" % (line, code, out, said))
         words = open(os.path.join(work, "words"), encoding="utf-8").read().split("\n")[:-1]
         options = [word for before, word in zip(words, words[1:]) if word.startswith("--") and before != "--jobs"]
         if code or len(options) != len(set(options)) or options.count("--out") != 1:

@@ -203,6 +203,19 @@ static void overshoots(void **state)
     free(html);
 }
 
+/* What is known to fail is shown with its reason, and fails nothing. */
+static void known(void **state)
+{
+    (void)state;
+    json_t *results = sound(), *order = first(first(results, "studies"), "orders");
+    json_object_set_new(order, "status", json_string("known"));
+    json_object_set_new(order, "known", json_string("few particles <there>"));
+    char *html = page_of(judged(results));
+    assert_non_null(strstr(html, "<h1>All is well</h1>"));
+    assert_non_null(strstr(html, "known</b>: few particles &lt;there&gt;"));
+    free(html);
+}
+
 /* What was reported a while ago was not last night. */
 static void since(void **state)
 {
@@ -416,19 +429,13 @@ static void unreadable(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(good_page),
-        cmocka_unit_test(bad_page),
-        cmocka_unit_test(folded_cases),
-        cmocka_unit_test(overshoots),
-        cmocka_unit_test(since),
-        cmocka_unit_test(words),
-        cmocka_unit_test(broke_since),
-        cmocka_unit_test(empty_page),
-        cmocka_unit_test(page_without_gnuplot),
-        cmocka_unit_test(junit),
-        cmocka_unit_test(summary),
-        cmocka_unit_test(cause_first),
-        cmocka_unit_test(unreadable),
+        cmocka_unit_test(good_page),   cmocka_unit_test(bad_page),
+        cmocka_unit_test(known),       cmocka_unit_test(folded_cases),
+        cmocka_unit_test(overshoots),  cmocka_unit_test(since),
+        cmocka_unit_test(words),       cmocka_unit_test(broke_since),
+        cmocka_unit_test(empty_page),  cmocka_unit_test(page_without_gnuplot),
+        cmocka_unit_test(junit),       cmocka_unit_test(summary),
+        cmocka_unit_test(cause_first), cmocka_unit_test(unreadable),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -346,11 +346,12 @@ static double edge(const struct riemann_solution *tube, double sign)
 
 /* Is a place so far ahead of a wave, which has run a way (backwards: < 0), that its gas has to be
  * at rest? Counted in h (a shock's precursor falls tenfold from particle to particle), and as a
- * part of the way that the wave has run (a fan's head is dispersed, over many h). */
-static bool far_ahead(double place, double way, double h)
+ * part of the way that the wave has run (a fan's head is dispersed, over many h), and beyond what
+ * the widest particle reaches, which may be a lone one of a light gas behind that wave. */
+static bool far_ahead(double place, double way, double h, double widest)
 {
-    const double still_widths = 12, still_way = 0.25;
-    return place - way > fmax(still_widths * h, still_way * fabs(way));
+    const double still_widths = 12, still_way = 0.25, reaches = 2;
+    return place - way > fmax(fmax(still_widths * h, still_way * fabs(way)), reaches * widest);
 }
 
 /* Undisturbed gas lies between the main tube's wave and the one that comes from the box's end. */
@@ -358,13 +359,14 @@ static double stillness(const struct prepared *p, const struct snapshot *s)
 {
     const struct tube *tubes = tube_of(p);
     const struct riemann_solution *tube = &tubes->main;
-    double moved = NAN;
+    double moved = NAN, widest = 0;
+    for (size_t i = 0; i < s->n; i++) widest = fmax(widest, s->h[i]);
     for (size_t i = 0; i < s->n; i++) {
         const double x = s->x[0][i], sign = x > tubes->x0 ? 1 : -1;
         const struct riemann_state *gas = sign > 0 ? &tube->right : &tube->left;
         const double from_end = sign > 0 ? p->domain.hi[0] - x : x - p->domain.lo[0];
-        if (!far_ahead(sign * (x - tubes->x0), edge(tube, sign) * s->time, s->h[i]) ||
-            !far_ahead(from_end, edge(&tubes->mirror, -sign) * s->time, s->h[i]))
+        if (!far_ahead(sign * (x - tubes->x0), edge(tube, sign) * s->time, s->h[i], widest) ||
+            !far_ahead(from_end, edge(&tubes->mirror, -sign) * s->time, s->h[i], widest))
             continue;
         const double c = sqrt(tube->gamma * gas->P / gas->rho);
         moved = fmax(moved, fabs(s->v[0][i] - gas->v) / c);
