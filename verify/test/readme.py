@@ -53,7 +53,7 @@ PLACES = {
         "sphproof rates particles.csv lo=0 hi=1 --check theirs.csv",
     "python3 verify/test/faults.py build/sphproof PART": None,  # test `faults`
     "reports/run": None, "reports/run --nightly": None, "reports/compare main": None,  # tests `README: scripts`, `reports/compare`
-    "verify/run --full": None, "verify/run --nightly": None,
+    "verify/run --only valgrind,threads": None, "verify/run --full": None, "verify/run --nightly": None,
 }
 
 
@@ -102,7 +102,8 @@ def scripts(program, source, work):
         return re.sub(r"(?<![\w/])(reports|verify)/(run|compare)", shlex.quote(source) + r"/\1/\2", command)
 
     wrong = {"reports/run": ["--bogus", "--out a --out=b", "--out", "word", "--quick --nightly", "--resume --force"],
-             "verify/run": ["--bogus", "--full --bogus", "--full --nightly", "word"],
+             "verify/run": ["--bogus", "--full --bogus", "--full --nightly", "word", "--only", "--only bogus",
+                            "--only gcc,bogus", "--full --only gcc", "--only gcc --nightly"],
              "reports/compare": ["HEAD --bogus", "HEAD HEAD", "HEAD --threshold", "no-such-revision"]}
     for script, lines in wrong.items():
         for line in lines:
