@@ -169,7 +169,7 @@ enum status simulation_create(const struct scene *scene, struct simulation **res
     simulation->scheme = scene->scheme;
     simulation->plan = plan_of_scene(scene);
     simulation->gamma = scene->gamma;
-    simulation->threads = scene->threads > 1 ? scene->threads : 1;
+    team_begin(&simulation->team, scene->threads > 1 ? scene->threads : 1);
     status = allocate(simulation, (ptrdiff_t)scene->n, error);
     if (!status) status = start(simulation, scene, error);
     if (status)
@@ -285,8 +285,10 @@ enum status simulation_run(struct simulation *simulation, double t_end,
     enum status status = STATUS_OK;
     bool stopped = false;
     simulation->t_end = t_end;
+    team_pause(&simulation->team);
     while (simulation->time < t_end && !stopped && !status) {
         status = advance(simulation, error);
+        if (simulation->team.most > 1) team_step(&simulation->team, seconds(CLOCK_MONOTONIC));
         if (!status && progress)
             stopped = !progress(context, simulation->time, simulation->cost.steps);
     }

@@ -11,6 +11,7 @@
 #include "simulation.h"
 #include "sleep.h"
 #include "sums.h"
+#include "team.h"
 
 enum { WORTH_A_THREAD = 32 }; /* batches: with fewer of them threads cost more than they save */
 
@@ -29,7 +30,7 @@ struct simulation {
     double dt, dt_before; /* of the step in progress or the last one, and the one before; 0: none */
     double largest_dt;    /* of all steps */
     double start_energy;  /* total */
-    int threads;
+    struct team team; /* threads that work together */
     struct sleep sleep;
     struct simulation_cost cost;
     double wall_start, cpu_start;

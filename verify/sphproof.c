@@ -12,7 +12,8 @@ static void wait_briefly(int argc, char **argv)
 {
     if (getenv("OMP_WAIT_POLICY") || getenv("GOMP_SPINCOUNT") || getenv("KMP_BLOCKTIME")) return;
     for (int i = 1; i < argc; i++)
-        if (strncmp(argv[i], "--threads", strlen("--threads")) == 0) {
+        if (strncmp(argv[i], "--threads", strlen("--threads")) == 0 ||
+            strcmp(argv[i], "--scaling") == 0) {
             setenv("GOMP_SPINCOUNT", "2000", 1);
             setenv("KMP_BLOCKTIME", "0", 1);
             execv("/proc/self/exe", argv); /* on failure: as it was */

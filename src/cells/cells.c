@@ -63,6 +63,7 @@ struct cells *cells_create(const struct cells_method *method, size_t n)
     struct cells *cells = calloc(1, sizeof *cells);
     if (!cells) return NULL;
     cells->method = *method;
+    cells->team = method->threads;
     cells->shapes = shapes_of(method->kernel, method->box.dim, method->stamped);
     lay_out(cells);
     struct lanes_layout *const layouts[] = {&cells->density, &cells->matrix, &cells->force};
@@ -86,6 +87,12 @@ void cells_destroy(struct cells *cells)
     for (int a = 0; a < 3; a++) free(cells->images.x[a]);
     grid_destroy(cells->grid);
     free(cells);
+}
+
+void cells_team(struct cells *cells, int size)
+{
+    cells->team = size;
+    grid_team(cells->grid, size);
 }
 
 size_t cells_points(const struct cells *cells)

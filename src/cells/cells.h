@@ -44,7 +44,7 @@ struct cells_method {
     double
         worst_condition; /* of a moment matrix; beyond it the pair's gradient is the standard one */
     struct pair_numbers numbers;
-    int threads;
+    int threads; /* at most */
 };
 
 /* Arrays of the particles, n each, in the caller's order; NULL where the method needs none. */
@@ -69,6 +69,9 @@ struct cells;
 /* Memory for n particles. NULL: none left. */
 struct cells *cells_create(const struct cells_method *method, size_t n);
 void cells_destroy(struct cells *cells);
+
+/* So many threads, no more than the method's, do the work from here on. */
+void cells_team(struct cells *cells, int size);
 
 /* Finds who is near whom, to max(radius_i, radius_j); particles that sleep (NULL: nobody) get no
  * sums until the next call. Errors as grid_search. */

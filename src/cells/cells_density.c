@@ -10,7 +10,7 @@ static void fill_records(struct cells *cells, const struct cells_fields *fields)
     const struct lanes_layout *layout = &cells->density;
     const double(*place)[4] = grid_positions(cells->grid);
     const ptrdiff_t size = layout->size, energy = layout->offset[GROUP_LAGRANGIAN];
-#pragma omp parallel for num_threads(cells->method.threads) if (cells->method.threads > 1)
+#pragma omp parallel for num_threads(cells->team) if (cells->team > 1)
     for (size_t s = 0; s <= cells->points; s++) {
         double *record = cells->records + (ptrdiff_t)s * size;
         const bool sentinel = s == cells->points;

@@ -87,7 +87,7 @@ static void fill_record(const struct cells *cells, const struct cells_fields *fi
 static void fill_records(struct cells *cells, const struct cells_fields *fields)
 {
     const double(*place)[4] = grid_positions(cells->grid);
-#pragma omp parallel for num_threads(cells->method.threads) if (cells->method.threads > 1)
+#pragma omp parallel for num_threads(cells->team) if (cells->team > 1)
     for (size_t s = 0; s < cells->points; s++) {
         double *record = cells->records + (ptrdiff_t)s * cells->force.size;
         for (int a = 0; a < 3; a++) record[a] = place[s][a];

@@ -15,7 +15,7 @@ static void fill_records(struct cells *cells, const struct cells_fields *fields)
     const int dim = cells->method.box.dim;
     const ptrdiff_t size = layout->size, motion = layout->offset[GROUP_MOTION],
                     gas = layout->offset[GROUP_GAS];
-#pragma omp parallel for num_threads(cells->method.threads) if (cells->method.threads > 1)
+#pragma omp parallel for num_threads(cells->team) if (cells->team > 1)
     for (size_t s = 0; s <= cells->points; s++) {
         double *record = cells->records + (ptrdiff_t)s * size;
         for (ptrdiff_t f = 0; f < size; f++) record[f] = 0;

@@ -79,7 +79,7 @@ static struct cells_method method_of(const struct simulation *simulation)
                                   : scheme->alpha > 0 ? scheme->beta / scheme->alpha
                                                       : 2,
                     .near = 1 / scheme->eta},
-        .threads = simulation->threads,
+        .threads = simulation->team.most,
     };
     for (int k = 0; k < plan->dim; k++) {
         method.box.lo[k] = simulation->lo[k];
@@ -195,7 +195,10 @@ static enum status arrange(struct simulation *simulation, struct error *error)
         for (ptrdiff_t i = 0; i < a->n; i++)
             if (!isfinite(a->x[k][i]))
                 return breakdown_of(simulation, i, "position", a->x[k][i], error);
-    if (room->cells) return STATUS_OK;
+    if (room->cells) {
+        cells_team(room->cells, simulation->team.size);
+        return STATUS_OK;
+    }
     /* the box is known by now */
     const struct cells_method method = method_of(simulation);
     room->cells = cells_create(&method, (size_t)a->n);
@@ -215,8 +218,7 @@ static enum status search(struct simulation *simulation, struct error *error)
     ptrdiff_t widest = 0;
     for (ptrdiff_t i = 1; i < a->n; i++)
         if (!(room->radius[i] <= room->radius[widest])) widest = i;
-    return breakdown_of(simulation, widest, "smoothing length", room->radius[widest],
-                                 error);
+    return breakdown_of(simulation, widest, "smoothing length", room->radius[widest], error);
 }
 
 static void permute(struct particles *particles, double *array)
@@ -279,7 +281,7 @@ static void close_all(struct simulation *simulation, bool predicted)
                             .follow = predicted ? scheme->integrator->follow : 0};
     const ptrdiff_t batches = (a->n + BATCH_MAX - 1) / BATCH_MAX;
     const bool number = scheme->volume_element == VOLUME_NUMBER;
-#pragma omp parallel for num_threads(simulation->threads) if (simulation->threads > 1)
+#pragma omp parallel for num_threads(simulation->team.size) if (simulation->team.size > 1)
     for (ptrdiff_t b = 0; b < batches; b++) {
         struct density_sums sums;
         const ptrdiff_t first = b * BATCH_MAX;
@@ -324,8 +326,8 @@ static enum status find_roots(struct simulation *simulation, struct error *error
         bool wider = false;
         for (ptrdiff_t i = 0; i < a->n; i++) {
             if (room->outcome[i] == CELLS_NO_ROOT)
-                return breakdown_of(simulation, i, "smoothing length (no root was found)",
-                                             a->h[i], error);
+                return breakdown_of(simulation, i, "smoothing length (no root was found)", a->h[i],
+                                    error);
             if (room->outcome[i] != CELLS_WIDER) continue;
             wider = true;
             room->outcome[i] = CELLS_OPEN;

@@ -295,13 +295,18 @@ struct grid *grid_create(const struct grid_box *box, size_t n, int threads)
     struct grid *grid = calloc(1, sizeof *grid);
     if (!grid) return NULL;
     grid->box = *box;
-    grid->threads = threads;
+    grid->threads = grid->team = threads;
     grid->find = grid_find_choose();
     grid->pools = calloc((size_t)threads, sizeof *grid->pools);
     grid->candidates = calloc((size_t)threads, sizeof *grid->candidates);
     if (grid->pools && grid->candidates && reserve_points(grid, n)) return grid;
     grid_destroy(grid);
     return NULL;
+}
+
+void grid_team(struct grid *grid, int size)
+{
+    grid->team = size;
 }
 
 enum status grid_search(struct grid *grid, size_t n, size_t active, const double *const x[],

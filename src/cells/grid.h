@@ -35,6 +35,9 @@ struct grid; /* private to grid.c but for what the functions below give */
 struct grid *grid_create(const struct grid_box *box, size_t n, int threads);
 void grid_destroy(struct grid *grid);
 
+/* So many of them search from here on. */
+void grid_team(struct grid *grid, int size);
+
 /* Sorts n points and finds the list of each of the first `active` ones (the others are only found)
  * that does not sleep; asleep: a flag for each of those, or NULL. x: dim arrays of n, any real
  * positions on periodic axes; radius: n search radii.

@@ -38,7 +38,7 @@ typedef int32_t find_loop(int dim, const struct candidates *candidates, size_t c
 
 struct grid {
     struct grid_box box;
-    int threads;
+    int threads, team; /* there are; at work */
     size_t n, capacity;
     double lo[3], side[3], size[3], cell_inverse[3]; /* side: period or extent */
     double unit; /* what single precision is used in: the usual radius */

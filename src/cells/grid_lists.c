@@ -291,8 +291,8 @@ enum status grid_make_lists(struct grid *grid, struct error *error)
     for (int t = 0; t < grid->threads; t++) grid->pools[t].used_chunks = grid->pools[t].used = 0;
     int longest = 0;
     bool enough = true;
-#pragma omp parallel for num_threads(grid->threads) schedule(dynamic) reduction(max : longest) \
-    reduction(&& : enough) if (grid->threads > 1)
+#pragma omp parallel for num_threads(grid->team) schedule(dynamic) reduction(max : longest) \
+    reduction(&& : enough) if (grid->team > 1)
     for (size_t p = 0; p < grid->parts; p++) {
         const int t = thread_number();
         for (size_t cell = grid->part_cell[p]; cell < grid->part_cell[p + 1]; cell++) {

@@ -105,8 +105,7 @@ void lanes_all(struct cells *cells, const struct cells_fields *fields, lanes_pas
 {
     const uint32_t *begin;
     const size_t parts = grid_parts(cells->grid, &begin);
-#pragma omp parallel for num_threads(cells->method.threads)                                        \
-    schedule(dynamic) if (cells->method.threads > 1)
+#pragma omp parallel for num_threads(cells->team) schedule(dynamic) if (cells->team > 1)
     for (size_t p = 0; p < parts; p++) {
 #ifdef _OPENMP
         struct lanes *lanes = &cells->lanes[omp_get_thread_num()];

@@ -78,6 +78,7 @@ struct lanes_newton {
 
 struct cells {
     struct cells_method method;
+    int team; /* threads at work */
     struct grid *grid;
     struct shapes shapes;
     size_t points; /* particles and their mirror images: slots run over both */

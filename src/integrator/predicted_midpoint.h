@@ -126,7 +126,7 @@ static double move_all(const struct simulation *simulation, move *const *walks, 
     double count = 0;
     for (ptrdiff_t s = 0; s < (spans ? sleep->span_count : 1); s++) {
         const struct span *span = spans ? &sleep->spans[s] : &all;
-        const ptrdiff_t parts = span->len >= WORTH_A_THREAD * BATCH_MAX ? simulation->threads : 1;
+        const ptrdiff_t parts = span->len >= WORTH_A_THREAD * BATCH_MAX ? simulation->team.size : 1;
         if (parts == 1) {
             count += walk(simulation, span, dt, ahead);
             continue;

@@ -32,7 +32,7 @@ enum status forces_reserve_scratch(struct simulation *simulation, ptrdiff_t reac
     if (size <= line->scratch_size) return STATUS_OK;
     free(line->scratch);
     line->scratch_size = 2 * size;
-    line->scratch = malloc(line->scratch_size * (size_t)simulation->threads * sizeof(double));
+    line->scratch = malloc(line->scratch_size * (size_t)simulation->team.most * sizeof(double));
     if (line->scratch) return STATUS_OK;
     line->scratch_size = 0;
     return error_set(error, STATUS_ENVIRONMENT, "no memory for pairs %td apart", reach);

@@ -35,7 +35,7 @@ struct line {
     ptrdiff_t reach;         /* largest of the ranges */
     double predict_ratio;    /* of the present pass */
     uint64_t density_passes; /* so far; ranges know by it what belongs to this one */
-    double *scratch;         /* threads * scratch_size */
+    double *scratch;         /* scratch_size of each thread */
     size_t scratch_size;
     struct groups groups;
 };

@@ -32,11 +32,11 @@ struct tally pass_all(struct simulation *simulation, range_pass *pass)
     const struct line *line = line_of(simulation);
     const ptrdiff_t count = line->range_count;
     struct tally all = {.without_root = PTRDIFF_MAX};
-    if (simulation->threads == 1 || count < WORTH_A_THREAD) {
+    if (simulation->team.size == 1 || count < WORTH_A_THREAD) {
         for (ptrdiff_t b = 0; b < count; b++) pass(simulation, &line->ranges[b], &all);
         return all;
     }
-#pragma omp parallel num_threads(simulation->threads)
+#pragma omp parallel num_threads(simulation->team.size)
     {
         struct tally own = {.thread = thread_number(), .without_root = PTRDIFF_MAX};
 #pragma omp for schedule(static) nowait

@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "team.h"
+
+/* A trial is longer than the slice of time that schedulers give to one of two programs on a core;
+ * stretches between trials last so many times as long, in time and in steps, at first and in the
+ * end: a trial of the wrong size costs no more than its part of this. */
+static const double trial = 4e-3;
+enum { STRETCH_MIN = 16, STRETCH_MAX = 256 };
+
+/* A change must be worth it, or noise would decide. */
+static const double worth = 0.95;
+
+/* So much slower than it has been, a size of the team is no longer taken for granted. */
+static const double slower = 1.5;
+
+void team_begin(struct team *team, int most)
+{
+    *team = (struct team){.most = most, .size = most, .stretch = STRETCH_MIN, .trying = true};
+}
+
+void team_pause(struct team *team)
+{
+    team->begun = 0;
+}
+
+static void begin_stretch(struct team *team, int size, bool trying, double now)
+{
+    team->size = size;
+    team->trying = trying;
+    team->begun = now;
+    team->steps = 0;
+}
+
+/* Both sizes have a pace: the better one gets the next stretch, a longer one each time that it is
+ * the same as before. */
+static void choose(struct team *team, double now)
+{
+    const int tried = team->size, other = tried == 1 ? team->most : 1;
+    const double mine = team->pace[tried > 1], theirs = team->pace[other > 1];
+    const bool change = mine < worth * theirs;
+    team->stretch = change ? STRETCH_MIN : 2 * team->stretch;
+    if (team->stretch > STRETCH_MAX) team->stretch = STRETCH_MAX;
+    begin_stretch(team, change ? tried : other, false, now);
+}
+
+void team_step(struct team *team, double now)
+{
+    if (team->most == 1) return;
+    if (!(team->begun > 0)) {
+        begin_stretch(team, team->size, team->trying, now);
+        return;
+    }
+    double *pace = &team->pace[team->size > 1], times = team->trying ? 1 : team->stretch;
+    const double taken = now - team->begun, present = taken / (double)++team->steps;
+    if (present > slower * *pace) times = 1;
+    if (!((double)team->steps >= times && taken >= times * trial)) return;
+    *pace = present;
+    const int other = team->size == 1 ? team->most : 1;
+    if (team->trying && team->pace[other > 1] > 0)
+        choose(team, now);
+    else
+        begin_stretch(team, other, true, now);
+}

@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * How many of a run's threads work. Where other programs want the same processors, threads wait for
+ * each other at the end of every pass for longer than they share out, and one thread alone is
+ * faster: several times, in short steps. Results do not depend on it, so both are tried: now and
+ * then for a few milliseconds, the less often the longer the answer has been the same. */
+#ifndef SPHPROOF_TEAM_H
+#define SPHPROOF_TEAM_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+struct team {
+    int most;       /* threads there are, >= 1 */
+    int size;       /* at work: most or 1 */
+    double pace[2]; /* seconds a step that were measured last: of one thread, of most; 0: none */
+    double begun;   /* when the present stretch of steps did; 0: none has */
+    double stretch; /* until the other size is tried: in trials */
+    uint64_t steps; /* of the present stretch */
+    bool trying;    /* the present stretch is a trial */
+};
+
+/* All at work, until they have been tried. */
+void team_begin(struct team *team, int most);
+
+/* A step ends at `now`, in seconds of a clock that never goes back. Decides on the size of the team
+ * for the next one. */
+void team_step(struct team *team, double now);
+
+/* Steps do not follow each other: time that passes from here on is nobody's. */
+void team_pause(struct team *team);
+
+#endif
