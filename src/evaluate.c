@@ -79,6 +79,7 @@ enum status evaluate_rates_of_primitives(struct simulation *simulation, struct e
     status = plan->sums->forces(simulation, &rate, error);
     if (status == STATUS_OK && plan->gravity) fall(simulation);
     if (status == STATUS_OK) hold_rates(simulation);
+    if (status == STATUS_OK && plan->jump) plan->sums->find_switch(simulation);
     if (status == STATUS_OK) limit_time_step(simulation, rate);
     return status;
 }

@@ -23,10 +23,12 @@ struct plan plan_make(const struct scheme *scheme, int dim, bool skip, bool stam
                         (scheme->pair_width == PAIR_WIDTH_MEAN ||
                          scheme->formulation == FORMULATION_LAGRANGIAN),
         .slope = scheme->viscosity == VISCOSITY_RECONSTRUCTED ||
-                 scheme->viscosity == VISCOSITY_PROJECTED || scheme->balsara == BALSARA_ON,
+                 scheme->viscosity == VISCOSITY_PROJECTED ||
+                 scheme->viscosity == VISCOSITY_CULLEN_DEHNEN || scheme->balsara == BALSARA_ON,
         .balsara = scheme->balsara == BALSARA_ON,
         .viscosity = scheme->viscosity != VISCOSITY_NONE,
         .alpha = scheme->viscosity == VISCOSITY_TIME_DEPENDENT,
+        .jump = scheme->viscosity == VISCOSITY_CULLEN_DEHNEN,
         .sleep = skip,
         .signal_pass = scheme->integrator->signal_pass,
     };
@@ -132,6 +134,7 @@ size_t plan_explain(const struct scene *scene, struct plan_line *lines, size_t m
          "gradient=standard needs none");
     line(&writer, "velocity gradient", plan.slope,
          plan.balsara ? "for the Balsara factor of the viscosity"
+         : plan.jump  ? "for the switch of the viscosity"
                       : "for the midpoint velocities of the viscosity",
          "no viscosity needs it");
     line(&writer, "pair forces", true,
@@ -139,7 +142,9 @@ size_t plan_explain(const struct scene *scene, struct plan_line *lines, size_t m
                          : "each pair from both sides, opposite to the last bit",
          "");
     line(&writer, "artificial viscosity", plan.viscosity, "inside the pair loop", "viscosity=none");
-    line(&writer, "evolution of alpha", plan.alpha, "viscosity=time_dependent, with div v",
+    line(&writer, "evolution of alpha", plan.alpha || plan.jump,
+         plan.jump ? "viscosity=cullen_dehnen, once a step, with the gradient of the acceleration"
+                   : "viscosity=time_dependent, with div v",
          "alpha is constant");
     line(&writer, "signal speed", plan.signal_pass,
          "the integrator changes velocities after the last force", "comes with the pair forces");

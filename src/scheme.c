@@ -100,10 +100,6 @@ static enum status check_members(const struct scheme *scheme, int dim, struct er
                          "alpha_u=%g and dimension=1 exclude each other: conductivity is for 2 "
                          "and 3 dimensions",
                          scheme->alpha_u);
-    if (scheme->viscosity == VISCOSITY_CULLEN_DEHNEN)
-        return error_set(error, STATUS_BAD_INPUT,
-                         "viscosity=cullen_dehnen: the solver does not have this switch yet; "
-                         "time_dependent is the one that it has");
     return STATUS_OK;
 }
 
@@ -131,9 +127,10 @@ enum status scheme_check(const struct scheme *scheme, int dim, struct error *err
         return out_of_range(error, "alpha", scheme->alpha, ">= 0 and finite");
     if (!(scheme->beta >= 0) || !isfinite(scheme->beta))
         return out_of_range(error, "beta", scheme->beta, ">= 0 and finite");
-    if (scheme->viscosity == VISCOSITY_TIME_DEPENDENT &&
-        !(scheme->alpha_min >= 0 && scheme->alpha_max >= scheme->alpha_min &&
-          isfinite(scheme->alpha_max)))
+    const bool switched = scheme->viscosity == VISCOSITY_TIME_DEPENDENT ||
+                          scheme->viscosity == VISCOSITY_CULLEN_DEHNEN;
+    if (switched && !(scheme->alpha_min >= 0 && scheme->alpha_max >= scheme->alpha_min &&
+                      isfinite(scheme->alpha_max)))
         return error_set(error, STATUS_BAD_INPUT,
                          "alpha_min = %g, alpha_max = %g: 0 <= alpha_min <= alpha_max is needed",
                          scheme->alpha_min, scheme->alpha_max);

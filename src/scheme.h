@@ -27,7 +27,7 @@ struct scheme {
     enum h_method h_method;
     const struct integrator *integrator;
     double alpha, beta;          /* viscosity; time_dependent: beta/alpha is the ratio kept */
-    double alpha_min, alpha_max; /* time_dependent only */
+    double alpha_min, alpha_max; /* time_dependent and cullen_dehnen only */
     double balsara_floor;        /* eps: keeps some viscosity in pure shear */
     double noise;                /* projected: nu, strength of the linear term */
     double alpha_u;              /* conductivity; 0: none */

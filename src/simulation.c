@@ -114,7 +114,7 @@ static void set_particles(struct simulation *simulation, const struct scene *sce
             if (scheme->energy == ENERGY_TOTAL) a->e[i] += 0.5 * m * v * v;
         }
         a->alpha[i] = a->alpha_old[i] =
-            scheme->viscosity == VISCOSITY_TIME_DEPENDENT ? scheme->alpha_min : scheme->alpha;
+            simulation->plan.alpha || simulation->plan.jump ? scheme->alpha_min : scheme->alpha;
         a->h[i] = width_of(&rule, m, rho);
     }
 }
@@ -264,6 +264,7 @@ static enum status advance(struct simulation *simulation, struct error *error)
     simulation->dt = dt;
     const enum status status = simulation->scheme.integrator->step(simulation, dt, error);
     if (status) return status;
+    if (simulation->plan.jump) simulation->plan.sums->apply_switch(simulation, dt);
     simulation->time = simulation_time_after(simulation, dt);
     if (simulation->plan.signal_pass && simulation->time < simulation->t_end)
         evaluate_signal(simulation);

@@ -40,6 +40,9 @@ struct plan_line {
 struct simulation_cost {
     double wall_s, cpu_s; /* set-up of the particles to t_end; cpu_s: all threads */
     uint64_t steps, particle_updates, pair_interactions, skipped_particle_updates;
+    /* particles whose moment matrix could not be used (CONVENTIONS eq. 4.7), summed over the
+     * evaluations: all their pairs used the standard gradient */
+    uint64_t fallen_back;
 };
 
 /* The state, for reading: n values each, sorted by position where dim = 1; positions wrapped into

@@ -44,6 +44,10 @@ struct sums {
     enum status (*forces)(struct simulation *simulation, double *rate, struct error *error);
     /* signal of every awake particle from v, c, h; returns the largest signal speed / h. */
     double (*signal)(struct simulation *simulation);
+    /* The switch of viscosity=cullen_dehnen, called where the plan wants it: after the rates, what
+     * alpha jumps up to and decays to; after the step, alpha. */
+    void (*find_switch)(struct simulation *simulation);
+    void (*apply_switch)(struct simulation *simulation, double dt);
     /* Of each particle, after the rates: how many are within h of it, itself and images included;
      * condition number of its moment matrix in the 2-norm, NaN where its gradient has none. */
     void (*describe)(const struct simulation *simulation, double *neighbours, double *condition);

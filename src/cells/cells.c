@@ -43,6 +43,12 @@ static void lay_out(struct cells *cells)
     if (matrix) add_groups(force, GROUP_MATRIX, in_3d ? 2 : 1);
     if (method->viscosity == VISCOSITY_RECONSTRUCTED) add_groups(force, GROUP_SLOPE, in_3d ? 3 : 1);
     if (method->projected) add_groups(force, GROUP_PROJECTOR, in_3d ? 2 : 1);
+    empty(&cells->shift);
+    if (!method->jump) return;
+    add_groups(&cells->shift, GROUP_PLACE, 1);
+    add_groups(&cells->shift, GROUP_MOTION, 1);
+    add_groups(&cells->shift, GROUP_GAS, 1);
+    add_groups(&cells->shift, GROUP_ACCELERATION, 1);
 }
 
 static bool reserve_records(struct cells *cells, size_t n)
@@ -51,6 +57,7 @@ static bool reserve_records(struct cells *cells, size_t n)
     free(cells->records);
     int size = cells->force.size;
     if (cells->matrix.size > size) size = cells->matrix.size;
+    if (cells->shift.size > size) size = cells->shift.size;
     cells->capacity = n + n / 4 + 8;
     cells->records =
         aligned_alloc(64, (cells->capacity * (size_t)size * sizeof(double) + 63) / 64 * 64);
@@ -66,8 +73,9 @@ struct cells *cells_create(const struct cells_method *method, size_t n)
     cells->team = method->threads;
     cells->shapes = shapes_of(method->kernel, method->box.dim, method->stamped);
     lay_out(cells);
-    struct lanes_layout *const layouts[] = {&cells->density, &cells->matrix, &cells->force};
-    for (int k = 0; k < 3; k++) layouts[k]->gather = gather_choose(layouts[k]->size);
+    struct lanes_layout *const layouts[] = {&cells->density, &cells->matrix, &cells->force,
+                                            &cells->shift};
+    for (int k = 0; k < 4; k++) layouts[k]->gather = gather_choose(layouts[k]->size);
     cells->grid = grid_create(&method->box, n, method->threads);
     cells->lanes = calloc((size_t)method->threads, sizeof *cells->lanes);
     if (cells->grid && cells->lanes && reserve_records(cells, n)) return cells;

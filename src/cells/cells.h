@@ -43,6 +43,8 @@ struct cells_method {
     double noise;           /* nu of `projected` */
     double
         worst_condition; /* of a moment matrix; beyond it the pair's gradient is the standard one */
+    bool jump;           /* alpha by the switch: */
+    double alpha_min, alpha_max;
     struct pair_numbers numbers;
     int threads; /* at most */
 };
@@ -61,6 +63,7 @@ struct cells_fields {
     double *condition;               /* of the moment matrix */
     double *slope[CELLS_SQUARE];     /* (grad v): d v_a/d x_b at a dim + b */
     double *projector[CELLS_SYMMETRIC];
+    double *alpha_local, *decay;        /* of the switch */
     double *F[3], *de, *div_v, *signal; /* signal: largest speed of the particle's pairs */
 };
 
@@ -102,6 +105,10 @@ size_t cells_matrix(struct cells *cells, const struct cells_fields *fields);
 
 /* F, de, div_v, signal. Returns the number of pairs within max(h_i, h_j). */
 uint64_t cells_forces(struct cells *cells, const struct cells_fields *fields);
+
+/* alpha_local, what alpha jumps up to and decays to, and decay, the rate of that, from slope and
+ * the forces of this evaluation; alpha_min and 0 of those who sleep. */
+void cells_switch(struct cells *cells, const struct cells_fields *fields);
 
 /* signal alone, from velocities that have changed since the forces. */
 void cells_signal(struct cells *cells, const struct cells_fields *fields);

@@ -5,8 +5,8 @@
  * matrix and gradient, so both are written with w(q) alone. x = r_j - r_i. */
 #include <math.h>
 
-#include "lanes.h"
-#include "matrix.h"
+#include "moments.h"
+#include "stamp.h"
 
 static void fill_records(struct cells *cells, const struct cells_fields *fields)
 {
@@ -29,65 +29,13 @@ static void fill_records(struct cells *cells, const struct cells_fields *fields)
     }
 }
 
-/* -w'(q)/q, the weight of gradient=corrected; 0 where points coincide. */
+/* V times -w'(q)/q, the weight of gradient=corrected; 0 where points coincide. */
 CLONES static void slope_weight(int count, double h, const double *restrict r_inverse,
-                                double *restrict dw)
+                                const double *restrict V, const double *restrict dw,
+                                double *restrict weight)
 {
 #pragma omp simd
-    for (int k = 0; k < count; k++) dw[k] = -dw[k] * (r_inverse[k] * h);
-}
-
-CLONES static void product(int count, const double *restrict a, const double *restrict b,
-                           double *restrict ab)
-{
-#pragma omp simd
-    for (int k = 0; k < count; k++) ab[k] = a[k] * b[k];
-}
-
-CLONES static double moment(int count, const double *restrict weight, const double *restrict x,
-                            const double *restrict y)
-{
-    double s[GRID_LANES] = {0};
-    for (int k = 0; k < count; k += GRID_LANES)
-#pragma omp simd
-        for (int l = 0; l < GRID_LANES; l++) s[l] += weight[k + l] * x[k + l] * y[k + l];
-    return TREE(s);
-}
-
-/* sum weight x (v - own). */
-CLONES static double moment_of_difference(int count, const double *restrict weight,
-                                          const double *restrict x, const double *restrict v,
-                                          double own)
-{
-    double s[GRID_LANES] = {0};
-    for (int k = 0; k < count; k += GRID_LANES)
-#pragma omp simd
-        for (int l = 0; l < GRID_LANES; l++) s[l] += weight[k + l] * x[k + l] * (v[k + l] - own);
-    return TREE(s);
-}
-
-/* The inverse of the moments with these weights. False where it is not to be used (CONVENTIONS eq.
- * 4.7): too few neighbours, or nearly on a line or in a plane. *condition is that of Frobenius'
- * norm, which is never less than the 2-norm's; that is found where it decides. */
-static bool invert_moments(const struct cells_method *method, int count, const struct lanes *lanes,
-                           const double *weight, double inverse[CELLS_SQUARE], double *condition)
-{
-    const int dim = method->box.dim;
-    double moments[CELLS_SQUARE] = {0};
-    for (int a = 0; a < dim; a++)
-        for (int b = a; b < dim; b++)
-            moments[a * dim + b] = moments[b * dim + a] =
-                moment(count, weight, lane(lanes, LANE_DX + a), lane(lanes, LANE_DX + b));
-    *condition = HUGE_VAL;
-    if (!matrix_invert(dim, moments, inverse)) return false;
-    double norm = 0, norm_inverse = 0;
-    for (int k = 0; k < dim * dim; k++) {
-        norm += moments[k] * moments[k];
-        norm_inverse += inverse[k] * inverse[k];
-    }
-    *condition = sqrt(norm) * sqrt(norm_inverse);
-    if (!(*condition <= method->worst_condition)) *condition = matrix_condition(dim, moments);
-    return *condition <= method->worst_condition;
+    for (int k = 0; k < count; k++) weight[k] = V[k] * (-dw[k] * (r_inverse[k] * h));
 }
 
 /* P = kappa M^2/tr M^2 with M = L L^T and kappa = smoothstep((s - 0.7)/0.25),
@@ -119,15 +67,10 @@ static void velocity_gradient(struct cells *cells, const struct cells_fields *fi
 {
     const int dim = cells->method.box.dim;
     double L[CELLS_SQUARE] = {0};
-    for (int a = 0; sound && a < dim; a++) {
-        double sums[3];
-        for (int c = 0; c < dim; c++)
-            sums[c] = moment_of_difference(count, weight, lane(lanes, LANE_DX + c),
-                                           lane_of(lanes, &cells->matrix, GROUP_MOTION, a),
-                                           fields->v[a][i]);
-        for (int b = 0; b < dim; b++)
-            for (int c = 0; c < dim; c++) L[a * dim + b] += inverse[b * dim + c] * sums[c];
-    }
+    for (int a = 0; sound && a < dim; a++)
+        moments_gradient(dim, count, lanes, weight, inverse,
+                         lane_of(lanes, &cells->matrix, GROUP_MOTION, a), fields->v[a][i],
+                         L + a * dim);
     for (int k = 0; k < dim * dim; k++) fields->slope[k][i] = L[k];
     if (!cells->method.projected) return;
     double projector[CELLS_SYMMETRIC] = {0};
@@ -144,21 +87,19 @@ static void matrix_pass(struct cells *cells, const struct cells_fields *fields, 
     const double *V = lane_of(lanes, &cells->matrix, GROUP_GAS, 1);
     double *q = lane(lanes, LANE_Q), *w = lane(lanes, LANE_W), *weight = lane(lanes, LANE_W_J);
     double inverse[CELLS_SQUARE], condition = 0;
-    lanes_scale(count, lane(lanes, LANE_R), fields->h_inverse[i], q);
     bool sound = false;
     if (method->gradient == GRADIENT_IA || method->velocity_gradient) {
-        cells->shapes.w(method->kernel, (size_t)count, q, w);
-        product(count, V, w, weight);
-        sound = invert_moments(method, count, lanes, weight, inverse, &condition);
+        moments_weigh(cells, count, lanes, fields->h_inverse[i], V);
+        sound = moments_invert(method, count, lanes, weight, inverse, &condition);
     }
     if (method->velocity_gradient)
         velocity_gradient(cells, fields, i, count, lanes, weight, inverse, sound);
     if (method->gradient == GRADIENT_STANDARD) return;
     if (method->gradient != GRADIENT_IA) { /* corrected */
+        lanes_scale(count, lane(lanes, LANE_R), fields->h_inverse[i], q);
         cells->shapes.dw(method->kernel, (size_t)count, q, w);
-        slope_weight(count, 1 / fields->h_inverse[i], lane(lanes, LANE_R_INVERSE), w);
-        product(count, V, w, weight);
-        sound = invert_moments(method, count, lanes, weight, inverse, &condition);
+        slope_weight(count, 1 / fields->h_inverse[i], lane(lanes, LANE_R_INVERSE), V, w, weight);
+        sound = moments_invert(method, count, lanes, weight, inverse, &condition);
     }
     fields->condition[i] = condition;
     for (int a = 0; a < dim; a++)

@@ -27,13 +27,13 @@ struct room {
     double *block; /* what the room's own arrays live in */
     double *radius, *balsara;
     double *sum_m, *sum_m_dh, *sum_Z, *sum_Z_dh;
+    size_t arrays, stride; /* that lie in block, and from one to the next */
     unsigned char *outcome;
     unsigned char *disturbed;
     unsigned char *asleep; /* of each particle; NULL: nobody ever sleeps */
     double *kept;          /* 1/h of those who sleep */
     uint64_t sorted_at;    /* steps */
     bool sorted;
-    size_t fallen_back;
 };
 
 static int batch_len(const struct particles *particles, ptrdiff_t first)
@@ -51,7 +51,7 @@ static struct cells_method method_of(const struct simulation *simulation)
     const struct scheme *scheme = &simulation->scheme;
     const struct plan *plan = &simulation->plan;
     const bool projected = scheme->viscosity == VISCOSITY_PROJECTED;
-    const bool varies = plan->alpha;
+    const bool varies = plan->alpha || plan->jump;
     struct cells_method method = {
         .box.dim = plan->dim,
         .kernel = &scheme->kernel,
@@ -73,6 +73,9 @@ static struct cells_method method_of(const struct simulation *simulation)
         .conductivity = scheme->alpha_u,
         .noise = scheme->noise,
         .worst_condition = worst_condition,
+        .jump = plan->jump,
+        .alpha_min = scheme->alpha_min,
+        .alpha_max = scheme->alpha_max,
         .numbers = {.alpha = scheme->alpha,
                     .beta = scheme->beta,
                     .beta_ratio = !varies             ? 0
@@ -99,7 +102,7 @@ static bool allocate_arrays(struct simulation *simulation, size_t n)
     const struct plan *plan = &simulation->plan;
     const size_t dim = (size_t)plan->dim, symmetric = dim * (dim + 1) / 2;
     const bool projected = simulation->scheme.viscosity == VISCOSITY_PROJECTED;
-    double **of[9 + 2 * CELLS_SYMMETRIC + CELLS_SQUARE];
+    double **of[11 + 2 * CELLS_SYMMETRIC + CELLS_SQUARE];
     size_t count = 0;
     of[count++] = &room->radius;
     of[count++] = &room->kept;
@@ -111,7 +114,9 @@ static bool allocate_arrays(struct simulation *simulation, size_t n)
     for (size_t k = 0; plan->matrix && k < symmetric; k++) of[count++] = &room->fields.matrix[k];
     for (size_t k = 0; plan->slope && k < dim * dim; k++) of[count++] = &room->fields.slope[k];
     for (size_t k = 0; projected && k < symmetric; k++) of[count++] = &room->fields.projector[k];
-    const size_t stride = (n + BATCH_MAX + 7) / 8 * 8;
+    if (plan->jump) of[count++] = &room->fields.alpha_local, of[count++] = &room->fields.decay;
+    const size_t stride = room->stride = (n + BATCH_MAX + 7) / 8 * 8;
+    room->arrays = count;
     room->block = calloc(count * stride, sizeof(double));
     room->outcome = calloc(n, 1);
     if (!room->block || !room->outcome) return false;
@@ -239,8 +244,8 @@ static void sort_memory(struct simulation *simulation)
     ptrdiff_t place = 0;
     for (size_t slot = 0; slot < slots; slot++) /* images are nobody's memory */
         if (order[slot] < (size_t)a->n) a->order[place++] = order[slot];
-    permute(a, room->radius);
-    permute(a, room->kept);
+    /* those who sleep keep what the last sums over them left */
+    for (size_t k = 0; k < room->arrays; k++) permute(a, room->block + k * room->stride);
     for (ptrdiff_t i = 0; room->asleep && i < a->n; i++)
         room->outcome[i] = room->asleep[a->order[i]];
     if (room->asleep) memcpy(room->asleep, room->outcome, (size_t)a->n);
@@ -411,7 +416,7 @@ static void find_balsara(struct simulation *simulation)
 static void matrix(struct simulation *simulation)
 {
     struct room *room = room_of(simulation);
-    room->fallen_back = cells_matrix(room->cells, &room->fields);
+    simulation->cost.fallen_back += cells_matrix(room->cells, &room->fields);
     if (simulation->plan.balsara) find_balsara(simulation);
 }
 
@@ -434,6 +439,23 @@ static enum status forces(struct simulation *simulation, double *rate, struct er
         state_dalpha(a, first, batch_len(a, first), &simulation->scheme);
     *rate = rate_of_all(simulation);
     return STATUS_OK;
+}
+
+static void find_switch(struct simulation *simulation)
+{
+    const struct room *room = room_of(simulation);
+    cells_switch(room->cells, &room->fields);
+}
+
+static void apply_switch(struct simulation *simulation, double dt)
+{
+    const struct cells_fields *fields = &room_of(simulation)->fields;
+    const struct particles *a = &simulation->particles;
+    for (ptrdiff_t i = 0; i < a->n; i++) {
+        const double above = a->alpha[i] - fields->alpha_local[i];
+        a->alpha[i] =
+            fields->alpha_local[i] + (above > 0 ? above / (1 + dt * fields->decay[i]) : 0);
+    }
 }
 
 static double signal(struct simulation *simulation)
@@ -526,6 +548,8 @@ const struct sums cells_sums = {
     .matrix = matrix,
     .forces = forces,
     .signal = signal,
+    .find_switch = find_switch,
+    .apply_switch = apply_switch,
     .describe = describe,
     .sleep_begin = begin_sleep,
     .sleep_update = update_sleep,

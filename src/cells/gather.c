@@ -89,7 +89,8 @@ pairs_of_squares(const double *records, int size, const int32_t *slots, int coun
     STAMP(name, body, 7, set)                                                                      \
     STAMP(name, body, 8, set)                                                                      \
     STAMP(name, body, 9, set)                                                                      \
-    STAMP(name, body, 10, set) STAMP(name, body, 11, set)                                          \
+    STAMP(name, body, 10, set)                                                                     \
+    STAMP(name, body, 11, set)                                                                     \
         STAMP(name, body, 12, set) static gather_loop *const name[GROUPS_MAX + 1] = {              \
             plain,    name##_1, name##_2, name##_3,  name##_4,  name##_5, name##_6,                \
             name##_7, name##_8, name##_9, name##_10, name##_11, name##_12};

@@ -23,6 +23,7 @@ enum lanes_group {
     GROUP_SLOPE_3,
     GROUP_PROJECTOR,
     GROUP_PROJECTOR_2,
+    GROUP_ACCELERATION, /* ax ay az - */
     GROUPS
 };
 
@@ -88,10 +89,10 @@ struct cells {
         unsigned char *mirrored; /* bit a: along axis a */
         double *x[3], *radius;   /* of particles and images */
     } images;
-    size_t capacity; /* of records, in particles */
-    double *records; /* slot n is the sentinel's */
-    struct lanes_layout density, matrix, force;
-    struct lanes *lanes; /* of each thread */
+    size_t capacity;                                   /* of records, in particles */
+    double *records;                                   /* slot n is the sentinel's */
+    struct lanes_layout density, matrix, force, shift; /* shift: of the switch */
+    struct lanes *lanes;                               /* of each thread */
     struct lanes_newton newton;
 };
 

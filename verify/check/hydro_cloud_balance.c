@@ -155,9 +155,14 @@ static void measure(struct check_run *run, const void *subject)
         return;
     }
     judge(run, simulation, &s, where);
-    if (s.state == planes && s.scheme.gradient != GRADIENT_STANDARD)
-        check_measure(run, !(count_ill(simulation, cloud.n) > 0), 0, 0,
-                      "some matrices cannot be used, %s", where);
+    if (s.state == planes && s.scheme.gradient != GRADIENT_STANDARD) {
+        struct simulation_cost cost;
+        const double ill = count_ill(simulation, cloud.n);
+        simulation_cost(simulation, &cost);
+        check_measure(run, !(ill > 0), 0, 0, "some matrices cannot be used, %s", where);
+        check_measure(run, fabs((double)cost.fallen_back - ill), 0, 0,
+                      "matrices that were not used are counted, %s", where);
+    }
     simulation_destroy(simulation);
 }
 

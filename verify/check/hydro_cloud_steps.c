@@ -29,6 +29,12 @@ static struct scheme scheme_of(int dim, const struct integrator *integrator, int
     s.volume_element = c == 1 ? VOLUME_NUMBER : c == 2 ? VOLUME_ENERGY : VOLUME_MASS;
     s.h_method = c == 1 ? H_PREDICTED : c == 2 ? H_PREDICTED : H_NEWTON;
     if (c == 0) s.balsara = BALSARA_ON;
+    if (c == 3) { /* alpha by a switch once a step */
+        s.viscosity = VISCOSITY_CULLEN_DEHNEN;
+        s.viscosity_form = VISCOSITY_FORM_SIGNAL;
+        s.gradient = GRADIENT_IA;
+        s.h_method = H_PREDICTED;
+    }
     if (c == 2) s.alpha_u = 0.71;
     return s;
 }
@@ -37,10 +43,10 @@ static void subjects(struct check_run *run)
 {
     for (int dim = 2; dim <= 3; dim++)
         for (size_t i = 0; i < integrator_family.n; i++)
-            for (int c = 0; c < 3; c++) {
+            for (int c = 0; c < 4; c++) {
                 const struct integrator *integrator =
                     (const struct integrator *)integrator_family.members[i];
-                if (dim == 3 && (size_t)c != i % 3) continue;
+                if (dim == 3 && (size_t)c != i % 4) continue;
                 const struct cloud_steps_subject subject = {NULL, dim,
                                                             scheme_of(dim, integrator, c)};
                 check_subject(run, &subject, sizeof subject);
@@ -86,7 +92,8 @@ static void measure(struct check_run *run, const void *subject)
     static struct hydro_cloud cloud;
     if (given->spoil) {
         s.dim = 2;
-        s.scheme = scheme_of(2, hydro_integrator("predicted_midpoint"), 1);
+        s.scheme =
+            scheme_of(2, hydro_integrator("predicted_midpoint"), given->scheme.viscosity ? 3 : 1);
     }
     hydro_cloud_sheared(&cloud, s.dim, s.dim == 2 ? 8 : 6);
     for (size_t i = 0; i < cloud.n; i++) cloud.v[0][i] -= 1.1; /* through the end of the box */
@@ -130,11 +137,19 @@ static void other_cfl(struct scene *scene)
     scene->scheme.cfl *= 1 + 1e-6;
 }
 
+static void lower_alpha(struct scene *scene)
+{
+    scene->scheme.alpha_max *= 1 - 1e-6;
+}
+
 #define SPOIL(how) (&(const struct cloud_steps_subject){.spoil = how})
+#define SPOIL_SWITCH(how)                                                                          \
+    (&(const struct cloud_steps_subject){.spoil = how, .scheme.viscosity = VISCOSITY_CULLEN_DEHNEN})
 static const struct check_mutant mutants[] = {
     {"cloud_steps_newton", "h by Newton where it is to be predicted", SPOIL(newton)},
     {"cloud_steps_eta", "eta too large by 1e-6", SPOIL(wider)},
     {"cloud_steps_cfl", "cfl too large by 1e-6", SPOIL(other_cfl)},
+    {"cloud_steps_alpha_max", "what alpha jumps up to too low by 1e-6", SPOIL_SWITCH(lower_alpha)},
     {0},
 };
 

@@ -35,9 +35,8 @@ bool oracle_covers(const struct scheme *scheme)
     case VISCOSITY_RECONSTRUCTED:
     case VISCOSITY_FADING:
     case VISCOSITY_PROJECTED:
-        break;
     case VISCOSITY_CULLEN_DEHNEN:
-        return false;
+        break;
     }
     switch (scheme->viscosity_form) {
     case VISCOSITY_FORM_MU:
@@ -84,7 +83,8 @@ enum status oracle_create(struct oracle *oracle, const struct scene *scene, stru
         oracle_free(oracle);
         return error_set(error, STATUS_ENVIRONMENT, "oracle: no memory");
     }
-    const bool switched = scene->scheme.viscosity == VISCOSITY_TIME_DEPENDENT;
+    const bool switched = scene->scheme.viscosity == VISCOSITY_TIME_DEPENDENT ||
+                          scene->scheme.viscosity == VISCOSITY_CULLEN_DEHNEN;
     for (size_t i = 0; i < scene->n; i++) {
         struct oracle_particle *a = &oracle->particles[i];
         a->m = scene->m[i];
@@ -361,6 +361,7 @@ enum status oracle_evaluate(struct oracle *oracle, struct error *error)
     const enum status status = find_state(oracle, error);
     if (status) return status;
     for (size_t i = 0; i < oracle->n; i++) find_rates(oracle, i);
+    if (oracle->scheme.viscosity == VISCOSITY_CULLEN_DEHNEN) oracle_find_switch(oracle);
     oracle_signals(oracle);
     return STATUS_OK;
 }

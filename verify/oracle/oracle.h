@@ -29,6 +29,8 @@ struct oracle_particle {
     struct oracle_matrix L;           /* linear_exact gradient of v: d v_a/d x_b at [a][b] */
     struct oracle_matrix projector;   /* onto the direction of the local shear */
     long double balsara;
+    struct oracle_matrix slope_C;   /* inverse of the moments of L; 0 where they are ill */
+    long double alpha_local, decay; /* of the switch: what alpha tends to, and its rate */
     /* rates dp/dt, dU/dt, d(e)/dt, dalpha/dt; divergence of v; signal speed */
     oracle_vector F;
     long double dU, de, dalpha, div_v, signal;

@@ -130,7 +130,7 @@ long double oracle_weight(const struct oracle *oracle, long double r, long doubl
 static bool needs_slope(const struct scheme *scheme)
 {
     return scheme->balsara == BALSARA_ON || scheme->viscosity == VISCOSITY_RECONSTRUCTED ||
-           scheme->viscosity == VISCOSITY_PROJECTED;
+           scheme->viscosity == VISCOSITY_PROJECTED || scheme->viscosity == VISCOSITY_CULLEN_DEHNEN;
 }
 
 static void find_slope(const struct oracle *oracle, size_t i)
@@ -138,10 +138,10 @@ static void find_slope(const struct oracle *oracle, size_t i)
     struct oracle_particle *a = &oracle->particles[i];
     struct oracle_matrix T, differences;
     moments(oracle, i, oracle_W, &T, &differences);
-    a->L = (struct oracle_matrix){0};
+    a->L = a->slope_C = (struct oracle_matrix){0};
     if (condition_of(oracle->dim, T) <= worst_condition) {
-        const struct oracle_matrix C = invert(oracle->dim, T);
-        for (int b = 0; b < 3; b++) oracle_product(&C, differences.row[b], a->L.row[b]);
+        a->slope_C = invert(oracle->dim, T);
+        for (int b = 0; b < 3; b++) oracle_product(&a->slope_C, differences.row[b], a->L.row[b]);
     }
     find_projector(a);
     find_balsara(oracle, a);

@@ -104,7 +104,8 @@ static long double shock_pressure(const struct oracle *oracle, const struct orac
 {
     const struct scheme *scheme = &oracle->scheme;
     const bool projected = scheme->viscosity == VISCOSITY_PROJECTED,
-               switched = scheme->viscosity == VISCOSITY_TIME_DEPENDENT;
+               switched = scheme->viscosity == VISCOSITY_TIME_DEPENDENT ||
+                          scheme->viscosity == VISCOSITY_CULLEN_DEHNEN;
     const long double rho = (a->rho + b->rho) / 2, alpha = (a->alpha + b->alpha) / 2;
     const long double beta =
         switched ? alpha * ((long double)scheme->beta / scheme->alpha) : (long double)scheme->beta;

@@ -32,6 +32,11 @@ long double oracle_weight(const struct oracle *oracle, long double r, long doubl
 /* Moments, velocity gradients and what follows from them, for all particles. */
 void oracle_find_matrices(struct oracle *oracle);
 
+/* The switch of viscosity=cullen_dehnen, from the rates of all particles; and what it does to alpha
+ * in a step. */
+void oracle_find_switch(struct oracle *oracle);
+void oracle_apply_switch(struct oracle *oracle, long double dt);
+
 /* Adds what pair (a, b) does to a; x = r_b - r_a. */
 void oracle_add_pair(const struct oracle *oracle, struct oracle_particle *a,
                      const struct oracle_particle *b, const oracle_vector x);

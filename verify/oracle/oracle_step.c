@@ -195,6 +195,7 @@ enum status oracle_step(struct oracle *oracle, long double dt, struct error *err
     oracle->ahead = oracle->last_dt > 0 ? (oracle->last_dt + dt) / (2 * oracle->last_dt) : 0;
     oracle->last_dt = dt;
     const enum status status = step(oracle, dt, error);
+    if (oracle->scheme.viscosity == VISCOSITY_CULLEN_DEHNEN) oracle_apply_switch(oracle, dt);
     oracle->time += dt;
     oracle->steps++;
     return status;

@@ -364,6 +364,12 @@ static void suspect(struct study_result *result, const struct case_file *file)
 
 /* ---- settings without effect ---- */
 
+/* Does alpha vary by a switch, between alpha_min and alpha_max? */
+static bool is_switched(int viscosity)
+{
+    return viscosity == VISCOSITY_TIME_DEPENDENT || viscosity == VISCOSITY_CULLEN_DEHNEN;
+}
+
 /* Do these settings say anything to the solver that the key could change? `skip` must not. */
 static bool is_read(enum setting key, const struct settings *settings)
 {
@@ -376,10 +382,10 @@ static bool is_read(enum setting key, const struct settings *settings)
         return strcmp(kernel_family.members[kernel]->name, "sinc") == 0;
     case SETTING_alpha:
     case SETTING_beta:
-        return viscosity != VISCOSITY_NONE && viscosity != VISCOSITY_TIME_DEPENDENT;
+        return viscosity != VISCOSITY_NONE && !is_switched(viscosity);
     case SETTING_alpha_min:
     case SETTING_alpha_max:
-        return viscosity == VISCOSITY_TIME_DEPENDENT;
+        return is_switched(viscosity);
     case SETTING_seed:
         return study_is_random(settings);
     case SETTING_grade_ratio:

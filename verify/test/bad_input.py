@@ -117,7 +117,6 @@ BAD = [
     ("rates some.csv lo=0 hi=1 n=100", 2, "n says nothing", "scheme"),
     ("rates some.csv lo=0 hi=1 kernel=cubic", 2, "cubic", "did you mean 'cubic_spline'"),
     ("rates some.csv lo=0 hi=1 eta=2.4", 2, "beyond half the box", "eta"),
-    ("rates some.csv lo=0 hi=1 viscosity=cullen_dehnen", 2, "cullen_dehnen", "time_dependent"),
     ("rates some.csv lo=0 hi=0.5", 2, "some.csv:3", "x = 0.6", "0 to 0.5"),
     ("rates far.csv lo=0 hi=1", 2, "far.csv:3", "x = 100000000"),
     ("rates no_u.csv lo=0 hi=1", 2, "no_u.csv:1", "'u'", "vx"),

@@ -34,13 +34,15 @@ static struct scheme draw_scheme(gsl_rng *rng, int dim)
 {
     static const char *const kernels[] = {"cubic_spline", "wendland_c2", "wendland_c4"};
     static const double widths[] = {2.2, 2.4, 2.8};
+    static const enum viscosity viscosities[] = {VISCOSITY_PROJECTED, VISCOSITY_CULLEN_DEHNEN,
+                                                 VISCOSITY_CONSTANT};
     const size_t k = gsl_rng_uniform_int(rng, 3);
     struct scheme scheme = {
         .gradient = (enum gradient)gsl_rng_uniform_int(rng, GRADIENTS),
         .formulation =
             gsl_rng_uniform(rng) < 0.3 ? FORMULATION_LAGRANGIAN : FORMULATION_VANILLA_ICE,
         .volume_element = (enum volume_element)gsl_rng_uniform_int(rng, VOLUME_ELEMENTS),
-        .viscosity = gsl_rng_uniform(rng) < 0.5 ? VISCOSITY_PROJECTED : VISCOSITY_CONSTANT,
+        .viscosity = viscosities[gsl_rng_uniform_int(rng, 3)],
         .balsara = (enum balsara)gsl_rng_uniform_int(rng, BALSARAS),
         .energy = (enum energy)gsl_rng_uniform_int(rng, ENERGIES),
         .h_method = H_NEWTON,
@@ -48,6 +50,8 @@ static struct scheme draw_scheme(gsl_rng *rng, int dim)
                           integrator_family.members[gsl_rng_uniform_int(rng, integrator_family.n)],
         .alpha = 1,
         .beta = 2,
+        .alpha_min = 0.1,
+        .alpha_max = 1.5,
         .noise = 0.4,
         .eta = widths[k],
         .cfl = 0.1,
