@@ -71,6 +71,7 @@ setup_missing() {
     setup_library cmocka || echo libcmocka-dev
     setup_library inih || echo libinih-dev
     setup_library jansson || echo libjansson-dev
+    setup_library hdf5 || echo libhdf5-dev
     setup_has gnuplot || echo gnuplot-nox
     case $1 in full | nightly)
         setup_compiles clang || echo clang
