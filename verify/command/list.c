@@ -13,6 +13,7 @@
 #include "operator.h"
 #include "result.h"
 #include "settings.h"
+#include "snapshot_file.h"
 #include "stress.h"
 #include "suite.h"
 #include "table.h"
@@ -126,6 +127,7 @@ PLAIN(pair_width, scheme_pair_width)
 PLAIN(h_method, scheme_h_method)
 PLAIN(field, field)
 PLAIN(norm, field_norm)
+PLAIN(snapshot, snapshot_reader)
 
 static const struct family *(*const lists[])(void) = {cases,
                                                       problem_list,
@@ -144,6 +146,7 @@ static const struct family *(*const lists[])(void) = {cases,
                                                       h_method_list,
                                                       field_list,
                                                       norm_list,
+                                                      snapshot_list,
                                                       checks,
                                                       mutants,
                                                       stress,

@@ -425,6 +425,22 @@ enum status run_execute(const struct run *run, struct run_result *result, struct
     return result->status;
 }
 
+enum status run_judge(const struct run *run, const struct snapshot *snapshot,
+                      struct run_result *result, struct error *error)
+{
+    *result = (struct run_result){
+        .settings = run->settings, .scheme = run->scheme, .problem = run->problem};
+    result->n = snapshot->n;
+    enum status status = problem_check_time(&run->problem, snapshot->time, error);
+    if (!status) status = keep_snapshot(result, snapshot, error);
+    if (!status) status = measure_errors(result, error);
+    if (status)
+        run_free(result);
+    else
+        measure_functionals(result);
+    return status;
+}
+
 void run_free(struct run_result *result)
 {
     free(result->storage);

@@ -91,6 +91,12 @@ enum status run_execute(const struct run *run, struct run_result *result, struct
 
 /* All but the simulation: plan and warnings filled; n is what it would be. */
 enum status run_explain(const struct run *run, struct run_result *result, struct error *error);
+
+/* No run: errors and functionals of a state that another code has computed, by the problem of a run
+ * whose t_end is the state's time. In 1D sorted by position; id: 0 ... n - 1.
+ * STATUS_BAD_INPUT where the exact solution does not hold in the window. */
+enum status run_judge(const struct run *run, const struct snapshot *snapshot,
+                      struct run_result *result, struct error *error);
 void run_free(struct run_result *result);
 
 /* "errors" of a result document: {"density": {"l1", ...}, ..., "binned_density_l1"}. */

@@ -1,0 +1,237 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * sphproof judge: errors of any code's snapshots against the solution of a case. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "command.h"
+#include "judge.h"
+#include "output.h"
+#include "result.h"
+#include "table.h"
+#include "text.h"
+
+/* ---- what is asked ---- */
+
+static enum status take_number(const struct options *options, const char *name,
+                               struct snapshot_value *value, struct error *error)
+{
+    const char *text = options_value(options, name);
+    if (!text) return STATUS_OK;
+    value->known = text_real(text, &value->value);
+    if (value->known) return STATUS_OK;
+    return error_set(error, STATUS_BAD_INPUT, "judge: --%s '%.40s': allowed: a number", name, text);
+}
+
+/* What h is: the support radius, a multiple of the kernel's standard deviation, a part of the
+ * support. */
+static enum status take_width(const char *text, struct width_meaning *width, struct error *error)
+{
+    double number;
+    if (!text) return STATUS_OK;
+    if (strcmp(text, "support") == 0)
+        width->ratio = 1;
+    else if (strcmp(text, "half") == 0)
+        width->ratio = 2;
+    else if (strcmp(text, "sigma") == 0)
+        width->deviations = 1;
+    else if (strcmp(text, "2sigma") == 0)
+        width->deviations = 2;
+    else if (text_real(text, &number) && number > 0 && number <= 100)
+        width->ratio = number;
+    else
+        return error_set(
+            error, STATUS_BAD_INPUT,
+            "judge: --h-is '%.40s': allowed: support (H = h), half (H = 2 h), sigma or "
+            "2sigma (of the kernel), or H/h as a number up to 100",
+            text);
+    return STATUS_OK;
+}
+
+static enum status take_request(const struct options *options, int n, struct judge_request *request,
+                                struct kernel *kernel, struct error *error)
+{
+    const char *name = options_value(options, "kernel");
+    request->case_name = options_value(options, "case");
+    request->left = options_value(options, "left");
+    request->right = options_value(options, "right");
+    request->options.map = options_value(options, "map");
+    if (n < 1) return command_usage(options, error, "a snapshot is needed");
+    if (n > JUDGE_SNAPSHOTS_MAX)
+        return command_usage(options, error, "%d snapshots; allowed: up to %d", n,
+                             JUDGE_SNAPSHOTS_MAX);
+    if (!request->case_name && !(request->left && request->right))
+        return command_usage(options, error,
+                             "what should it be? --case CASE, or --left and --right");
+    if (!request->case_name && !options_value(options, "gamma"))
+        return command_usage(options, error, "--left and --right need --gamma");
+    if (!request->case_name) request->case_name = "sod";
+    if (take_number(options, "gamma", &request->gamma, error) ||
+        take_number(options, "x0", &request->x0, error) ||
+        take_number(options, "time", &request->time, error) ||
+        take_width(options_value(options, "h-is"), &request->width, error))
+        return error->status;
+    if (!name) return STATUS_OK;
+    if (!family_find(&kernel_family, name))
+        return text_unknown_member(error, "judge", "kernel", name, &kernel_family);
+    request->kernel = kernel;
+    return kernel_select(kernel, name, 5, error);
+}
+
+/* ---- for a person ---- */
+
+static void print_kernels(const struct conventions *c)
+{
+    enum { SHOWN = 4 };
+    if (c->known || !c->count) return;
+    printf("  candidates:");
+    for (size_t k = 0; k < c->count && k < SHOWN; k++)
+        printf("%s %s H = %.5g h (%.2g)", k ? "," : "", c->candidate[k].kernel.member.name,
+               c->candidate[k].ratio, c->candidate[k].residual);
+    printf("\n");
+}
+
+static void print_one(const struct judged *judged, const struct table_style *style)
+{
+    const struct run_result *r = &judged->result;
+    const struct snapshot_notes *notes = &judged->file.notes;
+    printf("%s%s%s: %s, %s, %zu particles in %dD at t = %.6g\n", style->bold, judged->path,
+           style->end, judged->file.layout, judged->file.code, r->n, judged->file.dim, r->time);
+    printf("\nassumed:\n");
+    for (size_t k = 0; k < notes->count; k++)
+        printf("  %-16s %s  %s%s%s\n", notes->note[k].what, notes->note[k].value, style->faint,
+               notes->note[k].evidence, style->end);
+    print_kernels(&judged->conventions);
+    if (!r->problem.problem->fieldless) {
+        printf("\n%-16s %12s %12s %12s %14s\n", "errors", "l1", "l2", "linf", "particle_mean");
+        for (int f = 0; f < FIELDS; f++)
+            printf("%-16s %12.6g %12.6g %12.6g %14.6g\n", field_family.members[f]->name,
+                   r->errors[f].l1, r->errors[f].l2, r->errors[f].linf, r->errors[f].particle_mean);
+        if (r->problem.problem->circular)
+            printf("%-16s %12.6g %12.6g %12.6g %14.6g\n", "azimuthal", r->azimuthal.l1,
+                   r->azimuthal.l2, r->azimuthal.linf, r->azimuthal.particle_mean);
+    }
+    for (size_t k = 0; k < r->functional_count; k++)
+        printf("%-24s %.6g (exact %.6g)\n", r->functionals[k].name, r->functionals[k].value,
+               r->functionals[k].exact);
+    const struct regions *regions = r->budget.regions;
+    if (regions) printf("\nwhere the L1 of density comes from:");
+    for (size_t k = 0; regions && regions->names[k]; k++)
+        printf(" %s %.3g", regions->names[k], r->budget.l1[k][FIELD_DENSITY]);
+    if (regions) printf("\n");
+    if (judged->file.dim > 1) printf("noise across the flow: %.3g\n", judged->transverse);
+    if (r->suspicion[0]) printf("suspicious: %s\n", r->suspicion);
+    printf("\n%s%s%s\n\n", judged->foreign ? style->bad : style->bold, judged->verdict, style->end);
+}
+
+static void print_together(const struct judged *judged, size_t n)
+{
+    struct trace_drift drift;
+    size_t pair[2], k;
+    json_t *orders = judge_orders(judged, n), *order;
+    json_array_foreach(orders, k, order)
+    {
+        const json_t *fitted = json_object_get(order, "order"), *one;
+        size_t i;
+        printf("order of %-16s", json_string_value(json_object_get(order, "field")));
+        if (json_is_number(fitted))
+            printf(" %.3f, 95 %% interval %.3f to %.3f;", json_number_value(fitted),
+                   json_number_value(json_object_get(order, "low")),
+                   json_number_value(json_object_get(order, "high")));
+        printf(" pairwise");
+        json_array_foreach(json_object_get(order, "pairwise"), i, one)
+            printf(" %.3f", json_number_value(one));
+        printf("\n");
+    }
+    json_decref(orders);
+    if (judge_drift(judged, n, &drift, pair))
+        printf("from %s to %s: mass %.2g, momentum %.2g, energy %.2g have changed\n",
+               judged[pair[0]].path, judged[pair[1]].path, drift.mass, drift.momentum,
+               drift.energy);
+}
+
+static void print_gates(const struct judge_gate *gates, size_t n, const struct table_style *style)
+{
+    for (size_t k = 0; k < n; k++)
+        printf("gate %-28s %.6g, bound %.6g: %s%s%s\n", gates[k].name, gates[k].value,
+               gates[k].bound, gates[k].good ? style->good : style->bad,
+               gates[k].good ? "pass" : "FAIL", style->end);
+}
+
+/* ---- the command ---- */
+
+static enum status write_results(const struct options *options, const struct judged *judged,
+                                 size_t n, const struct judge_gate *gates, size_t gate_count,
+                                 struct error *error)
+{
+    json_t *document = result_new("judge"), *content = judge_json(judged, n, gates, gate_count);
+    enum status status = STATUS_OK;
+    if (!document || !content || json_object_update(document, content))
+        status = error_set(error, STATUS_ENVIRONMENT, "no memory for the result");
+    if (!status && options->json) status = result_write(document, options->json, error);
+    json_decref(document), json_decref(content);
+    return status;
+}
+
+static enum status run(const struct options *options, int n, char **arguments, struct error *error)
+{
+    struct judge_request request = {0};
+    struct kernel kernel;
+    struct judge_gate gates[JUDGE_GATES_MAX];
+    size_t gate_count = 0, count = 0;
+    const struct table_style style = table_style(options->color);
+    enum status status = take_request(options, n, &request, &kernel, error);
+    if (status) return status;
+    struct judged *judged = calloc((size_t)n, sizeof *judged);
+    if (!judged) return error_set(error, STATUS_ENVIRONMENT, "no memory");
+    for (; count < (size_t)n && !status; count++)
+        status = judge_snapshot(arguments[count], &request, &judged[count], error);
+    const struct judged *main = judge_main(judged, count);
+    if (!status)
+        status = judge_gates(options_value(options, "gate"), main, gates, &gate_count, error);
+    if (!status) {
+        for (size_t i = 0; i < count && options->speak; i++) print_one(&judged[i], &style);
+        if (options->speak) print_together(judged, count);
+        if (options->speak) print_gates(gates, gate_count, &style);
+        status = write_results(options, judged, count, gates, gate_count, error);
+        for (size_t k = 0; k < gate_count && !status; k++)
+            if (!gates[k].good) status = STATUS_CHECK_FAILED;
+    }
+    for (size_t i = 0; i < count; i++) judge_free(&judged[i]);
+    free(judged);
+    return status;
+}
+
+static const struct command_option own_options[] = {
+    {"case", "CASE", "what it should be: a case, or a case file"},
+    {"left", "\"RHO V P\"", "instead, or on top: gas left of x0 at t = 0"},
+    {"right", "\"RHO V P\"", "gas right of it"},
+    {"gamma", "G", "ratio of specific heats; else the file's, or the case's"},
+    {"x0", "X", "where the gases met, as the file counts x; else the middle of its box"},
+    {"time", "T", "else the file's"},
+    {"map", "NAME=THEIRS,...", "text: which column is x, vx, m, rho, u, P, h"},
+    {"kernel", "K", "the code's kernel, in place of finding it"},
+    {"h-is", "MEANING", "support, half, sigma, 2sigma, or support radius over h"},
+    {"gate", "FIELD_NORM=BOUND,...", "exit 1 beyond: density_l1=2e-3"},
+    {NULL, NULL, NULL},
+};
+
+const struct command command_judge = {
+    .name = "judge",
+    .synopsis = "SNAPSHOT... --case CASE | --left \"RHO V P\" --right \"RHO V P\" --gamma G",
+    .help =
+        "errors of ANY code's snapshots against the exact solution of a case\n"
+        "Reads HDF5 of GADGET, AREPO, GIZMO, SWIFT, SPH-EXA and Phantom, binaries of GADGET\n"
+        "(formats 1 and 2, either byte order), SPLASH's ASCII and CSV, also compressed\n"
+        "(`sphproof list snapshots`). The kernel and the meaning of h are found by summing the\n"
+        "density again. Everything that had to be assumed is said, with the evidence for it.\n"
+        "Several snapshots: orders where numbers of particles differ, conservation where only\n"
+        "times do; gates look at the one of most particles.",
+    .run = run,
+    .options = own_options,
+    .examples =
+        "sphproof judge snapshot_010.hdf5 --case sod\n"
+        "sphproof judge run.csv --case sod --map rho=Density,h=hsml --gate density_l1=2e-3\n"
+        "sphproof judge s.hdf5 --left \"1 0 1\" --right \"0.125 0 0.1\" --gamma 1.4 --x0 1",
+};

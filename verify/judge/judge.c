@@ -1,0 +1,355 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "judge.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A median error above this part of the range of the exact values is no error at jumps. */
+#define JUDGE_FOREIGN 0.06
+
+/* A stored pressure that is that of the gas law to the file's precision is taken from it: it has
+ * been rounded once more. */
+static void sharpen_pressure(struct snapshot_file *file, double gamma)
+{
+    double *P = file->column[SNAPSHOT_P];
+    const double *u = file->column[SNAPSHOT_U], *rho = file->column[SNAPSHOT_RHO];
+    double worst = 0;
+    for (size_t i = 0; i < file->n; i++)
+        worst = fmax(worst, fabs(P[i] - (gamma - 1) * rho[i] * u[i]) / (P[i] + 1e-300));
+    char value[48];
+    if (worst <= 8 * file->precision[1]) {
+        for (size_t i = 0; i < file->n; i++) P[i] = (gamma - 1) * rho[i] * u[i];
+        snprintf(value, sizeof value, "(gamma - 1) rho u");
+    } else {
+        snprintf(value, sizeof value, "as stored");
+    }
+    snapshot_note(&file->notes, "pressure", value, "the stored one differs by at most %.2g", worst);
+}
+
+/* P and u, where one is missing. */
+static enum status complete(struct judged *judged, double gamma, struct error *error)
+{
+    struct snapshot_file *file = &judged->file;
+    const bool lacks_P = !file->column[SNAPSHOT_P], lacks_u = !file->column[SNAPSHOT_U];
+    if (!lacks_P && !lacks_u) {
+        sharpen_pressure(file, gamma);
+        return STATUS_OK;
+    }
+    if (!snapshot_file_make(file, lacks_P ? SNAPSHOT_P : SNAPSHOT_U))
+        return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", judged->path);
+    double *P = file->column[SNAPSHOT_P], *u = file->column[SNAPSHOT_U],
+           *rho = file->column[SNAPSHOT_RHO];
+    for (size_t i = 0; i < file->n; i++) {
+        if (lacks_P)
+            P[i] = (gamma - 1) * rho[i] * u[i];
+        else
+            u[i] = P[i] / ((gamma - 1) * rho[i]);
+    }
+    snapshot_note(&file->notes, lacks_P ? "pressure" : "internal energy",
+                  lacks_P ? "(gamma - 1) rho u" : "P/((gamma - 1) rho)", "the file stores none");
+    return STATUS_OK;
+}
+
+/* ---- the gas of the file as a snapshot ---- */
+
+enum { ARRAYS = 12 };
+
+struct gas {
+    double *storage;
+    size_t *id;
+    struct snapshot snapshot;
+};
+
+static const double *sort_by;
+
+static int by_position(const void *a, const void *b)
+{
+    const double x = sort_by[*(const size_t *)a], y = sort_by[*(const size_t *)b];
+    return (x > y) - (x < y);
+}
+
+static double wrapped(double x, double lo, double period)
+{
+    if (!(period > 0)) return x;
+    const double y = x - period * floor((x - lo) / period);
+    return y < lo ? lo : y;
+}
+
+static enum status gas_make(struct gas *gas, const struct judged *judged, const double period[3],
+                            double reach, struct error *error)
+{
+    const struct snapshot_file *file = &judged->file;
+    const struct domain *domain = &judged->run.problem.domain;
+    const size_t n = file->gas;
+    struct snapshot *s = &gas->snapshot;
+    double *column[ARRAYS];
+    gas->storage = malloc(ARRAYS * n * sizeof *gas->storage);
+    gas->id = malloc(2 * n * sizeof *gas->id);
+    if (!gas->storage || !gas->id)
+        return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", judged->path);
+    for (size_t k = 0; k < ARRAYS; k++) column[k] = gas->storage + k * n;
+    size_t *order = gas->id + n;
+    for (size_t i = 0; i < n; i++) {
+        gas->id[i] = order[i] = i;
+        column[11][i] = wrapped(file->column[0][i], domain->lo[0], period[0]);
+    }
+    sort_by = column[11];
+    if (file->dim == 1) qsort(order, n, sizeof *order, by_position);
+    for (size_t k = 0; k < n; k++) {
+        const size_t i = order[k];
+        for (int d = 0; d < file->dim; d++) {
+            column[d][k] = wrapped(file->column[d][i], domain->lo[d], period[d]);
+            column[3 + d][k] = file->column[SNAPSHOT_VX + d][i];
+        }
+        column[6][k] = file->column[SNAPSHOT_M][i];
+        column[7][k] = file->column[SNAPSHOT_RHO][i];
+        column[8][k] = file->column[SNAPSHOT_U][i];
+        column[9][k] = file->column[SNAPSHOT_P][i];
+        column[10][k] = file->column[SNAPSHOT_H] && reach > 0
+                            ? reach * file->column[SNAPSHOT_H][i]
+                            : 2 * pow(column[6][k] / column[7][k], 1. / file->dim);
+    }
+    for (size_t k = 0; k < n; k++) column[11][k] = column[6][k] / column[7][k];
+    *s = (struct snapshot){.n = n,
+                           .m = column[6],
+                           .rho = column[7],
+                           .u = column[8],
+                           .P = column[9],
+                           .h = column[10],
+                           .volume = column[11],
+                           .id = file->dim == 1 ? NULL : gas->id,
+                           .time = file->time.value};
+    for (int d = 0; d < file->dim; d++) s->x[d] = column[d], s->v[d] = column[3 + d];
+    return STATUS_OK;
+}
+
+/* ---- what is measured beside the errors ---- */
+
+static void measure_sums(struct judged *judged)
+{
+    const struct snapshot *s = &judged->result.snapshot;
+    const struct domain *domain = &judged->run.problem.domain;
+    struct conservation *sums = &judged->sums;
+    for (size_t i = 0; i < s->n; i++) {
+        const double m = s->m[i], c = sqrt(judged->run.problem.gamma * s->P[i] / s->rho[i]);
+        double p[3] = {0}, r[3] = {0}, squares = 0, distance = 0;
+        for (int d = 0; d < domain->dim; d++) {
+            p[d] = m * s->v[d][i];
+            r[d] = s->x[d][i] - 0.5 * (domain->lo[d] + domain->hi[d]);
+            squares += s->v[d][i] * s->v[d][i];
+            distance += r[d] * r[d];
+            sums->momentum[d] += p[d];
+        }
+        sums->mass += m;
+        sums->energy += m * (s->u[i] + 0.5 * squares);
+        sums->momentum_scale += m * sqrt(squares);
+        sums->sound_scale += m * c;
+        double turning = 0;
+        for (int d = 0; d < 3 && domain->dim > 1; d++) {
+            const double L = r[(d + 1) % 3] * p[(d + 2) % 3] - r[(d + 2) % 3] * p[(d + 1) % 3];
+            sums->angular_momentum[d] += L;
+            turning += L * L;
+        }
+        sums->angular_scale += sqrt(turning);
+        sums->turning_scale += sqrt(distance) * m * c;
+    }
+}
+
+/* Velocity across x of planar flows, the radial one of circular ones. */
+static double measure_noise(const struct judged *judged)
+{
+    const struct prepared *p = &judged->run.problem;
+    const struct snapshot *s = &judged->result.snapshot;
+    double sum = 0, volume = 0;
+    if (p->domain.dim == 1) return (double)NAN;
+    if (p->problem->circular) return judged->result.radial.l2;
+    for (size_t i = 0; i < s->n; i++) {
+        double x[3];
+        problem_place(p, s, i, x);
+        if (!window_contains(&p->window, x)) continue;
+        for (int d = 1; d < p->domain.dim; d++) sum += s->volume[i] * s->v[d][i] * s->v[d][i];
+        volume += s->volume[i];
+    }
+    return volume > 0 ? sqrt(sum / volume) : (double)NAN;
+}
+
+static int ascending(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* Is the particle in the window, and has the flow reached its place? (Where nothing moves, all
+ * places count.) Exact state there, and the one that was there at the start. */
+static bool counts(const struct judged *judged, size_t i, struct problem_state *now,
+                   struct problem_state *before)
+{
+    const struct prepared *p = &judged->run.problem;
+    const struct snapshot *s = &judged->result.snapshot;
+    double x[3] = {0}, place[3];
+    problem_place(p, s, i, place);
+    for (int d = 0; d < p->domain.dim; d++) x[d] = s->x[d][i];
+    problem_sample(p, x, judged->result.time, now);
+    problem_sample(p, x, 0, before);
+    return window_contains(&p->window, place);
+}
+
+static double value_of(const struct problem_state *state, int f, int dim)
+{
+    if (f == FIELD_VELOCITY && dim > 1)
+        return sqrt(state->v[0] * state->v[0] + state->v[1] * state->v[1] +
+                    state->v[2] * state->v[2]);
+    return problem_field(state, (enum field)f);
+}
+
+/* Median error of a field where the flow has changed it, over the range of its exact values: a
+ * scheme errs at jumps, another solution nearly everywhere. */
+static double median_error(const struct judged *judged, int f, double *errors)
+{
+    const struct snapshot *s = &judged->result.snapshot;
+    const int dim = judged->run.problem.domain.dim;
+    const double *const values[FIELDS] = {s->rho, s->v[0], s->P, s->u};
+    double least = INFINITY, most = -INFINITY;
+    for (int all = 0; all < 2; all++) {
+        size_t n = 0;
+        for (size_t i = 0; i < s->n; i++) {
+            struct problem_state now, before;
+            if (!counts(judged, i, &now, &before)) continue;
+            const double exact = value_of(&now, f, dim);
+            least = fmin(least, exact), most = fmax(most, exact);
+            if (!all && fabs(exact - value_of(&before, f, dim)) <= 1e-3 * fabs(exact)) continue;
+            double squares = 0;
+            for (int d = 0; d < dim; d++)
+                squares += (s->v[d][i] - now.v[d]) * (s->v[d][i] - now.v[d]);
+            errors[n++] = f == FIELD_VELOCITY ? sqrt(squares) : fabs(values[f][i] - exact);
+        }
+        if (n < 8) continue;
+        qsort(errors, n, sizeof *errors, ascending);
+        return errors[n / 2] / fmax(most - least, 0.2 * fmax(fabs(most), fabs(least)));
+    }
+    return 0;
+}
+
+static enum status measure_wrong(struct judged *judged, struct error *error)
+{
+    if (judged->run.problem.problem->fieldless) return STATUS_OK;
+    double *errors = malloc((judged->result.snapshot.n + 1) * sizeof *errors);
+    if (!errors) return error_set(error, STATUS_ENVIRONMENT, "no memory for errors");
+    for (int f = 0; f < FIELDS; f++) {
+        const double part = median_error(judged, f, errors);
+        if (part > judged->wrong) judged->wrong = part, judged->wrong_field = (enum field)f;
+    }
+    judged->foreign = judged->wrong > JUDGE_FOREIGN;
+    free(errors);
+    return STATUS_OK;
+}
+
+/* ---- what is said ---- */
+
+static void note_kernel(struct judged *judged)
+{
+    const struct conventions *c = &judged->conventions;
+    struct snapshot_notes *notes = &judged->file.notes;
+    const struct convention *best = &c->candidate[0];
+    char value[80];
+    if (c->known)
+        snprintf(value, sizeof value, "%s, support radius %.6g h", best->kernel.member.name,
+                 best->ratio);
+    else
+        snprintf(value, sizeof value, "not identifiable");
+    snapshot_note(notes, "kernel", value, "%s", c->why);
+    if (c->known)
+        snapshot_note(notes, "density",
+                      best->sum == DENSITY_MASSES ? "sum of m_j W_ij" : "m_i times the sum of W_ij",
+                      "%s",
+                      c->same_masses ? "masses are equal: the other sum is the same" : c->why);
+}
+
+static void note_precision(struct judged *judged)
+{
+    struct snapshot_file *file = &judged->file;
+    const bool single = file->precision[1] > 1e-9;
+    snapshot_note(&file->notes, "precision", single ? "float32" : "float64",
+                  "%s; nothing below %.0e of a value is meant",
+                  single && file->precision[0] < 1e-9 ? "positions float64, the rest float32"
+                                                      : "as stored",
+                  file->precision[1]);
+}
+
+static void write_verdict(struct judged *judged)
+{
+    const struct run_result *r = &judged->result;
+    const struct convention *best = &judged->conventions.candidate[0];
+    char kernel[100];
+    if (judged->conventions.known)
+        snprintf(kernel, sizeof kernel, "%s with H = %.6g h", best->kernel.member.name,
+                 best->ratio);
+    else
+        snprintf(kernel, sizeof kernel, "kernel not identifiable");
+    if (r->problem.problem->fieldless)
+        snprintf(judged->verdict, sizeof judged->verdict, "%s = %.4g, the case says %.4g; %s",
+                 r->functional_count ? r->functionals[0].name : "nothing",
+                 r->functional_count ? r->functionals[0].value : (double)NAN,
+                 r->functional_count ? r->functionals[0].exact : (double)NAN, kernel);
+    else
+        snprintf(judged->verdict, sizeof judged->verdict,
+                 "%sL1 of density %.3g, velocity %.3g, pressure %.3g; %s",
+                 judged->foreign ? "not the solution of this case: " : "",
+                 r->errors[FIELD_DENSITY].l1, r->errors[FIELD_VELOCITY].l1,
+                 r->errors[FIELD_PRESSURE].l1, kernel);
+    if (judged->foreign)
+        snapshot_note(
+            &judged->file.notes, "solution", "not this case's",
+            "half of the gas that the flow has reached has a %s that is off by %.2g of its "
+            "range or more: another gamma, time, x0 or case, too few particles, or a "
+            "scheme that fails",
+            field_family.members[judged->wrong_field]->name, judged->wrong);
+}
+
+enum status judge_snapshot(const char *path, const struct judge_request *request,
+                           struct judged *judged, struct error *error)
+{
+    struct gas gas = {0};
+    double period[3] = {0};
+    *judged = (struct judged){.path = path};
+    enum status status = snapshot_read(path, &request->options, &judged->file, error);
+    if (!status) status = judge_place(request, judged, period, error);
+    if (!status) status = complete(judged, judged->run.problem.gamma, error);
+    if (!status)
+        status = conventions_find(&judged->file, period, request->kernel, &request->width,
+                                  &judged->conventions, error);
+    if (!status)
+        status =
+            gas_make(&gas, judged, period,
+                     judged->conventions.known ? judged->conventions.candidate[0].ratio : 0, error);
+    if (!status) {
+        struct error reason = {0};
+        status = run_judge(&judged->run, &gas.snapshot, &judged->result, &reason);
+        if (status)
+            error_set(error, status, "%.200s: %.280s%s", path, reason.message,
+                      status == STATUS_BAD_INPUT ? " (t_end: the snapshot's time)" : "");
+    }
+    if (!status && judged->result.problem.problem->fieldless == false &&
+        isnan(judged->result.errors[FIELD_DENSITY].l1))
+        status =
+            error_set(error, STATUS_BAD_INPUT,
+                      "%.200s: no particle lies in the window; --x0 tells where the case is", path);
+    if (!status) status = measure_wrong(judged, error);
+    if (!status) {
+        measure_sums(judged);
+        judged->transverse = measure_noise(judged);
+        note_kernel(judged);
+        note_precision(judged);
+        write_verdict(judged);
+    }
+    free(gas.storage), free(gas.id);
+    return status;
+}
+
+void judge_free(struct judged *judged)
+{
+    run_free(&judged->result);
+    snapshot_file_free(&judged->file);
+}

@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Snapshots of any code against the exact solution of a case: the same errors and norms as of a
+ * run, with everything that had to be assumed and the evidence for it. */
+#ifndef SPHPROOF_JUDGE_H
+#define SPHPROOF_JUDGE_H
+
+#include <jansson.h>
+
+#include "conventions.h"
+#include "run.h"
+#include "snapshot_file.h"
+
+enum { JUDGE_SNAPSHOTS_MAX = 64, JUDGE_GATES_MAX = 24 };
+
+/* What is asked. */
+struct judge_request {
+    const char *case_name;                 /* a case; with left and right: of its box */
+    const char *left, *right;              /* "rho v P"; NULL: the case's */
+    struct snapshot_value gamma, x0, time; /* where the user says them */
+    const struct kernel *kernel;           /* NULL: found */
+    struct width_meaning width;
+    struct snapshot_options options;
+};
+
+/* A snapshot and what was found. Free with judge_free. */
+struct judged {
+    const char *path;
+    struct snapshot_file file; /* P, u and h completed */
+    struct conventions conventions;
+    struct run run;
+    struct run_result result;
+    struct conservation sums; /* of the gas */
+    double transverse;        /* rms of velocities across x, by volume, in the window; NaN in 1D */
+    double wrong; /* worst median error of a field over the range of its exact values */
+    enum field wrong_field;
+    bool foreign; /* plainly not this case's solution */
+    char verdict[400];
+};
+
+/* STATUS_BAD_INPUT: what the file holds and what would help. */
+enum status judge_snapshot(const char *path, const struct judge_request *request,
+                           struct judged *judged, struct error *error);
+void judge_free(struct judged *judged);
+
+/* ---- steps of it ---- */
+
+/* Gamma, time, box and place of the case in it: resolves judged->run. */
+enum status judge_place(const struct judge_request *request, struct judged *judged,
+                        double period[3], struct error *error);
+
+/* ---- several ---- */
+
+/* How much a conserved quantity differs between the first and the last of several snapshots of one
+ * run; false: there are no two of the same particles at different times. */
+bool judge_drift(const struct judged *judged, size_t n, struct trace_drift *drift, size_t pair[2]);
+
+/* A bound for an error: density_l1=2e-3. */
+struct judge_gate {
+    char name[48];
+    double value, bound;
+    bool good;
+};
+
+/* Reads "density_l1=2e-3,..." and judges. STATUS_BAD_INPUT: no such field or norm. */
+enum status judge_gates(const char *text, const struct judged *judged, struct judge_gate *gates,
+                        size_t *count, struct error *error);
+
+/* The snapshot that gates look at: of most particles, of these the last. */
+const struct judged *judge_main(const struct judged *judged, size_t n);
+
+/* The document of the command, without its head. New reference; NULL: no memory. */
+json_t *judge_json(const struct judged *judged, size_t n, const struct judge_gate *gates,
+                   size_t gate_count);
+
+/* Orders of L1 against n^(1/d), of all fields: [{"field", "norm", "order", "low", "high",
+ * "pairwise"}], [] where there are no two different n. New reference. */
+json_t *judge_orders(const struct judged *judged, size_t n);
+
+#endif

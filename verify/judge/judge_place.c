@@ -1,0 +1,280 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Where the case lies in the file's box, at which time and with which gamma; all of it noted. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "judge.h"
+
+static enum status set_real(struct settings *settings, enum setting key, double value,
+                            struct error *error)
+{
+    char text[40];
+    snprintf(text, sizeof text, "%.17g", value);
+    return settings_set(settings, key, text, SOURCE_USER, NULL, error);
+}
+
+/* A gamma stored in single precision stands for the short number that it is nearest to. */
+static double unrounded(double gamma)
+{
+    const double near[] = {round(gamma * 3) / 3, round(gamma * 1000) / 1000};
+    for (int k = 0; k < 2; k++)
+        if (fabs(near[k] - gamma) < 1.5e-7 * gamma) return near[k];
+    return gamma;
+}
+
+/* What P and u say of gamma, if both are stored: 1 + P/(rho u) of the middle one. */
+static double stored_gamma(const struct snapshot_file *file, double *scatter)
+{
+    const double *P = file->column[SNAPSHOT_P], *u = file->column[SNAPSHOT_U],
+                 *rho = file->column[SNAPSHOT_RHO];
+    double sum = 0, count = 0;
+    *scatter = 0;
+    if (!P || !u) return (double)NAN;
+    for (size_t i = 0; i < file->gas; i++)
+        if (u[i] > 0 && P[i] > 0) sum += 1 + P[i] / (rho[i] * u[i]), count++;
+    const double gamma = sum / count;
+    for (size_t i = 0; i < file->gas; i++)
+        if (u[i] > 0 && P[i] > 0)
+            *scatter = fmax(*scatter, fabs(1 + P[i] / (rho[i] * u[i]) - gamma));
+    return gamma;
+}
+
+static enum status take_gamma(const struct judge_request *request, struct judged *judged,
+                              struct settings *settings, struct error *error)
+{
+    struct snapshot_file *file = &judged->file;
+    char value[32];
+    double scatter, gamma = settings_real(settings, SETTING_gamma);
+    const double stored = stored_gamma(file, &scatter);
+    const bool proved = stored > 1 && scatter < 1e-5 * stored;
+    const char *evidence = "the file has none: the case's";
+    if (request->gamma.known)
+        gamma = request->gamma.value, evidence = "--gamma";
+    else if (file->gamma.known)
+        gamma = unrounded(file->gamma.value), evidence = "the file says so";
+    else if (proved)
+        gamma = unrounded(round(stored * 1e6) / 1e6),
+        evidence = "the file has none, but P = (gamma - 1) rho u of its particles";
+    snprintf(value, sizeof value, "%.9g", gamma);
+    snapshot_note(&file->notes, "gamma", value, "%s%s", evidence,
+                  proved && fabs(stored - gamma) > 1e-4
+                      ? "; but the file's own P/(rho u) says something else"
+                      : "");
+    return set_real(settings, SETTING_gamma, gamma, error);
+}
+
+static enum status take_time(const struct judge_request *request, struct judged *judged,
+                             struct settings *settings, struct error *error)
+{
+    struct snapshot_file *file = &judged->file;
+    char value[32];
+    const struct snapshot_value time = request->time.known ? request->time : file->time;
+    if (!time.known)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "%.200s: says no time; --time T helps, in text also a line '# time = T'",
+                         judged->path);
+    if (!(time.value >= 0))
+        return error_set(error, STATUS_BAD_INPUT, "%.200s: time = %g; allowed: 0 or above",
+                         judged->path, time.value);
+    file->time = time;
+    snprintf(value, sizeof value, "%.9g", time.value);
+    snapshot_note(&file->notes, "time", value, "%s",
+                  request->time.known ? "--time" : "the file says so");
+    return set_real(settings, SETTING_t_end, time.value, error);
+}
+
+/* ---- the box ---- */
+
+struct box {
+    bool periodic;
+    double lo[3], hi[3];
+};
+
+static void extent(const struct snapshot_file *file, size_t n, int d, double *lo, double *hi)
+{
+    *lo = INFINITY, *hi = -INFINITY;
+    for (size_t i = 0; i < n; i++) {
+        *lo = fmin(*lo, file->column[d][i]);
+        *hi = fmax(*hi, file->column[d][i]);
+    }
+}
+
+/* Positions all lie in the case's own box and nearly fill it. */
+static bool fits_case(const struct snapshot_file *file, const struct settings *settings)
+{
+    for (int d = 0; d < file->dim; d++) {
+        double lo, hi;
+        const double from = settings_along(settings, SETTING_lo, d),
+                     to = settings_along(settings, SETTING_hi, d);
+        extent(file, file->n, d, &lo, &hi);
+        if (!(lo >= from && hi <= to && hi - lo >= 0.8 * (to - from))) return false;
+    }
+    return true;
+}
+
+static enum status take_box(struct judged *judged, const struct settings *settings, struct box *box,
+                            struct error *error)
+{
+    struct snapshot_file *file = &judged->file;
+    char value[80];
+    bool inside = true;
+    *box = (struct box){.periodic = file->boxed};
+    for (int d = 0; d < file->dim && file->boxed; d++) {
+        double lo, hi;
+        const double length = file->box[d];
+        extent(file, file->n, d, &lo, &hi);
+        if (!(length > 0 && hi - lo <= length * (1 + 1e-6)))
+            return error_set(error, STATUS_BAD_INPUT,
+                             "%.200s: the header's box is %g long along %s, but positions reach "
+                             "from %g to %g",
+                             judged->path, length, snapshot_column_names[d], lo, hi);
+        inside = inside && lo >= -1e-6 * length && hi <= length * (1 + 1e-6);
+    }
+    for (int d = 0; d < file->dim; d++) {
+        extent(file, file->n, d, &box->lo[d], &box->hi[d]);
+        if (file->boxed && inside)
+            box->lo[d] = 0, box->hi[d] = file->box[d];
+        else if (file->boxed) { /* as large as the header says, about the middle of the particles */
+            const double middle = 0.5 * (box->lo[d] + box->hi[d]);
+            const double snapped = fabs(middle) < 0.05 * file->box[d] ? 0 : middle;
+            box->lo[d] = snapped - 0.5 * file->box[d], box->hi[d] = snapped + 0.5 * file->box[d];
+        }
+    }
+    if (!file->boxed && file->gas == file->n && fits_case(file, settings)) {
+        box->periodic = true;
+        for (int d = 0; d < file->dim; d++) {
+            box->lo[d] = settings_along(settings, SETTING_lo, d);
+            box->hi[d] = settings_along(settings, SETTING_hi, d);
+        }
+        snapshot_note(&file->notes, "box", "the case's",
+                      "the file says none; all positions lie in the case's and fill it");
+    } else {
+        snprintf(value, sizeof value, "%.6g to %.6g along x", box->lo[0], box->hi[0]);
+        snapshot_note(&file->notes, "box", value, "%s",
+                      !file->boxed ? "the file says none: as far as particles reach; not periodic"
+                      : inside     ? "the header's length, from 0; positions lie in it; taken for "
+                                     "periodic"
+                               : "the header's length, about the middle of the particles, which "
+                                 "are not in it from 0 on");
+    }
+    return STATUS_OK;
+}
+
+/* Where the two gases met. Returns what is done with the window. */
+static void place_tube(const struct judge_request *request, struct judged *judged,
+                       const struct settings *settings, struct box *box)
+{
+    struct snapshot_notes *notes = &judged->file.notes;
+    const double length = box->hi[0] - box->lo[0];
+    double x0 = 0.5 * (box->lo[0] + box->hi[0]);
+    char value[32];
+    const char *evidence = "the middle of the box; --x0 says otherwise";
+    (void)settings;
+    if (request->x0.known)
+        x0 = request->x0.value, evidence = "--x0";
+    else if (!box->periodic && fabs(x0) < 0.1 * length)
+        x0 = 0, evidence = "x = 0 is near the middle of the particles; --x0 says otherwise";
+    snprintf(value, sizeof value, "%.9g", x0);
+    snapshot_note(notes, "x0", value, "%s", evidence);
+    box->lo[0] = x0 - 0.5 * length, box->hi[0] = x0 + 0.5 * length;
+}
+
+static enum status set_ends(struct settings *settings, enum setting key, const double *ends,
+                            int dim, struct error *error)
+{
+    char text[SETTING_TEXT_MAX];
+    int n = 0;
+    for (int d = 0; d < dim; d++)
+        n += snprintf(text + n, sizeof text - (size_t)n, "%s%.17g", d ? " " : "", ends[d]);
+    return settings_set(settings, key, text, SOURCE_USER, NULL, error);
+}
+
+/* The case's window about its middle, if the box is as long as the case's; discs for vortices. */
+static enum status set_window(struct judged *judged, struct settings *settings,
+                              const struct problem *problem, const struct box *box,
+                              double case_length, double case_middle, struct error *error)
+{
+    char text[SETTING_TEXT_MAX];
+    struct setting_value *window = &settings->value[SETTING_window];
+    const double length = box->hi[0] - box->lo[0], middle = 0.5 * (box->lo[0] + box->hi[0]);
+    if (problem->circular && settings_real(settings, SETTING_window_radius) == 0) {
+        double least = INFINITY;
+        for (int d = 0; d < judged->file.dim; d++) least = fmin(least, box->hi[d] - box->lo[d]);
+        snapshot_note(&judged->file.notes, "window", "a disc",
+                      "radius %.6g, half of the box: as other codes' errors are given", least / 2);
+        return set_real(settings, SETTING_window_radius, least / 2, error);
+    }
+    if (window->automatic) return STATUS_OK;
+    if (!(fabs(length - case_length) <= 1e-6 * case_length)) {
+        snapshot_note(&judged->file.notes, "window", "the middle half",
+                      "the case's box is %.6g long, the file's %.6g", case_length, length);
+        return settings_set(settings, SETTING_window, "auto", SOURCE_USER, NULL, error);
+    }
+    snprintf(text, sizeof text, "%.17g %.17g", window->real[0] - case_middle + middle,
+             window->real[1] - case_middle + middle);
+    return settings_set(settings, SETTING_window, text, SOURCE_USER, NULL, error);
+}
+
+static enum status check_dimension(const struct judge_request *request, struct judged *judged,
+                                   struct run_settings *asked, const struct problem *problem,
+                                   struct error *error)
+{
+    const int dim = judged->file.dim;
+    char value[32];
+    if (dim == asked->file.dimension) return STATUS_OK;
+    if (dim < problem->least_dim || dim > problem->most_dim || problem->circular)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "%.200s: particles in %d dimensions; the case %.60s has %d", judged->path,
+                         dim, request->case_name, asked->file.dimension);
+    snprintf(value, sizeof value, "in %d dimensions", dim);
+    snapshot_note(&judged->file.notes, "case", value,
+                  "it is written in %d, but its solution varies along x alone",
+                  asked->file.dimension);
+    asked->file.dimension = dim;
+    return STATUS_OK;
+}
+
+enum status judge_place(const struct judge_request *request, struct judged *judged,
+                        double period[3], struct error *error)
+{
+    struct run_settings asked;
+    struct box box;
+    struct settings *settings = &asked.settings;
+    if (run_prepare(&asked, request->case_name, 0, NULL, error)) return error->status;
+    if ((request->left &&
+         settings_set(settings, SETTING_left, request->left, SOURCE_USER, "--left", error)) ||
+        (request->right &&
+         settings_set(settings, SETTING_right, request->right, SOURCE_USER, "--right", error)))
+        return error->status;
+    const struct problem *problem = problem_of(settings);
+    const bool tube = problem_reads(problem, SETTING_left);
+    if (!tube && (request->x0.known || request->left || request->right))
+        return error_set(error, STATUS_BAD_INPUT,
+                         "judge: --left, --right and --x0 belong to two gases that meet; %.60s has "
+                         "none",
+                         request->case_name);
+    const double case_lo = settings_along(settings, SETTING_lo, 0),
+                 case_hi = settings_along(settings, SETTING_hi, 0);
+    if (check_dimension(request, judged, &asked, problem, error) ||
+        take_gamma(request, judged, settings, error) ||
+        take_time(request, judged, settings, error) || take_box(judged, settings, &box, error))
+        return error->status;
+    for (int d = 0; d < 3; d++) period[d] = box.periodic ? box.hi[d] - box.lo[d] : 0;
+    if (tube) place_tube(request, judged, settings, &box);
+    const int dim = judged->file.dim;
+    for (int d = 1; d < dim; d++) /* of particles that stand on one line there is no box */
+        if (!(box.hi[d] > box.lo[d])) box.hi[d] = box.lo[d] + 1;
+    if (set_window(judged, settings, problem, &box, case_hi - case_lo, 0.5 * (case_lo + case_hi),
+                   error) ||
+        set_ends(settings, SETTING_lo, box.lo, dim, error) ||
+        set_ends(settings, SETTING_hi, box.hi, dim, error))
+        return error->status;
+    if (!tube && fabs(box.hi[0] - box.lo[0] - (case_hi - case_lo)) > 1e-6 * (case_hi - case_lo))
+        snapshot_note(&judged->file.notes, "size", "not the case's",
+                      "the case's box is %.6g long, the file's %.6g", case_hi - case_lo,
+                      box.hi[0] - box.lo[0]);
+    struct error reason = {0};
+    if (!run_resolve(&judged->run, &asked, &reason)) return STATUS_OK;
+    return error_set(error, reason.status, "%.200s: %.280s", judged->path, reason.message);
+}

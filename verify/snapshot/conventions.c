@@ -1,0 +1,269 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "conventions.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "list.h"
+
+#define RATIO_LEAST 0.8
+#define RATIO_MOST  4.6
+enum { RATIO_STEPS = 60, GOLDEN_STEPS = 44, NEIGHBOURS_MAX = 4096 };
+
+/* Particles near one of the sample: distance over its h, mass. */
+struct near {
+    double rho, m, h;
+    size_t i;
+    size_t count;
+    struct neighbour {
+        double s, m;
+    } * neighbour; /* nearest first */
+};
+
+struct sample {
+    int dim;
+    size_t n;
+    double reach; /* over h: so far neighbours of all are known */
+    struct near near[CONVENTIONS_SAMPLE];
+};
+
+static double distance(const struct snapshot_file *file, const double box[3], size_t i, size_t j)
+{
+    double squares = 0;
+    for (int d = 0; d < file->dim; d++) {
+        double dx = file->column[d][i] - file->column[d][j];
+        if (box[d] > 0) dx -= box[d] * round(dx / box[d]);
+        squares += dx * dx;
+    }
+    return sqrt(squares);
+}
+
+static int nearer(const void *a, const void *b)
+{
+    const double x = ((const struct neighbour *)a)->s, y = ((const struct neighbour *)b)->s;
+    return (x > y) - (x < y);
+}
+
+/* Sums over more than NEIGHBOURS_MAX neighbours are nobody's: the reach ends before them. */
+static void limit_reach(struct sample *sample, struct near *near)
+{
+    if (near->count) qsort(near->neighbour, near->count, sizeof *near->neighbour, nearer);
+    if (near->count <= NEIGHBOURS_MAX) return;
+    near->count = NEIGHBOURS_MAX;
+    sample->reach = fmin(sample->reach, near->neighbour[NEIGHBOURS_MAX - 1].s);
+}
+
+/* Further than margin h from the ends of what is not periodic. */
+static bool inside(const struct snapshot_file *file, const double box[3], const double ends[3][2],
+                   size_t i, double margin)
+{
+    for (int d = 0; d < file->dim; d++) {
+        const double x = file->column[d][i], gap = margin * file->column[SNAPSHOT_H][i];
+        if (box[d] == 0 && !(x - ends[d][0] > gap && ends[d][1] - x > gap)) return false;
+    }
+    return true;
+}
+
+/* Picks particles at odd places, so that they keep no step with a lattice, and well inside. */
+static void choose(const struct snapshot_file *file, const double box[3], struct sample *sample)
+{
+    static const double margins[] = {3, 1, 0};
+    double ends[3][2];
+    for (int d = 0; d < file->dim; d++) {
+        ends[d][0] = INFINITY, ends[d][1] = -INFINITY;
+        for (size_t i = 0; i < file->n; i++) {
+            ends[d][0] = fmin(ends[d][0], file->column[d][i]);
+            ends[d][1] = fmax(ends[d][1], file->column[d][i]);
+        }
+    }
+    for (size_t m = 0; m < sizeof margins / sizeof *margins && !sample->n; m++)
+        for (size_t k = 0; k < 8 * CONVENTIONS_SAMPLE && sample->n < CONVENTIONS_SAMPLE; k++) {
+            const size_t i =
+                (size_t)((double)file->gas * fmod(0.5 + (double)k * 0.6180339887498949, 1));
+            if (margins[m] > 0 && !inside(file, box, (const double(*)[2])ends, i, margins[m]))
+                continue;
+            sample->near[sample->n++] = (struct near){.rho = file->column[SNAPSHOT_RHO][i],
+                                                      .m = file->column[SNAPSHOT_M][i],
+                                                      .h = file->column[SNAPSHOT_H][i],
+                                                      .i = i};
+        }
+}
+
+static enum status gather(const struct snapshot_file *file, const double box[3], double reach,
+                          struct sample *sample, struct error *error)
+{
+    sample->dim = file->dim;
+    sample->reach = reach;
+    choose(file, box, sample);
+    for (size_t k = 0; k < sample->n; k++) {
+        struct near *near = &sample->near[k];
+        for (size_t j = 0; j < file->n; j++) {
+            const double s = distance(file, box, near->i, j) / near->h;
+            if (!(s <= reach)) continue;
+            if (!list_grow(&near->neighbour, near->count, sizeof *near->neighbour))
+                return error_set(error, STATUS_ENVIRONMENT, "no memory for neighbours");
+            near->neighbour[near->count].s = s;
+            near->neighbour[near->count++].m = file->column[SNAPSHOT_M][j];
+        }
+        limit_reach(sample, near);
+    }
+    return STATUS_OK;
+}
+
+/* rms of sum/rho - 1 over the sample. */
+static double residual(const struct sample *sample, const struct kernel *kernel,
+                       enum density_sum sum, double ratio)
+{
+    double squares = 0;
+    for (size_t k = 0; k < sample->n; k++) {
+        const struct near *near = &sample->near[k];
+        double rho = 0;
+        for (size_t j = 0; j < near->count && near->neighbour[j].s < ratio; j++)
+            rho += (sum == DENSITY_MASSES ? near->neighbour[j].m : near->m) *
+                   kernel->w(kernel, near->neighbour[j].s / ratio, sample->dim);
+        rho *= kernel->constant[sample->dim] * pow(near->h * ratio, -sample->dim);
+        squares += (rho / near->rho - 1) * (rho / near->rho - 1);
+    }
+    return sqrt(squares / (double)sample->n);
+}
+
+/* The ratio at which the residual is least: along a scale, then by golden section. */
+static struct convention fit(const struct sample *sample, const struct kernel *kernel,
+                             enum density_sum sum, double given)
+{
+    const double step = pow(RATIO_MOST / RATIO_LEAST, 1. / RATIO_STEPS),
+                 golden = 0.6180339887498949;
+    struct convention best = {.kernel = *kernel, .sum = sum, .residual = INFINITY};
+    if (given > 0) {
+        best.ratio = given;
+        if (given <= sample->reach) best.residual = residual(sample, kernel, sum, given);
+        return best;
+    }
+    for (int k = 0; k <= RATIO_STEPS; k++) {
+        const double ratio = RATIO_LEAST * pow(step, k);
+        if (ratio > sample->reach) break;
+        const double value = residual(sample, kernel, sum, ratio);
+        if (value < best.residual) best.ratio = ratio, best.residual = value;
+    }
+    if (!(best.ratio > 0)) return best;
+    double lo = best.ratio / step, hi = fmin(best.ratio * step, sample->reach);
+    double a = hi - golden * (hi - lo), b = lo + golden * (hi - lo);
+    double at_a = residual(sample, kernel, sum, a), at_b = residual(sample, kernel, sum, b);
+    for (int k = 0; k < GOLDEN_STEPS; k++) {
+        if (at_a < at_b) {
+            hi = b, b = a, at_b = at_a, a = hi - golden * (hi - lo);
+            at_a = residual(sample, kernel, sum, a);
+        } else {
+            lo = a, a = b, at_a = at_b, b = lo + golden * (hi - lo);
+            at_b = residual(sample, kernel, sum, b);
+        }
+    }
+    best.ratio = at_a < at_b ? a : b;
+    best.residual = fmin(at_a, at_b);
+    return best;
+}
+
+static void insert(struct conventions *found, const struct convention *candidate)
+{
+    size_t at = found->count;
+    if (found->count == CONVENTIONS_CANDIDATES || !isfinite(candidate->residual)) return;
+    for (; at > 0 && found->candidate[at - 1].residual > candidate->residual; at--)
+        found->candidate[at] = found->candidate[at - 1];
+    found->candidate[at] = *candidate;
+    found->count++;
+}
+
+static void decide(struct conventions *found, bool forced)
+{
+    const struct convention *best = &found->candidate[0], *other = NULL;
+    for (size_t k = 1; k < found->count && !other; k++) other = &found->candidate[k];
+    if (found->count == 0) {
+        snprintf(found->why, sizeof found->why, "no sum is finite");
+        return;
+    }
+    if (forced) {
+        found->known = true;
+        snprintf(found->why, sizeof found->why, "as given; density is summed again to %.2g",
+                 best->residual);
+        return;
+    }
+    if (!(best->residual <= CONVENTIONS_WORST))
+        snprintf(found->why, sizeof found->why,
+                 "no kernel's sum agrees with the density: the best, %s, misses by %.2g",
+                 best->kernel.member.name, best->residual);
+    else if (other && !(other->residual >= CONVENTIONS_BETTER * best->residual))
+        snprintf(found->why, sizeof found->why,
+                 "%s misses the density by %.2g, %s by %.2g: not %g times more",
+                 best->kernel.member.name, best->residual, other->kernel.member.name,
+                 other->residual, CONVENTIONS_BETTER);
+    else {
+        found->known = true;
+        snprintf(found->why, sizeof found->why,
+                 "the density of %zu particles summed again misses by %.2g; the next, %s, by %.2g",
+                 found->sample, best->residual, other ? other->kernel.member.name : "none",
+                 other ? other->residual : (double)INFINITY);
+    }
+}
+
+static bool masses_equal(const struct snapshot_file *file)
+{
+    const double *m = file->column[SNAPSHOT_M];
+    for (size_t i = 1; i < file->n; i++)
+        if (!(fabs(m[i] - m[0]) <= 1e-6 * m[0])) return false;
+    return true;
+}
+
+enum status conventions_find(const struct snapshot_file *file, const double box[3],
+                             const struct kernel *only, const struct width_meaning *meaning,
+                             struct conventions *found, struct error *error)
+{
+    struct sample *sample = calloc(1, sizeof *sample);
+    *found = (struct conventions){.tried = file->column[SNAPSHOT_H] != NULL};
+    if (!sample) return error_set(error, STATUS_ENVIRONMENT, "no memory for neighbours");
+    found->same_masses = masses_equal(file);
+    enum status status = STATUS_OK;
+    if (!found->tried)
+        snprintf(found->why, sizeof found->why, "the file has no smoothing lengths");
+    else
+        status = gather(file, box, fmax(meaning->ratio, RATIO_MOST), sample, error);
+    found->sample = sample->n;
+    for (size_t k = 0; k < kernel_family.n && found->tried && !status; k++) {
+        struct kernel kernel;
+        if (only && k > 0) break;
+        if (only)
+            kernel = *only;
+        else if ((status = kernel_select(&kernel, kernel_family.members[k]->name, 5, error)))
+            break;
+        const double ratio =
+            meaning->deviations > 0
+                ? 1 / (meaning->deviations * conventions_deviation(&kernel, file->dim))
+                : meaning->ratio;
+        for (int sum = 0; sum < (found->same_masses ? 1 : DENSITY_SUMS); sum++) {
+            const struct convention candidate = fit(sample, &kernel, (enum density_sum)sum, ratio);
+            insert(found, &candidate);
+        }
+    }
+    if (found->tried && !status)
+        decide(found, only && (meaning->ratio > 0 || meaning->deviations > 0));
+    for (size_t k = 0; k < sample->n; k++) free(sample->near[k].neighbour);
+    free(sample);
+    return status;
+}
+
+double conventions_deviation(const struct kernel *kernel, int dim)
+{
+    enum { STEPS = 2000 }; /* of Simpson's rule */
+    double moment = 0, volume = 0;
+    for (int k = 0; k <= STEPS; k++) {
+        const double q = (double)k / STEPS;
+        const double w = (k == 0 || k == STEPS ? 1
+                          : k % 2              ? 4
+                                               : 2) *
+                         kernel->w(kernel, q, dim) * pow(q, dim - 1);
+        moment += w * q * q;
+        volume += w;
+    }
+    return sqrt(moment / volume / dim);
+}

@@ -1,0 +1,320 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "hdf5_file.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#ifdef HAVE_HDF5
+#include <hdf5.h>
+
+static hid_t file_of(const struct snapshot_source *source)
+{
+    return (hid_t)(intptr_t)source->file;
+}
+
+enum status hdf5_open(struct snapshot_source *source, struct error *error)
+{
+    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+    const hid_t file = H5Fopen(source->path, H5F_ACC_RDONLY, H5P_DEFAULT);
+    if (file < 0)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "%.200s: begins as HDF5, but its library cannot open it: cut off or "
+                         "damaged",
+                         source->path);
+    source->file = (void *)(intptr_t)file;
+    return STATUS_OK;
+}
+
+void hdf5_close(struct snapshot_source *source)
+{
+    if (source->file) H5Fclose(file_of(source));
+    source->file = NULL;
+}
+
+/* H5Oexists_by_name fails where a group on the way is missing. */
+bool hdf5_has(const struct snapshot_source *source, const char *path)
+{
+    char part[256];
+    for (size_t length = strcspn(path, "/");; length += 1 + strcspn(path + length + 1, "/")) {
+        if (length >= sizeof part) return false;
+        memcpy(part, path, length);
+        part[length] = '\0';
+        if (H5Lexists(file_of(source), part, H5P_DEFAULT) <= 0) return false;
+        if (!path[length]) break;
+    }
+    return H5Oexists_by_name(file_of(source), path, H5P_DEFAULT) > 0;
+}
+
+struct names {
+    char *text;
+    size_t size, length;
+    const char *prefix; /* NULL: all */
+    double number;      /* of the last one */
+};
+
+static herr_t add_name(hid_t group, const char *name, const H5L_info_t *info, void *context)
+{
+    struct names *names = context;
+    (void)group, (void)info;
+    if (names->prefix) {
+        const size_t length = strlen(names->prefix);
+        char *end;
+        if (strncmp(name, names->prefix, length) != 0) return 0;
+        const double number = strtod(name + length, &end);
+        if (end == name + length || *end || !(number > names->number)) return 0;
+        names->number = number;
+        snprintf(names->text, names->size, "%s", name);
+        return 0;
+    }
+    const int n = snprintf(names->text + names->length, names->size - names->length, "%s%s",
+                           names->length ? " " : "", name);
+    names->length += n > 0 ? (size_t)n : 0;
+    return names->length + 1 >= names->size; /* full: stops */
+}
+
+void hdf5_names(const struct snapshot_source *source, const char *group, char *text, size_t size)
+{
+    struct names names = {text, size, 0, NULL, -1};
+    hsize_t at = 0;
+    *text = '\0';
+    H5Literate_by_name(file_of(source), group, H5_INDEX_NAME, H5_ITER_INC, &at, add_name, &names,
+                       H5P_DEFAULT);
+    status_clean(text);
+}
+
+bool hdf5_last(const struct snapshot_source *source, const char *group, const char *prefix,
+               char *name, size_t size)
+{
+    struct names names = {name, size, 0, prefix, -1};
+    hsize_t at = 0;
+    H5Literate_by_name(file_of(source), group, H5_INDEX_NAME, H5_ITER_INC, &at, add_name, &names,
+                       H5P_DEFAULT);
+    return names.number >= 0;
+}
+
+static bool is_number(hid_t type)
+{
+    const H5T_class_t class = H5Tget_class(type);
+    return (class == H5T_INTEGER || class == H5T_FLOAT) && H5Tget_size(type) <= 8;
+}
+
+/* Opens an attribute and its type and space; false: there is none. Close with close_attribute. */
+struct attribute {
+    hid_t self, type, space;
+    hssize_t count;
+};
+
+static void close_attribute(struct attribute *a)
+{
+    if (a->type >= 0) H5Tclose(a->type);
+    if (a->space >= 0) H5Sclose(a->space);
+    if (a->self >= 0) H5Aclose(a->self);
+}
+
+static bool open_attribute(const struct snapshot_source *source, const char *group,
+                           const char *name, struct attribute *a)
+{
+    *a = (struct attribute){-1, -1, -1, 0};
+    if (!hdf5_has(source, group) ||
+        H5Aexists_by_name(file_of(source), group, name, H5P_DEFAULT) <= 0)
+        return false;
+    a->self = H5Aopen_by_name(file_of(source), group, name, H5P_DEFAULT, H5P_DEFAULT);
+    if (a->self >= 0) a->type = H5Aget_type(a->self);
+    if (a->self >= 0) a->space = H5Aget_space(a->self);
+    if (a->type >= 0 && a->space >= 0) a->count = H5Sget_simple_extent_npoints(a->space);
+    if (a->count >= 1 && a->count <= 4096) return true;
+    close_attribute(a);
+    return false;
+}
+
+int hdf5_numbers(const struct snapshot_source *source, const char *group, const char *name,
+                 double *values, int max)
+{
+    struct attribute a;
+    int count = -1;
+    if (!open_attribute(source, group, name, &a)) return -1;
+    double *all = calloc((size_t)a.count, sizeof *all);
+    if (all && is_number(a.type) && H5Aread(a.self, H5T_NATIVE_DOUBLE, all) >= 0) {
+        count = (int)a.count;
+        for (int i = 0; i < count && i < max; i++) values[i] = all[i];
+    }
+    free(all);
+    close_attribute(&a);
+    return count;
+}
+
+void hdf5_text(const struct snapshot_source *source, const char *group, const char *name,
+               char *text, size_t size)
+{
+    struct attribute a;
+    *text = '\0';
+    if (!open_attribute(source, group, name, &a)) return;
+    const size_t length = H5Tget_size(a.type);
+    if (a.count == 1 && H5Tget_class(a.type) == H5T_STRING && H5Tis_variable_str(a.type) == 0 &&
+        length > 0 && length < 1 << 16) {
+        char *all = calloc(1, length + 1);
+        if (all && H5Aread(a.self, a.type, all) >= 0) snprintf(text, size, "%s", all);
+        free(all);
+        status_clean(text);
+    }
+    close_attribute(&a);
+}
+
+struct dataset {
+    hid_t self, type, space;
+    hsize_t shape[2];
+};
+
+static void close_dataset(struct dataset *d)
+{
+    if (d->type >= 0) H5Tclose(d->type);
+    if (d->space >= 0) H5Sclose(d->space);
+    if (d->self >= 0) H5Dclose(d->self);
+}
+
+static bool open_dataset(const struct snapshot_source *source, const char *path, struct dataset *d)
+{
+    *d = (struct dataset){-1, -1, -1, {0, 1}};
+    if (!hdf5_has(source, path)) return false;
+    d->self = H5Dopen2(file_of(source), path, H5P_DEFAULT);
+    if (d->self >= 0) d->type = H5Dget_type(d->self);
+    if (d->self >= 0) d->space = H5Dget_space(d->self);
+    if (d->type >= 0 && d->space >= 0 && is_number(d->type)) {
+        const int rank = H5Sget_simple_extent_ndims(d->space);
+        if ((rank == 1 || rank == 2) && H5Sget_simple_extent_dims(d->space, d->shape, NULL) == rank)
+            return true;
+    }
+    close_dataset(d);
+    return false;
+}
+
+bool hdf5_shape(const struct snapshot_source *source, const char *path, size_t *rows,
+                size_t *columns)
+{
+    struct dataset d;
+    if (!open_dataset(source, path, &d)) return false;
+    *rows = (size_t)d.shape[0];
+    *columns = (size_t)d.shape[1];
+    close_dataset(&d);
+    return true;
+}
+
+static void set_precision(struct snapshot_file *file, enum snapshot_column column, hid_t type)
+{
+    double *precision = &file->precision[column >= SNAPSHOT_VX];
+    const bool single = H5Tget_class(type) == H5T_FLOAT && H5Tget_size(type) <= sizeof(float);
+    *precision = fmax(*precision, single ? (double)FLT_EPSILON / 2 : DBL_EPSILON / 2);
+}
+
+static enum status take(const struct dataset *d, const struct snapshot_source *source,
+                        const char *path, struct snapshot_file *file, enum snapshot_column column,
+                        struct error *error)
+{
+    const size_t columns = (size_t)d->shape[1];
+    const size_t most = column == SNAPSHOT_X || column == SNAPSHOT_VX || column == SNAPSHOT_AX;
+    if (d->shape[0] != file->n || columns < 1 || columns > (most ? 3 : 1))
+        return error_set(error, STATUS_BAD_INPUT,
+                         "%.200s: %.80s has %zu x %zu numbers; allowed: %zu x %s", source->path,
+                         path, (size_t)d->shape[0], columns, file->n, most ? "1 to 3" : "1");
+    double *all = file->n ? malloc(columns * file->n * sizeof *all) : NULL;
+    enum status status = STATUS_OK;
+    if (!all)
+        status = error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", source->path);
+    else if (H5Dread(d->self, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, all) < 0)
+        status = error_set(error, STATUS_BAD_INPUT,
+                           "%.200s: %.80s cannot be read: damaged, or packed by a filter that is "
+                           "not installed",
+                           source->path, path);
+    for (size_t c = 0; c < columns && !status; c++) {
+        if (!snapshot_file_make(file, (enum snapshot_column)(column + c)))
+            status = error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", source->path);
+        else
+            for (size_t i = 0; i < file->n; i++) file->column[column + c][i] = all[i * columns + c];
+    }
+    if (column == SNAPSHOT_X) file->columns = (int)columns;
+    set_precision(file, column, d->type);
+    free(all);
+    return status;
+}
+
+enum status hdf5_read(const struct snapshot_source *source, const char *path,
+                      struct snapshot_file *file, enum snapshot_column column, struct error *error)
+{
+    struct dataset d;
+    if (!open_dataset(source, path, &d))
+        return error_set(error, STATUS_BAD_INPUT, "%.200s: %.80s is no table of numbers",
+                         source->path, path);
+    const enum status status = take(&d, source, path, file, column, error);
+    close_dataset(&d);
+    return status;
+}
+
+#else
+
+enum status hdf5_open(struct snapshot_source *source, struct error *error)
+{
+    return error_set(error, STATUS_BAD_INPUT,
+                     "%.200s: is HDF5, which this program was built without: install libhdf5-dev "
+                     "(Debian), hdf5-devel (Fedora) or hdf5 (brew) and build again, or write the "
+                     "snapshot as CSV",
+                     source->path);
+}
+
+void hdf5_close(struct snapshot_source *source)
+{
+    (void)source;
+}
+
+bool hdf5_has(const struct snapshot_source *source, const char *path)
+{
+    (void)source, (void)path;
+    return false;
+}
+
+void hdf5_names(const struct snapshot_source *source, const char *group, char *text, size_t size)
+{
+    (void)source, (void)group;
+    snprintf(text, size, "%s", "");
+}
+
+bool hdf5_last(const struct snapshot_source *source, const char *group, const char *prefix,
+               char *name, size_t size)
+{
+    (void)source, (void)group, (void)prefix;
+    snprintf(name, size, "%s", "");
+    return false;
+}
+
+int hdf5_numbers(const struct snapshot_source *source, const char *group, const char *name,
+                 double *values, int max)
+{
+    (void)source, (void)group, (void)name, (void)values, (void)max;
+    return -1;
+}
+
+void hdf5_text(const struct snapshot_source *source, const char *group, const char *name,
+               char *text, size_t size)
+{
+    (void)source, (void)group, (void)name;
+    snprintf(text, size, "%s", "");
+}
+
+bool hdf5_shape(const struct snapshot_source *source, const char *path, size_t *rows,
+                size_t *columns)
+{
+    (void)source, (void)path;
+    *rows = *columns = 0;
+    return false;
+}
+
+enum status hdf5_read(const struct snapshot_source *source, const char *path,
+                      struct snapshot_file *file, enum snapshot_column column, struct error *error)
+{
+    (void)file, (void)column;
+    return error_set(error, STATUS_BAD_INPUT, "%.200s: %.80s: no HDF5", source->path, path);
+}
+#endif

@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The few things that readers ask of an HDF5 file. Its library does not withstand hostile files, so
+ * that snapshot_read lets it work in a process of its own (guard.h). */
+#ifndef SPHPROOF_HDF5_FILE_H
+#define SPHPROOF_HDF5_FILE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "snapshot_file.h"
+#include "source.h"
+
+/* Opens source->file. STATUS_BAD_INPUT: the library cannot make sense of it, or is not there. */
+enum status hdf5_open(struct snapshot_source *source, struct error *error);
+void hdf5_close(struct snapshot_source *source);
+
+/* Is there such a group or dataset: "PartType0/Density"? */
+bool hdf5_has(const struct snapshot_source *source, const char *path);
+
+/* Names of the links of a group, "A B C", for messages. */
+void hdf5_names(const struct snapshot_source *source, const char *group, char *text, size_t size);
+
+/* Name of the last link of a group that begins with prefix, by the number behind it; false: none.
+ */
+bool hdf5_last(const struct snapshot_source *source, const char *group, const char *prefix,
+               char *name, size_t size);
+
+/* Numbers of an attribute of the group into values, how many it has (at most max are set); -1: no
+ * such attribute, or no numbers. */
+int hdf5_numbers(const struct snapshot_source *source, const char *group, const char *name,
+                 double *values, int max);
+
+/* A text attribute, cleaned; "" where there is none. */
+void hdf5_text(const struct snapshot_source *source, const char *group, const char *name,
+               char *text, size_t size);
+
+/* Rows and columns of a dataset of numbers (columns 1 where it has one index). */
+bool hdf5_shape(const struct snapshot_source *source, const char *path, size_t *rows,
+                size_t *columns);
+
+/* Reads a dataset of file->n rows and at most 3 columns into column and those behind it.
+ * STATUS_BAD_INPUT: not of that shape, or it cannot be read. Sets the precision. */
+enum status hdf5_read(const struct snapshot_source *source, const char *path,
+                      struct snapshot_file *file, enum snapshot_column column, struct error *error);
+
+#endif

@@ -1,0 +1,122 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "hdf5_gas.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum status hdf5_gas(const struct snapshot_source *source, const char *group,
+                     const struct hdf5_names *names, size_t n, struct snapshot_file *file,
+                     struct error *error)
+{
+    char path[128], there[300];
+    size_t columns;
+    for (size_t k = 0; k < n; k++) {
+        const char *const *name = names[k].names;
+        for (; *name; name++) {
+            snprintf(path, sizeof path, "%s/%s", group, *name);
+            if (hdf5_has(source, path)) break;
+        }
+        if (!*name && !names[k].needed) continue;
+        if (!*name) {
+            hdf5_names(source, group, there, sizeof there);
+            return error_set(error, STATUS_BAD_INPUT, "%.200s: %s holds no %s; it has: %.200s",
+                             source->path, group, names[k].names[0], there);
+        }
+        if (names[k].column == SNAPSHOT_X) {
+            if (!hdf5_shape(source, path, &file->n, &columns) || file->n < 1 ||
+                file->n > SNAPSHOT_ROWS_MAX)
+                return error_set(error, STATUS_BAD_INPUT,
+                                 "%.200s: %.80s: no particles, or no table of numbers",
+                                 source->path, path);
+            file->gas = file->n;
+        }
+        if (hdf5_read(source, path, file, names[k].column, error)) return error->status;
+    }
+    return STATUS_OK;
+}
+
+struct snapshot_value hdf5_first(const struct snapshot_source *source, const char *const *from,
+                                 const char **used)
+{
+    for (; *from; from++) {
+        char group[40];
+        const char *colon = strchr(*from, ':');
+        snprintf(group, sizeof group, "%.*s", (int)(colon - *from), *from);
+        double value;
+        if (hdf5_numbers(source, group, colon + 1, &value, 1) < 1) continue;
+        if (used) *used = *from;
+        return (struct snapshot_value){true, value};
+    }
+    return (struct snapshot_value){0};
+}
+
+static bool comoving(const struct snapshot_source *source, const struct snapshot_file *file)
+{
+    static const char *const says[] = {"Header:ComovingIntegrationOn",
+                                       "Parameters:ComovingIntegrationOn",
+                                       "Cosmology:Cosmological run", NULL};
+    static const char *const redshifts[] = {"Header:Redshift", NULL};
+    const struct snapshot_value said = hdf5_first(source, says, NULL),
+                                redshift = hdf5_first(source, redshifts, NULL);
+    if (said.known) return said.value != 0;
+    return redshift.known && redshift.value > 0 && file->time.known &&
+           fabs(file->time.value * (1 + redshift.value) - 1) < 1e-6;
+}
+
+static enum status take_masses(const struct snapshot_source *source, struct snapshot_file *file,
+                               struct error *error)
+{
+    double mass = 0;
+    if (file->column[SNAPSHOT_M]) return STATUS_OK;
+    if (hdf5_numbers(source, "Header", "MassTable", &mass, 1) < 1 || !(mass > 0))
+        return error_set(error, STATUS_BAD_INPUT,
+                         "%.200s: no masses: neither PartType0/Masses nor Header/MassTable[0] > 0",
+                         source->path);
+    if (!snapshot_file_make(file, SNAPSHOT_M))
+        return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", source->path);
+    for (size_t i = 0; i < file->n; i++) file->column[SNAPSHOT_M][i] = mass;
+    snapshot_note(&file->notes, "masses", "from MassTable", "Header/MassTable[0] = %.9g", mass);
+    return STATUS_OK;
+}
+
+static void take_box(const struct snapshot_source *source, struct snapshot_file *file)
+{
+    double box[3] = {0};
+    const int count = hdf5_numbers(source, "Header", "BoxSize", box, 3);
+    for (int d = 0; count == 1 && d < 3; d++) box[d] = box[0];
+    file->boxed = count >= 1 && box[0] > 0 && isfinite(box[0]);
+    for (int d = 0; file->boxed && d < 3; d++)
+        file->box[d] = isfinite(box[d]) && box[d] > 0 ? box[d] : 0;
+}
+
+enum status hdf5_header(const struct snapshot_source *source, struct snapshot_file *file,
+                        struct error *error)
+{
+    static const char *const times[] = {"Header:Time", NULL};
+    static const char *const dims[] = {"Header:Dimension", "HydroScheme:Dimension", NULL};
+    static const char *const parts[] = {"Header:NumFilesPerSnapshot", NULL};
+    static const char *const counts[] = {"Header:NumPart_ThisFile", NULL};
+    file->time = hdf5_first(source, times, NULL);
+    const struct snapshot_value dim = hdf5_first(source, dims, NULL),
+                                part = hdf5_first(source, parts, NULL),
+                                count = hdf5_first(source, counts, NULL);
+    if (comoving(source, file))
+        return error_set(error, STATUS_BAD_INPUT,
+                         "%.200s: comoving units (a cosmological run); allowed: runs in a box at "
+                         "rest",
+                         source->path);
+    if (count.known && count.value != (double)file->n)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "%.200s: Header/NumPart_ThisFile says %g gas particles, PartType0 has "
+                         "%zu: cut off or damaged",
+                         source->path, count.value, file->n);
+    if (part.known && !(part.value >= 1 && part.value <= SNAPSHOT_PARTS_MAX))
+        return error_set(error, STATUS_BAD_INPUT,
+                         "%.200s: Header/NumFilesPerSnapshot = %g; allowed: 1 to %d", source->path,
+                         part.value, SNAPSHOT_PARTS_MAX);
+    file->parts = part.known ? (int)part.value : 1;
+    if (dim.known && dim.value >= 1 && dim.value <= 3) file->dim = (int)dim.value;
+    take_box(source, file);
+    return take_masses(source, file, error);
+}

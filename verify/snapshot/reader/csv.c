@@ -1,0 +1,109 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Text tables: a line with the names of the columns (any names with --map), then a line a particle;
+ * separated by commas or, where the first line has none, by blanks. Lines "# time = 0.2", "# gamma
+ * = 1.4" and "# box = 2" or "# box = 2 1 1" say what columns do not. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "text.h"
+#include "text_table.h"
+
+static void take_remark(const char *line, size_t length, struct snapshot_file *file)
+{
+    char text[160], key[16];
+    if (length >= sizeof text) return;
+    memcpy(text, line, length);
+    text[length] = '\0';
+    const size_t begin = strspn(text, "# \t"), size = strcspn(text + begin, " \t=:");
+    const size_t value = begin + size + strspn(text + begin + size, " \t=:");
+    char *end = text + strlen(text);
+    while (end > text && strchr(" \t\r", end[-1])) *--end = '\0';
+    if (size == 0 || size >= sizeof key || value >= (size_t)(end - text)) return;
+    memcpy(key, text + begin, size);
+    key[size] = '\0';
+    double numbers[3];
+    if (strcmp(key, "box") == 0) {
+        file->boxed = text_reals(text + value, " \t,", 3, numbers) ||
+                      text_reals(text + value, " \t,", 2, numbers);
+        if (!file->boxed && (file->boxed = text_real(text + value, numbers)))
+            numbers[1] = numbers[2] = numbers[0];
+        for (int d = 0; d < 3 && file->boxed; d++) file->box[d] = numbers[d];
+        return;
+    }
+    if (!text_real(text + value, numbers)) return;
+    if (strcmp(key, "time") == 0) file->time = (struct snapshot_value){true, numbers[0]};
+    if (strcmp(key, "gamma") == 0) {
+        file->gamma = (struct snapshot_value){true, numbers[0]};
+        snapshot_note(&file->notes, "gamma", "in the file", "its line '%.100s'", text);
+    }
+}
+
+static enum status take_names(struct text_table *table, const char *line, size_t length,
+                              struct error *error)
+{
+    table->separator = memchr(line, ',', length) ? ',' : ' ';
+    const char *stops = table->separator == ',' ? "," : " \t";
+    for (size_t at = 0; at < length;) {
+        size_t n = 0;
+        while (at < length && (line[at] == ' ' || line[at] == '\t')) at++;
+        while (at + n < length && !strchr(stops, line[at + n])) n++;
+        const size_t next = at + n + (at + n < length);
+        size_t size = n;
+        while (size && strchr(" \t\r", line[at + size - 1])) size--;
+        double number;
+        if (table->separator == ' ' && !size) break;
+        if (table->columns == TABLE_COLUMNS_MAX || size >= sizeof table->names[0] || !size)
+            return error_set(error, STATUS_BAD_INPUT,
+                             "%.200s: names of columns: allowed: at most %d, of 1 to %zu letters",
+                             table->source->path, TABLE_COLUMNS_MAX, sizeof table->names[0] - 1);
+        char *name = table->names[table->columns++];
+        memcpy(name, line + at, size);
+        name[size] = '\0';
+        status_clean(name);
+        if (text_real(name, &number))
+            return error_set(error, STATUS_BAD_INPUT,
+                             "%.200s: '%.40s' is a number; the first line must hold the names of "
+                             "the columns",
+                             table->source->path, name);
+        at = next;
+    }
+    return STATUS_OK;
+}
+
+static enum status read(const struct snapshot_source *source,
+                        const struct snapshot_options *options, struct snapshot_file *file,
+                        struct error *error)
+{
+    struct text_table table = {.source = source};
+    const char *text = (const char *)source->bytes;
+    size_t at = 0, line = 1;
+    if (source->size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0) at = 3;
+    for (; at < source->size && !table.columns; line++) {
+        const size_t length = strcspn(text + at, "\n");
+        const size_t begin = strspn(text + at, " \t\r");
+        if (text[at + begin] == '#')
+            take_remark(text + at, length, file);
+        else if (begin < length && take_names(&table, text + at, length, error))
+            return error->status;
+        at += length + (text[at + length] == '\n');
+        if (text[at] == '\0') break;
+    }
+    if (!table.columns)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "%.200s: no line with the names of columns; allowed: x,vx,m,rho,u,h and a "
+                         "line a particle",
+                         source->path);
+    if (text_table_name(&table, options->map, error) ||
+        text_table_read(&table, at, line, file, error))
+        return error->status;
+    for (int d = 0; d < 3; d++)
+        if (file->boxed && d < file->columns && !(file->box[d] > 0 && isfinite(file->box[d])))
+            return error_set(error, STATUS_BAD_INPUT, "%.200s: box = %g; allowed: above 0",
+                             source->path, file->box[d]);
+    snprintf(file->code, sizeof file->code, "unknown");
+    return STATUS_OK;
+}
+
+const struct snapshot_reader snapshot_csv = {
+    {"csv", "text with names of columns, commas or blanks", ""}, text_table_is_text, read};

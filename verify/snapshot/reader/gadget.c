@@ -1,0 +1,388 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Binary snapshots of GADGET (Springel 2005, user guide section 6), formats 1 and 2, either byte
+ * order: Fortran records, each between two counts of its bytes. The first is the header of 256
+ * bytes. In format 2 a record of 8 bytes before each block names it. In format 1 nobody does, and
+ * codes insert blocks of their own: which record is what follows from lengths and from values, and
+ * where two readings fit, none is taken. */
+#include <float.h>
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "snapshot_file.h"
+#include "source.h"
+
+enum { HEADER = 256, RECORDS_MAX = 64, TYPES = 6 };
+
+struct record {
+    char tag[5];
+    const unsigned char *bytes;
+    size_t size;
+};
+
+struct binary {
+    const struct snapshot_source *source;
+    bool swapped; /* not in this machine's order */
+    bool tagged;
+    size_t count;
+    struct record record[RECORDS_MAX];
+    size_t particles[TYPES], all, massive; /* massive: rows of the block of masses */
+    double mass[TYPES], time, redshift, box;
+    int parts;
+};
+
+static uint64_t integer(const struct binary *b, const unsigned char *bytes, size_t size)
+{
+    uint64_t value = 0;
+    const uint16_t one = 1;
+    const bool little = *(const unsigned char *)&one == 1;
+    for (size_t k = 0; k < size; k++) {
+        const size_t at = little != b->swapped ? size - 1 - k : k;
+        value = value << 8 | bytes[at];
+    }
+    return value;
+}
+
+static double real(const struct binary *b, const unsigned char *bytes, size_t size)
+{
+    const uint64_t bits = integer(b, bytes, size);
+    if (size == 8) {
+        double value;
+        memcpy(&value, &bits, sizeof value);
+        return value;
+    }
+    const uint32_t half = (uint32_t)bits;
+    float value;
+    memcpy(&value, &half, sizeof value);
+    return (double)value;
+}
+
+static uint32_t word(const unsigned char *bytes, bool swapped)
+{
+    const struct binary b = {.swapped = swapped};
+    return (uint32_t)integer(&b, bytes, 4);
+}
+
+/* Does the file begin with a record of 256 bytes, or with the name of a block? */
+static bool begins(const struct snapshot_source *source, bool swapped, uint32_t *first)
+{
+    if (source->size < HEADER + 8) return false;
+    *first = word(source->bytes, swapped);
+    if (*first == HEADER) return word(source->bytes + 4 + HEADER, swapped) == HEADER;
+    return *first == 8 && word(source->bytes + 12, swapped) == 8 &&
+           memcmp(source->bytes + 4, "HEAD", 4) == 0;
+}
+
+static bool recognises(const struct snapshot_source *source)
+{
+    uint32_t first;
+    if (source->hdf5) return false;
+    return begins(source, false, &first) || begins(source, true, &first);
+}
+
+static enum status cut_records(struct binary *b, struct error *error)
+{
+    const struct snapshot_source *s = b->source;
+    char tag[5] = "";
+    for (size_t at = 0; at < s->size;) {
+        const size_t left = s->size - at;
+        const size_t size = left >= 4 ? word(s->bytes + at, b->swapped) : 0;
+        if (left < 8 || size > left - 8)
+            return error_set(
+                error, STATUS_BAD_INPUT,
+                "%.200s: cut off: record %zu at byte %zu needs %zu bytes, %zu are left", s->path,
+                b->count + 1, at, size + 8, left);
+        if (word(s->bytes + at + 4 + size, b->swapped) != size)
+            return error_set(
+                error, STATUS_BAD_INPUT,
+                "%.200s: damaged: record %zu at byte %zu begins with %zu and ends with "
+                "%u",
+                s->path, b->count + 1, at, size,
+                (unsigned)word(s->bytes + at + 4 + size, b->swapped));
+        const unsigned char *bytes = s->bytes + at + 4;
+        at += size + 8;
+        if (b->tagged && size == 8 && !tag[0]) {
+            for (int k = 0; k < 4; k++)
+                tag[k] = bytes[k] > ' ' && bytes[k] < 127 ? (char)bytes[k] : ' ';
+            continue;
+        }
+        if (b->count == RECORDS_MAX)
+            return error_set(error, STATUS_BAD_INPUT, "%.200s: more than %d records", s->path,
+                             RECORDS_MAX);
+        struct record *record = &b->record[b->count++];
+        memcpy(record->tag, tag, sizeof tag);
+        record->bytes = bytes;
+        record->size = size;
+        tag[0] = '\0';
+    }
+    return STATUS_OK;
+}
+
+static enum status read_header(struct binary *b, struct error *error)
+{
+    const unsigned char *h = b->record[0].bytes;
+    const char *path = b->source->path;
+    if (b->count < 3 || b->record[0].size != HEADER)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "%.200s: %zu records; allowed: a header of 256 bytes, positions, "
+                         "velocities ...",
+                         path, b->count);
+    for (int t = 0; t < TYPES; t++) {
+        b->particles[t] = (size_t)integer(b, h + 4 * t, 4);
+        b->mass[t] = real(b, h + 24 + 8 * t, 8);
+        if (b->particles[t] > SNAPSHOT_ROWS_MAX || !(b->mass[t] >= 0 && isfinite(b->mass[t])))
+            return error_set(error, STATUS_BAD_INPUT,
+                             "%.200s: header: %zu particles of type %d, of mass %g", path,
+                             b->particles[t], t, b->mass[t]);
+        b->all += b->particles[t];
+        if (b->mass[t] == 0) b->massive += b->particles[t];
+    }
+    b->time = real(b, h + 72, 8);
+    b->redshift = real(b, h + 80, 8);
+    b->parts = (int)integer(b, h + 124, 4);
+    b->box = real(b, h + 128, 8);
+    if (b->particles[0] == 0)
+        return error_set(error, STATUS_BAD_INPUT, "%.200s: no gas: %zu particles of other types%s",
+                         path, b->all, b->particles[1] ? " (dark matter only?)" : "");
+    if (!isfinite(b->time) || b->parts < 0 || b->parts > SNAPSHOT_PARTS_MAX)
+        return error_set(error, STATUS_BAD_INPUT, "%.200s: header: time %g, %d files", path,
+                         b->time, b->parts);
+    if (b->redshift > 0 && fabs(b->time * (1 + b->redshift) - 1) < 1e-6)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "%.200s: comoving units (redshift %g at time %g); allowed: runs in a box "
+                         "at rest",
+                         path, b->redshift, b->time);
+    return STATUS_OK;
+}
+
+/* Bytes of a number, if the record has count of them; else 0. */
+static size_t width_of(const struct record *record, size_t count)
+{
+    if (count && record->size == 4 * count) return 4;
+    if (count && record->size == 8 * count) return 8;
+    return 0;
+}
+
+/* ---- which record is what ---- */
+
+enum { POSITIONS, VELOCITIES, IDS, MASSES, ENERGIES, DENSITIES, WIDTHS, ACCELERATIONS, BLOCKS };
+static const char *const tags[BLOCKS] = {"POS ", "VEL ", "ID  ", "MASS",
+                                         "U   ", "RHO ", "HSML", "ACCE"};
+
+struct layout {
+    const struct record *block[BLOCKS]; /* NULL: there is none */
+};
+
+static double gas_value(const struct binary *b, const struct record *record, size_t count, size_t i)
+{
+    const size_t width = width_of(record, count);
+    return real(b, record->bytes + width * i, width);
+}
+
+static bool positive(double value)
+{
+    return value > 1e-30 && value < 1e30;
+}
+
+/* Could these be masses, densities and widths of the gas? All must be positive, fill a volume
+ * between a half and two times that of the box (its extent, where it has none), and have widths of
+ * 0.3 to 30 spacings. */
+static bool plausible(const struct binary *b, const struct layout *layout, double volume, int dim)
+{
+    const struct record *m = layout->block[MASSES], *u = layout->block[ENERGIES],
+                        *rho = layout->block[DENSITIES], *h = layout->block[WIDTHS];
+    const size_t n = b->particles[0];
+    double filled = 0;
+    for (size_t i = 0; i < n; i++) {
+        const double mass = m ? gas_value(b, m, b->massive, i) : b->mass[0];
+        const double density = gas_value(b, rho, n, i);
+        if (!positive(mass) || !positive(density) || !positive(gas_value(b, u, n, i))) return false;
+        filled += mass / density;
+        const double width = h ? gas_value(b, h, n, i) : pow(mass / density, 1. / dim);
+        const double spacings = width / pow(mass / density, 1. / dim);
+        if (!(spacings > 0.3 && spacings < 30)) return false;
+    }
+    return filled > 0.5 * volume && filled < 2 * volume;
+}
+
+static void extent(const struct binary *b, const struct record *positions, int *dim, double *volume)
+{
+    const size_t width = width_of(positions, 3 * b->all);
+    *volume = 1;
+    *dim = 0;
+    for (size_t d = 0; d < 3; d++) {
+        double lo = INFINITY, hi = -INFINITY;
+        for (size_t i = 0; i < b->particles[0]; i++) {
+            const double x = real(b, positions->bytes + width * (3 * i + d), width);
+            lo = fmin(lo, x), hi = fmax(hi, x);
+        }
+        if (!(hi > lo)) continue;
+        ++*dim;
+        *volume *= b->box > 0 && hi - lo > 0.5 * b->box ? b->box : hi - lo;
+    }
+    if (*dim == 0) *dim = 1;
+}
+
+/* The blocks from record `first` on, in the order of the user guide. */
+static bool try_layout(const struct binary *b, size_t first, struct layout *layout)
+{
+    size_t at = first;
+    const size_t n = b->particles[0];
+    if (b->massive) layout->block[MASSES] = at < b->count ? &b->record[at++] : NULL;
+    for (int k = ENERGIES; k <= WIDTHS; k++)
+        layout->block[k] = at < b->count ? &b->record[at++] : NULL;
+    if (b->massive && !(layout->block[MASSES] && width_of(layout->block[MASSES], b->massive)))
+        return false;
+    if (layout->block[WIDTHS] && !width_of(layout->block[WIDTHS], n)) layout->block[WIDTHS] = NULL;
+    return layout->block[ENERGIES] && width_of(layout->block[ENERGIES], n) &&
+           layout->block[DENSITIES] && width_of(layout->block[DENSITIES], n);
+}
+
+static enum status infer(const struct binary *b, struct layout *layout,
+                         struct snapshot_notes *notes, struct error *error)
+{
+    int dim, fits = 0;
+    double volume;
+    size_t where = 0;
+    extent(b, &b->record[1], &dim, &volume);
+    for (size_t first = 3; first < b->count; first++) {
+        struct layout tried = *layout;
+        if (!try_layout(b, first, &tried) || !plausible(b, &tried, volume, dim)) continue;
+        if (!fits++) *layout = tried, where = first;
+    }
+    if (fits != 1)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "%.200s: format 1 does not name its blocks, and of %zu records %s as "
+                         "masses, energies, densities and widths; write format 2 (SnapFormat=2) or "
+                         "HDF5",
+                         b->source->path, b->count,
+                         fits ? "more than one choice fits" : "none fit");
+    layout->block[IDS] = &b->record[3];
+    char value[64];
+    snprintf(value, sizeof value, "%s from record %zu on", b->massive ? "masses" : "energies",
+             where + 1);
+    snapshot_note(notes, "blocks", value,
+                  "format 1 names none: of %zu records only these give positive masses, energies "
+                  "and densities, sum m/rho within a factor of 2 of the volume %.4g, and widths "
+                  "of 0.3 to 30 spacings%s",
+                  b->count, volume,
+                  where > 4 ? "; the records before them are the code's own" : "");
+    return STATUS_OK;
+}
+
+static enum status find_blocks(const struct binary *b, struct layout *layout,
+                               struct snapshot_notes *notes, struct error *error)
+{
+    *layout = (struct layout){0};
+    for (size_t r = 1; b->tagged && r < b->count; r++)
+        for (int k = 0; k < BLOCKS; k++)
+            if (strcmp(b->record[r].tag, tags[k]) == 0 && !layout->block[k])
+                layout->block[k] = &b->record[r];
+    if (!b->tagged) {
+        layout->block[POSITIONS] = &b->record[1];
+        layout->block[VELOCITIES] = &b->record[2];
+    }
+    for (int k = POSITIONS; k <= VELOCITIES; k++)
+        if (!layout->block[k] || !width_of(layout->block[k], 3 * b->all))
+            return error_set(error, STATUS_BAD_INPUT,
+                             "%.200s: %s of %zu particles take %zu or %zu bytes; the record has "
+                             "%zu",
+                             b->source->path, k ? "velocities" : "positions", b->all, 12 * b->all,
+                             24 * b->all, layout->block[k] ? layout->block[k]->size : (size_t)0);
+    if (!b->tagged) return infer(b, layout, notes, error);
+    static const int needed[] = {MASSES, DENSITIES};
+    for (int k = 0; k < 2; k++)
+        if (!layout->block[needed[k]] && !(needed[k] == MASSES && !b->massive))
+            return error_set(error, STATUS_BAD_INPUT, "%.200s: no block '%s'", b->source->path,
+                             tags[needed[k]]);
+    return STATUS_OK;
+}
+
+/* ---- into columns ---- */
+
+static enum status take_block(const struct binary *b, const struct layout *layout, int block,
+                              enum snapshot_column column, struct snapshot_file *file,
+                              struct error *error)
+{
+    const struct record *record = layout->block[block];
+    const bool vector = block == POSITIONS || block == VELOCITIES || block == ACCELERATIONS;
+    const size_t each = vector ? 3 : 1;
+    const size_t rows = block == POSITIONS || block == VELOCITIES ? b->all
+                        : block == MASSES                         ? b->massive
+                                                                  : b->particles[0];
+    size_t width = record ? width_of(record, each * rows) : 0;
+    size_t all = rows;
+    if (record && block == ACCELERATIONS && !width) /* of all particles */
+        width = width_of(record, each * (all = b->all));
+    if (!record) return STATUS_OK;
+    if (!width)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "%.200s: block '%s' has %zu bytes; allowed: %zu "
+                         "or %zu",
+                         b->source->path, tags[block], record->size, 4 * each * rows,
+                         8 * each * rows);
+    for (size_t d = 0; d < each; d++) {
+        if (!snapshot_file_make(file, (enum snapshot_column)(column + d)))
+            return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", b->source->path);
+        for (size_t i = 0; i < file->n && i < all; i++)
+            file->column[column + d][i] = real(b, record->bytes + width * (each * i + d), width);
+    }
+    double *precision = &file->precision[column >= SNAPSHOT_VX];
+    *precision = fmax(*precision, width == 4 ? (double)FLT_EPSILON / 2 : DBL_EPSILON / 2);
+    return STATUS_OK;
+}
+
+static enum status take_blocks(const struct binary *b, const struct layout *layout,
+                               struct snapshot_file *file, struct error *error)
+{
+    static const struct {
+        int block;
+        enum snapshot_column column;
+    } columns[] = {{POSITIONS, SNAPSHOT_X},     {VELOCITIES, SNAPSHOT_VX}, {MASSES, SNAPSHOT_M},
+                   {ENERGIES, SNAPSHOT_U},      {DENSITIES, SNAPSHOT_RHO}, {WIDTHS, SNAPSHOT_H},
+                   {ACCELERATIONS, SNAPSHOT_AX}};
+    file->n = file->gas = b->particles[0];
+    file->columns = 3;
+    for (size_t k = 0; k < sizeof columns / sizeof *columns; k++)
+        if ((columns[k].block != MASSES || b->mass[0] == 0) &&
+            take_block(b, layout, columns[k].block, columns[k].column, file, error))
+            return error->status;
+    if (b->mass[0] > 0) {
+        if (!snapshot_file_make(file, SNAPSHOT_M))
+            return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", b->source->path);
+        for (size_t i = 0; i < file->n; i++) file->column[SNAPSHOT_M][i] = b->mass[0];
+        snapshot_note(&file->notes, "masses", "from the header's table", "%.9g", b->mass[0]);
+    }
+    return STATUS_OK;
+}
+
+static enum status read(const struct snapshot_source *source,
+                        const struct snapshot_options *options, struct snapshot_file *file,
+                        struct error *error)
+{
+    struct binary b = {.source = source};
+    struct layout layout;
+    uint32_t first = 0;
+    (void)options;
+    b.swapped = !begins(source, false, &first);
+    if (b.swapped) begins(source, true, &first);
+    b.tagged = first == 8;
+    if (cut_records(&b, error) || read_header(&b, error) ||
+        find_blocks(&b, &layout, &file->notes, error) || take_blocks(&b, &layout, file, error))
+        return error->status;
+    file->time = (struct snapshot_value){true, b.time};
+    file->boxed = b.box > 0 && isfinite(b.box);
+    for (int d = 0; d < 3; d++) file->box[d] = file->boxed ? b.box : 0;
+    file->parts = b.parts ? b.parts : 1;
+    snprintf(file->code, sizeof file->code, "GADGET or its kin");
+    snapshot_note(&file->notes, "format", b.tagged ? "2" : "1", "%s byte order, %zu records",
+                  b.swapped ? "the other" : "this machine's", b.count);
+    if (file->precision[0] < file->precision[1])
+        snapshot_note(&file->notes, "positions", "float64",
+                      "24 bytes a particle; the other fields are float32");
+    return STATUS_OK;
+}
+
+const struct snapshot_reader snapshot_gadget = {
+    {"gadget", "binary of GADGET, formats 1 and 2", "Springel 2005"}, recognises, read};

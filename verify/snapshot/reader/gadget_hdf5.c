@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * HDF5 as GADGET-2 to -4, AREPO and GIZMO write it (Springel 2005, user guide): PartType0, names in
+ * the singular, no gamma. */
+#include <stdio.h>
+
+#include "hdf5_gas.h"
+
+static bool recognises(const struct snapshot_source *source)
+{
+    return source->file && hdf5_has(source, "Header") && !hdf5_has(source, "HydroScheme");
+}
+
+static const struct hdf5_names names[] = {
+    {SNAPSHOT_X, {"Coordinates"}, true},
+    {SNAPSHOT_VX, {"Velocities"}, true},
+    {SNAPSHOT_M, {"Masses"}, false},
+    {SNAPSHOT_RHO, {"Density"}, true},
+    {SNAPSHOT_U, {"InternalEnergy"}, false},
+    {SNAPSHOT_P, {"Pressure"}, false},
+    {SNAPSHOT_H, {"SmoothingLength", "Hsml"}, false},
+    {SNAPSHOT_AX, {"Acceleration", "HydroAcceleration"}, false},
+    {SNAPSHOT_DU, {"RateOfChangeOfInternalEnergy"}, false},
+};
+
+static enum status read(const struct snapshot_source *source,
+                        const struct snapshot_options *options, struct snapshot_file *file,
+                        struct error *error)
+{
+    static const char *const gammas[] = {"Header:Gamma", "Header:gamma", "Parameters:Gamma",
+                                         "Config:GAMMA", NULL};
+    (void)options;
+    char there[300];
+    if (!hdf5_has(source, "PartType0")) {
+        hdf5_names(source, "/", there, sizeof there);
+        return error_set(error, STATUS_BAD_INPUT, "%.200s: no gas (PartType0); it has: %.200s%s",
+                         source->path, there,
+                         hdf5_has(source, "PartType1") ? " (dark matter only?)" : "");
+    }
+    if (hdf5_gas(source, "PartType0", names, sizeof names / sizeof *names, file, error) ||
+        hdf5_header(source, file, error))
+        return error->status;
+    const struct snapshot_value version =
+        hdf5_first(source, (const char *const[]){"Header:GIZMO_version", NULL}, NULL);
+    const char *from = "";
+    file->gamma = hdf5_first(source, gammas, &from);
+    if (file->gamma.known)
+        snapshot_note(&file->notes, "gamma", "in the file", "attribute %s", from);
+    if (version.known)
+        snprintf(file->code, sizeof file->code, "GIZMO %g", version.value);
+    else
+        snprintf(file->code, sizeof file->code, "%s",
+                 hdf5_has(source, "Config") ? "AREPO or GADGET-4" : "GADGET or its kin");
+    return STATUS_OK;
+}
+
+const struct snapshot_reader snapshot_gadget_hdf5 = {
+    {"gadget_hdf5", "HDF5 of GADGET, AREPO and GIZMO", "Springel 2005"}, recognises, read};

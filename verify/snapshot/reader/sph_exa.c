@@ -1,0 +1,80 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * HDF5 as SPH-EXA writes it (Cabezon et al. 2025): groups Step#0, Step#1 ..., each with a dataset
+ * for each coordinate, time and gamma; half of the support radius is called h. The last step
+ * counts. */
+#include <math.h>
+#include <stdio.h>
+
+#include "hdf5_gas.h"
+
+static bool recognises(const struct snapshot_source *source)
+{
+    char step[40];
+    return source->file && hdf5_last(source, "/", "Step#", step, sizeof step);
+}
+
+static const struct hdf5_names names[] = {
+    {SNAPSHOT_X, {"x"}, true},        {SNAPSHOT_X + 1, {"y"}, false},
+    {SNAPSHOT_X + 2, {"z"}, false},   {SNAPSHOT_VX, {"vx"}, true},
+    {SNAPSHOT_VX + 1, {"vy"}, false}, {SNAPSHOT_VX + 2, {"vz"}, false},
+    {SNAPSHOT_M, {"m"}, false},       {SNAPSHOT_RHO, {"rho"}, true},
+    {SNAPSHOT_U, {"u"}, false},       {SNAPSHOT_P, {"p"}, false},
+    {SNAPSHOT_H, {"h"}, false},       {SNAPSHOT_AX, {"ax"}, false},
+    {SNAPSHOT_AX + 1, {"ay"}, false}, {SNAPSHOT_AX + 2, {"az"}, false},
+    {SNAPSHOT_DU, {"du"}, false},
+};
+
+/* The box is an attribute: its ends along each direction. */
+static void take_box(const struct snapshot_source *source, const char *step,
+                     struct snapshot_file *file)
+{
+    double box[6];
+    if (hdf5_numbers(source, step, "box", box, 6) != 6) return;
+    file->boxed = true;
+    for (int d = 0; d < 3; d++) {
+        file->box[d] = box[2 * d + 1] - box[2 * d];
+        file->boxed = file->boxed && file->box[d] > 0 && isfinite(box[2 * d]);
+    }
+    for (int d = 0; d < 3 && file->boxed; d++)
+        for (size_t i = 0; file->column[d] && i < file->n; i++) file->column[d][i] -= box[2 * d];
+    if (file->boxed)
+        snapshot_note(&file->notes, "origin", "lower corner of the box",
+                      "positions are given from (%g, %g, %g), the attribute box", box[0], box[2],
+                      box[4]);
+}
+
+static enum status read(const struct snapshot_source *source,
+                        const struct snapshot_options *options, struct snapshot_file *file,
+                        struct error *error)
+{
+    char step[40];
+    double number;
+    (void)options;
+    hdf5_last(source, "/", "Step#", step, sizeof step);
+    if (hdf5_gas(source, step, names, sizeof names / sizeof *names, file, error))
+        return error->status;
+    file->columns = !file->column[1] ? 1 : !file->column[2] ? 2 : 3;
+    if (hdf5_numbers(source, step, "time", &number, 1) >= 1)
+        file->time = (struct snapshot_value){true, number};
+    if (hdf5_numbers(source, step, "gamma", &number, 1) >= 1) {
+        file->gamma = (struct snapshot_value){true, number};
+        snapshot_note(&file->notes, "gamma", "in the file", "attribute %s/gamma", step);
+    }
+    if (!file->column[SNAPSHOT_M]) {
+        if (hdf5_numbers(source, step, "particleMass", &number, 1) < 1)
+            return error_set(error, STATUS_BAD_INPUT,
+                             "%.200s: no masses: neither %s/m nor its attribute particleMass",
+                             source->path, step);
+        if (!snapshot_file_make(file, SNAPSHOT_M))
+            return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", source->path);
+        for (size_t i = 0; i < file->n; i++) file->column[SNAPSHOT_M][i] = number;
+    }
+    take_box(source, step, file);
+    file->parts = 1;
+    snapshot_note(&file->notes, "step", step, "the last one of the file");
+    snprintf(file->code, sizeof file->code, "SPH-EXA");
+    return STATUS_OK;
+}
+
+const struct snapshot_reader snapshot_sph_exa = {
+    {"sph_exa", "HDF5 of SPH-EXA", "Cabezon et al. 2025"}, recognises, read};

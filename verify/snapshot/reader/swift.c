@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * HDF5 as SWIFT writes it (Schaller et al. 2024): names in the plural, gamma and kernel in
+ * HydroScheme; h is twice the kernel's standard deviation, so that its support radius is h times
+ * "Kernel gamma". */
+#include <stdio.h>
+#include <string.h>
+
+#include "hdf5_gas.h"
+
+static bool recognises(const struct snapshot_source *source)
+{
+    return source->file && hdf5_has(source, "Header") && hdf5_has(source, "HydroScheme");
+}
+
+static const struct hdf5_names names[] = {
+    {SNAPSHOT_X, {"Coordinates"}, true},
+    {SNAPSHOT_VX, {"Velocities"}, true},
+    {SNAPSHOT_M, {"Masses"}, true},
+    {SNAPSHOT_RHO, {"Densities"}, true},
+    {SNAPSHOT_U, {"InternalEnergies"}, false},
+    {SNAPSHOT_P, {"Pressures"}, false},
+    {SNAPSHOT_H, {"SmoothingLengths"}, false},
+    {SNAPSHOT_AX, {"Accelerations"}, false},
+};
+
+static enum status read(const struct snapshot_source *source,
+                        const struct snapshot_options *options, struct snapshot_file *file,
+                        struct error *error)
+{
+    static const char *const gammas[] = {"HydroScheme:Adiabatic index", NULL},
+                             *const ratios[] = {"HydroScheme:Kernel gamma", NULL};
+    char revision[40];
+    (void)options;
+    if (!hdf5_has(source, "PartType0")) {
+        char there[300];
+        hdf5_names(source, "/", there, sizeof there);
+        return error_set(error, STATUS_BAD_INPUT, "%.200s: no gas (PartType0); it has: %.200s",
+                         source->path, there);
+    }
+    if (hdf5_gas(source, "PartType0", names, sizeof names / sizeof *names, file, error) ||
+        hdf5_header(source, file, error))
+        return error->status;
+    file->gamma = hdf5_first(source, gammas, NULL);
+    if (file->gamma.known)
+        snapshot_note(&file->notes, "gamma", "in the file",
+                      "HydroScheme/Adiabatic index, in float32 %.9g", file->gamma.value);
+    const struct snapshot_value ratio = hdf5_first(source, ratios, NULL);
+    file->ratio = ratio.known ? ratio.value : 0;
+    hdf5_text(source, "HydroScheme", "Kernel function", file->kernel, sizeof file->kernel);
+    hdf5_text(source, "Code", "Git Revision", revision, sizeof revision);
+    snprintf(file->code, sizeof file->code, "SWIFT %.40s", revision);
+    return STATUS_OK;
+}
+
+const struct snapshot_reader snapshot_swift = {
+    {"swift", "HDF5 of SWIFT", "Schaller et al. 2024"}, recognises, read};

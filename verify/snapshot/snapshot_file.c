@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "snapshot_file.h"
+
+#include <ctype.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+const char *const snapshot_column_names[SNAPSHOT_COLUMNS] = {
+    "x", "y", "z", "vx", "vy", "vz", "m", "rho", "u", "P", "h", "ax", "ay", "az", "du"};
+
+/* What people call them, in small letters, and without what is neither letter nor digit. */
+static const char *const called[SNAPSHOT_COLUMNS] = {
+    "x posx positionx coordinatesx",
+    "y posy positiony coordinatesy",
+    "z posz positionz coordinatesz",
+    "vx velx velocityx velocitiesx",
+    "vy vely velocityy velocitiesy",
+    "vz velz velocityz velocitiesz",
+    "m mass masses particlemass pmass",
+    "rho density densities",
+    "u internalenergy internalenergies specificinternalenergy energy thermalenergy utherm",
+    "p pressure pressures",
+    "h hsml smoothinglength smoothinglengths",
+    "ax accx accelerationx",
+    "ay accy accelerationy",
+    "az accz accelerationz",
+    "du dudt",
+};
+
+int snapshot_column_of(const char *name)
+{
+    char plain[48];
+    size_t n = 0;
+    for (; *name && n + 1 < sizeof plain; name++)
+        if (isalnum((unsigned char)*name)) plain[n++] = (char)tolower((unsigned char)*name);
+    plain[n] = '\0';
+    for (int c = 0; n && !*name && c < SNAPSHOT_COLUMNS; c++)
+        for (const char *word = called[c]; *word; word += strspn(word, " ")) {
+            const size_t length = strcspn(word, " ");
+            if (length == n && strncmp(word, plain, n) == 0) return c;
+            word += length;
+        }
+    return -1;
+}
+
+bool snapshot_file_make(struct snapshot_file *file, enum snapshot_column column)
+{
+    if (file->n > SNAPSHOT_ROWS_MAX) return false;
+    free(file->column[column]);
+    file->column[column] = calloc(file->n + 1, sizeof(double));
+    return file->column[column] != NULL;
+}
+
+void snapshot_file_free(struct snapshot_file *file)
+{
+    for (int c = 0; c < SNAPSHOT_COLUMNS; c++) free(file->column[c]), file->column[c] = NULL;
+}
+
+void snapshot_note(struct snapshot_notes *notes, const char *what, const char *value,
+                   const char *format, ...)
+{
+    if (notes->count == SNAPSHOT_NOTES_MAX) return;
+    struct snapshot_note *note = &notes->note[notes->count++];
+    va_list arguments;
+    snprintf(note->what, sizeof note->what, "%s", what);
+    snprintf(note->value, sizeof note->value, "%s", value);
+    va_start(arguments, format);
+    vsnprintf(note->evidence, sizeof note->evidence, format, arguments);
+    va_end(arguments);
+    status_clean(note->value);
+    status_clean(note->evidence);
+}

@@ -1,0 +1,299 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Which reader a file belongs to; several files of one snapshot; what no snapshot may hold. HDF5
+ * files are read in a process of their own, which hands over the columns through a file without a
+ * name. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "guard.h"
+#include "hdf5_file.h"
+#include "snapshot_file.h"
+#include "source.h"
+
+#define READER(name) extern const struct snapshot_reader snapshot_##name;
+#include "readers.def"
+#undef READER
+
+static const struct member *const members[] = {
+#define READER(name) &snapshot_##name.member,
+#include "readers.def"
+#undef READER
+};
+
+const struct family snapshot_reader_family = {"snapshots", "formats of snapshots that are read",
+                                              members, sizeof members / sizeof *members};
+
+static enum status read_source(const struct snapshot_source *source,
+                               const struct snapshot_options *options, struct snapshot_file *file,
+                               struct error *error)
+{
+    for (size_t k = 0; k < snapshot_reader_family.n; k++) {
+        const struct snapshot_reader *reader =
+            (const struct snapshot_reader *)snapshot_reader_family.members[k];
+        if (!reader->recognises(source)) continue;
+        snprintf(file->layout, sizeof file->layout, "%s", reader->member.name);
+        return reader->read(source, options, file, error);
+    }
+    if (source->file) {
+        char there[300];
+        hdf5_names(source, "/", there, sizeof there);
+        return error_set(error, STATUS_BAD_INPUT,
+                         "%.200s: HDF5 of no layout that is read (GADGET, AREPO, GIZMO, SWIFT, "
+                         "SPH-EXA, Phantom); it has: %.200s",
+                         source->path, there);
+    }
+    return error_set(error, STATUS_BAD_INPUT,
+                     "%.200s: no snapshot that is read: begins neither as HDF5, nor as a binary of "
+                     "GADGET (a count of 256 or 8), nor as text; `sphproof list snapshots` names "
+                     "all",
+                     source->path);
+}
+
+/* ---- HDF5, in the other process ---- */
+
+struct errand {
+    struct snapshot_source *source;
+    const struct snapshot_options *options;
+    FILE *results;
+};
+
+static enum status run_errand(const void *context, json_t **reply, struct error *error)
+{
+    const struct errand *errand = context;
+    struct snapshot_file file = {0};
+    (void)reply;
+    guard_call("the HDF5 library", (double)NAN, (double)NAN, 0);
+    enum status status = hdf5_open(errand->source, error);
+    guard_back();
+    if (!status) status = read_source(errand->source, errand->options, &file, error);
+    if (!status) {
+        bool written = fwrite(&file, sizeof file, 1, errand->results) == 1;
+        for (int c = 0; c < SNAPSHOT_COLUMNS; c++)
+            if (file.column[c])
+                written = written &&
+                          fwrite(file.column[c], sizeof(double), file.n, errand->results) == file.n;
+        if (!written || fflush(errand->results))
+            status = error_set(error, STATUS_ENVIRONMENT, "no space for what %.200s holds",
+                               errand->source->path);
+    }
+    snapshot_file_free(&file);
+    return status;
+}
+
+static enum status take_results(const char *path, FILE *results, struct snapshot_file *file,
+                                struct error *error)
+{
+    bool there[SNAPSHOT_COLUMNS];
+    rewind(results);
+    bool sound = fread(file, sizeof *file, 1, results) == 1 && file->n <= SNAPSHOT_ROWS_MAX &&
+                 file->gas <= file->n && file->notes.count <= SNAPSHOT_NOTES_MAX;
+    for (int c = 0; c < SNAPSHOT_COLUMNS; c++) {
+        there[c] = file->column[c] != NULL;
+        file->column[c] = NULL;
+    }
+    for (int c = 0; c < SNAPSHOT_COLUMNS && sound; c++)
+        if (there[c])
+            sound = snapshot_file_make(file, (enum snapshot_column)c) &&
+                    fread(file->column[c], sizeof(double), file->n, results) == file->n;
+    return sound ? STATUS_OK
+                 : error_set(error, STATUS_ENVIRONMENT, "no memory for what %.200s holds", path);
+}
+
+static enum status read_hdf5(struct snapshot_source *source, const struct snapshot_options *options,
+                             struct snapshot_file *file, struct error *error)
+{
+    enum { SECONDS = 60 };
+    struct guard_verdict verdict = {0};
+    const struct errand errand = {source, options, tmpfile()};
+    if (!errand.results)
+        return error_set(error, STATUS_ENVIRONMENT, "no temporary file for what %.200s holds",
+                         source->path);
+    enum status status = guard_run(run_errand, &errand, SECONDS, &verdict, error);
+    if (!status)
+        status = take_results(source->path, errand.results, file, error);
+    else if (!verdict.ended && verdict.reason[0])
+        status = error_set(error, STATUS_BAD_INPUT,
+                           "%.200s: damaged or hostile: the HDF5 library %.200s", source->path,
+                           verdict.reason);
+    guard_free(&verdict);
+    fclose(errand.results);
+    return status;
+}
+
+static enum status read_one(const char *path, const struct snapshot_options *options,
+                            struct snapshot_file *file, struct error *error)
+{
+    struct snapshot_source source;
+    *file = (struct snapshot_file){0};
+    enum status status = source_open(&source, path, error);
+    if (!status)
+        status = (source.hdf5 ? read_hdf5(&source, options, file, error)
+                              : read_source(&source, options, file, error));
+    source_free(&source);
+    if (!status && options->map && strcmp(file->layout, "csv") && strcmp(file->layout, "splash"))
+        status = error_set(error, STATUS_BAD_INPUT,
+                           "%.200s: --map is for text; this is %s, whose names are known", path,
+                           file->layout);
+    return status;
+}
+
+/* ---- several files ---- */
+
+/* snap_007.0.hdf5 -> snap_007.3.hdf5; false: the name has no such number. */
+static bool part_path(const char *path, int part, char *text, size_t size)
+{
+    const char *base = strrchr(path, '/');
+    const char *at = strstr(base ? base : path, ".0");
+    while (at && at[2] && at[2] != '.') at = strstr(at + 1, ".0");
+    return at &&
+           snprintf(text, size, "%.*s.%d%s", (int)(at - path), path, part, at + 2) < (int)size;
+}
+
+static enum status append(struct snapshot_file *file, const struct snapshot_file *more,
+                          const char *path, struct error *error)
+{
+    if (strcmp(file->layout, more->layout) || file->time.value != more->time.value ||
+        file->parts != more->parts || file->gas != file->n || more->gas != more->n ||
+        file->n + more->n > SNAPSHOT_ROWS_MAX)
+        return error_set(error, STATUS_BAD_INPUT, "%.200s: no part of the same snapshot", path);
+    for (int c = 0; c < SNAPSHOT_COLUMNS; c++) {
+        if (!file->column[c] != !more->column[c])
+            return error_set(error, STATUS_BAD_INPUT, "%.200s: has %s %s than the other parts",
+                             path, more->column[c] ? "more" : "less", snapshot_column_names[c]);
+        if (!file->column[c]) continue;
+        double *longer = realloc(file->column[c], (file->n + more->n + 1) * sizeof *longer);
+        if (!longer) return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", path);
+        memcpy(longer + file->n, more->column[c], more->n * sizeof *longer);
+        file->column[c] = longer;
+    }
+    file->n = file->gas = file->n + more->n;
+    return STATUS_OK;
+}
+
+static enum status read_parts(const char *path, const struct snapshot_options *options,
+                              struct snapshot_file *file, struct error *error)
+{
+    char other[4096], value[32];
+    if (file->parts > 1 && !part_path(path, 0, other, sizeof other))
+        return error_set(error, STATUS_BAD_INPUT,
+                         "%.200s: one of %d files of a snapshot; give the first, whose name has "
+                         "'.0'",
+                         path, file->parts);
+    for (int part = 1; part < file->parts; part++) {
+        struct snapshot_file more;
+        enum status status = STATUS_OK;
+        if (!part_path(path, part, other, sizeof other)) return STATUS_BAD_INPUT;
+        status = read_one(other, options, &more, error);
+        if (!status) status = append(file, &more, other, error);
+        snapshot_file_free(&more);
+        if (status) return status;
+    }
+    if (file->parts > 1) {
+        snprintf(value, sizeof value, "%d", file->parts);
+        snapshot_note(&file->notes, "files", value, "the header says so; read as one");
+    }
+    return STATUS_OK;
+}
+
+/* ---- what no snapshot may hold ---- */
+
+static enum status check_values(const char *path, const struct snapshot_file *file,
+                                struct error *error)
+{
+    for (int c = 0; c < SNAPSHOT_COLUMNS; c++) {
+        const bool above = c == SNAPSHOT_M || c == SNAPSHOT_RHO || c == SNAPSHOT_H;
+        const bool below = c == SNAPSHOT_U || c == SNAPSHOT_P;
+        for (size_t i = 0; file->column[c] && i < file->n; i++) {
+            const double value = file->column[c][i];
+            if (isfinite(value) && fabs(value) < 1e100 && !(above && !(value > 0)) &&
+                !(below && value < 0))
+                continue;
+            return error_set(error, STATUS_BAD_INPUT,
+                             "%.200s: %s of particle %zu is %g; allowed: %s", path,
+                             snapshot_column_names[c], i, value,
+                             above   ? "above 0"
+                             : below ? "0 or above"
+                                     : "finite numbers");
+        }
+    }
+    return STATUS_OK;
+}
+
+static enum status check_columns(const char *path, const struct snapshot_file *file,
+                                 struct error *error)
+{
+    static const int needed[] = {SNAPSHOT_X, SNAPSHOT_VX, SNAPSHOT_M, SNAPSHOT_RHO};
+    char there[120] = "";
+    for (int c = 0; c < SNAPSHOT_COLUMNS; c++)
+        if (file->column[c])
+            snprintf(there + strlen(there), sizeof there - strlen(there), " %s",
+                     snapshot_column_names[c]);
+    for (size_t k = 0; k < sizeof needed / sizeof *needed; k++)
+        if (!file->column[needed[k]])
+            return error_set(error, STATUS_BAD_INPUT,
+                             "%.200s: no %s; found:%s (in text, --map %s=NAME tells its column)",
+                             path, snapshot_column_names[needed[k]], *there ? there : " nothing",
+                             snapshot_column_names[needed[k]]);
+    if (!file->column[SNAPSHOT_U] && !file->column[SNAPSHOT_P])
+        return error_set(error, STATUS_BAD_INPUT, "%.200s: neither u nor P; found:%s", path, there);
+    if (file->gas < 4)
+        return error_set(error, STATUS_BAD_INPUT, "%.200s: %zu gas particles; allowed: at least 4",
+                         path, file->gas);
+    for (int d = 1; d < file->dim; d++)
+        if (!file->column[d])
+            return error_set(error, STATUS_BAD_INPUT,
+                             "%.200s: says that it has %d dimensions, but has no %s", path,
+                             file->dim, snapshot_column_names[d]);
+    return STATUS_OK;
+}
+
+/* The directions along which positions differ, the first ones. */
+static enum status find_dimension(const char *path, struct snapshot_file *file, struct error *error)
+{
+    int dim = 0;
+    char value[16];
+    for (int d = 0; d < file->columns; d++) {
+        const double *x = file->column[d];
+        size_t i = 1;
+        while (i < file->n && x[i] == x[0]) i++;
+        if (i == file->n) continue;
+        if (d != dim)
+            return error_set(error, STATUS_BAD_INPUT,
+                             "%.200s: positions differ along %s but not along %s; allowed: flows "
+                             "along the first directions",
+                             path, snapshot_column_names[d], snapshot_column_names[dim]);
+        dim++;
+    }
+    if (dim == 0)
+        return error_set(error, STATUS_BAD_INPUT, "%.200s: all particles are at one place", path);
+    if (file->dim && dim != file->dim)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "%.200s: says that it has %d dimensions, but positions differ along %d",
+                         path, file->dim, dim);
+    snprintf(value, sizeof value, "%d", dim);
+    snapshot_note(&file->notes, "dimensions", value, "%s",
+                  file->dim ? "the file says so, and positions differ along as many directions"
+                            : "positions differ along as many directions");
+    file->dim = dim;
+    for (int d = 1; d < dim; d++)
+        if (!file->column[SNAPSHOT_VX + d])
+            return error_set(error, STATUS_BAD_INPUT, "%.200s: no %s", path,
+                             snapshot_column_names[SNAPSHOT_VX + d]);
+    return STATUS_OK;
+}
+
+enum status snapshot_read(const char *path, const struct snapshot_options *options,
+                          struct snapshot_file *file, struct error *error)
+{
+    enum status status = read_one(path, options, file, error);
+    if (!status) status = read_parts(path, options, file, error);
+    if (!status) status = check_columns(path, file, error);
+    if (!status) status = check_values(path, file, error);
+    if (!status) status = find_dimension(path, file, error);
+    if (!status && file->time.known && !isfinite(file->time.value))
+        status = error_set(error, STATUS_BAD_INPUT, "%.200s: time = %g", path, file->time.value);
+    return status;
+}

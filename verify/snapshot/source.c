@@ -1,0 +1,121 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "source.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#ifdef HAVE_ZLIB
+#include <zlib.h>
+#endif
+
+static const unsigned char hdf5_signature[8] = {0x89, 'H', 'D', 'F', '\r', '\n', 0x1a, '\n'};
+
+/* The signature stands at 0 or, after a user's block, at 512, 1024 ... */
+static bool is_hdf5(int file, size_t size)
+{
+    unsigned char start[sizeof hdf5_signature];
+    for (size_t at = 0; at + sizeof start <= size && at < (size_t)1 << 20; at = at ? 2 * at : 512)
+        if (pread(file, start, sizeof start, (off_t)at) == (ssize_t)sizeof start &&
+            memcmp(start, hdf5_signature, sizeof start) == 0)
+            return true;
+    return false;
+}
+
+#ifdef HAVE_ZLIB
+typedef gzFile stream;
+static stream stream_open(int file)
+{
+    return gzdopen(file, "rb");
+}
+static long stream_read(stream from, void *to, size_t n)
+{
+    return gzread(from, to, (unsigned)n);
+}
+static bool stream_close(stream from)
+{
+    return gzclose(from) == Z_OK;
+}
+#else
+typedef FILE *stream;
+static stream stream_open(int file)
+{
+    return fdopen(file, "rb");
+}
+static long stream_read(stream from, void *to, size_t n)
+{
+    const size_t got = fread(to, 1, n, from);
+    return ferror(from) ? -1 : (long)got;
+}
+static bool stream_close(stream from)
+{
+    return fclose(from) == 0;
+}
+#endif
+
+static enum status read_all(struct snapshot_source *source, stream from, struct error *error)
+{
+    enum { CHUNK = 1 << 20 };
+    size_t room = 0;
+    for (;;) {
+        if (source->size >> 20 >= SOURCE_MEGABYTES_MAX)
+            return error_set(error, STATUS_BAD_INPUT, "%.200s: too large; allowed: %d megabytes",
+                             source->path, SOURCE_MEGABYTES_MAX);
+        if (source->size + CHUNK + 1 > room) {
+            room = 2 * room + CHUNK + 1;
+            unsigned char *bytes = realloc(source->bytes, room);
+            if (!bytes)
+                return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", source->path);
+            source->bytes = bytes;
+        }
+        const long got = stream_read(from, source->bytes + source->size, CHUNK);
+        if (got < 0)
+            return error_set(error, STATUS_BAD_INPUT,
+                             "%.200s: cannot be read (damaged, if it is compressed)", source->path);
+        source->size += (size_t)got;
+        if (got == 0) break;
+    }
+    source->bytes[source->size] = 0;
+    if (source->size == 0)
+        return error_set(error, STATUS_BAD_INPUT, "%.200s: the file is empty", source->path);
+    return STATUS_OK;
+}
+
+enum status source_open(struct snapshot_source *source, const char *path, struct error *error)
+{
+    struct stat about;
+    *source = (struct snapshot_source){.path = path};
+    const int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    if (file < 0 || fstat(file, &about)) {
+        error_set(error, STATUS_BAD_INPUT, "%.200s: cannot be read: %s", path, strerror(errno));
+        if (file >= 0) close(file);
+        return STATUS_BAD_INPUT;
+    }
+    if (!S_ISREG(about.st_mode)) {
+        close(file);
+        return error_set(error, STATUS_BAD_INPUT, "%.200s: is %s; allowed: a file", path,
+                         S_ISDIR(about.st_mode) ? "a directory" : "no regular file");
+    }
+    if ((source->hdf5 = is_hdf5(file, (size_t)about.st_size))) {
+        close(file);
+        return STATUS_OK;
+    }
+    stream from = stream_open(file);
+    if (!from) {
+        close(file);
+        return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", path);
+    }
+    enum status status = read_all(source, from, error);
+    if (!stream_close(from) && !status)
+        status = error_set(error, STATUS_BAD_INPUT, "%.200s: is cut off", path);
+    return status;
+}
+
+void source_free(struct snapshot_source *source)
+{
+    free(source->bytes);
+    source->bytes = NULL;
+}

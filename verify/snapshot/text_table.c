@@ -1,0 +1,200 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "text_table.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "text.h"
+
+bool text_table_is_text(const struct snapshot_source *source)
+{
+    const size_t n = source->size < 4096 ? source->size : 4096;
+    if (source->hdf5 || !n) return false;
+    for (size_t i = 0; i < n; i++) {
+        const unsigned char c = source->bytes[i];
+        if ((c < ' ' && c != '\n' && c != '\r' && c != '\t') || c == 127) return false;
+    }
+    return true;
+}
+
+/* ---- what columns mean ---- */
+
+static int column_called(const struct text_table *table, const char *name, size_t length)
+{
+    for (size_t c = 0; c < table->columns; c++)
+        if (strlen(table->names[c]) == length && strncmp(table->names[c], name, length) == 0)
+            return (int)c;
+    return -1;
+}
+
+static enum status apply_map(struct text_table *table, const char *map, struct error *error)
+{
+    for (const char *at = map; at && *at;) {
+        const size_t length = strcspn(at, ","), ours = strcspn(at, "=");
+        const int column =
+            ours < length ? column_called(table, at + ours + 1, length - ours - 1) : -1;
+        int meaning = -1;
+        for (int k = 0; k < SNAPSHOT_COLUMNS; k++)
+            if (strlen(snapshot_column_names[k]) == ours &&
+                strncmp(snapshot_column_names[k], at, ours) == 0)
+                meaning = k;
+        if (ours >= length || meaning < 0)
+            return error_set(error, STATUS_BAD_INPUT,
+                             "--map %.80s: allowed: NAME=THEIRS,..., NAME one of x y z vx vy vz m "
+                             "rho u P h ax ay az du",
+                             map);
+        if (column < 0) {
+            char there[240] = "";
+            for (size_t c = 0; c < table->columns; c++)
+                snprintf(there + strlen(there), sizeof there - strlen(there), " '%s'",
+                         table->names[c]);
+            return error_set(
+                error, STATUS_BAD_INPUT, "--map %.80s: %.100s has no column '%.*s'; it has%s", map,
+                table->source->path, (int)(length - ours - 1 < 40 ? length - ours - 1 : 40),
+                at + ours + 1, there);
+        }
+        for (size_t c = 0; c < table->columns; c++)
+            if (table->meaning[c] == meaning) table->meaning[c] = -1;
+        table->meaning[column] = meaning;
+        at += length + (at[length] == ',');
+    }
+    return STATUS_OK;
+}
+
+enum status text_table_name(struct text_table *table, const char *map, struct error *error)
+{
+    for (size_t c = 0; c < table->columns; c++) {
+        table->meaning[c] = strcmp(table->names[c], "itype") == 0
+                                ? TABLE_TYPE
+                                : snapshot_column_of(table->names[c]);
+        for (size_t k = 0; k < c; k++)
+            if (table->meaning[c] >= 0 && table->meaning[k] == table->meaning[c])
+                return error_set(
+                    error, STATUS_BAD_INPUT,
+                    "%.200s: columns '%s' and '%s' both look like %s: which one is "
+                    "it? --map %s=NAME says so after the other has been renamed",
+                    table->source->path, table->names[k], table->names[c],
+                    table->meaning[c] < SNAPSHOT_COLUMNS ? snapshot_column_names[table->meaning[c]]
+                                                         : "itype",
+                    table->meaning[c] < SNAPSHOT_COLUMNS ? snapshot_column_names[table->meaning[c]]
+                                                         : "itype");
+    }
+    return apply_map(table, map, error);
+}
+
+/* ---- rows ---- */
+
+/* One number of a line that ends at end; Fortran's exponent D counts as E. */
+static bool take_number(const char **at, const char *end, char separator, double *value)
+{
+    char word[48];
+    size_t n = 0;
+    while (*at < end && (**at == ' ' || **at == '\t')) ++*at;
+    while (*at < end && **at != separator && **at != ' ' && **at != '\t' && **at != '\r') {
+        if (n + 1 == sizeof word) return false;
+        word[n] = **at == 'D' || **at == 'd' ? 'e' : **at;
+        n++, ++*at;
+    }
+    while (*at < end && (**at == ' ' || **at == '\t' || **at == '\r')) ++*at;
+    if (separator != ' ' && *at < end) {
+        if (**at != separator) return false;
+        ++*at;
+        if (*at == end) return false;
+    }
+    word[n] = '\0';
+    return text_real(word, value);
+}
+
+static bool blank(const char *line, const char *end)
+{
+    while (line < end && (*line == ' ' || *line == '\t' || *line == '\r')) line++;
+    return line == end || *line == '#';
+}
+
+static size_t count_rows(const struct text_table *table, size_t from)
+{
+    size_t rows = 0;
+    const char *at = (const char *)table->source->bytes + from,
+               *end = (const char *)table->source->bytes + table->source->size;
+    while (at < end) {
+        const char *stop = memchr(at, '\n', (size_t)(end - at));
+        if (!stop) stop = end;
+        rows += !blank(at, stop);
+        at = stop + (stop < end);
+    }
+    return rows;
+}
+
+static enum status take_rows(const struct text_table *table, size_t from, size_t line,
+                             struct snapshot_file *file, double *type, struct error *error)
+{
+    const char *at = (const char *)table->source->bytes + from,
+               *end = (const char *)table->source->bytes + table->source->size;
+    for (size_t row = 0; at < end; line++) {
+        const char *stop = memchr(at, '\n', (size_t)(end - at));
+        const char *next = stop ? stop + 1 : end;
+        if (!stop) stop = end;
+        if (!blank(at, stop)) {
+            for (size_t c = 0; c < table->columns; c++) {
+                double value;
+                if (!take_number(&at, stop, table->separator, &value))
+                    return error_set(error, STATUS_BAD_INPUT,
+                                     "%.200s:%zu: column %zu, '%s': no number (or a row that is "
+                                     "too short)",
+                                     table->source->path, line, c + 1, table->names[c]);
+                const int meaning = table->meaning[c];
+                if (meaning == TABLE_TYPE)
+                    type[row] = value;
+                else if (meaning >= 0)
+                    file->column[meaning][row] = value;
+            }
+            if (!blank(at, stop))
+                return error_set(error, STATUS_BAD_INPUT, "%.200s:%zu: more than %zu numbers",
+                                 table->source->path, line, table->columns);
+            row++;
+        }
+        at = next;
+    }
+    return STATUS_OK;
+}
+
+/* Type 1 is gas. */
+static void gas_first(struct snapshot_file *file, const double *type, double *sorted)
+{
+    for (int c = 0; c < SNAPSHOT_COLUMNS; c++) {
+        if (!file->column[c]) continue;
+        size_t at = 0;
+        for (int round = 0; round < 2; round++) {
+            for (size_t i = 0; i < file->n; i++)
+                if ((type[i] == 1) == !round) sorted[at++] = file->column[c][i];
+            if (!round) file->gas = at;
+        }
+        memcpy(file->column[c], sorted, file->n * sizeof *sorted);
+    }
+}
+
+enum status text_table_read(const struct text_table *table, size_t from, size_t line,
+                            struct snapshot_file *file, struct error *error)
+{
+    bool typed = false, known = true;
+    file->n = file->gas = count_rows(table, from);
+    for (size_t c = 0; c < table->columns; c++) {
+        typed = typed || table->meaning[c] == TABLE_TYPE;
+        if (table->meaning[c] >= 0 && table->meaning[c] < SNAPSHOT_COLUMNS)
+            known = known && snapshot_file_make(file, (enum snapshot_column)table->meaning[c]);
+    }
+    double *type = calloc(2 * file->n + 2, sizeof *type);
+    enum status status = STATUS_OK;
+    if (!known || !type)
+        status = error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", table->source->path);
+    if (!status) status = take_rows(table, from, line, file, type, error);
+    if (!status && typed) gas_first(file, type, type + file->n);
+    free(type);
+    file->precision[0] = file->precision[1] = DBL_EPSILON / 2;
+    file->columns = !file->column[1] ? 1 : !file->column[2] ? 2 : 3;
+    file->parts = 1;
+    return status;
+}

@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Lines and numbers of snapshots that are text: cut out of the bytes, which end with a NUL. */
+#ifndef SPHPROOF_TEXT_TABLE_H
+#define SPHPROOF_TEXT_TABLE_H
+
+#include "snapshot_file.h"
+#include "source.h"
+
+enum { TABLE_COLUMNS_MAX = 64 };
+
+struct text_table {
+    const struct snapshot_source *source;
+    size_t columns;
+    char names[TABLE_COLUMNS_MAX][48];
+    int meaning[TABLE_COLUMNS_MAX]; /* snapshot_column, -1: not read, TABLE_TYPE */
+    char separator;                 /* ',' or ' ' for blanks */
+};
+enum { TABLE_TYPE = SNAPSHOT_COLUMNS };
+
+/* Is there nothing in it but text, as far as its first bytes tell? */
+bool text_table_is_text(const struct snapshot_source *source);
+
+/* Sets what the columns mean: by the user's map, "rho=Density,u=Energy" (NULL: none), else by what
+ * people call them. STATUS_BAD_INPUT: a map that names no column, a quantity twice. */
+enum status text_table_name(struct text_table *table, const char *map, struct error *error);
+
+/* Reads the rows from the byte `from` on (line: its number), gas first. STATUS_BAD_INPUT: place of
+ * what is no number (Fortran's 1.0D0 is one), of rows of another length. */
+enum status text_table_read(const struct text_table *table, size_t from, size_t line,
+                            struct snapshot_file *file, struct error *error);
+
+#endif
