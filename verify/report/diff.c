@@ -12,9 +12,9 @@
 
 /* Settings that make another problem of a case, beside a problem's own; the others are what one
  * wants to compare. */
-static const enum setting problem_keys[] = {SETTING_kind,   SETTING_gamma, SETTING_t_end,
-                                            SETTING_lo,     SETTING_hi,    SETTING_window,
-                                            SETTING_jitter, SETTING_seed,  SETTING_n};
+static const enum setting problem_keys[] = {
+    SETTING_kind,   SETTING_gamma, SETTING_t_end, SETTING_lo,       SETTING_hi,     SETTING_window,
+    SETTING_jitter, SETTING_seed,  SETTING_n,     SETTING_boundary, SETTING_gravity};
 
 /* Members of a document that say the same; command "": of every document. */
 static const struct {

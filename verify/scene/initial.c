@@ -50,17 +50,22 @@ static double spacing(const struct initial *initial, size_t i)
     return initial->dim == 1 ? volume : initial->dim == 2 ? sqrt(volume) : cbrt(volume);
 }
 
-static double into_box(const struct domain *domain, int d, double x)
+/* Round the box, or back from an end that is none. */
+static double into_box(const struct prepared *p, int d, double x)
 {
-    const double length = domain_length(domain, d);
-    return x < domain->lo[d] ? x + length : x >= domain->hi[d] ? x - length : x;
+    const double lo = p->domain.lo[d], hi = p->domain.hi[d];
+    const bool periodic = p->boundary[d] == BOUNDARY_PERIODIC;
+    if (x < lo) return periodic ? x + (hi - lo) : lo + (lo - x);
+    if (x >= hi) return periodic ? x - (hi - lo) : hi - (x - hi);
+    return x;
 }
 
 /* Moves each particle in each direction by up to jitter times its share of the space: on a line
  * their order stays. */
-static enum status shake(struct initial *initial, const struct domain *domain,
+static enum status shake(struct initial *initial, const struct prepared *p,
                          const struct settings *settings)
 {
+    const struct domain *domain = &p->domain;
     const double jitter = settings_real(settings, SETTING_jitter);
     if (!(jitter > 0)) return STATUS_OK;
     gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
@@ -70,7 +75,7 @@ static enum status shake(struct initial *initial, const struct domain *domain,
         for (int d = 0; d < initial->dim; d++) {
             double *x = &initial->x[d][i];
             *x += jitter * spacing(initial, i) * (2 * gsl_rng_uniform(random) - 1);
-            if (initial->dim > 1) *x = into_box(domain, d, *x);
+            if (initial->dim > 1) *x = into_box(p, d, *x);
             *x = fmin(fmax(*x, domain->lo[d]), nextafter(domain->hi[d], domain->lo[d]));
         }
     gsl_rng_free(random);
@@ -140,7 +145,7 @@ enum status initial_create(struct initial *initial, const struct prepared *p,
         return status;
     }
     pair_up(initial, settings);
-    if (shake(initial, &p->domain, settings)) {
+    if (shake(initial, p, settings)) {
         initial_free(initial);
         return error_set(error, STATUS_ENVIRONMENT, "no memory for random numbers");
     }

@@ -2,6 +2,7 @@
 #include "problem.h"
 
 #include <math.h>
+#include <stdio.h>
 
 #include "norm.h"
 
@@ -49,7 +50,8 @@ enum status problem_check_state(const struct settings *settings, enum setting ke
                      state[0] == 0 ? " (particles cannot fill a vacuum)" : "");
 }
 
-static const enum setting vectors[] = {SETTING_lo, SETTING_hi, SETTING_boost, SETTING_direction};
+static const enum setting vectors[] = {SETTING_lo,        SETTING_hi,      SETTING_boost,
+                                       SETTING_direction, SETTING_gravity, SETTING_boundary};
 
 /* A vector has one number, or one for each direction. */
 static enum status check_vectors(const struct settings *settings, int dim, struct error *error)
@@ -60,9 +62,10 @@ static enum status check_vectors(const struct settings *settings, int dim, struc
         if (given == 1 || given == dim) continue;
         settings_text(settings, vectors[k], text);
         return error_set(error, STATUS_BAD_INPUT,
-                         "%s=\"%s\": one number for all directions or one each is needed, and the "
+                         "%s=\"%s\": one %s for all directions or one each is needed, and the "
                          "case has %d of them",
-                         setting_keys[vectors[k]].name, text, dim);
+                         setting_keys[vectors[k]].name, text,
+                         setting_keys[vectors[k]].family ? "word" : "number", dim);
     }
     return STATUS_OK;
 }
@@ -81,6 +84,72 @@ static enum status check_box(const struct domain *domain, const struct settings 
     return error_set(error, STATUS_BAD_INPUT,
                      "window=\"%g %g\": two rising numbers in the box [%g, %g] are needed",
                      window[0], window[1], domain->lo[0], domain->hi[0]);
+}
+
+/* What is at the ends of the box, and whether the problem can be solved so. */
+static enum status choose_ends(struct prepared *p, struct settings *settings, struct error *error)
+{
+    const struct problem *problem = p->problem;
+    struct setting_value *value = &settings->value[SETTING_boundary];
+    const struct family *family = &scheme_boundary_family;
+    bool alike = true;
+    for (int d = 0; d < p->domain.dim; d++) {
+        const struct problem_ends *ends = &problem->ends[d];
+        const int asked = settings_choice_along(settings, SETTING_boundary, d);
+        const unsigned allowed = ends->also | 1u << ends->usual;
+        char names[80] = "";
+        p->boundary[d] = value->automatic ? ends->usual : (enum boundary)asked;
+        if (allowed & 1u << p->boundary[d]) continue;
+        for (size_t k = 0, used = 0; k < family->n; k++)
+            if (allowed & 1u << k)
+                used += (size_t)snprintf(names + used, sizeof names - used, " %s",
+                                         family->members[k]->name);
+        return error_set(error, STATUS_BAD_INPUT,
+                         "boundary=%s along %c and an initial state of kind %s exclude each other: "
+                         "its solution would not hold; allowed:%s",
+                         family->members[p->boundary[d]]->name, "xyz"[d], problem -> member.name,
+                         names);
+    }
+    for (int d = 0; d < p->domain.dim; d++) {
+        value->choices[d] = (int)p->boundary[d];
+        alike &= p->boundary[d] == p->boundary[0];
+    }
+    value->given = alike ? 1 : p->domain.dim;
+    for (int d = 0; d < p->domain.dim; d++)
+        if (p->boost[d] != 0 && p->boundary[d] != BOUNDARY_PERIODIC)
+            return error_set(error, STATUS_BAD_INPUT,
+                             "boost=%g along %c and boundary=%s exclude each other: gas would be "
+                             "carried out of the box",
+                             p->boost[d], "xyz"[d], family -> members[p->boundary[d]] -> name);
+    return STATUS_OK;
+}
+
+/* Gravity as asked; what is automatic may be the problem's to set. */
+static enum status choose_gravity(struct prepared *p, const struct settings *settings,
+                                  struct error *error)
+{
+    if (settings->value[SETTING_gravity].automatic) return STATUS_OK;
+    for (int d = 0; d < p->domain.dim; d++) {
+        p->gravity[d] = settings_along(settings, SETTING_gravity, d);
+        if (p->gravity[d] != 0 && !p->problem->heavy)
+            return error_set(error, STATUS_BAD_INPUT,
+                             "gravity=%g along %c and an initial state of kind %s exclude each "
+                             "other: its solution knows no gravity",
+                             p->gravity[d], "xyz"[d], p -> problem -> member.name);
+    }
+    return STATUS_OK;
+}
+
+/* Automatic keys as they are used. */
+static void write_back(const struct prepared *p, struct settings *settings)
+{
+    struct setting_value *gravity = &settings->value[SETTING_gravity];
+    const double *g = p->gravity;
+    gravity->given = g[0] == 0 && g[1] == 0 && g[2] == 0 ? 1 : p->domain.dim;
+    for (int d = 0; d < gravity->given; d++) gravity->real[d] = g[d];
+    settings->value[SETTING_window].real[0] = p->window.lo[0];
+    settings->value[SETTING_window].real[1] = p->window.hi[0];
+    settings->value[SETTING_window_radius].real[0] = p->window.radius;
 }
 
 /* What concerns two keys, neither of them the problem's own. */
@@ -158,11 +227,10 @@ enum status problem_prepare_as(struct prepared *p, const struct problem *problem
     settings->dim = dim;
     set_domain(p, settings, dim);
     if (check_together(p, settings, error) || choose_lattice(settings, dim, error) ||
+        choose_ends(p, settings, error) || choose_gravity(p, settings, error) ||
         problem->prepare(p, settings, error))
         return error->status;
-    settings->value[SETTING_window].real[0] = p->window.lo[0];
-    settings->value[SETTING_window].real[1] = p->window.hi[0];
-    settings->value[SETTING_window_radius].real[0] = p->window.radius;
+    write_back(p, settings);
     return STATUS_OK;
 }
 

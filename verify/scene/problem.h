@@ -27,6 +27,8 @@ struct prepared {
     struct domain domain;
     struct window window; /* where errors are measured; its centre: the middle of the domain */
     double boost[3];      /* added to all velocities: the solution and the window move along */
+    enum boundary boundary[3];
+    double gravity[3]; /* acceleration; prepare may set it where the key is automatic */
     double gamma;
     /* What the problem works out once and then works with (solved jumps, an eigenmode ...). */
     union {
@@ -66,6 +68,13 @@ struct regions {
     double (*still)(const struct prepared *p, const struct snapshot *s);
 };
 
+/* What may be at both ends of a direction so that the sample stays exact. {0}: periodic only. */
+struct problem_ends {
+    enum boundary usual; /* unless a case or the user says otherwise */
+    unsigned also;       /* PROBLEM_END(OPEN) | ... : what else is sound */
+};
+#define PROBLEM_END(name) (1u << BOUNDARY_##name)
+
 struct problem {
     struct member member;  /* in cases: kind = NAME */
     const char *reference; /* exact solution, as case files name it */
@@ -73,12 +82,14 @@ struct problem {
     bool carried;   /* exact everywhere in the periodic box, so that it may be boosted */
     bool circular;  /* flows round the middle of the domain: azimuthal and radial errors */
     bool fieldless; /* of t > 0 only functionals are known: there are no errors of fields */
+    bool heavy;     /* it takes gravity: any other has no solution in it */
     bool smooth;    /* neither jumps nor shocks, for as long as it is solved */
+    struct problem_ends ends[3];
     const struct problem_key *keys; /* its own, beside those of every run */
     size_t key_count;
-    /* Checks its own keys, gives those that are automatic a value, fills p->own; domain, boost and
-     * gamma are there, and a window which it may replace unless the user asked for one.
-     * STATUS_BAD_INPUT: what is wrong with them, or why nothing is exact. */
+    /* Checks its own keys, gives those that are automatic a value, fills p->own; domain, boost,
+     * gamma, boundary and gravity are there, and a window which it may replace unless the user
+     * asked for one. STATUS_BAD_INPUT: what is wrong with them, or why nothing is exact. */
     enum status (*prepare)(struct prepared *p, struct settings *settings, struct error *error);
     /* The state at x and t: the initial one at t = 0, the exact one after that. Where the exact gas
      * is a vacuum: rho, P and u 0, and a velocity that joins its edges. */

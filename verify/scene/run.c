@@ -42,12 +42,15 @@ enum status run_resolve(struct run *run, const struct run_settings *asked, struc
 
 struct scene run_scene(const struct run *run, const struct initial *initial)
 {
-    const struct domain *domain = &run->problem.domain;
+    const struct prepared *problem = &run->problem;
+    const struct domain *domain = &problem->domain;
     return (struct scene){
         .dim = domain->dim,
         .lo = {domain->lo[0], domain->lo[1], domain->lo[2]},
         .hi = {domain->hi[0], domain->hi[1], domain->hi[2]},
-        .gamma = run->problem.gamma,
+        .boundary = {problem->boundary[0], problem->boundary[1], problem->boundary[2]},
+        .gravity = {problem->gravity[0], problem->gravity[1], problem->gravity[2]},
+        .gamma = problem->gamma,
         .t_end = settings_real(&run->settings, SETTING_t_end),
         .n = initial->n,
         .x = {initial->x[0], initial->x[1], initial->x[2]},
@@ -342,22 +345,35 @@ static enum status broke_down_at_start(struct run_result *result, const struct e
 }
 
 struct watch {
-    const struct run_settings *settings;
+    const struct run *run;
     const struct simulation *simulation;
 };
+
+/* Sums of what a run shall conserve: no momentum along a direction where walls, layers or gravity
+ * push. */
+static void take_sums(const struct run *run, const struct simulation *simulation,
+                      struct conservation *sums)
+{
+    const struct prepared *p = &run->problem;
+    simulation_conservation(simulation, sums);
+    for (int d = 0; d < p->domain.dim; d++)
+        if (p->boundary[d] == BOUNDARY_REFLECTING || p->boundary[d] == BOUNDARY_FIXED ||
+            p->gravity[d] != 0)
+            sums->momentum[d] = 0;
+}
 
 static void keep_trace(const struct watch *watch, double time)
 {
     struct conservation sums;
-    simulation_conservation(watch->simulation, &sums);
-    trace_add(watch->settings->trace, time, &sums);
+    take_sums(watch->run, watch->simulation, &sums);
+    trace_add(watch->run->asked.trace, time, &sums);
 }
 
 static bool after_step(void *context, double time, uint64_t steps)
 {
     enum { STEPS_BETWEEN = 32 };
     const struct watch *watch = context;
-    const struct run_settings *settings = watch->settings;
+    const struct run_settings *settings = &watch->run->asked;
     if (settings->trace && trace_wants(settings->trace, steps)) keep_trace(watch, time);
     if (steps % STEPS_BETWEEN || !settings->progress) return true;
     return settings->progress(settings->progress_context, time, steps);
@@ -376,14 +392,14 @@ static enum status simulate(const struct run *run, struct run_result *result,
         *error = outcome.reason;
         return status;
     }
-    struct watch watch = {asked, simulation};
-    simulation_conservation(simulation, &outcome.start);
+    struct watch watch = {run, simulation};
+    take_sums(run, simulation, &outcome.start);
     if (asked->trace) keep_trace(&watch, 0);
     outcome.status =
         simulation_run(simulation, scene.t_end, asked->progress || asked->trace ? after_step : NULL,
                        &watch, &outcome.reason);
     simulation_cost(simulation, &result->cost);
-    simulation_conservation(simulation, &outcome.end);
+    take_sums(run, simulation, &outcome.end);
     simulation_snapshot(simulation, &outcome.snapshot);
     if (asked->trace) trace_add(asked->trace, outcome.snapshot.time, &outcome.end);
     status = finish(result, &outcome, error);

@@ -61,7 +61,8 @@ struct run_result {
     size_t crossed;       /* neighbours of the start that are not next to each other any more */
     double spacing, h;    /* (box/n)^(1/d); mean smoothing length in the window, by volume */
     struct budget budget; /* L1 by regions of the problem */
-    /* conservation: relative, >= 0: see trace_drift */
+    /* conservation: relative, >= 0: see trace_drift; momentum only along directions without walls,
+     * layers and gravity */
     double mass, momentum, angular_momentum, energy;
     struct simulation_cost cost;
     double peak_rss; /* bytes, of the process so far */

@@ -47,6 +47,7 @@ const struct family settings_skip_family = {
 #define CHOICE     SETTING_CHOICE, 1
 #define REALS(n)   SETTING_REALS, n
 #define VECTOR     SETTING_VECTOR, SETTING_REALS_MAX
+#define CHOICES    SETTING_CHOICES, SETTING_REALS_MAX
 #define FROM(...)  false, __VA_ARGS__
 #define ABOVE(...) true, __VA_ARGS__
 const struct setting_key setting_keys[SETTINGS] = {
@@ -74,8 +75,10 @@ void setting_allowed(const struct setting_key *key, char *text, size_t size)
     if (key->type == SETTING_COUNT) snprintf(what, sizeof what, "an integer, or 64^2,");
     if (key->type == SETTING_REALS) snprintf(what, sizeof what, "%d numbers", key->count);
     if (key->type == SETTING_VECTOR) snprintf(what, sizeof what, "1, 2 or 3 numbers");
-    if (key->type == SETTING_CHOICE) {
-        size_t used = (size_t)snprintf(text, size, "one of%s", may_be_auto(key) ? " auto" : "");
+    if (key->type == SETTING_CHOICE || key->type == SETTING_CHOICES) {
+        size_t used = (size_t)snprintf(text, size, "%s%s",
+                                       key->type == SETTING_CHOICE ? "one of" : "1, 2 or 3 of",
+                                       may_be_auto(key) ? " auto" : "");
         for (size_t i = 0; i < key->family->n && used < size; i++)
             used +=
                 (size_t)snprintf(text + used, size - used, " %s", key->family->members[i]->name);
@@ -115,6 +118,25 @@ static bool in_range(const struct setting_key *key, double value)
     return (key->above ? value > key->lo : value >= key->lo) && value <= key->hi;
 }
 
+/* given is 0 where there are no words, or too many. */
+static enum status read_choices(const struct setting_key *key, const char *text, const char *where,
+                                struct setting_value *value, struct error *error)
+{
+    char words[SETTING_TEXT_MAX], *rest = words;
+    const int length = snprintf(words, sizeof words, "%s", text);
+    value->given = 0;
+    for (char *word; length < SETTING_TEXT_MAX && (word = strtok_r(rest, " \t,", &rest));) {
+        const int choice = family_index(key->family, word);
+        if (choice < 0) return text_unknown_member(error, where, key->name, word, key->family);
+        if (value->given == key->count) {
+            value->given = 0;
+            return STATUS_OK;
+        }
+        value->choices[value->given++] = choice;
+    }
+    return STATUS_OK;
+}
+
 enum status settings_set(struct settings *settings, enum setting which, const char *text,
                          enum setting_source source, const char *where, struct error *error)
 {
@@ -123,8 +145,7 @@ enum status settings_set(struct settings *settings, enum setting which, const ch
     bool good = false;
     if (may_be_auto(key) && strcmp(text, "auto") == 0) {
         value.automatic = true;
-        if (key->type == SETTING_CHOICE || key->type == SETTING_VECTOR)
-            value.given = key->type == SETTING_VECTOR;
+        if (key->family || key->type == SETTING_VECTOR) value.given = key->type != SETTING_CHOICE;
         settings->value[which] = value;
         return STATUS_OK;
     }
@@ -135,6 +156,10 @@ enum status settings_set(struct settings *settings, enum setting which, const ch
             return text_unknown_member(error, where, key->name, text, key->family);
         value.given = 0;
         good = true;
+        break;
+    case SETTING_CHOICES:
+        if (read_choices(key, text, where, &value, error)) return error->status;
+        good = value.given > 0;
         break;
     case SETTING_COUNT:
         good = text_count(text, &value.real[0]);
@@ -155,7 +180,8 @@ enum status settings_set(struct settings *settings, enum setting which, const ch
     default:
         break;
     }
-    for (int i = 0; i < value.given && good; i++) good = in_range(key, value.real[i]);
+    for (int i = 0; i < value.given && good && !key->family; i++)
+        good = in_range(key, value.real[i]);
     if (!good) return refuse(error, where, key, text);
     settings->value[which] = value;
     return STATUS_OK;
@@ -203,12 +229,19 @@ int settings_choice(const struct settings *settings, enum setting key)
     return settings->value[key].choice;
 }
 
+int settings_choice_along(const struct settings *settings, enum setting key, int direction)
+{
+    const struct setting_value *value = &settings->value[key];
+    return value->choices[value->given > 1 ? direction : 0];
+}
+
 /* Keys that say nothing in 1D. */
 static bool needs_a_plane(enum setting key)
 {
     return key == SETTING_direction || key == SETTING_boost || key == SETTING_viscosity_form ||
            key == SETTING_balsara || key == SETTING_balsara_floor || key == SETTING_noise ||
-           key == SETTING_alpha_u || key == SETTING_window_radius;
+           key == SETTING_alpha_u || key == SETTING_window_radius || key == SETTING_boundary ||
+           key == SETTING_gravity;
 }
 
 static bool needs_a_line(enum setting key)
@@ -323,6 +356,11 @@ void settings_text(const struct settings *settings, enum setting which, char tex
     int used = 0;
     for (int i = 0; i < value->given; i++) {
         char number[32];
+        if (key->family) {
+            used += snprintf(text + used, (size_t)(SETTING_TEXT_MAX - used), "%s%s", i ? " " : "",
+                             key->family->members[value->choices[i]]->name);
+            continue;
+        }
         /* the shortest text that reads back as the same number */
         for (int digits = 6; digits <= 17; digits++) {
             double back = NAN;
@@ -332,6 +370,15 @@ void settings_text(const struct settings *settings, enum setting which, char tex
         used +=
             snprintf(text + used, (size_t)(SETTING_TEXT_MAX - used), "%s%s", i ? " " : "", number);
     }
+}
+
+static json_t *choices_json(const struct setting_key *key, const struct setting_value *value)
+{
+    if (value->given == 1) return json_string(key->family->members[value->choices[0]]->name);
+    json_t *words = json_array();
+    for (int i = 0; i < value->given; i++)
+        json_array_append_new(words, json_string(key->family->members[value->choices[i]]->name));
+    return words;
 }
 
 json_t *settings_json(const struct settings *settings)
@@ -345,6 +392,9 @@ json_t *settings_json(const struct settings *settings)
         switch (key->type) {
         case SETTING_CHOICE:
             item = json_string(key->family->members[value->choice]->name);
+            break;
+        case SETTING_CHOICES:
+            item = choices_json(key, value);
             break;
         case SETTING_INTEGER:
         case SETTING_COUNT:

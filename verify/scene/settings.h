@@ -18,26 +18,27 @@ enum setting {
     SETTINGS
 };
 
-/* COUNT: an integer that may be written 64^2. VECTOR: one number for each direction, or one for
- * all. */
+/* COUNT: an integer that may be written 64^2. VECTOR, CHOICES: one number or word for each
+ * direction, or one for all. */
 enum setting_type {
     SETTING_INTEGER,
     SETTING_COUNT,
     SETTING_REAL,
     SETTING_CHOICE,
     SETTING_REALS,
-    SETTING_VECTOR
+    SETTING_VECTOR,
+    SETTING_CHOICES
 };
 enum { SETTING_REALS_MAX = 3, SETTING_TEXT_MAX = 96 };
 
 struct setting_key {
     const char *name, *section; /* section of a case file */
     enum setting_type type;
-    int count;  /* numbers of a SETTING_REALS, at most of a SETTING_VECTOR, else 1 */
+    int count;  /* numbers of a SETTING_REALS, at most of VECTOR and CHOICES, else 1 */
     bool above; /* lo itself is not allowed */
     double lo, hi;
     const char *fallback;
-    const struct family *family; /* of a SETTING_CHOICE */
+    const struct family *family; /* of CHOICE and CHOICES */
     const char *unit, *meaning;
 };
 
@@ -49,8 +50,9 @@ struct setting_value {
     enum setting_source source;
     bool automatic;                 /* the user, the case or the fallback says auto */
     double real[SETTING_REALS_MAX]; /* INTEGER, COUNT, REAL: real[0] */
-    int given;                      /* numbers in real; 0: a CHOICE */
+    int given;                      /* numbers in real, or choices; 0: a CHOICE */
     int choice;                     /* position in the family */
+    int choices[SETTING_REALS_MAX]; /* of CHOICES */
 };
 
 struct settings {
@@ -101,6 +103,7 @@ double settings_real(const struct settings *settings, enum setting key);
 /* The number of a SETTING_VECTOR for a direction: its own, or the one that all have. */
 double settings_along(const struct settings *settings, enum setting key, int direction);
 int settings_choice(const struct settings *settings, enum setting key);
+int settings_choice_along(const struct settings *settings, enum setting key, int direction);
 
 /* The value as one would type it, full precision. */
 void settings_text(const struct settings *settings, enum setting key, char text[SETTING_TEXT_MAX]);

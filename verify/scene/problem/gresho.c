@@ -85,6 +85,8 @@ const struct problem problem_gresho = {
     .carried = true,
     .circular = true,
     .smooth = true,
+    .ends = {{.also = PROBLEM_END(REFLECTING) | PROBLEM_END(FIXED)},
+             {.also = PROBLEM_END(REFLECTING) | PROBLEM_END(FIXED)}},
     .prepare = prepare,
     .sample = sample,
     .fill = initial_fill,
