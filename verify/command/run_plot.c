@@ -58,6 +58,7 @@ static enum status draw_profiles(const struct run_settings *settings,
                                                "internal energy"};
     struct profile profiles[FIELDS] = {0};
     struct plot_panel panels[FIELDS] = {0};
+    const bool known = !result->problem.problem->fieldless;
     size_t n = 0;
     char title[256];
     enum status status = STATUS_OK;
@@ -70,8 +71,8 @@ static enum status draw_profiles(const struct run_settings *settings,
         panels[n] = (struct plot_panel){.x_label = "x (code units)",
                                         .y_label = labels[field],
                                         .key = n ? PLOT_KEY_NONE : PLOT_KEY_TOP,
-                                        .series = profiles[n].series,
-                                        .series_count = 2};
+                                        .series = profiles[n].series + (known ? 0 : 1),
+                                        .series_count = known ? 2 : 1};
         n++;
     }
     snprintf(title, sizeof title, "%s, n = %zu, t = %g", settings->file.title, result->n,

@@ -246,6 +246,17 @@ static void unknown(struct parser *parser, const char *section, const char *name
     text_unknown(parser->error, where, what, name, names, n);
 }
 
+/* A path of a case file is relative to it. */
+static const char *beside_case(const struct parser *parser, const char *value,
+                               char path[2 * SETTING_TEXT_MAX])
+{
+    const char *slash = strrchr(parser->path, '/');
+    if (!slash || *value == '/' || !*value) return value;
+    snprintf(path, 2 * SETTING_TEXT_MAX, "%.*s%s", (int)(slash + 1 - parser->path), parser->path,
+             value);
+    return path;
+}
+
 static int take_pair(void *context, const char *section, const char *name, const char *value)
 {
     struct parser *parser = context;
@@ -260,6 +271,8 @@ static int take_pair(void *context, const char *section, const char *name, const
     const int key = setting_find(name);
     if (key >= 0 && strcmp(setting_keys[key].section, section) == 0) {
         snprintf(where, sizeof where, "%.200s:%d", parser->path, parser->line);
+        char path[2 * SETTING_TEXT_MAX];
+        if (setting_keys[key].type == SETTING_PATH) value = beside_case(parser, value, path);
         if (first_time(parser, &parser->seen_settings[key], name) &&
             settings_set(&parser->file->settings, (enum setting)key, value, SOURCE_CASE, where,
                          parser->error))
@@ -351,8 +364,23 @@ static enum status check_keys(struct parser *parser)
     return STATUS_OK;
 }
 
+/* Particles of a file may be judged by the solution of another problem: the case is then that
+ * problem's, with other particles. */
+static void find_judge(struct parser *parser)
+{
+    struct settings *settings = &parser->file->settings;
+    if (!problem_of(settings)->filed) return;
+    for (size_t i = 0; i < problem_family.n; i++) {
+        const struct problem *problem = (const struct problem *)problem_family.members[i];
+        if (strcmp(problem->reference, parser->reference) != 0) continue;
+        settings->value[SETTING_kind].choice = (int)i;
+        return;
+    }
+}
+
 static enum status check_complete(struct parser *parser)
 {
+    find_judge(parser);
     if (check_keys(parser)) return parser->error->status;
     const char *reference = problem_of(&parser->file->settings)->reference;
     if (strcmp(parser->reference, reference) == 0) return STATUS_OK;

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "lattice.h"
+#include "particle_file.h"
 #include "problem.h"
 
 enum status initial_allocate(struct initial *initial, int dim, size_t n, struct error *error)
@@ -122,27 +123,38 @@ enum status initial_fill(const struct prepared *p, const struct settings *settin
     return STATUS_OK;
 }
 
+static void add_boost(struct initial *initial, const struct prepared *p)
+{
+    for (int d = 0; d < initial->dim; d++)
+        for (size_t i = 0; i < initial->n; i++) initial->v[d][i] += p->boost[d];
+}
+
 /* In 2D and 3D particles that jitter moves carry the flow of where they come to be: displaced
  * particles, not a noisy gas. Beside a jump they stay what they are. */
 static void resample(struct initial *initial, const struct prepared *p,
                      const struct settings *settings)
 {
     if (initial->dim == 1) return;
-    for (size_t i = 0; i < initial->n; i++) {
+    for (size_t i = 0; i < initial->n; i++)
         if (p->problem->smooth && settings_real(settings, SETTING_jitter) > 0)
             take_sample(initial, p, i);
-        for (int d = 0; d < initial->dim; d++) initial->v[d][i] += p->boost[d];
-    }
+    add_boost(initial, p);
 }
 
 enum status initial_create(struct initial *initial, const struct prepared *p,
                            const struct settings *settings, struct error *error)
 {
     *initial = (struct initial){0};
-    const enum status status = p->problem->fill(p, settings, initial, error);
+    const char *file = settings->file;
+    const enum status status = *file ? particle_file_start(file, p, initial, error)
+                                     : p->problem->fill(p, settings, initial, error);
     if (status) {
         initial_free(initial);
         return status;
+    }
+    if (*file) {
+        add_boost(initial, p);
+        return STATUS_OK;
     }
     pair_up(initial, settings);
     if (shake(initial, p, settings)) {

@@ -14,9 +14,11 @@ struct prepared;
 struct initial {
     int dim;
     size_t n;
-    double *x[3], *v[3]; /* n each where d < dim, else NULL; in 1D x rises; code units */
+    double *x[3], *v[3]; /* n each where d < dim, else NULL; in 1D x rises unless it comes from a
+                            file; code units */
     double *m, *u, *rho; /* n each */
     double *storage;
+    char ignored[160]; /* columns of a file that are not read, "a b c" */
 };
 
 /* Room for n particles, for a problem's fill. STATUS_ENVIRONMENT: no memory. */

@@ -1,8 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "particle_file.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
+
+#include "initial.h"
+#include "problem.h"
 
 static const char *const places[] = {"x", "y", "z"}, *const velocities[] = {"vx", "vy", "vz"};
 
@@ -30,12 +34,13 @@ static enum status check_values(const struct particle_file *file, const char *pa
     return STATUS_OK;
 }
 
-static void name_ignored(struct particle_file *file)
+static void name_ignored(struct particle_file *file, bool rho_is_read)
 {
     size_t used = 0;
+    file->ignored[0] = '\0';
     for (size_t k = 0; k < file->csv.columns; k++) {
         const double *values = file->csv.values[k];
-        bool read = values == file->m || values == file->u;
+        bool read = values == file->m || values == file->u || (rho_is_read && values == file->rho);
         for (int a = 0; a < file->dim; a++) read |= values == file->x[a] || values == file->v[a];
         if (read || used >= sizeof file->ignored) continue;
         used += (size_t)snprintf(file->ignored + used, sizeof file->ignored - used, "%s%s",
@@ -59,7 +64,9 @@ enum status particle_file_read(const char *path, struct particle_file *file, str
     if (file->csv.rows < 2)
         return error_set(error, STATUS_BAD_INPUT, "%.200s: %zu particles: allowed: 2 or more", path,
                          file->csv.rows);
-    name_ignored(file);
+    const int rho = csv_column(&file->csv, "rho");
+    file->rho = rho >= 0 ? file->csv.values[rho] : NULL;
+    name_ignored(file, false);
     return check_values(file, path, error);
 }
 
@@ -101,4 +108,74 @@ enum status particle_file_fill(const struct particle_file *file, const char *pat
                                  scene->hi[a]);
     }
     return STATUS_OK;
+}
+
+/* ---- the start of a run ---- */
+
+/* Where something is at the ends, everybody has to be between them. */
+static enum status check_places(const struct particle_file *file, const char *path,
+                                const struct prepared *p, struct error *error)
+{
+    const int dim = p->domain.dim;
+    if (file->dim != dim)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "%.200s:1: particles in %dD, but the case has dimension = %d", path,
+                         file->dim, dim);
+    for (int d = 0; d < dim; d++) {
+        const double lo = p->domain.lo[d], hi = p->domain.hi[d];
+        if (p->boundary[d] == BOUNDARY_FIXED && !file->rho)
+            return error_set(error, STATUS_BAD_INPUT,
+                             "%.200s:1: no column 'rho': boundary=fixed keeps particles at their "
+                             "density",
+                             path);
+        for (size_t i = 0; i < file->csv.rows; i++)
+            if (p->boundary[d] != BOUNDARY_OPEN && !(file->x[d][i] >= lo && file->x[d][i] <= hi))
+                return error_set(error, STATUS_BAD_INPUT,
+                                 "%.200s:%zu: %s = %.9g: allowed: inside of the box, %.9g to %.9g",
+                                 path, file->csv.line[i], places[d], file->x[d][i], lo, hi);
+    }
+    for (size_t i = 0; file->rho && i < file->csv.rows; i++)
+        if (!(file->rho[i] > 0))
+            return error_set(error, STATUS_BAD_INPUT, "%.200s:%zu: rho = %g: allowed: above 0",
+                             path, file->csv.line[i], file->rho[i]);
+    return STATUS_OK;
+}
+
+/* A guess where nothing says it: widths are found from it. */
+static void guess_densities(const struct particle_file *file, const struct prepared *p,
+                            struct initial *initial)
+{
+    double mass = 0, volume = 1;
+    for (size_t i = 0; i < initial->n; i++) mass += initial->m[i];
+    for (int d = 0; d < p->domain.dim; d++) volume *= domain_length(&p->domain, d);
+    for (size_t i = 0; i < initial->n; i++) {
+        struct problem_state state;
+        double x[3] = {0};
+        for (int d = 0; d < p->domain.dim; d++) x[d] = initial->x[d][i];
+        problem_sample(p, x, 0, &state);
+        initial->rho[i] = state.rho > 0 ? state.rho : file->rho ? file->rho[i] : mass / volume;
+    }
+}
+
+enum status particle_file_start(const char *path, const struct prepared *p, struct initial *initial,
+                                struct error *error)
+{
+    struct particle_file file;
+    enum status status = particle_file_read(path, &file, error);
+    if (!status) status = check_places(&file, path, p, error);
+    if (!status) status = initial_allocate(initial, file.dim, file.csv.rows, error);
+    if (!status) {
+        const size_t bytes = initial->n * sizeof(double);
+        for (int d = 0; d < file.dim; d++) {
+            memcpy(initial->x[d], file.x[d], bytes);
+            memcpy(initial->v[d], file.v[d], bytes);
+        }
+        memcpy(initial->m, file.m, bytes);
+        memcpy(initial->u, file.u, bytes);
+        guess_densities(&file, p, initial);
+        name_ignored(&file, true);
+        snprintf(initial->ignored, sizeof initial->ignored, "%s", file.ignored);
+    }
+    particle_file_free(&file);
+    return status;
 }

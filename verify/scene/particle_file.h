@@ -7,10 +7,14 @@
 #include "csv.h"
 #include "simulation.h"
 
+struct initial;
+struct prepared;
+
 struct particle_file {
     struct csv csv;
     int dim;
     const double *x[3], *v[3], *m, *u; /* csv.rows each, into csv */
+    const double *rho;                 /* the same; NULL: there is no such column */
     char ignored[160];                 /* other columns, "a b c" */
 };
 
@@ -23,5 +27,12 @@ void particle_file_free(struct particle_file *file);
  * hi) gets one around them. STATUS_BAD_INPUT: one is outside. */
 enum status particle_file_fill(const struct particle_file *file, const char *path,
                                struct scene *scene, struct error *error);
+
+/* The particles of the settings' file as the start of a problem; rho, a first
+ * guess and the density of layers at fixed ends: what the problem knows, else a column rho, else,
+ * without layers, their mean. STATUS_BAD_INPUT:
+ * another dimension, a particle outside of the box, no rho for layers. */
+enum status particle_file_start(const char *path, const struct prepared *p, struct initial *initial,
+                                struct error *error);
 
 #endif

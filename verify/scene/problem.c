@@ -185,6 +185,26 @@ static enum status check_together(const struct prepared *p, const struct setting
     return STATUS_OK;
 }
 
+/* Particles of a file are as they are. */
+static enum status check_file(const struct prepared *p, const struct settings *settings,
+                              struct error *error)
+{
+    static const enum setting laid[] = {SETTING_n, SETTING_lattice, SETTING_jitter, SETTING_seed};
+    const struct problem *problem = p->problem;
+    bool of_particles[SETTINGS] = {false};
+    if (!settings->file[0]) return STATUS_OK;
+    for (size_t k = 0; k < sizeof laid / sizeof *laid; k++) of_particles[laid[k]] = true;
+    for (size_t k = 0; k < problem->key_count; k++)
+        of_particles[problem->keys[k].key] |= problem->keys[k].role == ROLE_PARTICLES;
+    for (int i = 0; i < SETTINGS; i++)
+        if (of_particles[i] && settings->value[i].source == SOURCE_USER)
+            return error_set(error, STATUS_BAD_INPUT,
+                             "key %s and file=%.120s exclude each other: its particles are as they "
+                             "are",
+                             setting_keys[i].name, settings->file);
+    return STATUS_OK;
+}
+
 /* Where particles start if nobody says it, and whether there is such a thing. */
 static enum status choose_lattice(struct settings *settings, int dim, struct error *error)
 {
@@ -226,9 +246,9 @@ enum status problem_prepare_as(struct prepared *p, const struct problem *problem
     *p = (struct prepared){.problem = problem, .gamma = settings_real(settings, SETTING_gamma)};
     settings->dim = dim;
     set_domain(p, settings, dim);
-    if (check_together(p, settings, error) || choose_lattice(settings, dim, error) ||
-        choose_ends(p, settings, error) || choose_gravity(p, settings, error) ||
-        problem->prepare(p, settings, error))
+    if (check_together(p, settings, error) || check_file(p, settings, error) ||
+        choose_lattice(settings, dim, error) || choose_ends(p, settings, error) ||
+        choose_gravity(p, settings, error) || problem->prepare(p, settings, error))
         return error->status;
     write_back(p, settings);
     return STATUS_OK;

@@ -82,6 +82,7 @@ struct problem {
     bool carried;   /* exact everywhere in the periodic box, so that it may be boosted */
     bool circular;  /* flows round the middle of the domain: azimuthal and radial errors */
     bool fieldless; /* of t > 0 only functionals are known: there are no errors of fields */
+    bool filed;     /* its particles come from a file, always */
     bool heavy;     /* it takes gravity: any other has no solution in it */
     bool smooth;    /* neither jumps nor shocks, for as long as it is solved */
     struct problem_ends ends[3];

@@ -79,8 +79,15 @@ static enum status begin(const struct run *run, struct run_result *result, struc
         return status;
     const struct scene scene = run_scene(run, initial);
     result->n = initial->n;
+    if (run->settings.file[0]) result->settings.value[SETTING_n].real[0] = (double)initial->n;
     result->plan_count =
         plan_explain(&scene, result->plan, RUN_PLAN_MAX, result->warnings, sizeof result->warnings);
+    if (initial->ignored[0]) {
+        const size_t used = strlen(result->warnings);
+        snprintf(result->warnings + used, sizeof result->warnings - used,
+                 "%scolumns of %.80s that are not read: %s", used ? "; " : "", run->settings.file,
+                 initial->ignored);
+    }
     if (result->plan_count <= RUN_PLAN_MAX) return STATUS_OK;
     return error_set(error, STATUS_ENVIRONMENT, "a plan of %zu passes, more than %d",
                      result->plan_count, RUN_PLAN_MAX);

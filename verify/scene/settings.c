@@ -47,6 +47,7 @@ const struct family settings_skip_family = {
 #define CHOICE     SETTING_CHOICE, 1
 #define REALS(n)   SETTING_REALS, n
 #define VECTOR     SETTING_VECTOR, SETTING_REALS_MAX
+#define PATH       SETTING_PATH, 0
 #define CHOICES    SETTING_CHOICES, SETTING_REALS_MAX
 #define FROM(...)  false, __VA_ARGS__
 #define ABOVE(...) true, __VA_ARGS__
@@ -74,6 +75,10 @@ void setting_allowed(const struct setting_key *key, char *text, size_t size)
     if (key->type == SETTING_INTEGER) snprintf(what, sizeof what, "an integer");
     if (key->type == SETTING_COUNT) snprintf(what, sizeof what, "an integer, or 64^2,");
     if (key->type == SETTING_REALS) snprintf(what, sizeof what, "%d numbers", key->count);
+    if (key->type == SETTING_PATH) {
+        snprintf(text, size, "the path of a file, of up to %d characters; nothing: no file", SETTING_TEXT_MAX - 1);
+        return;
+    }
     if (key->type == SETTING_VECTOR) snprintf(what, sizeof what, "1, 2 or 3 numbers");
     if (key->type == SETTING_CHOICE || key->type == SETTING_CHOICES) {
         size_t used = (size_t)snprintf(text, size, "%s%s",
@@ -156,6 +161,10 @@ enum status settings_set(struct settings *settings, enum setting which, const ch
             return text_unknown_member(error, where, key->name, text, key->family);
         value.given = 0;
         good = true;
+        break;
+    case SETTING_PATH:
+        good = strlen(text) < sizeof settings->file;
+        if (good) snprintf(settings->file, sizeof settings->file, "%s", text);
         break;
     case SETTING_CHOICES:
         if (read_choices(key, text, where, &value, error)) return error->status;
@@ -353,7 +362,8 @@ void settings_text(const struct settings *settings, enum setting which, char tex
         snprintf(text, SETTING_TEXT_MAX, "%s", key->family->members[value->choice]->name);
         return;
     }
-    int used = 0;
+    int used =
+        snprintf(text, SETTING_TEXT_MAX, "%s", key->type == SETTING_PATH ? settings->file : "");
     for (int i = 0; i < value->given; i++) {
         char number[32];
         if (key->family) {
@@ -389,9 +399,13 @@ json_t *settings_json(const struct settings *settings)
         const struct setting_value *value = &settings->value[i];
         json_t *item;
         if (settings_foreign(settings, (enum setting)i)) continue;
+        if (key->type == SETTING_PATH && !settings->file[0]) continue;
         switch (key->type) {
         case SETTING_CHOICE:
             item = json_string(key->family->members[value->choice]->name);
+            break;
+        case SETTING_PATH:
+            item = json_string(settings->file);
             break;
         case SETTING_CHOICES:
             item = choices_json(key, value);

@@ -18,8 +18,8 @@ enum setting {
     SETTINGS
 };
 
-/* COUNT: an integer that may be written 64^2. VECTOR, CHOICES: one number or word for each
- * direction, or one for all. */
+/* COUNT: an integer that may be written 64^2. PATH: of the one file that a run may read. VECTOR,
+ * CHOICES: one number or word for each direction, or one for all. */
 enum setting_type {
     SETTING_INTEGER,
     SETTING_COUNT,
@@ -27,9 +27,10 @@ enum setting_type {
     SETTING_CHOICE,
     SETTING_REALS,
     SETTING_VECTOR,
-    SETTING_CHOICES
+    SETTING_CHOICES,
+    SETTING_PATH
 };
-enum { SETTING_REALS_MAX = 3, SETTING_TEXT_MAX = 96 };
+enum { SETTING_REALS_MAX = 3, SETTING_TEXT_MAX = 256 };
 
 struct setting_key {
     const char *name, *section; /* section of a case file */
@@ -58,6 +59,7 @@ struct setting_value {
 struct settings {
     int dim; /* of the case; 0: not known yet */
     struct setting_value value[SETTINGS];
+    char file[SETTING_TEXT_MAX]; /* the SETTING_PATH; "": none */
 };
 
 enum lattice {

@@ -4,7 +4,22 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "cache.h"
 #include "result.h"
+
+/* What a file of particles holds decides the result, not its name alone; 0: it cannot be read, and
+ * neither will the run. */
+static uint64_t content(const char *path)
+{
+    char bytes[4096];
+    uint64_t hash = CACHE_HASH;
+    FILE *file = fopen(path, "rb");
+    if (!file) return 0;
+    for (size_t got; (got = fread(bytes, 1, sizeof bytes, file)) > 0;)
+        hash = cache_hash(hash, bytes, got);
+    fclose(file);
+    return hash;
+}
 
 char *run_job_key(const struct run *run, const char *kind, struct error *error)
 {
@@ -12,6 +27,8 @@ char *run_job_key(const struct run *run, const char *kind, struct error *error)
     json_t *key = json_pack("{s:s, s:s, s:s, s:i, s:b, s:o}", "kind", kind, "case", file->name,
                             "title", file->title, "dimension", file->dimension, "any_window",
                             run->asked.any_window, "settings", settings_json(&run->settings));
+    if (key && run->settings.file[0])
+        json_object_set_new(key, "content", json_integer((json_int_t)content(run->settings.file)));
     char *text =
         key ? json_dumps(key, JSON_COMPACT | JSON_SORT_KEYS | JSON_REAL_PRECISION(17)) : NULL;
     json_decref(key);

@@ -329,6 +329,7 @@ static void every_problem_by_itself(void **state)
         const struct problem *problem = (const struct problem *)problem_family.members[i];
         struct walk walk = {.problem = problem, .sums = problem->least_dim > 1 ? 0.02 : 1e-12};
         struct error error;
+        if (problem->filed) continue; /* it has no particles of its own */
         settings_init(&walk.settings);
         assert_int_equal(settings_set(&walk.settings, SETTING_kind, problem->member.name,
                                       SOURCE_USER, NULL, &error),

@@ -95,6 +95,7 @@ static void keys_refuse_the_rest(void **state)
         for (size_t j = 0; j < sizeof never / sizeof *never; j++) {
             struct settings settings;
             struct error error = {0};
+            if (setting_keys[i].type == SETTING_PATH) continue; /* a file may have any name */
             settings_init(&settings);
             const struct setting_value before = settings.value[i];
             assert_int_equal(

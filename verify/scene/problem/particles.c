@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Particles from a file, as they are: nothing is known of their later state, so that a run reports
+ * what it conserves and draws maps. (Any other problem, too, takes its particles from a file if it
+ * is given one, and is then judged by its own solution.) */
+#include <math.h>
+
+#include "problem.h"
+
+static enum status prepare(struct prepared *p, struct settings *settings, struct error *error)
+{
+    (void)p;
+    if (settings->file[0]) return STATUS_OK;
+    return error_set(error, STATUS_BAD_INPUT,
+                     "an initial state of kind particles needs a file of them: file = "
+                     "PARTICLES.csv in [initial]");
+}
+
+/* Unknown, at the start, too: between particles there is nothing to say. */
+static void sample(const struct prepared *p, const double x[3], double t,
+                   struct problem_state *state)
+{
+    const double unknown = (double)NAN;
+    (void)p, (void)x, (void)t;
+    *state = (struct problem_state){unknown, {unknown, unknown, unknown}, unknown, unknown};
+}
+
+/* initial_create reads the file instead. */
+static enum status fill(const struct prepared *p, const struct settings *settings,
+                        struct initial *initial, struct error *error)
+{
+    (void)settings, (void)initial;
+    return error_set(error, STATUS_BAD_INPUT, "%s: no particles but those of a file",
+                     p->problem->member.name);
+}
+
+static bool never(const struct settings *settings)
+{
+    (void)settings;
+    return false;
+}
+
+#define ANY                                                                                        \
+    {                                                                                              \
+        .also = PROBLEM_END(OPEN) | PROBLEM_END(REFLECTING) | PROBLEM_END(FIXED)                   \
+    }
+
+const struct problem problem_particles = {
+    .member = {"particles", "particles from a file, without an exact solution", ""},
+    .reference = "none",
+    .least_dim = 1,
+    .most_dim = 3,
+    .fieldless = true,
+    .filed = true,
+    .heavy = true,
+    .ends = {ANY, ANY, ANY},
+    .prepare = prepare,
+    .sample = sample,
+    .fill = fill,
+    .random = never,
+};
