@@ -92,7 +92,9 @@ def ends(folder):
         write(case, CASE % ("none", "boundary = %s\ngravity = 0.25 -1" % boundary))
         found = call("rates", case)
         want = call("rates", start, "lo=0", "hi=1", "gamma=1.6666666666666667", "boundary=" + boundary, "gravity=0.25 -1")
-        demand(found["particles"] == want["particles"], "boundary=%s of a case" % boundary)
+        for one, two in zip(found["particles"], want["particles"]):
+            same = all(abs(a - b) <= 1e-9 for a, b in zip([one["rho"], *one["force"]], [two["rho"], *two["force"]]))
+            demand(same and one["neighbours"] == two["neighbours"], "boundary=%s of a case" % boundary)
         words = boundary.split()
         demand(found["settings"]["boundary"] == (words if len(words) > 1 else boundary), "boundary as used")
         demand(found["settings"]["gravity"] == [0.25, -1], "gravity as used")
