@@ -255,7 +255,7 @@ def streams():
 def interrupts():
     for number in signal.SIGINT, signal.SIGTERM, signal.SIGHUP:
         put("r.json")
-        child = subprocess.Popen([program, "run", "sod", "n=20000", "--json", "r.json", "--snapshot",
+        child = subprocess.Popen([program, "run", "sod", "n=200000", "--json", "r.json", "--snapshot",
                                   "new.csv"], cwd=folder, stdout=subprocess.PIPE, text=True,
                                  stderr=subprocess.PIPE)
         time.sleep(0.3)
