@@ -122,7 +122,8 @@ CLONES static void never_cool(int count, const double *restrict approach, double
 }
 
 /* The linear term of viscosity=projected, of both signs (CONVENTIONS, projected):
- * PI = -nu cbar e . (1 - P_ij) u_ij/rhobar, u_ij = v_ij + (L_i + L_j) x/2, e = -x/r. */
+ * PI = -nu cbar e . (1 - P_ij) u_ij/rhobar, u_ij = v_ij + (L_i + L_j) x/2, e = -x/r, times
+ * 1 - (v_ij . e/cbar)^2 or 0: what is as fast as sound is no noise, and to damp it may cool. */
 CLONES static void project_noise(int dim, int count, double nu, const struct sides *sides,
                                  const struct lanes *lanes, const double *const own[3],
                                  const double *const theirs[3])
@@ -130,6 +131,7 @@ CLONES static void project_noise(int dim, int count, double nu, const struct sid
     const ptrdiff_t stride = lanes->stride;
     const double *x = lane(lanes, LANE_DX), *restrict r_inverse = lane(lanes, LANE_R_INVERSE);
     const double *restrict m = sides->m, *restrict c = sides->c, *restrict rho = sides->rho;
+    const double *restrict closing = lane(lanes, LANE_CLOSING);
     double *restrict s = lane(lanes, LANE_SPARE), *restrict K = lane(lanes, LANE_K);
     double *restrict u = lane(lanes, LANE_W), *restrict e = lane(lanes, LANE_W_J);
     const double own_m = sides->own.m, own_c = sides->own.c, own_rho = sides->own.rho;
@@ -161,11 +163,14 @@ CLONES static void project_noise(int dim, int count, double nu, const struct sid
 #pragma omp simd
         for (int k = 0; k < count; k++) s[k] += e[k] * u[k];
     }
-    /* K = m_i m_j PI/2, and e . (1 - P) u = -s/r */
+    /* K = m_i m_j PI/2, and e . (1 - P) u = -s/r; fading towards the speed of sound */
 #pragma omp simd
-    for (int k = 0; k < count; k++)
-        K[k] +=
-            own_m * m[k] * (0.5 * nu) * (own_c + c[k]) * (s[k] * r_inverse[k]) / (own_rho + rho[k]);
+    for (int k = 0; k < count; k++) {
+        const double mach = 2 * closing[k] / (own_c + c[k]);
+        const double still_noise = largest(1 - mach * mach, 0);
+        K[k] += own_m * m[k] * (0.5 * nu) * still_noise * (own_c + c[k]) * (s[k] * r_inverse[k]) /
+                (own_rho + rho[k]);
+    }
 }
 
 /* Conductivity (Price 2008), into heat: sum_j m_i m_j alpha_u v_u (u_i - u_j)/rhobar e_ij . Gbar.

@@ -8,6 +8,7 @@
 #include "cases.h"
 #include "check.h"
 #include "kelvin_helmholtz.h"
+#include "noh.h"
 #include "problem.h"
 #include "vortex.h"
 #include "worst.h"
@@ -20,6 +21,14 @@ struct flow_subject {
                    struct problem_state *state);
 };
 
+/* The problem's gas is not quite cold, which no exact solution knows. */
+static void noh_without_pressure(const struct prepared *p, const double x[3], double t,
+                                 struct problem_state *state)
+{
+    problem_sample(p, x, t, state);
+    if (problem_radius(p, x) > noh_shock(p->gamma, t)) state->P = state->u = 0;
+}
+
 static const struct flow_subject flows[] = {
     {"gresho", "", problem_sample},
     {"gresho", "boost=1 0.3", problem_sample},
@@ -29,6 +38,15 @@ static const struct flow_subject flows[] = {
     {"sound_wave_2d", "amplitude=0.1|direction=0 1|hi=2 3|boost=1 -2", problem_sample},
     {"sound_wave_3d", "amplitude=0.1|direction=1 -2 1|boost=1", problem_sample},
     {"rest_3d", "boost=1 2 3", problem_sample},
+    {"sedov_2d", "", problem_sample},
+    {"sedov_2d", "gamma=1.4", problem_sample},
+    {"sedov_3d", "gamma=3", problem_sample},
+    {"noh_2d", "", noh_without_pressure},
+    {"noh_2d", "gamma=1.4", noh_without_pressure},
+    {"noh_3d", "gamma=3", noh_without_pressure},
+    {"rotation", "", problem_sample},
+    {"shear", "", problem_sample},
+    {"shear", "direction=2 1|boost=1 -0.3|hi=2 1", problem_sample},
 };
 
 static void add_flows(struct check_run *run)
@@ -77,6 +95,20 @@ static void derivative(const struct flow_subject *flow, const struct prepared *p
     }
 }
 
+/* Is x near a shock, the edge of a disc, or the middle, where speeds jump or pressure is all; or
+ * beyond all gas? */
+static bool near_front(const struct prepared *p, const double x[3], double t)
+{
+    const double r = problem_radius(p, x), far = 0.02 * domain_length(&p->domain, 0);
+    struct problem_state state;
+    problem_sample(p, x, t, &state);
+    if (!(state.rho > 0)) return true;
+    for (const struct functional *const *f = p->problem->functionals; *f; f++)
+        if (strcmp((*f)->name, "shock_radius") == 0 || strcmp((*f)->name, "disc_radius") == 0)
+            return r < 2 * far || fabs(r - (*f)->exact(p, t)) < far;
+    return false;
+}
+
 /* Gresho's vortex has kinks at 0.2 and 0.4. */
 static bool near_kink(const struct prepared *p, const double x[3], double t)
 {
@@ -99,10 +131,12 @@ static double residual(const struct flow_subject *flow, const struct prepared *p
 {
     double sum[CONSERVED], size[CONSERVED], D[CONSERVED], worst = 0;
     struct problem_state state;
-    const double length = domain_length(&p->domain, 0), step = 2e-4 * length;
+    const double length = domain_length(&p->domain, 0), step = 1e-4 * length;
     flow->sample(p, x, t, &state);
     const double c = sqrt(p->gamma * state.P / state.rho);
-    derivative(flow, p, x, t, -1, step / c, sum);
+    const double signal = c + hypot(state.v[0], hypot(state.v[1], state.v[2]));
+    const double dt = fmin(step / signal, 1e-3 * t), fastest = step / dt;
+    derivative(flow, p, x, t, -1, dt, sum);
     for (int k = 0; k < CONSERVED; k++) size[k] = fabs(sum[k]);
     for (int axis = 0; axis < p->domain.dim; axis++) {
         derivative(flow, p, x, t, axis, step, D);
@@ -112,10 +146,10 @@ static double residual(const struct flow_subject *flow, const struct prepared *p
         }
     }
     /* where nothing changes there is only round-off: terms are at least a part of c U/length */
-    const double floors[CONSERVED] = {state.rho, state.rho * c, state.rho * c, state.rho * c,
-                                      state.rho * c * c};
+    const double current = state.rho * fastest;
+    const double floors[CONSERVED] = {state.rho, current, current, current, current * fastest};
     for (int k = 0; k < CONSERVED; k++)
-        worst_keep(&worst, fabs(sum[k]) / (size[k] + 1e-2 * c * floors[k] / length));
+        worst_keep(&worst, fabs(sum[k]) / (size[k] + 1e-2 * fastest * floors[k] / length));
     return worst;
 }
 
@@ -139,7 +173,8 @@ static void measure_flow(struct check_run *run, const void *subject)
         for (int d = 0; d < file.dimension; d++)
             x[d] = p.domain.lo[d] + fmod(i * steps[d], 1) * domain_length(&p.domain, d);
         const double t = 0.01 + 0.1 * fmod(i * 0.6180339887498949, 1); /* differences look back */
-        if (!near_kink(&p, x, t)) worst_keep(&worst, residual(flow, &p, x, t));
+        if (!near_kink(&p, x, t) && !near_front(&p, x, t))
+            worst_keep(&worst, residual(flow, &p, x, t));
     }
     check_measure(run, worst, 1e-7, 1e-9, "%s %s: dU/dt + div F", flow->case_name, flow->keys);
 }

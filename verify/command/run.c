@@ -80,7 +80,7 @@ static void print_errors(const struct run_settings *settings, const struct run_r
         if (!settings->file.fields[field]) continue;
         print_norms(field_family.members[field]->name, e, field_unit((enum field)field, dim));
     }
-    if (problem->circular) {
+    if (problem_is_circular(&result->problem)) {
         print_norms("  azimuthal", &result->azimuthal, field_unit(FIELD_VELOCITY, dim));
         print_norms("  radial", &result->radial, field_unit(FIELD_VELOCITY, dim));
     }

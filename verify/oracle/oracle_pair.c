@@ -121,7 +121,8 @@ static long double shock_pressure(const struct oracle *oracle, const struct orac
     return f * (-alpha * c * mu + beta * mu * mu) / rho;
 }
 
-/* PI_n = -nu cbar e . (1 - P_ij) u_ij/rhobar, u_ij = v_ij - (L_i + L_j) r_ij/2, r_ij = -x. */
+/* PI_n = -nu cbar e . (1 - P_ij) u_ij/rhobar, u_ij = v_ij - (L_i + L_j) r_ij/2, r_ij = -x; less
+ * for pairs as fast as sound. */
 static long double noise_pressure(const struct oracle *oracle, const struct oracle_particle *a,
                                   const struct oracle_particle *b, const oracle_vector x,
                                   const oracle_vector v_ij)
@@ -135,7 +136,10 @@ static long double noise_pressure(const struct oracle *oracle, const struct orac
     oracle_product(&a->projector, u, Pu_a);
     oracle_product(&b->projector, u, Pu_b);
     for (int k = 0; k < 3; k++) u[k] -= (Pu_a[k] + Pu_b[k]) / 2;
-    return oracle->scheme.noise * (a->c + b->c) * oracle_dot(x, u) / r / (a->rho + b->rho);
+    const long double mach = oracle_dot(x, v_ij) / r / ((a->c + b->c) / 2);
+    if (fabsl(mach) >= 1) return 0;
+    return (1 - mach * mach) * oracle->scheme.noise * (a->c + b->c) * oracle_dot(x, u) / r /
+           (a->rho + b->rho);
 }
 
 /* f_ij of the grad-h factors: of particle a in its pair with b. */

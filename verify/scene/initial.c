@@ -129,6 +129,53 @@ static void add_boost(struct initial *initial, const struct prepared *p)
         for (size_t i = 0; i < initial->n; i++) initial->v[d][i] += p->boost[d];
 }
 
+void initial_keep(struct initial *initial, size_t first, initial_wanted *wanted,
+                  const void *context)
+{
+    size_t kept = first;
+    for (size_t i = first; i < initial->n; i++) {
+        double x[3] = {0};
+        for (int d = 0; d < initial->dim; d++) x[d] = initial->x[d][i];
+        if (!wanted(context, x)) continue;
+        for (int d = 0; d < initial->dim; d++) {
+            initial->x[d][kept] = x[d];
+            initial->v[d][kept] = initial->v[d][i];
+        }
+        initial->m[kept] = initial->m[i];
+        initial->u[kept] = initial->u[i];
+        initial->rho[kept++] = initial->rho[i];
+    }
+    initial->n = kept;
+}
+
+static bool in_window(const void *context, const double x[3])
+{
+    return window_contains(context, x);
+}
+
+enum status initial_fill_ball(const struct prepared *p, const struct settings *settings,
+                              double radius, struct initial *initial, struct error *error)
+{
+    static const double parts[] = {0, 1, M_PI / 4, M_PI / 6}; /* of the box around it */
+    const int dim = p->domain.dim;
+    const enum lattice kind = (enum lattice)settings_choice(settings, SETTING_lattice);
+    const size_t n = (size_t)round(settings_real(settings, SETTING_n) / parts[dim]);
+    struct domain around = p->domain;
+    struct window ball = p->window;
+    struct lattice_plan plan;
+    ball.radius = radius;
+    for (int d = 0; d < dim; d++) {
+        around.lo[d] = ball.lo[d] = ball.centre[d] - radius;
+        around.hi[d] = ball.hi[d] = ball.centre[d] + radius;
+    }
+    if (lattice_plan_make(&plan, &around, kind, n, error) ||
+        initial_allocate(initial, dim, plan.n, error))
+        return error->status;
+    initial_lay(initial, p, &plan, 0, settings);
+    initial_keep(initial, 0, in_window, &ball);
+    return STATUS_OK;
+}
+
 /* In 2D and 3D particles that jitter moves carry the flow of where they come to be: displaced
  * particles, not a noisy gas. Beside a jump they stay what they are. */
 static void resample(struct initial *initial, const struct prepared *p,

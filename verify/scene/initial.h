@@ -31,6 +31,17 @@ struct lattice_plan;
 void initial_lay(struct initial *initial, const struct prepared *p, const struct lattice_plan *plan,
                  size_t first, const struct settings *settings);
 
+/* For a problem's fill: keeps the first `first` particles and those after them that are wanted, in
+ * their order; what is left is the new number. */
+typedef bool initial_wanted(const void *context, const double x[3]);
+void initial_keep(struct initial *initial, size_t first, initial_wanted *wanted,
+                  const void *context);
+
+/* A problem's whole fill with a ball (a disc, an interval) in the middle of the domain: about n
+ * particles. */
+enum status initial_fill_ball(const struct prepared *p, const struct settings *settings,
+                              double radius, struct initial *initial, struct error *error);
+
 /* A problem's whole fill, where all of the domain is laid so. */
 enum status initial_fill(const struct prepared *p, const struct settings *settings,
                          struct initial *initial, struct error *error);

@@ -19,6 +19,7 @@ struct crystal {
 #define ROOT_3       1.7320508075688772
 #define CLOSE_PACKED 1.6329931618554521 /* sqrt(8/3) */
 
+static const struct crystal line = {1, 1, 1, {1, 1, 1}, {{0.5, 0.5, 0.5}}};
 static const struct crystal square = {2, 1, 1, {1, 1, 1}, {{0.5, 0.5, 0.5}}};
 /* in 3D layers in the gaps of each other, every second one alike */
 static const struct crystal hexagonal = {2,
@@ -41,6 +42,10 @@ static const struct crystal bcc = {3, 0, 2, {1, 1, 1}, {{0.25, 0.25, 0.25}, {0.7
 static const struct crystal *crystal_of(enum lattice kind)
 {
     switch (kind) {
+    case LATTICE_UNIFORM: /* the other two move particles of it */
+    case LATTICE_CLUSTERED:
+    case LATTICE_COINCIDENT:
+        return &line;
     case LATTICE_SQUARE:
     case LATTICE_CUBIC:
     case LATTICE_JITTERED:

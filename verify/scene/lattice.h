@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Where particles of a uniform gas stand in 2D and 3D: regular lattices that fit a box with the
+ * Where particles of a uniform gas stand: regular lattices that fit a box with the
  * number of points next to what is asked for, periodically, and quasi-random points. */
 #ifndef SPHPROOF_LATTICE_H
 #define SPHPROOF_LATTICE_H

@@ -334,11 +334,58 @@ void problem_velocity(const struct prepared *p, const struct snapshot *s, size_t
     for (int d = 0; d < 3; d++) v[d] = d < p->domain.dim ? s->v[d][i] - p->boost[d] : 0;
 }
 
+double problem_radius(const struct prepared *p, const double x[3])
+{
+    double square = 0;
+    for (int d = 0; d < p->domain.dim; d++)
+        square += (x[d] - p->window.centre[d]) * (x[d] - p->window.centre[d]);
+    return sqrt(square);
+}
+
+bool problem_is_circular(const struct prepared *p)
+{
+    return p->problem->circular && p->domain.dim > 1;
+}
+
 void problem_circular(const struct prepared *p, const double x[3], const double v[3],
                       double *azimuthal, double *radial)
 {
+    const double R = problem_radius(p, x);
+    double out = 0, squares = 0;
+    for (int d = 0; d < p->domain.dim; d++) {
+        out += R > 0 ? (x[d] - p->window.centre[d]) / R * v[d] : 0;
+        squares += v[d] * v[d];
+    }
+    *radial = out;
     const double dx = x[0] - p->window.centre[0], dy = x[1] - p->window.centre[1];
-    const double R = hypot(dx, dy);
-    *azimuthal = R > 0 ? (dx * v[1] - dy * v[0]) / R : 0;
-    *radial = R > 0 ? (dx * v[0] + dy * v[1]) / R : 0;
+    if (p->domain.dim == 2)
+        *azimuthal = R > 0 ? (dx * v[1] - dy * v[0]) / R : 0;
+    else
+        *azimuthal = sqrt(fmax(0, squares - out * out));
+}
+
+enum status problem_direction(const struct prepared *p, struct settings *settings, double n[3],
+                              double *length, struct error *error)
+{
+    struct setting_value *direction = &settings->value[SETTING_direction];
+    const int dim = p->domain.dim;
+    double square = 0;
+    if (direction->automatic) {
+        direction->given = dim;
+        for (int d = 0; d < dim; d++) direction->real[d] = d == 0;
+    }
+    for (int d = 0; d < dim; d++) {
+        const double whole = settings_along(settings, SETTING_direction, d);
+        if (whole != nearbyint(whole))
+            return error_set(error, STATUS_BAD_INPUT,
+                             "direction: %g is no integer, and the wave would not be periodic",
+                             whole);
+        n[d] = whole / domain_length(&p->domain, d);
+        square += n[d] * n[d];
+    }
+    if (square == 0)
+        return error_set(error, STATUS_BAD_INPUT, "direction=\"0\": the wave runs nowhere");
+    for (int d = 0; d < dim; d++) n[d] /= sqrt(square);
+    *length = 1 / sqrt(square);
+    return STATUS_OK;
 }

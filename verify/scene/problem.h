@@ -80,12 +80,13 @@ struct problem {
     const char *reference; /* exact solution, as case files name it */
     int least_dim, most_dim;
     bool carried;   /* exact everywhere in the periodic box, so that it may be boosted */
-    bool circular;  /* flows round the middle of the domain: azimuthal and radial errors */
+    bool circular;  /* flows round or from the middle of the domain: azimuthal and radial errors */
     bool fieldless; /* of t > 0 only functionals are known: there are no errors of fields */
     bool filed;     /* its particles come from a file, always */
     bool heavy;     /* it takes gravity: any other has no solution in it */
     bool smooth;    /* neither jumps nor shocks, for as long as it is solved */
     struct problem_ends ends[3];
+    bool singular;  /* at t = 0 energy stands in a point, which the sample does not show */
     const struct problem_key *keys; /* its own, beside those of every run */
     size_t key_count;
     /* Checks its own keys, gives those that are automatic a value, fills p->own; domain, boost,
@@ -146,8 +147,19 @@ enum status problem_check_state(const struct settings *settings, enum setting ke
 void problem_place(const struct prepared *p, const struct snapshot *s, size_t i, double x[3]);
 void problem_velocity(const struct prepared *p, const struct snapshot *s, size_t i, double v[3]);
 
-/* Parts along the circle round the window's centre, and away from it, of a vector at x in a plane.
- * At the centre itself: 0. */
+/* Distance from the window's centre of a place as problem_place gives it. */
+double problem_radius(const struct prepared *p, const double x[3]);
+
+/* For a problem's prepare: the key direction as a unit vector, and the length of a wave that runs
+ * so and fits the box once. Where it is automatic: along x. */
+enum status problem_direction(const struct prepared *p, struct settings *settings, double n[3],
+                              double *length, struct error *error);
+
+/* Has a run azimuthal and radial errors? Those of circular problems in 2D and 3D. */
+bool problem_is_circular(const struct prepared *p);
+
+/* Parts along the circle round the window's centre, and away from it, of a vector at x in a plane;
+ * in space the first is the size of the part across the radius. At the centre itself: 0. */
 void problem_circular(const struct prepared *p, const double x[3], const double v[3],
                       double *azimuthal, double *radial);
 

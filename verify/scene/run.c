@@ -195,7 +195,7 @@ static bool compare(struct comparison *of, const struct run_result *result)
         }
         of->place[i] = nowhere + (window_contains(&p->window, place) ? 0 : 2);
         of->jump[i] = sqrt(squares);
-        if (!p->problem->circular) continue;
+        if (!problem_is_circular(p)) continue;
         problem_circular(p, place, v, &of->azimuthal[0][i], &of->radial[0][i]);
         problem_circular(p, place, exact_v, &of->azimuthal[1][i], &of->radial[1][i]);
     }
@@ -267,7 +267,7 @@ static void measure_cloud(struct run_result *result, const double *const *measur
                         vector ? of->none : of->exact[field]);
     }
     result->binned_density_l1 = (double)NAN;
-    if (!result->problem.problem->circular) return;
+    if (!problem_is_circular(&result->problem)) return;
     result->azimuthal =
         norm_errors(s->n, of->place, window, s->volume, of->azimuthal[0], of->azimuthal[1]);
     result->radial = norm_errors(s->n, of->place, window, s->volume, of->radial[0], of->radial[1]);

@@ -27,7 +27,7 @@ json_t *run_errors_json(const struct run_result *result)
     for (int field = 0; field < FIELDS; field++)
         json_object_set_new(errors, field_family.members[field]->name,
                             norms_json(&result->errors[field], !problem->fieldless));
-    if (problem->circular) {
+    if (problem_is_circular(&result->problem)) {
         json_object_set_new(errors, "azimuthal", norms_json(&result->azimuthal, true));
         json_object_set_new(errors, "radial", norms_json(&result->radial, true));
     }

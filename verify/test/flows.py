@@ -15,7 +15,13 @@ SMALL = {"sod_2d": ["n=1400", "t_end=0.1"], "sod_3d": ["n=9216", "t_end=0.02"],
          "sound_wave_2d": ["n=16^2", "direction=1 1", "t_end=0.2"], "sound_wave_3d": ["n=10^3", "t_end=0.1"],
          "gresho": ["n=32^2", "t_end=0.3", "boost=0.5 0.25"], "yee": ["n=20^2", "t_end=1"],
          "kelvin_helmholtz": ["n=32^2", "t_end=0.5"], "square": ["n=24^2", "t_end=0.2"],
-         "rest_2d": ["n=16^2", "t_end=0.5"], "rest_3d": ["n=10^3", "t_end=0.1"]}
+         "rest_2d": ["n=16^2", "t_end=0.5"], "rest_3d": ["n=10^3", "t_end=0.1"],
+         "sedov_2d": ["n=32^2"], "sedov_3d": ["n=14^3", "t_end=0.03"],
+         "noh_2d": ["n=30^2", "t_end=0.3"], "noh_3d": ["n=10^3", "t_end=0.2"],
+         "rotation": ["n=24^2"], "shear": ["n=24^2", "t_end=0.5", "direction=1 1"]}
+# what a run's functionals come to in the limit, and how far from it they may be at this size
+NEAR = {"sedov_2d": {"shock_radius": (0.4, 0.02)}, "rotation": {"disc_radius": (1.5811388, 0.01), "angular_speed": (0.4, 0.01)},
+        "shear": {"shear_amplitude": (1, 0.05)}, "noh_2d": {"shock_radius": (0.1, 0.05)}}
 
 
 def run(program, words):
@@ -82,6 +88,9 @@ def faults(name, document, rows):
         if differ(document["errors"]["azimuthal"]["l1"], l1) or differ(document["functionals"]["disc_error"], disc):
             yield "error %r and %r, from the snapshot %r and %r" % (
                 document["errors"]["azimuthal"]["l1"], document["functionals"]["disc_error"], l1, disc)
+    for key, (exact, allowed) in NEAR.get(name, {}).items():
+        if not abs(document["functionals"][key] - exact) <= allowed:
+            yield "%s = %r, which should be %r" % (key, document["functionals"][key], exact)
     if name == "kelvin_helmholtz" and differ(document["functionals"]["mode_amplitude"], kelvin_helmholtz(rows)):
         yield "M = %r, from the snapshot %r" % (document["functionals"]["mode_amplitude"], kelvin_helmholtz(rows))
 

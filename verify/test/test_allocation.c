@@ -78,7 +78,8 @@ static int calls_in(const char *case_name, const char *keys, int threads,
     if (run_resolve(&run, &settings, &error)) fail_msg("%s", error.message);
     calls = 0;
     const enum status status = run_execute(&run, &result, &error);
-    if (status) fail_msg("%s %s: %s", case_name, keys, error.message);
+    /* cold gas that collides: not every scheme gets far */
+    if (status && status != STATUS_BROKE_DOWN) fail_msg("%s %s: %s", case_name, keys, error.message);
     assert_true(result.cost.steps > 0);
     run_free(&result);
     return calls;

@@ -101,7 +101,8 @@ static bool particles_are_samples(struct walk *walk)
         const double c = sqrt(p->gamma * s.P / s.rho);
         if (!(initial->m[i] > 0 && s.rho > 0 && s.u > 0))
             return fault(walk, "particle %zu is not positive", i);
-        if (differ(initial->rho[i], s.rho, 0) || differ(initial->u[i], s.u, 0) ||
+        if (differ(initial->rho[i], s.rho, 0) ||
+            (!walk->problem->singular && differ(initial->u[i], s.u, 0)) ||
             differ(s.P, (p->gamma - 1) * s.rho * s.u, 0))
             return fault(walk, "particle %zu has another state than the sample", i);
         for (int d = 0; d < initial->dim; d++)
@@ -159,7 +160,7 @@ static bool particles_carry_the_integrals(struct walk *walk)
         add_sums(have, initial->m[i], v, initial->u[i]);
     }
     const double momentum = sqrt(want[MASS] * want[ENERGY]);
-    for (int k = 0; k < SUMS; k++) {
+    for (int k = 0; k < (walk->problem->singular ? ENERGY : SUMS); k++) {
         const double scale = k == MASS || k == ENERGY ? fabs(want[k]) : momentum;
         if (!(fabs(have[k] - want[k]) <= walk->sums * scale))
             return fault(walk, "%s of the particles %.17g, of the sample %.17g", names[k], have[k],
@@ -282,6 +283,7 @@ static struct walk walk_case(const char *name, const char *keys, const struct pr
     if (case_load(&file, name, &error)) fail_msg("%s", error.message);
     walk.settings = file.settings;
     if (file.dimension > 1) walk.sums = 0.02; /* few points, kinks, masses of whole particles */
+    if (strcmp(name, "noh_1d") == 0) walk.sums = 0.01; /* of an odd number one is at rest */
     if (strcmp(name, "leblanc") == 0) walk.sums = 0.5; /* its light gas is half a particle */
     walk.problem = instead ? instead : problem_of(&walk.settings);
     snprintf(text, sizeof text, "%s", keys);
@@ -335,8 +337,9 @@ static void every_problem_by_itself(void **state)
                                       SOURCE_USER, NULL, &error),
                          STATUS_OK);
         /* of the gas that references are for */
-        assert_int_equal(settings_set(&walk.settings, SETTING_gamma, "1.6666666666666667",
-                                      SOURCE_USER, NULL, &error),
+        const bool flat = strcmp(problem->member.name, "rotation") == 0;
+        assert_int_equal(settings_set(&walk.settings, SETTING_gamma,
+                                      flat ? "2" : "1.6666666666666667", SOURCE_USER, NULL, &error),
                          STATUS_OK);
         walk_all(&walk, problem->least_dim);
         if (walk.fault[0]) fail_msg("%s: %s", problem->member.name, walk.fault);

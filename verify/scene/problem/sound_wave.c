@@ -36,34 +36,6 @@ static double along(const struct prepared *p, const double x[3])
     return s;
 }
 
-/* Wave numbers direction/side of the box, times waves: sets the unit vector and the wavelength. */
-static enum status find_direction(const struct prepared *p, struct settings *settings, double n[3],
-                                  double *length, struct error *error)
-{
-    struct setting_value *direction = &settings->value[SETTING_direction];
-    const int dim = p->domain.dim;
-    const double waves = settings_real(settings, SETTING_waves);
-    double square = 0;
-    if (direction->automatic) {
-        direction->given = dim;
-        for (int d = 0; d < dim; d++) direction->real[d] = d == 0;
-    }
-    for (int d = 0; d < dim; d++) {
-        const double whole = settings_along(settings, SETTING_direction, d);
-        if (whole != nearbyint(whole))
-            return error_set(error, STATUS_BAD_INPUT,
-                             "direction: %g is no integer, and the wave would not be periodic",
-                             whole);
-        n[d] = whole / domain_length(&p->domain, d);
-        square += n[d] * n[d];
-    }
-    if (square == 0)
-        return error_set(error, STATUS_BAD_INPUT, "direction=\"0\": the wave runs nowhere");
-    for (int d = 0; d < dim; d++) n[d] /= sqrt(square);
-    *length = dim == 1 ? domain_length(&p->domain, 0) / waves : 1 / (waves * sqrt(square));
-    return STATUS_OK;
-}
-
 static enum status prepare(struct prepared *p, struct settings *settings, struct error *error)
 {
     struct plane_wave *plane = (struct plane_wave *)p->own.bytes;
@@ -75,7 +47,9 @@ static enum status prepare(struct prepared *p, struct settings *settings, struct
                                  .v0 = gas[1],
                                  .P0 = gas[2],
                                  .amplitude = settings_real(settings, SETTING_amplitude)};
-    if (find_direction(p, settings, plane->n, &wave->length, error)) return error->status;
+    if (problem_direction(p, settings, plane->n, &wave->length, error)) return error->status;
+    if (p->domain.dim == 1) wave->length = domain_length(&p->domain, 0); /* to the last bit */
+    wave->length /= settings_real(settings, SETTING_waves);
     const char *fault = simple_wave_fault(wave);
     return fault ? error_set(error, STATUS_BAD_INPUT, "no exact solution: %s", fault) : STATUS_OK;
 }

@@ -56,24 +56,9 @@ static void sample(const struct prepared *p, const double x[3], double t,
 
 /* ---- equal masses: each gas on a lattice of its own, the thin one with a hole ---- */
 
-/* Keeps the first of `count` particles on and those after it that are outside of the square. */
-static size_t cut_out(struct initial *initial, const struct square *square, size_t first,
-                      size_t count)
+static bool is_around(const void *square, const double x[3])
 {
-    size_t kept = first;
-    for (size_t i = first; i < first + count; i++) {
-        double x[3] = {0};
-        for (int d = 0; d < initial->dim; d++) x[d] = initial->x[d][i];
-        if (is_inside(square, x)) continue;
-        for (int d = 0; d < initial->dim; d++) {
-            initial->x[d][kept] = x[d];
-            initial->v[d][kept] = initial->v[d][i];
-        }
-        initial->m[kept] = initial->m[i];
-        initial->u[kept] = initial->u[i];
-        initial->rho[kept++] = initial->rho[i];
-    }
-    return kept;
+    return !is_inside(square, x);
 }
 
 /* Brings the masses of a gas to what its volume holds. */
@@ -103,7 +88,7 @@ static enum status fill_equal_masses(const struct prepared *p, const struct sett
         return error->status;
     initial_lay(initial, p, &dense, 0, settings);
     initial_lay(initial, p, &around, dense.n, settings);
-    initial->n = cut_out(initial, square, dense.n, around.n);
+    initial_keep(initial, dense.n, is_around, square);
     fill_up(initial, 0, dense.n, square->dense * inner);
     fill_up(initial, dense.n, initial->n, thin * (volume - inner));
     return STATUS_OK;

@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "shells.h"
+
+#include <math.h>
+
+static double radius_of(const struct prepared *p, const struct snapshot *s, size_t i)
+{
+    double x[3];
+    problem_place(p, s, i, x);
+    return problem_radius(p, x);
+}
+
+/* How far apart particles in the window are. */
+static double mean_spacing(const struct prepared *p, const struct snapshot *s)
+{
+    double volume = 0, count = 0;
+    for (size_t i = 0; i < s->n; i++) {
+        double x[3];
+        problem_place(p, s, i, x);
+        if (!window_contains(&p->window, x)) continue;
+        volume += s->volume[i];
+        count++;
+    }
+    return pow(volume / count, 1. / p->domain.dim);
+}
+
+void shells_make(struct shells *shells, const struct prepared *p, const struct snapshot *s)
+{
+    double mass[SHELLS_MAX] = {0}, volume[SHELLS_MAX] = {0}, reach = (double)INFINITY;
+    for (int d = 0; d < p->domain.dim; d++) reach = fmin(reach, 0.5 * domain_length(&p->domain, d));
+    shells->width = fmax(mean_spacing(p, s), reach / SHELLS_MAX);
+    shells->n = 0;
+    if (!(shells->width > 0)) return;
+    shells->n = (size_t)fmin(SHELLS_MAX, ceil(reach / shells->width));
+    for (size_t i = 0; i < s->n; i++) {
+        const double place = floor(radius_of(p, s, i) / shells->width);
+        if (!(place < (double)shells->n)) continue;
+        mass[(size_t)place] += s->m[i];
+        volume[(size_t)place] += s->volume[i];
+    }
+    for (size_t k = 0; k < shells->n; k++) shells->density[k] = mass[k] / volume[k];
+}
+
+double shells_peak(const struct shells *shells)
+{
+    double peak = NAN;
+    for (size_t k = 0; k < shells->n; k++) peak = fmax(peak, shells->density[k]);
+    return peak;
+}
+
+double shells_crossing(const struct shells *shells, double level)
+{
+    size_t outer = shells->n;
+    for (size_t k = shells->n; k-- > 0;) {
+        const double here = shells->density[k];
+        if (isnan(here)) continue; /* an empty shell joins its neighbours */
+        if (here >= level && outer < shells->n) {
+            const double out = shells->density[outer];
+            const double part = (here - level) / (here - out);
+            return ((double)k + 0.5 + part * (double)(outer - k)) * shells->width;
+        }
+        outer = k;
+    }
+    return NAN;
+}
+
+double shells_mean(const struct prepared *p, const struct snapshot *s, double lo, double hi)
+{
+    double mass = 0, volume = 0;
+    for (size_t i = 0; i < s->n; i++) {
+        const double r = radius_of(p, s, i);
+        if (!(r >= lo && r < hi)) continue;
+        mass += s->m[i];
+        volume += s->volume[i];
+    }
+    return mass / volume;
+}
