@@ -84,6 +84,8 @@ const char *functional_name(const char *name)
         const struct problem *problem = (const struct problem *)problem_family.members[i];
         for (const struct functional *const *f = problem->functionals; *f; f++)
             if (strcmp((*f)->name, name) == 0) return (*f)->name;
+        if (problem->growing && strcmp(problem->growing->name, name) == 0)
+            return problem->growing->name;
     }
     return NULL;
 }

@@ -14,7 +14,7 @@
 #include "simulation.h"
 #include "status.h"
 
-enum { PROBLEM_OWN_BYTES = 1024, PROBLEM_FUNCTIONALS_MAX = 4, PROBLEM_REGIONS_MAX = 8 };
+enum { PROBLEM_OWN_BYTES = 4096, PROBLEM_FUNCTIONALS_MAX = 6, PROBLEM_REGIONS_MAX = 8 };
 
 /* The gas at one place and time. */
 struct problem_state {
@@ -57,6 +57,15 @@ struct functional {
     bool (*present)(const struct prepared *p); /* NULL: with all settings */
     double (*measure)(const struct prepared *p, const struct snapshot *s);
     double (*exact)(const struct prepared *p, double t); /* or from a reference; NULL: unknown */
+};
+
+/* An amplitude that grows like exp(rate t): the rate is measured through the run, and is one more
+ * functional of its result. */
+struct growing {
+    const char *name; /* of the rate */
+    double (*amplitude)(const struct prepared *p, const struct snapshot *s);
+    void (*during)(const struct prepared *p, double times[2]); /* it grows like that */
+    double (*rate)(const struct prepared *p);                  /* exact */
 };
 
 /* Parts of the exact solution, for an error budget. */
@@ -107,8 +116,10 @@ struct problem {
     enum status (*refuse)(const struct prepared *p, double t, double longest, struct error *error);
     /* Does the start depend on the seed? */
     bool (*random)(const struct settings *settings);
-    const struct functional *functionals[PROBLEM_FUNCTIONALS_MAX + 1]; /* ends with NULL */
-    const struct regions *regions;                                     /* NULL: none */
+    /* Ends with NULL; with the rate of what grows at most PROBLEM_FUNCTIONALS_MAX. */
+    const struct functional *functionals[PROBLEM_FUNCTIONALS_MAX + 1];
+    const struct growing *growing; /* NULL: nothing grows */
+    const struct regions *regions; /* NULL: none */
 };
 
 /* The problem that the settings name. */

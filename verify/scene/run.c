@@ -8,6 +8,7 @@
 #include <sys/resource.h>
 
 #include "functional.h"
+#include "growth.h"
 #include "initial.h"
 #include "plain.h"
 
@@ -296,6 +297,7 @@ static enum status measure_errors(struct run_result *result, struct error *error
 static void measure_functionals(struct run_result *result)
 {
     const struct prepared *p = &result->problem;
+    const struct growing *growing = p->problem->growing;
     result->h = functional_window_mean(p, &result->snapshot, result->snapshot.h);
     for (const struct functional *const *f = p->problem->functionals; *f; f++) {
         if ((*f)->present && !(*f)->present(p)) continue;
@@ -304,6 +306,9 @@ static void measure_functionals(struct run_result *result)
             .value = (*f)->measure(p, &result->snapshot),
             .exact = (*f)->exact ? (*f)->exact(p, result->time) : (double)NAN};
     }
+    if (!growing) return;
+    result->functionals[result->functional_count++] =
+        (struct run_functional){growing->name, growth_rate(&result->growth), growing->rate(p)};
 }
 
 /* Sums at the end against t = 0. */
@@ -386,6 +391,29 @@ static bool after_step(void *context, double time, uint64_t steps)
     return settings->progress(settings->progress_context, time, steps);
 }
 
+/* To t_end, with stops where the problem says that something grows. */
+static enum status steps(struct watch *watch, struct simulation *simulation,
+                         struct run_result *result, double t_end, struct error *error)
+{
+    enum { STOPS = 17 };
+    const struct prepared *p = &result->problem;
+    const struct growing *growing = p->problem->growing;
+    simulation_progress *progress =
+        watch->run->asked.progress || watch->run->asked.trace ? after_step : NULL;
+    double times[2] = {0, 0};
+    if (growing) growing->during(p, times);
+    for (int i = 0; growing && i < STOPS; i++) {
+        const double stop = times[0] + (times[1] - times[0]) * i / (STOPS - 1);
+        struct snapshot seen;
+        if (!(stop < t_end)) break;
+        const enum status status = simulation_run(simulation, stop, progress, watch, error);
+        simulation_snapshot(simulation, &seen);
+        if (status || seen.time < stop) return status;
+        growth_see(&result->growth, stop, growing->amplitude(p, &seen));
+    }
+    return simulation_run(simulation, t_end, progress, watch, error);
+}
+
 static enum status simulate(const struct run *run, struct run_result *result,
                             const struct initial *initial, struct error *error)
 {
@@ -402,9 +430,7 @@ static enum status simulate(const struct run *run, struct run_result *result,
     struct watch watch = {run, simulation};
     take_sums(run, simulation, &outcome.start);
     if (asked->trace) keep_trace(&watch, 0);
-    outcome.status =
-        simulation_run(simulation, scene.t_end, asked->progress || asked->trace ? after_step : NULL,
-                       &watch, &outcome.reason);
+    outcome.status = steps(&watch, simulation, result, scene.t_end, &outcome.reason);
     simulation_cost(simulation, &result->cost);
     take_sums(run, simulation, &outcome.end);
     simulation_snapshot(simulation, &outcome.snapshot);

@@ -9,6 +9,7 @@
 
 #include "budget.h"
 #include "cases.h"
+#include "growth.h"
 #include "norm.h"
 #include "problem.h"
 #include "settings.h"
@@ -72,6 +73,7 @@ struct run_result {
     char suspicion[SUSPICION_TEXT]; /* "" unless the errors look wrong in themselves */
     struct run_functional functionals[PROBLEM_FUNCTIONALS_MAX];
     size_t functional_count;
+    struct growth growth;     /* of a problem in which something grows */
     struct snapshot snapshot; /* owned by the result: see run_free */
     double *storage;
 };

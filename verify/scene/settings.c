@@ -35,6 +35,11 @@ const struct family settings_lattice_family = {
     LATTICES};
 static const struct family answer_family = {
     "answers", "no or yes", MEMBERS(MEMBER("no", "", ""), MEMBER("yes", "", "")), 2};
+static const struct family parity_family = {
+    "parities", "modes of a periodic shear layer",
+    MEMBERS(MEMBER("sinuous", "the streams are displaced as a whole", "Drazin & Reid 1981"),
+            MEMBER("varicose", "the streams get thinner and thicker", "Drazin & Reid 1981")),
+    2};
 const struct family settings_skip_family = {
     "skips", "work left out",
     MEMBERS(MEMBER("auto", "what no signal has reached, where the result allows it", ""),
@@ -76,7 +81,8 @@ void setting_allowed(const struct setting_key *key, char *text, size_t size)
     if (key->type == SETTING_COUNT) snprintf(what, sizeof what, "an integer, or 64^2,");
     if (key->type == SETTING_REALS) snprintf(what, sizeof what, "%d numbers", key->count);
     if (key->type == SETTING_PATH) {
-        snprintf(text, size, "the path of a file, of up to %d characters; nothing: no file", SETTING_TEXT_MAX - 1);
+        snprintf(text, size, "the path of a file, of up to %d characters; nothing: no file",
+                 SETTING_TEXT_MAX - 1);
         return;
     }
     if (key->type == SETTING_VECTOR) snprintf(what, sizeof what, "1, 2 or 3 numbers");

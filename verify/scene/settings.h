@@ -76,6 +76,7 @@ enum lattice {
     LATTICES
 };
 enum skip { SKIP_AUTO, SKIP_NONE };
+enum parity { PARITY_SINUOUS, PARITY_VARICOSE };
 extern const struct family problem_family, settings_lattice_family, settings_skip_family;
 
 /* Position of the key called name, or -1. */

@@ -1,0 +1,174 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "mode.h"
+
+#include <math.h>
+
+_Static_assert(sizeof(struct mode_start) <= PROBLEM_OWN_BYTES, "a mode fits");
+
+static const struct mode_start *start_of(const struct prepared *p)
+{
+    return (const struct mode_start *)p->own.bytes;
+}
+
+static void growing_during(const struct prepared *p, double times[2])
+{
+    const struct mode_start *start = start_of(p);
+    const struct layer_mode *mode = &start->mode;
+    const double rate = cimag(mode->omega) / start->length;
+    times[0] = log(2) / rate;
+    times[1] = log(0.1 * mode->layer.width / (start->amplitude * mode->displacement)) / rate;
+}
+
+enum status mode_prepare(struct prepared *p, const struct layer *layer, const double origin[2],
+                         double length, double speed, struct settings *settings,
+                         struct error *error)
+{
+    struct mode_start *start = (struct mode_start *)p->own.bytes;
+    const double amplitude = settings_real(settings, SETTING_amplitude);
+    const char *fault = layer_fault(layer);
+    double times[2];
+    if (fault) return error_set(error, STATUS_BAD_INPUT, "%s", fault);
+    if (!layer_mode_find(layer, &start->mode))
+        return error_set(error, STATUS_BAD_INPUT,
+                         "waves=%g: no mode of %g waves in the box grows in a layer of width %g",
+                         settings_real(settings, SETTING_waves),
+                         settings_real(settings, SETTING_waves), length * layer->width);
+    start->origin[0] = origin[0];
+    start->origin[1] = origin[1];
+    start->length = length;
+    start->amplitude = amplitude * speed;
+    growing_during(p, times);
+    if (amplitude > 0 && times[1] > times[0]) return STATUS_OK;
+    return error_set(error, STATUS_BAD_INPUT,
+                     "amplitude=%g: more than 0 and less than %.4g is needed, so that the mode can "
+                     "grow from twice its start and still be small",
+                     amplitude, 0.05 * layer->width / (start->mode.displacement * speed));
+}
+
+/* x in the units of the mode. */
+static void to_mode(const struct mode_start *start, const double x[3], double at[2])
+{
+    for (int d = 0; d < 2; d++) at[d] = (x[d] - start->origin[d]) / start->length;
+}
+
+void mode_sample(const struct prepared *p, const double x[3], double t, struct problem_state *state)
+{
+    const struct mode_start *start = start_of(p);
+    double at[2];
+    to_mode(start, x, at);
+    const struct layer_base base = layer_base(&start->mode.layer, at[1]);
+    const struct layer_values q = layer_mode_values(&start->mode, at[0], at[1], t / start->length);
+    const double a = start->amplitude, rho = base.rho + a * q.rho, P = base.P + a * q.p;
+    *state = (struct problem_state){.rho = rho,
+                                    .v = {base.U + a * q.v[0], a * q.v[1]},
+                                    .P = P,
+                                    .u = P / ((p->gamma - 1) * rho)};
+}
+
+/* ---- what a state has of the mode ---- */
+
+enum { BINS = 32 };
+
+struct projection {
+    double complex c, other; /* of the mode, and of the other parity */
+    double noise;            /* rms of v_y without the mode, over the rms of the mode */
+    double error;            /* of v_y(y) at the mode's wavelength, relative, rms */
+};
+
+/* Sums over particles, and over those of a part of the height. */
+struct sums {
+    double complex half[2]; /* of the layer at y = 0, and of its mirror image */
+    double squares, all;
+    double complex measured[BINS], exact[BINS];
+    double volume[BINS];
+};
+
+static void add_particle(struct sums *sums, const struct mode_start *start, const double at[2],
+                         double part, double volume, double vy)
+{
+    const double complex wave = cexp(-LAYER_I * start->mode.layer.k * at[0]);
+    const double complex f = layer_mode_amplitude(&start->mode, at[1]).v;
+    const int bin = part >= 0 && part < 1 ? (int)(part * BINS) : BINS - 1;
+    sums->half[start->mode.layer.periodic && at[1] - floor(at[1] + 0.25) > 0.25] +=
+        volume * vy * conj(f) * wave;
+    sums->squares += volume * creal(f * conj(f));
+    sums->all += volume * vy * vy;
+    sums->measured[bin] += 2 * volume * vy * wave;
+    sums->exact[bin] += volume * f;
+    sums->volume[bin] += volume;
+}
+
+static struct projection project(const struct prepared *p, const struct snapshot *s)
+{
+    const struct mode_start *start = start_of(p);
+    struct sums sums = {0};
+    for (size_t i = 0; i < s->n; i++) {
+        double x[3], v[3], at[2];
+        problem_place(p, s, i, x);
+        problem_velocity(p, s, i, v);
+        to_mode(start, x, at);
+        add_particle(&sums, start, at, (x[1] - p->domain.lo[1]) / domain_length(&p->domain, 1),
+                     s->volume[i], v[1]);
+    }
+    struct projection of = {.c = 2 * (sums.half[0] + sums.half[1]) / sums.squares,
+                            .other = 2 * (sums.half[0] - sums.half[1]) / sums.squares};
+    /* the mean square of Re(c f) is |c f|^2/2, and the rest is orthogonal to it */
+    const double size = creal(of.c * conj(of.c)), mode = 0.5 * size * sums.squares;
+    of.noise = sqrt(fabs(sums.all - mode) / mode);
+    double off = 0, whole = 0;
+    for (int b = 0; b < BINS; b++) {
+        if (!(sums.volume[b] > 0)) continue;
+        const double complex exact = of.c * sums.exact[b], jump = sums.measured[b] - exact;
+        off += creal(jump * conj(jump)) / sums.volume[b];
+        whole += creal(exact * conj(exact)) / sums.volume[b];
+    }
+    of.error = sqrt(off / whole);
+    return of;
+}
+
+static double amplitude_measured(const struct prepared *p, const struct snapshot *s)
+{
+    return cabs(project(p, s).c);
+}
+
+static double amplitude_exact(const struct prepared *p, double t)
+{
+    const struct mode_start *start = start_of(p);
+    return start->amplitude * exp(cimag(start->mode.omega) * t / start->length);
+}
+
+static double error_measured(const struct prepared *p, const struct snapshot *s)
+{
+    return project(p, s).error;
+}
+
+static double noise_measured(const struct prepared *p, const struct snapshot *s)
+{
+    return project(p, s).noise;
+}
+
+static double other_measured(const struct prepared *p, const struct snapshot *s)
+{
+    const struct projection of = project(p, s);
+    return cabs(of.other) / cabs(of.c);
+}
+
+static double none(const struct prepared *p, double t)
+{
+    (void)p, (void)t;
+    return 0;
+}
+
+static double rate_exact(const struct prepared *p)
+{
+    const struct mode_start *start = start_of(p);
+    return cimag(start->mode.omega) / start->length;
+}
+
+const struct functional mode_amplitude = {"mode_amplitude", NULL, amplitude_measured,
+                                          amplitude_exact},
+                        mode_error = {"mode_error", NULL, error_measured, none},
+                        mode_noise = {"mode_noise", NULL, noise_measured, none},
+                        mode_other_parity = {"other_parity", NULL, other_measured, none};
+
+const struct growing mode_growing = {"growth_rate", amplitude_measured, growing_during, rate_exact};

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""modes.py SPHPROOF: runs that start from growing modes.
+
+The start is the mode as asked; it grows at the rate of linear theory, and in proportion to its
+amplitude; the two parities of a periodic layer do not mix; a boost changes nothing; amplitudes for
+which there is nothing to measure are refused."""
+import json
+import os
+import subprocess
+import sys
+
+CASE = "kelvin_helmholtz_mode"
+RATES = {"sinuous": 1.705572193, "varicose": 1.481793027}  # of two other methods
+
+
+def run(program, *words):
+    done = subprocess.run([program, "run", CASE, "n=24^2", *words, "--json", "-"], capture_output=True,
+                          text=True, timeout=120)
+    if done.returncode:
+        sys.exit("%s: exit %d: %s" % (" ".join(words), done.returncode, done.stderr))
+    document = json.loads(done.stdout)
+    return document["functionals"], document["functionals_exact"]
+
+
+def check(bad, what, value, bound):
+    if not value <= bound:
+        print("%s: %.3g, more than %.3g" % (what, value, bound))
+        bad.append(what)
+
+
+def starts(program, bad):
+    """Right after the start, U = 1/2: on a lattice sums are nearly integrals."""
+    for parity in RATES:
+        values, _ = run(program, "t_end=1e-9", "amplitude=2e-3", "parity=" + parity)
+        check(bad, parity + ": amplitude of the start", abs(values["mode_amplitude"] / 1e-3 - 1), 1e-5)
+        check(bad, parity + ": error of the start", values["mode_error"], 1e-3)
+        check(bad, parity + ": noise of the start", values["mode_noise"], 1e-3)
+        check(bad, parity + ": the other parity at the start", values["other_parity"], 1e-10)
+
+
+def grows(program, bad):
+    """With 24 spacings a wavelength nothing is known better than to some percent."""
+    for parity, rate in RATES.items():
+        values, exact = run(program, "parity=" + parity, *(["t_end=1"] if parity == "varicose" else []))
+        check(bad, parity + ": its exact rate", abs(exact["growth_rate"] / rate - 1), 1e-8)
+        check(bad, parity + ": rate", abs(values["growth_rate"] / rate - 1), 0.15)
+        check(bad, parity + ": shape", values["mode_error"], 0.15)
+        check(bad, parity + ": the other parity", values["other_parity"], 1e-10)
+
+
+def is_linear(program, bad):
+    """Viscosity is not, but less so than the mode grows."""
+    ends = [run(program, "t_end=0.5", "amplitude=" + amplitude, *more)[0]["mode_amplitude"] / float(amplitude)
+            for amplitude, more in (("1e-4", []), ("1e-5", []), ("1e-4", ["boost=1 0.5"]))]
+    check(bad, "a tenth of the amplitude", abs(ends[1] / ends[0] - 1), 1e-3)
+    check(bad, "boosted", abs(ends[2] / ends[0] - 1), 1e-6)
+
+
+def refuses(program, bad):
+    for word in ("amplitude=0.5", "amplitude=0", "waves=9", "hi=1 2"):
+        done = subprocess.run([program, "run", CASE, word], capture_output=True, text=True, timeout=60)
+        if done.returncode != 2 or word.split("=")[0] not in done.stderr or done.stdout:
+            print("%s: exit %d, %r" % (word, done.returncode, done.stderr))
+            bad.append(word)
+
+
+def main():
+    program, bad = os.path.abspath(sys.argv[1]), []
+    for part in (starts, grows, is_linear, refuses):
+        part(program, bad)
+    print("growing modes: %d faults" % len(bad))
+    return len(bad) > 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
