@@ -67,6 +67,9 @@ static bool descriptor_is_whole(struct walk *walk)
             if (strcmp(f[i]->name, f[j]->name) == 0)
                 return fault(walk, "functional %s twice", f[i]->name);
     }
+    const struct growing *growing = problem->growing;
+    if (growing && !(growing->name[0] && growing->amplitude && growing->during && growing->rate))
+        return fault(walk, "what grows is not whole");
     return true;
 }
 
@@ -306,7 +309,7 @@ static void every_problem_of_every_case(void **state)
                                            "n=400|gamma=1.6667|amplitude=0.01|t_end=0.005"},
                              *const wide[] = {
                                  "n=4096", "n=3000|lattice=hexagonal|contrast=2",
-                                 "n=4096|lattice=jittered|waves=2|amplitude=0.03|direction=1",
+                                 "n=4096|lattice=jittered|waves=2|amplitude=0.005|direction=1",
                                  "n=5000|equal_masses=yes|left=1 0.1 1.2|right=0.5 0.1 1"};
     (void)state;
     for (const struct case_builtin *b = case_builtins; b->name; b++) {
