@@ -1,0 +1,583 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Generated mutants: every operator, constant, index, sign, order of arguments, statement and
+returned status of the judged files, found with libclang (Debian: python3-clang) and written into a
+copy of the tree as alternatives that an environment variable switches on (schemata.h).
+
+What no switch reaches (numbers in initialisers, enumerators, arguments of macros at file scope) is
+found as text and has to be compiled singly."""
+import bisect
+import glob
+import itertools
+import json
+import os
+import re
+import shlex
+import subprocess
+import sys
+
+# What is judged, from the top of the tree.
+JUDGED = ("src/", "reference/", "verify/scene/", "verify/study/", "verify/statistics/", "verify/suite/",
+          "reports/verdict.c", "reports/junit.c", "reports/summary.c")
+PURE = set("""fabs sqrt cbrt pow exp expm1 log log1p log10 sin cos tan atan2 atan hypot floor ceil round fmin fmax
+fma isfinite isnan lround largest least power labs abs""".split())
+SWAPPED_CALLS = {"fmin": "fmax", "fmax": "fmin", "least": "largest", "largest": "least"}
+COMMUTE = {"fmin", "fmax", "least", "largest", "hypot"}
+ARITHMETIC = {"+": "-", "-": "+", "*": "/", "/": "*"}
+COMPARE = {"<": ("<=", ">"), ">": (">=", "<"), "<=": ("<", ">="), ">=": (">", "<="), "==": ("!=",), "!=": ("==",),
+           "&&": ("||",), "||": ("&&",)}
+BITS = {"&": "|", "|": "&", "<<": ">>", ">>": "<<", "%": "*"}
+ASSIGN = {"+=": "-=", "-=": "+=", "*=": "/=", "/=": "*=", "&=": "|=", "|=": "&=", "%=": "+="}
+# A leak is the sanitizers' business, text the messages' own.
+DROPPED_BY_NOBODY = re.compile(r"^(free|fclose|\(void\))\b|^\(void\)")
+
+
+def load_libclang():
+    try:
+        import clang.cindex as cindex
+    except ImportError:
+        sys.path.append("/usr/lib/python3/dist-packages")  # a python of one's own does not look there
+        try:
+            import clang.cindex as cindex
+        except ImportError:
+            sys.exit("score: libclang's Python module is missing (Debian: apt-get install python3-clang)")
+    try:
+        cindex.Index.create()
+    except cindex.LibclangError:
+        found = sorted(glob.glob("/usr/lib/llvm-*/lib/libclang*.so*"))
+        if not found:
+            sys.exit("score: libclang is missing (Debian: apt-get install python3-clang)")
+        cindex.Config.set_library_file(found[-1])
+    return cindex
+
+
+class Site:
+    """A range of a file with what may stand there instead."""
+
+    def __init__(self, start, end, how, alternative, change, pure):
+        self.start, self.end, self.how, self.alternative = start, end, how, alternative
+        self.change, self.pure = change, pure
+        self.number = 0
+
+
+class Source:
+    """One judged file: its text and the sites in it."""
+
+    def __init__(self, tree, name):
+        self.name = name
+        with open(os.path.join(tree, name), encoding="utf-8") as f:
+            self.text = f.read()
+        self.bytes = self.text.encode()
+        if len(self.bytes) != len(self.text):  # offsets of clang are bytes
+            self.text = self.bytes.decode("latin-1")
+        self.sites, self.seen, self.macros = [], set(), []
+
+    def line(self, offset):
+        return self.text.count("\n", 0, offset) + 1
+
+    def text_at(self, offset):
+        """The line there, without its indentation."""
+        start = self.text.rfind("\n", 0, offset) + 1
+        return self.text[start:self.text.find("\n", offset)].strip()
+
+    def add(self, start, end, how, alternative, change, pure):
+        key = (start, end, alternative)
+        if key not in self.seen:
+            self.seen.add(key)
+            self.sites.append(Site(start, end, how, alternative, change, pure))
+
+
+def flat(text):
+    """On one line, without comments: an alternative must not move lines."""
+    return " ".join(re.sub(r"/\*.*?\*/", " ", text, flags=re.S).replace("\\\n", " ").split())
+
+
+class Walker:
+    """Finds the sites of the sources in one translation unit."""
+
+    def __init__(self, cindex, tree, sources, done):
+        self.c, self.tree, self.sources, self.done = cindex, tree, sources, done
+        self.kind = cindex.CursorKind
+        self.returns = self.spans = None
+
+    def file_of(self, cursor):
+        f = cursor.location.file
+        return os.path.relpath(os.path.realpath(f.name), self.tree) if f else None
+
+    def unit(self, unit, skip):
+        for cursor in unit.cursor.get_children():
+            if cursor.kind == self.kind.MACRO_INSTANTIATION:
+                source = self.sources.get(self.file_of(cursor))
+                if source:
+                    source.macros.append((cursor.extent.start.offset, cursor.extent.end.offset))
+        self.spans = None
+        for cursor in unit.cursor.get_children():
+            name = self.file_of(cursor)
+            source = self.sources.get(name)
+            if not source or name in skip:
+                continue
+            self.source, self.text = source, source.text
+            if source.macros is not self.spans:
+                self.spans = source.macros
+                spans = sorted(set(self.spans))
+                self.starts = [a for a, b in spans]
+                self.reach = list(itertools.accumulate((b for a, b in spans), max))
+            if cursor.kind == self.kind.FUNCTION_DECL and cursor.is_definition():
+                self.returns = cursor.result_type.get_canonical().spelling
+                self.returns_bool = cursor.result_type.get_canonical().kind == self.c.TypeKind.BOOL
+                for child in cursor.get_children():
+                    if child.kind == self.kind.COMPOUND_STMT:
+                        self.statement(child)
+            elif cursor.kind == self.kind.VAR_DECL:
+                self.constant(cursor)
+
+    # --- helpers ---
+
+    def span(self, cursor):
+        return cursor.extent.start.offset, cursor.extent.end.offset
+
+    def in_macro(self, cursor):
+        a, b = self.span(cursor)
+        at = bisect.bisect_right(self.starts, a)
+        return at > 0 and b <= self.reach[at - 1]
+
+    def here(self, cursor):
+        e = cursor.extent
+        return e.start.file and e.end.file and e.start.file.name == e.end.file.name
+
+    def code(self, cursor):
+        a, b = self.span(cursor)
+        return flat(self.text[a:b])
+
+    def pure(self, cursor):
+        """Can it be evaluated twice, whatever its operands are?"""
+        k = self.kind
+        for c in cursor.walk_preorder():
+            if c.kind == k.CALL_EXPR and c.spelling not in PURE:
+                return False
+            if c.kind in (k.COMPOUND_ASSIGNMENT_OPERATOR, k.StmtExpr):
+                return False
+            if c.kind == k.UNARY_OPERATOR and re.search(r"\+\+|--", self.code(c)):
+                return False
+            if c.kind == k.BINARY_OPERATOR and self.operator(c)[0] == "=":
+                return False
+        return True
+
+    def scalar(self, cursor):
+        t, k = cursor.type.get_canonical().kind, self.c.TypeKind
+        if t in (k.DOUBLE, k.FLOAT, k.LONGDOUBLE):
+            return "real"
+        if t in (k.INT, k.UINT, k.LONG, k.ULONG, k.LONGLONG, k.ULONGLONG, k.SHORT, k.USHORT, k.CHAR_S, k.CHAR_U,
+                 k.SCHAR, k.UCHAR, k.BOOL, k.ENUM):
+            return "integer"
+        return "pointer" if t == k.POINTER else None
+
+    def operator(self, cursor):
+        """Of a binary expression: operator, left, right."""
+        children = list(cursor.get_children())
+        if len(children) != 2:
+            return "", None, None
+        between = self.text[self.span(children[0])[1]:self.span(children[1])[0]]
+        return flat(between).strip("() "), children[0], children[1]
+
+    def add(self, cursor, alternative, change=None, pure=False, how="value"):
+        a, b = self.span(cursor)
+        self.source.add(a, b, how, alternative, change or "%s -> %s" % (self.code(cursor), alternative), pure)
+
+    # --- statements ---
+
+    def statement(self, cursor):
+        k = self.kind
+        if not self.here(cursor) or self.in_macro(cursor):
+            return
+        if cursor.kind == k.COMPOUND_STMT:
+            for child in cursor.get_children():
+                self.statement(child)
+        elif cursor.kind == k.DECL_STMT:
+            for child in cursor.get_children():
+                self.declaration(child)
+        elif cursor.kind in (k.IF_STMT, k.WHILE_STMT, k.SWITCH_STMT, k.DO_STMT):
+            children = list(cursor.get_children())
+            where = len(children) - 1 if cursor.kind == k.DO_STMT else 0
+            for i, child in enumerate(children):
+                if i == where:
+                    self.condition(child, cursor.kind == k.IF_STMT)
+                else:
+                    self.statement(child)
+        elif cursor.kind == k.FOR_STMT:
+            self.loop(cursor)
+        elif cursor.kind in (k.CASE_STMT, k.DEFAULT_STMT, k.LABEL_STMT):
+            children = list(cursor.get_children())
+            if children:
+                self.statement(children[-1])
+        elif cursor.kind == k.RETURN_STMT:
+            self.returned(cursor)
+        elif cursor.kind in (k.BREAK_STMT, k.CONTINUE_STMT):
+            self.jump(cursor)
+        elif cursor.kind.is_expression():
+            self.dropped(cursor)
+            self.expression(cursor)
+        else:
+            for child in cursor.get_children():
+                self.statement(child)
+
+    def declaration(self, cursor):
+        if cursor.kind != self.kind.VAR_DECL:
+            return
+        if cursor.storage_class == self.c.StorageClass.STATIC:
+            return
+        begin = cursor.location.offset
+        end, depth = self.span(cursor)[1], 0
+        for at in range(begin, end):
+            ch = self.text[at]
+            depth += (ch in "([{") - (ch in ")]}")
+            if ch == "=" and depth == 0:
+                break
+        else:
+            return
+        for child in cursor.get_children():
+            if child.kind.is_expression() and self.span(child)[0] > at:
+                self.expression(child)
+
+    def loop(self, cursor):
+        a, _ = self.span(cursor)
+        before = self.text[:a].rstrip()
+        line = before[before.rfind("\n") + 1:]
+        while line.strip() and not line.lstrip().startswith("#") and before[:-len(line)].rstrip(" ").endswith("\\\n"):
+            before = before[:-len(line)].rstrip("\n")
+            line = before[before.rfind("\n") + 1:] + line
+        parallel = line.lstrip().startswith("#pragma omp") and " simd" not in line
+        children = list(cursor.get_children())
+        body = children[-1]
+        if not parallel:
+            for child in children[:-1]:
+                if child.kind == self.kind.DECL_STMT:
+                    self.statement(child)
+                elif child.kind.is_expression():
+                    self.condition(child, False)
+        self.statement(body)
+
+    def jump(self, cursor):
+        a, b = self.span(cursor)
+        word = self.text[a:b]
+        end = self.text.find(";", b)
+        if not self.text[b:end].strip():
+            self.source.add(a, end + 1, "jump", word, "%s; -> ;" % word, False)
+
+    def returned(self, cursor):
+        children = list(cursor.get_children())
+        if not children:
+            a, b = self.span(cursor)
+            self.source.add(a, self.text.find(";", b) + 1, "jump", "return", "return; -> ;", False)
+            return
+        value = children[0]
+        code = self.code(value)
+        if self.returns == "enum status" and code not in ("STATUS_OK", "0"):
+            self.add(value, "(enum status)0", "return %s -> STATUS_OK" % code)
+        if self.returns_bool and value.kind != self.kind.BINARY_OPERATOR and not code.startswith("!"):
+            self.add(value, "!(%s)" % code, "return %s -> !" % code)
+        self.expression(value)
+
+    def dropped(self, cursor):
+        code = self.code(cursor)
+        if not DROPPED_BY_NOBODY.match(code):
+            self.add(cursor, "", "%s; -> ;" % code, how="statement")
+
+    def condition(self, cursor, negate):
+        k = self.kind
+        inner = cursor
+        while inner.kind in (k.UNEXPOSED_EXPR, k.PAREN_EXPR) and len(list(inner.get_children())) == 1:
+            inner = list(inner.get_children())[0]
+        if negate and inner.kind in (k.DECL_REF_EXPR, k.MEMBER_REF_EXPR, k.CALL_EXPR, k.ARRAY_SUBSCRIPT_EXPR):
+            self.add(cursor, "!(%s)" % self.code(cursor))
+        self.expression(cursor)
+
+    # --- expressions ---
+
+    def expression(self, cursor, real=False):
+        """real: converted to floating point."""
+        k = self.kind
+        if not self.here(cursor) or self.in_macro(cursor):
+            return
+        children = list(cursor.get_children())
+        if cursor.kind == k.UNEXPOSED_EXPR and len(children) == 1:
+            self.expression(children[0], self.scalar(cursor) == "real")
+            return
+        if cursor.kind in (k.INTEGER_LITERAL, k.FLOATING_LITERAL):
+            self.number(cursor, real or cursor.kind == k.FLOATING_LITERAL)
+            return
+        if cursor.kind == k.CXX_UNARY_EXPR or self.code(cursor).startswith("sizeof"):
+            return
+        if cursor.kind == k.BINARY_OPERATOR:
+            self.binary(cursor)
+        elif cursor.kind == k.COMPOUND_ASSIGNMENT_OPERATOR:
+            op, left, right = self.operator(cursor)
+            if op in ASSIGN and self.scalar(left) in ("real", "integer"):
+                self.add(cursor, "(%s %s (%s))" % (self.code(left), ASSIGN[op], self.code(right)),
+                         "%s %s %s -> %s" % (self.code(left), op, self.code(right), ASSIGN[op]))
+        elif cursor.kind == k.UNARY_OPERATOR:
+            self.unary(cursor, children)
+        elif cursor.kind == k.CALL_EXPR:
+            self.call(cursor, children)
+        elif cursor.kind == k.ARRAY_SUBSCRIPT_EXPR and len(children) == 2:
+            index = children[1]
+            if not re.match(r"^\d+$", self.code(index)) and self.scalar(index) == "integer" and not self.in_macro(index):
+                self.add(index, "(%s) + 1" % self.code(index), "[%s] -> + 1" % self.code(index),
+                         self.pure(index))
+        elif cursor.kind == k.CONDITIONAL_OPERATOR and len(children) == 3:
+            self.condition(children[0], True)
+            for child in children[1:]:
+                self.expression(child, self.scalar(cursor) == "real")
+            return
+        elif cursor.kind == k.COMPOUND_LITERAL_EXPR:  # not the size in (double[3]){x}
+            for child in children:
+                if child.kind == k.INIT_LIST_EXPR:
+                    self.expression(child)
+            return
+        elif cursor.kind == k.INIT_LIST_EXPR:
+            for child in children:
+                a, b = self.span(child)
+                if self.text[a - 1] == "[" and re.match(r"\]\s*=[^=]", self.text[b:b + 4]):
+                    continue
+                self.initialised(child)
+            return
+        for child in children:
+            if child.kind.is_expression():
+                self.expression(child)
+
+    def initialised(self, cursor):
+        """A member of a compound literal: .name = value is an expression around its value."""
+        a, b = self.span(cursor)
+        if self.text[a] in ".[":
+            children = [c for c in cursor.get_children() if c.kind.is_expression()]
+            if children and "=" in self.text[a:self.span(children[-1])[0]]:
+                self.expression(children[-1])
+            return
+        self.expression(cursor)
+
+    def number(self, cursor, real):
+        a, b = self.span(cursor)
+        code = self.text[a:b]
+        if not re.match(r"^[0-9.]", code) or code.startswith("0x"):
+            return
+        if not real:
+            self.add(cursor, "%s + 1" % code, pure=True)
+            if code != "0":
+                self.add(cursor, "%s - 1" % code, pure=True)
+        elif float(code.rstrip("fFlL")) == 0:
+            before, after = self.text[:a].rstrip(), self.text[b:].lstrip()
+            if not (before.endswith(("<", ">", "=")) and not re.search(r"[^=!<>]=$", before)) and after[:1] not in "<>":
+                self.add(cursor, "1e-6", pure=True)
+        elif "e" in code.lower():
+            self.add(cursor, "%s * 10" % code, pure=True)
+            self.add(cursor, "%s / 10" % code, pure=True)
+        else:
+            self.add(cursor, "%s * (1 + 1e-6)" % code, pure=True)
+
+    def binary(self, cursor):
+        op, left, right = self.operator(cursor)
+        if not left:
+            return
+        a, b = self.code(left), self.code(right)
+        types = self.scalar(left), self.scalar(right)
+        pure = self.pure(cursor)
+        new = []
+        if op in ARITHMETIC and "pointer" not in types and None not in types:
+            new = ["+" if op == "*" and self.scalar(cursor) == "integer" else ARITHMETIC[op]]
+            pure = pure and not (new[0] == "/" and self.scalar(cursor) == "integer")
+        elif op in ("+", "-") and types == ("pointer", "integer"):
+            new, pure = [ARITHMETIC[op]], False
+        elif op in COMPARE:
+            new = COMPARE[op]
+            if op in ("&&", "||"):
+                pure = False
+        elif op in BITS:
+            new = [BITS[op]]
+        for other in new:
+            self.add(cursor, "(%s) %s (%s)" % (a, other, b), "%s %s %s -> %s" % (a, op, b, other), pure)
+
+    def unary(self, cursor, children):
+        code = self.code(cursor)
+        if not children:
+            return
+        inner = self.code(children[0])
+        if code.startswith("-") and not code.startswith("--"):
+            self.add(cursor, "(%s)" % inner, pure=self.pure(cursor))
+        elif code.startswith("!"):
+            self.add(cursor, "!!(%s)" % inner, "%s -> without !" % code)
+        elif code.startswith(("++", "--")) or code.endswith(("++", "--")):
+            new = code.replace("++", "\0").replace("--", "++").replace("\0", "--")
+            self.add(cursor, new)
+
+    def call(self, cursor, children):
+        name = cursor.spelling
+        arguments = list(cursor.get_arguments())
+        home = cursor.referenced and cursor.referenced.location.file
+        if name in SWAPPED_CALLS and (name[0] == "f" or home and home.name.endswith("stamp.h")):
+            code = self.code(cursor)
+            self.add(cursor, code.replace(name, SWAPPED_CALLS[name], 1),
+                     "%s -> %s" % (code, SWAPPED_CALLS[name]), self.pure(cursor))
+        declared = cursor.referenced
+        fixed = len(list(declared.get_arguments())) if declared and declared.kind == self.kind.FUNCTION_DECL else 99
+        if name in COMMUTE:
+            return
+        for one, two in zip(arguments[:fixed], arguments[1:fixed]):
+            if not (self.here(one) and self.here(two)):
+                continue
+            kinds = one.type.get_canonical(), two.type.get_canonical()
+            same = kinds[0].spelling == kinds[1].spelling or (
+                self.scalar(one) == self.scalar(two) and self.scalar(one) in ("real", "integer"))
+            texts = self.code(one), self.code(two)
+            if same and texts[0] != texts[1] and kinds[0].spelling != "enum status":
+                (a, b), (c, d) = self.span(one), self.span(two)
+                begin, end = self.span(cursor)
+                if not begin <= a < b <= c < d <= end:
+                    continue
+                code = flat(self.text[begin:a] + self.text[c:d] + self.text[b:c] + self.text[a:b] + self.text[d:end])
+                self.add(cursor, code, "%s(%s, %s) -> exchanged" % (name, *texts), self.pure(cursor))
+
+    # --- constants at file scope ---
+
+    def constant(self, cursor):
+        """static const double a = 1e-9; becomes a variable that is set before main."""
+        if (cursor.semantic_parent.kind != self.kind.TRANSLATION_UNIT or self.in_macro(cursor)
+                or self.scalar(cursor) != "real" or not cursor.is_definition()):
+            return
+        a, b = self.span(cursor)
+        found = re.match(r"static const double (\w+) = (.*)$", flat(self.text[a:b]))
+        end = self.text.find(";", b)
+        if not found or self.text[b:end].strip() or "," in found[2]:
+            return
+        name, value = found.groups()
+        if re.search(r"\d", value):
+            factors = ("* 10", "/ 10") if "e" in value else ("* (1 + 1e-6)", "* 1.1", "/ 1.1")
+            for factor in factors:
+                self.source.add(a, end + 1, "constant", "(%s) %s" % (value, factor),
+                                "%s = %s -> %s" % (name, value, factor), False)
+
+
+def clang_arguments(entry):
+    words, kept, skip = shlex.split(entry["command"]), [], False
+    for word in words[1:]:
+        if skip:
+            skip = False
+        elif word in ("-o", "-MF", "-MQ", "-include"):
+            skip = True
+        elif re.match(r"-(I|D|std|isystem)", word):
+            if word.startswith("-I"):
+                word = "-I" + os.path.normpath(os.path.join(entry["directory"], word[2:]))
+            kept.append(word)
+    return [w for w in kept if not w.startswith("-D_FORTIFY")]
+
+
+def resources(cindex):
+    """clang's own headers, wherever libclang is."""
+    found = sorted(glob.glob("/usr/lib/llvm-*/lib/clang/*/include") + glob.glob("/usr/lib/clang/*/include"))
+    if found:
+        return ["-isystem", found[-1]]
+    gcc = subprocess.run(["gcc", "-print-file-name=include"], stdout=subprocess.PIPE, text=True).stdout.strip()
+    return ["-isystem", gcc]
+
+
+def judged_files(tree, judged=JUDGED):
+    names = []
+    for folder, _, files in os.walk(tree):
+        for name in files:
+            path = os.path.relpath(os.path.join(folder, name), tree)
+            if path.endswith((".c", ".h")) and path.startswith(tuple(judged)):
+                names.append(path)
+    return sorted(names)
+
+
+def find(tree, build, judged=JUDGED):
+    """The sources, with their sites, of a tree that is configured in build."""
+    cindex = load_libclang()
+    tree = os.path.realpath(tree)
+    sources = {name: Source(tree, name) for name in judged_files(tree, judged)}
+    with open(os.path.join(build, "compile_commands.json")) as f:
+        entries = json.load(f)
+    walker, done, index, stamps = Walker(cindex, tree, sources, set()), set(), cindex.Index.create(), set()
+    for entry in entries:
+        path = os.path.realpath(os.path.join(entry["directory"], entry["file"]))
+        name = os.path.relpath(path, tree)
+        stamp = re.match(r"src/(loop_\w+?|shapes)_[a-z]+\w*\.c$", os.path.relpath(path, os.path.realpath(build)))
+        if name not in sources and not stamp:
+            continue
+        if stamp and stamp[1] in stamps and not stamp[0].startswith("src/shapes"):
+            continue  # one of each kind of stamp; one for each kernel
+        stamps.add(stamp and stamp[1])
+        unit = index.parse(path, args=clang_arguments(entry) + resources(cindex) + ["-w"],
+                           options=cindex.TranslationUnit.PARSE_DETAILED_PROCESSING_RECORD)
+        bad = [d for d in unit.diagnostics if d.severity >= cindex.Diagnostic.Error]
+        if bad:
+            sys.exit("score: libclang does not understand %s: %s" % (name, bad[0].spelling))
+        walker.unit(unit, done)
+        seen = {os.path.relpath(os.path.realpath(i.include.name), tree) for i in unit.get_includes()}
+        # headers that say different things to different readers are read again
+        done |= {s for s in seen if s in sources and s.endswith(".h")}
+        done.add(name)
+    number = 0
+    kept = []
+    for name in sorted(sources):
+        source = sources[name]
+        source.sites.sort(key=lambda s: (s.start, -s.end))
+        for site in nested(source.sites):
+            number += 1
+            site.number = number
+            kept.append(site)
+        source.sites = [s for s in source.sites if s.number]
+    return sources
+
+
+def nested(sites):
+    """Those that lie within each other or apart: what crosses another is left out."""
+    stack, good = [], []
+    for site in sites:
+        while stack and stack[-1].end <= site.start:
+            stack.pop()
+        if stack and site.end > stack[-1].end:
+            continue
+        if not stack or (stack[-1].start, stack[-1].end) != (site.start, site.end):
+            stack.append(site)
+        good.append(site)
+    return good
+
+
+def rewrite(source, left_out=()):
+    """The text of a source with its alternatives."""
+    text, sites = source.text, [s for s in source.sites if s.number not in left_out]
+
+    def render(start, end, inner):
+        out, at, i = [], start, 0
+        while i < len(inner):
+            site = inner[i]
+            same = [s for s in inner[i:] if (s.start, s.end) == (site.start, site.end)]
+            within = [s for s in inner[i:] if s.start >= site.start and s.end <= site.end and s not in same]
+            out.append(text[at:site.start])
+            out.append(wrap(same, render(site.start, site.end, within)))
+            at = site.end
+            i += len(same) + len(within)
+        out.append(text[at:end])
+        return "".join(out)
+
+    def wrap(same, original):
+        for s in same:
+            if s.how == "value" and s.pure:
+                original = "SCHEMATA_VALUE(%d, (%s), (%s))" % (s.number, s.alternative, original)
+            elif s.how == "value":
+                original = "(SCHEMATA_ON(%d) ? (%s) : (%s))" % (s.number, s.alternative, original)
+            elif s.how == "statement":
+                original = "(SCHEMATA_ON(%d) ? (void)0 : (void)(%s))" % (s.number, original)
+            elif s.how == "jump":
+                original = "{ if (!SCHEMATA_ON(%d)) %s }" % (s.number, original)
+            elif s.how == "constant":
+                name = re.search(r"(\w+)\s*=", text[s.start:s.end])[1]
+                original = (original.replace("const ", "", 1) +
+                            " __attribute__((constructor)) static void schemata_%d(void) "
+                            "{ if (SCHEMATA_ON(%d)) %s = %s; }" % (s.number, s.number, name, s.alternative))
+        return original
+
+    out = render(0, len(text), sites)
+    # scalar loops; a stamp calls its body: with alternatives inside, twenty copies compile for minutes
+    out = re.sub(r'_Pragma\("omp simd[^"]*"\)', "", out)
+    out = re.sub(r"#pragma omp simd.*(\\\n.*)*", lambda m: "\n" * m[0].count("\n"), out)
+    return re.sub(r"^ALWAYS_INLINE", "static", out, flags=re.M) if source.name.endswith(".c") else out
