@@ -61,6 +61,11 @@ setup_compiles() {
         "$@" -x c -o /dev/null - >/dev/null 2>&1
 }
 
+# Python's libclang, for the mutation score.
+setup_libclang() {
+    python3 -c 'import sys; sys.path.append("/usr/lib/python3/dist-packages"); import clang.cindex' 2>/dev/null
+}
+
 # Packages that are missing, among those for building (and with `full` or `nightly`, for those).
 setup_missing() {
     setup_compiles gcc || echo gcc libc6-dev
@@ -75,7 +80,8 @@ setup_missing() {
     setup_has gnuplot || echo gnuplot-nox
     case $1 in full | nightly)
         setup_compiles clang || echo clang
-        setup_compiles clang -fopenmp || echo libomp-dev ;;
+        setup_compiles clang -fopenmp || echo libomp-dev
+        setup_libclang || echo python3-clang ;;
     esac
     case $1 in nightly) setup_has valgrind || echo valgrind ;; esac
 }

@@ -31,6 +31,11 @@ ASSIGN = {"+=": "-=", "-=": "+=", "*=": "/=", "/=": "*=", "&=": "|=", "|=": "&="
 DROPPED_BY_NOBODY = re.compile(r"^(free|fclose|\(void\))\b|^\(void\)")
 
 
+def refuse(text, code=4):
+    print("score: " + text, file=sys.stderr)
+    sys.exit(code)
+
+
 def load_libclang():
     try:
         import clang.cindex as cindex
@@ -39,13 +44,13 @@ def load_libclang():
         try:
             import clang.cindex as cindex
         except ImportError:
-            sys.exit("score: libclang's Python module is missing (Debian: apt-get install python3-clang)")
+            refuse("libclang's Python module is missing (Debian: apt-get install python3-clang)")
     try:
         cindex.Index.create()
     except cindex.LibclangError:
         found = sorted(glob.glob("/usr/lib/llvm-*/lib/libclang*.so*"))
         if not found:
-            sys.exit("score: libclang is missing (Debian: apt-get install python3-clang)")
+            refuse("libclang is missing (Debian: apt-get install python3-clang)")
         cindex.Config.set_library_file(found[-1])
     return cindex
 
@@ -509,7 +514,7 @@ def find(tree, build, judged=JUDGED):
                            options=cindex.TranslationUnit.PARSE_DETAILED_PROCESSING_RECORD)
         bad = [d for d in unit.diagnostics if d.severity >= cindex.Diagnostic.Error]
         if bad:
-            sys.exit("score: libclang does not understand %s: %s" % (name, bad[0].spelling))
+            refuse("libclang does not understand %s: %s" % (name, bad[0].spelling))
         walker.unit(unit, done)
         seen = {os.path.relpath(os.path.realpath(i.include.name), tree) for i in unit.get_includes()}
         # headers that say different things to different readers are read again

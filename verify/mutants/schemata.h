@@ -6,9 +6,9 @@
 #ifndef SPHPROOF_SCHEMATA_H
 #define SPHPROOF_SCHEMATA_H
 
-#include <fcntl.h>
-#include <stdlib.h>
-#include <sys/mman.h>
+/* No headers: a source may yet have to say which of their functions it wants. */
+char *getenv(const char *name);
+int atoi(const char *text);
 
 #define SCHEMATA_GLOBAL __attribute__((weak, visibility("hidden")))
 
@@ -27,6 +27,9 @@ SCHEMATA_GLOBAL __attribute__((constructor(101))) void sphproof_schemata(void)
 
 #else
 
+int open(const char *name, int flags, ...);
+void *mmap(void *at, unsigned long size, int protection, int flags, int file, long offset);
+
 SCHEMATA_GLOBAL char sphproof_nowhere[SPHPROOF_REACH];
 SCHEMATA_GLOBAL char *sphproof_reach = sphproof_nowhere;
 
@@ -34,10 +37,10 @@ SCHEMATA_GLOBAL char *sphproof_reach = sphproof_nowhere;
 SCHEMATA_GLOBAL __attribute__((constructor(101))) void sphproof_schemata(void)
 {
     const char *name = getenv("SPHPROOF_REACH");
-    const int file = name && sphproof_reach == sphproof_nowhere ? open(name, O_RDWR) : -1;
-    void *map = file < 0 ? MAP_FAILED
-                         : mmap(NULL, SPHPROOF_REACH, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
-    if (map != MAP_FAILED) sphproof_reach = map;
+    /* O_RDWR; PROT_READ | PROT_WRITE, MAP_SHARED: as Linux has them */
+    const int file = name && sphproof_reach == sphproof_nowhere ? open(name, 2) : -1;
+    void *map = file < 0 ? (void *)-1 : mmap((void *)0, SPHPROOF_REACH, 3, 1, file, 0);
+    if (map != (void *)-1) sphproof_reach = map;
 }
 
 #define SCHEMATA_ON(n) ((sphproof_reach[n] = 2), 0)

@@ -1,0 +1,152 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""verify/mutants/score on a tree of one page, where it is known what a test notices.
+
+  score.py SCORE WORK
+
+Exit status 77 (skipped): libclang's Python module is not installed."""
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+
+TREE = {
+    "meson.build": """project('tiny', 'c', default_options: ['c_std=gnu17'])
+subdir('src')
+test('tiny', executable('test_tiny', 'test_tiny.c', link_with: tiny, include_directories: 'src'), suite: 'quick')
+""",
+    "src/meson.build": "tiny = static_library('tiny', 'tiny.c')\n",
+    "src/tiny.h": """double tiny_area(double a, double b);
+int tiny_sum(int n);
+double tiny_never(double a, double b);
+double tiny_close(double a);
+int tiny_set(int *to);
+""",
+    "src/tiny.c": """#include "tiny.h"
+static const double close = 1e-9;
+double tiny_area(double a, double b)
+{
+    return a * b; /* a test sees whether this is right */
+}
+int tiny_sum(int n)
+{
+    int sum = 0;
+    for (int i = 0; i < n; i++)
+        sum += i;
+    return sum > 5 ? sum : 5;
+}
+double tiny_never(double a, double b)
+{
+    return a - b; /* nobody calls it */
+}
+double tiny_close(double a)
+{
+    return a > close ? a : 0;
+}
+int tiny_set(int *to)
+{
+    *to = 7;
+    if (*to != 7)
+        return 1;
+    return 0;
+}
+""",
+    "test_tiny.c": """#include "tiny.h"
+int main(void)
+{
+    int set = 0;
+    if (tiny_area(3, 4) != 12 || tiny_sum(5) != 10 || tiny_set(&set) != 0 || set != 7) return 1;
+    return tiny_close(3e-9) > 0 ? 0 : 2;
+}
+""",
+}
+LISTED = """file: src/tiny.c
+line: return sum > 5 ? sum : 5;
+change: sum > 5 -> >=
+reason: at 5 either branch gives 5
+"""
+
+
+def main(score, work):
+    sys.path.insert(0, os.path.dirname(score))
+    import generate
+    try:
+        generate.load_libclang()
+    except SystemExit as missing:
+        print(missing)
+        return 77
+    shutil.rmtree(work, ignore_errors=True)
+    tree, failures = os.path.join(work, "tree"), []
+    for name, text in TREE.items():
+        write(os.path.join(tree, name), text)
+
+    def expect(what, is_so):
+        if not is_so:
+            failures.append(what)
+
+    def run(*words, code=1):
+        done = subprocess.run([sys.executable, score, "--source", tree, "--work", os.path.join(work, "work"), "--json",
+                               os.path.join(work, "score.json")] + list(words), stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, text=True)
+        expect("exit status %d, not %d, of %s:\n%s" % (done.returncode, code, words, done.stdout), done.returncode == code)
+        if code == 2:
+            return done.stdout, {}
+        with open(os.path.join(work, "score.json")) as f:
+            return done.stdout, json.load(f)
+
+    said, first = run()
+    entry = [f for f in first["files"] if f["file"] == "src/tiny.c"][0]
+    survivors = {s["change"]: s for s in first["survivors"]}
+    expect("every mutant is killed, listed or survives", entry["mutants"] == entry["killed"] + entry["survived"])
+    for change in ("a * b -> /", "sum += i -> -=", "*to = 7; -> ;", "close = 1e-9 -> * 10", "7 -> 7 + 1"):
+        expect("'%s' is generated" % change, change in said)
+        expect("'%s' is noticed:\n%s" % (change, said), change not in survivors or survivors[change]["line"] == 25)
+    expect("nobody comes past tiny_never", survivors.get("a - b -> +", {}).get("why") == "no test comes by")
+    expect("sum > 5 differs nowhere", survivors.get("sum > 5 -> >=", {}).get("why") ==
+           "no test would see another value")
+    expect("a factor of 10 the other way is noticed by nobody",
+           survivors.get("close = 1e-9 -> / 10", {}).get("why") == "no test fails")
+    expect("what is 5 where 10 is more", any(s["line"] == 12 for s in first["survivors"]))
+
+    again, second = run()
+    expect("what stands in the record is not run again", not re.search(r"^ *\d+/\d+ ", again, flags=re.M))
+    expect("and the score is the same", second["files"] == first["files"])
+    write(os.path.join(tree, "verify/mutants/equivalent.txt"), "# why\n" + LISTED)
+    said, listed = run()
+    expect("a listed one does not count as a survivor", listed["files"][0]["listed"] == 1 and
+           listed["files"][0]["survived"] == entry["survived"] - 1)
+    write(os.path.join(tree, "verify/mutants/equivalent.txt"), LISTED.replace("sum > 5 ->", "sum > 6 ->"))
+    said, listed = run()
+    expect("a listed one that does not apply is said", "does not apply any more" in said)
+    write(os.path.join(tree, "verify/mutants/equivalent.txt"), LISTED.replace("reason: ", "because: "))
+    expect("a broken list is refused by its line", "equivalent.txt:4" in run(code=2)[0])
+    os.remove(os.path.join(tree, "verify/mutants/equivalent.txt"))
+
+    parts = [run("--shard", "%d/3" % i)[1]["chosen"] for i in (1, 2, 3)]
+    expect("shards are all of it", sum(parts) == first["generated"])
+    expect("a sample is no larger than asked for", run("--sample", "7", "--seed", "3")[1]["chosen"] == 7)
+    expect("a shard that is none is refused", "I/N" in run("--shard", "4/3", code=2)[0])
+    hidden = os.path.join(work, "hidden", "clang")
+    write(os.path.join(hidden, "__init__.py"), "raise ImportError('hidden')\n")
+    without = subprocess.run([sys.executable, score, "--source", tree, "--work", os.path.join(work, "other")],
+                             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                             env=dict(os.environ, PYTHONPATH=os.path.dirname(hidden)))
+    expect("without libclang it says what to install: " + without.stdout,
+           without.returncode == 4 and "python3-clang" in without.stdout)
+    for failure in failures:
+        print("not so: " + failure)
+    return 1 if failures else 0
+
+
+def write(path, text):
+    os.makedirs(os.path.dirname(path), exist_ok=True)
+    with open(path, "w") as f:
+        f.write(text)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 3:
+        sys.exit(__doc__)
+    sys.exit(main(os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])))

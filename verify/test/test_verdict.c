@@ -1,0 +1,181 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The verdict, the JUnit file and the summary of results in which every count is another one and
+ * every way to fail is there: word for word as written down in data/verdict. And nothing checked,
+ * or one thing alone. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "junit.h"
+#include "summary.h"
+#include "verdict.h"
+
+static const char *folder;
+
+static json_t *load(const char *name)
+{
+    char path[4096];
+    json_error_t error;
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    json_t *document = json_load_file(path, 0, &error);
+    if (!document) fail_msg("%s:%d: %s", path, error.line, error.text);
+    return document;
+}
+
+/* The text is that of the file; where it is not, says from where on. */
+static void compare(const char *text, const char *name)
+{
+    static char expected[1 << 16];
+    char path[4096];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    expected[fread(expected, 1, sizeof expected - 1, file)] = 0;
+    fclose(file);
+    size_t at = 0;
+    while (text[at] && text[at] == expected[at]) at++;
+    if (text[at] != expected[at])
+        fail_msg("%s, byte %zu: expected\n%.200s\nfound\n%.200s", name, at, expected + at,
+                 text + at);
+}
+
+static json_t *judged(void)
+{
+    json_t *results = load("results.json");
+    json_object_set_new(results, "verdict", verdict_make(results));
+    return results;
+}
+
+static void verdict(void **state)
+{
+    (void)state;
+    json_t *results = judged(), *expected = load("verdict.json");
+    char *text = json_dumps(json_object_get(results, "verdict"), JSON_INDENT(1) | JSON_SORT_KEYS),
+         *same = json_dumps(expected, JSON_INDENT(1) | JSON_SORT_KEYS);
+    assert_string_equal(text, same);
+    free(text);
+    free(same);
+    json_decref(expected);
+    json_decref(results);
+}
+
+static void junit(void **state)
+{
+    (void)state;
+    json_t *results = judged();
+    char *text = junit_text(results);
+    compare(text, "junit.xml");
+    free(text);
+    json_decref(results);
+}
+
+static void summary(void **state)
+{
+    (void)state;
+    json_t *results = judged();
+    char *text = summary_text(results);
+    compare(text, "summary.md");
+    free(text);
+    json_decref(results);
+}
+
+/* Twenty failures are listed, the rest is counted. */
+static void long_summary(void **state)
+{
+    (void)state;
+    for (size_t count = 20; count <= 22; count++) {
+        json_t *results = json_pack("{s:{s:s, s:[]}}", "verdict", "headline", "bad", "failures");
+        json_t *list = json_object_get(json_object_get(results, "verdict"), "failures");
+        for (size_t i = 0; i < count; i++)
+            json_array_append_new(
+                list, json_pack("{s:s, s:s, s:s}", "name", "n", "detail", "d", "command", "c"));
+        char *text = summary_text(results), more[64];
+        size_t lines = 0;
+        for (const char *at = text; (at = strstr(at, "\n- **n** d (`c`)")); at++) lines++;
+        assert_int_equal(lines, 20);
+        snprintf(more, sizeof more, "\n- … and %zu more\n\n", count - 20);
+        assert_int_equal(strstr(text, more) != NULL, count > 20);
+        assert_int_equal(strstr(text, "more") != NULL, count > 20);
+        free(text);
+        json_decref(results);
+    }
+}
+
+/* What alone makes a verdict: one figure that passed, one order, one run; faults do not. */
+static void alone(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *status, *headline;
+    } rows[] = {
+        {"{}", "fail", "Nothing was checked"},
+        {"{'verify': {'checks': [{'status': 'pass', 'name': 'a'}]}}", "pass", "All is well"},
+        {"{'verify': {'checks': [{'status': 'skip', 'name': 'a'}]}}", "fail",
+         "Nothing was checked"},
+        {"{'verify': {'mutants': [{'detected': true}]}}", "fail", "Nothing was checked"},
+        {"{'studies': [{'orders': [{'status': 'pass'}]}]}", "pass", "All is well"},
+        {"{'studies': [{'orders': [{'status': 'none'}]}]}", "fail", "Nothing was checked"},
+        {"{'studies': [{'budgets': [{'still_gas': {'status': 'pass'}}]}]}", "pass", "All is well"},
+        {"{'runs': [{'status': 'ok'}]}", "pass", "All is well"},
+        {"{'faults': {'faults': [{'status': 'pass'}]}}", "fail", "Nothing was checked"},
+        {"{'runs': [{'status': 'ok'}], 'faults': {}}", "fail", "1 failure: harness faults.json"},
+        {"{'trouble': [{'name': 'a', 'message': 'b'}]}", "fail", "1 failure: harness a"},
+    };
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        char text[256];
+        snprintf(text, sizeof text, "%s", rows[k].text);
+        for (char *c = text; *c; c++)
+            if (*c == '\'') *c = '"';
+        json_t *results = json_loads(text, 0, NULL);
+        assert_non_null(results);
+        json_t *made = verdict_make(results);
+        assert_string_equal(json_string_value(json_object_get(made, "status")), rows[k].status);
+        assert_string_equal(json_string_value(json_object_get(made, "headline")), rows[k].headline);
+        json_decref(made);
+        json_decref(results);
+    }
+}
+
+/* A long subject is cut at the end of a word, whose comma goes as well. */
+static void cut(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *subject, *told;
+    } rows[] = {
+        {"short", "1 failure: g: c (short)"},
+        {"x broke down", "1 failure: g: c"},
+        {"0123456789 123456789 123456789 123456789 123456789 123456789 abcd",
+         "1 failure: g: c (0123456789 123456789 123456789 123456789 123456789 123456789 …)"},
+        {"0123456789 123456789 123456789 123456789 123456789 123456789 abc",
+         "1 failure: g: c (0123456789 123456789 123456789 123456789 123456789 123456789 abc)"},
+        {"0123456789 123456789 123456789 123456789 123456789 1234567, 9 abcdef",
+         "1 failure: g: c (0123456789 123456789 123456789 123456789 123456789 1234567, 9 …)"},
+        {"0123456789 123456789 123456789 123456789 123456789 12345678, abcdefgh",
+         "1 failure: g: c (0123456789 123456789 123456789 123456789 123456789 12345678 …)"},
+    };
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        json_t *results = json_pack("{s:{s:[{s:s, s:s, s:s, s:s, s:i, s:i}]}}", "verify", "checks",
+                                    "group", "g", "name", "c", "subject", rows[k].subject, "status",
+                                    "fail", "value", 2, "bound", 1);
+        json_t *made = verdict_make(results);
+        const char *told = json_string_value(json_object_get(made, "headline"));
+        assert_string_equal(told, rows[k].told);
+        json_decref(made);
+        json_decref(results);
+    }
+}
+
+int main(int argc, char **argv)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(verdict),      cmocka_unit_test(junit), cmocka_unit_test(summary),
+        cmocka_unit_test(long_summary), cmocka_unit_test(alone), cmocka_unit_test(cut),
+    };
+    folder = argc > 1 ? argv[1] : "";
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
