@@ -14,7 +14,7 @@ import tempfile
 SMALL = {"sod_2d": ["n=1400", "t_end=0.1"], "sod_3d": ["n=9216", "t_end=0.02"],
          "sound_wave_2d": ["n=16^2", "direction=1 1", "t_end=0.2"], "sound_wave_3d": ["n=10^3", "t_end=0.1"],
          "gresho": ["n=32^2", "t_end=0.3", "boost=0.5 0.25"], "yee": ["n=20^2", "t_end=1"],
-         "kelvin_helmholtz": ["n=32^2", "t_end=0.5"], "kelvin_helmholtz_mode": ["n=24^2", "t_end=0.4"],
+         "kelvin_helmholtz": ["n=32^2", "t_end=0.5"], "kelvin_helmholtz_mode": ["n=24^2", "t_end=0.4"], "rayleigh_taylor_mode": ["n=512", "t_end=0.4"],
          "square": ["n=24^2", "t_end=0.2"],
          "rest_2d": ["n=16^2", "t_end=0.5"], "rest_3d": ["n=10^3", "t_end=0.1"],
          "sedov_2d": ["n=32^2"], "sedov_3d": ["n=14^3", "t_end=0.03"],
@@ -78,7 +78,9 @@ def faults(name, document, rows):
     kept = document["conservation"]
     if document["status"] != "ok":
         yield "broke down"
-    if not kept["momentum"] <= 1e-13 or not kept["energy"] <= 1e-12 or not kept["mass"] <= 1e-13:
+    # gravity works along paths that steps cut short
+    energy = 1e-12 if document["settings"]["gravity"] in (0, [0]) else 1e-6
+    if not kept["momentum"] <= 1e-13 or not kept["energy"] <= energy or not kept["mass"] <= 1e-13:
         yield "does not conserve: %r" % kept
     if not kept["angular_momentum"] >= 0:
         yield "angular momentum %r" % kept["angular_momentum"]

@@ -10,11 +10,12 @@ import subprocess
 import sys
 
 CASE = "kelvin_helmholtz_mode"
+STRATIFIED = "rayleigh_taylor_mode"
 RATES = {"sinuous": 1.705572193, "varicose": 1.481793027}  # of two other methods
 
 
-def run(program, *words):
-    done = subprocess.run([program, "run", CASE, "n=24^2", *words, "--json", "-"], capture_output=True,
+def run(program, *words, case=CASE, n="24^2"):
+    done = subprocess.run([program, "run", case, "n=" + n, *words, "--json", "-"], capture_output=True,
                           text=True, timeout=120)
     if done.returncode:
         sys.exit("%s: exit %d: %s" % (" ".join(words), done.returncode, done.stderr))
@@ -56,9 +57,25 @@ def is_linear(program, bad):
     check(bad, "boosted", abs(ends[2] / ends[0] - 1), 1e-6)
 
 
+def is_heavy(program, bad):
+    """Dense gas over thin gas: as above; in a box twice as high with half the gravity it takes twice as
+    long."""
+    values, exact = run(program, "t_end=0.9", case=STRATIFIED, n="512")
+    check(bad, "stratified: its exact rate", abs(exact["growth_rate"] / 1.170903153 - 1), 1e-8)
+    check(bad, "stratified: rate", abs(values["growth_rate"] / 1.170903153 - 1), 0.15)
+    check(bad, "stratified: shape", values["mode_error"], 0.2)
+    values, _ = run(program, "t_end=1e-9", case=STRATIFIED, n="1152")
+    check(bad, "stratified: amplitude of the start", abs(values["mode_amplitude"] / 5e-4 - 1), 1e-5)
+    check(bad, "stratified: error of the start", values["mode_error"], 1e-3)
+    _, large = run(program, "t_end=1e-9", "lo=0 -1", "hi=1 1", "gravity=0 -0.25", case=STRATIFIED, n="512")
+    check(bad, "stratified, twice as large: rate", abs(2 * large["growth_rate"] / exact["growth_rate"] - 1), 1e-10)
+
+
 def refuses(program, bad):
-    for word in ("amplitude=0.5", "amplitude=0", "waves=9", "hi=1 2"):
-        done = subprocess.run([program, "run", CASE, word], capture_output=True, text=True, timeout=60)
+    for case, word in ((CASE, "amplitude=0.5"), (CASE, "amplitude=0"), (CASE, "waves=9"), (CASE, "hi=1 2"),
+                       (STRATIFIED, "gravity=0 0.5"), (STRATIFIED, "gravity=0 -9"), (STRATIFIED, "amplitude=0.1"),
+                       (STRATIFIED, "parity=varicose")):
+        done = subprocess.run([program, "run", case, word], capture_output=True, text=True, timeout=60)
         if done.returncode != 2 or word.split("=")[0] not in done.stderr or done.stdout:
             print("%s: exit %d, %r" % (word, done.returncode, done.stderr))
             bad.append(word)
@@ -66,7 +83,7 @@ def refuses(program, bad):
 
 def main():
     program, bad = os.path.abspath(sys.argv[1]), []
-    for part in (starts, grows, is_linear, refuses):
+    for part in (starts, grows, is_linear, is_heavy, refuses):
         part(program, bad)
     print("growing modes: %d faults" % len(bad))
     return len(bad) > 0
