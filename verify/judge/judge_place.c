@@ -161,16 +161,19 @@ static enum status take_box(struct judged *judged, const struct settings *settin
     return STATUS_OK;
 }
 
-/* Where the two gases met. Returns what is done with the window. */
-static void place_tube(const struct judge_request *request, struct judged *judged,
-                       const struct settings *settings, struct box *box)
+/* Where the two gases met: the box is then about that. */
+static enum status place_tube(const struct judge_request *request, struct judged *judged,
+                              struct box *box, struct error *error)
 {
     struct snapshot_notes *notes = &judged->file.notes;
     const double length = box->hi[0] - box->lo[0];
     double x0 = 0.5 * (box->lo[0] + box->hi[0]);
     char value[32];
     const char *evidence = "the middle of the box; --x0 says otherwise";
-    (void)settings;
+    if (request->x0.known && !(request->x0.value >= box->lo[0] && request->x0.value <= box->hi[0]))
+        return error_set(error, STATUS_BAD_INPUT,
+                         "judge: --x0 %g: %.200s: allowed: in its box, %g to %g", request->x0.value,
+                         judged->path, box->lo[0], box->hi[0]);
     if (request->x0.known)
         x0 = request->x0.value, evidence = "--x0";
     else if (!box->periodic && fabs(x0) < 0.1 * length)
@@ -178,6 +181,7 @@ static void place_tube(const struct judge_request *request, struct judged *judge
     snprintf(value, sizeof value, "%.9g", x0);
     snapshot_note(notes, "x0", value, "%s", evidence);
     box->lo[0] = x0 - 0.5 * length, box->hi[0] = x0 + 0.5 * length;
+    return STATUS_OK;
 }
 
 static enum status set_ends(struct settings *settings, enum setting key, const double *ends,
@@ -261,7 +265,7 @@ enum status judge_place(const struct judge_request *request, struct judged *judg
         take_time(request, judged, settings, error) || take_box(judged, settings, &box, error))
         return error->status;
     for (int d = 0; d < 3; d++) period[d] = box.periodic ? box.hi[d] - box.lo[d] : 0;
-    if (tube) place_tube(request, judged, settings, &box);
+    if (tube && place_tube(request, judged, &box, error)) return error->status;
     const int dim = judged->file.dim;
     for (int d = 1; d < dim; d++) /* of particles that stand on one line there is no box */
         if (!(box.hi[d] > box.lo[d])) box.hi[d] = box.lo[d] + 1;

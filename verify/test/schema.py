@@ -112,6 +112,7 @@ class Validator:
         return self.faults(value, schema["then"], path) if self.valid(value, rule) else ()
 
 
+SNAPSHOTS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "data", "snapshots", "")
 BRIEF = ["--time", "1e-5", "--samples", "2"]
 COMMANDS = [
     ["list"],
@@ -127,6 +128,7 @@ COMMANDS = [
     ["converge", "yee", "--n", "10^2,12^2,14^2,16^2", "t_end=0.2"],
     ["run", "two_rarefactions", "n=60", "cfl=50"],
     ["rates", "sod", "n=60"],
+    ["judge", SNAPSHOTS + "gizmo_sod1d_dsph_n198.gadget1", "--case", "sod", "--gate", "density_l1=1"],
     ["converge", "sod", "--n", "20,40,60,80", "t_end=0.1"],
     ["converge", "sod", "--n", "20,40,60,80", "t_end=0.05", "--vary", "gradient"],
     ["bench", "--n", "20,40", "t_end=0.05", "--vary", "gradient", *BRIEF],

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * HDF5 as SPH-EXA writes it (Cabezon et al. 2025): groups Step#0, Step#1 ..., each with a dataset
+ * HDF5 as SPH-EXA writes it (Cavelan et al. 2020): groups Step#0, Step#1 ..., each with a dataset
  * for each coordinate, time and gamma; half of the support radius is called h. The last step
  * counts. */
 #include <math.h>
@@ -77,4 +77,4 @@ static enum status read(const struct snapshot_source *source,
 }
 
 const struct snapshot_reader snapshot_sph_exa = {
-    {"sph_exa", "HDF5 of SPH-EXA", "Cabezon et al. 2025"}, recognises, read};
+    {"sph_exa", "HDF5 of SPH-EXA", "Cavelan et al. 2020"}, recognises, read};
