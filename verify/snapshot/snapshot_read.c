@@ -13,12 +13,12 @@
 #include "snapshot_file.h"
 #include "source.h"
 
-#define READER(name) extern const struct snapshot_reader snapshot_##name;
+#define READER(name) extern const struct snapshot_reader reader_##name;
 #include "readers.def"
 #undef READER
 
 static const struct member *const members[] = {
-#define READER(name) &snapshot_##name.member,
+#define READER(name) &reader_##name.member,
 #include "readers.def"
 #undef READER
 };

@@ -298,6 +298,12 @@ def hostile(folder, blocks, hdf5):
         refused(BINARY, "--case", "sod", "--gate", gate, says="--gate")
     for size in list(range(1, 300, 37)) + list(range(300, len(whole), 997)) + [len(whole) - 1]:
         refused(write(folder, "cut", whole[:size]), "--case", "sod", says="cut")
+    bad_end = bytearray(whole)
+    bad_end[260] ^= 2
+    refused(write(folder, "tail", bytes(bad_end)), "--case", "sod", says="no snapshot")
+    bad_end = bytearray(whole)
+    bad_end[-1] ^= 2
+    refused(write(folder, "tail", bytes(bad_end)), "--case", "sod", says=("damaged", "ends with"))
 
     def head(fmt, at, value):
         changed = bytearray(blocks[0])
@@ -314,7 +320,7 @@ def hostile(folder, blocks, hdf5):
     refused(head("<d", 128, 0.5), "--case", "sod", says="")
     comoving = bytearray(blocks[0])
     struct.pack_into("<dd", comoving, 72, 0.5, 1.0)
-    refused(write(folder, "comoving", binary([bytes(comoving)] + blocks[1:])), "--case", "sod", says="comoving")
+    refused(write(folder, "cosmic", binary([bytes(comoving)] + blocks[1:])), "--case", "sod", says="comoving")
     n = 198
     nan = blocks[:8] + [struct.pack("<f", float("nan")) + blocks[8][4:]] + blocks[9:]
     refused(write(folder, "nan", binary(nan)), "--case", "sod", says="none fit")

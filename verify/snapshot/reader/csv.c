@@ -105,5 +105,5 @@ static enum status read(const struct snapshot_source *source,
     return STATUS_OK;
 }
 
-const struct snapshot_reader snapshot_csv = {
+const struct snapshot_reader reader_csv = {
     {"csv", "text with names of columns, commas or blanks", ""}, text_table_is_text, read};

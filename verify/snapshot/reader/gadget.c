@@ -384,5 +384,5 @@ static enum status read(const struct snapshot_source *source,
     return STATUS_OK;
 }
 
-const struct snapshot_reader snapshot_gadget = {
+const struct snapshot_reader reader_gadget = {
     {"gadget", "binary of GADGET, formats 1 and 2", "Springel 2005"}, recognises, read};

@@ -53,5 +53,5 @@ static enum status read(const struct snapshot_source *source,
     return STATUS_OK;
 }
 
-const struct snapshot_reader snapshot_gadget_hdf5 = {
+const struct snapshot_reader reader_gadget_hdf5 = {
     {"gadget_hdf5", "HDF5 of GADGET, AREPO and GIZMO", "Springel 2005"}, recognises, read};

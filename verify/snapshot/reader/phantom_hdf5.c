@@ -108,5 +108,5 @@ static enum status read(const struct snapshot_source *source,
     return sort_gas(source, file, error);
 }
 
-const struct snapshot_reader snapshot_phantom_hdf5 = {
+const struct snapshot_reader reader_phantom_hdf5 = {
     {"phantom_hdf5", "HDF5 of Phantom", "Price et al. 2018"}, recognises, read};

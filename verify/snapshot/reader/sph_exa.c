@@ -76,5 +76,5 @@ static enum status read(const struct snapshot_source *source,
     return STATUS_OK;
 }
 
-const struct snapshot_reader snapshot_sph_exa = {
+const struct snapshot_reader reader_sph_exa = {
     {"sph_exa", "HDF5 of SPH-EXA", "Cavelan et al. 2020"}, recognises, read};

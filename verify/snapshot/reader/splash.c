@@ -78,5 +78,5 @@ static enum status read(const struct snapshot_source *source,
     return STATUS_OK;
 }
 
-const struct snapshot_reader snapshot_splash = {
+const struct snapshot_reader reader_splash = {
     {"splash", "ASCII of SPLASH", "Price 2007"}, recognises, read};

@@ -52,5 +52,5 @@ static enum status read(const struct snapshot_source *source,
     return STATUS_OK;
 }
 
-const struct snapshot_reader snapshot_swift = {
+const struct snapshot_reader reader_swift = {
     {"swift", "HDF5 of SWIFT", "Schaller et al. 2024"}, recognises, read};
