@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "html.h"
+#include "page_cloud.h"
 #include "page_part.h"
 #include "page_study.h"
 #include "page_time.h"
@@ -294,8 +295,10 @@ static void case_head(struct buffer *to, const char *name, const json_t *title,
     buffer_add(to, "</span></h3>");
     html_status(to, well ? "ok" : "fail");
     for (size_t k = 0; k < study_count; k++) {
-        const json_t *order = page_study_order(studies[k], "density", "l1_cut");
-        buffer_add(to, k ? ", " : " <span class=\"note\">order of L1(density): ");
+        const json_t *order = page_study_main(studies[k]);
+        if (!k) buffer_add(to, " <span class=\"note\">order of ");
+        if (!k) page_study_name(to, order);
+        buffer_add(to, k ? ", " : ": ");
         buffer_escape(to, value_text(studies[k], "label"));
         buffer_format(to, " %.2f ± %.2f", value_member(order, "order"),
                       (value_member(order, "high") - value_member(order, "low")) / 2);
@@ -303,6 +306,17 @@ static void case_head(struct buffer *to, const char *name, const json_t *title,
     /* the link to a case ends within it, which opens it */
     buffer_format(to, "%s</summary>\n<div class=\"figures\" id=\"case-%s\">\n",
                   study_count ? "</span>" : "", name);
+}
+
+static int dimension_of(const json_t *document)
+{
+    const double dimension = value_member(document, "dimension");
+    return isfinite(dimension) ? (int)dimension : 1;
+}
+
+static bool is_cloud(const json_t *const *runs, size_t count)
+{
+    return count && dimension_of(runs[0]) > 1;
 }
 
 /* One case: everything that the results have on it. */
@@ -316,7 +330,7 @@ static void one_case(struct page_writer *writer, const json_t *results, const ch
     {
         if (strcmp(value_text(entry, "case"), name) || run_count == PAGE_SCHEMES) continue;
         runs[run_count++] = entry;
-        add_curve(&curves, entry);
+        if (dimension_of(entry) == 1) add_curve(&curves, entry);
         if (!title) title = json_object_get(entry, "title");
     }
     json_array_foreach(json_object_get(results, "studies"), i, entry)
@@ -326,15 +340,22 @@ static void one_case(struct page_writer *writer, const json_t *results, const ch
     }
     case_head(to, name, title, studies, study_count,
               is_well(runs, run_count, studies, study_count));
-    if (curves.runs) plot_profiles(writer, name, &curves);
-    if (curves.runs) plot_residuals(writer, name, &curves);
+    if (is_cloud(runs, run_count)) {
+        buffer_add(to, "</div>\n");
+        page_cloud_plots(writer, name, runs, run_count);
+    } else {
+        if (curves.runs) plot_profiles(writer, name, &curves);
+        if (curves.runs) plot_residuals(writer, name, &curves);
+    }
     buffer_add(to, "</div>\n");
     if (study_count) page_study(writer, name, studies, study_count);
-    if (run_count) {
+    if (is_cloud(runs, run_count)) {
+        page_cloud_tables(to, runs, run_count);
+    } else if (run_count) {
         buffer_add(to, "<h4>Errors, conservation and cost of the runs above</h4>\n");
         run_table(to, runs, run_count);
     }
-    if (curves.runs && curves.runs == run_count) {
+    if (!is_cloud(runs, run_count) && curves.runs && curves.runs == run_count) {
         buffer_add(to, "<h4>Overshoots</h4>\n");
         shape_table(to, &curves, runs);
     }
@@ -356,23 +377,44 @@ static bool seen_before(const json_t *list, size_t before, const char *name)
     return false;
 }
 
-void page_cases(struct page_writer *writer, const json_t *results)
+/* Cases of one dimension, or nothing. */
+static void cases_in(struct page_writer *writer, const json_t *results, int dimension, bool folded)
 {
     const json_t *runs = json_object_get(results, "runs"), *entry;
     const json_t *studies = json_object_get(results, "studies");
-    if (!json_array_size(runs) && !json_array_size(studies)) return;
-    buffer_add(&writer->to, "<section id=\"cases\"><h2>Cases against their exact solutions</h2>\n");
-    size_t i;
+    size_t i, count = 0;
+    json_array_foreach(runs, i, entry) count +=
+        dimension_of(entry) == dimension && !seen_before(runs, i, value_text(entry, "case"));
+    if (folded && count)
+        buffer_format(&writer->to,
+                      "<details class=\"dimension\" open=\"open\"><summary>In %dD: %zu case%s"
+                      "</summary>\n",
+                      dimension, count, count == 1 ? "" : "s");
     json_array_foreach(runs, i, entry)
     {
         const char *name = value_text(entry, "case");
-        if (!seen_before(runs, i, name)) one_case(writer, results, name);
+        if (dimension_of(entry) == dimension && !seen_before(runs, i, name))
+            one_case(writer, results, name);
     }
     json_array_foreach(studies, i, entry)
     {
         const char *name = value_text(entry, "case");
-        if (!seen_before(studies, i, name) && !seen_before(runs, json_array_size(runs), name))
+        if (dimension_of(entry) == dimension && !seen_before(studies, i, name) &&
+            !seen_before(runs, json_array_size(runs), name))
             one_case(writer, results, name);
     }
+    if (folded && count) buffer_add(&writer->to, "</details>\n");
+}
+
+void page_cases(struct page_writer *writer, const json_t *results)
+{
+    const json_t *runs = json_object_get(results, "runs"), *entry;
+    bool clouds = false;
+    size_t i;
+    if (!json_array_size(runs) && !json_array_size(json_object_get(results, "studies"))) return;
+    buffer_add(&writer->to, "<section id=\"cases\"><h2>Cases against their exact solutions</h2>\n");
+    json_array_foreach(runs, i, entry) clouds = clouds || dimension_of(entry) > 1;
+    for (int dimension = 1; dimension <= 3; dimension++)
+        cases_in(writer, results, dimension, clouds);
     buffer_add(&writer->to, "</section>\n");
 }

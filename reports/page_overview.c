@@ -22,15 +22,21 @@ static const json_t *find(const json_t *list, const char *case_name, const char 
     return NULL;
 }
 
-/* Labels of the schemes, in the order in which they appear. */
-static size_t schemes(const json_t *studies, const char **labels)
+static bool is_cloud(const json_t *document)
+{
+    return value_member(document, "dimension") > 1;
+}
+
+/* Labels of the schemes of 1D, or of 2D and 3D, in the order in which they appear. */
+static size_t schemes(const json_t *list, bool clouds, const char **labels)
 {
     size_t n = 0, i;
     const json_t *entry;
-    json_array_foreach(studies, i, entry)
+    json_array_foreach(list, i, entry)
     {
         const char *label = value_text(entry, "label");
         size_t k = 0;
+        if (is_cloud(entry) != clouds) continue;
         while (k < n && strcmp(labels[k], label)) k++;
         if (k == n && n < PAGE_SCHEMES) labels[n++] = label;
     }
@@ -44,6 +50,22 @@ static const char *status_of(const json_t *study, const json_t *run)
     return !strcmp(ran, "broke_down") ? ran : "ok";
 }
 
+static void case_cells(struct buffer *to, const char *name, double n)
+{
+    buffer_add(to, "<tr><td><a href=\"#case-");
+    buffer_escape(to, name);
+    buffer_add(to, "\">");
+    html_words(to, name);
+    buffer_add(to, "</a></td>");
+    html_cell_number(to, n);
+}
+
+static void order_cell(struct buffer *to, const json_t *order)
+{
+    buffer_format(to, "<td class=\"n\">%.2f ± %.2f</td>", value_member(order, "order"),
+                  (value_member(order, "high") - value_member(order, "low")) / 2);
+}
+
 static void row(struct buffer *to, const json_t *results, const json_t *first,
                 const char *const *labels, size_t count)
 {
@@ -52,12 +74,7 @@ static void row(struct buffer *to, const json_t *results, const json_t *first,
     const char *name = value_text(first, "case");
     const json_t *levels = json_object_get(first, "levels");
     const json_t *run = find(runs, name, labels[0]);
-    buffer_add(to, "<tr><td><a href=\"#case-");
-    buffer_escape(to, name);
-    buffer_add(to, "\">");
-    html_words(to, name);
-    buffer_add(to, "</a></td>");
-    html_cell_number(to, value_member(json_array_get(levels, json_array_size(levels) - 1), "n"));
+    case_cells(to, name, value_member(json_array_get(levels, json_array_size(levels) - 1), "n"));
     const char *status = "ok";
     for (size_t k = 0; k < count; k++) {
         const json_t *study = find(studies, name, labels[k]);
@@ -67,9 +84,7 @@ static void row(struct buffer *to, const json_t *results, const json_t *first,
         const char *now = status_of(study, find(runs, name, labels[k]));
         if (strcmp(now, "ok")) status = now;
     }
-    const json_t *order = page_study_order(first, "density", "l1_cut");
-    buffer_format(to, "<td class=\"n\">%.2f ± %.2f</td>", value_member(order, "order"),
-                  (value_member(order, "high") - value_member(order, "low")) / 2);
+    order_cell(to, page_study_order(first, "density", "l1_cut"));
     html_cell_number(to, value_inner(run, "conservation", "momentum"));
     html_cell_number(to, value_inner(run, "conservation", "energy"));
     buffer_add(to, "<td>");
@@ -77,13 +92,100 @@ static void row(struct buffer *to, const json_t *results, const json_t *first,
     buffer_add(to, "</td></tr>\n");
 }
 
+/* ---- 2D and 3D: by their runs, whatever they are judged by ---- */
+
+/* What a run is judged by, as its study is where there is one: L1 of a field, or the distance of a
+ * scalar from its exact value. *name: what it is. */
+static double run_error(const json_t *run, const json_t *study, const char **name)
+{
+    static const char *const usual[] = {"azimuthal", "velocity"};
+    const json_t *errors = json_object_get(run, "errors");
+    const char *measured = json_string_value(json_array_get(json_object_get(study, "measured"), 0)),
+               *scalar;
+    json_t *value;
+    for (size_t k = 0; k < sizeof usual / sizeof *usual && !measured; k++)
+        if (isfinite(value_inner(errors, usual[k], "l1"))) measured = usual[k];
+    *name = measured ? measured : "";
+    if (measured && isfinite(value_inner(errors, measured, "l1")))
+        return value_inner(errors, measured, "l1");
+    json_object_foreach(json_object_get(run, "functionals"), scalar, value)
+    {
+        const double exact = value_inner(run, "functionals_exact", scalar);
+        if ((measured && strcmp(scalar, measured)) || !isfinite(exact)) continue;
+        *name = scalar;
+        return fabs(value_real(value) - exact);
+    }
+    return (double)NAN;
+}
+
+static void cloud_row(struct buffer *to, const json_t *results, const json_t *run,
+                      const char *const *labels, size_t count)
+{
+    const json_t *runs = json_object_get(results, "runs");
+    const char *case_name = value_text(run, "case"), *what, *status = "ok";
+    const json_t *study = find(json_object_get(results, "studies"), case_name, labels[0]);
+    run_error(run, study, &what);
+    case_cells(to, case_name, value_member(run, "n"));
+    buffer_add(to, "<td>");
+    html_words(to, what);
+    buffer_add(to, "</td>");
+    for (size_t k = 0; k < count; k++) {
+        const json_t *one = find(runs, case_name, labels[k]);
+        const json_t *of = find(json_object_get(results, "studies"), case_name, labels[k]);
+        if (one)
+            html_cell_number(to, run_error(one, study, &what));
+        else
+            buffer_add(to, "<td class=\"n\">—</td>");
+        if (one && strcmp(status_of(of, one), "ok")) status = status_of(of, one);
+    }
+    if (page_study_main(study))
+        order_cell(to, page_study_main(study));
+    else
+        buffer_add(to, "<td class=\"n\">—</td>");
+    html_cell_number(to, value_inner(run, "conservation", "momentum"));
+    html_cell_number(to, value_inner(run, "conservation", "energy"));
+    buffer_add(to, "<td>");
+    html_status(to, status);
+    buffer_add(to, "</td></tr>\n");
+}
+
+static void clouds(struct buffer *to, const json_t *results)
+{
+    const json_t *runs = json_object_get(results, "runs"), *entry;
+    const char *labels[PAGE_SCHEMES];
+    struct buffer columns = {0};
+    size_t count = schemes(runs, true, labels), i;
+    if (!count) return;
+    buffer_add(&columns, "case|#n|error of");
+    for (size_t k = 0; k < count; k++) {
+        buffer_add(&columns, "|#");
+        buffer_escape(&columns, labels[k]);
+    }
+    buffer_add(&columns, "|#order, ");
+    buffer_escape(&columns, labels[0]);
+    buffer_add(&columns, "|#momentum error|#energy error|");
+    buffer_add(to, "<h3>In 2D and 3D</h3>\n");
+    if (columns.data) html_table(to, "overview", columns.data);
+    buffer_free(&columns);
+    json_array_foreach(runs, i, entry)
+    {
+        if (is_cloud(entry) && !strcmp(value_text(entry, "label"), labels[0]))
+            cloud_row(to, results, entry, labels, count);
+    }
+    html_table_end(to);
+    buffer_add(to, "<p class=\"note\">L1 of what a case is about, or how far a scalar is from its "
+                   "exact value. n is the number of all particles.</p>\n");
+}
+
 void page_overview(struct page_writer *writer, const json_t *results)
 {
     struct buffer *to = &writer->to, columns = {0};
     const json_t *studies = json_object_get(results, "studies"), *entry;
-    const char *labels[PAGE_SCHEMES];
-    size_t count = schemes(studies, labels), i;
+    const char *labels[PAGE_SCHEMES], *more[PAGE_SCHEMES];
+    size_t count = schemes(studies, false, labels), i;
     if (!count) return;
+    const bool both = json_array_size(json_object_get(results, "runs")) &&
+                      schemes(json_object_get(results, "runs"), true, more);
     buffer_add(&columns, "case|#n");
     for (size_t k = 0; k < count; k++) {
         buffer_add(&columns, "|#L1 density, ");
@@ -93,12 +195,15 @@ void page_overview(struct page_writer *writer, const json_t *results)
     buffer_escape(&columns, labels[0]);
     buffer_add(&columns, "|#momentum error|#energy error|");
     buffer_add(to, "<section id=\"overview\"><h2>All cases at a glance</h2>\n");
+    if (both) buffer_add(to, "<h3>In 1D</h3>\n");
     if (columns.data) html_table(to, "overview", columns.data);
     buffer_free(&columns);
     json_array_foreach(studies, i, entry)
     {
-        if (!strcmp(value_text(entry, "label"), labels[0])) row(to, results, entry, labels, count);
+        if (!is_cloud(entry) && !strcmp(value_text(entry, "label"), labels[0]))
+            row(to, results, entry, labels, count);
     }
     html_table_end(to);
+    clouds(to, results);
     buffer_add(to, "</section>\n");
 }

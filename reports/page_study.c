@@ -12,10 +12,9 @@
 
 enum { LEVELS = 64, PLOTTED = 3 };
 
-static const char *const plotted[PLOTTED] = {"density", "velocity", "pressure"};
-
-/* L1 of one quantity: measured, least-squares fit, and what the 95 % interval of its order allows,
- * about the middle of the ladder. */
+/* Error of one quantity, L1 of a field or the distance of a scalar from its exact value: measured,
+ * least-squares fit, and what the 95 % interval of its order allows, about the middle of the
+ * ladder. */
 struct fitted {
     double error[LEVELS], fit[LEVELS], low[LEVELS], high[LEVELS];
 };
@@ -23,6 +22,8 @@ struct fitted {
 struct study {
     const json_t *document;
     size_t levels;
+    int dimension, plotted;
+    const char *names[PLOTTED];
     double n[LEVELS];
     struct fitted of[PLOTTED];
 };
@@ -39,12 +40,76 @@ const json_t *page_study_order(const json_t *study, const char *field, const cha
     return NULL;
 }
 
+/* Of a field the norm that pages show, of a scalar its error. */
+static const json_t *order_of(const json_t *document, const char *name)
+{
+    const json_t *order = page_study_order(document, name, "l1_cut");
+    return order ? order : page_study_order(document, name, "error");
+}
+
+/* What the case is judged by, at most PLOTTED things; their number. */
+static int read_names(const json_t *document, const char *names[PLOTTED])
+{
+    static const char *const usual[PLOTTED] = {"density", "velocity", "pressure"};
+    const json_t *measured = json_object_get(document, "measured"), *name;
+    int n = 0;
+    size_t i;
+    json_array_foreach(measured, i, name) if (n < PLOTTED && json_is_string(name)) names[n++] =
+        json_string_value(name);
+    for (int q = 0; q < PLOTTED && !measured; q++) names[n++] = usual[q];
+    return n;
+}
+
+const json_t *page_study_main(const json_t *document)
+{
+    const char *names[PLOTTED];
+    return read_names(document, names) ? order_of(document, names[0]) : NULL;
+}
+
+static bool is_scalar(const json_t *order)
+{
+    return !strcmp(value_text(order, "norm"), "error");
+}
+
+void page_study_name(struct buffer *to, const json_t *order)
+{
+    buffer_add(to, is_scalar(order) ? "the error of " : "L1(");
+    html_words(to, value_text(order, "field"));
+    if (!is_scalar(order)) buffer_add(to, ")");
+}
+
+/* At a level (the i-th) of a study. */
+static double error_of(const json_t *document, const char *name, size_t i)
+{
+    const json_t *level = json_array_get(json_object_get(document, "levels"), i), *entry;
+    const double error = value_inner(json_object_get(level, "errors"), name, "l1_cut");
+    size_t k;
+    if (isfinite(error)) return error;
+    json_array_foreach(
+        json_object_get(document, "functionals"), k,
+        entry) if (!strcmp(value_text(entry, "name"),
+                           name)) return fabs(value_real(json_array_get(json_object_get(entry,
+                                                                                        "values"),
+                                                                        i)) -
+                                              value_member(entry, "exact"));
+    return error;
+}
+
+double page_study_finest(const json_t *document)
+{
+    const char *names[PLOTTED];
+    const size_t levels = json_array_size(json_object_get(document, "levels"));
+    return levels && read_names(document, names) ? error_of(document, names[0], levels - 1)
+                                                 : (double)NAN;
+}
+
 static void fit(struct study *study, int quantity)
 {
     struct fitted *of = &study->of[quantity];
-    const json_t *order = page_study_order(study->document, plotted[quantity], "l1_cut");
-    const double count = (double)study->levels, slope = value_member(order, "order");
-    const double half = (value_member(order, "high") - value_member(order, "low")) / 2;
+    const json_t *order = order_of(study->document, study->names[quantity]);
+    const double count = (double)study->levels, dim = study->dimension;
+    const double slope = value_member(order, "order") / dim;
+    const double half = (value_member(order, "high") - value_member(order, "low")) / 2 / dim;
     double sum_n = 0, sum_error = 0;
     for (size_t i = 0; i < study->levels; i++) {
         sum_n += log(study->n[i]);
@@ -62,16 +127,18 @@ static void read_study(struct study *study, const json_t *document)
 {
     size_t i;
     const json_t *level;
+    const double dimension = value_member(document, "dimension");
     *study = (struct study){.document = document};
+    study->dimension = isfinite(dimension) ? (int)dimension : 1;
+    study->plotted = read_names(document, study->names);
     json_array_foreach(json_object_get(document, "levels"), i, level)
     {
-        const json_t *errors = json_object_get(level, "errors");
         if (study->levels == LEVELS) break;
-        for (int q = 0; q < PLOTTED; q++)
-            study->of[q].error[study->levels] = value_inner(errors, plotted[q], "l1_cut");
+        for (int q = 0; q < study->plotted; q++)
+            study->of[q].error[study->levels] = error_of(document, study->names[q], i);
         study->n[study->levels++] = value_member(level, "n");
     }
-    for (int q = 0; q < PLOTTED; q++) fit(study, q);
+    for (int q = 0; q < study->plotted; q++) fit(study, q);
 }
 
 /* The series of one panel: bands first, so that they lie below. */
@@ -114,11 +181,12 @@ static size_t add_slopes(struct plot_slope slopes[2], const struct study *studie
         for (size_t i = 0; i < study->levels; i++)
             lowest = fmin(lowest, study->of[quantity].error[i]);
     }
-    const double first = ladder->n[0], last = ladder->n[ladder->levels - 1];
+    const double dim = ladder->dimension, first = ladder->n[0],
+                 last = ladder->n[ladder->levels - 1];
     if (!isfinite(at) || !(at > 0)) return 0;
-    slopes[0] = (struct plot_slope){first, last, 0.7 * at, -1, "order 1"};
-    slopes[1] = (struct plot_slope){first, last, 0.7 * at, -2, "order 2"};
-    return at * pow(last / first, -1.5) > lowest ? 2 : 1;
+    slopes[0] = (struct plot_slope){first, last, 0.7 * at, -1 / dim, "order 1"};
+    slopes[1] = (struct plot_slope){first, last, 0.7 * at, -2 / dim, "order 2"};
+    return at * pow(last / first, -1.5 / dim) > lowest ? 2 : 1;
 }
 
 static void plot_convergence(struct page_writer *writer, const char *case_name,
@@ -127,13 +195,17 @@ static void plot_convergence(struct page_writer *writer, const char *case_name,
     struct plot_series series[PLOTTED][3 * PAGE_SCHEMES];
     struct plot_slope slopes[PLOTTED][2];
     struct plot_panel panels[PLOTTED];
-    char labels[PLOTTED][32], name[96];
+    char labels[PLOTTED][64], name[96];
     const struct study *ladder = studies;
     for (size_t k = 1; k < count; k++)
         if (studies[k].levels > ladder->levels) ladder = &studies[k];
-    if (!ladder->levels) return;
-    for (int q = 0; q < PLOTTED; q++) {
-        snprintf(labels[q], sizeof labels[q], "L1 of %s", plotted[q]);
+    if (!ladder->levels || !ladder->plotted) return;
+    for (int q = 0; q < ladder->plotted; q++) {
+        const bool scalar = is_scalar(order_of(ladder->document, ladder->names[q]));
+        snprintf(labels[q], sizeof labels[q], "%s of %s", scalar ? "error" : "L1",
+                 ladder->names[q]);
+        for (char *c = labels[q]; *c; c++)
+            if (*c == '_') *c = ' ';
         panels[q] = (struct plot_panel){.x_label = "number of particles n",
                                         .y_label = labels[q],
                                         .x_log = true,
@@ -148,21 +220,22 @@ static void plot_convergence(struct page_writer *writer, const char *case_name,
     }
     page_plot_name(name, sizeof name, case_name, "convergence");
     const struct plot plot = {.name = name,
-                              .title =
-                                  "Convergence of the errors of density, velocity and pressure",
+                              .title = "Convergence of the errors",
                               .panels = panels,
-                              .panel_count = PLOTTED};
+                              .panel_count = (size_t)ladder->plotted};
     page_plot(writer, &plot,
               "Points are measured, lines are least-squares fits; the shade is the 95 % interval "
               "of the order, dashes have the named order.");
 }
 
-/* A level's L1 of density, with its deviation over the replicates where that exceeds 3 %. */
-static void error_cell(struct buffer *to, const json_t *level)
+/* A level's main error, with its deviation over the replicates where that exceeds 3 %. */
+static void error_cell(struct buffer *to, const struct study *study, size_t i)
 {
-    const double spread = value_inner(json_object_get(level, "spread"), "density", "l1_cut");
+    const json_t *level = json_array_get(json_object_get(study->document, "levels"), i);
+    const char *name = study->names[0];
+    const double spread = value_inner(json_object_get(level, "spread"), name, "l1_cut");
     buffer_add(to, "<td class=\"n\">");
-    html_number(to, value_inner(json_object_get(level, "errors"), "density", "l1_cut"));
+    html_number(to, error_of(study->document, name, i));
     if (spread > 0.03) buffer_format(to, " ± %.0f %%", 100 * spread);
     buffer_add(to, "</td>");
 }
@@ -189,7 +262,9 @@ static void error_table(struct buffer *to, const struct study *studies, size_t c
         buffer_add(&columns, "|#");
         buffer_escape(&columns, value_text(studies[k].document, "label"));
     }
-    buffer_add(to, "<h4>L1 error of density over n</h4>\n");
+    buffer_add(to, "<h4>");
+    page_study_name(to, page_study_main(studies->document));
+    buffer_add(to, " over n</h4>\n");
     if (columns.data) html_table(to, "errors", columns.data);
     buffer_free(&columns);
     const struct study *longest = studies;
@@ -197,13 +272,12 @@ static void error_table(struct buffer *to, const struct study *studies, size_t c
         if (studies[k].levels > longest->levels) longest = &studies[k];
     for (size_t i = 0; i < longest->levels; i++) {
         buffer_format(to, "<tr><td class=\"n\">%.0f</td>", longest->n[i]);
-        for (size_t k = 0; k < count; k++)
-            error_cell(to, json_array_get(json_object_get(studies[k].document, "levels"), i));
+        for (size_t k = 0; k < count; k++) error_cell(to, &studies[k], i);
         buffer_add(to, "</tr>\n");
     }
     buffer_add(to, "<tr class=\"total\"><th>order</th>");
     for (size_t k = 0; k < count; k++) {
-        const json_t *order = page_study_order(studies[k].document, "density", "l1_cut");
+        const json_t *order = page_study_main(studies[k].document);
         buffer_format(to, "<td class=\"n\">%.2f ± %.2f</td>", value_member(order, "order"),
                       (value_member(order, "high") - value_member(order, "low")) / 2);
     }
@@ -248,7 +322,7 @@ static void order_rows(struct buffer *to, const struct study *study)
     {
         const char *status = value_text(order, "status");
         bool gated = json_is_object(json_object_get(order, "gate"));
-        bool shown = !strcmp(value_text(order, "norm"), "l1_cut");
+        bool shown = !strcmp(value_text(order, "norm"), "l1_cut") || is_scalar(order);
         if (!gated && !shown && strcmp(status, "fail")) continue;
         buffer_add(to, "<tr>");
         html_cell(to, value_text(study->document, "label"));

@@ -12,6 +12,12 @@
 void page_study(struct page_writer *writer, const char *case_name, const json_t *const *documents,
                 size_t count);
 
+/* The order of what the case is judged by first, or NULL; "L1(density)" for it; the error itself at
+ * the finest level. */
+const json_t *page_study_main(const json_t *document);
+void page_study_name(struct buffer *to, const json_t *order);
+double page_study_finest(const json_t *document);
+
 /* The entry of a converge document for a field and a norm, or NULL. */
 const json_t *page_study_order(const json_t *document, const char *field, const char *norm);
 

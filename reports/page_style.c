@@ -41,6 +41,8 @@ const char *const page_styles[] = {
     ".figures{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,440px),1fr));"
     "gap:8px 28px;align-items:start}.figures>*{min-width:0}"
     "figure{margin:.6em 0}svg.plot{display:block;width:100%;max-width:640px;height:auto}"
+    ".wide svg.plot,.wide figcaption{max-width:1120px}"
+    "details.dimension>summary{font-size:1.35rem;font-weight:600;margin:1.2em 0 .3em}"
     "figcaption{font-size:.86rem;color:var(--dim);max-width:640px}.files a{color:inherit}"
     ".missing{padding:2em 1em;border:1px dashed var(--line);color:var(--dim)}"
     ".scroll{overflow-x:auto;margin:.5em 0}"

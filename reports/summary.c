@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "summary.h"
 
-#include <string.h>
-
 #include "html.h"
+#include "page_study.h"
 #include "value.h"
 
 static void failures(struct buffer *to, const json_t *list)
@@ -25,26 +24,21 @@ static void failures(struct buffer *to, const json_t *list)
 
 static void orders(struct buffer *to, const json_t *studies)
 {
-    size_t i, j;
-    const json_t *study, *order;
+    size_t i;
+    const json_t *study;
     if (!json_array_size(studies)) return;
-    buffer_add(to, "| case | scheme | order of L1(density) | 95 % interval | finest error |\n"
-                   "|---|---|---:|---:|---:|\n");
+    buffer_add(to, "| case | scheme | error | order | 95 % interval | at the finest level |\n"
+                   "|---|---|---|---:|---:|---:|\n");
     json_array_foreach(studies, i, study)
     {
-        const json_t *levels = json_object_get(study, "levels");
-        const json_t *finest = json_array_get(levels, json_array_size(levels) - 1);
-        json_array_foreach(json_object_get(study, "orders"), j, order)
-        {
-            if (strcmp(value_text(order, "field"), "density") ||
-                strcmp(value_text(order, "norm"), "l1_cut"))
-                continue;
-            buffer_format(to, "| %s | %s | %.2f | %.2f to %.2f | ", value_text(study, "case"),
-                          value_text(study, "label"), value_member(order, "order"),
-                          value_member(order, "low"), value_member(order, "high"));
-            html_number(to, value_inner(json_object_get(finest, "errors"), "density", "l1_cut"));
-            buffer_add(to, " |\n");
-        }
+        const json_t *order = page_study_main(study);
+        if (!order) continue;
+        buffer_format(to, "| %s | %s | ", value_text(study, "case"), value_text(study, "label"));
+        page_study_name(to, order);
+        buffer_format(to, " | %.2f | %.2f to %.2f | ", value_member(order, "order"),
+                      value_member(order, "low"), value_member(order, "high"));
+        html_number(to, page_study_finest(study));
+        buffer_add(to, " |\n");
     }
     buffer_add(to, "\n");
 }

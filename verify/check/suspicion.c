@@ -41,6 +41,15 @@ static bool tube_suspected(const struct suspicion_subject *s, bool exchanged, do
     return s->swapped(3, names, PARTICLES, volume, values, exacts, NULL);
 }
 
+/* A coarse run: pressure is as far off as it is from density, and errs towards it. */
+static bool coarse_suspected(const struct suspicion_subject *s)
+{
+    static const char *const names[] = {"density", "pressure"};
+    static const double volume[] = {1, 1}, rho[] = {1, 0.5}, P[] = {1, 0.4}, off[] = {1.05, 0.46};
+    const double *const values[] = {rho, off}, *const exacts[] = {rho, P};
+    return s->swapped(2, names, 2, volume, values, exacts, NULL);
+}
+
 static void measure(struct check_run *run, const void *subject)
 {
     static const struct suspicion_subject right = {suspicion_zero, suspicion_repeated,
@@ -67,6 +76,7 @@ static void measure(struct check_run *run, const void *subject)
     expect(run, tube_suspected(s, false, 1.1), false, "three fields in their places");
     expect(run, tube_suspected(s, true, 1.1), true, "density and pressure exchanged");
     expect(run, tube_suspected(s, false, 1), false, "density and pressure much alike");
+    expect(run, coarse_suspected(s), false, "an error that points to another field");
 }
 
 static bool never_zero(size_t n, const double *error, char *why)
@@ -103,6 +113,22 @@ static bool never_swapped(size_t fields, const char *const *names, size_t n, con
     return false;
 }
 
+static double distance(size_t n, const double *a, const double *b)
+{
+    double sum = 0;
+    for (size_t i = 0; i < n; i++) sum += fabs(a[i] - b[i]);
+    return sum;
+}
+
+static bool any_nearer(size_t fields, const char *const *names, size_t n, const double *volume,
+                       const double *const *value, const double *const *exact, char *why)
+{
+    for (size_t f = 0; f < fields; f++)
+        for (size_t g = 0; g < fields; g++)
+            if (distance(n, value[f], exact[g]) < distance(n, value[f], exact[f])) return true;
+    return suspicion_swapped(fields, names, n, volume, value, exact, why);
+}
+
 static const struct suspicion_subject no_zero = {never_zero, suspicion_repeated,
                                                  suspicion_idle_setting, suspicion_swapped};
 static const struct suspicion_subject loose_zero = {near_zero, suspicion_repeated,
@@ -113,6 +139,8 @@ static const struct suspicion_subject one_error = {suspicion_zero, suspicion_rep
                                                    suspicion_swapped};
 static const struct suspicion_subject no_swap = {suspicion_zero, suspicion_repeated,
                                                  suspicion_idle_setting, never_swapped};
+static const struct suspicion_subject near_swap = {suspicion_zero, suspicion_repeated,
+                                                   suspicion_idle_setting, any_nearer};
 
 static const struct check_mutant mutants[] = {
     {"suspicion_no_zero", "an error of 0 is welcome", &no_zero},
@@ -120,6 +148,7 @@ static const struct check_mutant mutants[] = {
     {"suspicion_adjacent_only", "only neighbouring levels compared", &adjacent},
     {"suspicion_first_error_only", "one equal error makes a setting idle", &one_error},
     {"suspicion_no_swap", "exchanged fields pass", &no_swap},
+    {"suspicion_any_nearer", "a coarse run is taken for an exchange", &near_swap},
     {0},
 };
 

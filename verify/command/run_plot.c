@@ -159,7 +159,7 @@ static enum status draw_maps(const struct run_settings *settings, const struct r
     struct plot_heat heats[MAPS];
     struct plot_panel panels[MAPS];
     char titles[MAPS][96], title[256], slice[64] = "";
-    if (map_create(&map, &result->problem.domain, s, error)) return error->status;
+    if (map_create(&map, &result->problem.domain, s, MAP_CELLS, error)) return error->status;
     const size_t cells = map.nx * map.ny;
     double *values = malloc((s->n + MAPS * cells) * sizeof *values);
     if (!values) {

@@ -125,6 +125,7 @@ static const struct reading_rule rules[] = {
     {"", "gamma", OUT},
     {"", "x0", OUT},
     {"", "dim", OUT},
+    {"", "dimension", OUT},
     {"", "low", OUT},
     {"", "high", OUT},
     {"", "samples", OUT},

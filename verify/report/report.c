@@ -19,26 +19,35 @@
 #include "suite.h"
 #include "verdict.h"
 
-/* The default scheme, and the two gradients with all else equal. */
-static const struct {
+/* The default scheme, and in 1D the two gradients with all else equal; in 2D and 3D the default
+ * with the other gradient, and SPH as textbooks have it. */
+static const struct scheme_label {
     const char *label, *keys;
-} schemes[] = {
-    {"default", ""},
-    {"standard", "kernel=cubic_spline eta=2 gradient=standard integrator=modified_leapfrog "
-                 "energy=internal"},
-    {"ia", "kernel=cubic_spline eta=2 gradient=ia integrator=modified_leapfrog energy=internal"},
+} line_schemes[] =
+    {
+        {"default", ""},
+        {"standard", "kernel=cubic_spline eta=2 gradient=standard integrator=modified_leapfrog "
+                     "energy=internal"},
+        {"ia",
+         "kernel=cubic_spline eta=2 gradient=ia integrator=modified_leapfrog energy=internal"},
+},
+  cloud_schemes[] = {
+      {"default", ""},
+      {"standard gradient", "gradient=standard"},
+      {"textbook SPH", "kernel=cubic_spline eta=2.4 gradient=standard viscosity=constant"},
 };
 /* Of the bound on the finest error, for schemes other than the default. */
 static const double compared_bound = 3;
 
-enum { SCHEMES = sizeof schemes / sizeof *schemes };
+enum { SCHEMES = sizeof line_schemes / sizeof *line_schemes };
 enum { KEYS_MAX = 16, COMMAND_TEXT = 1024 };
 
 /* What a report has of a case. */
 struct reported {
     const char *name;
-    bool studied;   /* it has a ladder of resolutions */
+    int dimension, schemes, studied; /* so many of the schemes have a run, and a study */
     char more[256]; /* what the command line of its studies has beside their keys */
+    char size[32];  /* what that of its runs has: "n=48^2", or nothing */
     struct study studies[SCHEMES];
 };
 
@@ -53,29 +62,46 @@ struct report {
 
 /* ---- what is to be computed ---- */
 
+static const struct scheme_label *scheme_of(const struct reported *of, int s)
+{
+    return &(of->dimension > 1 ? cloud_schemes : line_schemes)[s];
+}
+
 /* The case with the scheme's keys. */
-static enum status prepare(const char *name, int s, struct run_settings *settings,
+static enum status prepare(const struct reported *of, int s, struct run_settings *settings,
                            struct error *error)
 {
     char text[512], *arguments[KEYS_MAX], *rest = text;
     int n = 0;
-    snprintf(text, sizeof text, "%s", schemes[s].keys);
+    snprintf(text, sizeof text, "%s %s", of->size, scheme_of(of, s)->keys);
     for (char *word; (word = strtok_r(rest, " ", &rest));) {
         if (n == KEYS_MAX)
             return error_set(error, STATUS_ENVIRONMENT, "scheme %s: more than %d keys",
-                             schemes[s].label, KEYS_MAX);
+                             scheme_of(of, s)->label, KEYS_MAX);
         arguments[n++] = word;
     }
-    return run_prepare(settings, name, n, arguments, error);
+    return run_prepare(settings, of->name, n, arguments, error);
 }
 
-static void add_level(struct study *study, char *more, size_t size)
+/* The ladder of a case: its own, by day a smaller one if it has one, by night with more on top. */
+static void take_ladder(const struct report *report, struct reported *of, struct study *study)
 {
-    study->ladder[study->level_count] = 2 * study->ladder[study->level_count - 1];
-    study->level_count++;
-    int used = snprintf(more, size, " --n ");
-    for (size_t i = 0; i < study->level_count && used < (int)size; i++)
-        used += snprintf(more + used, size - (size_t)used, "%s%zu", i ? "," : "", study->ladder[i]);
+    const struct case_file *file = &study->settings.file;
+    const bool day = !report->nightly && file->quick_count;
+    const size_t *from = day ? file->quick : file->ladder;
+    size_t *n = &study->level_count;
+    memcpy(study->ladder, from, sizeof study->ladder);
+    *n = day ? file->quick_count : file->ladder_count;
+    if (report->nightly && file->night_count)
+        for (size_t i = 0; i < file->night_count && *n < CASE_LADDER_MAX; i++)
+            study->ladder[(*n)++] = file->night[i];
+    else if (report->nightly && *n < CASE_LADDER_MAX)
+        study->ladder[*n] = study->ladder[*n - 1] << file->dimension, ++*n;
+    if (study->ladder[*n - 1] == file->ladder[file->ladder_count - 1] && !day) return;
+    int used = snprintf(of->more, sizeof of->more, " --n ");
+    for (size_t i = 0; i < *n && used < (int)sizeof of->more; i++)
+        used += snprintf(of->more + used, sizeof of->more - (size_t)used, "%s%zu", i ? "," : "",
+                         study->ladder[i]);
 }
 
 static enum status add_study(struct report *report, struct reported *of, int s,
@@ -86,11 +112,8 @@ static enum status add_study(struct report *report, struct reported *of, int s,
     study->settings = *settings;
     if (sweep_parse(&study->sweep, NULL, error)) return error->status;
     for (size_t i = 0; i < file->gate_count && s; i++) file->gates[i].gate.bound *= compared_bound;
-    memcpy(study->ladder, file->ladder, sizeof study->ladder);
-    study->level_count = file->ladder_count;
+    take_ladder(report, of, study);
     study->replicates = study_replicates(settings);
-    if (report->nightly && study->level_count < CASE_LADDER_MAX)
-        add_level(study, of->more, sizeof of->more);
     return study_plan(study, &report->pool, error);
 }
 
@@ -107,40 +130,67 @@ static enum status add_piece(struct report *report, struct report_piece piece, s
     return report_piece_add(&report->pool, kept, error);
 }
 
-/* The cases that a report has pages for: those in 1D. */
+/* What a report has of a case, from its file. By day in 2D and 3D runs are as large as the ladder's
+ * finest level, of which they are then a part; and only the default scheme has a ladder. */
+static void plan_case(const struct report *report, const struct case_file *file,
+                      struct reported *of)
+{
+    const bool quick = !report->nightly, cloud = file->dimension > 1;
+    const size_t *ladder = file->quick_count ? file->quick : file->ladder;
+    const size_t levels = file->quick_count ? file->quick_count : file->ladder_count;
+    of->dimension = file->dimension;
+    of->schemes = SCHEMES;
+    of->studied = file->ladder_count ? of->schemes : 0;
+    if (!quick || !cloud) return;
+    if (levels) snprintf(of->size, sizeof of->size, "n=%zu", ladder[levels - 1]);
+    of->studied = levels >= ORDER_LEVELS_MIN;
+    /* one size for want of time: then no time for other schemes either */
+    if (file->ladder_count && !of->studied) of->schemes = 1;
+}
+
 static enum status find_cases(struct report *report, struct error *error)
 {
     for (const struct case_builtin *builtin = case_builtins; builtin->name; builtin++) {
         struct case_file file;
         if (case_load(&file, builtin->name, error)) return error->status;
-        if (file.dimension > 1) continue;
         if (!list_grow(&report->cases, report->case_count, sizeof *report->cases))
             return error_set(error, STATUS_ENVIRONMENT, "no memory for the cases");
-        report->cases[report->case_count++] = (struct reported){.name = builtin->name};
+        struct reported *of = &report->cases[report->case_count++];
+        *of = (struct reported){.name = builtin->name};
+        plan_case(report, &file, of);
     }
     return STATUS_OK;
 }
 
-/* Every case with every scheme. */
+/* The runs first: a study takes what is there of its levels. */
+static enum status add_case(struct report *report, size_t c, struct error *error)
+{
+    struct reported *of = &report->cases[c];
+    struct run_settings settings;
+    for (int s = 0; s < of->schemes; s++) {
+        struct report_piece run = {
+            .kind = REPORT_RUN, .where = of->name, .case_number = c, .scheme = s};
+        if (prepare(of, s, &run.settings, error) || add_piece(report, run, error))
+            return error->status;
+    }
+    for (int s = 0; s < of->studied; s++)
+        if (prepare(of, s, &settings, error) || add_study(report, of, s, &settings, error))
+            return error->status;
+    return STATUS_OK;
+}
+
+/* Every case with every scheme; what an error costs in those that have a ladder, in 2D and 3D by
+ * night. */
 static enum status add_cases(struct report *report, struct error *error)
 {
     if (find_cases(report, error)) return error->status;
+    for (size_t c = 0; c < report->case_count; c++)
+        if (add_case(report, c, error)) return error->status;
     for (size_t c = 0; c < report->case_count; c++) {
-        struct reported *of = &report->cases[c];
-        for (int s = 0; s < SCHEMES; s++) {
-            struct report_piece run = {
-                .kind = REPORT_RUN, .where = of->name, .case_number = c, .scheme = s};
-            if (prepare(of->name, s, &run.settings, error)) return error->status;
-            of->studied = run.settings.file.ladder_count > 0;
-            if ((of->studied && add_study(report, of, s, &run.settings, error)) ||
-                add_piece(report, run, error))
-                return error->status;
-        }
-    }
-    for (size_t c = 0; c < report->case_count; c++) {
-        struct report_piece bench = {.kind = REPORT_BENCH, .where = report->cases[c].name};
-        if (prepare(bench.where, 0, &bench.settings, error)) return error->status;
-        if (report->cases[c].studied && bench.settings.file.bench &&
+        const struct reported *of = &report->cases[c];
+        struct report_piece bench = {.kind = REPORT_BENCH, .where = of->name};
+        if (prepare(of, 0, &bench.settings, error)) return error->status;
+        if (of->studied && bench.settings.file.bench && (of->dimension == 1 || report->nightly) &&
             add_piece(report, bench, error))
             return error->status;
     }
@@ -178,15 +228,24 @@ static enum status add_all(struct report *report, struct error *error)
 
 /* ---- what has come out ---- */
 
+/* more: beside the keys, with a blank before it, or "". */
 static void describe(const char *command, const struct reported *of, int s, const char *more,
                      json_t *document)
 {
     char reproduce[COMMAND_TEXT];
-    const char *keys = schemes[s].keys;
+    const char *keys = scheme_of(of, s)->keys;
     snprintf(reproduce, sizeof reproduce, "sphproof %s %s%s%s%s", command, of->name, more,
              *keys ? " " : "", keys);
-    json_object_set_new(document, "label", json_string(schemes[s].label));
+    json_object_set_new(document, "label", json_string(scheme_of(of, s)->label));
     json_object_set_new(document, "reproduce", json_string(reproduce));
+}
+
+static void describe_run(const struct reported *of, int s, json_t *document)
+{
+    char size[40] = "";
+    if (*of->size) snprintf(size, sizeof size, " %s", of->size);
+    describe("run", of, s, size, document);
+    json_object_set_new(document, "dimension", json_integer(of->dimension));
 }
 
 static json_t *study_document(const struct reported *of, int s)
@@ -207,7 +266,7 @@ static json_t *study_document(const struct reported *of, int s)
 /* Two schemes of a case with the same errors to the last bit: one setting was not read. */
 static void suspect_same(const struct reported *of, json_t *documents[SCHEMES])
 {
-    for (int s = 1; s < SCHEMES; s++) {
+    for (int s = 1; s < of->studied; s++) {
         const struct study_result *a = &of->studies[s - 1].results[0],
                                   *b = &of->studies[s].results[0];
         char why[SUSPICION_TEXT];
@@ -236,7 +295,7 @@ static void add_documents(struct report *report, json_t *results)
         }
         switch (piece->kind) {
         case REPORT_RUN:
-            describe("run", &report->cases[piece->case_number], piece->scheme, "", job->document);
+            describe_run(&report->cases[piece->case_number], piece->scheme, job->document);
             json_array_append(runs, job->document);
             break;
         case REPORT_KERNEL:
@@ -286,7 +345,7 @@ static json_t *collect(struct report *report, const char *faults, double seconds
     for (size_t c = 0; c < report->case_count; c++) {
         const struct reported *of = &report->cases[c];
         json_t *documents[SCHEMES];
-        for (int s = 0; s < SCHEMES && of->studied; s++) {
+        for (int s = 0; s < of->studied; s++) {
             documents[s] = study_document(of, s);
             json_array_append_new(studies, documents[s]);
         }
@@ -317,7 +376,7 @@ static enum status judge_studies(struct report *report, struct error *error)
 {
     enum status status = STATUS_OK;
     for (size_t c = 0; c < report->case_count; c++)
-        for (int s = 0; s < SCHEMES && report->cases[c].studied && !status; s++)
+        for (int s = 0; s < report->cases[c].studied && !status; s++)
             status = study_judge(&report->cases[c].studies[s], &report->pool, error);
     return status;
 }

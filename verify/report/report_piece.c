@@ -7,6 +7,7 @@
 
 #include "certificate.h"
 #include "check_registry.h"
+#include "cloud_profile.h"
 #include "league.h"
 #include "precision.h"
 #include "profile.h"
@@ -27,7 +28,10 @@ static enum status compute_run(const struct report_piece *piece, json_t **docume
     if (status != STATUS_OK && status != STATUS_BROKE_DOWN) return status;
     *document = result_new("run");
     run_add_json(&piece->settings, &result, *document);
-    if (status == STATUS_OK) json_object_set_new(*document, "profile", profile_json(&result));
+    if (status == STATUS_OK)
+        json_object_set_new(*document, "profile",
+                            piece->settings.file.dimension > 1 ? cloud_profile_json(&result)
+                                                               : profile_json(&result));
     json_object_set_new(*document, "through_time", trace_json(&trace));
     run_free(&result);
     return status;
@@ -146,8 +150,9 @@ enum status report_piece_add(struct pool *pool, struct report_piece *piece, stru
     if (piece->kind == REPORT_CHECKS && piece->slow) strcat(name, ", slow ones too");
     if (piece->kind == REPORT_KERNEL)
         snprintf(name, sizeof name, "kernel %s, dim %d", piece->where, piece->dim);
-    if (piece->kind == REPORT_RUN && (run_resolve(&piece->run, &piece->settings, error) ||
-                                      !(key = run = run_job_key(&piece->run, "profile", error))))
+    if (piece->kind == REPORT_RUN &&
+        (run_resolve(&piece->run, &piece->settings, error) ||
+         !(key = run = run_job_key(&piece->run, RUN_JOB_PROFILE, error))))
         return error->status;
     const double weight = run ? run_job_weight(&piece->run) : weights[piece->kind];
     piece->job = pool_add(pool, name, key, weight, compute, piece);

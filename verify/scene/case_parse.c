@@ -22,7 +22,9 @@ enum { LINE_LENGTH_MAX = 180 };
     EXTRA(measure, fields)                                                                         \
     EXTRA(measure, exact)                                                                          \
     EXTRA(converge, n)                                                                             \
-    EXTRA(report, bench)
+    EXTRA(report, bench)                                                                           \
+    EXTRA(report, quick)                                                                           \
+    EXTRA(report, night)
 #define EXTRA_SYMBOL(section, name) EXTRA_##name,
 #define EXTRA_ENTRY(section, name)  {#section, #name},
 enum extra { EXTRA_LIST(EXTRA_SYMBOL) EXTRAS };
@@ -89,24 +91,25 @@ static void set_fields(struct parser *parser, const char *name, const char *valu
     }
 }
 
-static void set_ladder(struct parser *parser, const char *value)
+/* Rising numbers of particles; as many as an order needs, or any. */
+static void set_ladder(struct parser *parser, const char *name, const char *value, bool order,
+                       size_t *ladder, size_t *count)
 {
     char copy[LINE_LENGTH_MAX + 1], *rest = NULL;
-    struct case_file *file = parser->file;
     const struct setting_key *key = &setting_keys[SETTING_n];
+    const char *allowed =
+        order ? "rising numbers of particles, at least four" : "rising numbers of particles";
     snprintf(copy, sizeof copy, "%s", value);
     for (char *word = strtok_r(copy, " \t,", &rest); word; word = strtok_r(NULL, " \t,", &rest)) {
         double n;
-        if (!text_count(word, &n) || n < key->lo || n > key->hi ||
-            file->ladder_count == CASE_LADDER_MAX ||
-            (file->ladder_count && n <= (double)file->ladder[file->ladder_count - 1])) {
-            fail_value(parser, "n", value, "rising numbers of particles, at least four");
+        if (!text_count(word, &n) || n < key->lo || n > key->hi || *count == CASE_LADDER_MAX ||
+            (*count && n <= (double)ladder[*count - 1])) {
+            fail_value(parser, name, value, allowed);
             return;
         }
-        file->ladder[file->ladder_count++] = (size_t)n;
+        ladder[(*count)++] = (size_t)n;
     }
-    if (file->ladder_count < ORDER_LEVELS_MIN)
-        fail_value(parser, "n", value, "rising numbers of particles, at least four");
+    if (*count < (order ? ORDER_LEVELS_MIN : 1)) fail_value(parser, name, value, allowed);
 }
 
 static void set_flag(struct parser *parser, const char *name, const char *value, bool *flag)
@@ -160,7 +163,13 @@ static void set_extra(struct parser *parser, enum extra extra, const char *value
         set_fields(parser, "exact", value, parser->file->exact);
         return;
     case EXTRA_n:
-        set_ladder(parser, value);
+        set_ladder(parser, "n", value, true, file->ladder, &file->ladder_count);
+        return;
+    case EXTRA_quick:
+        set_ladder(parser, "quick", value, false, file->quick, &file->quick_count);
+        return;
+    case EXTRA_night:
+        set_ladder(parser, "night", value, false, file->night, &file->night_count);
         return;
     case EXTRA_bench:
         set_flag(parser, "bench", value, &file->bench);

@@ -31,6 +31,9 @@ struct case_file {
     bool fields[FIELDS];      /* those that a person wants to see */
     bool exact[FIELDS];       /* those that every scheme gets exactly: an error of 0 is no wonder */
     size_t ladder[CASE_LADDER_MAX], ladder_count;
+    /* What a quick report has in place of the ladder (a single n: one run, no study), and what a
+     * nightly one has on top of it. */
+    size_t quick[CASE_LADDER_MAX], quick_count, night[CASE_LADDER_MAX], night_count;
     struct case_gate gates[CASE_GATES_MAX];
     size_t gate_count;
     bool bench; /* a report measures what an error costs */

@@ -5,10 +5,10 @@
 #include <stdlib.h>
 
 /* As many cells as particles fit in a row. */
-static size_t cells_along(double length, double spacing)
+static size_t cells_along(double length, double spacing, size_t most)
 {
     const double fit = round(length / spacing);
-    return fit >= MAP_CELLS ? MAP_CELLS : fit >= 1 ? (size_t)fit : 1;
+    return fit >= (double)most ? most : fit >= 1 ? (size_t)fit : 1;
 }
 
 static void place(struct map *map, const struct domain *domain, const struct snapshot *s, size_t i)
@@ -29,7 +29,7 @@ static void place(struct map *map, const struct domain *domain, const struct sna
 }
 
 enum status map_create(struct map *map, const struct domain *domain, const struct snapshot *s,
-                       struct error *error)
+                       size_t most, struct error *error)
 {
     double volume = 1;
     *map = (struct map){.n = s->n};
@@ -41,8 +41,8 @@ enum status map_create(struct map *map, const struct domain *domain, const struc
         map->slice[0] = middle - spacing;
         map->slice[1] = middle + spacing;
     }
-    map->nx = cells_along(domain_length(domain, 0), spacing);
-    map->ny = cells_along(domain_length(domain, 1), spacing);
+    map->nx = cells_along(domain_length(domain, 0), spacing, most);
+    map->ny = cells_along(domain_length(domain, 1), spacing, most);
     const size_t cells = map->nx * map->ny;
     double *centres = map->storage =
         calloc(map->nx + map->ny + cells + s->n,

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Maps of a state: particles of a plane, or of a slice through the middle of a box, in cells that
- * are about as wide as particles are apart, at most MAP_CELLS in a direction. Code units. */
+ * are about as wide as particles are apart. Code units. */
 #ifndef SPHPROOF_MAP_H
 #define SPHPROOF_MAP_H
 
@@ -9,7 +9,7 @@
 #include "field.h"
 #include "simulation.h"
 
-enum { MAP_CELLS = 256 };
+enum { MAP_CELLS = 256 }; /* in a direction: as many as a picture shows */
 
 struct map {
     size_t nx, ny;
@@ -21,10 +21,11 @@ struct map {
     void *storage;
 };
 
-/* Particles of a state in a domain of 2 or 3 dimensions. A cell holds its lower edges; the last one
- * of a row or column also its upper edge. STATUS_ENVIRONMENT: no memory; else map_free. */
+/* Particles of a state in a domain of 2 or 3 dimensions; at most `most` cells in a direction. A
+ * cell holds its lower edges; the last one of a row or column also its upper edge.
+ * STATUS_ENVIRONMENT: no memory; else map_free. */
 enum status map_create(struct map *map, const struct domain *domain, const struct snapshot *s,
-                       struct error *error);
+                       size_t most, struct error *error);
 void map_free(struct map *map);
 
 /* z[j nx + i]: mean of the n values over the particles in cell (i, j); in an empty one the mean of

@@ -44,6 +44,13 @@ size_t pool_add(struct pool *pool, const char *name, const char *key, double wei
     return pool->count++;
 }
 
+size_t pool_find(const struct pool *pool, const char *key)
+{
+    for (size_t i = 0; i < pool->count; i++)
+        if (pool->jobs[i].key && strcmp(pool->jobs[i].key, key) == 0) return i;
+    return (size_t)-1;
+}
+
 void pool_free(struct pool *pool)
 {
     for (size_t i = 0; i < pool->count; i++) {

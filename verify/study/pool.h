@@ -52,6 +52,9 @@ struct pool_settings {
 size_t pool_add(struct pool *pool, const char *name, const char *key, double weight,
                 pool_compute *compute, const void *context);
 
+/* The number of the job with this key, (size_t)-1: there is none. */
+size_t pool_find(const struct pool *pool, const char *key);
+
 /* Runs all jobs. STATUS_ENVIRONMENT: no process or no memory; what single jobs say is in them. */
 enum status pool_run(struct pool *pool, const struct pool_settings *settings, struct error *error);
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "run_job.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -36,10 +37,12 @@ char *run_job_key(const struct run *run, const char *kind, struct error *error)
     return text;
 }
 
+/* Every step updates all particles, and there are as many as the box has particles in a row. */
 double run_job_weight(const struct run *run)
 {
     const double n = settings_real(&run->settings, SETTING_n);
-    return 0.002 + 5e-8 * n * n;
+    const int dim = run->asked.file.dimension;
+    return 0.002 + (dim == 1 ? 5e-8 : 1e-5) * pow(n, 1 + 1. / dim);
 }
 
 static enum status compute(const void *context, json_t **document, struct error *error)
@@ -57,8 +60,12 @@ static enum status compute(const void *context, json_t **document, struct error 
 enum status run_job_add(struct pool *pool, const struct run *run, size_t *job, struct error *error)
 {
     char name[128];
-    char *key = run_job_key(run, "run", error);
+    char *key = run_job_key(run, RUN_JOB_PROFILE, error);
     if (!key) return error->status;
+    *job = pool_find(pool, key);
+    free(key);
+    if (*job != (size_t)-1) return STATUS_OK;
+    if (!(key = run_job_key(run, "run", error))) return error->status;
     snprintf(name, sizeof name, "%s, n = %.10g", run->asked.file.name,
              settings_real(&run->settings, SETTING_n));
     *job = pool_add(pool, name, key, run_job_weight(run), compute, run);

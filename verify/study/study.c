@@ -14,6 +14,8 @@
 /* An order lost to the lattice sums shows a relative error of this many floors at most. */
 static const double floor_reach = 20;
 
+const char *const study_part_names[STUDY_PARTS] = {"azimuthal", "radial"};
+
 bool study_is_random(const struct settings *settings)
 {
     return problem_of(settings)->random(settings);
@@ -140,11 +142,15 @@ void study_free(struct study *study)
 
 /* ---- reading the runs ---- */
 
-static double error_of(const json_t *run, int field, int norm)
+static double norm_of(const json_t *run, const char *what, int norm)
 {
     const json_t *fields = json_object_get(run, "errors");
-    return value_member(json_object_get(fields, field_family.members[field]->name),
-                        field_norm_family.members[norm]->name);
+    return value_member(json_object_get(fields, what), field_norm_family.members[norm]->name);
+}
+
+static double error_of(const json_t *run, int field, int norm)
+{
+    return norm_of(run, field_family.members[field]->name, norm);
 }
 
 static void read_functionals(struct study_result *result, struct study_level *level,
@@ -188,6 +194,9 @@ static void read_run(struct study_result *result, struct study_level *level,
             moments->xy[f][m] += weight * x * y;
             moments->yy[f][m] += weight * y * y;
         }
+    for (int part = 0; part < STUDY_PARTS; part++)
+        for (int m = 0; m < NORMS; m++)
+            level->parts[part][m] += weight * log(norm_of(run, study_part_names[part], m));
     level->binned_density_l1 +=
         weight * log(value_member(json_object_get(run, "errors"), "binned_density_l1"));
     level->cpu_s += weight * value_member(json_object_get(run, "cost"), "cpu_s");
@@ -207,6 +216,10 @@ static void close_level(struct study_level *level, const json_t *first, size_t r
     for (int f = 0; f < FIELDS; f++)
         for (int m = 0; m < NORMS; m++)
             level->errors[f][m] = single ? error_of(first, f, m) : exp(level->errors[f][m]);
+    for (int part = 0; part < STUDY_PARTS; part++)
+        for (int m = 0; m < NORMS; m++)
+            level->parts[part][m] =
+                single ? norm_of(first, study_part_names[part], m) : exp(level->parts[part][m]);
     level->binned_density_l1 =
         single ? value_member(json_object_get(first, "errors"), "binned_density_l1")
                : exp(level->binned_density_l1);
@@ -297,6 +310,28 @@ static enum status fit_orders(const struct study *study, struct study_result *re
     return STATUS_OK;
 }
 
+/* Of what only 2D and 3D have: parts of the velocity, and functionals that are known exactly. (In
+ * 1D a mean's error goes through 0, and has no order.) */
+static enum status fit_cloud_orders(struct study_result *result, struct error *error)
+{
+    double spacing[CASE_LADDER_MAX], errors[CASE_LADDER_MAX];
+    const size_t n = result->level_count;
+    for (size_t l = 0; l < n; l++) spacing[l] = result->levels[l].spacing;
+    for (int part = 0; part < STUDY_PARTS; part++) {
+        for (size_t l = 0; l < n; l++) errors[l] = result->levels[l].parts[part][NORM_L1_CUT];
+        if (isfinite(errors[0]) && order_fit(n, spacing, errors, NULL, &result->parts[part], error))
+            return error->status;
+    }
+    for (size_t i = 0; i < result->functional_count; i++) {
+        const double exact = result->functional_exact[i];
+        for (size_t l = 0; l < n; l++) errors[l] = fabs(result->levels[l].functionals[i] - exact);
+        if (isfinite(exact) &&
+            order_fit(n, spacing, errors, NULL, &result->functional_errors[i], error))
+            return error->status;
+    }
+    return STATUS_OK;
+}
+
 static void extrapolate(struct study_result *result)
 {
     const struct study_level *last = &result->levels[result->level_count - 3];
@@ -322,7 +357,7 @@ static void judge_gates(struct study_result *result, const struct case_file *fil
         order->gate = gate->gate;
         if (file->ladder_count) {
             const double coarser = (double)file->ladder[file->ladder_count - 1] / (double)finest->n;
-            order->gate.bound *= pow(fmax(1, coarser), gate->gate.low);
+            order->gate.bound *= pow(fmax(1, coarser), gate->gate.low / file->dimension);
         }
         order->status = order_passes(&order->fit, &order->gate, order->why) ? GATE_PASS : GATE_FAIL;
         order->known = gate->known;
@@ -351,7 +386,7 @@ static void suspect(struct study_result *result, const struct case_file *file)
     double errors[CASE_LADDER_MAX];
     char why[SUSPICION_TEXT];
     for (int field = 0; field < FIELDS && !result->suspicion[0]; field++) {
-        if (file->exact[field]) continue;
+        if (file->exact[field] || problem_of(&result->settings)->fieldless) continue;
         for (size_t i = 0; i < result->level_count; i++)
             errors[i] = result->levels[i].errors[field][NORM_L1];
         if (suspicion_zero(result->level_count, errors, why) ||
@@ -442,7 +477,9 @@ enum status study_judge(struct study *study, const struct pool *pool, struct err
         if (result->excluded) continue;
         if (read_levels(study, c, pool, error)) return error->status;
         if (result->status == STATUS_OK) {
-            if (fit_orders(study, result, error)) return error->status;
+            if (fit_orders(study, result, error) ||
+                (study->settings.file.dimension > 1 && fit_cloud_orders(result, error)))
+                return error->status;
             extrapolate(result);
             judge_gates(result, &study->settings.file);
             judge_stillness(result);

@@ -19,12 +19,17 @@
 
 enum { STUDY_REPLICATES_MAX = 64 };
 
+/* Parts of the velocity of a circular flow, see problem.h. */
+enum study_part { STUDY_AZIMUTHAL, STUDY_RADIAL, STUDY_PARTS };
+extern const char *const study_part_names[STUDY_PARTS];
+
 /* Means over the replicates of one resolution; of errors and spacings the geometric mean. */
 struct study_level {
     size_t n;          /* of the first replicate */
     size_t n_range[2]; /* of all */
     double spacing, h; /* box/n; mean smoothing length in the window: lengths */
     double errors[FIELDS][NORMS], binned_density_l1;
+    double parts[STUDY_PARTS][NORMS]; /* NaN where the flow is not circular */
     /* Standard deviation of log(error) over the replicates, about a line of the ladder's slope
      * where they differ in n. */
     double spread[FIELDS][NORMS];
@@ -58,6 +63,8 @@ struct study_result {
     const char *functional_names[PROBLEM_FUNCTIONALS_MAX];
     double functional_exact[PROBLEM_FUNCTIONALS_MAX];
     struct order_extrapolation functionals[PROBLEM_FUNCTIONALS_MAX]; /* of the three finest */
+    /* In 2D and 3D: of L1 of the parts, and of |functional - exact|; n = 0: there is none. */
+    struct order_fit parts[STUDY_PARTS], functional_errors[PROBLEM_FUNCTIONALS_MAX];
     double floor_density, floor_gradient; /* lattice sums of kernel and eta, relative */
     bool floor_explains;                  /* a failed order is of the size of the floor */
     double still;                         /* largest of the levels' budgets; NaN: none */
@@ -107,8 +114,9 @@ size_t study_replicates(const struct run_settings *settings);
  * them within 2.5 %; next neighbours where that is less than a particle each. */
 size_t study_neighbour(size_t n, size_t replicates, size_t r);
 
-/* Adds "levels", "orders", "functionals", "floors", "budgets", "excluded", and "message" and
- * "suspicion" where there are any, to a converge document. */
+/* Adds "dimension", "measured" (what the case is judged by, the first thing first), "levels",
+ * "orders", "functionals", "floors", "budgets", "excluded", and "message" and "suspicion" where
+ * there are any, to a converge document. */
 void study_add_json(const struct study *study, json_t *document);
 
 #endif

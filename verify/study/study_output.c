@@ -11,19 +11,31 @@ static void set(json_t *object, const char *name, double value)
     json_object_set_new(object, name, result_number(value));
 }
 
+static json_t *norms_json(const double values[NORMS], bool known)
+{
+    json_t *norms = json_object();
+    for (int m = 0; m < NORMS; m++)
+        json_object_set_new(norms, field_norm_family.members[m]->name,
+                            known ? result_number(values[m]) : json_null());
+    return norms;
+}
+
 static json_t *level_json(const struct study *study, const struct study_level *level)
 {
+    const bool known = !problem_of(&study->settings.settings)->fieldless;
+    const bool line = study->settings.file.dimension == 1;
     json_t *errors = json_object(), *spread = json_object();
     for (int f = 0; f < FIELDS; f++) {
-        json_t *norms = json_object(), *spreads = json_object();
-        for (int m = 0; m < NORMS; m++) {
-            set(norms, field_norm_family.members[m]->name, level->errors[f][m]);
-            set(spreads, field_norm_family.members[m]->name, level->spread[f][m]);
-        }
-        json_object_set_new(errors, field_family.members[f]->name, norms);
-        json_object_set_new(spread, field_family.members[f]->name, spreads);
+        const char *name = field_family.members[f]->name;
+        json_object_set_new(errors, name, norms_json(level->errors[f], known));
+        json_object_set_new(spread, name, norms_json(level->spread[f], known));
     }
-    set(errors, "binned_density_l1", level->binned_density_l1);
+    for (int part = 0; part < STUDY_PARTS; part++)
+        if (isfinite(level->parts[part][NORM_L1]))
+            json_object_set_new(errors, study_part_names[part],
+                                norms_json(level->parts[part], true));
+    json_object_set_new(errors, "binned_density_l1",
+                        line ? result_number(level->binned_density_l1) : json_null());
     json_t *item = json_pack("{s:I, s:o, s:o, s:o, s:o, s:o}", "n", (json_int_t)level->n, "h",
                              result_number(level->h), "spacing", result_number(level->spacing),
                              "errors", errors, "cpu_s", result_number(level->cpu_s), "budget",
@@ -41,7 +53,7 @@ static json_t *level_json(const struct study *study, const struct study_level *l
 
 static const char *const gate_names[] = {"none", "pass", "fail", "known"};
 
-static json_t *order_json(const struct study_order *order, int field, int norm)
+static json_t *order_json(const struct study_order *order, const char *what, const char *norm)
 {
     json_t *pairwise = json_array(), *gate = json_null();
     for (size_t i = 0; i + 1 < order->fit.n; i++)
@@ -50,16 +62,14 @@ static json_t *order_json(const struct study_order *order, int field, int norm)
         gate =
             json_pack("{s:o, s:o, s:o}", "low", result_number(order->gate.low), "high",
                       result_number(order->gate.high), "bound", result_number(order->gate.bound));
-    json_t *item = json_pack(
-        "{s:s, s:s, s:o, s:o, s:o, s:o, s:s, s:o, s:s}", "field", field_family.members[field]->name,
-        "norm", field_norm_family.members[norm]->name, "order", result_number(order->fit.order),
-        "low", result_number(order->fit.low), "high", result_number(order->fit.high), "pairwise",
-        pairwise, "class", order_class_name(order->fit.class), "gate", gate, "status",
-        gate_names[order->status]);
+    json_t *item = json_pack("{s:s, s:s, s:o, s:o, s:o, s:o, s:s, s:o, s:s}", "field", what, "norm",
+                             norm, "order", result_number(order->fit.order), "low",
+                             result_number(order->fit.low), "high", result_number(order->fit.high),
+                             "pairwise", pairwise, "class", order_class_name(order->fit.class),
+                             "gate", gate, "status", gate_names[order->status]);
     if (order->status == GATE_FAIL || order->status == GATE_KNOWN)
         json_object_set_new(item, "why", json_string(order->why));
-    if (order->status == GATE_KNOWN)
-        json_object_set_new(item, "known", json_string(order->known));
+    if (order->status == GATE_KNOWN) json_object_set_new(item, "known", json_string(order->known));
     return item;
 }
 
@@ -118,15 +128,50 @@ static void add(json_t *document, const char *list, json_t *item, const json_t *
     json_array_append_new(array, item);
 }
 
+/* An order that has no gate, where there is one. */
+static void add_fit(json_t *document, const struct order_fit *fit, const char *what,
+                    const char *norm, const json_t *varied)
+{
+    const struct study_order order = {.fit = *fit, .status = GATE_NONE};
+    if (fit->n) add(document, "orders", order_json(&order, what, norm), varied);
+}
+
+/* Parts of a circular flow's velocity before its fields; where no field is known, functionals that
+ * are. */
+static json_t *measured_json(const struct study *study)
+{
+    const struct study_result *result = &study->results[0];
+    const struct case_file *file = &study->settings.file;
+    json_t *names = json_array();
+    if (result->level_count && isfinite(result->levels[0].parts[0][NORM_L1]))
+        for (int part = 0; part < STUDY_PARTS; part++)
+            json_array_append_new(names, json_string(study_part_names[part]));
+    for (int f = 0; f < FIELDS && !problem_of(&study->settings.settings)->fieldless; f++)
+        if (file->fields[f])
+            json_array_append_new(names, json_string(field_family.members[f]->name));
+    for (size_t i = 0; i < result->functional_count && !json_array_size(names); i++)
+        if (isfinite(result->functional_exact[i]))
+            json_array_append_new(names, json_string(result->functional_names[i]));
+    return names;
+}
+
 static void add_result(const struct study *study, const struct study_result *result,
                        const json_t *varied, json_t *document)
 {
     for (size_t l = 0; l < result->level_count; l++)
         add(document, "levels", level_json(study, &result->levels[l]), varied);
     if (result->status == STATUS_BROKE_DOWN) return;
-    for (int f = 0; f < FIELDS; f++)
+    for (int f = 0; f < FIELDS && !problem_of(&result->settings)->fieldless; f++)
         for (int m = 0; m < NORMS; m++)
-            add(document, "orders", order_json(&result->orders[f][m], f, m), varied);
+            add(document, "orders",
+                order_json(&result->orders[f][m], field_family.members[f]->name,
+                           field_norm_family.members[m]->name),
+                varied);
+    for (int part = 0; part < STUDY_PARTS; part++)
+        add_fit(document, &result->parts[part], study_part_names[part], "l1_cut", varied);
+    for (size_t i = 0; i < result->functional_count; i++)
+        add_fit(document, &result->functional_errors[i], result->functional_names[i], "error",
+                varied);
     for (size_t i = 0; i < result->functional_count; i++)
         add(document, "functionals", functional_json(result, i), varied);
     add(document, "floors", floor_json(result), varied);
@@ -139,6 +184,8 @@ void study_add_json(const struct study *study, json_t *document)
     static const char *const lists[] = {"levels", "orders", "functionals", "floors", "excluded"};
     for (size_t i = 0; i < sizeof lists / sizeof *lists; i++)
         json_object_set_new(document, lists[i], json_array());
+    json_object_set_new(document, "dimension", json_integer(study->settings.file.dimension));
+    json_object_set_new(document, "measured", measured_json(study));
     for (size_t c = 0; c < study->sweep.count; c++) {
         const struct study_result *result = &study->results[c];
         json_t *varied = sweep_json(&study->sweep, c);

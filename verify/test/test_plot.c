@@ -255,7 +255,7 @@ static void map_counts(void **state)
     struct snapshot s = {.n = 8, .x = {at[0], at[1]}};
     const struct domain square = {.dim = 2, .hi = {1, 1}}, box = {.dim = 3, .hi = {1, 1, 1}};
     struct map grid;
-    assert_int_equal(map_create(&grid, &square, &s, &error), STATUS_OK);
+    assert_int_equal(map_create(&grid, &square, &s, MAP_CELLS, &error), STATUS_OK);
     assert_int_equal(grid.nx, 3); /* the root of 8, rounded */
     assert_int_equal(grid.ny, 3);
     size_t counted = 0;
@@ -266,7 +266,7 @@ static void map_counts(void **state)
     map_free(&grid);
     /* a slice as thick as two distances: all of a box of 2^3, its upper end excepted */
     s.x[2] = at[0];
-    assert_int_equal(map_create(&grid, &box, &s, &error), STATUS_OK);
+    assert_int_equal(map_create(&grid, &box, &s, MAP_CELLS, &error), STATUS_OK);
     assert_int_equal(grid.seen, 5);
     map_free(&grid);
 }
@@ -282,7 +282,7 @@ static void map_means(void **state)
     const struct domain square = {.dim = 2, .hi = {1, 1}};
     struct map grid;
     double z[4];
-    assert_int_equal(map_create(&grid, &square, &s, &error), STATUS_OK);
+    assert_int_equal(map_create(&grid, &square, &s, MAP_CELLS, &error), STATUS_OK);
     assert_int_equal(grid.nx * grid.ny, 4);
     map_mean(&grid, values, z);
     const double expected[] = {2, 5, 5, 8}; /* (2 + 5 + 8)/3 where none is */

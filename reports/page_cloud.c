@@ -1,0 +1,354 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "page_cloud.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "html.h"
+#include "value.h"
+
+enum { MAPS = 3, QUANTITIES = 4, MAP_PIXELS = 300 };
+
+/* ---- maps ---- */
+
+/* Arrays of a map; owned. */
+struct map {
+    size_t nx, ny, cells;
+    double *x, *y, *z[MAPS];
+};
+
+static const char *const map_names[MAPS] = {"density", "speed", "error"};
+
+/* Numbers of an array, malloced; *n: how many. NULL: none. */
+static double *numbers(const json_t *array, size_t *n)
+{
+    const size_t size = json_array_size(array);
+    double *values = size ? malloc(size * sizeof *values) : NULL;
+    *n = values ? size : 0;
+    for (size_t i = 0; i < *n; i++) values[i] = value_real(json_array_get(array, i));
+    return values;
+}
+
+static void read_map(struct map *map, const json_t *run)
+{
+    const json_t *from = json_object_get(json_object_get(run, "profile"), "map");
+    map->x = numbers(json_object_get(from, "x"), &map->nx);
+    map->y = numbers(json_object_get(from, "y"), &map->ny);
+    map->cells = map->nx * map->ny;
+    for (int k = 0; k < MAPS; k++) {
+        size_t n;
+        map->z[k] = numbers(json_object_get(from, map_names[k]), &n);
+        if (n == map->cells) continue;
+        free(map->z[k]);
+        map->z[k] = NULL;
+    }
+}
+
+static void free_map(struct map *map)
+{
+    free(map->x);
+    free(map->y);
+    for (int k = 0; k < MAPS; k++) free(map->z[k]);
+}
+
+/* An edge of the box: centres of cells are half a cell inside. */
+static double edge(const double *centres, size_t n, bool upper)
+{
+    const double half = n > 1 ? (centres[1] - centres[0]) / 2 : 0.5;
+    return upper ? centres[n - 1] + half : centres[0] - half;
+}
+
+static struct plot_panel map_panel(const struct map *map, const struct plot_heat *heat,
+                                   const char *title)
+{
+    return (struct plot_panel){.title = title,
+                               .x_label = "x",
+                               .y_label = "y",
+                               .own_x = true,
+                               .equal = true,
+                               .x_min = edge(map->x, map->nx, false),
+                               .x_max = edge(map->x, map->nx, true),
+                               .y_min = edge(map->y, map->ny, false),
+                               .y_max = edge(map->y, map->ny, true),
+                               .key = PLOT_KEY_NONE,
+                               .heat = heat};
+}
+
+/* Wide boxes are stacked, others stand side by side. */
+static void map_size(struct plot *plot, const struct map *map)
+{
+    const double x = edge(map->x, map->nx, true) - edge(map->x, map->nx, false);
+    const double y = edge(map->y, map->ny, true) - edge(map->y, map->ny, false);
+    const double scale = MAP_PIXELS / fmax(x, y);
+    const int panels = (int)plot->panel_count;
+    plot->beside = x <= 1.5 * y;
+    if (plot->beside) {
+        plot->width = panels * (int)(188 + fmax(scale * x, 150));
+        plot->height = (int)(84 + scale * y);
+    } else {
+        plot->width = 188 + 2 * MAP_PIXELS;
+        plot->height = 20 + panels * (int)(72 + 2 * scale * y);
+    }
+}
+
+static void plot_maps(struct page_writer *writer, const char *case_name, const char *what,
+                      const char *title, const char *caption, const struct map *map,
+                      const struct plot_panel *panels, size_t count)
+{
+    char name[96];
+    page_plot_name(name, sizeof name, case_name, what);
+    struct plot plot = {.name = name, .title = title, .panels = panels, .panel_count = count};
+    map_size(&plot, map);
+    buffer_add(&writer->to, "<div class=\"wide\">");
+    page_plot(writer, &plot, caption);
+    buffer_add(&writer->to, "</div>\n");
+}
+
+static struct plot_heat heat_of(const struct map *map, int k)
+{
+    return (struct plot_heat){
+        .nx = map->nx, .ny = map->ny, .x = map->x, .y = map->y, .z = map->z[k], .image = true};
+}
+
+/* Of the first scheme: density, speed, error. */
+static void plot_first(struct page_writer *writer, const char *case_name, const json_t *run,
+                       const struct map *map)
+{
+    static const char *const titles[MAPS] = {"density", "speed |v|", "error |v − exact v|"};
+    struct plot_heat heats[MAPS];
+    struct plot_panel panels[MAPS];
+    char caption[256], slice[96] = "";
+    size_t n = 0;
+    const json_t *z =
+        json_object_get(json_object_get(json_object_get(run, "profile"), "map"), "slice");
+    for (int k = 0; k < MAPS; k++) {
+        if (!map->z[k]) continue;
+        heats[n] = heat_of(map, k);
+        panels[n] = map_panel(map, &heats[n], titles[k]);
+        n++;
+    }
+    if (json_array_size(z) == 2)
+        snprintf(slice, sizeof slice, " in the slice z = %.3g to %.3g",
+                 value_real(json_array_get(z, 0)), value_real(json_array_get(z, 1)));
+    snprintf(caption, sizeof caption,
+             "Scheme %s, n = %.0f, t = %.3g: means over the particles of each cell%s.",
+             value_text(run, "label"), value_member(run, "n"), value_member(run, "time"), slice);
+    if (n) plot_maps(writer, case_name, "maps", "Maps at the end", caption, map, panels, n);
+}
+
+/* One map of every scheme, on one colour scale each: the error, or speed where nothing is exact. */
+static void plot_others(struct page_writer *writer, const char *case_name,
+                        const json_t *const *runs, const struct map *maps, size_t count)
+{
+    struct plot_heat heats[PAGE_SCHEMES];
+    struct plot_panel panels[PAGE_SCHEMES];
+    const int k = maps[0].z[2] ? 2 : 0;
+    size_t n = 0;
+    for (size_t r = 0; r < count; r++) {
+        if (!maps[r].cells || !maps[r].z[k]) continue;
+        heats[n] = heat_of(&maps[r], k);
+        panels[n] = map_panel(&maps[r], &heats[n], value_text(runs[r], "label"));
+        n++;
+    }
+    if (n > 1)
+        plot_maps(writer, case_name, "schemes", "The same map for each scheme",
+                  k == 2 ? "The error |v − exact v| of each scheme, with the same number of "
+                           "particles. Each map has its own colour scale: read its numbers."
+                         : "Density of each scheme, with the same number of particles.",
+                  &maps[0], panels, n);
+}
+
+/* ---- particles over the exact curve ---- */
+
+struct curves {
+    size_t quantities, n, exact_n;
+    const char *names[QUANTITIES];
+    double *x, *value[QUANTITIES], *exact_x, *exact[QUANTITIES];
+};
+
+static void read_curves(struct curves *curves, const json_t *run)
+{
+    const json_t *profile = json_object_get(run, "profile"), *name;
+    const json_t *exact = json_object_get(profile, "exact");
+    size_t i, n;
+    curves->x = numbers(json_object_get(profile, "x"), &curves->n);
+    curves->exact_x = numbers(json_object_get(exact, "x"), &curves->exact_n);
+    json_array_foreach(json_object_get(profile, "quantities"), i, name)
+    {
+        const char *word = json_string_value(name);
+        if (i == QUANTITIES || !word) break;
+        curves->names[i] = word;
+        curves->value[i] = numbers(json_object_get(profile, word), &n);
+        if (n < curves->n) curves->n = n;
+        curves->exact[i] = numbers(json_object_get(exact, word), &n);
+        if (n < curves->exact_n) curves->exact_n = n;
+        curves->quantities++;
+    }
+}
+
+static void free_curves(struct curves *curves)
+{
+    free(curves->x);
+    free(curves->exact_x);
+    for (int q = 0; q < QUANTITIES; q++) {
+        free(curves->value[q]);
+        free(curves->exact[q]);
+    }
+}
+
+static const char *quantity_label(const char *name)
+{
+    static const char *const labels[][2] = {
+        {"azimuthal", "azimuthal v"}, {"radial", "radial v"}, {"velocity", "v along x"}};
+    for (size_t k = 0; k < sizeof labels / sizeof *labels; k++)
+        if (!strcmp(labels[k][0], name)) return labels[k][1];
+    return name;
+}
+
+static void plot_profiles(struct page_writer *writer, const char *case_name,
+                          const json_t *const *runs, const struct curves *curves, size_t count)
+{
+    const struct curves *first = &curves[0];
+    struct plot_series series[QUANTITIES][PAGE_SCHEMES + 1];
+    struct plot_panel panels[QUANTITIES];
+    const bool around = !strcmp(value_text(json_object_get(runs[0], "profile"), "over"), "R");
+    for (size_t q = 0; q < first->quantities; q++) {
+        size_t n = 0;
+        for (size_t k = count; k-- > 0;) { /* the first one on top */
+            if (curves[k].quantities != first->quantities) continue;
+            series[q][n++] = (struct plot_series){.label = value_text(runs[k], "label"),
+                                                  .kind = PLOT_POINTS,
+                                                  .n = curves[k].n,
+                                                  .x = curves[k].x,
+                                                  .y = curves[k].value[q],
+                                                  .color = (int)k + 1,
+                                                  .size = 0.4};
+        }
+        series[q][n++] = (struct plot_series){.label = "exact",
+                                              .kind = PLOT_LINES,
+                                              .n = first->exact_n,
+                                              .x = first->exact_x,
+                                              .y = first->exact[q],
+                                              .color = PLOT_NEUTRAL};
+        panels[q] =
+            (struct plot_panel){.x_label = around ? "distance R from the middle" : "position x",
+                                .y_label = quantity_label(first->names[q]),
+                                .key = q ? PLOT_KEY_NONE : PLOT_KEY_TOP,
+                                .series = series[q],
+                                .series_count = n};
+    }
+    char name[96];
+    page_plot_name(name, sizeof name, case_name, "profiles");
+    const struct plot plot = {.name = name,
+                              .title = "Particles over the exact solution",
+                              .panels = panels,
+                              .panel_count = first->quantities};
+    page_plot(writer, &plot,
+              "Each point is a particle (of many only some are drawn), the line is the exact "
+              "solution: the width of a cloud of points is noise, its distance from the line is "
+              "what the scheme has changed.");
+}
+
+void page_cloud_plots(struct page_writer *writer, const char *case_name, const json_t *const *runs,
+                      size_t count)
+{
+    struct map *maps = calloc(count, sizeof *maps);
+    struct curves *curves = calloc(count, sizeof *curves);
+    if (maps && curves) {
+        for (size_t r = 0; r < count; r++) {
+            read_map(&maps[r], runs[r]);
+            read_curves(&curves[r], runs[r]);
+        }
+        if (maps[0].cells) plot_first(writer, case_name, runs[0], &maps[0]);
+        if (maps[0].cells) plot_others(writer, case_name, runs, maps, count);
+        buffer_add(&writer->to, "<div class=\"figures\">\n");
+        if (curves[0].quantities) plot_profiles(writer, case_name, runs, curves, count);
+    } else {
+        writer->to.failed = true;
+    }
+    for (size_t r = 0; maps && curves && r < count; r++) {
+        free_map(&maps[r]);
+        free_curves(&curves[r]);
+    }
+    free(maps);
+    free(curves);
+}
+
+/* ---- tables ---- */
+
+static void error_columns(struct buffer *columns, const json_t *errors, const char *const *names,
+                          size_t count, bool *there)
+{
+    for (size_t q = 0; q < count; q++) {
+        there[q] = isfinite(value_inner(errors, names[q], "l1"));
+        if (!there[q]) continue;
+        buffer_add(columns, "|#L1 ");
+        html_words(columns, names[q]);
+    }
+}
+
+static void run_table(struct buffer *to, const json_t *const *runs, size_t count)
+{
+    static const char *const names[] = {"density", "velocity", "azimuthal",
+                                        "radial",  "pressure", "internal_energy"};
+    enum { NAMES = sizeof names / sizeof *names };
+    bool there[NAMES];
+    struct buffer columns = {0};
+    buffer_add(&columns, "scheme|#n");
+    error_columns(&columns, json_object_get(runs[0], "errors"), names, NAMES, there);
+    buffer_add(&columns, "|#momentum|#angular momentum|#energy|#steps|#CPU s|");
+    if (columns.data) html_table(to, "runs", columns.data);
+    buffer_free(&columns);
+    for (size_t k = 0; k < count; k++) {
+        buffer_add(to, "<tr>");
+        html_cell(to, value_text(runs[k], "label"));
+        html_cell_number(to, value_member(runs[k], "n"));
+        for (size_t q = 0; q < NAMES; q++)
+            if (there[q])
+                html_cell_number(to,
+                                 value_inner(json_object_get(runs[k], "errors"), names[q], "l1"));
+        html_cell_number(to, value_inner(runs[k], "conservation", "momentum"));
+        html_cell_number(to, value_inner(runs[k], "conservation", "angular_momentum"));
+        html_cell_number(to, value_inner(runs[k], "conservation", "energy"));
+        html_cell_number(to, value_inner(runs[k], "cost", "steps"));
+        html_cell_number(to, value_inner(runs[k], "cost", "cpu_s"));
+        buffer_add(to, "<td>");
+        html_status(to, value_text(runs[k], "status"));
+        buffer_add(to, "</td></tr>\n");
+    }
+    html_table_end(to);
+    buffer_add(to, "<p class=\"note\">L1 of the velocity: of the vector's difference. Momentum, "
+                   "angular momentum, energy: what has changed since the start, relative (angular "
+                   "momentum is not conserved where the box is periodic, nor by the gradients ia "
+                   "and corrected).</p>\n");
+}
+
+static void functional_table(struct buffer *to, const json_t *const *runs, size_t count)
+{
+    const char *name;
+    json_t *value;
+    if (!json_object_size(json_object_get(runs[0], "functionals"))) return;
+    html_table(to, "functionals", "scheme|scalar|#value|#exact or reference");
+    for (size_t k = 0; k < count; k++)
+        json_object_foreach(json_object_get(runs[k], "functionals"), name, value)
+        {
+            buffer_add(to, "<tr>");
+            html_cell(to, value_text(runs[k], "label"));
+            buffer_add(to, "<td>");
+            html_words(to, name);
+            buffer_add(to, "</td>");
+            html_cell_number(to, value_real(value));
+            html_cell_number(to, value_inner(runs[k], "functionals_exact", name));
+            buffer_add(to, "</tr>\n");
+        }
+    html_table_end(to);
+}
+
+void page_cloud_tables(struct buffer *to, const json_t *const *runs, size_t count)
+{
+    buffer_add(to, "<h4>Errors, conservation and cost of the runs above</h4>\n");
+    run_table(to, runs, count);
+    functional_table(to, runs, count);
+}

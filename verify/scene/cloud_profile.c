@@ -1,0 +1,222 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cloud_profile.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "map.h"
+#include "result.h"
+
+/* Of a page: particles in a plot, points of a curve. */
+enum { CLOUD_MAP_CELLS = 64, SHOWN = 1200, EXACT_POINTS = 201, QUANTITIES = 4 };
+
+/* ---- maps ---- */
+
+static void set_reals(json_t *object, const char *name, const double *values, size_t n)
+{
+    json_t *array = json_array();
+    for (size_t i = 0; i < n; i++) json_array_append_new(array, result_number(values[i]));
+    json_object_set_new(object, name, array);
+}
+
+static double speed_off(const struct snapshot *s, size_t i, int dim, const double exact[3])
+{
+    double square = 0;
+    for (int d = 0; d < dim; d++) square += (s->v[d][i] - exact[d]) * (s->v[d][i] - exact[d]);
+    return sqrt(square);
+}
+
+static void error_values(const struct run_result *result, double *values)
+{
+    const struct prepared *p = &result->problem;
+    const struct snapshot *s = &result->snapshot;
+    for (size_t i = 0; i < s->n; i++) {
+        struct problem_state state;
+        double x[3] = {0}, place[3];
+        for (int d = 0; d < p->domain.dim; d++) x[d] = s->x[d][i];
+        problem_sample(p, x, result->time, &state);
+        problem_place(p, s, i, place);
+        values[i] = window_contains(&p->window, place) ? speed_off(s, i, p->domain.dim, state.v)
+                                                       : (double)NAN;
+    }
+}
+
+static json_t *map_json(const struct run_result *result)
+{
+    static const double none[3] = {0};
+    const struct snapshot *s = &result->snapshot;
+    const int dim = result->problem.domain.dim;
+    struct map map;
+    struct error error;
+    if (map_create(&map, &result->problem.domain, s, CLOUD_MAP_CELLS, &error)) return NULL;
+    const size_t cells = map.nx * map.ny;
+    double *values = malloc((s->n + cells) * sizeof *values), *z = values + s->n;
+    json_t *object = values ? json_object() : NULL;
+    if (object) {
+        set_reals(object, "x", map.x, map.nx);
+        set_reals(object, "y", map.y, map.ny);
+        if (dim == 3) set_reals(object, "slice", map.slice, 2);
+        map_mean(&map, s->rho, z);
+        set_reals(object, "density", z, cells);
+        for (size_t i = 0; i < s->n; i++) values[i] = speed_off(s, i, dim, none);
+        map_mean(&map, values, z);
+        set_reals(object, "speed", z, cells);
+        if (!result->problem.problem->fieldless) {
+            error_values(result, values);
+            map_mean(&map, values, z);
+            set_reals(object, "error", z, cells);
+        }
+    }
+    free(values);
+    map_free(&map);
+    return object;
+}
+
+/* ---- particles over the exact curve ---- */
+
+/* What is drawn over the one coordinate. */
+struct curve {
+    const struct run_result *result;
+    bool around; /* over the distance from the middle, else over x */
+    const char *names[QUANTITIES];
+};
+
+static const struct curve over_x = {NULL, false, {"density", "velocity", "pressure", NULL}},
+                          over_R = {NULL, true, {"density", "azimuthal", "radial", "pressure"}};
+
+/* The coordinate of a place, in the frame that moves with the boost. */
+static double abscissa(const struct curve *curve, const double place[3])
+{
+    const struct prepared *p = &curve->result->problem;
+    double square = 0;
+    for (int d = 0; d < p->domain.dim; d++)
+        square += (place[d] - p->window.centre[d]) * (place[d] - p->window.centre[d]);
+    return curve->around ? sqrt(square) : place[0];
+}
+
+static void quantities(const struct curve *curve, const double place[3], double rho,
+                       const double v[3], double P, double values[QUANTITIES])
+{
+    double azimuthal, radial;
+    problem_circular(&curve->result->problem, place, v, &azimuthal, &radial);
+    const double around[QUANTITIES] = {rho, azimuthal, radial, P},
+                 along[QUANTITIES] = {rho, v[0], P};
+    for (int q = 0; q < QUANTITIES; q++) values[q] = (curve->around ? around : along)[q];
+}
+
+static void measured(const struct curve *curve, size_t i, double *at, double values[QUANTITIES])
+{
+    const struct snapshot *s = &curve->result->snapshot;
+    double place[3], v[3];
+    problem_place(&curve->result->problem, s, i, place);
+    problem_velocity(&curve->result->problem, s, i, v);
+    *at = abscissa(curve, place);
+    quantities(curve, place, s->rho[i], v, s->P[i], values);
+}
+
+/* Exact values at a place, as they move with the boost. */
+static void exactly(const struct curve *curve, const double place[3], double values[QUANTITIES])
+{
+    const struct prepared *p = &curve->result->problem;
+    struct prepared unboosted = *p;
+    struct problem_state state;
+    for (int d = 0; d < 3; d++) unboosted.boost[d] = 0;
+    problem_sample(&unboosted, place, curve->result->time, &state);
+    quantities(curve, place, state.rho, state.v, state.P, values);
+}
+
+/* The place of the curve that has the coordinate: on the line along x through the middle. */
+static void on_curve(const struct curve *curve, double at, double values[QUANTITIES])
+{
+    const struct window *window = &curve->result->problem.window;
+    double place[3] = {window->centre[0], window->centre[1], window->centre[2]};
+    place[0] = curve->around ? place[0] + at : at;
+    exactly(curve, place, values);
+}
+
+/* Do the exact values at particles depend on nothing but the coordinate? */
+static bool holds(const struct curve *curve)
+{
+    const struct snapshot *s = &curve->result->snapshot;
+    const size_t step = s->n / 97 + 1;
+    for (size_t i = 0; i < s->n; i += step) {
+        double place[3], here[QUANTITIES], there[QUANTITIES];
+        problem_place(&curve->result->problem, s, i, place);
+        if (!window_contains(&curve->result->problem.window, place)) continue;
+        exactly(curve, place, here);
+        on_curve(curve, abscissa(curve, place), there);
+        for (int q = 0; q < QUANTITIES; q++)
+            if (!(fabs(here[q] - there[q]) <= 1e-9 * (1 + fabs(here[q])))) return false;
+    }
+    return true;
+}
+
+static void append(json_t *object, const char *prefix, const char *name, double value)
+{
+    char full[64];
+    snprintf(full, sizeof full, "%s%s", prefix, name);
+    json_t *array = json_object_get(object, full);
+    if (!array) json_object_set_new(object, full, array = json_array());
+    json_array_append_new(array, result_number(value));
+}
+
+static void add_particles(const struct curve *curve, json_t *profile)
+{
+    const struct run_result *result = curve->result;
+    const size_t n = result->snapshot.n;
+    uint64_t chosen = 1; /* some of many, not every k-th: lattices have rows */
+    for (size_t i = 0; i < n; i++) {
+        double place[3], at, values[QUANTITIES], exact[QUANTITIES];
+        chosen = chosen * 6364136223846793005u + 1442695040888963407u;
+        if ((double)(chosen >> 11) * 0x1p-53 * (double)n > SHOWN) continue;
+        problem_place(&result->problem, &result->snapshot, i, place);
+        if (!window_contains(&result->problem.window, place)) continue;
+        measured(curve, i, &at, values);
+        exactly(curve, place, exact);
+        append(profile, "", "x", at);
+        for (int q = 0; q < QUANTITIES && curve->names[q]; q++) {
+            append(profile, "", curve->names[q], values[q]);
+            append(profile, "exact_", curve->names[q], exact[q]);
+        }
+    }
+}
+
+static json_t *exact_json(const struct curve *curve)
+{
+    const struct window *window = &curve->result->problem.window;
+    const double middle = window->centre[0], hi = window->hi[0];
+    const double from = curve->around ? 0 : window->lo[0], to = curve->around ? hi - middle : hi;
+    json_t *exact = json_object();
+    for (int i = 0; i < EXACT_POINTS; i++) {
+        /* not in the very middle, where directions are none, nor on an edge */
+        const double at = from + (to - from) * (i + 0.5) / EXACT_POINTS;
+        double values[QUANTITIES];
+        on_curve(curve, at, values);
+        append(exact, "", "x", at);
+        for (int q = 0; q < QUANTITIES && curve->names[q]; q++)
+            append(exact, "", curve->names[q], values[q]);
+    }
+    return exact;
+}
+
+json_t *cloud_profile_json(const struct run_result *result)
+{
+    const struct problem *problem = result->problem.problem;
+    struct curve curve = problem->circular ? over_R : over_x;
+    json_t *profile = json_object(), *names = json_array();
+    curve.result = result;
+    json_object_set_new(profile, "dim", json_integer(result->problem.domain.dim));
+    json_object_set_new(profile, "map", map_json(result));
+    for (int q = 0; q < QUANTITIES && curve.names[q]; q++)
+        json_array_append_new(names, json_string(curve.names[q]));
+    if (!problem->fieldless && holds(&curve)) {
+        json_object_set_new(profile, "over", json_string(curve.around ? "R" : "x"));
+        json_object_set(profile, "quantities", names);
+        add_particles(&curve, profile);
+        json_object_set_new(profile, "exact", exact_json(&curve));
+    }
+    json_decref(names);
+    return profile;
+}
