@@ -177,15 +177,13 @@ static void clouds(struct buffer *to, const json_t *results)
                    "exact value. n is the number of all particles.</p>\n");
 }
 
-void page_overview(struct page_writer *writer, const json_t *results)
+static void lines(struct buffer *to, const json_t *results)
 {
-    struct buffer *to = &writer->to, columns = {0};
+    struct buffer columns = {0};
     const json_t *studies = json_object_get(results, "studies"), *entry;
-    const char *labels[PAGE_SCHEMES], *more[PAGE_SCHEMES];
+    const char *labels[PAGE_SCHEMES];
     size_t count = schemes(studies, false, labels), i;
     if (!count) return;
-    const bool both = json_array_size(json_object_get(results, "runs")) &&
-                      schemes(json_object_get(results, "runs"), true, more);
     buffer_add(&columns, "case|#n");
     for (size_t k = 0; k < count; k++) {
         buffer_add(&columns, "|#L1 density, ");
@@ -194,8 +192,6 @@ void page_overview(struct page_writer *writer, const json_t *results)
     buffer_add(&columns, "|#order, ");
     buffer_escape(&columns, labels[0]);
     buffer_add(&columns, "|#momentum error|#energy error|");
-    buffer_add(to, "<section id=\"overview\"><h2>All cases at a glance</h2>\n");
-    if (both) buffer_add(to, "<h3>In 1D</h3>\n");
     if (columns.data) html_table(to, "overview", columns.data);
     buffer_free(&columns);
     json_array_foreach(studies, i, entry)
@@ -204,6 +200,18 @@ void page_overview(struct page_writer *writer, const json_t *results)
             row(to, results, entry, labels, count);
     }
     html_table_end(to);
+}
+
+void page_overview(struct page_writer *writer, const json_t *results)
+{
+    struct buffer *to = &writer->to;
+    const char *labels[PAGE_SCHEMES];
+    if (!json_array_size(json_object_get(results, "studies"))) return;
+    const bool both = schemes(json_object_get(results, "studies"), false, labels) &&
+                      schemes(json_object_get(results, "runs"), true, labels);
+    buffer_add(to, "<section id=\"overview\"><h2>All cases at a glance</h2>\n");
+    if (both) buffer_add(to, "<h3>In 1D</h3>\n");
+    lines(to, results);
     clouds(to, results);
     buffer_add(to, "</section>\n");
 }

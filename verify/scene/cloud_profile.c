@@ -10,7 +10,7 @@
 #include "result.h"
 
 /* Of a page: particles in a plot, points of a curve. */
-enum { CLOUD_MAP_CELLS = 64, SHOWN = 1200, EXACT_POINTS = 201, QUANTITIES = 4 };
+enum { CLOUD_MAP_CELLS = 64, SHOWN = 600, EXACT_POINTS = 201, QUANTITIES = 4 };
 
 /* ---- maps ---- */
 

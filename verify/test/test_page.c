@@ -203,6 +203,43 @@ static void overshoots(void **state)
     free(html);
 }
 
+/* A case in 2D that is judged by a scalar: its error falls by 4 where n does by 4, which is order 2
+ * against n^(1/2). */
+static void in_two_dimensions(void **state)
+{
+    (void)state;
+    json_t *results = sound(), *run = first(results, "runs"), *study = first(results, "studies");
+    json_object_set_new(run, "dimension", json_integer(2));
+    json_object_set_new(study, "dimension", json_integer(2));
+    json_object_set_new(study, "measured", json_pack("[s]", "mode_amplitude"));
+    json_array_append_new(json_object_get(study, "functionals"),
+                          json_pack("{s:s, s:[f,f], s:f, s:f}", "name", "mode_amplitude", "values",
+                                    0.5, 0.775, "extrapolated", 0.8, "exact", 0.9));
+    json_array_append_new(json_object_get(study, "orders"),
+                          json_pack("{s:s, s:s, s:f, s:f, s:f, s:[f], s:s}", "field",
+                                    "mode_amplitude", "norm", "error", "order", 2.25, "low", 2.,
+                                    "high", 2.5, "pairwise", 2.25, "status", "none"));
+    json_object_set_new(run, "functionals", json_pack("{s:f}", "mode_amplitude", 0.775));
+    json_object_set_new(run, "functionals_exact", json_pack("{s:f}", "mode_amplitude", 0.9));
+    json_object_set_new(
+        run, "profile",
+        json_pack("{s:i, s:{s:[f,f], s:[f,f], s:[f,f,f,f], s:[f,f,f,f], s:[f,f,f,f]}, s:s, s:[s],"
+                  " s:[f,f], s:[f,f], s:{s:[f,f], s:[f,f]}}",
+                  "dim", 2, "map", "x", 0.25, 0.75, "y", 0.25, 0.75, "density", 1., 2., 1., 2.,
+                  "speed", 0., 1., 0., 1., "error", 0.1, 0.2, 0.1, 0.2, "over", "R", "quantities",
+                  "radial", "x", 0.1, 0.4, "radial", 0., 0.01, "exact", "x", 0., 0.5, "radial", 0.,
+                  0.));
+    char *html = page_of(results);
+    assert_non_null(strstr(html, "In 2D: 1 case<"));
+    assert_non_null(strstr(html, "order of the error of mode amplitude: ia 2.25 ± 0.25"));
+    assert_non_null(strstr(html, "<td>mode amplitude</td><td class=\"n\">0.125</td>"));
+    assert_non_null(strstr(html, "<td class=\"n\">0.4</td>")); /* of the coarse level */
+    assert_non_null(strstr(html, "plots/sod-maps.dat"));
+    assert_non_null(strstr(html, "plots/sod-profiles.dat"));
+    assert_null(strstr(html, "plots/sod-residuals.dat"));
+    free(html);
+}
+
 /* What is known to fail is shown with its reason, and fails nothing. */
 static void known(void **state)
 {
@@ -346,7 +383,7 @@ static void summary(void **state)
     json_t *good = sound(), *bad = unsound();
     char *passes = summary_text(good), *fails = summary_text(bad);
     assert_non_null(strstr(passes, "All is well"));
-    assert_non_null(strstr(passes, "| sod | ia | 1.00 | 0.90 to 1.10 |"));
+    assert_non_null(strstr(passes, "| sod | ia | L1(density) | 1.00 | 0.90 to 1.10 | 5.00e-3 |"));
     assert_non_null(strstr(fails, "5 failures; look first at kernels: sign"));
     assert_int_equal(occurrences(fails, "\n- **"), 5);
     free(passes);
@@ -429,13 +466,21 @@ static void unreadable(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(good_page),   cmocka_unit_test(bad_page),
-        cmocka_unit_test(known),       cmocka_unit_test(folded_cases),
-        cmocka_unit_test(overshoots),  cmocka_unit_test(since),
-        cmocka_unit_test(words),       cmocka_unit_test(broke_since),
-        cmocka_unit_test(empty_page),  cmocka_unit_test(page_without_gnuplot),
-        cmocka_unit_test(junit),       cmocka_unit_test(summary),
-        cmocka_unit_test(cause_first), cmocka_unit_test(unreadable),
+        cmocka_unit_test(good_page),
+        cmocka_unit_test(bad_page),
+        cmocka_unit_test(known),
+        cmocka_unit_test(folded_cases),
+        cmocka_unit_test(in_two_dimensions),
+        cmocka_unit_test(overshoots),
+        cmocka_unit_test(since),
+        cmocka_unit_test(words),
+        cmocka_unit_test(broke_since),
+        cmocka_unit_test(empty_page),
+        cmocka_unit_test(page_without_gnuplot),
+        cmocka_unit_test(junit),
+        cmocka_unit_test(summary),
+        cmocka_unit_test(cause_first),
+        cmocka_unit_test(unreadable),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
