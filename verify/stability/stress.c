@@ -7,10 +7,10 @@
 #include <string.h>
 
 #include "stress_amplify.h"
+#include "stress_cloud.h"
 #include "stress_linear.h"
 #include "stress_outcome.h"
 #include "stress_run.h"
-#include "stress_tubes.h"
 
 enum { STEPS_QUICK = 30000, STEPS_NIGHTLY = 3000000 };
 /* Steps times n^2, which is what they cost where few particles see all: about a minute. */
@@ -63,7 +63,7 @@ static bool row_at(const struct stress_group *group, size_t i, struct stress_ent
 
 static const struct stress_entry *columns_of(const struct stress_group *group)
 {
-    return group->columns ? group->columns : stress_tubes();
+    return group->columns ? group->columns : group->made();
 }
 
 static bool is_scheme(const struct stress_cell *cell, size_t i)
@@ -90,6 +90,11 @@ static void list_cells(struct stress *stress, size_t count, char *const *names)
     }
 }
 
+static const char *case_of(const struct stress_cell *cell)
+{
+    return cell->group->case_name ? cell->group->case_name : cell->column->label;
+}
+
 static enum status prepare(struct stress_cell *cell, bool nightly, struct error *error)
 {
     char *arguments[STRESS_ARGUMENTS], own[2 * STRESS_TEXT];
@@ -102,8 +107,7 @@ static enum status prepare(struct stress_cell *cell, bool nightly, struct error 
         add_keys(cell, row, error))
         return error->status;
     for (size_t i = 0; i < cell->argument_count; i++) arguments[i] = cell->arguments[i];
-    if (run_prepare(&cell->settings, cell->group->case_name, (int)cell->argument_count, arguments,
-                    error))
+    if (run_prepare(&cell->settings, case_of(cell), (int)cell->argument_count, arguments, error))
         return error->status;
     const double n = settings_real(&cell->settings.settings, SETTING_n);
     cell->step_budget =
@@ -113,7 +117,7 @@ static enum status prepare(struct stress_cell *cell, bool nightly, struct error 
 
 void stress_command(const struct stress_cell *cell, char command[STRESS_COMMAND])
 {
-    int used = snprintf(command, STRESS_COMMAND, "sphproof run %s", cell->group->case_name);
+    int used = snprintf(command, STRESS_COMMAND, "sphproof run %s", case_of(cell));
     for (size_t i = 0; i < cell->argument_count && used < STRESS_COMMAND; i++) {
         const char *argument = cell->arguments[i], *quote = strchr(argument, ' ') ? "\"" : "";
         const int key = (int)strcspn(argument, "=") + 1;
@@ -127,6 +131,8 @@ static enum status compute(const void *context, json_t **document, struct error 
     const struct stress_cell *cell = context;
     const enum stress_kind kind = cell->group->kind;
     if (kind == STRESS_AMPLIFY) return stress_amplify(cell, document, error);
+    if (kind == STRESS_CLOUD || kind == STRESS_LATTICE || kind == STRESS_CLOUD_STEP)
+        return stress_cloud(cell, document, error);
     const bool run = kind == STRESS_RUN || kind == STRESS_DRIFT;
     return run ? stress_run(cell, document, error) : stress_linear(cell, document, error);
 }
@@ -143,7 +149,9 @@ static enum status add_cell(struct stress_cell *cell, struct pool *pool, struct 
     snprintf(name, sizeof name, "stress %s: %s, %s", cell->group->member.name, cell->row.label,
              cell->column->label);
     const double n = settings_real(&cell->settings.settings, SETTING_n);
-    cell->job = pool_add(pool, name, key, 0.02 + 1e-6 * n * n, compute, cell);
+    const double line = 1e-6 * n * n, cloud = cell->settings.file.dimension > 1 ? 2e-5 * n : 0;
+    cell->job =
+        pool_add(pool, name, key, 0.02 + (cloud > 0 ? cloud * sqrt(n) : line), compute, cell);
     return cell->job == (size_t)-1 ? error_set(error, STATUS_ENVIRONMENT, "no memory for a cell")
                                    : STATUS_OK;
 }
@@ -189,7 +197,7 @@ static json_t *cell_json(const struct stress_cell *cell, const struct pool_job *
     char command[STRESS_COMMAND];
     json_t *settings = json_object(), *entry = json_object();
     stress_command(cell, command);
-    json_object_set_new(settings, "case", json_string(cell->group->case_name));
+    json_object_set_new(settings, "case", json_string(case_of(cell)));
     for (size_t i = 0; i < cell->argument_count; i++) {
         const char *argument = cell->arguments[i];
         char key[STRESS_TEXT];
@@ -211,7 +219,8 @@ static json_t *cell_json(const struct stress_cell *cell, const struct pool_job *
         json_decref(outcome);
     }
     if (cell->group->kind == STRESS_LIMIT || cell->group->kind == STRESS_STEP ||
-        cell->group->kind == STRESS_AMPLIFY)
+        cell->group->kind == STRESS_AMPLIFY || cell->group->kind == STRESS_LATTICE ||
+        cell->group->kind == STRESS_CLOUD_STEP)
         snprintf(command, sizeof command, "sphproof stress %s", cell->group->member.name);
     if (cell->group->kind == STRESS_PAIRING)
         snprintf(command, sizeof command, "sphproof kernel %s --dim %s", cell->row.label,
@@ -260,7 +269,8 @@ static bool is_wrong(const struct stress_cell *cell, const json_t *entry)
     const char *outcome = outcome_of(entry),
                *reason = json_string_value(json_object_get(entry, "reason"));
     const enum stress_kind kind = cell->group->kind;
-    const bool theory = kind == STRESS_LIMIT || kind == STRESS_STEP;
+    const bool theory = kind == STRESS_LIMIT || kind == STRESS_STEP || kind == STRESS_LATTICE ||
+                        kind == STRESS_CLOUD_STEP;
     const bool amplified = kind == STRESS_AMPLIFY && is_scheme(cell, 0) && !cell->group->known;
     return strncmp(reason, "silent NaN", 10) == 0 || strncmp(reason, "crash", 5) == 0 ||
            strcmp(outcome, "refused") == 0 || ((theory || amplified) && strcmp(outcome, "ok") != 0);

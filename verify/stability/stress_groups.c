@@ -2,7 +2,8 @@
  * The maps of the stress test. A new one is an entry here. */
 #include "integrator.h"
 #include "kernel.h"
-#include "stress_cell.h"
+#include "stress_cloud.h"
+#include "stress_tubes.h"
 
 #define ENTRIES(...) ((const struct stress_entry[]){__VA_ARGS__, {NULL, NULL, false}})
 #define SEED                                                                                       \
@@ -24,6 +25,8 @@ const struct stress_entry stress_schemes[] = {
 #define NOISE                                                                                      \
     "lo=0;hi=1;n=64;amplitude=0;jitter=1e-6;energy=internal;h_method=newton;pair_width=mean;skip=" \
     "none"
+
+#define CLOUD_NOISE "jitter=1e-6;energy=internal;h_method=newton;pair_width=mean;skip=none"
 
 const struct stress_group stress_groups[] = {
     {.member = {"limits", "largest eta at which a lattice is stable: theory and noise runs", ""},
@@ -193,6 +196,7 @@ const struct stress_group stress_groups[] = {
      .case_name = "sod",
      .keys = "window=-0.5 0.5",
      .column_title = "tube",
+     .made = stress_tubes,
      .bound = 0.3},
     {.member = {"amplification", "what a start moved by 1e-13 of the spacing comes to", ""},
      .kind = STRESS_AMPLIFY,
@@ -222,5 +226,72 @@ const struct stress_group stress_groups[] = {
      .bound = 1e4,
      .known = "the quadratic spline's fronts of one to two particles let perturbations grow by 1.2 "
               "for every particle that they pass, at Mach 1.6 to 2.2 and beyond 3.5"},
+    {.member = {"clouds", "every case in 2D and 3D: what survives, and who has got into pairs", ""},
+     .kind = STRESS_CLOUD,
+     .keys = "",
+     .column_title = "case",
+     .rows = ENTRIES({"default", "", false}, {"standard gradient", "gradient=standard", false},
+                     {"corrected gradient", "gradient=corrected", true},
+                     {"textbook SPH",
+                      "kernel=cubic_spline;eta=2.4;gradient=standard;viscosity=constant", false},
+                     {"Wendland C2, Balsara",
+                      "kernel=wendland_c2;eta=3;viscosity=reconstructed;balsara=on", true},
+                     {"lagrangian, mass element",
+                      "formulation=lagrangian;volume_element=mass;viscosity=reconstructed", true}),
+     .made = stress_clouds,
+     .bound = 0.01},
+    {.member = {"crowding", "disordered gas in 2D at rest: who pairs, at which width", ""},
+     .kind = STRESS_CLOUD,
+     .case_name = "rest_2d",
+     .keys = "n=16^2;t_end=3",
+     .row_title = "kernel",
+     .column_title = "gradient and eta",
+     .row_family = &kernel_family,
+     .columns =
+         ENTRIES({"standard 2.4", "gradient=standard;eta=2.4", false},
+                 {"standard 3.6", "gradient=standard;eta=3.6", true},
+                 {"standard 4.8", "gradient=standard;eta=4.8", false},
+                 {"ia 2.4", "gradient=ia;eta=2.4", false}, {"ia 3.6", "gradient=ia;eta=3.6", true},
+                 {"ia 4.8", "gradient=ia;eta=4.8", false},
+                 {"corrected 4.8", "gradient=corrected;eta=4.8", true}),
+     .bound = 0.01},
+    {.member = {"lattices", "growth of noise on lattices in 2D: theory and noise runs", ""},
+     .kind = STRESS_LATTICE,
+     .case_name = "rest_2d",
+     .keys = "n=12^2;" CLOUD_NOISE ";viscosity=none;integrator=rk3",
+     .row_title = "kernel",
+     .column_title = "lattice, gradient, eta",
+     .row_family = &kernel_family,
+     .columns =
+         ENTRIES({"square standard 2.4", "lattice=square;gradient=standard;eta=2.4", false},
+                 {"square standard 3.6", "lattice=square;gradient=standard;eta=3.6", true},
+                 {"square ia 2.4", "lattice=square;gradient=ia;eta=2.4", false},
+                 {"square ia 3.6", "lattice=square;gradient=ia;eta=3.6", true},
+                 {"square corrected 3.6", "lattice=square;gradient=corrected;eta=3.6", true},
+                 {"hexagonal standard 3.6", "lattice=hexagonal;gradient=standard;eta=3.6", true},
+                 {"hexagonal ia 3.6", "lattice=hexagonal;gradient=ia;eta=3.6", true}),
+     .bound = 0.15},
+    {.member = {"lattices_3d", "growth of noise on lattices in 3D: theory and noise runs", ""},
+     .kind = STRESS_LATTICE,
+     .case_name = "rest_3d",
+     .keys = "n=8^3;" CLOUD_NOISE ";viscosity=none;integrator=rk3;eta=2.4",
+     .row_title = "kernel",
+     .column_title = "lattice, gradient",
+     .row_family = &kernel_family,
+     .columns = ENTRIES({"cubic standard", "lattice=cubic;gradient=standard", true},
+                        {"cubic ia", "lattice=cubic;gradient=ia", true},
+                        {"fcc standard", "lattice=fcc;gradient=standard;n=500", true},
+                        {"fcc ia", "lattice=fcc;gradient=ia;n=500", true}),
+     .bound = 0.15},
+    {.member = {"cloud_steps", "largest time step in 2D: theory and noise runs", ""},
+     .kind = STRESS_CLOUD_STEP,
+     .case_name = "rest_2d",
+     .keys = "n=10^2;" CLOUD_NOISE ";kernel=cubic_spline;eta=2.4;gradient=standard;lattice=square",
+     .row_title = "integrator",
+     .column_title = "viscosity",
+     .row_family = &integrator_family,
+     .columns = ENTRIES({"none", "viscosity=none", true},
+                        {"constant", "viscosity=constant;alpha=1", true}),
+     .bound = 0.1},
 };
 const size_t stress_group_count = sizeof stress_groups / sizeof *stress_groups;

@@ -8,54 +8,11 @@
 #include "measure.h"
 #include "result.h"
 #include "stability.h"
+#include "stress_noise.h"
 #include "stress_outcome.h"
 
 #define ETA_MAX 9.5
 enum { WAVES = 64, ETAS = 86, BISECTIONS = 7 };
-
-/* --- noise runs --------------------------------------------------------------------------------
- */
-
-static void set(struct run_settings *settings, enum setting key, double value)
-{
-    settings->settings.value[key].real[0] = value;
-    settings->settings.value[key].automatic = false;
-}
-
-static bool within_budget(void *context, double time, uint64_t steps)
-{
-    (void)time;
-    return (double)steps < *(const double *)context;
-}
-
-/* Root mean square speed over the sound speed after `time` spacings/c; INFINITY where it broke
- * down, which noise that grows does in the end. */
-static double noise_after(struct run_settings settings, double time)
-{
-    struct run run;
-    struct run_result result;
-    struct error error;
-    const double gamma = settings_real(&settings.settings, SETTING_gamma), c = sqrt(gamma);
-    set(&settings, SETTING_t_end, time / c / settings_real(&settings.settings, SETTING_n));
-    /* time steps that collapse are growth, too */
-    double budget = 500 + 8 * time;
-    settings.progress = within_budget;
-    settings.progress_context = &budget;
-    enum status status = run_resolve(&run, &settings, &error);
-    if (!status) status = run_execute(&run, &result, &error);
-    const bool whole =
-        status == STATUS_OK && result.time >= settings_real(&settings.settings, SETTING_t_end);
-    const double noise = whole ? run_error(&result, FIELD_VELOCITY, NORM_L2) / c : (double)INFINITY;
-    if (status == STATUS_OK || status == STATUS_BROKE_DOWN) run_free(&result);
-    return noise;
-}
-
-enum { EARLY = 20 }; /* spacings/c: the noise has found its balance of motion and pressure */
-
-static bool noise_grows(const struct run_settings *settings, double time)
-{
-    return !(noise_after(*settings, time) <= 2 * noise_after(*settings, EARLY));
-}
 
 /* --- limits of eta -----------------------------------------------------------------------------
  */
@@ -79,8 +36,8 @@ static json_t *limit(const struct stress_cell *cell, const struct scheme *scheme
     const int count = stability_intervals(scheme, gamma, ETA_MAX, stable, 4);
     const double predicted = count ? stable[0].to : (double)NAN;
     if (predicted >= ETA_MAX) {
-        set(&settings, SETTING_eta, ETA_MAX);
-        const bool grows = noise_grows(&settings, 600);
+        stress_noise_set(&settings, SETTING_eta, ETA_MAX);
+        const bool grows = stress_noise_grows(&settings, 600);
         snprintf(reason, sizeof reason, "no limit up to eta = %g; noise there %s", ETA_MAX,
                  grows ? "grows" : "does not grow");
         return stress_outcome((double)NAN, grows ? ETA_MAX : (double)NAN,
@@ -95,12 +52,13 @@ static json_t *limit(const struct stress_cell *cell, const struct scheme *scheme
     double low = 0.9 * predicted, high = fmin(2 * beyond - predicted, 0.5 * (beyond + next));
     for (int i = 0; i < BISECTIONS; i++) {
         const double eta = 0.5 * (low + high);
-        set(&settings, SETTING_eta, eta);
-        *(noise_grows(&settings, time) ? &high : &low) = eta;
+        stress_noise_set(&settings, SETTING_eta, eta);
+        *(stress_noise_grows(&settings, time) ? &high : &low) = eta;
     }
     const double measured = 0.5 * (low + high);
-    set(&settings, SETTING_eta, beyond);
-    const double rate = log(noise_after(settings, 2 * half) / noise_after(settings, half)) / half;
+    stress_noise_set(&settings, SETTING_eta, beyond);
+    const double rate =
+        log(stress_noise_after(settings, 2 * half) / stress_noise_after(settings, half)) / half;
     int used = snprintf(reason, sizeof reason,
                         "growth at eta = %.3f: %.4f c/dx by theory, %.4f of the noise", beyond,
                         theory, rate);
@@ -140,8 +98,8 @@ static json_t *time_step(const struct stress_cell *cell, const struct scheme *sc
     double low = 0, high = known ? 1.5 * predicted : 5;
     for (int i = 0; i < BISECTIONS + 1; i++) {
         const double step = 0.5 * (low + high);
-        set(&settings, SETTING_cfl, 2 * step / lattice.h);
-        *(noise_grows(&settings, 600) ? &high : &low) = step;
+        stress_noise_set(&settings, SETTING_cfl, 2 * step / lattice.h);
+        *(stress_noise_grows(&settings, 600) ? &high : &low) = step;
     }
     const double measured = 0.5 * (low + high);
     if (!known)

@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Linear stability of a scheme on a lattice in 2D or 3D, by differences of the solver's own
+ * evaluation: a wave of displacements X e cos(k . x), with the internal energy that the scheme's
+ * own rates give it on the way and h that follows the density at once, is answered by forces
+ * -m (D e) X cos(k . x), and the eigenvalues of D(k) are omega^2 of the d waves of that k. Exact
+ * for any Bravais lattice that fits the periodic box, for every kernel, gradient and formulation
+ * without viscosity. */
+#ifndef SPHPROOF_LATTICE_WAVES_H
+#define SPHPROOF_LATTICE_WAVES_H
+
+#include "initial.h"
+#include "run.h"
+
+struct lattice_waves {
+    struct run run; /* of gas at rest, undisturbed: viscosity none, energy internal */
+    struct initial at_rest;
+    int dim;
+    double spacing, c; /* (box/n)^(1/d), sound speed: the units of growth are c/spacing */
+};
+
+/* STATUS_BAD_INPUT: settings of no such lattice. Free with lattice_waves_free, also then. */
+enum status lattice_waves_begin(struct lattice_waves *lattice, const struct run_settings *settings,
+                                struct error *error);
+void lattice_waves_free(struct lattice_waves *lattice);
+
+/* The wave with whole[d] wavelengths across the box in each direction: its fastest growth (0:
+ * stable), and the greatest frequency among its d waves; in c/spacing. */
+struct lattice_wave {
+    double growth, frequency;
+};
+enum status lattice_waves_at(const struct lattice_waves *lattice, const int whole[3],
+                             struct lattice_wave *wave, struct error *error);
+
+/* The worst of all waves that the box holds (of square and cubic lattices those that symmetry tells
+ * apart): growth and frequency each over all of them; *where: of the fastest growth. */
+enum status lattice_waves_worst(const struct lattice_waves *lattice, struct lattice_wave *worst,
+                                int where[3], struct error *error);
+
+#endif

@@ -1,0 +1,231 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "stress_cloud.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cases.h"
+#include "lattice_waves.h"
+#include "stress_noise.h"
+#include "stress_outcome.h"
+
+/* ---- columns: the cases that there are ---- */
+
+enum { CASES_MAX = 64, KEYS = 64, SMALL = 3000 };
+
+const struct stress_entry *stress_clouds(void)
+{
+    static struct stress_entry entries[CASES_MAX + 1];
+    static char keys[CASES_MAX][KEYS];
+    size_t n = 0;
+    if (entries[0].label) return entries;
+    for (const struct case_builtin *builtin = case_builtins; builtin->name; builtin++) {
+        struct case_file file;
+        struct error error;
+        if (n == CASES_MAX || case_load(&file, builtin->name, &error) || file.dimension == 1)
+            continue;
+        size_t size = (size_t)settings_real(&file.settings, SETTING_n);
+        if (file.ladder_count) size = file.ladder[0];
+        if (file.quick_count) size = file.quick[0];
+        snprintf(keys[n], KEYS, "n=%zu", size);
+        entries[n] = (struct stress_entry){builtin->name, keys[n], size > SMALL};
+        n++;
+    }
+    return entries;
+}
+
+/* ---- runs of cases ---- */
+
+/* Distance of the nearest neighbour, in the periodic box. */
+static double nearest(const struct run_result *result, size_t i)
+{
+    const struct snapshot *s = &result->snapshot;
+    const struct domain *domain = &result->problem.domain;
+    double least = (double)INFINITY;
+    for (size_t j = 0; j < s->n; j++) {
+        double square = 0;
+        if (j == i) continue;
+        for (int d = 0; d < domain->dim; d++) {
+            const double length = domain_length(domain, d);
+            double x = s->x[d][j] - s->x[d][i];
+            x -= length * nearbyint(x / length);
+            square += x * x;
+        }
+        least = fmin(least, square);
+    }
+    return sqrt(least);
+}
+
+/* Share of the particles whose next neighbour is nearer than half the spacing there. */
+static double paired(const struct run_result *result)
+{
+    const struct snapshot *s = &result->snapshot;
+    const double dim = result->problem.domain.dim;
+    size_t pairs = 0;
+    for (size_t i = 0; i < s->n; i++)
+        pairs += nearest(result, i) < 0.5 * pow(s->m[i] / s->rho[i], 1 / dim);
+    return (double)pairs / (double)s->n;
+}
+
+static bool all_finite(const struct snapshot *s, int dim)
+{
+    for (size_t i = 0; i < s->n; i++) {
+        double sum = s->rho[i] + s->u[i] + s->P[i] + s->h[i];
+        for (int d = 0; d < dim; d++) sum += s->x[d][i] + s->v[d][i];
+        if (!isfinite(sum)) return false;
+    }
+    return true;
+}
+
+struct watch {
+    uint64_t budget;
+    bool out;
+};
+
+static bool watch_steps(void *context, double time, uint64_t steps)
+{
+    struct watch *watch = context;
+    (void)time;
+    watch->out = steps >= watch->budget;
+    return !watch->out;
+}
+
+static json_t *judge(const struct stress_cell *cell, const struct run_result *result,
+                     const struct watch *watch)
+{
+    const double momentum_bound = 1e-9, energy_bound = 0.05;
+    char reason[768] = "";
+    if (result->status == STATUS_BROKE_DOWN) {
+        snprintf(reason, sizeof reason, "%s: %s", stress_outcome_breakdown(result->message),
+                 result->message);
+        return stress_outcome((double)NAN, (double)NAN, "broke_down", reason);
+    }
+    if (!all_finite(&result->snapshot, result->problem.domain.dim))
+        return stress_outcome((double)NAN, (double)NAN, "broke_down",
+                              "silent NaN: the run did not notice");
+    const double pairs = paired(result);
+    int used = 0;
+    if (watch->out)
+        used += snprintf(reason, sizeof reason, "budget: t = %.4g after %llu steps; ", result->time,
+                         (unsigned long long)result->cost.steps);
+    if (!(pairs <= cell->group->bound))
+        used += snprintf(reason + used, sizeof reason - (size_t)used,
+                         "%.2g of the particles are nearer to another one than half a spacing; ",
+                         pairs);
+    if (!(result->energy <= energy_bound))
+        used += snprintf(reason + used, sizeof reason - (size_t)used, "energy error %.2g; ",
+                         result->energy);
+    if (!(result->momentum <= momentum_bound))
+        used += snprintf(reason + used, sizeof reason - (size_t)used, "momentum error %.2g; ",
+                         result->momentum);
+    if (used) reason[used - 2] = '\0';
+    return stress_outcome((double)NAN, pairs, used ? "inaccurate" : "ok", reason);
+}
+
+static enum status run_case(const struct stress_cell *cell, json_t **document, struct error *error)
+{
+    struct run run;
+    struct run_result result;
+    struct watch watch = {.budget = cell->step_budget};
+    enum status status = run_resolve(&run, &cell->settings, error);
+    run.asked.progress = watch_steps;
+    run.asked.progress_context = &watch;
+    if (!status) status = run_execute(&run, &result, error);
+    if (status == STATUS_OK || status == STATUS_BROKE_DOWN) {
+        *document = judge(cell, &result, &watch);
+        run_free(&result);
+        return STATUS_OK;
+    }
+    if (status != STATUS_BAD_INPUT) return status;
+    *document = stress_outcome((double)NAN, (double)NAN, "refused", error->message);
+    return STATUS_OK;
+}
+
+/* ---- lattices ---- */
+
+/* Slower than this is not seen in a noise run that quick. */
+static const double slowest = 0.02;
+
+static enum status lattice_worst(const struct stress_cell *cell, struct lattice_wave *worst,
+                                 int where[3], double *spacing, struct error *error)
+{
+    struct run_settings settings = cell->settings;
+    struct lattice_waves lattice;
+    stress_noise_set(&settings, SETTING_jitter, 0);
+    settings.settings.value[SETTING_viscosity].choice = VISCOSITY_NONE;
+    enum status status = lattice_waves_begin(&lattice, &settings, error);
+    if (!status) status = lattice_waves_worst(&lattice, worst, where, error);
+    *spacing = lattice.spacing;
+    lattice_waves_free(&lattice);
+    return status;
+}
+
+static enum status growth(const struct stress_cell *cell, json_t **document, struct error *error)
+{
+    struct lattice_wave worst;
+    int where[3] = {0};
+    double spacing;
+    char reason[256];
+    const struct run_settings *settings = &cell->settings;
+    if (lattice_worst(cell, &worst, where, &spacing, error)) return error->status;
+    if (worst.growth < slowest) {
+        const bool grows = stress_noise_grows(settings, 60);
+        snprintf(reason, sizeof reason,
+                 "no wave grows faster than %.2g c/dx; noise %s in 60 dx/c; greatest frequency "
+                 "%.3f c/dx",
+                 slowest, grows ? "grows" : "does not grow", worst.frequency);
+        *document = stress_outcome(worst.growth, (double)NAN, grows ? "inaccurate" : "ok", reason);
+        return STATUS_OK;
+    }
+    const double half = 5 / worst.growth;
+    const double early = stress_noise_after(*settings, half),
+                 late = stress_noise_after(*settings, 2 * half);
+    const double measured = log(late / early) / half;
+    snprintf(reason, sizeof reason,
+             "fastest with %d, %d, %d wavelengths across the box; noise grows from %.2g to %.2g c",
+             where[0], where[1], where[2], early, late);
+    *document =
+        stress_outcome(worst.growth, measured,
+                       fabs(measured / worst.growth - 1) <= 0.15 ? "ok" : "inaccurate", reason);
+    return STATUS_OK;
+}
+
+/* Leapfrog's limit is 2/omega; what viscosity or another integrator makes of it is measured. */
+static enum status time_step(const struct stress_cell *cell, json_t **document, struct error *error)
+{
+    enum { BISECTIONS = 6 };
+    struct run_settings settings = cell->settings;
+    struct lattice_wave worst;
+    struct run run;
+    int where[3];
+    double spacing;
+    char reason[256];
+    if (lattice_worst(cell, &worst, where, &spacing, error) || run_resolve(&run, &settings, error))
+        return error->status;
+    const double h = run.scheme.eta * spacing; /* dt = cfl h/(2 c) in gas at rest */
+    double low = 0, high = 5 / worst.frequency;
+    for (int i = 0; i < BISECTIONS; i++) {
+        const double middle = 0.5 * (low + high); /* c dt/dx */
+        stress_noise_set(&settings, SETTING_cfl, 2 * middle * spacing / h);
+        *(stress_noise_grows(&settings, 200) ? &high : &low) = middle;
+    }
+    const double measured = 0.5 * (low + high), limit = 2 / worst.frequency;
+    const bool known =
+        !strcmp(cell->row.label, "leapfrog") && run.scheme.viscosity == VISCOSITY_NONE;
+    const bool good = !known || fabs(measured / limit - 1) <= 0.1;
+    snprintf(reason, sizeof reason,
+             "c dt/dx; the greatest frequency of the lattice is %.3f c/dx, leapfrog's limit %.3f",
+             worst.frequency, limit);
+    *document =
+        stress_outcome(known ? limit : (double)NAN, measured, good ? "ok" : "inaccurate", reason);
+    return STATUS_OK;
+}
+
+enum status stress_cloud(const struct stress_cell *cell, json_t **document, struct error *error)
+{
+    if (cell->group->kind == STRESS_CLOUD) return run_case(cell, document, error);
+    return cell->group->kind == STRESS_LATTICE ? growth(cell, document, error)
+                                               : time_step(cell, document, error);
+}
