@@ -41,6 +41,7 @@ static const double compared_bound = 3;
 
 enum { SCHEMES = sizeof line_schemes / sizeof *line_schemes };
 enum { KEYS_MAX = 16, COMMAND_TEXT = 1024 };
+enum { QUICK = 1000 }; /* particles by day of a case in 2D or 3D that says nothing else */
 
 /* What a report has of a case. */
 struct reported {
@@ -142,7 +143,9 @@ static void plan_case(const struct report *report, const struct case_file *file,
     of->schemes = SCHEMES;
     of->studied = file->ladder_count ? of->schemes : 0;
     if (!quick || !cloud) return;
-    if (levels) snprintf(of->size, sizeof of->size, "n=%zu", ladder[levels - 1]);
+    const size_t own = (size_t)settings_real(&file->settings, SETTING_n);
+    const size_t n = levels ? ladder[levels - 1] : own < QUICK ? own : QUICK;
+    snprintf(of->size, sizeof of->size, "n=%zu", n);
     of->studied = levels >= ORDER_LEVELS_MIN;
     /* one size for want of time: then no time for other schemes either */
     if (file->ladder_count && !of->studied) of->schemes = 1;

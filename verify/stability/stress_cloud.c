@@ -13,7 +13,7 @@
 
 /* ---- columns: the cases that there are ---- */
 
-enum { CASES_MAX = 64, KEYS = 64, SMALL = 3000 };
+enum { CASES_MAX = 64, KEYS = 64, USUAL = 1000, SMALL = 3000 };
 
 const struct stress_entry *stress_clouds(void)
 {
@@ -27,6 +27,7 @@ const struct stress_entry *stress_clouds(void)
         if (n == CASES_MAX || case_load(&file, builtin->name, &error) || file.dimension == 1)
             continue;
         size_t size = (size_t)settings_real(&file.settings, SETTING_n);
+        if (size > USUAL) size = USUAL;
         if (file.ladder_count) size = file.ladder[0];
         if (file.quick_count) size = file.quick[0];
         snprintf(keys[n], KEYS, "n=%zu", size);
