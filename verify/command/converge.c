@@ -7,20 +7,13 @@
 #include <string.h>
 
 #include "command.h"
-#include "progress.h"
 #include "result.h"
+#include "sharing.h"
 #include "study.h"
 #include "table.h"
 #include "text.h"
 
 enum { JOBS_MAX = 1024 };
-
-static void show_progress(void *context, const char *what, size_t done, size_t total, double share)
-{
-    struct progress *progress = context;
-    progress->what = what;
-    progress_share(progress, done, total, share);
-}
 
 static void print_ladder(const struct study *study, const struct study_result *result,
                          const struct table_style *style)
@@ -221,35 +214,21 @@ static enum status take_replicates(struct study *study, const struct options *op
     return STATUS_OK;
 }
 
-static enum status take_jobs(const struct options *options, struct pool_settings *settings,
+/* Runs everything and judges it; the document gets what came out. *whole: see sharing_run. */
+static enum status carry_out(struct study *study, const struct options *options,
+                             struct sharing *sharing, json_t *document, bool *whole,
                              struct error *error)
 {
-    const char *text = options_value(options, "jobs");
-    double jobs = 1;
-    if (text && !(text_integer(text, &jobs) && jobs >= 1 && jobs <= JOBS_MAX))
-        return error_set(error, STATUS_BAD_INPUT,
-                         "converge: --jobs '%.40s': allowed: an integer from 1 to %d", text,
-                         JOBS_MAX);
-    settings->jobs = (int)jobs;
-    return STATUS_OK;
-}
-
-/* Runs everything and judges it; the document gets what came out. */
-static enum status carry_out(struct study *study, const struct options *options,
-                             struct pool_settings *settings, json_t *document, struct error *error)
-{
     struct pool pool = {0};
-    struct progress progress;
-    progress_begin(&progress, study->settings.file.name, options->quiet);
-    settings->progress = show_progress;
-    settings->progress_context = &progress;
+    *whole = false;
     enum status status = study_plan(study, &pool, error);
-    if (!status) status = pool_run(&pool, settings, error);
-    progress_end(&progress);
-    if (!status) status = study_judge(study, &pool, error);
-    if (pool.note[0] && !options->quiet) fprintf(stderr, "sphproof: note: %s\n", pool.note);
+    if (!status && sharing->list)
+        status = sharing_list(sharing, &pool, error);
+    else if (!status)
+        status = sharing_run(sharing, &pool, study->settings.file.name, options, whole, error);
+    if (!status && *whole) status = study_judge(study, &pool, error);
     pool_free(&pool);
-    if (status) return status;
+    if (status || !*whole) return status;
     if (study->status == STATUS_BROKE_DOWN)
         json_object_set_new(document, "status", json_string("broke_down"));
     study_add_json(study, document);
@@ -262,17 +241,14 @@ static enum status carry_out(struct study *study, const struct options *options,
 static enum status run(const struct options *options, int n, char **arguments, struct error *error)
 {
     struct study study = {0};
-    struct pool_settings settings = {0};
-    struct cache cache;
-    const char *folder = options_value(options, "cache");
+    struct sharing sharing;
+    bool whole;
     if (n < 1) return command_usage(options, error, "a case is needed (`sphproof list cases`)");
     if (run_prepare(&study.settings, arguments[0], n - 1, arguments + 1, error) ||
         sweep_parse(&study.sweep, options_value(options, "vary"), error) ||
         take_ladder(&study, options, error) || take_replicates(&study, options, error) ||
-        take_jobs(options, &settings, error) ||
-        (folder && cache_open(&cache, folder, false, error)))
+        sharing_take(&sharing, options, 1, NULL, false, error))
         return error->status;
-    settings.cache = folder ? &cache : NULL;
     study.settings.threads = options->threads;
     json_t *document = result_new("converge");
     json_object_set_new(document, "case", json_string(study.settings.file.name));
@@ -281,11 +257,11 @@ static enum status run(const struct options *options, int n, char **arguments, s
     struct error trouble = {0};
     if (!run_resolve(&as_given, &study.settings, &trouble))
         json_object_set_new(document, "settings", settings_json(&as_given.settings));
-    enum status status = carry_out(&study, options, &settings, document, error);
+    enum status status = carry_out(&study, options, &sharing, document, &whole, error);
     const bool sound = status == STATUS_OK || status == STATUS_CHECK_FAILED;
-    if (options->speak && (sound || status == STATUS_BROKE_DOWN)) print_all(&study, options);
-    if (options->json && (sound || status == STATUS_BROKE_DOWN) &&
-        result_write(document, options->json, &trouble)) {
+    const bool told = whole && (sound || status == STATUS_BROKE_DOWN);
+    if (options->speak && told) print_all(&study, options);
+    if (options->json && told && result_write(document, options->json, &trouble)) {
         *error = trouble;
         status = trouble.status;
     }
@@ -301,7 +277,7 @@ static const struct command_option own_options[] = {
      "runs of each level: with other seeds where the start is random (default there: 3), else "
      "with n within 2.5 % (default: 9, of smooth solutions 1)"},
     {"jobs", "J", "runs side by side (default 1); results do not depend on it"},
-    {"cache", "DIR", "keep each run there, and do not repeat what is there already"},
+    SHARING_OPTIONS,
     {NULL, NULL, NULL},
 };
 
@@ -317,5 +293,6 @@ const struct command command_converge = {
                 "sphproof converge sod --n 100,200,400,800 kernel=cubic_spline eta=2\n"
                 "sphproof converge sod --vary kernel=cubic_spline,wendland_c2,gradient\n"
                 "sphproof converge sound_wave jitter=0.1 --replicates 5 --jobs 2\n"
+                "sphproof converge gresho --cache shared --shard 1/2   # 2/2 on another machine\n"
                 "sphproof converge sound_wave --json orders.json",
 };

@@ -13,22 +13,22 @@
 #include "junit.h"
 #include "output.h"
 #include "page.h"
-#include "progress.h"
 #include "result.h"
+#include "sharing.h"
 #include "summary.h"
 #include "text.h"
 #include "verdict.h"
 #include "value.h"
 
-enum { PATH_LENGTH = 4096, JOBS_MAX = 1024 };
+enum { PATH_LENGTH = 4096 };
 
 static const struct command_option report_options[] = {
     {"quick", NULL, "what fits into two minutes on two cores (the default)"},
     {"nightly", NULL, "one resolution more everywhere, and the slow checks"},
     {"out", "DIR", "folder for the report (default: reports/out), made if needed"},
     {"jobs", "J", "so many computations side by side (default: one for each core)"},
+    SHARING_OPTIONS_OF_CACHE,
     {"history", "FILE", "one line a night is added there (default: DIR/history.jsonl)"},
-    {"list", NULL, "compute nothing: the names of what would be computed, one a line"},
     {"resume", NULL, "go on after an interruption: what was finished is in DIR/cache"},
     {"force", NULL, "compute everything, also what DIR/cache has from this build"},
     {NULL, NULL, NULL},
@@ -74,30 +74,14 @@ static enum status write_report(const char *folder, const json_t *results, struc
     return status;
 }
 
-static void show_progress(void *context, const char *what, size_t done, size_t total, double share)
+static enum status check_options(const struct options *options, struct error *error)
 {
-    struct progress *progress = context;
-    progress->what = what;
-    progress_share(progress, done, total, share);
-}
-
-static enum status take_settings(const struct options *options, struct report_settings *settings,
-                                 struct error *error)
-{
-    const char *jobs = options_value(options, "jobs");
-    double number = (double)sysconf(_SC_NPROCESSORS_ONLN);
-    if (jobs && !(text_integer(jobs, &number) && number >= 1 && number <= JOBS_MAX))
-        return error_set(error, STATUS_BAD_INPUT,
-                         "report: --jobs '%.40s': allowed: an integer from 1 to %d", jobs,
-                         JOBS_MAX);
     if (options_value(options, "quick") && options_value(options, "nightly"))
         return error_set(error, STATUS_BAD_INPUT,
                          "report: --quick and --nightly exclude each other");
     if (options_value(options, "resume") && options_value(options, "force"))
         return error_set(error, STATUS_BAD_INPUT,
                          "report: --resume and --force exclude each other");
-    settings->jobs = number >= 1 ? (int)number : 1;
-    settings->mode = options_value(options, "nightly") ? REPORT_NIGHTLY : REPORT_QUICK;
     return STATUS_OK;
 }
 
@@ -107,6 +91,7 @@ struct paths {
     char plots[PATH_LENGTH], cache[PATH_LENGTH], nights[PATH_LENGTH], faults[PATH_LENGTH];
 };
 
+/* Where they are; nothing is made. */
 static enum status take_paths(const struct options *options, struct paths *paths,
                               struct error *error)
 {
@@ -120,29 +105,33 @@ static enum status take_paths(const struct options *options, struct paths *paths
     snprintf(paths->cache, PATH_LENGTH, "%s/cache", paths->folder);
     snprintf(paths->nights, PATH_LENGTH, "%s/history.jsonl", paths->folder);
     snprintf(paths->faults, PATH_LENGTH, "%s/faults.json", paths->folder);
-    if (output_folder(paths->plots, error)) return error->status;
-    return output_probe(paths->history, error);
+    return STATUS_OK;
 }
 
 /* All results, with what the nights before tell; the caller owns them. */
-static enum status compute(const struct options *options, struct report_settings *settings,
-                           const char *history, json_t **results, struct error *error)
+static enum status judge(struct report *report, const struct paths *paths, json_t **results,
+                         struct error *error)
 {
-    struct progress progress;
     json_t *told;
-    settings->progress = show_progress;
-    settings->context = &progress;
-    progress_begin(&progress, "report", options->quiet);
-    enum status status = report_compute(settings, results, error);
-    progress_end(&progress);
+    enum status status = report_judge(report, paths->faults, results, error);
     if (status) return status;
-    const char *note = value_text(*results, "note");
-    if (*note && !options->quiet) fprintf(stderr, "sphproof: note: %s\n", note);
-    if ((status = history_tell(*results, history, &told, error)))
+    if ((status = history_tell(*results, paths->history, &told, error)))
         json_decref(*results);
     else
         json_object_set_new(*results, "history", told);
     return status;
+}
+
+/* What was not used for a month makes room, once a night. */
+static enum status prune(const struct paths *paths, const struct options *options,
+                         struct error *error)
+{
+    struct cache_census census;
+    if (cache_prune(paths->cache, CACHE_MONTH, &census, error)) return error->status;
+    if (census.removed && options->speak)
+        printf("%zu results that nobody has used for a month were removed from %s\n",
+               census.removed, paths->cache);
+    return STATUS_OK;
 }
 
 static void speak(const json_t *results, const char *summary, const char *folder)
@@ -177,29 +166,45 @@ static enum status tell(const struct options *options, const json_t *results,
     return strcmp(verdict, "pass") == 0 ? STATUS_OK : STATUS_CHECK_FAILED;
 }
 
+static enum status carry_out(const struct options *options, struct report *report,
+                             struct error *error)
+{
+    struct paths paths;
+    struct sharing sharing;
+    json_t *results;
+    bool whole;
+    const int cores = (int)sysconf(_SC_NPROCESSORS_ONLN);
+    if (take_paths(options, &paths, error) ||
+        sharing_take(&sharing, options, cores, paths.cache, options_value(options, "force"), error))
+        return error->status;
+    if (sharing.list) return sharing_list(&sharing, report_pool(report), error);
+    if (output_folder(paths.plots, error) || output_probe(paths.history, error) ||
+        sharing_run(&sharing, report_pool(report), "report", options, &whole, error))
+        return error->status;
+    if (!whole) return STATUS_OK;
+    if (judge(report, &paths, &results, error)) return error->status;
+    enum status status = tell(options, results, &paths, error);
+    json_decref(results);
+    if (options_value(options, "nightly") && (!status || status == STATUS_CHECK_FAILED) &&
+        prune(&paths, options, error))
+        return error->status;
+    return status;
+}
+
 static enum status run(const struct options *options, int n, char **arguments, struct error *error)
 {
-    struct report_settings settings = {0};
-    struct paths paths;
-    struct cache cache;
-    json_t *results;
+    struct report *report;
     if (n) return command_usage(options, error, "no argument is known: '%.40s'", arguments[0]);
-    if (take_settings(options, &settings, error)) return error->status;
-    if (options_value(options, "list")) return report_list(settings.mode, stdout, error);
-    if (take_paths(options, &paths, error) ||
-        cache_open(&cache, paths.cache, options_value(options, "force") != NULL, error))
-        return error->status;
-    settings.cache = &cache;
-    settings.faults = paths.faults;
-    if (compute(options, &settings, paths.history, &results, error)) return error->status;
-    const enum status status = tell(options, results, &paths, error);
-    json_decref(results);
+    const enum report_mode mode = options_value(options, "nightly") ? REPORT_NIGHTLY : REPORT_QUICK;
+    if (check_options(options, error) || report_create(mode, &report, error)) return error->status;
+    const enum status status = carry_out(options, report, error);
+    report_destroy(report);
     return status;
 }
 
 const struct command command_report = {
     .name = "report",
-    .synopsis = "[--quick|--nightly] [--out DIR] [--jobs J] [--resume|--force]",
+    .synopsis = "[--quick|--nightly] [--out DIR] [--jobs J] [--shard I/N] [--resume|--force]",
     .help = "everything on one page: cases, convergence, kernels, checks\n\n"
             "Writes index.html (self-contained), results.json, junit.xml, summary.md and the data\n"
             "and script of each plot. Exit status 1 if anything on the page is not well.\n"
@@ -208,5 +213,7 @@ const struct command command_report = {
             "DIR/faults.json, which verify/test/faults.py --json writes, is shown if it is there.",
     .run = run,
     .options = report_options,
-    .examples = "sphproof report\nsphproof report --nightly --out /tmp/report --jobs 2",
+    .examples =
+        "sphproof report\nsphproof report --nightly --out /tmp/report --jobs 2\n"
+        "sphproof report --nightly --out shared --shard 3/8   # on the third machine of eight",
 };

@@ -7,20 +7,12 @@
 #include <string.h>
 
 #include "command.h"
-#include "progress.h"
 #include "result.h"
+#include "sharing.h"
 #include "table.h"
-#include "text.h"
 #include "value.h"
 
-enum { JOBS_MAX = 1024, SHOWN = 12 };
-
-static void show_progress(void *context, const char *what, size_t done, size_t total, double share)
-{
-    struct progress *progress = context;
-    progress->what = what;
-    progress_share(progress, done, total, share);
-}
+enum { SHOWN = 12 };
 
 static const char *style_of(const struct table_style *style, const char *outcome)
 {
@@ -92,39 +84,35 @@ static void print_all(const json_t *document, size_t wrong, const struct options
            wrong ? style.bad : style.good, wrong ? "NOT WELL" : "all as it should be", style.end);
 }
 
+static enum status carry_out(struct stress *stress, struct pool *pool, struct sharing *sharing,
+                             const struct options *options, struct error *error)
+{
+    bool whole;
+    if (sharing->list) return sharing_list(sharing, pool, error);
+    enum status status = sharing_run(sharing, pool, "stress", options, &whole, error);
+    if (status || !whole) return status;
+    json_t *document = result_new("stress");
+    const size_t wrong = stress_judge(stress, pool, document);
+    if (options->speak) print_all(document, wrong, options);
+    if (options->json) status = result_write(document, options->json, error);
+    if (!status && wrong) status = STATUS_CHECK_FAILED;
+    json_decref(document);
+    return status;
+}
+
 static enum status run(const struct options *options, int n, char **arguments, struct error *error)
 {
     struct stress stress;
     struct pool pool = {0};
-    struct progress progress;
-    const char *jobs_text = options_value(options, "jobs");
-    double jobs = options->threads;
-    if (jobs_text && (!text_real(jobs_text, &jobs) || !(jobs >= 1 && jobs <= JOBS_MAX)))
-        return error_set(error, STATUS_BAD_INPUT,
-                         "stress: --jobs %s: a number from 1 to %d is "
-                         "needed",
-                         jobs_text, JOBS_MAX);
+    struct sharing sharing;
+    if (sharing_take(&sharing, options, options->threads, NULL, false, error)) return error->status;
     const bool nightly = options_value(options, "nightly") != NULL;
     enum status status = stress_plan(&stress, nightly, (size_t)n, arguments, &pool, error);
-    if (status) {
-        pool_free(&pool);
-        return status;
-    }
-    gsl_set_error_handler_off();
-    progress_begin(&progress, "stress", options->quiet);
-    const struct pool_settings settings = {
-        .jobs = (int)jobs, .progress = show_progress, .progress_context = &progress};
-    status = pool_run(&pool, &settings, error);
-    progress_end(&progress);
     if (!status) {
-        json_t *document = result_new("stress");
-        const size_t wrong = stress_judge(&stress, &pool, document);
-        if (options->speak) print_all(document, wrong, options);
-        if (options->json) status = result_write(document, options->json, error);
-        if (!status && wrong) status = STATUS_CHECK_FAILED;
-        json_decref(document);
+        gsl_set_error_handler_off();
+        status = carry_out(&stress, &pool, &sharing, options, error);
+        stress_free(&stress);
     }
-    stress_free(&stress);
     pool_free(&pool);
     return status;
 }
@@ -133,6 +121,7 @@ static const struct command_option own_options[] = {
     {"quick", NULL, "under a minute (default)"},
     {"nightly", NULL, "more cells, a million steps"},
     {"jobs", "J", "cells side by side (default: --threads)"},
+    SHARING_OPTIONS,
     {NULL, NULL, NULL},
 };
 

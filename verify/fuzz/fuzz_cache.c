@@ -9,6 +9,7 @@
 
 #include "cache.h"
 #include "fuzz.h"
+#include "output.h"
 
 static struct cache cache;
 static char path[CACHE_PATH_MAX];
@@ -16,6 +17,8 @@ static char path[CACHE_PATH_MAX];
 static void leave(void)
 {
     unlink(path);
+    *strrchr(path, '/') = '\0';
+    rmdir(path);
     rmdir(cache.folder);
 }
 
@@ -29,6 +32,9 @@ static void begin(void)
     }
     strcpy(cache.build, "0123456789abcdef"); /* the corpus has its entries from this build */
     cache_path(&cache, "key", path);
+    *strrchr(path, '/') = '\0';
+    if (output_folder(path, &error)) exit(STATUS_ENVIRONMENT);
+    path[strlen(path)] = '/';
     atexit(leave);
     /* a file in memory, since each input is another entry */
     if (symlink(fuzz_file(NULL, 0), path)) exit(STATUS_ENVIRONMENT);
@@ -48,7 +54,7 @@ static void look(const uint8_t *bytes, size_t size, bool with_head)
     memcpy(entry + length, bytes, size);
     fuzz_file(entry, (size_t)length + size);
     free(entry);
-    json_t *document = cache_load(&cache, "key");
+    json_t *document = cache_load(&cache, "key", NULL);
     FUZZ_PROMISE(!document || document->refcount == 1);
     json_decref(document);
 }

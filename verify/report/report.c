@@ -54,6 +54,7 @@ struct reported {
 
 struct report {
     bool nightly;
+    double began; /* of clock_wall */
     struct pool pool;
     struct reported *cases;
     struct report_piece **pieces; /* one by one: the pool keeps where they are */
@@ -384,8 +385,9 @@ static enum status judge_studies(struct report *report, struct error *error)
     return status;
 }
 
-static void free_report(struct report *report)
+void report_destroy(struct report *report)
 {
+    if (!report) return;
     for (size_t c = 0; report->cases && c < report->case_count; c++)
         for (int s = 0; s < SCHEMES; s++) study_free(&report->cases[c].studies[s]);
     for (size_t k = 0; k < report->piece_count; k++) free(report->pieces[k]);
@@ -395,40 +397,31 @@ static void free_report(struct report *report)
     free(report);
 }
 
-enum status report_list(enum report_mode mode, FILE *stream, struct error *error)
+enum status report_create(enum report_mode mode, struct report **report, struct error *error)
 {
-    struct report *report = calloc(1, sizeof *report);
-    if (!report) return error_set(error, STATUS_ENVIRONMENT, "no memory for a report");
-    report->nightly = mode == REPORT_NIGHTLY;
-    const enum status status = add_all(report, error);
-    for (size_t k = 0; k < report->pool.count && !status; k++)
-        fprintf(stream, "%s\n", report->pool.jobs[k].name);
-    free_report(report);
+    *report = calloc(1, sizeof **report);
+    if (!*report) return error_set(error, STATUS_ENVIRONMENT, "no memory for a report");
+    (*report)->nightly = mode == REPORT_NIGHTLY;
+    (*report)->began = clock_wall();
+    gsl_set_error_handler_off();
+    const enum status status = add_all(*report, error);
+    if (status) {
+        report_destroy(*report);
+        *report = NULL;
+    }
     return status;
 }
 
-enum status report_compute(const struct report_settings *settings, json_t **results,
-                           struct error *error)
+struct pool *report_pool(struct report *report)
+{
+    return &report->pool;
+}
+
+enum status report_judge(struct report *report, const char *faults, json_t **results,
+                         struct error *error)
 {
     *results = NULL;
-    const double began = clock_wall();
-    const struct pool_settings how = {.jobs = settings->jobs,
-                                      .cache = settings->cache,
-                                      .progress = settings->progress,
-                                      .progress_context = settings->context};
-    struct report *report = calloc(1, sizeof *report);
-    if (!report) return error_set(error, STATUS_ENVIRONMENT, "no memory for a report");
-    report->nightly = settings->mode == REPORT_NIGHTLY;
-    gsl_set_error_handler_off();
-    enum status status = add_all(report, error);
-    if (!status) status = pool_run(&report->pool, &how, error);
-    if (!status) status = sound(&report->pool, error);
-    if (!status) status = judge_studies(report, error);
-    if (!status) {
-        *results = collect(report, settings->faults, clock_wall() - began);
-        if (report->pool.note[0])
-            json_object_set_new(*results, "note", json_string(report->pool.note));
-    }
-    free_report(report);
-    return status;
+    if (sound(&report->pool, error) || judge_studies(report, error)) return error->status;
+    *results = collect(report, faults, clock_wall() - report->began);
+    return STATUS_OK;
 }

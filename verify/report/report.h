@@ -5,30 +5,27 @@
 #define SPHPROOF_REPORT_H
 
 #include <jansson.h>
-#include <stdbool.h>
-#include <stdio.h>
 
 #include "pool.h"
 #include "status.h"
 
 enum report_mode { REPORT_QUICK, REPORT_NIGHTLY };
 
-struct report_settings {
-    enum report_mode mode;
-    int jobs;                  /* >= 1: tasks side by side */
-    const struct cache *cache; /* what is computed is kept there and not repeated; NULL: none */
-    pool_progress *progress;   /* may be NULL */
-    void *context;
-    const char *faults; /* what verify/test/faults.py wrote, shown if it is there; NULL: nowhere */
-};
+struct report;
 
-/* Computes all and judges it: *results is a document of command "report" with its verdict (see
- * reports/verdict.h), owned by the caller. A gate that fails, or a run that breaks down, is part of
- * the results; anything else that goes wrong is returned, and *results is then NULL. */
-enum status report_compute(const struct report_settings *settings, json_t **results,
-                           struct error *error);
+/* All that a report of this mode computes, in its pool; nothing has run. Owned by the caller. */
+enum status report_create(enum report_mode mode, struct report **report, struct error *error);
 
-/* Computes nothing: the names of what a report of this mode computes, one a line. */
-enum status report_list(enum report_mode mode, FILE *stream, struct error *error);
+/* To be run; the report's own. */
+struct pool *report_pool(struct report *report);
+
+/* After pool_run of all of it: judges it. *results is a document of command "report" with its
+ * verdict (see reports/verdict.h), owned by the caller. A gate that fails, or a run that breaks
+ * down, is part of the results; anything else that goes wrong is returned, and *results is then
+ * NULL. faults: what verify/test/faults.py wrote, shown if it is there; NULL: nowhere. */
+enum status report_judge(struct report *report, const char *faults, json_t **results,
+                         struct error *error);
+
+void report_destroy(struct report *report);
 
 #endif

@@ -4,6 +4,7 @@
 #include <dirent.h>
 #include <fcntl.h>
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,8 +19,7 @@
 #include "result.h"
 #include "version.h"
 
-static const double keep_seconds = 30. * 24 * 3600;
-enum { ENTRY_MAX = 1 << 28, HEAD_MAX = 64 };
+enum { ENTRY_MAX = 1 << 28, HEAD_MAX = 64, FOLDERS = 256 };
 
 uint64_t cache_hash(uint64_t hash, const void *bytes, size_t n)
 {
@@ -39,6 +39,17 @@ static FILE *open_program(void)
 #endif
 }
 
+/* What the last bits of these functions are, which the C library chooses by the processor. */
+static uint64_t hash_mathematics(uint64_t hash)
+{
+    for (int k = 1; k <= 64; k++) {
+        const volatile double x = 0.37 * k;
+        const double values[] = {sin(x), cos(x), exp(-x), log(x), pow(x, 1 / 3.), pow(x, -0.4)};
+        hash = cache_hash(hash, values, sizeof values);
+    }
+    return hash;
+}
+
 /* Any change of the program, or of the library its mathematics come from, is another build. */
 static void build_id(char build[CACHE_BUILD_MAX])
 {
@@ -54,23 +65,45 @@ static void build_id(char build[CACHE_BUILD_MAX])
     n = confstr(_CS_GNU_LIBC_VERSION, bytes, sizeof bytes);
     hash = cache_hash(hash, bytes, n < sizeof bytes ? n : sizeof bytes);
 #endif
-    snprintf(build, CACHE_BUILD_MAX, "%016" PRIx64, hash);
+    snprintf(build, CACHE_BUILD_MAX, "%016" PRIx64, hash_mathematics(hash));
 }
 
-/* Temporaries that a killed process left go the same way. */
-static void prune(const struct cache *cache)
+/* Of one of the folders of entries; temporaries that a killed process left go the same way. */
+static void prune(const char *folder, double seconds, struct cache_census *census)
 {
-    DIR *folder = opendir(cache->folder);
+    DIR *opened = opendir(folder);
     const time_t now = time(NULL);
-    for (struct dirent *entry; folder && (entry = readdir(folder));) {
+    for (struct dirent *entry; opened && (entry = readdir(opened));) {
         char path[CACHE_PATH_MAX];
         struct stat is;
         if (!strstr(entry->d_name, ".entry") ||
-            snprintf(path, sizeof path, "%s/%s", cache->folder, entry->d_name) >= (int)sizeof path)
+            snprintf(path, sizeof path, "%s/%s", folder, entry->d_name) >= (int)sizeof path ||
+            stat(path, &is))
             continue;
-        if (!stat(path, &is) && difftime(now, is.st_mtime) > keep_seconds) unlink(path);
+        if (difftime(now, is.st_mtime) > seconds && unlink(path) == 0) {
+            census->removed++;
+        } else {
+            census->entries++;
+            census->bytes += (double)is.st_size;
+        }
     }
-    if (folder) closedir(folder);
+    if (opened) closedir(opened);
+}
+
+enum status cache_prune(const char *folder, double seconds, struct cache_census *census,
+                        struct error *error)
+{
+    struct stat is;
+    *census = (struct cache_census){0};
+    if (stat(folder, &is) || !S_ISDIR(is.st_mode))
+        return error_set(error, STATUS_BAD_INPUT, "there is no folder %.400s", folder);
+    for (unsigned k = 0; k < FOLDERS; k++) {
+        char path[CACHE_PATH_MAX];
+        if (snprintf(path, sizeof path, "%s/%02x", folder, k) >= (int)sizeof path)
+            return error_set(error, STATUS_BAD_INPUT, "the path of the cache is too long");
+        prune(path, seconds, census);
+    }
+    return STATUS_OK;
 }
 
 enum status cache_open(struct cache *cache, const char *folder, bool force, struct error *error)
@@ -81,7 +114,6 @@ enum status cache_open(struct cache *cache, const char *folder, bool force, stru
     const enum status status = output_folder(cache->folder, error);
     if (status) return status;
     build_id(cache->build);
-    prune(cache);
     return STATUS_OK;
 }
 
@@ -89,7 +121,8 @@ void cache_path(const struct cache *cache, const char *key, char path[CACHE_PATH
 {
     uint64_t hash = cache_hash(CACHE_HASH, cache->build, strlen(cache->build));
     hash = cache_hash(hash, key, strlen(key));
-    snprintf(path, CACHE_PATH_MAX, "%s/%016" PRIx64 ".entry", cache->folder, hash);
+    snprintf(path, CACHE_PATH_MAX, "%s/%02x/%016" PRIx64 ".entry", cache->folder,
+             (unsigned)(hash % FOLDERS), hash);
 }
 
 /* A file's bytes and a NUL; NULL where it cannot be read. */
@@ -126,7 +159,14 @@ static const char *body_of(const char *text, size_t length)
     return size == body - text && memcmp(text, head, (size_t)size) == 0 ? body : NULL;
 }
 
-json_t *cache_load(const struct cache *cache, const char *key)
+bool cache_has(const struct cache *cache, const char *key)
+{
+    char path[CACHE_PATH_MAX];
+    cache_path(cache, key, path);
+    return !cache->force && access(path, R_OK) == 0;
+}
+
+json_t *cache_load(const struct cache *cache, const char *key, bool *damaged)
 {
     char path[CACHE_PATH_MAX];
     size_t length = 0;
@@ -141,6 +181,7 @@ json_t *cache_load(const struct cache *cache, const char *key)
     if (build && own && strcmp(build, cache->build) == 0 && strcmp(own, key) == 0)
         document = json_incref(json_object_get(entry, "document"));
     if (document) utimensat(AT_FDCWD, path, NULL, 0); /* used: stays another month */
+    if (damaged && text && !document) *damaged = true;
     json_decref(entry);
     free(text);
     return document;
@@ -157,7 +198,10 @@ enum status cache_store(const struct cache *cache, const char *key, const json_t
     json_decref(entry);
     if (!text) return error_set(error, STATUS_ENVIRONMENT, "no memory to keep a result");
     cache_path(cache, key, path);
-    enum status status = output_open(&output, path, error);
+    *strrchr(path, '/') = '\0';
+    enum status status = output_folder(path, error);
+    path[strlen(path)] = '/';
+    if (!status) status = output_open(&output, path, error);
     if (!status) {
         const size_t length = strlen(text);
         char head[HEAD_MAX];

@@ -175,6 +175,56 @@ static int heavy_first(const void *a, const void *b)
     return x != y ? (x < y) - (x > y) : (i > j) - (i < j);
 }
 
+/* The same in every process that has these jobs, in whatever order. */
+static int heavy_first_by_key(const void *a, const void *b)
+{
+    const struct pool_job *x = &sorted_jobs[*(const size_t *)a],
+                          *y = &sorted_jobs[*(const size_t *)b];
+    if (x->weight != y->weight) return (x->weight < y->weight) - (x->weight > y->weight);
+    return strcmp(x->key ? x->key : "", y->key ? y->key : "");
+}
+
+enum status pool_divide(const struct pool *pool, int of, int *shares, struct error *error)
+{
+    size_t *order = calloc(pool->count + 1, sizeof *order);
+    double *load = calloc((size_t)of, sizeof *load);
+    const char *last = NULL;
+    int share = 0;
+    for (size_t i = 0; order && i < pool->count; i++) order[i] = i;
+    sorted_jobs = pool->jobs;
+    if (order && load) qsort(order, pool->count, sizeof *order, heavy_first_by_key);
+    for (size_t k = 0; order && load && k < pool->count; k++) {
+        const struct pool_job *job = &pool->jobs[order[k]];
+        shares[order[k]] = 0;
+        if (!job->key) continue;
+        if (!last || strcmp(last, job->key)) {
+            share = 0;
+            for (int s = 1; s < of; s++)
+                if (load[s] < load[share]) share = s;
+            load[share] += job->weight;
+        }
+        last = job->key;
+        shares[order[k]] = share + 1;
+    }
+    const bool sound = order && load;
+    free(order);
+    free(load);
+    return sound ? STATUS_OK : error_set(error, STATUS_ENVIRONMENT, "no memory for %d shares", of);
+}
+
+/* Leaves out what is not in this process's share. */
+static enum status take_share(struct pool *pool, const struct pool_share *mine, struct error *error)
+{
+    if (!mine->of) return STATUS_OK;
+    int *shares = calloc(pool->count + 1, sizeof *shares);
+    if (!shares) return error_set(error, STATUS_ENVIRONMENT, "no memory for %d shares", mine->of);
+    const enum status status = pool_divide(pool, mine->of, shares, error);
+    for (size_t i = 0; i < pool->count && !status; i++)
+        pool->jobs[i].elsewhere = shares[i] != mine->number;
+    free(shares);
+    return status;
+}
+
 struct course {
     size_t *order, next, ready; /* jobs by weight; the next one; how many are done */
     double work, worked;        /* weight that is not in the cache, and what of it is done */
@@ -188,7 +238,11 @@ static size_t look_up(struct pool *pool, const struct pool_settings *settings,
     size_t waiting = 0;
     for (size_t i = 0; i < pool->count; i++) {
         struct pool_job *job = &pool->jobs[i];
-        json_t *reply = settings->cache && job->key ? cache_load(settings->cache, job->key) : NULL;
+        bool damaged = false;
+        if (job->elsewhere) continue;
+        json_t *reply =
+            settings->cache && job->key ? cache_load(settings->cache, job->key, &damaged) : NULL;
+        pool->damaged += damaged;
         job->cached = reply && take_reply(pool, job, reply);
         json_decref(reply);
         pool->found += job->cached;
@@ -244,10 +298,10 @@ enum status pool_run(struct pool *pool, const struct pool_settings *settings, st
     struct pollfd *polls = calloc((size_t)settings->jobs, sizeof *polls);
     enum status status = STATUS_OK;
     json_object_seed(0);
-    if (course.order && workers && polls) {
+    if (course.order && workers && polls && !(status = take_share(pool, &settings->share, error))) {
         const size_t waiting = look_up(pool, settings, &course);
         status = run_workers(pool, settings, &course, waiting, workers, polls, error);
-    } else {
+    } else if (!status) {
         status =
             error_set(error, STATUS_ENVIRONMENT, "no memory for %zu computations", pool->count);
     }

@@ -25,6 +25,7 @@ struct pool_job {
     const void *context; /* not owned */
     /* after pool_run: */
     bool done, cached;
+    bool elsewhere;     /* it is in another share, or in none: nothing was done about it */
     json_t *document;   /* NULL where there is none */
     struct error error; /* status of compute; STATUS_BROKE_DOWN also where its process crashed */
 };
@@ -33,6 +34,7 @@ struct pool {
     struct pool_job *jobs;
     size_t count, room;
     size_t found;   /* in the cache */
+    size_t damaged; /* were in the cache, but not whole: computed again */
     char note[512]; /* "", or why entries could not be kept */
 };
 
@@ -41,8 +43,15 @@ struct pool {
 typedef void pool_progress(void *context, const char *what, size_t done, size_t total,
                            double share);
 
+/* One of so many shares of the jobs, which machines compute side by side into one cache: a pure
+ * function of the jobs' names, keys and weights. What no cache keeps is in no share. */
+struct pool_share {
+    int number, of; /* 1..of; of = 0: all jobs */
+};
+
 struct pool_settings {
-    int jobs;                  /* processes at once, >= 1 */
+    int jobs; /* processes at once, >= 1 */
+    struct pool_share share;
     const struct cache *cache; /* NULL: none */
     pool_progress *progress;   /* may be NULL */
     void *progress_context;
@@ -55,7 +64,12 @@ size_t pool_add(struct pool *pool, const char *name, const char *key, double wei
 /* The number of the job with this key, (size_t)-1: there is none. */
 size_t pool_find(const struct pool *pool, const char *key);
 
-/* Runs all jobs. STATUS_ENVIRONMENT: no process or no memory; what single jobs say is in them. */
+/* The share of each job, 1..of, into shares (of pool->count); 0: none. Even by weight: the heaviest
+ * job goes where least is, equal keys go together. STATUS_ENVIRONMENT: no memory. */
+enum status pool_divide(const struct pool *pool, int of, int *shares, struct error *error);
+
+/* Runs the jobs of the share. STATUS_ENVIRONMENT: no process or no memory; what single jobs say is
+ * in them. */
 enum status pool_run(struct pool *pool, const struct pool_settings *settings, struct error *error);
 
 void pool_free(struct pool *pool);

@@ -6,6 +6,7 @@ A kill that comes before anything is finished shows nothing. So every second kil
 finished computation than there was before, however slow the machine, and a command that ends before
 its kill begins anew from nothing."""
 import contextlib
+import glob
 import os
 import random
 import shutil
@@ -27,8 +28,7 @@ class Killed:
 
 def entries(cache):
     """What is finished; an entry that is written again is another file."""
-    names = os.listdir(cache) if os.path.isdir(cache) else []
-    return {name: os.stat(os.path.join(cache, name)).st_ino for name in names if name.endswith(".entry")}
+    return {name: os.stat(name).st_ino for name in glob.glob(os.path.join(cache, "*", "*.entry"))}
 
 
 def lost(before, now):

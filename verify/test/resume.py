@@ -2,6 +2,7 @@
 """resume.py SPHPROOF FOLDER: a report that is killed, resumed, repeated on an unchanged night, and
 repeated with a damaged entry: what is found, how long it takes, that results are the same; its
 history."""
+import glob
 import json
 import os
 import shutil
@@ -29,9 +30,7 @@ def report(*words):
 
 
 def entries():
-    cache = os.path.join(folder, "cache")
-    names = os.listdir(cache) if os.path.isdir(cache) else []
-    return [os.path.join(cache, name) for name in names if name.endswith(".entry")]
+    return glob.glob(os.path.join(folder, "cache", "*", "*.entry"))
 
 
 def fixed(value):

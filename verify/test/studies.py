@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """studies.py SPHPROOF: `sphproof converge` with a cache from outside: any number of jobs, a second
 time, damaged entries, kill -9 in the middle, two at once; its progress in a log and on a terminal."""
+import glob
 import json
 import os
 import pty
@@ -38,7 +39,7 @@ def without_times(document):
 
 
 def entries():
-    return [os.path.join("cache", name) for name in os.listdir("cache")] if os.path.isdir("cache") else []
+    return glob.glob("cache/*/*")
 
 
 def test_cache():
@@ -105,6 +106,26 @@ def test_two_at_once():
            entries())
 
 
+def test_shares():
+    """Shares on machines side by side, then a plain call: the same as alone, nothing twice."""
+    for name in entries():
+        os.remove(name)
+    listed = subprocess.run([program, *QUICK, "--list"], capture_output=True, text=True).stdout.splitlines()
+    expect("a list", len(listed) == 8 and all(len(line.split("\t")) == 4 for line in listed), listed)
+    running = [subprocess.Popen([program, *QUICK, "--cache", "cache", "--shard", "%d/3" % i, "--json", "share.json"],
+                                stdout=subprocess.PIPE, text=True) for i in (1, 2, 3)]
+    said = [one.communicate()[0] for one in running]
+    expect("shares", [one.returncode for one in running] == [0, 0, 0] and "share 2 of 3" in said[1], said)
+    expect("a share judges nothing", not os.path.exists("share.json") and len(entries()) == 8, entries())
+    kept = subprocess.run([program, *QUICK, "--cache", "cache", "--list"], capture_output=True, text=True).stdout
+    expect("a list of what is kept", kept.count("\tkept\t") == 8, kept)
+    inodes = {name: os.stat(name).st_ino for name in entries()}
+    _, whole, stderr = study(*QUICK, "--cache", "cache")
+    _, alone, _ = study(*QUICK)
+    expect("shares, results", without_times(whole) == without_times(alone), stderr)
+    expect("shares, computed twice", inodes == {name: os.stat(name).st_ino for name in entries()})
+
+
 def test_progress():
     shown = ["--vary", "alpha=0.5,1,1.5"]
     done = subprocess.run([program, *LONG, "--json", os.devnull], stderr=subprocess.PIPE,
@@ -133,6 +154,7 @@ def main():
         test_cache()
         test_kill()
         test_two_at_once()
+        test_shares()
         test_progress()
         os.chdir("/")
     print("\n".join(faults) or "studies are kept, found and resumed")

@@ -1,17 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Computations side by side and the cache: the same results with any number of processes and from
  * the cache; damaged entries, crashes, kill -9 and two at once. */
+#define _GNU_SOURCE /* nftw */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <cmocka.h>
+#include <math.h>
 
-#include <dirent.h>
+#include <fcntl.h>
+#include <ftw.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -63,16 +67,15 @@ static void place_make(struct place *place)
     assert_int_equal(cache_open(&place->cache, place->cache_folder, false, &error), STATUS_OK);
 }
 
+static int remove_one(const char *path, const struct stat *is, int type, struct FTW *depth)
+{
+    (void)is, (void)type, (void)depth;
+    return remove(path);
+}
+
 static void place_clear(const struct place *place)
 {
-    char path[400];
-    DIR *folder = opendir(place->cache_folder);
-    for (struct dirent *entry; (entry = readdir(folder));) {
-        snprintf(path, sizeof path, "%s/%s", place->cache_folder, entry->d_name);
-        unlink(path);
-    }
-    closedir(folder);
-    rmdir(place->cache_folder);
+    nftw(place->cache_folder, remove_one, 8, FTW_DEPTH | FTW_PHYS);
     unlink(place->count);
     rmdir(place->folder);
 }
@@ -171,6 +174,111 @@ static void crashes(void **state)
     place_clear(&place);
 }
 
+/* Every job in one share, the same whatever their order; equal keys together; even by weight. */
+static void shares(void **state)
+{
+    enum { MANY = 200 };
+    static int divided[MANY], again[MANY];
+    struct pool pool = {0}, turned = {0};
+    struct error error = {0};
+    double load[6] = {0}, least = 1e9, most = 0;
+    (void)state;
+    for (size_t i = 0; i < MANY; i++) {
+        char key[2][32];
+        const size_t numbers[2] = {i, MANY - 1 - i};
+        for (int k = 0; k < 2; k++) { /* 0 and 1, 10 and 11, ... are one computation */
+            const size_t same = numbers[k] % 10 == 1 ? numbers[k] - 1 : numbers[k];
+            snprintf(key[k], sizeof key[k], "key %zu", same);
+            pool_add(k ? &turned : &pool, "job", numbers[k] == 7 ? NULL : key[k],
+                     1 + (double)(same * 37 % 100), compute, NULL);
+        }
+    }
+    assert_int_equal(pool_divide(&pool, 5, divided, &error), STATUS_OK);
+    assert_int_equal(pool_divide(&turned, 5, again, &error), STATUS_OK);
+    for (size_t i = 0; i < MANY; i++) {
+        assert_int_equal(divided[i], again[MANY - 1 - i]);
+        assert_true(i == 7 ? divided[i] == 0 : divided[i] >= 1 && divided[i] <= 5);
+        if (i % 10 == 1)
+            assert_int_equal(divided[i], divided[i - 1]);
+        else
+            load[divided[i]] += pool.jobs[i].weight;
+    }
+    for (int s = 1; s <= 5; s++) {
+        least = load[s] < least ? load[s] : least;
+        most = load[s] > most ? load[s] : most;
+    }
+    assert_true(most - least <= 100); /* the heaviest job */
+    pool_free(&pool);
+    pool_free(&turned);
+}
+
+/* Three processes with a share each, one after the other: then all is there, computed once. */
+static void shares_meet(void **state)
+{
+    struct place place;
+    struct pool pool, alone;
+    struct task tasks[JOBS] = {0}, others[JOBS] = {0};
+    struct error error = {0};
+    (void)state;
+    place_make(&place);
+    for (int s = 1; s <= 3; s++) {
+        size_t mine = 0;
+        fill(&pool, tasks, &place, JOBS);
+        const struct pool_settings settings = {
+            .jobs = 2, .cache = &place.cache, .share = {.number = s, .of = 3}};
+        assert_int_equal(pool_run(&pool, &settings, &error), STATUS_OK);
+        for (size_t i = 0; i < JOBS; i++) {
+            assert_true(pool.jobs[i].done != pool.jobs[i].elsewhere);
+            mine += pool.jobs[i].done;
+        }
+        assert_true(mine >= 1 && mine <= JOBS - 2);
+        pool_free(&pool);
+    }
+    assert_int_equal(computed(&place), JOBS);
+    fill(&pool, tasks, &place, JOBS);
+    fill(&alone, others, &place, JOBS);
+    assert_int_equal(run(&pool, &place.cache, 2), STATUS_OK);
+    assert_int_equal(pool.found, JOBS);
+    assert_int_equal(run(&alone, NULL, 2), STATUS_OK);
+    same_results(&pool, &alone);
+    pool_free(&pool);
+    pool_free(&alone);
+    place_clear(&place);
+}
+
+/* Old entries go when they are asked to, not when somebody else opens the folder. */
+static void pruned(void **state)
+{
+    struct place place;
+    struct cache_census census;
+    struct error error = {0};
+    char path[CACHE_PATH_MAX];
+    (void)state;
+    place_make(&place);
+    json_t *document = json_pack("{s:i}", "value", 1);
+    const struct timespec month[2] = {{.tv_sec = time(NULL) - (time_t)CACHE_MONTH - 60},
+                                      {.tv_sec = time(NULL) - (time_t)CACHE_MONTH - 60}};
+    for (int k = 0; k < 3; k++) {
+        char key[8];
+        snprintf(key, sizeof key, "%d", k);
+        assert_int_equal(cache_store(&place.cache, key, document, &error), STATUS_OK);
+        assert_true(cache_has(&place.cache, key));
+        cache_path(&place.cache, key, path);
+        if (k) assert_int_equal(utimensat(AT_FDCWD, path, month, 0), 0);
+    }
+    json_decref(document);
+    json_decref(cache_load(&place.cache, "2", NULL)); /* used: young again */
+    assert_int_equal(cache_open(&place.cache, place.cache_folder, false, &error), STATUS_OK);
+    assert_int_equal(cache_prune(place.cache_folder, HUGE_VAL, &census, &error), STATUS_OK);
+    assert_true(census.entries == 3 && census.removed == 0 && census.bytes > 0);
+    assert_int_equal(cache_prune(place.cache_folder, CACHE_MONTH, &census, &error), STATUS_OK);
+    assert_true(census.entries == 2 && census.removed == 1);
+    assert_true(cache_has(&place.cache, "0") && !cache_has(&place.cache, "1") &&
+                cache_has(&place.cache, "2"));
+    assert_int_equal(cache_prune("no/such", 1, &census, &error), STATUS_BAD_INPUT);
+    place_clear(&place);
+}
+
 static size_t read_all(const char *path, char *bytes, size_t size)
 {
     FILE *file = fopen(path, "rb");
@@ -198,30 +306,35 @@ static void damaged_entries(void **state)
     place_make(&place);
     json_t *document = json_pack("{s:f, s:[i, i]}", "value", 0.1, "list", 1, 2);
     assert_int_equal(cache_store(&place.cache, "key", document, &error), STATUS_OK);
-    json_t *back = cache_load(&place.cache, "key");
+    json_t *back = cache_load(&place.cache, "key", NULL);
     assert_true(json_equal(back, document));
     json_decref(back);
     cache_path(&place.cache, "key", path);
     const size_t n = read_all(path, bytes, sizeof bytes);
     for (size_t i = 0; i < n; i++) {
+        bool seen = false;
         write_all(path, bytes, i);
-        assert_null(cache_load(&place.cache, "key"));
+        assert_null(cache_load(&place.cache, "key", &seen));
+        assert_true(seen);
         memcpy(damaged, bytes, n);
         damaged[i] = (char)(damaged[i] ^ (1 << (i % 7)));
         write_all(path, damaged, n);
-        assert_null(cache_load(&place.cache, "key"));
+        assert_null(cache_load(&place.cache, "key", NULL));
     }
     write_all(path, bytes, n);
-    back = cache_load(&place.cache, "key");
+    back = cache_load(&place.cache, "key", NULL);
     assert_non_null(back);
     json_decref(back);
     cache_path(&place.cache, "other key", other);
+    *strrchr(other, '/') = '\0';
+    mkdir(other, 0777);
+    other[strlen(other)] = '/';
     write_all(other, bytes, n);
-    assert_null(cache_load(&place.cache, "other key"));
+    assert_null(cache_load(&place.cache, "other key", NULL));
     /* another build has entries of its own */
     struct cache rebuilt = place.cache;
     rebuilt.build[0] = rebuilt.build[0] == '0' ? '1' : '0';
-    assert_null(cache_load(&rebuilt, "key"));
+    assert_null(cache_load(&rebuilt, "key", NULL));
     json_decref(document);
     place_clear(&place);
 }
@@ -316,11 +429,11 @@ static void full_disk(void **state)
     struct task tasks[2] = {0};
     place_make(&place);
     struct cache gone = place.cache;
-    snprintf(gone.folder, sizeof gone.folder, "%s/missing", place.folder);
+    snprintf(gone.folder, sizeof gone.folder, "/dev/null/missing");
     fill(&pool, tasks, &place, 2);
     assert_int_equal(run(&pool, &gone, 2), STATUS_OK);
     assert_non_null(pool.jobs[0].document);
-    assert_non_null(strstr(pool.note, "cannot write"));
+    assert_non_null(strstr(pool.note, "/dev/null"));
     pool_free(&pool);
     place_clear(&place);
 }
@@ -329,6 +442,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(any_number_of_processes),
+        cmocka_unit_test(shares),
+        cmocka_unit_test(shares_meet),
+        cmocka_unit_test(pruned),
         cmocka_unit_test(crashes),
         cmocka_unit_test(damaged_entries),
         cmocka_unit_test(killed),

@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * sphproof cache: what a folder of kept results holds, and room in it. */
+#include <math.h>
+#include <stdio.h>
+
+#include "cache.h"
+#include "command.h"
+#include "result.h"
+#include "text.h"
+
+static enum status run(const struct options *options, int n, char **arguments, struct error *error)
+{
+    struct cache_census census;
+    const char *text = options_value(options, "prune");
+    double days = HUGE_VAL;
+    if (n != 1) return command_usage(options, error, "one folder is needed");
+    if (text && !(text_real(text, &days) && days >= 0))
+        return error_set(error, STATUS_BAD_INPUT,
+                         "cache: --prune '%.40s': allowed: days, a number >= 0", text);
+    if (cache_prune(arguments[0], days * 24 * 3600, &census, error)) return error->status;
+    if (options->speak)
+        printf("%zu results, %.3g MB; %zu removed\n", census.entries, census.bytes / 1e6,
+               census.removed);
+    if (!options->json) return STATUS_OK;
+    json_t *document = result_new("cache");
+    json_object_set_new(document, "folder", json_string(arguments[0]));
+    json_object_set_new(document, "entries", json_integer((json_int_t)census.entries));
+    json_object_set_new(document, "removed", json_integer((json_int_t)census.removed));
+    json_object_set_new(document, "bytes", json_real(census.bytes));
+    const enum status status = result_write(document, options->json, error);
+    json_decref(document);
+    return status;
+}
+
+static const struct command_option own_options[] = {
+    {"prune", "DAYS", "remove results that nobody has used for so many days"},
+    {NULL, NULL, NULL},
+};
+
+const struct command command_cache = {
+    .name = "cache",
+    .synopsis = "DIR",
+    .help = "kept results of a folder (--cache DIR, or cache in a report's folder): how many, how "
+            "large;\nroom for new ones. `sphproof report --nightly` removes what is a month old.",
+    .run = run,
+    .options = own_options,
+    .examples = "sphproof cache reports/out/cache\nsphproof cache shared --prune 30",
+};

@@ -1,0 +1,114 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "sharing.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "text.h"
+
+enum { JOBS_MAX = 1024, SHARES_MAX = 1000000 };
+
+static enum status take_share(struct pool_share *share, const struct options *options,
+                              struct error *error)
+{
+    const char *text = options_value(options, "shard");
+    int end = 0;
+    if (text && (sscanf(text, "%6d/%7d%n", &share->number, &share->of, &end) != 2 || text[end] ||
+                 share->number < 1 || share->number > share->of || share->of > SHARES_MAX))
+        return error_set(error, STATUS_BAD_INPUT,
+                         "%s: --shard '%.40s': allowed: I/N with 1 <= I <= N <= %d, as 3/8",
+                         options->command->name, text, SHARES_MAX);
+    return STATUS_OK;
+}
+
+enum status sharing_take(struct sharing *sharing, const struct options *options, int jobs,
+                         const char *folder, bool force, struct error *error)
+{
+    const char *text = options_value(options, "jobs");
+    double number = jobs;
+    *sharing = (struct sharing){.list = options_value(options, "list") != NULL};
+    if (text && !(text_integer(text, &number) && number >= 1 && number <= JOBS_MAX))
+        return error_set(error, STATUS_BAD_INPUT,
+                         "%s: --jobs '%.40s': allowed: an integer from 1 to %d",
+                         options->command->name, text, JOBS_MAX);
+    sharing->pool.jobs = number >= 1 ? (int)number : 1;
+    if (take_share(&sharing->pool.share, options, error)) return error->status;
+    if (!folder) folder = options_value(options, "cache");
+    if (sharing->pool.share.of && !folder)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "%s: --shard needs --cache DIR: there the shares meet",
+                         options->command->name);
+    if (sharing->pool.share.of && force)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "%s: --shard and --force exclude each other: begin with an empty cache",
+                         options->command->name);
+    if (folder && sharing->list && access(folder, R_OK)) folder = NULL; /* and none is made */
+    if (folder && cache_open(&sharing->cache, folder, force, error)) return error->status;
+    if (folder) sharing->pool.cache = &sharing->cache;
+    return STATUS_OK;
+}
+
+enum status sharing_list(const struct sharing *sharing, const struct pool *pool,
+                         struct error *error)
+{
+    const struct pool_share *share = &sharing->pool.share;
+    int *shares = calloc(pool->count + 1, sizeof *shares);
+    if (!shares) return error_set(error, STATUS_ENVIRONMENT, "no memory for the list");
+    const enum status status = pool_divide(pool, share->of ? share->of : 1, shares, error);
+    for (size_t i = 0; i < pool->count && !status; i++) {
+        const struct pool_job *job = &pool->jobs[i];
+        if (share->of && shares[i] != share->number) continue;
+        const bool kept = sharing->pool.cache && job->key && cache_has(&sharing->cache, job->key);
+        printf("%.3g\t%d\t%s\t%s\n", job->weight, shares[i], kept ? "kept" : "-", job->name);
+    }
+    free(shares);
+    return status;
+}
+
+static void show_progress(void *context, const char *what, size_t done, size_t total, double share)
+{
+    struct progress *progress = context;
+    progress->what = what;
+    progress_share(progress, done, total, share);
+}
+
+/* What came of a share; a computation that gave no result at all ends it. */
+static enum status say_share(const struct sharing *sharing, const struct pool *pool,
+                             const struct options *options, struct error *error)
+{
+    size_t mine = 0;
+    for (size_t i = 0; i < pool->count; i++) {
+        const struct pool_job *job = &pool->jobs[i];
+        if (job->elsewhere) continue;
+        mine++;
+        if (job->error.status == STATUS_ENVIRONMENT || job->error.status == STATUS_BAD_INPUT)
+            return error_set(error, job->error.status, "%.100s: %.400s", job->name,
+                             job->error.message);
+    }
+    if (pool->note[0]) return error_set(error, STATUS_ENVIRONMENT, "%.400s", pool->note);
+    if (options->speak)
+        printf("share %d of %d: %zu of %zu computations, %zu of them found in %s\n",
+               sharing->pool.share.number, sharing->pool.share.of, mine, pool->count, pool->found,
+               sharing->cache.folder);
+    return STATUS_OK;
+}
+
+enum status sharing_run(struct sharing *sharing, struct pool *pool, const char *what,
+                        const struct options *options, bool *whole, struct error *error)
+{
+    progress_begin(&sharing->progress, what, options->quiet);
+    sharing->pool.progress = show_progress;
+    sharing->pool.progress_context = &sharing->progress;
+    const enum status status = pool_run(pool, &sharing->pool, error);
+    progress_end(&sharing->progress);
+    *whole = !sharing->pool.share.of;
+    if (status) return status;
+    if (pool->damaged && !options->quiet)
+        fprintf(stderr, "sphproof: note: %zu kept results were damaged: computed again\n",
+                pool->damaged);
+    if (!*whole) return say_share(sharing, pool, options, error);
+    if (pool->note[0] && !options->quiet) fprintf(stderr, "sphproof: note: %s\n", pool->note);
+    return STATUS_OK;
+}

@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The options of every command that has many independent computations: how many side by side, where
+ * they are kept, which share of them is this process's, and what they are. */
+#ifndef SPHPROOF_SHARING_H
+#define SPHPROOF_SHARING_H
+
+#include "command.h"
+#include "pool.h"
+#include "progress.h"
+
+/* --jobs is the command's own: its fallbacks differ. */
+#define SHARING_OPTIONS                                                                            \
+    {"cache", "DIR", "keep each computation there, and do not repeat what is there already"},      \
+        SHARING_OPTIONS_OF_CACHE
+/* of a command that has a folder for its cache */
+#define SHARING_OPTIONS_OF_CACHE                                                                   \
+    {"shard", "I/N",                                                                               \
+     "only the Ith of N even shares, into the cache; the last, plain call finds "                  \
+     "all"},                                                                                       \
+    {                                                                                              \
+        "list", NULL,                                                                              \
+            "compute nothing: one line a computation, tabs between estimated seconds, share, "     \
+            "kept "                                                                                \
+            "or -, name"                                                                           \
+    }
+
+struct sharing {
+    bool list;
+    struct pool_settings pool; /* without progress */
+    struct cache cache;        /* where pool.cache is not NULL */
+    struct progress progress;
+};
+
+/* Reads the options; jobs: the fallback of --jobs; folder: of the cache, NULL: --cache says it.
+ * STATUS_BAD_INPUT: an option is wrong, or a share has no cache to go to. It may not move
+ * afterwards. */
+enum status sharing_take(struct sharing *sharing, const struct options *options, int jobs,
+                         const char *folder, bool force, struct error *error);
+
+/* What --list prints, to standard output. */
+enum status sharing_list(const struct sharing *sharing, const struct pool *pool,
+                         struct error *error);
+
+/* Runs the pool with a line of progress; says what was remarkable. Where only a share was asked
+ * for, says what it was, and *whole becomes false: there is nothing to judge. */
+enum status sharing_run(struct sharing *sharing, struct pool *pool, const char *what,
+                        const struct options *options, bool *whole, struct error *error);
+
+#endif
