@@ -13,6 +13,7 @@ enum {
     SAMPLE = 1000,     /* radii that choose the size of the cells */
     CHUNK = 1 << 18,   /* entries of lists that a thread asks for at once */
     CELLS_A_POINT = 2, /* at most */
+    COPIED = 16,       /* points that are copied at once; arrays of slots are that much longer */
     BEYOND = 16        /* entries that a vector may write after the end of a list */
 };
 

@@ -82,24 +82,29 @@ NEAR(near_2, 2)
 NEAR(near_3, 3)
 
 /* The difference of two positions that is nearest to 0. */
-static double nearest(double d, double side)
+ALWAYS_INLINE float nearest(float d, float side)
 {
-    return d > 0.5 * side ? d - side : d < -0.5 * side ? d + side : d;
+    const float half = 0.5f * side;
+    return d > half ? d - side : d < -half ? d + side : d;
 }
 
-/* Copies the points of a cell, moved by what lies between the two cells. */
+/* Copies the points of a cell, moved by what lies between the two cells: whole vectors, whose rest
+ * the next cell overwrites. */
 static void copy_cell(const struct grid *grid, struct candidates *to, size_t count, size_t cell,
                       const float moved[3])
 {
     const uint32_t begin = grid->start[cell];
     const size_t n = grid->start[cell + 1] - begin;
-    for (int a = 0; a < 3; a++) {
-        const float *from = grid->place[a] + begin;
-        float *x = to->x[a] + count;
-        for (size_t k = 0; k < n; k++) x[k] = from[k] + moved[a];
+    for (size_t from = 0; from < n; from += COPIED) {
+        for (int a = 0; a < 3; a++) {
+            const float *restrict x = grid->place[a] + begin + from;
+            float *restrict x_to = to->x[a] + count + from;
+            for (int k = 0; k < COPIED; k++) x_to[k] = x[k] + moved[a];
+        }
+        memcpy(to->radius2 + count + from, grid->radius2 + begin + from, COPIED * sizeof(float));
+        for (int k = 0; k < COPIED; k++)
+            to->slot[count + from + (size_t)k] = (int32_t)(begin + from) + k;
     }
-    memcpy(to->radius2 + count, grid->radius2 + begin, n * sizeof(float));
-    for (size_t k = 0; k < n; k++) to->slot[count + k] = (int32_t)(begin + k);
 }
 
 struct region {
@@ -141,21 +146,22 @@ static size_t find_candidates(const struct grid *grid, const ptrdiff_t c[3],
     return whole;
 }
 
-/* In a box hardly wider than the radii: the nearest image pair by pair. */
-static void near_images(const struct grid *grid, uint32_t s, size_t count,
-                        const struct candidates *candidates, uint8_t *near)
+/* The same in a box hardly wider than the radii: of all images the nearest one; side: period in
+ * units, HUGE_VALF where there is none. */
+CLONES static void near_images(int dim, size_t count, const float at[3], float radius2,
+                               const float side[3], const struct candidates *candidates)
 {
+    const float *restrict x = candidates->x[0], *restrict y = candidates->x[1],
+                          *restrict z = candidates->x[2], *restrict other = candidates->radius2;
+    uint8_t *restrict near = candidates->near;
+    const float x0 = at[0], y0 = at[1], z0 = at[2], sx = side[0], sy = side[1], sz = side[2];
+#pragma omp simd
     for (size_t k = 0; k < count; k++) {
-        const bool filling = !(candidates->x[0][k] < 1e17f);
-        const int32_t j = filling ? (int32_t)s : candidates->slot[k];
-        double r2 = 0;
-        for (int a = 0; a < grid->box.dim; a++) {
-            double d = grid->position[j][a] - grid->position[s][a];
-            if (grid->box.periodic[a]) d = nearest(d, grid->side[a]);
-            r2 += d * d;
-        }
-        const double radius = fmax(grid->radius[s], grid->radius[j]) * grid->unit;
-        near[k] = !filling && r2 < radius * radius;
+        const float dx = nearest(x[k] - x0, sx), dy = nearest(y[k] - y0, sy),
+                    dz = dim == 3 ? nearest(z[k] - z0, sz) : 0;
+        const float r2 = dx * dx + dy * dy + dz * dz;
+        const float most = other[k] > radius2 ? other[k] : radius2;
+        near[k] = r2 < most;
     }
 }
 
@@ -195,17 +201,20 @@ find_by_compressing(int dim, const struct candidates *candidates, size_t count, 
     const __m512 x0 = _mm512_set1_ps(at[0]), y0 = _mm512_set1_ps(at[1]), z0 = _mm512_set1_ps(at[2]),
                  own = _mm512_set1_ps(radius2);
     const __m512i self = _mm512_set1_epi32(s);
+    const float *const x = candidates->x[0], *const y = candidates->x[1],
+                       *const z = candidates->x[2], *const radius2_of = candidates->radius2;
+    const int32_t *const slots = candidates->slot;
     int32_t found = 0;
     for (size_t k = 0; k < count; k += 16) {
-        const __m512 dx = _mm512_sub_ps(_mm512_loadu_ps(candidates->x[0] + k), x0),
-                     dy = _mm512_sub_ps(_mm512_loadu_ps(candidates->x[1] + k), y0);
+        const __m512 dx = _mm512_sub_ps(_mm512_loadu_ps(x + k), x0),
+                     dy = _mm512_sub_ps(_mm512_loadu_ps(y + k), y0);
         __m512 r2 = _mm512_add_ps(_mm512_mul_ps(dx, dx), _mm512_mul_ps(dy, dy));
         if (dim == 3) {
-            const __m512 dz = _mm512_sub_ps(_mm512_loadu_ps(candidates->x[2] + k), z0);
+            const __m512 dz = _mm512_sub_ps(_mm512_loadu_ps(z + k), z0);
             r2 = _mm512_add_ps(r2, _mm512_mul_ps(dz, dz));
         }
-        const __m512 most = _mm512_max_ps(_mm512_loadu_ps(candidates->radius2 + k), own);
-        const __m512i slot = _mm512_loadu_si512(candidates->slot + k);
+        const __m512 most = _mm512_max_ps(_mm512_loadu_ps(radius2_of + k), own);
+        const __m512i slot = _mm512_loadu_si512(slots + k);
         const __mmask16 near =
             _mm512_cmp_ps_mask(r2, most, _CMP_LT_OQ) & _mm512_cmpneq_epi32_mask(slot, self);
         _mm512_storeu_si512(list + found, _mm512_maskz_compress_epi32(near, slot));
@@ -252,6 +261,9 @@ static int search_cell(struct grid *grid, const ptrdiff_t c[3], struct candidate
         any |= is_active(grid, s);
     }
     if (!any) return 0;
+    float side[3];
+    for (int a = 0; a < 3; a++)
+        side[a] = grid_side(grid, a) > 0 ? (float)(grid->side[a] / grid->unit) : HUGE_VALF;
     const size_t count = find_candidates(grid, c, &region, candidates);
     if (count == SIZE_MAX) return -1;
     int longest = 0;
@@ -261,11 +273,11 @@ static int search_cell(struct grid *grid, const ptrdiff_t c[3], struct candidate
         int32_t *slots = pool_take(pool, count + BEYOND);
         if (!slots) return -1;
         list->slots = slots;
+        const float at[3] = {grid->place[0][s], grid->place[1][s], grid->place[2][s]};
         if (region.all) {
-            near_images(grid, s, count, candidates, candidates->near);
+            near_images(grid->box.dim, count, at, grid->radius2[s], side, candidates);
             list->count = collect(candidates->near, count, candidates->slot, (int32_t)s, slots);
         } else {
-            const float at[3] = {grid->place[0][s], grid->place[1][s], grid->place[2][s]};
             list->count = grid->find(grid->box.dim, candidates, count, at, grid->radius2[s],
                                      (int32_t)s, slots);
         }
