@@ -189,7 +189,7 @@ CLONES static void pressure(enum formulation formulation, bool number, int count
 /* --- sums ------------------------------------------------------------------------------------- */
 
 struct totals {
-    double F[3], de, div_v;
+    double F[3], de, div_v, signal;
 };
 
 /* One axis of the sums: force, and of the energy what moves along this axis. */
@@ -282,17 +282,18 @@ CLONES static double find_signal(int count, const struct sides *sides, const str
     return most;
 }
 
-static void force_pass(struct cells *cells, const struct cells_fields *fields, size_t slot,
-                       struct lanes *lanes)
+/* What the count neighbours in the lanes do to a particle; neighbours: those that are no
+ * fillings. */
+static void add_part(struct cells *cells, int count, int neighbours, const double *record,
+                     struct lanes *lanes, struct totals *totals)
 {
     const struct cells_method *method = &cells->method;
     const struct lanes_layout *layout = &cells->force;
-    const int dim = method->box.dim, count = lanes_gather(cells, layout, slot, lanes);
-    const int neighbours = grid_lists(cells->grid)[slot].count;
-    const double *record = cells->records + (ptrdiff_t)slot * layout->size;
+    const int dim = method->box.dim;
     const double *v = record + layout->offset[GROUP_MOTION];
     const double *theirs = lane_of(lanes, layout, GROUP_MOTION, 0);
     const struct sides sides = find_sides(cells, lanes, record);
+    struct totals part = {0};
     find_closing(count, lane(lanes, LANE_DX), lane(lanes, LANE_DY), lane(lanes, LANE_DZ), theirs,
                  theirs + lanes->stride, theirs + 2 * lanes->stride, v, lane(lanes, LANE_R_INVERSE),
                  lane(lanes, LANE_CLOSING));
@@ -300,23 +301,39 @@ static void force_pass(struct cells *cells, const struct cells_fields *fields, s
     pressure(method->formulation, method->number, count, &sides, lane(lanes, LANE_A_I),
              lane(lanes, LANE_A_J));
     cells_viscosity(cells, count, lanes, &sides, record);
-    struct totals totals = {0};
     if (method->formulation == FORMULATION_VANILLA_ICE)
-        add_all(dim, method->energy, count, lanes, v, theirs, &totals);
+        add_all(dim, method->energy, count, lanes, v, theirs, &part);
     else
         for (int a = 0; a < dim; a++)
             add_axis(method->energy, count, lanes, lane(lanes, LANE_GX + a),
                      lane(lanes, LANE_GX_I + a), lane(lanes, LANE_GX_J + a), v[a],
-                     theirs + a * lanes->stride, &totals.F[a], &totals.de);
+                     theirs + a * lanes->stride, &part.F[a], &part.de);
     if (method->conductivity > 0)
-        totals.de += cells_conduction(cells, count, &sides, lanes,
-                                      record[layout->offset[GROUP_VISCOSITY] + 3],
-                                      lane_of(lanes, layout, GROUP_VISCOSITY, 3));
+        part.de += cells_conduction(cells, count, &sides, lanes,
+                                    record[layout->offset[GROUP_VISCOSITY] + 3],
+                                    lane_of(lanes, layout, GROUP_VISCOSITY, 3));
+    for (int a = 0; a < dim; a++) totals->F[a] += part.F[a];
+    totals->de += part.de;
+    if (method->div_v) totals->div_v += cells_divergence(dim, count, lanes, &sides, v, theirs);
+    totals->signal = largest(totals->signal, find_signal(count, &sides, lanes, &lanes->pairs));
+}
+
+static void force_pass(struct cells *cells, const struct cells_fields *fields, size_t slot,
+                       struct lanes *lanes)
+{
+    const struct lanes_layout *layout = &cells->force;
+    const int neighbours = grid_lists(cells->grid)[slot].count;
+    const double *record = cells->records + (ptrdiff_t)slot * layout->size;
+    struct totals totals = {.signal = 2 * record[layout->offset[GROUP_GAS] + 3]};
+    for (int from = 0, count; from < neighbours; from += count) {
+        count = lanes_gather_part(cells, layout, slot, from, lanes);
+        add_part(cells, count, neighbours - from, record, lanes, &totals);
+    }
     const size_t i = grid_order(cells->grid)[slot];
-    for (int a = 0; a < dim; a++) fields->F[a][i] = totals.F[a];
+    for (int a = 0; a < cells->method.box.dim; a++) fields->F[a][i] = totals.F[a];
     fields->de[i] = totals.de;
-    if (method->div_v) fields->div_v[i] = cells_divergence(dim, count, lanes, &sides, v, theirs);
-    fields->signal[i] = find_signal(count, &sides, lanes, &lanes->pairs);
+    if (cells->method.div_v) fields->div_v[i] = totals.div_v;
+    fields->signal[i] = totals.signal;
 }
 
 uint64_t cells_forces(struct cells *cells, const struct cells_fields *fields)

@@ -61,32 +61,40 @@ CLONES static void along(int count, const double *restrict s, const double *rest
     for (int k = 0; k < count; k++) G[k] = s[k] * x[k];
 }
 
-/* Negative gradients by matrices along one axis: G_i = -C_i x w, G_j = -C_j x w_j. */
-CLONES static void by_matrix(int dim, int count, const struct lanes *lanes, const double *own,
-                             const double *theirs, const double *restrict w,
-                             const double *restrict w_j, int axis)
+/* Negative gradients by matrices along all axes, G_i = -C_i x w and G_j = -C_j x w_j, and their
+ * mean. */
+ALWAYS_INLINE void matrix_body(int dim, int count, const struct lanes *lanes, const double *own,
+                               const double *theirs)
 {
     const ptrdiff_t stride = lanes->stride;
-    double *restrict G_i = lane(lanes, LANE_GX_I + axis), *restrict G_j =
-                                                              lane(lanes, LANE_GX_J + axis);
-    const double *x = lane(lanes, LANE_DX);
-    for (int k = 0; k < count; k++) G_i[k] = G_j[k] = 0;
-    for (int b = 0; b < dim; b++) {
-        const double *restrict xb = x + b * stride, *restrict C =
-                                                        theirs +
-                                                        symmetric_at(dim, axis, b) * stride;
-        const double C_own = own[symmetric_at(dim, axis, b)];
+    const double *restrict x = lane(lanes, LANE_DX), *restrict C = theirs,
+                           *restrict w = lane(lanes, LANE_W), *restrict w_j = lane(lanes, LANE_W_J);
+    double *restrict G = lane(lanes, LANE_GX), *restrict G_i = lane(lanes, LANE_GX_I),
+                     *restrict G_j = lane(lanes, LANE_GX_J);
 #pragma omp simd
-        for (int k = 0; k < count; k++) {
-            G_i[k] -= C_own * xb[k];
-            G_j[k] -= C[k] * xb[k];
+    for (int k = 0; k < count; k++)
+        for (int a = 0; a < dim; a++) {
+            double mine = 0, other = 0;
+            for (int b = 0; b < dim; b++) {
+                const int ab = symmetric_at(dim, a, b);
+                mine -= own[ab] * x[b * stride + k];
+                other -= C[ab * stride + k] * x[b * stride + k];
+            }
+            mine *= w[k];
+            other *= w_j[k];
+            G_i[a * stride + k] = mine;
+            G_j[a * stride + k] = other;
+            G[a * stride + k] = 0.5 * (mine + other);
         }
-    }
-#pragma omp simd
-    for (int k = 0; k < count; k++) {
-        G_i[k] *= w[k];
-        G_j[k] *= w_j[k];
-    }
+}
+
+CLONES static void by_matrix(int dim, int count, const struct lanes *lanes, const double *own,
+                             const double *theirs)
+{
+    if (dim == 2)
+        matrix_body(2, count, lanes, own, theirs);
+    else
+        matrix_body(3, count, lanes, own, theirs);
 }
 
 CLONES static void mean(int count, const double *restrict a, const double *restrict b,
@@ -176,11 +184,7 @@ void cells_pair_gradients(const struct cells *cells, int count, int neighbours,
     else
         for (int k = 0; k < count; k++) w_j[k] = w[k];
     const double *own = record + layout->offset[GROUP_MATRIX];
-    for (int a = 0; a < dim; a++) {
-        by_matrix(dim, count, lanes, own, lane_of(lanes, layout, GROUP_MATRIX, 0), w, w_j, a);
-        mean(count, lane(lanes, LANE_GX_I + a), lane(lanes, LANE_GX_J + a),
-             lane(lanes, LANE_GX + a));
-    }
+    by_matrix(dim, count, lanes, own, lane_of(lanes, layout, GROUP_MATRIX, 0));
     const int symmetric = dim * (dim + 1) / 2;
     const double *use = lane_of(lanes, layout, GROUP_MATRIX, symmetric);
     if (all_sound(count, own[symmetric], use, neighbours)) return;

@@ -7,26 +7,36 @@
 #include "stamp.h"
 
 /* x . L x/r^2 for the particle's own L, and for the neighbours'. */
+ALWAYS_INLINE void slopes_body(int dim, int count, const struct lanes *lanes, const double *own,
+                               const double *theirs)
+{
+    const ptrdiff_t stride = lanes->stride;
+    const double *restrict x = lane(lanes, LANE_DX),
+                           *restrict r_inverse = lane(lanes, LANE_R_INVERSE), *restrict L = theirs;
+    double *restrict slope_i = lane(lanes, LANE_SLOPE_I), *restrict slope_j =
+                                                              lane(lanes, LANE_SLOPE_J);
+#pragma omp simd
+    for (int k = 0; k < count; k++) {
+        double e[3] = {0}, mine = 0, other = 0;
+        for (int a = 0; a < dim; a++) e[a] = x[a * stride + k] * r_inverse[k];
+        for (int a = 0; a < dim; a++)
+            for (int b = 0; b < dim; b++) {
+                const double ee = e[a] * e[b];
+                mine += own[a * dim + b] * ee;
+                other += L[(a * dim + b) * stride + k] * ee;
+            }
+        slope_i[k] = mine;
+        slope_j[k] = other;
+    }
+}
+
 CLONES static void slopes_along(int dim, int count, const struct lanes *lanes, const double *own,
                                 const double *theirs)
 {
-    const ptrdiff_t stride = lanes->stride;
-    const double *dx = lane(lanes, LANE_DX), *r_inverse = lane(lanes, LANE_R_INVERSE);
-    double *restrict slope_i = lane(lanes, LANE_SLOPE_I), *restrict slope_j =
-                                                              lane(lanes, LANE_SLOPE_J);
-    for (int k = 0; k < count; k++) slope_i[k] = slope_j[k] = 0;
-    for (int a = 0; a < dim; a++)
-        for (int b = 0; b < dim; b++) {
-            const double *restrict xa = dx + a * stride, *restrict xb = dx + b * stride,
-                                   *restrict L = theirs + (a * dim + b) * stride;
-            const double L_own = own[a * dim + b];
-#pragma omp simd
-            for (int k = 0; k < count; k++) {
-                const double xx = (xa[k] * r_inverse[k]) * (xb[k] * r_inverse[k]);
-                slope_i[k] += L_own * xx;
-                slope_j[k] += L[k] * xx;
-            }
-        }
+    if (dim == 2)
+        slopes_body(2, count, lanes, own, theirs);
+    else
+        slopes_body(3, count, lanes, own, theirs);
 }
 
 /* K, what viscosity adds to a_i and a_j alike, for G = 1. */
@@ -104,13 +114,13 @@ CLONES static void find_approach(int dim, int count, const struct lanes *lanes, 
                                  const double *theirs, double *restrict approach)
 {
     const ptrdiff_t stride = lanes->stride;
-    const double *G = lane(lanes, LANE_GX);
-    for (int k = 0; k < count; k++) approach[k] = 0;
-    for (int a = 0; a < dim; a++) {
-        const double *restrict Ga = G + a * stride, *restrict va = theirs + a * stride;
-        const double own = v[a];
+    const double *restrict G = lane(lanes, LANE_GX), *restrict w = theirs;
+    const double v0 = v[0], v1 = v[1], v2 = v[2];
+    const ptrdiff_t third = dim == 3 ? 2 * stride : 0;
 #pragma omp simd
-        for (int k = 0; k < count; k++) approach[k] -= (own - va[k]) * Ga[k];
+    for (int k = 0; k < count; k++) {
+        const double plane = (w[k] - v0) * G[k] + (w[stride + k] - v1) * G[stride + k];
+        approach[k] = dim == 3 ? plane + (w[third + k] - v2) * G[third + k] : plane;
     }
 }
 
@@ -124,53 +134,56 @@ CLONES static void never_cool(int count, const double *restrict approach, double
 /* The linear term of viscosity=projected, of both signs (CONVENTIONS, projected):
  * PI = -nu cbar e . (1 - P_ij) u_ij/rhobar, u_ij = v_ij + (L_i + L_j) x/2, e = -x/r, times
  * 1 - (v_ij . e/cbar)^2 or 0: what is as fast as sound is no noise, and to damp it may cool. */
+/* One axis of x . (1 - P_ij) (v_ij + (L_i + L_j) x/2), neighbour k. */
+ALWAYS_INLINE double noise_along(int dim, int a, ptrdiff_t stride, ptrdiff_t k,
+                                 const double *restrict x, const double *const own[3],
+                                 const double *restrict v, const double *restrict L,
+                                 const double *restrict P)
+{
+    double u = 0, e = 0;
+    for (int b = 0; b < dim; b++) {
+        const double xb = x[b * stride + k];
+        const int ab = symmetric_at(dim, a, b);
+        u += (own[1][a * dim + b] + L[(a * dim + b) * stride + k]) * xb;
+        e += (own[2][ab] + P[ab * stride + k]) * xb;
+    }
+    return (x[a * stride + k] - 0.5 * e) * ((own[0][a] - v[a * stride + k]) + 0.5 * u);
+}
+
+ALWAYS_INLINE void noise_body(int dim, int count, double nu, const struct sides *sides,
+                              const struct lanes *lanes, const double *const own[3],
+                              const double *const theirs[3])
+{
+    const ptrdiff_t stride = lanes->stride;
+    const double *restrict x = lane(lanes, LANE_DX),
+                           *restrict r_inverse = lane(lanes, LANE_R_INVERSE),
+                           *restrict v = theirs[0], *restrict L = theirs[1],
+                           *restrict P = theirs[2];
+    const double *restrict m = sides->m, *restrict c = sides->c, *restrict rho = sides->rho;
+    const double *restrict closing = lane(lanes, LANE_CLOSING);
+    double *restrict K = lane(lanes, LANE_K);
+    const double own_m = sides->own.m, own_c = sides->own.c, own_rho = sides->own.rho;
+#pragma omp simd
+    for (int k = 0; k < count; k++) {
+        double s = noise_along(dim, 0, stride, k, x, own, v, L, P) +
+                   noise_along(dim, 1, stride, k, x, own, v, L, P);
+        if (dim == 3) s += noise_along(dim, 2, stride, k, x, own, v, L, P);
+        /* K = m_i m_j PI/2, and e . (1 - P) u = -s/r; fading towards the speed of sound */
+        const double mach = 2 * closing[k] / (own_c + c[k]);
+        const double still_noise = largest(1 - mach * mach, 0);
+        K[k] += own_m * m[k] * (0.5 * nu) * still_noise * (own_c + c[k]) * (s * r_inverse[k]) /
+                (own_rho + rho[k]);
+    }
+}
+
 CLONES static void project_noise(int dim, int count, double nu, const struct sides *sides,
                                  const struct lanes *lanes, const double *const own[3],
                                  const double *const theirs[3])
 {
-    const ptrdiff_t stride = lanes->stride;
-    const double *x = lane(lanes, LANE_DX), *restrict r_inverse = lane(lanes, LANE_R_INVERSE);
-    const double *restrict m = sides->m, *restrict c = sides->c, *restrict rho = sides->rho;
-    const double *restrict closing = lane(lanes, LANE_CLOSING);
-    double *restrict s = lane(lanes, LANE_SPARE), *restrict K = lane(lanes, LANE_K);
-    double *restrict u = lane(lanes, LANE_W), *restrict e = lane(lanes, LANE_W_J);
-    const double own_m = sides->own.m, own_c = sides->own.c, own_rho = sides->own.rho;
-    for (int k = 0; k < count; k++) s[k] = 0;
-    for (int a = 0; a < dim; a++) {
-        const double *restrict va = theirs[0] + a * stride;
-        const double own_v = own[0][a];
-#pragma omp simd
-        for (int k = 0; k < count; k++) u[k] = own_v - va[k];
-        for (int b = 0; b < dim; b++) {
-            const double *restrict L = theirs[1] + (a * dim + b) * stride, *restrict xb =
-                                                                               x + b * stride;
-            const double own_L = own[1][a * dim + b];
-#pragma omp simd
-            for (int k = 0; k < count; k++) u[k] += 0.5 * (own_L + L[k]) * xb[k];
-        }
-        /* e - P e along this axis, with P symmetric */
-        const double *restrict xa = x + a * stride;
-#pragma omp simd
-        for (int k = 0; k < count; k++) e[k] = xa[k];
-        for (int b = 0; b < dim; b++) {
-            const double *restrict P = theirs[2] + symmetric_at(dim, a, b) * stride, *restrict xb =
-                                                                                         x +
-                                                                                         b * stride;
-            const double own_P = own[2][symmetric_at(dim, a, b)];
-#pragma omp simd
-            for (int k = 0; k < count; k++) e[k] -= 0.5 * (own_P + P[k]) * xb[k];
-        }
-#pragma omp simd
-        for (int k = 0; k < count; k++) s[k] += e[k] * u[k];
-    }
-    /* K = m_i m_j PI/2, and e . (1 - P) u = -s/r; fading towards the speed of sound */
-#pragma omp simd
-    for (int k = 0; k < count; k++) {
-        const double mach = 2 * closing[k] / (own_c + c[k]);
-        const double still_noise = largest(1 - mach * mach, 0);
-        K[k] += own_m * m[k] * (0.5 * nu) * still_noise * (own_c + c[k]) * (s[k] * r_inverse[k]) /
-                (own_rho + rho[k]);
-    }
+    if (dim == 2)
+        noise_body(2, count, nu, sides, lanes, own, theirs);
+    else
+        noise_body(3, count, nu, sides, lanes, own, theirs);
 }
 
 /* Conductivity (Price 2008), into heat: sum_j m_i m_j alpha_u v_u (u_i - u_j)/rhobar e_ij . Gbar.

@@ -91,9 +91,10 @@ pairs_of_squares(const double *records, int size, const int32_t *slots, int coun
     STAMP(name, body, 9, set)                                                                      \
     STAMP(name, body, 10, set)                                                                     \
     STAMP(name, body, 11, set)                                                                     \
-        STAMP(name, body, 12, set) static gather_loop *const name[GROUPS_MAX + 1] = {              \
-            plain,    name##_1, name##_2, name##_3,  name##_4,  name##_5, name##_6,                \
-            name##_7, name##_8, name##_9, name##_10, name##_11, name##_12};
+    STAMP(name, body, 12, set)                                                                     \
+    static gather_loop *const name[GROUPS_MAX + 1] = {                                             \
+        plain,    name##_1, name##_2, name##_3,  name##_4,  name##_5, name##_6,                    \
+        name##_7, name##_8, name##_9, name##_10, name##_11, name##_12};
 STAMPS(avx2, squares, "avx2")
 STAMPS(avx512, pairs_of_squares, "avx512f")
 

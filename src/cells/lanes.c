@@ -82,11 +82,10 @@ CLONES static void find_geometry(int dim, bool wrapped, int count, const struct 
     }
 }
 
-int lanes_gather(const struct cells *cells, const struct lanes_layout *layout, size_t slot,
-                 const struct lanes *lanes)
+static void gather(const struct cells *cells, const struct lanes_layout *layout, size_t slot,
+                   int from, int count, const struct lanes *lanes)
 {
     const struct grid_list *list = &grid_lists(cells->grid)[slot];
-    const int count = whole_vectors(list->count);
     const double *at = grid_positions(cells->grid)[slot];
     struct geometry g = {.r = lane(lanes, LANE_R), .r_inverse = lane(lanes, LANE_R_INVERSE)};
     for (int a = 0; a < 3; a++) {
@@ -95,9 +94,31 @@ int lanes_gather(const struct cells *cells, const struct lanes_layout *layout, s
         g.x[a] = lane_of(lanes, layout, GROUP_PLACE, a);
         g.d[a] = lane(lanes, LANE_DX + a);
     }
-    layout->gather(cells->records, layout->size, list->slots, count,
+    layout->gather(cells->records, layout->size, list->slots + from, count,
                    lanes->block + LANES_OWN * lanes->stride, lanes->stride);
     find_geometry(cells->method.box.dim, list->wrapped, count, &g);
+}
+
+int lanes_gather(const struct cells *cells, const struct lanes_layout *layout, size_t slot,
+                 const struct lanes *lanes)
+{
+    const int count = whole_vectors(grid_lists(cells->grid)[slot].count);
+    gather(cells, layout, slot, 0, count, lanes);
+    return count;
+}
+
+/* Bytes of lanes that the first-level cache holds beside records. */
+enum { LANES_BYTES = 40 << 10 };
+
+int lanes_gather_part(const struct cells *cells, const struct lanes_layout *layout, size_t slot,
+                      int from, const struct lanes *lanes)
+{
+    const int most = LANES_BYTES / (int)sizeof(double) / (LANES_OWN + layout->size);
+    const int whole = whole_vectors(grid_lists(cells->grid)[slot].count);
+    const int parts = (whole + most - 1) / most;
+    const int part = parts > 1 ? whole_vectors((whole + parts - 1) / parts) : whole;
+    const int count = part < whole - from ? part : whole - from;
+    gather(cells, layout, slot, from, count, lanes);
     return count;
 }
 

@@ -127,6 +127,11 @@ static inline double lanes_sign(int mirrored, int axis)
 int lanes_gather(const struct cells *cells, const struct lanes_layout *layout, size_t slot,
                  const struct lanes *lanes);
 
+/* The same for a part of the list, from its lane `from` on, that stays in the first-level cache
+ * with all its lanes; parts depend on the list and the layout alone. Returns its lanes. */
+int lanes_gather_part(const struct cells *cells, const struct lanes_layout *layout, size_t slot,
+                      int from, const struct lanes *lanes);
+
 /* Room for lists of the grid's longest one. */
 bool lanes_reserve(struct cells *cells);
 

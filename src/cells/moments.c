@@ -13,26 +13,70 @@ CLONES static void product(int count, const double *restrict a, const double *re
     for (int k = 0; k < count; k++) ab[k] = a[k] * b[k];
 }
 
-CLONES static double moment(int count, const double *restrict weight, const double *restrict x,
-                            const double *restrict y)
+/* All entries of sum weight x x^T in one walk. */
+ALWAYS_INLINE void squares_body(int dim, int count, ptrdiff_t stride, const double *restrict weight,
+                                const double *restrict x, double *restrict sums)
 {
-    double s[GRID_LANES] = {0};
+    double xx[GRID_LANES] = {0}, xy[GRID_LANES] = {0}, yy[GRID_LANES] = {0}, xz[GRID_LANES] = {0},
+           yz[GRID_LANES] = {0}, zz[GRID_LANES] = {0};
+    const double *restrict y = x + stride, *restrict z = dim == 3 ? y + stride : x;
     for (int k = 0; k < count; k += GRID_LANES)
 #pragma omp simd
-        for (int l = 0; l < GRID_LANES; l++) s[l] += weight[k + l] * x[k + l] * y[k + l];
-    return TREE(s);
+        for (int l = 0; l < GRID_LANES; l++) {
+            const double wx = weight[k + l] * x[k + l], wy = weight[k + l] * y[k + l];
+            xx[l] += wx * x[k + l];
+            xy[l] += wx * y[k + l];
+            yy[l] += wy * y[k + l];
+            if (dim == 2) continue;
+            xz[l] += wx * z[k + l];
+            yz[l] += wy * z[k + l];
+            zz[l] += weight[k + l] * z[k + l] * z[k + l];
+        }
+    sums[symmetric_at(dim, 0, 0)] = TREE(xx);
+    sums[symmetric_at(dim, 0, 1)] = TREE(xy);
+    sums[symmetric_at(dim, 1, 1)] = TREE(yy);
+    if (dim == 2) return;
+    sums[symmetric_at(dim, 0, 2)] = TREE(xz);
+    sums[symmetric_at(dim, 1, 2)] = TREE(yz);
+    sums[symmetric_at(dim, 2, 2)] = TREE(zz);
 }
 
-/* sum weight x (v - own). */
-CLONES static double moment_of_difference(int count, const double *restrict weight,
-                                          const double *restrict x, const double *restrict v,
-                                          double own)
+CLONES static void squares(int dim, int count, ptrdiff_t stride, const double *weight,
+                           const double *x, double *sums)
 {
-    double s[GRID_LANES] = {0};
+    if (dim == 2)
+        squares_body(2, count, stride, weight, x, sums);
+    else
+        squares_body(3, count, stride, weight, x, sums);
+}
+
+/* sum weight x (f - own), along all axes. */
+ALWAYS_INLINE void differences_body(int dim, int count, ptrdiff_t stride,
+                                    const double *restrict weight, const double *restrict x,
+                                    const double *restrict f, double own, double *restrict sums)
+{
+    double sx[GRID_LANES] = {0}, sy[GRID_LANES] = {0}, sz[GRID_LANES] = {0};
+    const double *restrict y = x + stride, *restrict z = dim == 3 ? y + stride : x;
     for (int k = 0; k < count; k += GRID_LANES)
 #pragma omp simd
-        for (int l = 0; l < GRID_LANES; l++) s[l] += weight[k + l] * x[k + l] * (v[k + l] - own);
-    return TREE(s);
+        for (int l = 0; l < GRID_LANES; l++) {
+            const double change = weight[k + l] * (f[k + l] - own);
+            sx[l] += x[k + l] * change;
+            sy[l] += y[k + l] * change;
+            if (dim == 3) sz[l] += z[k + l] * change;
+        }
+    sums[0] = TREE(sx);
+    sums[1] = TREE(sy);
+    if (dim == 3) sums[2] = TREE(sz);
+}
+
+CLONES static void differences(int dim, int count, ptrdiff_t stride, const double *weight,
+                               const double *x, const double *f, double own, double sums[3])
+{
+    if (dim == 2)
+        differences_body(2, count, stride, weight, x, f, own, sums);
+    else
+        differences_body(3, count, stride, weight, x, f, own, sums);
 }
 
 void moments_weigh(const struct cells *cells, int count, const struct lanes *lanes,
@@ -48,11 +92,10 @@ bool moments_invert(const struct cells_method *method, int count, const struct l
                     const double *weight, double inverse[CELLS_SQUARE], double *condition)
 {
     const int dim = method->box.dim;
-    double moments[CELLS_SQUARE] = {0};
+    double moments[CELLS_SQUARE], sums[CELLS_SYMMETRIC];
+    squares(dim, count, lanes->stride, weight, lane(lanes, LANE_DX), sums);
     for (int a = 0; a < dim; a++)
-        for (int b = a; b < dim; b++)
-            moments[a * dim + b] = moments[b * dim + a] =
-                moment(count, weight, lane(lanes, LANE_DX + a), lane(lanes, LANE_DX + b));
+        for (int b = 0; b < dim; b++) moments[a * dim + b] = sums[symmetric_at(dim, a, b)];
     *condition = HUGE_VAL;
     if (!matrix_invert(dim, moments, inverse)) return false;
     double norm = 0, norm_inverse = 0;
@@ -70,8 +113,7 @@ void moments_gradient(int dim, int count, const struct lanes *lanes, const doubl
                       double gradient[3])
 {
     double sums[3];
-    for (int c = 0; c < dim; c++)
-        sums[c] = moment_of_difference(count, weight, lane(lanes, LANE_DX + c), f, own);
+    differences(dim, count, lanes->stride, weight, lane(lanes, LANE_DX), f, own, sums);
     for (int b = 0; b < dim; b++) {
         gradient[b] = 0;
         for (int c = 0; c < dim; c++) gradient[b] += inverse[b * dim + c] * sums[c];
