@@ -7,7 +7,9 @@
 
 double width_of(const struct width_rule *rule, double m, double rho)
 {
-    return rule->dim == 1 ? rule->eta * m / rho : rule->eta * pow(m / rho, 1. / rule->dim);
+    /* no pow: it gives other bits on processors with and without FMA */
+    if (rule->dim == 1) return rule->eta * m / rho;
+    return rule->eta * (rule->dim == 2 ? sqrt(m / rho) : cbrt(m / rho));
 }
 
 /* What the sum at 1/h asks for. */

@@ -22,12 +22,20 @@ static void fill_records(struct cells *cells, const struct cells_fields *fields)
     }
 }
 
-/* In place of w': d w + q w'. */
-CLONES static void derivative(int count, double dim, const double *restrict q,
-                              const double *restrict w, double *restrict dw)
+/* sum m w and sum m (d w + q w') in one walk. */
+CLONES static void add_both(int count, double dim, const double *restrict q,
+                            const double *restrict w, const double *restrict dw,
+                            const double *restrict m, double *restrict sums)
 {
+    double value[GRID_LANES] = {0}, slope[GRID_LANES] = {0};
+    for (int k = 0; k < count; k += GRID_LANES)
 #pragma omp simd
-    for (int k = 0; k < count; k++) dw[k] = dim * w[k] + q[k] * dw[k];
+        for (int l = 0; l < GRID_LANES; l++) {
+            value[l] += m[k + l] * w[k + l];
+            slope[l] += m[k + l] * (dim * w[k + l] + q[k + l] * dw[k + l]);
+        }
+    sums[0] = TREE(value);
+    sums[1] = TREE(slope);
 }
 
 /* The sums over lanes that are gathered, at another width each time. */
@@ -40,16 +48,15 @@ static void sum_at(const struct cells *cells, const struct lanes *lanes, int cou
     lanes_scale(count, lane(lanes, LANE_R), h_inverse, q);
     cells->shapes.w(kernel, (size_t)count, q, w);
     cells->shapes.dw(kernel, (size_t)count, q, dw);
-    derivative(count, dim, q, w, dw);
     const double own = kernel->w(kernel, 0, dim);
-    const double *mass = lane_of(lanes, &cells->density, GROUP_PLACE, 3);
-    sums[0] = m * own + lanes_dot(mass, w, count);
-    sums[1] = m * (dim * own) + lanes_dot(mass, dw, count);
+    add_both(count, dim, q, w, dw, lane_of(lanes, &cells->density, GROUP_PLACE, 3), sums);
+    sums[0] += m * own;
+    sums[1] += m * (dim * own);
     sums[2] = sums[3] = 0;
     if (!cells->method.energy_element) return;
-    const double *energy = lane_of(lanes, &cells->density, GROUP_LAGRANGIAN, 2);
-    sums[2] = U * own + lanes_dot(energy, w, count);
-    sums[3] = U * (dim * own) + lanes_dot(energy, dw, count);
+    add_both(count, dim, q, w, dw, lane_of(lanes, &cells->density, GROUP_LAGRANGIAN, 2), sums + 2);
+    sums[2] += U * own;
+    sums[3] += U * (dim * own);
 }
 
 static void put_sums(const struct cells *cells, const struct cells_fields *fields, size_t i,

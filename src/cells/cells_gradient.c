@@ -46,6 +46,35 @@ CLONES static void standard_sizes(int dim, int count, double constant, double h_
     }
 }
 
+/* The mean of both widths' gradients in one walk, from w'(q_i) and w'(q_j): all that vanilla_ice
+ * needs. */
+ALWAYS_INLINE void standard_means_body(int dim, int count, double constant, double h_inverse,
+                                       const double *restrict theirs, const struct lanes *lanes)
+{
+    const ptrdiff_t stride = lanes->stride;
+    const double *restrict x = lane(lanes, LANE_DX),
+                           *restrict r_inverse = lane(lanes, LANE_R_INVERSE),
+                           *restrict dw = lane(lanes, LANE_W),
+                           *restrict dw_j = lane(lanes, LANE_W_J);
+    double *restrict G = lane(lanes, LANE_GX);
+    const double own = constant * power(h_inverse, dim + 1);
+#pragma omp simd
+    for (int k = 0; k < count; k++) {
+        const double other = constant * (dim == 2 ? power(theirs[k], 3) : power(theirs[k], 4));
+        const double s = 0.5 * (own * dw[k] * r_inverse[k] + other * dw_j[k] * r_inverse[k]);
+        for (int a = 0; a < dim; a++) G[a * stride + k] = s * x[a * stride + k];
+    }
+}
+
+CLONES static void standard_means(int dim, int count, double constant, double h_inverse,
+                                  const double *restrict theirs, const struct lanes *lanes)
+{
+    if (dim == 2)
+        standard_means_body(2, count, constant, h_inverse, theirs, lanes);
+    else
+        standard_means_body(3, count, constant, h_inverse, theirs, lanes);
+}
+
 /* w(q), or -w'(q)/q from w' in place, as weight of a matrix. */
 CLONES static void corrected_weight(int count, const double *restrict q, double *restrict dw)
 {
@@ -152,6 +181,34 @@ static bool all_sound(int count, double own, const double *theirs, int padding_f
     return least_of > 0;
 }
 
+/* All of them for gradient=standard. */
+static void standard_gradients(const struct cells *cells, int count, const struct lanes *lanes,
+                               double h_inverse, const double *theirs)
+{
+    const struct cells_method *method = &cells->method;
+    const int dim = method->box.dim;
+    const bool both = method->formulation == FORMULATION_LAGRANGIAN;
+    double *w = lane(lanes, LANE_W), *w_j = lane(lanes, LANE_W_J);
+    if (!both && method->pair_width == PAIR_WIDTH_MEAN) {
+        double *q = lane(lanes, LANE_Q), *q_j = lane(lanes, LANE_Q_J);
+        widths(PAIR_WIDTH_MEAN, count, lane(lanes, LANE_R), h_inverse, theirs, q, q_j);
+        cells->shapes.dw(method->kernel, (size_t)count, q, w);
+        cells->shapes.dw(method->kernel, (size_t)count, q_j, w_j);
+        standard_means(dim, count, method->kernel->constant[dim], h_inverse, theirs, lanes);
+        return;
+    }
+    standard_pair(cells, count, lanes, h_inverse, theirs, w, w_j);
+    double *s = lane(lanes, LANE_SPARE);
+    mean(count, w, w_j, s);
+    for (int a = 0; a < dim; a++) {
+        const double *x = lane(lanes, LANE_DX + a);
+        along(count, s, x, lane(lanes, LANE_GX + a));
+        if (!both) continue;
+        along(count, w, x, lane(lanes, LANE_GX_I + a));
+        along(count, w_j, x, lane(lanes, LANE_GX_J + a));
+    }
+}
+
 /* G_i, G_j and their mean G of every pair, along every axis. */
 void cells_pair_gradients(const struct cells *cells, int count, int neighbours,
                           const struct lanes *lanes, const double *record)
@@ -162,18 +219,8 @@ void cells_pair_gradients(const struct cells *cells, int count, int neighbours,
     const double h_inverse = record[layout->offset[GROUP_GAS]];
     const double *theirs = lane_of(lanes, layout, GROUP_GAS, 0);
     double *w = lane(lanes, LANE_W), *w_j = lane(lanes, LANE_W_J);
-    const bool both = method->formulation == FORMULATION_LAGRANGIAN;
     if (method->gradient == GRADIENT_STANDARD) {
-        standard_pair(cells, count, lanes, h_inverse, theirs, w, w_j);
-        double *s = lane(lanes, LANE_SPARE);
-        mean(count, w, w_j, s);
-        for (int a = 0; a < dim; a++) {
-            const double *x = lane(lanes, LANE_DX + a);
-            along(count, s, x, lane(lanes, LANE_GX + a));
-            if (!both) continue;
-            along(count, w, x, lane(lanes, LANE_GX_I + a));
-            along(count, w_j, x, lane(lanes, LANE_GX_J + a));
-        }
+        standard_gradients(cells, count, lanes, h_inverse, theirs);
         return;
     }
     double *q = lane(lanes, LANE_Q), *q_j = lane(lanes, LANE_Q_J);

@@ -88,6 +88,14 @@ ALWAYS_INLINE float nearest(float d, float side)
     return d > half ? d - side : d < -half ? d + side : d;
 }
 
+/* to = from + moved for n values, in whole vectors. */
+CLONES static void shift(size_t n, const float *restrict from, float moved, float *restrict to)
+{
+    const size_t whole = (n + COPIED - 1) / COPIED * COPIED;
+#pragma omp simd
+    for (size_t k = 0; k < whole; k++) to[k] = from[k] + moved;
+}
+
 /* Copies the points of a cell, moved by what lies between the two cells: whole vectors, whose rest
  * the next cell overwrites. */
 static void copy_cell(const struct grid *grid, struct candidates *to, size_t count, size_t cell,
@@ -95,15 +103,13 @@ static void copy_cell(const struct grid *grid, struct candidates *to, size_t cou
 {
     const uint32_t begin = grid->start[cell];
     const size_t n = grid->start[cell + 1] - begin;
+    for (int a = 0; a < grid->box.dim; a++)
+        shift(n, grid->place[a] + begin, moved[a], to->x[a] + count);
     for (size_t from = 0; from < n; from += COPIED) {
-        for (int a = 0; a < 3; a++) {
-            const float *restrict x = grid->place[a] + begin + from;
-            float *restrict x_to = to->x[a] + count + from;
-            for (int k = 0; k < COPIED; k++) x_to[k] = x[k] + moved[a];
-        }
         memcpy(to->radius2 + count + from, grid->radius2 + begin + from, COPIED * sizeof(float));
-        for (int k = 0; k < COPIED; k++)
-            to->slot[count + from + (size_t)k] = (int32_t)(begin + from) + k;
+        const int32_t first = (int32_t)(begin + from);
+        int32_t *slot = to->slot + count + from;
+        for (int k = 0; k < COPIED; k++) slot[k] = first + k;
     }
 }
 

@@ -41,7 +41,8 @@ ALWAYS_INLINE double nearest(double d, double side)
 }
 
 /* 1/r is 0 where points coincide: a pair without a direction. */
-ALWAYS_INLINE void geometry_body(int dim, bool wrapped, int count, const struct geometry *g)
+ALWAYS_INLINE void geometry_body(int dim, bool wrapped, bool directed, int count,
+                                 const struct geometry *g)
 {
     const double x0 = g->at[0], y0 = g->at[1], z0 = g->at[2];
     const double side_x = g->side[0] > 0 ? g->side[0] : HUGE_VAL,
@@ -59,28 +60,30 @@ ALWAYS_INLINE void geometry_body(int dim, bool wrapped, int count, const struct 
             c = dim == 3 ? nearest(c, side_z) : 0;
         }
         const double r2 = dim == 3 ? a * a + b * b + c * c : a * a + b * b, root = sqrt(r2);
+        r[k] = root;
+        if (!directed) continue;
         dx[k] = a;
         dy[k] = b;
         dz[k] = c;
-        r[k] = root;
         r_inverse[k] = r2 > 0 ? 1 / root : 0;
     }
 }
 
-CLONES static void find_geometry(int dim, bool wrapped, int count, const struct geometry *g)
-{
-    if (dim == 2) {
-        if (wrapped)
-            geometry_body(2, true, count, g);
-        else
-            geometry_body(2, false, count, g);
-    } else {
-        if (wrapped)
-            geometry_body(3, true, count, g);
-        else
-            geometry_body(3, false, count, g);
+#define GEOMETRY(name, directed)                                                                   \
+    CLONES static void name(int dim, bool wrapped, int count, const struct geometry *g)            \
+    {                                                                                              \
+        if (dim == 2 && wrapped)                                                                   \
+            geometry_body(2, true, directed, count, g);                                            \
+        else if (dim == 2)                                                                         \
+            geometry_body(2, false, directed, count, g);                                           \
+        else if (wrapped)                                                                          \
+            geometry_body(3, true, directed, count, g);                                            \
+        else                                                                                       \
+            geometry_body(3, false, directed, count, g);                                           \
     }
-}
+GEOMETRY(find_geometry, true)
+GEOMETRY(find_distances, false)
+#undef GEOMETRY
 
 static void gather(const struct cells *cells, const struct lanes_layout *layout, size_t slot,
                    int from, int count, const struct lanes *lanes)
@@ -96,7 +99,8 @@ static void gather(const struct cells *cells, const struct lanes_layout *layout,
     }
     layout->gather(cells->records, layout->size, list->slots + from, count,
                    lanes->block + LANES_OWN * lanes->stride, lanes->stride);
-    find_geometry(cells->method.box.dim, list->wrapped, count, &g);
+    (layout == &cells->density ? find_distances : find_geometry)(cells->method.box.dim,
+                                                                 list->wrapped, count, &g);
 }
 
 int lanes_gather(const struct cells *cells, const struct lanes_layout *layout, size_t slot,

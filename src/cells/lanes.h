@@ -122,7 +122,8 @@ static inline double lanes_sign(int mirrored, int axis)
     return mirrored >> axis & 1 ? -1 : 1;
 }
 
-/* Gathers the records of a slot's list and finds r_j - r_i, r and 1/r. Returns the number of lanes,
+/* Gathers the records of a slot's list and finds r_j - r_i, r and 1/r (for the density r alone).
+ * Returns the number of lanes,
  * a multiple of GRID_LANES. */
 int lanes_gather(const struct cells *cells, const struct lanes_layout *layout, size_t slot,
                  const struct lanes *lanes);
