@@ -15,6 +15,9 @@ struct page {
 
 /* results: with its verdict. False: no memory; page is then empty. */
 bool page_make(struct page *page, const json_t *results);
+
+/* The same of a document of `sphproof judge` whose snapshots have profiles (verdict.h). */
+bool page_make_judge(struct page *page, const json_t *document);
 void page_free(struct page *page);
 
 #endif

@@ -8,6 +8,7 @@
 #include "command.h"
 #include "judge.h"
 #include "output.h"
+#include "page.h"
 #include "result.h"
 #include "table.h"
 #include "text.h"
@@ -165,12 +166,32 @@ static enum status write_results(const struct options *options, const struct jud
                                  size_t n, const struct judge_gate *gates, size_t gate_count,
                                  struct error *error)
 {
-    json_t *document = result_new("judge"), *content = judge_json(judged, n, gates, gate_count);
+    json_t *document = result_new("judge"),
+           *content = judge_json(judged, n, gates, gate_count, false);
     enum status status = STATUS_OK;
     if (!document || !content || json_object_update(document, content))
         status = error_set(error, STATUS_ENVIRONMENT, "no memory for the result");
     if (!status && options->json) status = result_write(document, options->json, error);
     json_decref(document), json_decref(content);
+    return status;
+}
+
+static enum status write_page(const char *path, const struct judged *judged, size_t n,
+                              const struct judge_gate *gates, size_t gate_count,
+                              struct error *error)
+{
+    struct page page = {0};
+    struct output output;
+    json_t *document = judge_json(judged, n, gates, gate_count, true);
+    const bool made = document && page_make_judge(&page, document);
+    json_decref(document);
+    if (!made) return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", path);
+    enum status status = output_open(&output, path, error);
+    if (!status) {
+        fputs(page.html, output.stream);
+        status = output_close(&output, error);
+    }
+    page_free(&page);
     return status;
 }
 
@@ -182,6 +203,8 @@ static enum status run(const struct options *options, int n, char **arguments, s
     size_t gate_count = 0, count = 0;
     const struct table_style style = table_style(options->color);
     enum status status = take_request(options, n, &request, &kernel, error);
+    const char *html = options_value(options, "html");
+    if (!status && html) status = output_probe(html, error);
     if (status) return status;
     struct judged *judged = calloc((size_t)n, sizeof *judged);
     if (!judged) return error_set(error, STATUS_ENVIRONMENT, "no memory");
@@ -195,6 +218,7 @@ static enum status run(const struct options *options, int n, char **arguments, s
         if (options->speak) print_together(judged, count);
         if (options->speak) print_gates(gates, gate_count, &style);
         status = write_results(options, judged, count, gates, gate_count, error);
+        if (!status && html) status = write_page(html, judged, count, gates, gate_count, error);
         for (size_t k = 0; k < gate_count && !status; k++)
             if (!gates[k].good) status = STATUS_CHECK_FAILED;
     }
@@ -214,6 +238,7 @@ static const struct command_option own_options[] = {
     {"kernel", "K", "the code's kernel, in place of finding it"},
     {"h-is", "MEANING", "support, half, sigma, 2sigma, or support radius over h"},
     {"gate", "FIELD_NORM=BOUND,...", "exit 1 beyond: density_l1=2e-3"},
+    {"html", "F.html", "write a page: verdict, assumptions, errors, profiles"},
     {NULL, NULL, NULL},
 };
 

@@ -31,7 +31,7 @@ struct judged {
     struct run_result result;
     struct conservation sums; /* of the gas */
     double transverse;        /* rms of velocities across x, by volume, in the window; NaN in 1D */
-    double wrong; /* worst median error of a field over the range of its exact values */
+    double wrong;             /* worst median error of a field over the range of its exact values */
     enum field wrong_field;
     bool foreign; /* plainly not this case's solution */
     char verdict[400];
@@ -68,9 +68,10 @@ enum status judge_gates(const char *text, const struct judged *judged, struct ju
 /* The snapshot that gates look at: of most particles, of these the last. */
 const struct judged *judge_main(const struct judged *judged, size_t n);
 
-/* The document of the command, without its head. New reference; NULL: no memory. */
+/* The document of the command, without its head; with profiles it is what page.h draws. New
+ * reference; NULL: no memory. */
 json_t *judge_json(const struct judged *judged, size_t n, const struct judge_gate *gates,
-                   size_t gate_count);
+                   size_t gate_count, bool profiles);
 
 /* Orders of L1 against n^(1/d), of all fields: [{"field", "norm", "order", "low", "high",
  * "pairwise"}], [] where there are no two different n. New reference. */

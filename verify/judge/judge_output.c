@@ -46,12 +46,12 @@ static json_t *functionals_json(const struct run_result *r)
     return list;
 }
 
-static json_t *one_json(const struct judged *judged)
+static json_t *one_json(const struct judged *judged, bool profiles)
 {
     const struct run_result *r = &judged->result;
     const struct snapshot_file *file = &judged->file;
     const bool plane = judged->file.dim > 1;
-    return json_pack(
+    json_t *one = json_pack(
         "{s:s, s:s, s:s, s:o, s:I, s:o, s:i, s:{s:o, s:o}, s:o, s:o, s:o, s:o, s:o, s:{s:o, s:o}, "
         "s:b, s:s}",
         "file", judged->path, "layout", file->layout, "code", file->code, "assumptions",
@@ -63,15 +63,19 @@ static json_t *one_json(const struct judged *judged)
         plane ? result_number(judged->transverse) : json_null(), "undisturbed",
         r->budget.regions ? result_number(r->budget.still) : json_null(), "foreign",
         judged->foreign, "verdict", judged->verdict);
+    /* what varies along x alone */
+    if (one && profiles && (!plane || problem_reads(r->problem.problem, SETTING_left)))
+        json_object_set_new(one, "profile", profile_json(r));
+    return one;
 }
 
 json_t *judge_json(const struct judged *judged, size_t n, const struct judge_gate *gates,
-                   size_t gate_count)
+                   size_t gate_count, bool profiles)
 {
     struct trace_drift drift;
     size_t pair[2];
     const struct judged *main = judge_main(judged, n);
-    json_t *document = one_json(main), *list = json_array();
+    json_t *document = one_json(main, profiles), *list = json_array();
     if (!document || !list) return NULL;
     json_object_set_new(document, "case", json_string(main->run.asked.file.name));
     json_object_set_new(document, "settings", settings_json(&main->run.settings));
@@ -93,7 +97,7 @@ json_t *judge_json(const struct judged *judged, size_t n, const struct judge_gat
     json_object_set_new(document, "gates", list);
     if (n > 1) {
         json_t *all = json_array();
-        for (size_t i = 0; i < n; i++) json_array_append_new(all, one_json(&judged[i]));
+        for (size_t i = 0; i < n; i++) json_array_append_new(all, one_json(&judged[i], profiles));
         json_object_set_new(document, "snapshots", all);
     }
     return document;

@@ -12,6 +12,7 @@ import struct
 import subprocess
 import sys
 import tempfile
+from xml.etree import ElementTree
 
 PROGRAM = os.path.abspath(sys.argv[1])
 DATA = os.path.join(os.path.dirname(os.path.abspath(__file__)), "data", "snapshots")
@@ -259,6 +260,12 @@ def together(folder):
     near("gate", got["gates"][0]["value"], got["errors"]["density"]["l1"], 0)
     got = judge(*paths, "--case", "sod", "--time", "0.2", "--gate", "velocity_l2=1,density_l1=1e-5", status=1)
     assert [g["status"] for g in got["gates"]] == ["pass", "fail"]
+    page = os.path.join(folder, "page.html")
+    judge(*paths[2:], "--case", "sod", "--time", "0.2", "--html", page)
+    with open(page, encoding="utf-8") as text:
+        html = text.read()
+    ElementTree.fromstring(html.split("\n", 1)[1])
+    assert html.count("<h2>") == 2 and "quadratic_spline" in html and "not identifiable" not in html
     # two times of one run; the second has a mass more by 1e-3 and energies to match
     early = os.path.join(folder, "early.csv")
     subprocess.run([PROGRAM, "run", "sod", "n=60", "t_end=0.1", "--snapshot", early, "--quiet"], check=True)

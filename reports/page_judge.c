@@ -1,0 +1,185 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The page of `sphproof judge`: verdict, what was assumed and why, errors, the kernel's candidates,
+ * particles over the exact solution. */
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "html.h"
+#include "page.h"
+#include "page_part.h"
+#include "style.h"
+#include "value.h"
+
+static const char *const fields[] = {"density", "velocity", "pressure"};
+enum { PANELS = sizeof fields / sizeof *fields };
+
+/* An array of numbers; NULL where there is none of n (any number where *n is 0). */
+static double *numbers(const json_t *array, size_t *n)
+{
+    const size_t size = json_array_size(array);
+    if (!size || (*n && size != *n)) return NULL;
+    double *values = malloc(size * sizeof *values);
+    for (size_t i = 0; values && i < size; i++)
+        values[i] = json_number_value(json_array_get(array, i));
+    *n = size;
+    return values;
+}
+
+struct curves {
+    size_t n, exact_n;
+    double *x, *exact_x, *y[PANELS], *exact[PANELS];
+};
+
+static void curves_free(struct curves *c)
+{
+    free(c->x), free(c->exact_x);
+    for (int k = 0; k < PANELS; k++) free(c->y[k]), free(c->exact[k]);
+}
+
+static bool curves_read(struct curves *c, const json_t *profile)
+{
+    const json_t *exact = json_object_get(profile, "exact");
+    bool whole = (c->x = numbers(json_object_get(profile, "x"), &c->n)) &&
+                 (c->exact_x = numbers(json_object_get(exact, "x"), &c->exact_n));
+    for (int k = 0; k < PANELS && whole; k++)
+        whole = (c->y[k] = numbers(json_object_get(profile, fields[k]), &c->n)) &&
+                (c->exact[k] = numbers(json_object_get(exact, fields[k]), &c->exact_n));
+    return whole;
+}
+
+static void profiles(struct page_writer *writer, const json_t *judged, size_t number)
+{
+    struct curves c = {0};
+    struct plot_series series[PANELS][2];
+    struct plot_panel panels[PANELS] = {0};
+    char name[64], which[32];
+    if (curves_read(&c, json_object_get(judged, "profile"))) {
+        for (int k = 0; k < PANELS; k++) {
+            series[k][0] = (struct plot_series){.label = "exact",
+                                                .kind = PLOT_LINES,
+                                                .n = c.exact_n,
+                                                .x = c.exact_x,
+                                                .y = c.exact[k],
+                                                .color = PLOT_NEUTRAL};
+            series[k][1] = (struct plot_series){.label = "particles",
+                                                .kind = PLOT_POINTS,
+                                                .n = c.n,
+                                                .x = c.x,
+                                                .y = c.y[k],
+                                                .size = 0.5};
+            panels[k] = (struct plot_panel){.x_label = "x",
+                                            .y_label = fields[k],
+                                            .key = k ? PLOT_KEY_NONE : PLOT_KEY_TOP,
+                                            .series = series[k],
+                                            .series_count = 2};
+        }
+        snprintf(which, sizeof which, "profiles-%zu", number);
+        page_plot_name(name, sizeof name, "judge", which);
+        const struct plot plot = {.name = name,
+                                  .title = "particles over the exact solution",
+                                  .panels = panels,
+                                  .panel_count = PANELS};
+        page_plot(writer, &plot, "Particles in the window over the exact solution, code units.");
+    }
+    curves_free(&c);
+}
+
+static void errors(struct buffer *to, const json_t *judged)
+{
+    static const char *const norms[] = {"l1", "l2", "linf", "particle_mean"};
+    const char *field;
+    json_t *of;
+    html_table(to, "errors", "field|#L1|#L2|#Linf|#mean over particles");
+    json_object_foreach(json_object_get(judged, "errors"), field, of)
+    {
+        if (!json_is_object(of)) continue;
+        buffer_add(to, "<tr>");
+        html_cell(to, field);
+        for (int k = 0; k < 4; k++) html_cell_number(to, value_member(of, norms[k]));
+        buffer_add(to, "</tr>\n");
+    }
+    html_table_end(to);
+}
+
+static void assumptions(struct buffer *to, const json_t *judged)
+{
+    const json_t *note;
+    size_t k;
+    html_table(to, "assumptions", "what|taken for|because");
+    json_array_foreach(json_object_get(judged, "assumptions"), k, note)
+    {
+        buffer_add(to, "<tr>");
+        html_cell(to, value_text(note, "what"));
+        html_cell(to, value_text(note, "value"));
+        html_cell(to, value_text(note, "evidence"));
+        buffer_add(to, "</tr>\n");
+    }
+    html_table_end(to);
+}
+
+static void candidates(struct buffer *to, const json_t *judged)
+{
+    const json_t *kernel = json_object_get(judged, "kernel"), *one;
+    size_t k;
+    html_table(to, "candidates", "kernel|density as sum of|#support radius/h|#density misses by");
+    json_array_foreach(json_object_get(kernel, "candidates"), k, one)
+    {
+        buffer_add(to, "<tr>");
+        html_cell(to, value_text(one, "name"));
+        html_cell(to, value_text(one, "density"));
+        html_cell_digits(to, value_member(one, "ratio"));
+        html_cell_number(to, value_member(one, "residual"));
+        buffer_add(to, "</tr>\n");
+    }
+    html_table_end(to);
+}
+
+static void snapshot(struct page_writer *writer, const json_t *judged, size_t number)
+{
+    struct buffer *to = &writer->to;
+    buffer_add(to, "<section><h2>");
+    buffer_escape(to, value_text(judged, "file"));
+    buffer_add(to, "</h2><p>");
+    buffer_escape(to, value_text(judged, "verdict"));
+    buffer_add(to, "</p>\n");
+    profiles(writer, judged, number);
+    errors(to, judged);
+    buffer_add(to, "<h3>What was assumed</h3>\n");
+    assumptions(to, judged);
+    buffer_add(to, "<h3>Kernel and meaning of h: the density summed again</h3><p>");
+    buffer_escape(to, value_text(json_object_get(judged, "kernel"), "why"));
+    buffer_add(to, "</p>\n");
+    candidates(to, judged);
+    buffer_add(to, "</section>\n");
+}
+
+bool page_make_judge(struct page *page, const json_t *document)
+{
+    struct page_writer writer = {0};
+    struct buffer *to = &writer.to;
+    const json_t *snapshots = json_object_get(document, "snapshots"), *one;
+    size_t k;
+    buffer_add(to,
+               "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"/>"
+               "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>"
+               "<meta name=\"color-scheme\" content=\"light dark\"/><title>sphproof judge</title>"
+               "<style>");
+    for (k = 0; page_styles[k]; k++) buffer_add(to, page_styles[k]);
+    buffer_format(to, "%s</style></head><body>\n", style_css());
+    buffer_format(to, "<header class=\"%s\"><p class=\"kind\">sphproof judge, case ",
+                  json_is_true(json_object_get(document, "foreign")) ? "unwell" : "well");
+    buffer_escape(to, value_text(document, "case"));
+    buffer_add(to, "</p><h1>");
+    buffer_escape(to, value_text(document, "verdict"));
+    buffer_add(to, "</h1></header>\n");
+    if (json_array_size(snapshots))
+        json_array_foreach(snapshots, k, one) snapshot(&writer, one, k);
+    else
+        snapshot(&writer, document, 0);
+    buffer_add(to, "</body></html>\n");
+    page->html = buffer_take(to);
+    page->plots = writer.plots;
+    if (page->html) return true;
+    page_plots_free(&page->plots);
+    return false;
+}
