@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "command.h"
 #include "output.h"
@@ -11,6 +12,7 @@
 #include "rate_check.h"
 #include "result.h"
 #include "run.h"
+#include "snapshot_csv.h"
 #include "text.h"
 
 enum { ROWS_SHOWN = 20, KEYS_MAX = 256 };
@@ -24,6 +26,8 @@ struct request {
     struct scene scene;
     struct csv theirs;
     double tolerance;
+    struct snapshot_file snapshot; /* what the particles come from, if they do: no columns */
+    char widths[200];              /* what was found of its h */
 };
 
 /* ---- input ---- */
@@ -87,6 +91,9 @@ static enum status take_box(struct request *r, int n, char **arguments, char **r
             rest[(*left)++] = arguments[k];
         if (status) return status;
     }
+    for (int a = 0; a < dim && r->snapshot.boxed && !lo && !hi; a++)
+        r->scene.lo[a] = 0, r->scene.hi[a] = r->snapshot.box[a];
+    lo = lo || r->snapshot.boxed, hi = hi || r->snapshot.boxed;
     for (int a = 0; a < dim; a++)
         if ((!lo || !hi) && r->scene.boundary[a] != BOUNDARY_OPEN)
             return error_set(error, STATUS_BAD_INPUT,
@@ -107,12 +114,47 @@ static enum status sharpen(struct settings *settings, struct error *error)
     return settings_set(settings, SETTING_h_tolerance, "1e-14", SOURCE_FALLBACK, NULL, error);
 }
 
+static bool ends_in(const char *path, const char *end)
+{
+    const size_t length = strlen(path), n = strlen(end);
+    return length > n && strcmp(path + length - n, end) == 0;
+}
+
+static bool is_csv(const char *path)
+{
+    return ends_in(path, ".csv");
+}
+
+/* A case is a name, or a path of an .ini file; a file that is neither is a snapshot. */
+static bool is_snapshot(const char *path)
+{
+    struct stat about;
+    return !is_csv(path) && !ends_in(path, ".ini") && stat(path, &about) == 0 &&
+           S_ISREG(about.st_mode);
+}
+
+static enum status take_theirs(struct request *r, const char *path, bool tolerance,
+                               struct error *error)
+{
+    enum { SINGLE = 1 };
+    struct snapshot_file file = {0};
+    if (is_csv(path)) return csv_read(path, &r->theirs, error);
+    const enum status status = snapshot_csv(path, &file, &r->theirs, r->widths, error);
+    /* rates of a snapshot in single precision agree to that */
+    if (!status && !tolerance && file.precision[SINGLE] > 1e-9) r->tolerance = 1e-5;
+    snapshot_file_free(&file);
+    return status;
+}
+
 static enum status take_file(struct request *r, int n, char **arguments, struct error *error)
 {
     char *rest[KEYS_MAX];
     int left;
     if (n > KEYS_MAX) return error_set(error, STATUS_BAD_INPUT, "rates: %d keys are too many", n);
-    enum status status = particle_file_read(r->source, &r->file, error);
+    enum status status =
+        is_csv(r->source) ? particle_file_read(r->source, &r->file, error)
+                          : snapshot_csv(r->source, &r->snapshot, &r->file.csv, r->widths, error);
+    if (!status && !is_csv(r->source)) status = particle_file_of(r->source, &r->file, error);
     if (!status) status = take_box(r, n, arguments, rest, &left, error);
     if (status) return status;
     settings_init(&r->settings);
@@ -128,6 +170,10 @@ static enum status take_file(struct request *r, int n, char **arguments, struct 
         (status = settings_scheme(&r->settings, r->file.dim, &r->scene.scheme, error)))
         return status;
     r->scene.gamma = settings_real(&r->settings, SETTING_gamma);
+    if (r->snapshot.gamma.known && r->settings.value[SETTING_gamma].source != SOURCE_USER)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "%.200s: says gamma = %.9g: gamma=... is needed, as you mean it",
+                         r->source, r->snapshot.gamma.value);
     return particle_file_fill(&r->file, r->source, &r->scene, error);
 }
 
@@ -158,10 +204,9 @@ static enum status take_request(const struct options *options, int n, char **arg
     if (tolerance && !(text_real(tolerance, &r->tolerance) && r->tolerance > 0))
         return error_set(error, STATUS_BAD_INPUT,
                          "rates: --tolerance '%.40s': allowed: a number above 0", tolerance);
-    const size_t length = strlen(r->source);
-    r->from_file = length > 4 && strcmp(r->source + length - 4, ".csv") == 0;
+    r->from_file = is_csv(r->source) || is_snapshot(r->source);
     enum status status = (r->from_file ? take_file : take_case)(r, n - 1, arguments + 1, error);
-    if (!status && check) status = csv_read(check, &r->theirs, error);
+    if (!status && check) status = take_theirs(r, check, tolerance, error);
     r->scene.threads = options->threads;
     r->scene.skip = false;
     return status;
@@ -172,6 +217,7 @@ static enum status take_request(const struct options *options, int n, char **arg
 static void print_table(const struct request *r, const struct rate_table *t)
 {
     printf("%s, %dD, %zu particles; one evaluation, code units\n", r->source, t->dim, t->n);
+    if (r->widths[0]) printf("h of the snapshot: %s\n", r->widths);
     if (r->file.ignored[0]) printf("columns that are not read: %s\n", r->file.ignored);
     printf("\n%8s %13s %13s %13s", "particle", "h", "rho", "P");
     for (int a = 0; a < t->dim; a++) printf("        dp%c/dt", "xyz"[a]);
@@ -329,27 +375,30 @@ static enum status run(const struct options *options, int n, char **arguments, s
     rate_table_free(&table);
     csv_free(&r.theirs);
     particle_file_free(&r.file);
+    snapshot_file_free(&r.snapshot);
     initial_free(&r.initial);
     return status;
 }
 
 static const struct command_option own_options[] = {
     {"csv", "F.csv", "write h,rho,P,ax[,ay[,az]],du of every particle, in their order"},
-    {"check", "THEIRS.csv", "judge what another code computed: any of these columns"},
+    {"check", "THEIRS", "judge what another code computed: any of these columns"},
     {"tolerance", "T", "of --check, relative; a and du to their largest (default 1e-9)"},
     {NULL, NULL, NULL},
 };
 
 const struct command command_rates = {
     .name = "rates",
-    .synopsis = "PARTICLES.csv|CASE [KEY=VALUE ...]",
+    .synopsis = "PARTICLES.csv|SNAPSHOT|CASE [KEY=VALUE ...]",
     .help =
         "one evaluation, nothing moves: h, rho, P, dp/dt, dU/dt of every particle\n"
         "A file holds columns x[,y[,z]], vx[,vy[,vz]], m, u in any order; its header gives the\n"
-        "dimension. Beside the keys of the scheme and gamma it needs its box: lo and hi (one\n"
-        "number, or one for each direction), boundary (periodic, open or reflecting; one word or\n"
-        "one each), gravity. h is found to 1e-14 unless h_tolerance says otherwise. With --check\n"
-        "the exit status is 1 if a column departs by more than the tolerance; choices of the\n"
+        "dimension. So does a snapshot (see judge). Beside the keys of the scheme and gamma it\n"
+        "needs its box, unless a snapshot says it: lo and hi (one number, or one for each\n"
+        "direction), boundary (periodic, open or reflecting; one word or one each), gravity. h is\n"
+        "found to 1e-14 unless h_tolerance says otherwise. With --check (a CSV file, or a snapshot\n"
+        "with accelerations; in single precision the tolerance is 1e-5) the exit status is 1 if a\n"
+        "column departs by more than the tolerance; choices of the\n"
         "scheme are then changed one by one to see which of them explains it.",
     .run = run,
     .options = own_options,

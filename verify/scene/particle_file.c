@@ -52,6 +52,11 @@ enum status particle_file_read(const char *path, struct particle_file *file, str
 {
     *file = (struct particle_file){0};
     if (csv_read(path, &file->csv, error)) return error->status;
+    return particle_file_of(path, file, error);
+}
+
+enum status particle_file_of(const char *path, struct particle_file *file, struct error *error)
+{
     file->dim = csv_column(&file->csv, "z") >= 0 || csv_column(&file->csv, "vz") >= 0   ? 3
                 : csv_column(&file->csv, "y") >= 0 || csv_column(&file->csv, "vy") >= 0 ? 2
                                                                                         : 1;

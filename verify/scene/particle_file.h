@@ -21,6 +21,9 @@ struct particle_file {
 /* STATUS_BAD_INPUT: file, line and column of what is wrong. Free with particle_file_free, also
  * after a failure. */
 enum status particle_file_read(const char *path, struct particle_file *file, struct error *error);
+
+/* The same of columns that are there: file->csv. */
+enum status particle_file_of(const char *path, struct particle_file *file, struct error *error);
 void particle_file_free(struct particle_file *file);
 
 /* The particles as a scene's, whose box and boundary are set: an open direction without a box (lo =

@@ -281,6 +281,36 @@ def together(folder):
     near("energy", got["conservation"]["energy"], 1e-3, 1e-3)
 
 
+# ---- forces ----
+
+
+def forces(folder):
+    """Rates of a snapshot with accelerations, as our own evaluation has them and with a fault."""
+    particles = os.path.join(os.path.dirname(DATA), "rates_2d_particles.csv")
+    scheme = ["kernel=cubic_spline", "eta=2.4", "gradient=standard", "pair_width=mean", "viscosity=constant",
+              "volume_element=mass", "gamma=1.4"]
+    done = subprocess.run([PROGRAM, "rates", particles, "lo=0", "hi=1", *scheme, "--json", "-"], capture_output=True,
+                          check=True)
+    got = json.loads(done.stdout)["particles"]
+    with open(particles, encoding="ascii") as text:
+        lines = [line.strip().split(",") for line in text if line.strip() and not line.startswith("#")]
+    at = {name: lines[0].index(name) for name in ("x", "y", "vx", "vy", "m", "u")}
+    for factor, status in ((1, 0), (1.001, 1)):
+        text = "# box = 1\nx y vx vy m u rho h ax ay\n"
+        for row, p in zip(lines[1:], got):
+            m = float(row[at["m"]])
+            values = [row[at[k]] for k in at] + [repr(p["rho"]), repr(p["h"] / 2), repr(p["force"][0] / m * factor),
+                                                 repr(p["force"][1] / m)]
+            text += " ".join(values) + "\n"
+        path = write(folder, "forces.txt", text)
+        done = subprocess.run([PROGRAM, "rates", path, *scheme, "--check", path, "--json", "-"], capture_output=True)
+        assert done.returncode == status, done.stderr
+        compared = {c["quantity"]: c["worst"] for c in json.loads(done.stdout)["comparison"]}
+        assert set(compared) == {"h", "rho", "ax", "ay"}, compared  # what h is, it proves itself
+        assert compared["h"] < 1e-9 and compared["ay"] < 1e-9, compared
+        assert (compared["ax"] < 1e-9) == (factor == 1), compared
+
+
 # ---- what must be refused ----
 
 
@@ -375,6 +405,7 @@ def main():
         blocks = formats(folder)
         own(folder)
         together(folder)
+        forces(folder)
         hostile(folder, blocks, hdf5)
     print("formats, our own runs, several snapshots, hostile files: all as they should be")
 
