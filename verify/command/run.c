@@ -33,6 +33,13 @@ static void print_head(const struct run_settings *settings, const struct run_res
     table_wrap("", line);
 }
 
+static void print_start(const struct run_result *result)
+{
+    if (isnan(result->start.density)) return;
+    printf("start: a glass; rms of its density (wendland_c4, eta 3.6) %.2g, of h grad 1 %.2g\n",
+           result->start.density, result->start.gradient);
+}
+
 static void print_norms(const char *name, const struct norms *e, const char *unit)
 {
     printf("%-16s %12.4e %12.4e %12.4e %14.4e  %s\n", name, e->l1, e->l2, e->linf, e->particle_mean,
@@ -193,6 +200,7 @@ static enum status present(const struct options *options, const struct run_setti
     if (options->speak && result->status != STATUS_BROKE_DOWN) {
         print_head(settings, result, &style);
         printf("n=%zu t=%g\n", result->n, result->time);
+        print_start(result);
         print_errors(settings, result, &style);
         if (result->problem.domain.dim > 1) print_functionals(result, &style);
         print_rest(result, &style);

@@ -42,7 +42,8 @@ static void pair_up(struct initial *initial, const struct settings *settings)
 bool initial_is_shaken(const struct settings *settings)
 {
     return settings_real(settings, SETTING_jitter) > 0 ||
-           settings_choice(settings, SETTING_lattice) == LATTICE_RANDOM;
+           settings_choice(settings, SETTING_lattice) == LATTICE_RANDOM ||
+           settings_choice(settings, SETTING_lattice) == LATTICE_GLASS;
 }
 
 static double spacing(const struct initial *initial, size_t i)
@@ -84,7 +85,7 @@ static enum status shake(struct initial *initial, const struct prepared *p,
 }
 
 /* What the sample says of particle i; its mass stays. */
-static void take_sample(struct initial *initial, const struct prepared *p, size_t i)
+void initial_sample(struct initial *initial, const struct prepared *p, size_t i)
 {
     struct problem_state state;
     double x[3] = {0};
@@ -95,19 +96,22 @@ static void take_sample(struct initial *initial, const struct prepared *p, size_
     initial->rho[i] = state.rho;
 }
 
-void initial_lay(struct initial *initial, const struct prepared *p, const struct lattice_plan *plan,
-                 size_t first, const struct settings *settings)
+enum status initial_lay(struct initial *initial, const struct prepared *p,
+                        const struct lattice_plan *plan, size_t first,
+                        const struct settings *settings, struct error *error)
 {
     double *x[3] = {NULL}, share = 1. / (double)plan->n;
     for (int d = 0; d < initial->dim; d++) {
         x[d] = initial->x[d] + first;
         share *= domain_length(&plan->box, d);
     }
-    lattice_points(plan, (unsigned long)settings_real(settings, SETTING_seed), x);
+    if (lattice_points(plan, (unsigned long)settings_real(settings, SETTING_seed), x, error))
+        return error->status;
     for (size_t i = first; i < first + plan->n; i++) {
-        take_sample(initial, p, i);
+        initial_sample(initial, p, i);
         initial->m[i] = initial->rho[i] * share;
     }
+    return STATUS_OK;
 }
 
 enum status initial_fill(const struct prepared *p, const struct settings *settings,
@@ -116,11 +120,12 @@ enum status initial_fill(const struct prepared *p, const struct settings *settin
     struct lattice_plan plan;
     const enum lattice kind = (enum lattice)settings_choice(settings, SETTING_lattice);
     const size_t n = (size_t)settings_real(settings, SETTING_n);
+    if (settings_choice(settings, SETTING_equal_masses))
+        return initial_fill_equal_masses(p, settings, initial, error);
     if (lattice_plan_make(&plan, &p->domain, kind, n, error) ||
         initial_allocate(initial, p->domain.dim, plan.n, error))
         return error->status;
-    initial_lay(initial, p, &plan, 0, settings);
-    return STATUS_OK;
+    return initial_lay(initial, p, &plan, 0, settings, error);
 }
 
 static void add_boost(struct initial *initial, const struct prepared *p)
@@ -171,7 +176,7 @@ enum status initial_fill_ball(const struct prepared *p, const struct settings *s
     if (lattice_plan_make(&plan, &around, kind, n, error) ||
         initial_allocate(initial, dim, plan.n, error))
         return error->status;
-    initial_lay(initial, p, &plan, 0, settings);
+    if (initial_lay(initial, p, &plan, 0, settings, error)) return error->status;
     initial_keep(initial, 0, in_window, &ball);
     return STATUS_OK;
 }
@@ -184,7 +189,7 @@ static void resample(struct initial *initial, const struct prepared *p,
     if (initial->dim == 1) return;
     for (size_t i = 0; i < initial->n; i++)
         if (p->problem->smooth && settings_real(settings, SETTING_jitter) > 0)
-            take_sample(initial, p, i);
+            initial_sample(initial, p, i);
     add_boost(initial, p);
 }
 

@@ -26,10 +26,11 @@ enum status initial_allocate(struct initial *initial, int dim, size_t n, struct 
 
 /* For a problem's fill: about n particles on the lattice of the settings over a box with one gas's
  * sample, from initial->x[.][first] on; their number is that of lattice_plan_make. Masses carry the
- * sample's density at equal volumes. */
+ * sample's density at equal volumes. STATUS_*: see lattice_points. */
 struct lattice_plan;
-void initial_lay(struct initial *initial, const struct prepared *p, const struct lattice_plan *plan,
-                 size_t first, const struct settings *settings);
+enum status initial_lay(struct initial *initial, const struct prepared *p,
+                        const struct lattice_plan *plan, size_t first,
+                        const struct settings *settings, struct error *error);
 
 /* For a problem's fill: keeps the first `first` particles and those after them that are wanted, in
  * their order; what is left is the new number. */
@@ -42,9 +43,17 @@ void initial_keep(struct initial *initial, size_t first, initial_wanted *wanted,
 enum status initial_fill_ball(const struct prepared *p, const struct settings *settings,
                               double radius, struct initial *initial, struct error *error);
 
-/* A problem's whole fill, where all of the domain is laid so. */
+/* Its first guess of the state of particle i: the sample's; the mass stays. */
+void initial_sample(struct initial *initial, const struct prepared *p, size_t i);
+
+/* A problem's whole fill, where all of the domain is laid so: equal spacing, masses that follow the
+ * density; or, with equal_masses=yes of a problem that reads the key, equal masses at places that
+ * follow it. */
 enum status initial_fill(const struct prepared *p, const struct settings *settings,
                          struct initial *initial, struct error *error);
+
+enum status initial_fill_equal_masses(const struct prepared *p, const struct settings *settings,
+                                      struct initial *initial, struct error *error);
 
 /* The particles of a prepared problem, moved as the keys lattice and jitter ask; settings:
  * resolved. STATUS_BAD_INPUT: the problem cannot fill its domain with them. */

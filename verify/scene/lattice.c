@@ -6,6 +6,8 @@
 #include <gsl/gsl_rng.h>
 #include <math.h>
 
+#include "relax.h"
+
 enum { BASE_MAX = 4 };
 
 /* A conventional cell: sides over the first one, and its points in parts of the sides; the points
@@ -126,11 +128,24 @@ static void sobol_points(const struct lattice_plan *plan, unsigned long seed, do
     gsl_rng_free(random);
 }
 
-void lattice_points(const struct lattice_plan *plan, unsigned long seed, double *const x[3])
+/* Of each of equal points. */
+static double equal_share(const void *context, const double x[3])
+{
+    const struct lattice_plan *plan = context;
+    double share = 1. / (double)plan->n;
+    (void)x;
+    for (int d = 0; d < plan->box.dim; d++) share *= domain_length(&plan->box, d);
+    return share;
+}
+
+enum status lattice_points(const struct lattice_plan *plan, unsigned long seed, double *const x[3],
+                           struct error *error)
 {
     const struct crystal *crystal = crystal_of(plan->kind);
+    const struct relax_room room = {plan->box, equal_share, plan};
     if (crystal)
         crystal_points(plan, crystal, x);
     else
         sobol_points(plan, seed, x);
+    return plan->kind == LATTICE_GLASS ? relax_points(&room, plan->n, x, error) : STATUS_OK;
 }

@@ -23,7 +23,9 @@ struct lattice_plan {
 enum status lattice_plan_make(struct lattice_plan *plan, const struct domain *box,
                               enum lattice kind, size_t n, struct error *error);
 
-/* The points: plan->n per direction, in the box; seed: of those that are random. */
-void lattice_points(const struct lattice_plan *plan, unsigned long seed, double *const x[3]);
+/* The points: plan->n per direction, in the box; seed: of those that are random. STATUS_BAD_INPUT:
+ * too few for a glass; STATUS_ENVIRONMENT: no memory for one. */
+enum status lattice_points(const struct lattice_plan *plan, unsigned long seed, double *const x[3],
+                           struct error *error);
 
 #endif

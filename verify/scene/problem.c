@@ -214,11 +214,19 @@ static enum status choose_lattice(struct settings *settings, int dim, struct err
         [LATTICE_UNIFORM] = 1, [LATTICE_CLUSTERED] = 1, [LATTICE_COINCIDENT] = 1,
         [LATTICE_SQUARE] = 2,  [LATTICE_CUBIC] = 4,     [LATTICE_HEXAGONAL] = 6,
         [LATTICE_FCC] = 4,     [LATTICE_BCC] = 4,       [LATTICE_JITTERED] = 6,
-        [LATTICE_RANDOM] = 6};
+        [LATTICE_RANDOM] = 6,  [LATTICE_GLASS] = 6};
     struct setting_value *lattice = &settings->value[SETTING_lattice],
                          *jitter = &settings->value[SETTING_jitter];
-    if (lattice->automatic) lattice->choice = (int)usual[dim - 1];
+    /* lattices have one spacing */
+    const bool follows = settings_choice(settings, SETTING_equal_masses) &&
+                         problem_of(settings)->fill == initial_fill;
+    if (lattice->automatic) lattice->choice = (int)(follows ? LATTICE_GLASS : usual[dim - 1]);
     if (jitter->automatic) jitter->real[0] = lattice->choice == LATTICE_JITTERED ? 0.2 : 0;
+    if (follows && lattice->choice != LATTICE_GLASS && lattice->choice != LATTICE_RANDOM)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "lattice=%s and equal_masses=yes exclude each other: particles of equal "
+                         "masses stand closer where the gas is denser; allowed: glass random",
+                         settings_lattice_family.members[lattice->choice]->name);
     if (dims[lattice->choice] & 1 << (dim - 1)) return STATUS_OK;
     return error_set(error, STATUS_BAD_INPUT, "lattice=%s has no form in %d dimension%s",
                      settings_lattice_family.members[lattice->choice]->name, dim,

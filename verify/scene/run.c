@@ -66,6 +66,26 @@ struct scene run_scene(const struct run *run, const struct initial *initial)
     };
 }
 
+/* How good a glass is that fills a periodic box. */
+static enum status measure_start(struct run_result *result, const struct initial *initial,
+                                 struct error *error)
+{
+    const struct prepared *p = &result->problem;
+    bool good = settings_choice(&result->settings, SETTING_lattice) == LATTICE_GLASS &&
+                !result->settings.file[0];
+    for (int d = 0; d < p->domain.dim; d++) good &= p->boundary[d] == BOUNDARY_PERIODIC;
+    result->start = (struct relax_quality){(double)NAN, (double)NAN};
+    if (!good) return STATUS_OK;
+    const double *const x[3] = {initial->x[0], initial->x[1], initial->x[2]};
+    double *volume = malloc(initial->n * sizeof *volume);
+    if (!volume) return error_set(error, STATUS_ENVIRONMENT, "no memory for a start");
+    for (size_t i = 0; i < initial->n; i++) volume[i] = initial->m[i] / initial->rho[i];
+    const enum status status =
+        relax_measure(&p->domain, initial->n, x, volume, &result->start, error);
+    free(volume);
+    return status;
+}
+
 /* Everything before the first step. On an error nothing is left to free. */
 static enum status begin(const struct run *run, struct run_result *result, struct initial *initial,
                          struct error *error)
@@ -83,6 +103,7 @@ static enum status begin(const struct run *run, struct run_result *result, struc
     if (run->settings.file[0]) result->settings.value[SETTING_n].real[0] = (double)initial->n;
     result->plan_count =
         plan_explain(&scene, result->plan, RUN_PLAN_MAX, result->warnings, sizeof result->warnings);
+    if ((status = measure_start(result, initial, error))) return status;
     if (initial->ignored[0]) {
         const size_t used = strlen(result->warnings);
         snprintf(result->warnings + used, sizeof result->warnings - used,

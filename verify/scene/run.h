@@ -12,6 +12,7 @@
 #include "growth.h"
 #include "norm.h"
 #include "problem.h"
+#include "relax.h"
 #include "settings.h"
 #include "simulation.h"
 #include "suspicion.h"
@@ -59,6 +60,7 @@ struct run_result {
                                     in 2D and 3D: |v - exact| */
     struct norms azimuthal, radial; /* of the velocity of a circular flow */
     double binned_density_l1;       /* in 1D */
+    struct relax_quality start;     /* of a glass; NaN: it is none */
     size_t crossed;       /* neighbours of the start that are not next to each other any more */
     double spacing, h;    /* (box/n)^(1/d); mean smoothing length in the window, by volume */
     struct budget budget; /* L1 by regions of the problem */

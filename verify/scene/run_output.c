@@ -2,6 +2,8 @@
  * A run's result as JSON and as a snapshot file. */
 #include "run.h"
 
+#include <math.h>
+
 #include "output.h"
 #include "result.h"
 
@@ -78,6 +80,11 @@ void run_add_plan(const struct run_settings *settings, const struct run_result *
     json_object_set_new(document, "settings", settings_json(&result->settings));
     json_object_set_new(document, "n", json_integer((json_int_t)result->n));
     json_object_set_new(document, "window", window_json(&result->problem.window));
+    if (!isnan(result->start.density))
+        json_object_set_new(document, "start",
+                            json_pack("{s:o, s:o}", "density_rms",
+                                      result_number(result->start.density), "gradient_rms",
+                                      result_number(result->start.gradient)));
     json_object_set_new(document, "plan", plan_json(result));
     json_object_set_new(document, "warnings", json_string(result->warnings));
 }

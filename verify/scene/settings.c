@@ -31,7 +31,9 @@ const struct family settings_lattice_family = {
             MEMBER("fcc", "3D: face-centred cubic lattice", "Kittel 2005"),
             MEMBER("bcc", "3D: body-centred cubic lattice", "Kittel 2005"),
             MEMBER("jittered", "2D, 3D: square or cubic, each particle displaced at random", ""),
-            MEMBER("random", "2D, 3D: quasi-random points", "Sobol 1967")),
+            MEMBER("random", "2D, 3D: quasi-random points", "Sobol 1967"),
+            MEMBER("glass", "2D, 3D: random points that have pushed each other apart",
+                   "Diehl et al. 2015")),
     LATTICES};
 static const struct family answer_family = {
     "answers", "no or yes", MEMBERS(MEMBER("no", "", ""), MEMBER("yes", "", "")), 2};

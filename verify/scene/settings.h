@@ -73,6 +73,7 @@ enum lattice {
     LATTICE_BCC,
     LATTICE_JITTERED,
     LATTICE_RANDOM,
+    LATTICE_GLASS,
     LATTICES
 };
 enum skip { SKIP_AUTO, SKIP_NONE };

@@ -106,10 +106,45 @@ def ends(folder):
     demand(run["conservation"]["momentum"] <= 1e-13, "momentum along walls")
 
 
+def columns(path):
+    lines = read(path).split()
+    return {name: [float(line.split(",")[k]) for line in lines[1:]] for k, name in enumerate(lines[0].split(","))}
+
+
+def glasses(folder):
+    """Seeded, far more even than random points, and where masses are equal as dense as the gas."""
+    path = os.path.join(folder, "glass.csv")
+
+    def start(case, *words):
+        document = call("run", case, "t_end=0", *words, "--snapshot", path)
+        return document, columns(path)
+
+    for case, n, bound in (("rest_2d", "24^2", 0.01), ("rest_3d", "8^3", 0.006)):
+        glass, first = start(case, "n=" + n, "lattice=glass")
+        demand(glass["start"]["density_rms"] <= bound, "%s: %r" % (case, glass["start"]))
+        # the same sum over neighbours, once by the solver with the widths that it finds
+        error = glass["errors"]["density"]["l2"]
+        demand(abs(error / glass["start"]["density_rms"] - 1) <= 0.3, "%s: %r, %r" % (case, glass["start"], error))
+    random, _ = start("rest_2d", "n=24^2", "lattice=random")
+    demand(random["errors"]["density"]["l2"] >= 0.05 and "start" not in random, "random points: %r" % random["errors"])
+    again = start("rest_2d", "n=24^2", "lattice=glass")[1]
+    demand(start("rest_2d", "n=24^2", "lattice=glass")[1] == again, "a glass is not repeated")
+    demand(start("rest_2d", "n=24^2", "lattice=glass", "seed=2")[1] != again, "the seed changes nothing")
+    _, equal = start("kelvin_helmholtz", "n=40^2", "equal_masses=yes")
+    demand(len(set(equal["m"])) == 1 and len(equal["m"]) == 1600, "masses are not equal")
+    inside = [rho for y, rho in zip(equal["y"], equal["rho"]) if 0.4 < y < 0.6]
+    outside = [rho for y, rho in zip(equal["y"], equal["rho"]) if y < 0.1 or y > 0.9]
+    demand(abs(sum(inside) / len(inside) - 2) <= 0.05 and abs(sum(outside) / len(outside) - 1) <= 0.05, "their density")
+    demand(abs(len(inside) / len(outside) - 2) <= 0.1, "%d, %d: places do not follow the density" % (len(inside), len(outside)))
+    _, spaced = start("kelvin_helmholtz", "n=40^2")
+    demand(max(spaced["m"]) > 1.9 * min(spaced["m"]), "masses at equal spacing")
+
+
 def main():
     with tempfile.TemporaryDirectory() as folder:
         files(folder)
         ends(folder)
+        glasses(folder)
     print("particles of files and ends of boxes are what the cases say")
 
 

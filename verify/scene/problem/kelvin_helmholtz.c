@@ -66,6 +66,8 @@ static double amplitude_reference(const struct prepared *p, double t)
 static const struct functional mode_amplitude = {"mode_amplitude", NULL, amplitude_measured,
                                                  amplitude_reference};
 
+static const struct problem_key keys[] = {{SETTING_equal_masses, ROLE_PARTICLES}};
+
 const struct problem problem_kelvin_helmholtz = {
     .member = {"kelvin_helmholtz", "smooth shear layers whose instability grows",
                "McNally, Lyra & Passy 2012"},
@@ -75,6 +77,8 @@ const struct problem problem_kelvin_helmholtz = {
     .carried = true,
     .fieldless = true,
     .smooth = true,
+    .keys = keys,
+    .key_count = sizeof keys / sizeof *keys,
     .prepare = prepare,
     .sample = sample,
     .fill = initial_fill,

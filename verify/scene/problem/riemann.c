@@ -176,8 +176,9 @@ static enum status fill_cloud(const struct prepared *p, const struct settings *s
         plan_side(&sides[1], p, true, n - n_left, kind, error) ||
         initial_allocate(initial, p->domain.dim, sides[0].n + sides[1].n, error))
         return error->status;
-    initial_lay(initial, p, &sides[0], 0, settings);
-    initial_lay(initial, p, &sides[1], sides[0].n, settings);
+    if (initial_lay(initial, p, &sides[0], 0, settings, error) ||
+        initial_lay(initial, p, &sides[1], sides[0].n, settings, error))
+        return error->status;
     return STATUS_OK;
 }
 

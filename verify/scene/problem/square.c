@@ -86,8 +86,9 @@ static enum status fill_equal_masses(const struct prepared *p, const struct sett
                           (size_t)fmax(1, round(n * thin * volume / all)), error) ||
         initial_allocate(initial, p->domain.dim, dense.n + around.n, error))
         return error->status;
-    initial_lay(initial, p, &dense, 0, settings);
-    initial_lay(initial, p, &around, dense.n, settings);
+    if (initial_lay(initial, p, &dense, 0, settings, error) ||
+        initial_lay(initial, p, &around, dense.n, settings, error))
+        return error->status;
     initial_keep(initial, dense.n, is_around, square);
     fill_up(initial, 0, dense.n, square->dense * inner);
     fill_up(initial, dense.n, initial->n, thin * (volume - inner));
@@ -113,8 +114,7 @@ static enum status fill_equal_spacing(const struct prepared *p, const struct set
         plan.n *= 4;
     }
     if (initial_allocate(initial, quarter.dim, plan.n, error)) return error->status;
-    initial_lay(initial, p, &plan, 0, settings);
-    return STATUS_OK;
+    return initial_lay(initial, p, &plan, 0, settings, error);
 }
 
 static enum status fill(const struct prepared *p, const struct settings *settings,

@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Points as dense as the gas: quasi-random ones, each kept with the density's probability
+ * (rejection in one dimension more), then pushed apart into a glass. */
+#include <gsl/gsl_qrng.h>
+#include <gsl/gsl_rng.h>
+#include <math.h>
+
+#include "initial.h"
+#include "problem.h"
+#include "relax.h"
+
+enum { CELLS_PLANE = 512, CELLS_SPACE = 96 }; /* per direction, of sums over the box */
+
+/* The gas that is to be followed, and what each particle has of it. */
+struct gas {
+    const struct prepared *p;
+    double most; /* density, a little above the greatest */
+    double mass; /* in the box; later of a particle */
+};
+
+static double density_at(const struct prepared *p, const double x[3])
+{
+    struct problem_state state;
+    p->problem->sample(p, x, 0, &state);
+    return state.rho;
+}
+
+/* Mass by the midpoint rule, exact for smooth periodic gas; a jump costs a part of a cell. */
+static void measure(struct gas *gas)
+{
+    const struct domain *box = &gas->p->domain;
+    const size_t side = box->dim == 2 ? CELLS_PLANE : CELLS_SPACE;
+    const size_t cells = box->dim == 2 ? side * side : side * side * side;
+    double share = 1. / (double)cells;
+    for (int d = 0; d < box->dim; d++) share *= domain_length(box, d);
+    for (size_t c = 0; c < cells; c++) {
+        const size_t at[3] = {c % side, c / side % side, c / side / side};
+        double x[3] = {0};
+        for (int d = 0; d < box->dim; d++)
+            x[d] = box->lo[d] + domain_length(box, d) * ((double)at[d] + 0.5) / (double)side;
+        const double rho = density_at(gas->p, x);
+        gas->mass += rho * share;
+        gas->most = fmax(gas->most, 1.01 * rho);
+    }
+}
+
+static enum status throw_points(const struct gas *gas, unsigned long seed, size_t n,
+                                double *const x[3], struct error *error)
+{
+    const struct domain *box = &gas->p->domain;
+    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
+    gsl_qrng *sequence = gsl_qrng_alloc(gsl_qrng_sobol, (unsigned)box->dim + 1);
+    double shift[4], part[4];
+    if (random && sequence) {
+        gsl_rng_set(random, seed);
+        for (int d = 0; d < 4; d++) shift[d] = gsl_rng_uniform(random);
+        for (size_t i = 0; i < n;) {
+            double at[3] = {0};
+            gsl_qrng_get(sequence, part);
+            for (int d = 0; d <= box->dim; d++) part[d] = fmod(part[d] + shift[d], 1);
+            for (int d = 0; d < box->dim; d++) at[d] = box->lo[d] + domain_length(box, d) * part[d];
+            if (!(part[box->dim] * gas->most < density_at(gas->p, at))) continue;
+            for (int d = 0; d < box->dim; d++) x[d][i] = at[d];
+            i++;
+        }
+    }
+    gsl_qrng_free(sequence);
+    gsl_rng_free(random);
+    return random && sequence ? STATUS_OK
+                              : error_set(error, STATUS_ENVIRONMENT, "no memory for %zu points", n);
+}
+
+static double room_at(const void *context, const double x[3])
+{
+    const struct gas *gas = context;
+    return gas->mass / density_at(gas->p, x);
+}
+
+enum status initial_fill_equal_masses(const struct prepared *p, const struct settings *settings,
+                                      struct initial *initial, struct error *error)
+{
+    const size_t n = (size_t)settings_real(settings, SETTING_n);
+    struct gas gas = {.p = p};
+    measure(&gas);
+    gas.mass /= (double)n;
+    const struct relax_room room = {p->domain, room_at, &gas};
+    if (initial_allocate(initial, p->domain.dim, n, error) ||
+        throw_points(&gas, (unsigned long)settings_real(settings, SETTING_seed), n, initial->x,
+                     error) ||
+        (settings_choice(settings, SETTING_lattice) == LATTICE_GLASS &&
+         relax_points(&room, n, initial->x, error)))
+        return error->status;
+    for (size_t i = 0; i < n; i++) {
+        initial_sample(initial, p, i);
+        initial->m[i] = gas.mass;
+    }
+    return STATUS_OK;
+}

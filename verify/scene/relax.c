@@ -1,0 +1,187 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Each point is pushed by those nearer than REACH times the mean of two spacings, the harder the
+ * nearer, and moves by a part of its spacing that falls from sweep to sweep. The push is that of
+ * Diehl et al. 2015, made to vanish at its reach. */
+#include "relax.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "grid.h"
+#include "kernel.h"
+
+enum { SWEEPS = 60 };
+static const double reach = 2.5;                      /* spacings */
+static const double first_step = 0.06, fading = 0.95; /* parts of a spacing and a push */
+static const double longest = 0.3;                    /* spacings a sweep */
+static const double judge_eta = 3.6;
+
+/* Points with the width of each one's neighbourhood. */
+struct cloud {
+    int dim;
+    size_t n;
+    double *const *x;
+    double *width; /* n: what is summed over */
+    double *to[3]; /* n each: sums over neighbours of push times direction */
+    double *storage;
+    struct grid *grid;
+};
+
+static enum status cloud_make(struct cloud *cloud, const struct domain *box, size_t n,
+                              double *const x[3], struct error *error)
+{
+    struct grid_box periodic = {.dim = box->dim};
+    for (int d = 0; d < box->dim; d++) {
+        periodic.lo[d] = box->lo[d];
+        periodic.hi[d] = box->hi[d];
+        periodic.periodic[d] = true;
+    }
+    *cloud = (struct cloud){.dim = box->dim, .n = n, .x = x};
+    cloud->storage = malloc(4 * n * sizeof(double));
+    cloud->grid = grid_create(&periodic, n, 1);
+    if (!cloud->storage || !cloud->grid)
+        return error_set(error, STATUS_ENVIRONMENT, "no memory for a glass of %zu points", n);
+    cloud->width = cloud->storage;
+    for (int d = 0; d < 3; d++) cloud->to[d] = cloud->storage + (size_t)(d + 1) * n;
+    return STATUS_OK;
+}
+
+static void cloud_free(struct cloud *cloud)
+{
+    grid_destroy(cloud->grid);
+    free(cloud->storage);
+}
+
+static enum status find(struct cloud *cloud, struct error *error)
+{
+    const double *const x[3] = {cloud->x[0], cloud->x[1], cloud->x[2]};
+    struct error reason = {0};
+    if (!grid_search(cloud->grid, cloud->n, cloud->n, x, cloud->width, NULL, &reason))
+        return STATUS_OK;
+    if (reason.status != STATUS_BAD_INPUT) {
+        *error = reason;
+        return reason.status;
+    }
+    return error_set(error, STATUS_BAD_INPUT,
+                     "n=%zu: a glass needs more particles across the box: the neighbours of one "
+                     "would reach beyond half of it",
+                     cloud->n);
+}
+
+/* From the point of a slot to another one, the nearest image. */
+static double step_to(const struct cloud *cloud, size_t slot, int32_t other, double delta[3])
+{
+    const double(*position)[4] = grid_positions(cloud->grid);
+    double square = 0;
+    for (int d = 0; d < cloud->dim; d++) {
+        const double side = grid_side(cloud->grid, d);
+        delta[d] = position[slot][d] - position[other][d];
+        delta[d] -= side * round(delta[d] / side);
+        square += delta[d] * delta[d];
+    }
+    return sqrt(square);
+}
+
+/* 0 at q = 1 and beyond; about 3 between neighbours. */
+static double push(double q)
+{
+    const double soft = 0.1, edge = 1 / ((1 + soft) * (1 + soft));
+    return q < 1 ? 1 / ((q + soft) * (q + soft)) - edge : 0;
+}
+
+static void add_pushes(struct cloud *cloud)
+{
+    const struct grid_list *lists = grid_lists(cloud->grid);
+    const uint32_t *order = grid_order(cloud->grid);
+    for (size_t slot = 0; slot < cloud->n; slot++) {
+        const uint32_t i = order[slot];
+        double sum[3] = {0};
+        for (int32_t k = 0; k < lists[slot].count; k++) {
+            const int32_t other = lists[slot].slots[k];
+            double delta[3];
+            if ((size_t)other == slot || (size_t)other >= cloud->n) continue;
+            const double r = step_to(cloud, slot, other, delta);
+            const double width = 0.5 * (cloud->width[i] + cloud->width[order[other]]);
+            const double part = r > 0 ? push(r / width) / r : 0;
+            for (int d = 0; d < cloud->dim; d++) sum[d] += part * delta[d];
+        }
+        for (int d = 0; d < cloud->dim; d++) cloud->to[d][i] = sum[d];
+    }
+}
+
+static void move(struct cloud *cloud, const struct domain *box, double step)
+{
+    for (size_t i = 0; i < cloud->n; i++) {
+        const double spacing = cloud->width[i] / reach;
+        double size = 0;
+        for (int d = 0; d < cloud->dim; d++) size += cloud->to[d][i] * cloud->to[d][i];
+        const double part = spacing * fmin(step, longest / fmax(sqrt(size), 1e-300));
+        for (int d = 0; d < cloud->dim; d++) {
+            const double lo = box->lo[d], side = domain_length(box, d);
+            const double from_lo = cloud->x[d][i] + part * cloud->to[d][i] - lo;
+            const double wrapped = from_lo - side * floor(from_lo / side);
+            cloud->x[d][i] = fmin(lo + wrapped, nextafter(box->hi[d], lo));
+        }
+    }
+}
+
+static double root(double volume, int dim)
+{
+    return dim == 2 ? sqrt(volume) : cbrt(volume);
+}
+
+enum status relax_points(const struct relax_room *room, size_t n, double *const x[3],
+                         struct error *error)
+{
+    struct cloud cloud;
+    const int dim = room->box.dim;
+    double step = first_step;
+    enum status status = cloud_make(&cloud, &room->box, n, x, error);
+    for (int sweep = 0; !status && sweep < SWEEPS; sweep++, step *= fading) {
+        for (size_t i = 0; i < n; i++) {
+            double at[3] = {0};
+            for (int d = 0; d < dim; d++) at[d] = x[d][i];
+            cloud.width[i] = reach * root(room->volume(room->context, at), dim);
+        }
+        if ((status = find(&cloud, error))) break;
+        add_pushes(&cloud);
+        move(&cloud, &room->box, step);
+    }
+    cloud_free(&cloud);
+    return status;
+}
+
+enum status relax_measure(const struct domain *box, size_t n, const double *const x[3],
+                          const double *volume, struct relax_quality *quality, struct error *error)
+{
+    struct cloud cloud;
+    struct kernel kernel;
+    const int dim = box->dim;
+    double *const places[3] = {(double *)x[0], (double *)x[1], (double *)x[2]};
+    double density = 0, gradient = 0;
+    if (kernel_select(&kernel, "wendland_c4", 0, error)) return error->status;
+    enum status status = cloud_make(&cloud, box, n, places, error);
+    for (size_t i = 0; !status && i < n; i++) cloud.width[i] = judge_eta * root(volume[i], dim);
+    if (!status) status = find(&cloud, error);
+    for (size_t slot = 0; !status && slot < n; slot++) {
+        const struct grid_list *list = &grid_lists(cloud.grid)[slot];
+        const uint32_t *order = grid_order(cloud.grid);
+        const double h = cloud.width[order[slot]];
+        double sum = volume[order[slot]] * kernel_value(&kernel, 0, h, dim), to[3] = {0};
+        for (int32_t k = 0; k < list->count; k++) {
+            const int32_t other = list->slots[k];
+            double delta[3];
+            if ((size_t)other == slot || (size_t)other >= n) continue;
+            const double r = step_to(&cloud, slot, other, delta), V = volume[order[other]];
+            if (!(r < h)) continue;
+            sum += V * kernel_value(&kernel, r, h, dim);
+            for (int d = 0; d < dim && r > 0; d++)
+                to[d] += V * h * kernel_dr(&kernel, r, h, dim) * delta[d] / r;
+        }
+        density += (sum - 1) * (sum - 1);
+        for (int d = 0; d < dim; d++) gradient += to[d] * to[d];
+    }
+    *quality = (struct relax_quality){sqrt(density / (double)n), sqrt(gradient / (double)n)};
+    cloud_free(&cloud);
+    return status;
+}

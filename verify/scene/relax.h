@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Glasses: points that have pushed each other apart until none is pushed any more, each keeping as
+ * much room as it is asked to (weighted Voronoi tessellations, Diehl et al. 2015). They have no
+ * directions, unlike a lattice, and few of the fluctuations of random points. Code units. */
+#ifndef SPHPROOF_RELAX_H
+#define SPHPROOF_RELAX_H
+
+#include <stddef.h>
+
+#include "field.h"
+#include "status.h"
+
+/* What is to be filled: a periodic box in 2 or 3 dimensions. */
+struct relax_room {
+    struct domain box;
+    /* Room that a point at x takes: of all points together about the box. */
+    double (*volume)(const void *context, const double x[3]);
+    const void *context;
+};
+
+/* How good points are, by sums with the kernel wendland_c4 at eta = 3.6: rms of what sum V W
+ * departs from 1, and of h |sum V grad W|, 0 on a lattice. Random points: about 0.15 and 0.3. */
+struct relax_quality {
+    double density, gradient;
+};
+
+/* Moves n points, sweep by sweep. STATUS_BAD_INPUT: too few for a neighbourhood; or no memory. */
+enum status relax_points(const struct relax_room *room, size_t n, double *const x[3],
+                         struct error *error);
+
+/* Of any points: rooms as they are given, n each. */
+enum status relax_measure(const struct domain *box, size_t n, const double *const x[3],
+                          const double *volume, struct relax_quality *quality, struct error *error);
+
+#endif
