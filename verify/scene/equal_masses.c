@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Points as dense as the gas: quasi-random ones, each kept with the density's probability
  * (rejection in one dimension more), then pushed apart into a glass. */
+#include "equal_masses.h"
+
 #include <gsl/gsl_qrng.h>
 #include <gsl/gsl_rng.h>
 #include <math.h>
 
-#include "initial.h"
-#include "problem.h"
 #include "relax.h"
 
 enum { CELLS_PLANE = 512, CELLS_SPACE = 96 }; /* per direction, of sums over the box */
@@ -76,8 +76,8 @@ static double room_at(const void *context, const double x[3])
     return gas->mass / density_at(gas->p, x);
 }
 
-enum status initial_fill_equal_masses(const struct prepared *p, const struct settings *settings,
-                                      struct initial *initial, struct error *error)
+enum status equal_masses_fill(const struct prepared *p, const struct settings *settings,
+                              struct initial *initial, struct error *error)
 {
     const size_t n = (size_t)settings_real(settings, SETTING_n);
     struct gas gas = {.p = p};

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "equal_masses.h"
 #include "lattice.h"
 #include "particle_file.h"
 #include "problem.h"
@@ -121,7 +122,7 @@ enum status initial_fill(const struct prepared *p, const struct settings *settin
     const enum lattice kind = (enum lattice)settings_choice(settings, SETTING_lattice);
     const size_t n = (size_t)settings_real(settings, SETTING_n);
     if (settings_choice(settings, SETTING_equal_masses))
-        return initial_fill_equal_masses(p, settings, initial, error);
+        return equal_masses_fill(p, settings, initial, error);
     if (lattice_plan_make(&plan, &p->domain, kind, n, error) ||
         initial_allocate(initial, p->domain.dim, plan.n, error))
         return error->status;

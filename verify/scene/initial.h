@@ -52,9 +52,6 @@ void initial_sample(struct initial *initial, const struct prepared *p, size_t i)
 enum status initial_fill(const struct prepared *p, const struct settings *settings,
                          struct initial *initial, struct error *error);
 
-enum status initial_fill_equal_masses(const struct prepared *p, const struct settings *settings,
-                                      struct initial *initial, struct error *error);
-
 /* The particles of a prepared problem, moved as the keys lattice and jitter ask; settings:
  * resolved. STATUS_BAD_INPUT: the problem cannot fill its domain with them. */
 enum status initial_create(struct initial *initial, const struct prepared *p,

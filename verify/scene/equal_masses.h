@@ -1,0 +1,13 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Particles of equal masses, as dense as the gas of a problem. */
+#ifndef SPHPROOF_EQUAL_MASSES_H
+#define SPHPROOF_EQUAL_MASSES_H
+
+#include "problem.h"
+
+/* A problem's whole fill: n particles; lattice=glass: pushed apart, else (random) as thrown.
+ * STATUS_BAD_INPUT: too few for a glass. */
+enum status equal_masses_fill(const struct prepared *p, const struct settings *settings,
+                              struct initial *initial, struct error *error);
+
+#endif
