@@ -138,6 +138,7 @@ bool page_make(struct page *page, const json_t *results)
     if (gradients) buffer_add(to, " <a href=\"#gradients\">Gradients</a>");
     if (stress) buffer_add(to, " <a href=\"#stability\">Stability</a>");
     if (json_object_get(results, "faults")) buffer_add(to, " <a href=\"#faults\">Faults</a>");
+    if (json_object_get(results, "score")) buffer_add(to, " <a href=\"#score\">Score</a>");
     if (kernels) buffer_add(to, " <a href=\"#kernels\">Kernels</a>");
     if (verify)
         buffer_add(to, " <a href=\"#checks\">Checks</a>"
@@ -151,6 +152,7 @@ bool page_make(struct page *page, const json_t *results)
     if (gradients) page_gradients(&writer, gradients);
     if (stress) page_stress(&writer, stress);
     if (json_object_get(results, "faults")) page_faults(&writer, results);
+    if (json_object_get(results, "score")) page_score(&writer, json_object_get(results, "score"));
     if (kernels) page_kernels(&writer, kernels);
     if (verify) page_checks(&writer, verify);
     if (verify) page_detection(&writer, verify);

@@ -88,7 +88,7 @@ static enum status check_options(const struct options *options, struct error *er
 /* Where everything lies: in one folder, but for the history where the user says so. */
 struct paths {
     const char *folder, *history;
-    char plots[PATH_LENGTH], cache[PATH_LENGTH], nights[PATH_LENGTH], faults[PATH_LENGTH];
+    char plots[PATH_LENGTH], cache[PATH_LENGTH], nights[PATH_LENGTH];
 };
 
 /* Where they are; nothing is made. */
@@ -104,7 +104,6 @@ static enum status take_paths(const struct options *options, struct paths *paths
     snprintf(paths->plots, PATH_LENGTH, "%s/plots", paths->folder);
     snprintf(paths->cache, PATH_LENGTH, "%s/cache", paths->folder);
     snprintf(paths->nights, PATH_LENGTH, "%s/history.jsonl", paths->folder);
-    snprintf(paths->faults, PATH_LENGTH, "%s/faults.json", paths->folder);
     return STATUS_OK;
 }
 
@@ -113,7 +112,7 @@ static enum status judge(struct report *report, const struct paths *paths, json_
                          struct error *error)
 {
     json_t *told;
-    enum status status = report_judge(report, paths->faults, results, error);
+    enum status status = report_judge(report, paths->folder, results, error);
     if (status) return status;
     if ((status = history_tell(*results, paths->history, &told, error)))
         json_decref(*results);
@@ -210,7 +209,8 @@ const struct command command_report = {
             "and script of each plot. Exit status 1 if anything on the page is not well.\n"
             "Each finished computation is kept at once: after an interruption, or in a night in "
             "which\nnothing has changed, only what is missing is computed.\n"
-            "DIR/faults.json, which verify/test/faults.py --json writes, is shown if it is there.",
+            "What verify/test/faults.py and verify/mutants/score write, DIR/faults.json and\n"
+            "DIR/score.json, is shown if it is there.",
     .run = run,
     .options = report_options,
     .examples =

@@ -35,6 +35,8 @@ static const struct reading_rule rules[] = {
     /* words */
     {"faults", "status", 0, READING_STATUS, 0, 0},
     {"faults", "*", OUT},
+    {"score", "score", 0, READING_ORDER, 0.05, 0}, /* another sample each night */
+    {"score", "*", OUT},
     {"", "status", 0, READING_STATUS, 0, 0},
     {"", "detected", 0, READING_STATUS, 0, 0},
     {"", "suspicion", 0, READING_STATUS, 0, 0},

@@ -327,19 +327,21 @@ static void add_documents(struct report *report, json_t *results)
     json_object_set_new(results, "bench", bench);
 }
 
-/* The table of faults, if somebody has written one. */
-static void add_faults(json_t *results, const char *path)
+/* FOLDER/NAME.json, which a script may have written. */
+static void add_written(json_t *results, const char *name, const char *folder)
 {
     struct error error;
-    json_t *faults;
-    if (!path || access(path, F_OK)) return;
-    if (!result_load(&faults, path, &error))
-        json_object_set_new(results, "faults", faults);
+    json_t *document;
+    char path[1024];
+    snprintf(path, sizeof path, "%.960s/%s.json", folder ? folder : "", name);
+    if (!folder || access(path, F_OK)) return;
+    if (!result_load(&document, path, &error))
+        json_object_set_new(results, name, document);
     else
-        add_trouble(results, "faults", error.message);
+        add_trouble(results, name, error.message);
 }
 
-static json_t *collect(struct report *report, const char *faults, double seconds)
+static json_t *collect(struct report *report, const char *folder, double seconds)
 {
     json_t *results = result_new("report"), *studies = json_array();
     json_object_set_new(results, "mode", json_string(report->nightly ? "nightly" : "quick"));
@@ -360,7 +362,8 @@ static json_t *collect(struct report *report, const char *faults, double seconds
     json_t *stress = result_new("stress");
     stress_judge(&report->stress, &report->pool, stress);
     json_object_set_new(results, "stress", stress);
-    add_faults(results, faults);
+    add_written(results, "faults", folder);
+    add_written(results, "score", folder);
     json_object_set_new(results, "verdict", verdict_make(results));
     return results;
 }
@@ -417,11 +420,11 @@ struct pool *report_pool(struct report *report)
     return &report->pool;
 }
 
-enum status report_judge(struct report *report, const char *faults, json_t **results,
+enum status report_judge(struct report *report, const char *folder, json_t **results,
                          struct error *error)
 {
     *results = NULL;
     if (sound(&report->pool, error) || judge_studies(report, error)) return error->status;
-    *results = collect(report, faults, clock_wall() - report->began);
+    *results = collect(report, folder, clock_wall() - report->began);
     return STATUS_OK;
 }

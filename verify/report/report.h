@@ -22,8 +22,9 @@ struct pool *report_pool(struct report *report);
 /* After pool_run of all of it: judges it. *results is a document of command "report" with its
  * verdict (see reports/verdict.h), owned by the caller. A gate that fails, or a run that breaks
  * down, is part of the results; anything else that goes wrong is returned, and *results is then
- * NULL. faults: what verify/test/faults.py wrote, shown if it is there; NULL: nowhere. */
-enum status report_judge(struct report *report, const char *faults, json_t **results,
+ * NULL. folder: faults.json and score.json, which verify/test/faults.py and verify/mutants/score
+ * write, are shown if they are there; NULL: nowhere. */
+enum status report_judge(struct report *report, const char *folder, json_t **results,
                          struct error *error);
 
 void report_destroy(struct report *report);

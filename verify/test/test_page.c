@@ -52,7 +52,10 @@ static const char *const results_text =
     "'faults': {'git': 'abc', 'date': '2001-02-03', 'faults': [{'fault': 'list | <head', 'part':"
     " 'streams', 'exit': 0, 'status': 'pass', 'detail': '', 'message': 'said so', 'command':"
     " 'faults.py streams'}, {'fault': 'full disk', 'part': 'disk', 'exit': null, 'status': 'skip',"
-    " 'detail': '', 'message': 'no disk', 'command': 'faults.py disk'}]}}";
+    " 'detail': '', 'message': 'no disk', 'command': 'faults.py disk'}]},"
+    "'score': {'tried': 10, 'generated': 120, 'score': 0.875, 'seconds': 5, 'files': [{'file':"
+    " 'src/a.c', 'mutants': 10, 'killed': 7, 'listed': 2, 'survived': 1}], 'survivors': [{'file':"
+    " 'src/a.c', 'line': 77, 'change': 'a < b -> <=', 'why': 'no test fails'}]}}";
 
 /* With its verdict. */
 static json_t *judged(json_t *results)
@@ -164,6 +167,8 @@ static void folded_cases(void **state)
     json_t *results = sound();
     char *good = page_of(results);
     assert_non_null(strstr(good, "<details class=\"case\"><summary>"));
+    assert_non_null(strstr(good, "10 of 120 were tried, 87.5 % of those"));
+    assert_non_null(strstr(good, "a &lt; b -&gt; &lt;="));
     assert_non_null(strstr(good, "ia 1.00 ± 0.10"));
     /* a mean says what one run may be off it, where that is much */
     assert_non_null(strstr(good, " ± 15 %</td>"));
