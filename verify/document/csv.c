@@ -15,6 +15,7 @@ struct reader {
     FILE *stream;
     const char *path;
     size_t line, bytes;
+    const char *separators; /* as the names have them: a comma, or else blanks */
     char text[CSV_LINE_MAX + 1];
     struct error *error;
 };
@@ -68,9 +69,12 @@ static bool blank(const char *text)
 /* Cuts the next value off *rest, without blanks around; its character (from 1) in the line. */
 static char *next_value(const struct reader *reader, char **rest, size_t *character)
 {
-    char *value = *rest, *end = value + strcspn(value, ",");
+    const bool blanks = *reader->separators == ' ';
+    if (blanks) *rest += strspn(*rest, reader->separators);
+    char *value = *rest, *end = value + strcspn(value, reader->separators);
     *rest = *end ? end + 1 : NULL;
     *end = '\0';
+    if (blanks && *rest && !(*rest)[strspn(*rest, reader->separators)]) *rest = NULL;
     value += strspn(value, " \t");
     *character = (size_t)(value - reader->text) + 1;
     for (end = value + strlen(value); end > value && (end[-1] == ' ' || end[-1] == '\t');)
@@ -87,8 +91,20 @@ static bool is_utf8(const char *name)
     return strcmp(copy, name) == 0;
 }
 
+/* Fortran writes 1.0D0. */
+static bool read_number(const char *text, double *value)
+{
+    char copy[64];
+    const size_t n = strlen(text), d = strcspn(text, "dD");
+    if (d == n || n >= sizeof copy) return text_real(text, value);
+    memcpy(copy, text, n + 1);
+    copy[d] = 'e';
+    return text_real(copy, value);
+}
+
 static enum status read_names(struct reader *reader, struct csv *csv)
 {
+    reader->separators = strchr(reader->text, ',') ? "," : " \t";
     const char *mark = "\xef\xbb\xbf";
     char *rest = reader->text + (strncmp(reader->text, mark, 3) ? 0 : 3);
     while (rest) {
@@ -141,7 +157,7 @@ static enum status read_row(struct reader *reader, struct csv *csv)
         if (c == csv->columns)
             return fail(reader, character, "more than %zu values; there are %zu columns",
                         csv->columns, csv->columns);
-        if (!text_real(value, &csv->values[c][csv->rows]))
+        if (!read_number(value, &csv->values[c][csv->rows]))
             return fail(reader, character,
                         "'%.40s' in column '%.40s' is not a number; allowed: a finite decimal "
                         "number",

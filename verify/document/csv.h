@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Tables of numbers in CSV files, read strictly: one line of distinct column names, then lines with
- * as many finite decimal numbers, separated by commas. Blank lines, lines that begin with '#',
- * blanks around values, CRLF and a byte order mark are allowed; anything else is an error with its
- * place. */
+ * as many finite decimal numbers (Fortran's 1.0D0 is one), separated by commas or, where the names
+ * have none, by blanks. Blank lines, lines that begin with '#', blanks around values, CRLF and a
+ * byte order mark are allowed; anything else is an error with its place. */
 #ifndef SPHPROOF_CSV_H
 #define SPHPROOF_CSV_H
 

@@ -58,7 +58,7 @@ static bool stream_close(stream from)
 
 static enum status read_all(struct snapshot_source *source, stream from, struct error *error)
 {
-    enum { CHUNK = 1 << 20 };
+    enum { CHUNK = 1 << 16 };
     size_t room = 0;
     for (;;) {
         if (source->size >> 20 >= SOURCE_MEGABYTES_MAX)

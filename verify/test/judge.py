@@ -293,6 +293,11 @@ def forces(folder):
                           check=True)
     got = json.loads(done.stdout)["particles"]
     with open(particles, encoding="ascii") as text:
+        blank = text.read().replace(",", "  ").replace("e-", "D-")
+    fortran = subprocess.run([PROGRAM, "rates", write(folder, "fortran.csv", blank), "lo=0", "hi=1", *scheme, "--json",
+                              "-"], capture_output=True, check=True)
+    assert json.loads(fortran.stdout)["particles"] == got, "blanks and 1.0D0 are read otherwise"
+    with open(particles, encoding="ascii") as text:
         lines = [line.strip().split(",") for line in text if line.strip() and not line.startswith("#")]
     at = {name: lines[0].index(name) for name in ("x", "y", "vx", "vy", "m", "u")}
     for factor, status in ((1, 0), (1.001, 1)):
