@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "particles.h"
 
+#include <stdbool.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -38,13 +40,14 @@ static enum status allocate(struct particles *particles, struct error *error)
     const size_t count = list_arrays(particles, arrays);
     particles->ghosts = (particles->ghosts + LINE - 1) / LINE * LINE;
     const ptrdiff_t length = stride(particles->n, particles->ghosts);
-    const size_t bytes = (size_t)length * (count + 1) * sizeof(double);
-    particles->block = aligned_alloc(64, bytes);
+    const size_t bytes = ((size_t)length * (count + 1) + LINE) * sizeof(double);
+    /* what a scheme has no use for stays untouched, and takes no room */
+    particles->block = calloc(1, bytes);
     if (!particles->block)
         return error_set(error, STATUS_ENVIRONMENT, "no memory for %td particles (%zu MiB)",
                          particles->n, bytes >> 20);
-    memset(particles->block, 0, bytes);
-    double *next = particles->block + particles->ghosts;
+    const size_t beyond = (uintptr_t)particles->block / sizeof(double) % LINE;
+    double *next = particles->block + (LINE - (ptrdiff_t)beyond) % LINE + particles->ghosts;
     for (size_t k = 0; k < count; k++, next += length) *arrays[k] = next;
     particles->spare = next;
     return STATUS_OK;
@@ -88,6 +91,16 @@ enum status particles_grow_ghosts(struct particles *particles, ptrdiff_t ghosts,
     return STATUS_OK;
 }
 
+/* Has anybody written here? To read memory that nobody has touched does not make it take room. */
+static bool is_blank(const double *array, ptrdiff_t n)
+{
+    static const double zero[64];
+    ptrdiff_t i = 0;
+    for (; i + 64 <= n; i += 64)
+        if (memcmp(array + i, zero, sizeof zero) != 0) return false;
+    return memcmp(array + i, zero, (size_t)(n - i) * sizeof *array) == 0;
+}
+
 void particles_permute(struct particles *particles)
 {
     const ptrdiff_t n = particles->n;
@@ -95,6 +108,7 @@ void particles_permute(struct particles *particles)
     const size_t count = list_arrays(particles, arrays);
     for (size_t k = 0; k < count; k++) {
         double *array = *arrays[k];
+        if (is_blank(array, n)) continue;
         for (ptrdiff_t i = 0; i < n; i++) particles->spare[i] = array[particles->order[i]];
         memcpy(array, particles->spare, (size_t)n * sizeof *array);
     }

@@ -16,7 +16,7 @@ enum {
 };
 
 /* How far beyond a first guess the search for a root may go without a second search. */
-static const double margin = 1.25;
+static const double margin = 1.1;
 
 /* Beyond this condition number of a moment matrix, in the 2-norm, its inverse points anywhere. */
 static const double worst_condition = 1e3;

@@ -361,8 +361,7 @@ static enum status finish(struct run_result *result, const struct outcome *outco
     result->status = outcome->status;
     snprintf(result->message, sizeof result->message, "%s", outcome->reason.message);
     measure_conservation(result, &outcome->start, &outcome->end);
-    const enum status status = keep_snapshot(result, &outcome->snapshot, error);
-    return status ? status : measure_errors(result, error);
+    return keep_snapshot(result, &outcome->snapshot, error);
 }
 
 /* A state without density or smoothing length: there is nothing to measure. */
@@ -457,8 +456,8 @@ static enum status simulate(const struct run *run, struct run_result *result,
     simulation_snapshot(simulation, &outcome.snapshot);
     if (asked->trace) trace_add(asked->trace, outcome.snapshot.time, &outcome.end);
     status = finish(result, &outcome, error);
-    simulation_destroy(simulation);
-    return status;
+    simulation_destroy(simulation); /* its memory serves for the errors */
+    return status ? status : measure_errors(result, error);
 }
 
 static enum status simulate_plainly(const struct run *run, struct run_result *result,
