@@ -20,7 +20,7 @@ RATES = {"sinuous": 1.705572193, "varicose": 1.481793027}  # of two other method
 
 def run(program, *words, case=CASE, n="24^2"):
     done = subprocess.run([program, "run", case, "n=" + n, *words, "--json", "-"], capture_output=True,
-                          text=True, timeout=120)
+                          text=True, timeout=900)
     if done.returncode:
         sys.exit("%s: exit %d: %s" % (" ".join(words), done.returncode, done.stderr))
     document = json.loads(done.stdout)
