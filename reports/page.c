@@ -128,6 +128,7 @@ bool page_make(struct page *page, const json_t *results)
     const json_t *kernels = json_object_get(results, "kernels");
     const json_t *gradients = json_object_get(results, "gradients");
     const json_t *stress = json_object_get(results, "stress");
+    const json_t *claims = json_object_get(results, "claims");
     const json_t *bench = json_object_get(results, "bench");
     head(to, results, verdict);
     buffer_add(to, "<nav>");
@@ -137,6 +138,7 @@ bool page_make(struct page *page, const json_t *results)
     if (json_array_size(bench)) buffer_add(to, " <a href=\"#cost\">Cost</a>");
     if (gradients) buffer_add(to, " <a href=\"#gradients\">Gradients</a>");
     if (stress) buffer_add(to, " <a href=\"#stability\">Stability</a>");
+    if (claims) buffer_add(to, " <a href=\"#claims\">Claims</a>");
     if (json_object_get(results, "faults")) buffer_add(to, " <a href=\"#faults\">Faults</a>");
     if (json_object_get(results, "score")) buffer_add(to, " <a href=\"#score\">Score</a>");
     if (kernels) buffer_add(to, " <a href=\"#kernels\">Kernels</a>");
@@ -151,6 +153,7 @@ bool page_make(struct page *page, const json_t *results)
     page_bench(&writer, bench);
     if (gradients) page_gradients(&writer, gradients);
     if (stress) page_stress(&writer, stress);
+    if (claims) page_claims(&writer, claims);
     if (json_object_get(results, "faults")) page_faults(&writer, results);
     if (json_object_get(results, "score")) page_score(&writer, json_object_get(results, "score"));
     if (kernels) page_kernels(&writer, kernels);

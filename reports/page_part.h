@@ -18,6 +18,7 @@ void page_cases(struct page_writer *writer, const json_t *results);
 void page_bench(struct page_writer *writer, const json_t *bench);
 void page_gradients(struct page_writer *writer, const json_t *gradients);
 void page_stress(struct page_writer *writer, const json_t *stress);
+void page_claims(struct page_writer *writer, const json_t *claims);
 void page_faults(struct page_writer *writer, const json_t *results);
 void page_score(struct page_writer *writer, const json_t *score);
 void page_kernels(struct page_writer *writer, const json_t *kernels);

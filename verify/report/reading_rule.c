@@ -65,6 +65,7 @@ static const struct reading_rule rules[] = {
     {"mutants", "*", OUT},
     {"skips", "difference", 0, READING_CHECK, 0, 1e-9},
     {"skips", "bound", 0, READING_NEUTRAL, 1e-9, 0},
+    {"claims", "*", OUT}, /* about schemes that are no default */
     {"functionals", "extrapolated", 0, READING_EXACT, 0.05, 1e-13},
     {"functionals", "exact", OUT},
     {"functionals", "gci*", OUT},

@@ -9,6 +9,7 @@
 
 #include "cases.h"
 #include "check_registry.h"
+#include "claims.h"
 #include "clock.h"
 #include "list.h"
 #include "pool.h"
@@ -60,6 +61,7 @@ struct report {
     struct report_piece **pieces; /* one by one: the pool keeps where they are */
     size_t case_count, piece_count;
     struct stress stress;
+    struct claims claims;
 };
 
 /* ---- what is to be computed ---- */
@@ -227,6 +229,7 @@ static enum status add_all(struct report *report, struct error *error)
                           error))
                 return error->status;
         }
+    if (claims_plan(&report->claims, report->nightly, &report->pool, error)) return error->status;
     return stress_plan(&report->stress, report->nightly, 0, NULL, &report->pool, error);
 }
 
@@ -362,6 +365,7 @@ static json_t *collect(struct report *report, const char *folder, double seconds
     json_t *stress = result_new("stress");
     stress_judge(&report->stress, &report->pool, stress);
     json_object_set_new(results, "stress", stress);
+    json_object_set_new(results, "claims", claims_judge(&report->claims, &report->pool));
     add_written(results, "faults", folder);
     add_written(results, "score", folder);
     json_object_set_new(results, "verdict", verdict_make(results));
@@ -395,6 +399,7 @@ void report_destroy(struct report *report)
         for (int s = 0; s < SCHEMES; s++) study_free(&report->cases[c].studies[s]);
     for (size_t k = 0; k < report->piece_count; k++) free(report->pieces[k]);
     stress_free(&report->stress);
+    claims_free(&report->claims);
     pool_free(&report->pool);
     free(report->cases), free(report->pieces);
     free(report);

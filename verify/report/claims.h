@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Claims that are made about schemes, each measured: two sets of keys on the same case, one figure
+ * of either, and which is nearer to the exact value, for several kernels and viscosities. */
+#ifndef SPHPROOF_CLAIMS_H
+#define SPHPROOF_CLAIMS_H
+
+#include <jansson.h>
+#include <stdbool.h>
+
+#include "pool.h"
+#include "run.h"
+
+struct claims {
+    struct claim_run *runs; /* two for each row of each claim, in order */
+    size_t count;
+};
+
+/* Adds the runs to a pool; claims, which begin as {0}, must outlive it. */
+enum status claims_plan(struct claims *claims, bool nightly, struct pool *pool,
+                        struct error *error);
+
+/* After the pool has run: [{"name", "claim", "verdict", "rows": [{"label", "figure", "without",
+ * "with", "verdict", "reproduce"}]}], errors relative to exact values that are not 0. New
+ * reference. */
+json_t *claims_judge(const struct claims *claims, const struct pool *pool);
+
+void claims_free(struct claims *claims);
+
+#endif
