@@ -45,6 +45,10 @@ static const char *const results_text =
     "'momentum_defect': 1e-16,"
     " 'error_disordered': 0.3, 'none': null}],"
     " 'reproduce': 'sphproof verify gradients'},"
+    "'claims': [{'name': 'ia_shear', 'claim': 'ia < standard', 'verdict': 'holds in 1 of 2', "
+    "'without': 'gradient=standard', 'with': 'gradient=ia', 'rows': [{'label': 'viscosity=none', "
+    "'figure': 'growth_rate', 'without': 0.125, 'with': 0.0625, 'verdict': 'holds', 'reproduce': "
+    "'sphproof run it'}]}],"
     "'verify': {'checks': [{'group': 'kernels', 'name': 'sign', 'subject': 'q < 1 & more',"
     " 'property': 'W >= 0', 'value': 1e-16, 'bound': 1e-15, 'floor': 0, 'status': 'pass',"
     " 'seconds': 0.1}], 'mutants': [{'group': 'kernels', 'check': 'sign', 'mutant': 'minus',"
@@ -127,6 +131,9 @@ static void good_page(void **state)
                                     "sphproof converge sod",
                                     "cubic spline, ia",
                                     "0.9713003",
+                                    "<h3>ia shear: holds in 1 of 2</h3>",
+                                    "ia &lt; standard",
+                                    "0.0625",
                                     "0.1031 %",
                                     "<b>1</b><span> of 1</span><br/>faults around it",
                                     "list | &lt;head",
