@@ -208,9 +208,46 @@ static void test_worst(void **state)
     assert_true(isnan(worst));
 }
 
+/* As many levels as there is room for; pairwise orders are those between levels and no more. */
+static void test_order_room(void **state)
+{
+    (void)state;
+    double spacing[ORDER_LEVELS_MAX + 1], error[ORDER_LEVELS_MAX + 1];
+    struct order_fit fit;
+    struct error failure;
+    for (int i = 0; i <= ORDER_LEVELS_MAX; i++) {
+        spacing[i] = pow(0.9, i);
+        error[i] = spacing[i] * spacing[i];
+    }
+    assert_int_equal(order_fit(ORDER_LEVELS_MAX, spacing, error, NULL, &fit, &failure), STATUS_OK);
+    near_relative(fit.order, 2, 1e-12);
+    assert_int_equal(order_fit(ORDER_LEVELS_MAX + 1, spacing, error, NULL, &fit, &failure),
+                     STATUS_BAD_INPUT);
+    assert_int_equal(order_fit(5, spacing, error, NULL, &fit, &failure), STATUS_OK);
+    for (int i = 0; i < 4; i++) near_relative(fit.pairwise[i], 2, 1e-12);
+    for (int i = 4; i < ORDER_LEVELS_MAX - 1; i++) assert_true(fit.pairwise[i] == 0);
+}
+
+/* Errors that grow once, wherever, do not fall from level to level. */
+static void test_one_rise(void **state)
+{
+    (void)state;
+    const double spacing[] = {1, 0.5, 0.25, 0.125, 0.0625, 0.03125};
+    for (int rise = 1; rise < 5; rise++) {
+        double error[6] = {1};
+        for (int i = 1; i < 6; i++) error[i] = error[i - 1] * (i == rise ? 1.25 : 0.5);
+        struct order_fit fit;
+        struct error failure;
+        assert_int_equal(order_fit(6, spacing, error, NULL, &fit, &failure), STATUS_OK);
+        assert_int_equal(fit.class, ORDER_OSCILLATING);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_order_room),
+        cmocka_unit_test(test_one_rise),
         cmocka_unit_test(test_worst),
         cmocka_unit_test(test_norms_by_hand),
         cmocka_unit_test(test_norms_of_nothing_and_nan),

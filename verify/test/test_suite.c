@@ -6,6 +6,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -230,6 +231,85 @@ static void test_groups_are_chosen(void **state)
     suite_free(&suite);
 }
 
+/* Slow ones only where they are asked for; what is said of progress is how many are done of all. */
+static void note_progress(void *context, const struct check *check, size_t done, size_t total)
+{
+    char *text = context;
+    const size_t used = strlen(text);
+    snprintf(text + used, 64 - used, "%s %zu/%zu;", check->name, done, total);
+}
+
+static void test_slow_and_progress(void **state)
+{
+    (void)state;
+    struct check slow = bare;
+    slow.slow = true;
+    const struct check *const checks[] = {&good, &slow, &bare};
+    for (int asked = 0; asked < 2; asked++) {
+        char text[64] = "";
+        const struct suite_choice choice = {
+            .slow = asked, .progress = note_progress, .context = text};
+        struct suite suite;
+        assert_int_equal(suite_run(&suite, checks, 3, &choice, NULL), STATUS_OK);
+        assert_int_equal(suite.passed, 2 + asked);
+        assert_string_equal(text, asked ? "good 0/3;bare 1/3;bare 2/3;" : "good 0/3;bare 2/3;");
+        suite_free(&suite);
+    }
+}
+
+/* A mutant of several checks is one, and is caught where all of them catch it. */
+static void test_mutants_are_distinct(void **state)
+{
+    (void)state;
+    const struct check *const checks[] = {&good, &leaky};
+    const struct suite_choice choice = {.mutants = true};
+    struct suite suite;
+    assert_int_equal(suite_run(&suite, checks, 2, &choice, NULL), STATUS_CHECK_FAILED);
+    assert_int_equal(suite.outcome_count, 4);
+    assert_int_equal(suite.mutants, 3); /* two, nan, one */
+    assert_int_equal(suite.mutants_detected, 2);
+    suite_free(&suite);
+}
+
+static void equally_far(struct check_run *run, const void *subject)
+{
+    if (!subject) {
+        check_measure(run, 0, 1, 0, "right");
+        return;
+    }
+    check_skip(run, "not this");
+    check_measure(run, 1, 2, 0, "nearer");
+    check_measure(run, 4, 2, 0, "first");
+    check_measure(run, 6, 3, 0, "as far");
+}
+
+/* Of figures that fail as clearly the first one is told. */
+static void test_mutant_value(void **state)
+{
+    (void)state;
+    struct check check = good;
+    check.measure = equally_far;
+    struct suite suite = run(&check, true, STATUS_OK);
+    assert_true(suite.outcomes[0].value == 4 && suite.outcomes[0].bound == 2);
+    suite_free(&suite);
+}
+
+static void test_groups_are_listed_once(void **state)
+{
+    (void)state;
+    const struct check *const checks[] = {&bare, &good, &leaky, &failing};
+    size_t n;
+    const char **names = suite_groups(checks, 4, &n);
+    assert_non_null(names);
+    assert_int_equal(n, 2);
+    assert_string_equal(names[0], "b");
+    assert_string_equal(names[1], "a");
+    free(names);
+    names = suite_groups(checks + 1, 1, &n);
+    assert_int_equal(n, 1);
+    free(names);
+}
+
 static void test_results(void **state)
 {
     (void)state;
@@ -302,6 +382,10 @@ int main(int argc, char **argv)
     group_argument_count = argc - 1;
     group_arguments = argv + 1;
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_slow_and_progress),
+        cmocka_unit_test(test_mutants_are_distinct),
+        cmocka_unit_test(test_mutant_value),
+        cmocka_unit_test(test_groups_are_listed_once),
         cmocka_unit_test(test_good),
         cmocka_unit_test(test_failing),
         cmocka_unit_test(test_undetected_mutant),

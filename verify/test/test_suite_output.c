@@ -165,10 +165,17 @@ static void failures(void **state)
     FILE *old = fopen(path, "w");
     assert_non_null(old);
     fclose(old);
-    assert_int_equal(suite_output_failures(&suite, place, NULL, NULL), STATUS_OK);
+    char *told = NULL, line[256];
+    size_t size;
+    FILE *stream = open_memstream(&told, &size);
+    assert_non_null(stream);
+    assert_int_equal(suite_output_failures(&suite, place, stream, NULL), STATUS_OK);
+    fclose(stream);
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         snprintf(path, sizeof path, "%s/%s.json", place, rows[i].name);
         assert_int_equal(access(path, F_OK) == 0, rows[i].checks > 0);
+        snprintf(line, sizeof line, "figures and data: %s\n", path);
+        assert_int_equal(strstr(told, line) != NULL, rows[i].checks > 0);
         if (!rows[i].checks) continue;
         read_all(path, text, sizeof text);
         json_t *document = json_loads(text, 0, NULL);
@@ -185,18 +192,50 @@ static void failures(void **state)
         }
         json_decref(document);
         snprintf(path, sizeof path, "%s/%s.svg", place, rows[i].name);
-        unlink(path);
+        snprintf(line, sizeof line, "plot:             %s\n", path);
+        assert_int_equal(strstr(told, line) != NULL, unlink(path) == 0); /* without gnuplot none */
     }
+    free(told);
     assert_int_equal(rmdir(place), 0);
+}
+
+/* Six other checks that fail on the same member are named, the rest is counted. */
+static void many(void **state)
+{
+    (void)state;
+    struct check checks[9];
+    struct figure fails[9];
+    char names[9][8], subject[] = "cubic";
+    struct suite of = {.figures = fails, .figure_count = 9, .failed = 9};
+    for (int i = 0; i < 9; i++) {
+        snprintf(names[i], sizeof names[i], "c%d", i);
+        checks[i] = (struct check){.group = "kernels", .name = names[i], .property = "p"};
+        fails[i] = (struct figure){&checks[i], subject, 20 - i, 1, 0, 0, FIGURE_FAIL};
+    }
+    for (int others = 6; others <= 8; others++) {
+        char *text = NULL;
+        size_t size;
+        FILE *stream = open_memstream(&text, &size);
+        assert_non_null(stream);
+        of.figure_count = of.failed = (size_t)others + 1;
+        json_t *headlines = headline_list(&of);
+        assert_int_equal(json_array_size(headlines), 1);
+        headline_print(headlines, stream, false);
+        fclose(stream);
+        const char *const ends[] = {"c5, c6\n", "c5, c6 and 1 more checks\n",
+                                    "c5, c6 and 2 more checks\n"};
+        assert_non_null(strstr(text, ends[others - 6]));
+        assert_non_null(strstr(text, "; also: c1, c2, c3, "));
+        json_decref(headlines);
+        free(text);
+    }
 }
 
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(table),
-        cmocka_unit_test(json),
-        cmocka_unit_test(junit),
-        cmocka_unit_test(failures),
+        cmocka_unit_test(table),    cmocka_unit_test(json), cmocka_unit_test(junit),
+        cmocka_unit_test(failures), cmocka_unit_test(many),
     };
     folder = argc > 1 ? argv[1] : "";
     writing = argc > 2 && strcmp(argv[2], "--write") == 0;
