@@ -13,6 +13,7 @@
 #include "progress.h"
 #include "result.h"
 #include "run_plot.h"
+#include "snapshot_hdf5.h"
 #include "table.h"
 
 static void print_head(const struct run_settings *settings, const struct run_result *result,
@@ -133,6 +134,8 @@ static enum status check_files(const struct options *options, struct error *erro
     if (snapshot && options->json && strcmp(snapshot, options->json) == 0)
         return error_set(error, STATUS_BAD_INPUT,
                          "--json and --snapshot name the same file '%.150s'", snapshot);
+    if (snapshot && snapshot_hdf5_wanted(snapshot) && snapshot_hdf5_possible(snapshot, error))
+        return error->status;
     if (plot && picture_probe(plot, error)) return error->status;
     if (snapshot && output_probe(snapshot, error)) return error->status;
     return STATUS_OK;
@@ -249,7 +252,8 @@ static enum status run_case(const struct options *options, int n, char **argumen
 
 static const struct command_option own_options[] = {
     {"snapshot", "FILE",
-     "write the particles at the end: x,vx,m,rho,u,P,h (x,y,vx,vy ...), one line each"},
+     "write the particles at the end: x,vx,m,rho,u,P,h (x,y,vx,vy ...), one line each;\n"
+     "F.hdf5 or F.h5: HDF5 in GADGET's layout"},
     {"plot", "FILE.svg|.png",
      "draw the profiles over the exact solution; in 2D and 3D maps (needs gnuplot)"},
     {"explain", NULL, "print the plan: what would run and why; run nothing"},

@@ -118,7 +118,7 @@ void run_add_plan(const struct run_settings *settings, const struct run_result *
 double run_error(const struct run_result *result, enum field field, enum norm norm);
 
 /* Header and one line a particle: x,vx,m,rho,u,P,h; in 2D and 3D x,y,vx,vy, ..., in the order in
- * which particles have started. */
+ * which particles have started; a path that ends in .hdf5 or .h5: see snapshot_hdf5.h. */
 enum status run_write_snapshot(const struct run_result *result, const char *path,
                                struct error *error);
 

@@ -6,6 +6,7 @@
 
 #include "output.h"
 #include "result.h"
+#include "snapshot_hdf5.h"
 
 static void set_number(json_t *object, const char *name, double value)
 {
@@ -118,6 +119,7 @@ enum status run_write_snapshot(const struct run_result *result, const char *path
 {
     const struct snapshot *s = &result->snapshot;
     struct output output;
+    if (snapshot_hdf5_wanted(path)) return snapshot_hdf5_write(result, path, error);
     if (output_open(&output, path, error)) return error->status;
     const int dim = result->problem.domain.dim;
     const double *columns[12];
