@@ -95,7 +95,8 @@ struct problem {
     bool heavy;     /* it takes gravity: any other has no solution in it */
     bool smooth;    /* neither jumps nor shocks, for as long as it is solved */
     struct problem_ends ends[3];
-    bool singular; /* at t = 0 energy stands in a point, which the sample does not show */
+    bool singular; /* energy starts in a point, which the sample at t = 0 does not show; later u has
+                      no bound there */
     const struct problem_key *keys; /* its own, beside those of every run */
     size_t key_count;
     /* Checks its own keys, gives those that are automatic a value, fills p->own; domain, boost,
