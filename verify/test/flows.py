@@ -98,6 +98,23 @@ def faults(name, document, rows):
         yield "M = %r, from the snapshot %r" % (document["functionals"]["mode_amplitude"], kelvin_helmholtz(rows))
 
 
+def order_faults(program):
+    """The order that `converge` reports is the slope over n^(-1/2)."""
+    ladder = "12^2,16^2,20^2,24^2"
+    done = subprocess.run([program, "converge", "rotation", "--n", ladder, "--json", "-"], capture_output=True, text=True,
+                          timeout=120)
+    document = json.loads(done.stdout)
+    x = [-0.5 * math.log(level["n"]) for level in document["levels"]]
+    y = [math.log(level["errors"]["density"]["l1"]) for level in document["levels"]]
+    mean_x, mean_y = sum(x) / len(x), sum(y) / len(y)
+    slope = sum((a - mean_x) * (b - mean_y) for a, b in zip(x, y)) / sum((a - mean_x) ** 2 for a in x)
+    said = [o["order"] for o in document["orders"] if (o["field"], o["norm"]) == ("density", "l1")]
+    if len(x) != 4 or not abs(said[0] - slope) <= 1e-9:
+        yield "order %r, from the levels %r" % (said, slope)
+    if not 1.5 <= slope <= 3:
+        yield "order %r of a smooth flow" % slope
+
+
 def main():
     program, bad, seen = os.path.abspath(sys.argv[1]), 0, 0
     listed = subprocess.run([program, "list", "cases", "--json", "-"], capture_output=True, text=True, check=True)
@@ -119,6 +136,9 @@ def main():
             if not list(faults(name, document, rows)):
                 print("%s: a wrong snapshot is accepted" % name)
                 bad += 1
+    for fault in order_faults(program):
+        print("rotation: %s" % fault)
+        bad += 1
     print("%d cases in 2D and 3D, %d faults" % (seen, bad))
     return bad > 0 or seen < len(SMALL)
 
