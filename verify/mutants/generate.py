@@ -21,7 +21,7 @@ JUDGED = ("src/", "reference/", "verify/scene/", "verify/study/", "verify/statis
 PURE = set("""fabs sqrt cbrt pow exp expm1 log log1p log10 sin cos tan atan2 atan hypot floor ceil round fmin fmax
 fma isfinite isnan lround largest least power labs abs""".split())
 SWAPPED_CALLS = {"fmin": "fmax", "fmax": "fmin", "least": "largest", "largest": "least"}
-COMMUTE = {"fmin", "fmax", "least", "largest", "hypot", "strcmp"}  # of strings equality is asked
+COMMUTE = {"fmin", "fmax", "least", "largest", "hypot", "strcmp", "calloc"}  # of strings equality is asked
 ARITHMETIC = {"+": "-", "-": "+", "*": "/", "/": "*"}
 COMPARE = {"<": ("<=", ">"), ">": (">=", "<"), "<=": ("<", ">="), ">=": (">", "<="), "==": ("!=",), "!=": ("==",),
            "&&": ("||",), "||": ("&&",)}
