@@ -7,10 +7,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "judged.h"
 #include "result.h"
 #include "study.h"
 
 const double precision_targets[PRECISION_TARGETS] = {0.01, 0.003, 0.001};
+
+double precision_target(const struct precision *precision, size_t t)
+{
+    return (precision->dim > 1 ? 10 : 1) * precision_targets[t];
+}
 
 /* What the seed program does, its errors corrected: on top of the user's keys, which say what is
  * computed. */
@@ -31,7 +37,10 @@ static const char *const seed_keys[] = {
     "h_tolerance=1e-10",
     "skip=none",
 };
-enum { SEED_KEYS = sizeof seed_keys / sizeof *seed_keys };
+/* In 2D and 3D: what textbooks have. */
+static const char *const textbook_keys[] = {"kernel=cubic_spline", "eta=2.4", "gradient=standard",
+                                            "viscosity=constant"};
+#define LENGTH(list) (sizeof(list) / sizeof *(list))
 
 void precision_front(size_t n, const double *cost, const double *error, bool *on_front)
 {
@@ -65,13 +74,16 @@ double precision_cost_of(size_t n, const double *cost, const double *error, doub
 struct job {
     struct run run;
     struct precision_point *point;
+    struct judged judged;
 };
 
 static enum status error_at(const struct run *run, double *value, struct error *error)
 {
     struct run_result result;
+    struct judged judged = {"", (double)NAN, (double)NAN};
     const enum status status = run_execute(run, &result, error);
-    *value = status ? (double)NAN : result.errors[FIELD_DENSITY].l1_cut;
+    if (!status) judged_of(&run->asked.file, &result, &judged);
+    *value = judged.error;
     if (!status || status == STATUS_BROKE_DOWN) run_free(&result);
     return status;
 }
@@ -98,7 +110,8 @@ static enum status average(struct job *job, int order, struct error *error)
         if (r && (settings_apply(&asked.settings, 1, keys, error) ||
                   run_resolve(&other, &asked, error) || error_at(&other, &value, error)))
             return error->status;
-        const double y = log(value) + order * log((double)near / (double)n);
+        const double y =
+            log(value) + order * log((double)near / (double)n) / job->run.asked.file.dimension;
         sum += y / (double)replicates;
         squares += y * y / (double)replicates;
     }
@@ -121,7 +134,8 @@ static enum status execute(void *context, uint64_t times, struct clock_taken *ta
         taken->wall_s += result.cost.wall_s;
         taken->cpu_s += result.cost.cpu_s;
         job->point->n = result.n;
-        job->point->error = result.errors[FIELD_DENSITY].l1_cut;
+        judged_of(&job->run.asked.file, &result, &job->judged);
+        job->point->error = job->judged.error;
         job->point->pairs = (double)result.cost.pair_interactions;
         job->point->settings = result.settings;
         run_free(&result);
@@ -143,7 +157,7 @@ static int order_of(const struct run_settings *settings)
         const double middle = (gate->gate.low + gate->gate.high) / 2;
         return middle > 1 ? (int)lround(middle) : 1;
     }
-    return 1;
+    return file->dimension > 1 && problem_of(&settings->settings)->smooth ? 2 : 1;
 }
 
 static enum status find_scale(const struct run_settings *settings, struct precision *precision,
@@ -151,6 +165,11 @@ static enum status find_scale(const struct run_settings *settings, struct precis
 {
     struct run run;
     double means[NORM_BINS];
+    precision->dim = settings->file.dimension;
+    precision->order = order_of(settings);
+    precision->error_of = "density";
+    precision->mean_density = precision->signal = (double)NAN;
+    if (precision->dim > 1) return STATUS_OK; /* from the runs, see collect */
     if (run_resolve(&run, settings, error)) return error->status;
     problem_means(&run.problem, FIELD_DENSITY, settings_real(&run.settings, SETTING_t_end),
                   NORM_BINS, means);
@@ -158,13 +177,12 @@ static enum status find_scale(const struct run_settings *settings, struct precis
     precision->signal = gsl_stats_absdev_m(means, 1, NORM_BINS, precision->mean_density);
     if (!(precision->signal > 1e-12 * precision->mean_density))
         precision->signal = precision->mean_density;
-    precision->order = order_of(settings);
     return STATUS_OK;
 }
 
 static double merit_of(const struct precision *precision, double error, double cpu_s)
 {
-    return pow(error, 2. / precision->order) * cpu_s;
+    return pow(error, (1. + precision->dim) / precision->order) * cpu_s;
 }
 
 bool precision_competes(const struct precision_scheme *scheme)
@@ -193,6 +211,7 @@ static const char *const graded_key = "grade=0.5";
 static bool want_graded(const struct run_settings *settings, const struct sweep *sweep)
 {
     const struct settings *keys = &settings->settings;
+    if (settings->file.dimension > 1) return false;
     for (size_t k = 0; k < sweep->key_count; k++)
         if (sweep->keys[k].key == SETTING_grade) return false;
     return !settings_foreign(keys, SETTING_grade) && settings_real(keys, SETTING_grade) == 1;
@@ -212,11 +231,18 @@ static enum status prepare(const struct precision *precision, const struct sweep
             strcpy(scheme->brief, "as given");
         }
         if (sweep_apply(sweep, i, settings, error)) return error->status;
-    } else if (i + 3 == precision->scheme_count && i >= sweep->count) {
+    } else if (i == sweep->count && want_graded(precision->settings, sweep)) {
         scheme->reference = REFERENCE_GRADED;
         snprintf(scheme->label, sizeof scheme->label, "graded masses %s", graded_key);
         strcpy(scheme->brief, "graded masses");
         if (settings_apply(&settings->settings, 1, (char *const *)&graded_key, error))
+            return error->status;
+    } else if (precision->settings->file.dimension > 1) {
+        scheme->reference = REFERENCE_SEED;
+        strcpy(scheme->label, "textbook SPH");
+        strcpy(scheme->brief, scheme->label);
+        if (settings_apply(&settings->settings, LENGTH(textbook_keys), (char *const *)textbook_keys,
+                           error))
             return error->status;
     } else {
         scheme->reference =
@@ -224,7 +250,8 @@ static enum status prepare(const struct precision *precision, const struct sweep
         settings->plain = scheme->reference == REFERENCE_SEED_PLAIN;
         strcpy(scheme->label, settings->plain ? "seed method, plain C" : "seed method");
         strcpy(scheme->brief, scheme->label);
-        if (settings_apply(&settings->settings, SEED_KEYS, (char *const *)seed_keys, error) ||
+        if (settings_apply(&settings->settings, LENGTH(seed_keys), (char *const *)seed_keys,
+                           error) ||
             settings_set(&settings->settings, SETTING_grade, "1", SOURCE_CASE, NULL, error) ||
             settings_set(&settings->settings, SETTING_mass_ratio, "1", SOURCE_CASE, NULL, error))
             return error->status;
@@ -251,6 +278,12 @@ static void collect(struct precision *precision, const struct bench_subject *sub
 {
     struct precision_point *points = precision->points;
     size_t kept = 0;
+    for (size_t i = 0; i < precision->point_count && precision->dim > 1; i++) {
+        const struct judged *judged = &jobs[i].judged; /* of the finest sound run */
+        if (subjects[i].failure.status || !judged->name) continue;
+        precision->error_of = judged->name;
+        precision->signal = judged->signal;
+    }
     for (size_t i = 0; i < precision->point_count; i++) {
         struct precision_scheme *scheme = &precision->schemes[points[i].scheme];
         struct error failure = subjects[i].failure;
@@ -294,13 +327,15 @@ static enum status judge(struct precision *precision, struct error *error)
     }
     for (size_t t = 0; t < PRECISION_TARGETS; t++)
         precision->cheapest[t] =
-            (struct precision_way){precision_targets[t] * precision->signal, NAN, 0};
+            (struct precision_way){precision_target(precision, t) * precision->signal, NAN, 0};
     double plain = NAN;
     for (size_t i = precision->scheme_count; i-- > 0;) {
         struct precision_scheme *scheme = &precision->schemes[i];
         const size_t last = scheme->first + scheme->count - 1;
         scheme->merit = scheme->count ? merit_of(precision, wrong[last], cost[last]) : (double)NAN;
-        if (scheme->reference == REFERENCE_SEED_PLAIN) plain = scheme->merit;
+        const bool cloud = precision->dim > 1;
+        if (scheme->reference == (cloud ? REFERENCE_SEED : REFERENCE_SEED_PLAIN))
+            plain = scheme->merit;
         scheme->gain = plain / scheme->merit;
         for (size_t t = 0; t < PRECISION_TARGETS && precision_competes(scheme); t++) {
             struct precision_way *way = &precision->cheapest[t];
@@ -317,7 +352,9 @@ enum status precision_measure(const struct run_settings *settings, const struct 
                               const size_t *ladder, size_t count, const struct bench_rules *rules,
                               struct precision *precision, struct error *error)
 {
-    const size_t schemes = sweep->count + 2 + want_graded(settings, sweep), most = schemes * count;
+    const size_t compared = settings->file.dimension > 1 ? 1 : 2; /* plain C knows 1D */
+    const size_t schemes = sweep->count + compared + want_graded(settings, sweep),
+                 most = schemes * count;
     *precision = (struct precision){.settings = settings, .scheme_count = schemes};
     precision->schemes = calloc(schemes, sizeof *precision->schemes);
     precision->points = calloc(most, sizeof *precision->points);
@@ -405,7 +442,7 @@ void precision_add_json(const struct precision *precision, json_t *document)
         const bool reached = isfinite(way->cpu_s);
         json_array_append_new(
             ways,
-            json_pack("{s:f, s:o, s:o, s:o}", "target", precision_targets[t], "error",
+            json_pack("{s:f, s:o, s:o, s:o}", "target", precision_target(precision, t), "error",
                       result_number(way->error), "cpu_s",
                       reached ? result_number(way->cpu_s) : json_null(), "scheme",
                       reached ? json_string(precision->schemes[way->scheme].label) : json_null()));
@@ -414,6 +451,8 @@ void precision_add_json(const struct precision *precision, json_t *document)
     json_object_set_new(document, "title", json_string(precision->settings->file.title));
     json_object_set_new(document, "mean_density", result_number(precision->mean_density));
     json_object_set_new(document, "signal", result_number(precision->signal));
+    json_object_set_new(document, "dimension", json_integer(precision->dim));
+    json_object_set_new(document, "error_of", json_string(precision->error_of));
     json_object_set_new(document, "expected_order", json_integer(precision->order));
     json_object_set_new(document, "points", points);
     json_object_set_new(document, "schemes", schemes);

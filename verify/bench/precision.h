@@ -3,7 +3,9 @@
  * bench.h says; the Pareto front; the cheapest way to a given error; L1^(2/p) x CPU time, which at
  * the case's order p does not depend on the resolution (work grows as n^2). For comparison the
  * corrected method of the seed program, by the solver and as plain C. The error is the L1 of
- * density, relative to the signal: how far the exact density is from its own mean. */
+ * density, relative to the signal: how far the exact density is from its own mean.
+ * In d dimensions errors fall as n^(-p/d) and work grows as n^((d+1)/d): L1^((d+1)/p) x CPU time;
+ * the error is that of judged.h, and compared is SPH as textbooks have it. */
 #ifndef SPHPROOF_PRECISION_H
 #define SPHPROOF_PRECISION_H
 
@@ -52,7 +54,10 @@ struct precision {
     const struct run_settings *settings;
     double mean_density, signal; /* exact, of the measure window at t_end: mean, and mean distance
                                     from it (or the mean where that is 0) */
-    int order;                   /* of the case: of its gate on L1 of density; 1 without one */
+    const char *error_of;        /* what the error is of, static */
+    int dim;
+    int order; /* of the case: of its gate on L1 of density; without one 1 in 1D, in 2D and 3D 2 of
+                  what is smooth, else 1 */
     size_t scheme_count, point_count;
     struct precision_scheme *schemes; /* references last */
     struct precision_point *points;   /* by scheme, then n */
@@ -69,6 +74,9 @@ void precision_free(struct precision *precision);
 
 /* "case", "points", "schemes", "cheapest", "excluded" ... of a result document. */
 void precision_add_json(const struct precision *precision, json_t *document);
+
+/* The t-th target, in parts of the signal; ten times as much in 2D and 3D. */
+double precision_target(const struct precision *precision, size_t t);
 
 /* --- the arithmetic, by itself ---------------------------------------------------------------- */
 

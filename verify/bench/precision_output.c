@@ -52,8 +52,7 @@ static void print_schemes(const struct precision *precision, const struct precis
     for (size_t i = 0; i < precision->scheme_count; i++)
         if (shown(list[i], i) && strlen(list[i]->brief) > width) width = strlen(list[i]->brief);
     printf("%s%-*s %7s %11s %8s %4s %10s %7s %11s %11s %9s%s\n", style->bold, (int)width, "scheme",
-           "n", "error", "", "+-", "CPU s", "spread", "pairs",
-           precision->order == 1 ? "L1^2 CPU s" : "L1 CPU s", "gain", style->end);
+           "n", "error", "", "+-", "CPU s", "spread", "pairs", "merit", "gain", style->end);
     for (size_t i = 0; i < precision->scheme_count; i++) {
         const struct precision_scheme *scheme = list[i];
         if (!shown(scheme, i)) {
@@ -66,14 +65,16 @@ static void print_schemes(const struct precision *precision, const struct precis
                p->time.cpu_s, 100 * p->time.spread, p->pairs, scheme->merit, scheme->gain);
     }
     if (hidden) printf("... and %zu more (all of them: --json)\n", hidden);
-    printf("%sat the finest n, best first. error: L1 of density, absolute and of the signal "
-           "%.6g, the exact density's\nmean distance from its mean %.6g; +-: its deviation over "
-           "neighbouring n, of which it is the mean; CPU s: least of %d "
-           "samples, all threads; spread: their median above it;\ngain: L1^(2/p) x CPU s, of "
-           "the seed program's corrected method in plain C over that of the scheme (p = %d, the "
-           "case's order)%s\n",
-           style->faint, precision->signal, precision->mean_density,
-           precision->points[0].time.samples, precision->order, style->end);
+    printf("%sat the finest n, best first. error: of %s, absolute and of the signal %.6g (the "
+           "exact one's mean distance from\nits mean); +-: its deviation over neighbouring n, of "
+           "which it is the mean; CPU s: least of %d samples, all threads;\nspread: their median "
+           "above it; merit: error^(%d/p) x CPU s, which does not depend on n at the case's order "
+           "p = %d;\ngain: that of %s over the scheme's%s\n",
+           style->faint, precision->error_of, precision->signal, precision->points[0].time.samples,
+           precision->dim + 1, precision->order,
+           precision->dim > 1 ? "SPH as textbooks have it"
+                              : "the seed program's corrected method in plain C",
+           style->end);
     for (size_t i = 0; i < precision->scheme_count; i++)
         if (!list[i]->count) printf("excluded: %s: %s\n", list[i]->label, list[i]->excluded);
 }
@@ -98,7 +99,8 @@ static void print_ways(const struct precision *precision, const struct table_sty
     printf("\n%scheapest way to%s\n", style->bold, style->end);
     for (size_t t = 0; t < PRECISION_TARGETS; t++) {
         const struct precision_way *way = &precision->cheapest[t];
-        printf("  %4.1f %% of the signal (L1 = %.2e): ", 100 * precision_targets[t], way->error);
+        printf("  %4.1f %% of the signal (%.2e): ", 100 * precision_target(precision, t),
+               way->error);
         if (isfinite(way->cpu_s))
             printf("%.3e CPU s, %s\n", way->cpu_s, precision->schemes[way->scheme].label);
         else
@@ -143,6 +145,7 @@ static size_t choose(const struct precision *precision, const struct precision_s
 
 /* What is drawn: the named schemes' points joined, all others faint. */
 struct picture {
+    const char *error_of;
     const struct precision_scheme *chosen[PLOT_COLORS];
     size_t curves, count, mark_count;
     struct plot_series series[PLOT_COLORS + 1];
@@ -191,10 +194,10 @@ static void add_points(struct picture *picture, const struct precision *precisio
 }
 
 /* The targets that anything comes near to. */
-static void add_marks(struct picture *picture, size_t points)
+static void add_marks(struct picture *picture, const struct precision *precision, size_t points)
 {
     for (size_t t = 0; t < PRECISION_TARGETS; t++) {
-        const double percent = 100 * precision_targets[t];
+        const double percent = 100 * precision_target(precision, t);
         if (percent < 0.5 * gsl_stats_min(picture->y, 1, points)) continue;
         snprintf(picture->names[t], sizeof picture->names[t], "%g %%", percent);
         picture->marks[picture->mark_count++] =
@@ -209,10 +212,11 @@ static enum status draw(const struct picture *picture, const char *case_title, c
     for (size_t c = 0; c < picture->curves; c++)
         if (strlen(picture->chosen[c]->brief) > longest)
             longest = strlen(picture->chosen[c]->brief);
-    char title[256];
+    char title[256], label[96];
     snprintf(title, sizeof title, "%.200s: what an error costs", case_title);
+    snprintf(label, sizeof label, "error of %.40s (%% of the signal)", picture->error_of);
     const struct plot_panel panel = {.x_label = "CPU time (s)",
-                                     .y_label = "L1 error of density (% of the signal)",
+                                     .y_label = label,
                                      .x_log = true,
                                      .y_log = true,
                                      .key = PLOT_KEY_END,
@@ -234,7 +238,8 @@ enum status precision_plot(const struct precision *precision, const char *path, 
 {
     const size_t n = precision->point_count;
     const struct precision_scheme **list = sorted_schemes(precision);
-    struct picture picture = {.x = malloc((4 * n + 1) * sizeof(double))};
+    struct picture picture = {.error_of = precision->error_of,
+                              .x = malloc((4 * n + 1) * sizeof(double))};
     enum status status = STATUS_OK;
     if (!list || !picture.x) {
         status = error_set(error, STATUS_ENVIRONMENT, "--plot %.150s: no memory", path);
@@ -242,7 +247,7 @@ enum status precision_plot(const struct precision *precision, const char *path, 
         picture.y = picture.x + 2 * n;
         picture.curves = choose(precision, list, picture.chosen);
         add_points(&picture, precision);
-        add_marks(&picture, n);
+        add_marks(&picture, precision, n);
         status = draw(&picture, precision->settings->file.title, path, error);
     }
     free(list), free(picture.x);

@@ -92,6 +92,7 @@ static enum status compute_league(json_t **document, struct error *error)
  * smooth flow which viscosity. */
 static const char *vary(const struct settings *settings)
 {
+    if (settings->dim > 1) return "kernel=cubic_spline,wendland_c2,wendland_c4,gradient";
     return problem_of(settings)->smooth
                ? "kernel=quadratic_spline,cubic_spline,viscosity=none,constant,reconstructed,fading"
                : "kernel=quadratic_spline,cubic_spline,quartic_spline,gradient";
