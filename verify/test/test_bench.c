@@ -472,6 +472,36 @@ static void test_signal(void **state)
     precision_free(&precision);
 }
 
+/* A vortex in 2D: errors of the velocity along its circles, in parts of how far it is from uniform;
+ * work grows as n^(3/2), and the merit at order 2 is error^(3/2) x CPU. */
+static void test_plane(void **state)
+{
+    (void)state;
+    static struct run_settings settings;
+    static const size_t ladder[] = {144, 256};
+    struct sweep sweep;
+    struct precision precision;
+    struct error error = {0};
+    const struct bench_rules brief = {.least_s = 1e-6, .most_s = 1, .samples = 1};
+    char *keys[] = {"t_end=0.02"};
+    assert_int_equal(run_prepare(&settings, "gresho", 1, keys, &error), 0);
+    settings.threads = 1;
+    assert_int_equal(sweep_parse(&sweep, "gradient=ia", &error), 0);
+    assert_int_equal(precision_measure(&settings, &sweep, ladder, 2, &brief, &precision, &error),
+                     0);
+    assert_string_equal(precision.error_of, "azimuthal");
+    /* the integral of |v_phi| over the box: 2 pi (5 0.2^3/3 + 0.4^2 - 0.2^2 - 5 (0.4^3 - 0.2^3)/3)
+     */
+    near_relative(precision.signal, 0.25133, 3e-2);
+    assert_int_equal(precision.scheme_count, 2);
+    assert_int_equal(precision.schemes[1].reference, REFERENCE_SEED);
+    near_relative(precision.schemes[1].gain, 1, 1e-12);
+    const struct precision_point *finest = &precision.points[1];
+    near_relative(precision.schemes[0].merit, pow(finest->error, 1.5) * finest->time.cpu_s, 1e-12);
+    near_relative(precision.cheapest[0].error, 0.1 * precision.signal, 1e-12);
+    precision_free(&precision);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -491,6 +521,7 @@ int main(void)
         cmocka_unit_test(test_scaling),
         cmocka_unit_test(test_study),
         cmocka_unit_test(test_signal),
+        cmocka_unit_test(test_plane),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
