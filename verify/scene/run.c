@@ -475,7 +475,7 @@ static enum status simulate_plainly(const struct run *run, struct run_result *re
     plain_snapshot(&plain, &outcome.snapshot);
     const enum status status = finish(result, &outcome, error);
     plain_free(&plain);
-    return status;
+    return status ? status : measure_errors(result, error);
 }
 
 enum status run_execute(const struct run *run, struct run_result *result, struct error *error)
