@@ -18,7 +18,8 @@ bool lanes_reserve(struct cells *cells)
         struct lanes *lanes = &cells->lanes[t];
         if (lanes->block && stride <= lanes->stride) continue;
         free(lanes->block);
-        lanes->stride = lanes->block ? 8 * ((2 * stride / 8) | 1) : stride;
+        /* half as much again, so that steps need not ask for more */
+        lanes->stride = 8 * ((3 * stride / 16) | 1);
         lanes->block = aligned_alloc(64, (LANES_OWN + GROUPS * GATHER_GROUP) *
                                              (size_t)lanes->stride * sizeof(double));
         if (!lanes->block) return false;
