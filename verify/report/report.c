@@ -42,7 +42,8 @@ static const double compared_bound = 3;
 
 enum { SCHEMES = sizeof line_schemes / sizeof *line_schemes };
 enum { KEYS_MAX = 16, COMMAND_TEXT = 1024 };
-enum { QUICK = 1000 }; /* particles by day of a case in 2D or 3D that says nothing else */
+enum { COMPARED = 8000 }; /* particles by day up to which other schemes are compared */
+enum { QUICK = 1000 };    /* particles by day of a case in 2D or 3D that says nothing else */
 
 /* What a report has of a case. */
 struct reported {
@@ -115,6 +116,8 @@ static enum status add_study(struct report *report, struct reported *of, int s,
     struct case_file *file = &study->settings.file;
     study->settings = *settings;
     if (sweep_parse(&study->sweep, NULL, error)) return error->status;
+    /* in 2D and 3D gates are the default scheme's: other gradients have other orders */
+    if (s && of->dimension > 1) file->gate_count = 0;
     for (size_t i = 0; i < file->gate_count && s; i++) file->gates[i].gate.bound *= compared_bound;
     take_ladder(report, of, study);
     study->replicates = study_replicates(settings);
@@ -150,8 +153,8 @@ static void plan_case(const struct report *report, const struct case_file *file,
     const size_t n = levels ? ladder[levels - 1] : own < QUICK ? own : QUICK;
     snprintf(of->size, sizeof of->size, "n=%zu", n);
     of->studied = levels >= ORDER_LEVELS_MIN;
-    /* one size for want of time: then no time for other schemes either */
-    if (file->ladder_count && !of->studied) of->schemes = 1;
+    /* what takes long has no time for other schemes */
+    if (n > COMPARED) of->schemes = 1;
 }
 
 static enum status find_cases(struct report *report, struct error *error)
