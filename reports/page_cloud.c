@@ -327,20 +327,20 @@ static void run_table(struct buffer *to, const json_t *const *runs, size_t count
 
 static void functional_table(struct buffer *to, const json_t *const *runs, size_t count)
 {
-    const char *name;
-    json_t *value;
-    if (!json_object_size(json_object_get(runs[0], "functionals"))) return;
+    size_t i;
+    const json_t *entry;
+    if (!json_array_size(json_object_get(runs[0], "functionals"))) return;
     html_table(to, "functionals", "scheme|scalar|#value|#exact or reference");
     for (size_t k = 0; k < count; k++)
-        json_object_foreach(json_object_get(runs[k], "functionals"), name, value)
+        json_array_foreach(json_object_get(runs[k], "functionals"), i, entry)
         {
             buffer_add(to, "<tr>");
             html_cell(to, value_text(runs[k], "label"));
             buffer_add(to, "<td>");
-            html_words(to, name);
+            html_words(to, value_text(entry, "name"));
             buffer_add(to, "</td>");
-            html_cell_number(to, value_real(value));
-            html_cell_number(to, value_inner(runs[k], "functionals_exact", name));
+            html_cell_number(to, value_member(entry, "value"));
+            html_cell_number(to, value_member(entry, "reference"));
             buffer_add(to, "</tr>\n");
         }
     html_table_end(to);

@@ -100,20 +100,21 @@ static double run_error(const json_t *run, const json_t *study, const char **nam
 {
     static const char *const usual[] = {"azimuthal", "velocity"};
     const json_t *errors = json_object_get(run, "errors");
-    const char *measured = json_string_value(json_array_get(json_object_get(study, "measured"), 0)),
-               *scalar;
-    json_t *value;
+    const char *measured = json_string_value(json_array_get(json_object_get(study, "measured"), 0));
+    size_t i;
+    const json_t *entry;
     for (size_t k = 0; k < sizeof usual / sizeof *usual && !measured; k++)
         if (isfinite(value_inner(errors, usual[k], "l1"))) measured = usual[k];
     *name = measured ? measured : "";
     if (measured && isfinite(value_inner(errors, measured, "l1")))
         return value_inner(errors, measured, "l1");
-    json_object_foreach(json_object_get(run, "functionals"), scalar, value)
+    json_array_foreach(json_object_get(run, "functionals"), i, entry)
     {
-        const double exact = value_inner(run, "functionals_exact", scalar);
+        const double exact = value_member(entry, "reference");
+        const char *scalar = value_text(entry, "name");
         if ((measured && strcmp(scalar, measured)) || !isfinite(exact)) continue;
         *name = scalar;
-        return fabs(value_real(value) - exact);
+        return fabs(value_member(entry, "value") - exact);
     }
     return (double)NAN;
 }

@@ -41,6 +41,15 @@ double value_inner(const json_t *object, const char *outer, const char *name)
     return value_member(json_object_get(object, outer), name);
 }
 
+const json_t *value_named(const json_t *list, const char *name)
+{
+    size_t i;
+    const json_t *entry;
+    json_array_foreach(list, i,
+                       entry) if (strcmp(value_text(entry, "name"), name) == 0) return entry;
+    return NULL;
+}
+
 size_t value_reals(const json_t *array, double *values, size_t most)
 {
     size_t i, n = 0;

@@ -19,6 +19,9 @@ double value_real(const json_t *value);
 double value_member(const json_t *object, const char *name);
 double value_inner(const json_t *object, const char *outer, const char *name);
 
+/* The first entry of a list whose name is that; NULL: there is none. */
+const json_t *value_named(const json_t *list, const char *name);
+
 /* The first numbers of an array, at most `most`; returns how many. */
 size_t value_reals(const json_t *array, double *values, size_t most);
 

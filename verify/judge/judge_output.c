@@ -36,16 +36,6 @@ static json_t *notes_json(const struct snapshot_notes *notes)
     return list;
 }
 
-static json_t *functionals_json(const struct run_result *r)
-{
-    json_t *list = json_array();
-    for (size_t k = 0; k < r->functional_count; k++)
-        json_array_append_new(list, json_pack("{s:s, s:o, s:o}", "name", r->functionals[k].name,
-                                              "value", result_number(r->functionals[k].value),
-                                              "reference", result_number(r->functionals[k].exact)));
-    return list;
-}
-
 static json_t *one_json(const struct judged *judged, bool profiles)
 {
     const struct run_result *r = &judged->result;
@@ -59,7 +49,7 @@ static json_t *one_json(const struct judged *judged, bool profiles)
         file->dim, "precision", "positions", result_number(file->precision[0]), "fields",
         result_number(file->precision[1]), "kernel", kernel_json(judged), "window",
         window_json(&r->problem.window), "errors", run_errors_json(r), "functionals",
-        functionals_json(r), "budget", budget_json(&r->budget), "noise", "transverse_velocity",
+        run_functionals_json(r), "budget", budget_json(&r->budget), "noise", "transverse_velocity",
         plane ? result_number(judged->transverse) : json_null(), "undisturbed",
         r->budget.regions ? result_number(r->budget.still) : json_null(), "foreign",
         judged->foreign, "verdict", judged->verdict);

@@ -109,9 +109,8 @@ static double error_of(const struct claim *claim, const struct claim_run *run,
 {
     const json_t *document = pool->jobs[run->job].document;
     if (!document || strcmp(value_text(document, "status"), "ok") != 0) return (double)INFINITY;
-    const double value = value_member(json_object_get(document, "functionals"), claim->figure),
-                 exact =
-                     value_member(json_object_get(document, "functionals_exact"), claim->figure);
+    const json_t *entry = value_named(json_object_get(document, "functionals"), claim->figure);
+    const double value = value_member(entry, "value"), exact = value_member(entry, "reference");
     return exact != 0 ? fabs(value / exact - 1) : fabs(value);
 }
 

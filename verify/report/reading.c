@@ -56,24 +56,21 @@ static void add(struct readings *readings, struct reading reading, const char *p
     readings->list[readings->count++] = reading;
 }
 
-/* level: the entry of "levels" that encloses this object, or NULL; field: its field; exact: the
- * exact values of its members, or NULL. */
+/* level: the entry of "levels" that encloses this object, or NULL; field: its field. */
 struct place {
     char path[PATH_MAX_LENGTH];
-    const json_t *level, *exact;
+    const json_t *level;
     const char *field;
 };
 
-static double exact_of(const struct place *at, const json_t *parent, const char *name)
+static double exact_of(const json_t *parent, const char *name)
 {
     if (strcmp(name, "normalisation") == 0) return 1;
-    if (at->exact) return value_member(at->exact, name);
     return value_member(parent, strcmp(name, "value") ? "exact" : "reference");
 }
 
 /* What the figure's neighbours know about its noise. */
-static void refine(struct reading *reading, const struct place *at, const json_t *parent,
-                   const char *name)
+static void refine(struct reading *reading, const json_t *parent, const char *name)
 {
     if (reading->kind == READING_ORDER) {
         const double half = (value_member(parent, "high") - value_member(parent, "low")) / 2;
@@ -85,7 +82,7 @@ static void refine(struct reading *reading, const struct place *at, const json_t
         reading->kind = READING_EXACT;
         reading->exact = value_member(parent, "predicted");
     } else if (reading->kind == READING_EXACT) {
-        reading->exact = exact_of(at, parent, name);
+        reading->exact = exact_of(parent, name);
         if (!isfinite(reading->exact)) reading->kind = READING_NEUTRAL;
     }
 }
@@ -140,7 +137,7 @@ static void take(struct readings *readings, const struct place *at, const json_t
         reading.word = (char *)word;
     } else if (number) {
         reading.value = value_real(value);
-        refine(&reading, at, parent, name);
+        refine(&reading, parent, name);
         if (at->level && at->field && rule->kind == READING_ERROR)
             reading.noise = fmax(reading.noise, level_noise(at->level, at->field, name));
     } else {
@@ -280,7 +277,7 @@ static void walk_list(struct readings *readings, const struct place *at, const c
 }
 
 static void walk_object(struct readings *readings, const struct place *at, const char *key,
-                        const json_t *object, const json_t *parent)
+                        const json_t *object)
 {
     struct place inside = *at;
     const int length = snprintf(inside.path, sizeof inside.path, "%s%s%.100s", at->path,
@@ -290,8 +287,6 @@ static void walk_object(struct readings *readings, const struct place *at, const
         return;
     }
     inside.field = key;
-    inside.exact =
-        strcmp(key, "functionals") == 0 ? json_object_get(parent, "functionals_exact") : NULL;
     walk(readings, &inside, object);
 }
 
@@ -309,7 +304,7 @@ static void walk(struct readings *readings, const struct place *at, const json_t
             walk_list(readings, at, key, value);
             take_vector(readings, at, key, value);
         } else if (json_is_object(value)) {
-            walk_object(readings, at, key, value, object);
+            walk_object(readings, at, key, value);
         } else {
             take(readings, at, object, key, value);
         }

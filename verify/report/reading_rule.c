@@ -70,9 +70,8 @@ static const struct reading_rule rules[] = {
     {"functionals", "exact", OUT},
     {"functionals", "gci*", OUT},
     {"functionals", "order", OUT},
-    {"functionals", "reference", OUT},
+    {"functionals", "reference", 0, READING_NEUTRAL, 1e-9, 1e-13},
     {"functionals", "*", 0, READING_EXACT, 0.05, 1e-13},
-    {"functionals_exact", "*", 0, READING_NEUTRAL, 1e-9, 1e-13},
     {"", "error_over_signal", 0, READING_PART, 1e-3, 1e-13}, /* the same as error */
     {"", "error", 0, READING_ERROR, 1e-3, 1e-13},
     {"", "error_spread", OUT},

@@ -107,6 +107,9 @@ void run_free(struct run_result *result);
 /* "errors" of a result document: {"density": {"l1", ...}, ..., "binned_density_l1"}. */
 json_t *run_errors_json(const struct run_result *result);
 
+/* [{"name", "value", "reference"}]; owned by the caller. */
+json_t *run_functionals_json(const struct run_result *result);
+
 /* Adds everything that a result of kind `run` has to a document (see result_new). */
 void run_add_json(const struct run_settings *settings, const struct run_result *result,
                   json_t *document);

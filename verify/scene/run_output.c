@@ -90,11 +90,21 @@ void run_add_plan(const struct run_settings *settings, const struct run_result *
     json_object_set_new(document, "warnings", json_string(result->warnings));
 }
 
+json_t *run_functionals_json(const struct run_result *result)
+{
+    json_t *list = json_array();
+    for (size_t i = 0; i < result->functional_count; i++)
+        json_array_append_new(list,
+                              json_pack("{s:s, s:o, s:o}", "name", result->functionals[i].name,
+                                        "value", result_number(result->functionals[i].value),
+                                        "reference", result_number(result->functionals[i].exact)));
+    return list;
+}
+
 void run_add_json(const struct run_settings *settings, const struct run_result *result,
                   json_t *document)
 {
     const bool broke_down = result->status == STATUS_BROKE_DOWN;
-    json_t *functionals = json_object(), *exact = json_object();
     run_add_plan(settings, result, document);
     set_number(document, "time", result->time);
     json_object_set_new(document, "status", json_string(broke_down ? "broke_down" : "ok"));
@@ -102,12 +112,7 @@ void run_add_json(const struct run_settings *settings, const struct run_result *
     json_object_set_new(document, "errors", run_errors_json(result));
     json_object_set_new(document, "conservation", conservation_json(result));
     json_object_set_new(document, "cost", cost_json(result));
-    for (size_t i = 0; i < result->functional_count; i++) {
-        set_number(functionals, result->functionals[i].name, result->functionals[i].value);
-        set_number(exact, result->functionals[i].name, result->functionals[i].exact);
-    }
-    json_object_set_new(document, "functionals", functionals);
-    json_object_set_new(document, "functionals_exact", exact);
+    json_object_set_new(document, "functionals", run_functionals_json(result));
     set_number(document, "spacing", result->spacing);
     set_number(document, "h", result->h);
     json_object_set_new(document, "budget", budget_json(&result->budget));

@@ -156,16 +156,14 @@ static double error_of(const json_t *run, int field, int norm)
 static void read_functionals(struct study_result *result, struct study_level *level,
                              const json_t *run, double weight)
 {
-    const char *name;
-    json_t *value, *values = json_object_get(run, "functionals");
-    size_t i = 0;
-    json_object_foreach(values, name, value)
+    const json_t *entry;
+    size_t i;
+    json_array_foreach(json_object_get(run, "functionals"), i, entry)
     {
         if (i == PROBLEM_FUNCTIONALS_MAX) break;
-        result->functional_names[i] = functional_name(name);
-        level->functionals[i] += weight * value_real(value);
-        result->functional_exact[i] = value_member(json_object_get(run, "functionals_exact"), name);
-        i++;
+        result->functional_names[i] = functional_name(value_text(entry, "name"));
+        level->functionals[i] += weight * value_member(entry, "value");
+        result->functional_exact[i] = value_member(entry, "reference");
     }
     result->functional_count = i;
 }

@@ -20,10 +20,10 @@ static void invent(struct pool *pool, const double *values)
     for (size_t i = 0; i < pool->count; i++) {
         const double value = values[i % 2];
         json_decref(pool->jobs[i].document);
-        pool->jobs[i].document = json_pack(
-            "{s:s, s:{s:f, s:f}, s:{s:f, s:f}}", "status", value < 9 ? "ok" : "broke_down",
-            "functionals", "growth_rate", 2 * (1 - value), "velocity_rms", value,
-            "functionals_exact", "growth_rate", 2., "velocity_rms", 0.);
+        pool->jobs[i].document = json_pack("{s:s, s:[{s:s, s:f, s:f}, {s:s, s:f, s:f}]}", "status",
+                                           value < 9 ? "ok" : "broke_down", "functionals", "name",
+                                           "growth_rate", "value", 2 * (1 - value), "reference", 2.,
+                                           "name", "velocity_rms", "value", value, "reference", 0.);
         assert_non_null(pool->jobs[i].document);
     }
 }

@@ -231,8 +231,9 @@ static void in_two_dimensions(void **state)
                           json_pack("{s:s, s:s, s:f, s:f, s:f, s:[f], s:s}", "field",
                                     "mode_amplitude", "norm", "error", "order", 2.25, "low", 2.,
                                     "high", 2.5, "pairwise", 2.25, "status", "none"));
-    json_object_set_new(run, "functionals", json_pack("{s:f}", "mode_amplitude", 0.775));
-    json_object_set_new(run, "functionals_exact", json_pack("{s:f}", "mode_amplitude", 0.9));
+    json_object_set_new(
+        run, "functionals",
+        json_pack("[{s:s, s:f, s:f}]", "name", "mode_amplitude", "value", 0.775, "reference", 0.9));
     json_object_set_new(
         run, "profile",
         json_pack("{s:i, s:{s:[f,f], s:[f,f], s:[f,f,f,f], s:[f,f,f,f], s:[f,f,f,f]}, s:s, s:[s],"
