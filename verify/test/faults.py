@@ -257,7 +257,9 @@ def interrupts():
         put("r.json")
         child = subprocess.Popen([program, "run", "sod", "n=200000", "--json", "r.json", "--snapshot",
                                   "new.csv"], cwd=folder, stdout=subprocess.PIPE, text=True,
-                                 stderr=subprocess.PIPE)
+                                 stderr=subprocess.PIPE,
+                                 # a job in the background of a script, as this may be, ignores them
+                                 preexec_fn=lambda number=number: signal.signal(number, signal.SIG_DFL))
         time.sleep(0.3)
         child.send_signal(number)
         child.stdout, child.stderr, _ = *child.communicate(timeout=60), None
