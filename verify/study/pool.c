@@ -25,6 +25,11 @@ struct worker {
 size_t pool_add(struct pool *pool, const char *name, const char *key, double weight,
                 pool_compute *compute, const void *context)
 {
+    const size_t known = key ? pool_find(pool, key) : (size_t)-1;
+    if (known != (size_t)-1) return known;
+    if (!pool->numbers) pool->numbers = json_object();
+    if (key && json_object_set_new(pool->numbers, key, json_integer((json_int_t)pool->count)))
+        return (size_t)-1;
     if (pool->count == pool->room) {
         const size_t room = pool->room ? 2 * pool->room : 64;
         struct pool_job *jobs = realloc(pool->jobs, room * sizeof *jobs);
@@ -46,9 +51,8 @@ size_t pool_add(struct pool *pool, const char *name, const char *key, double wei
 
 size_t pool_find(const struct pool *pool, const char *key)
 {
-    for (size_t i = 0; i < pool->count; i++)
-        if (pool->jobs[i].key && strcmp(pool->jobs[i].key, key) == 0) return i;
-    return (size_t)-1;
+    const json_t *number = json_object_get(pool->numbers, key);
+    return number ? (size_t)json_integer_value(number) : (size_t)-1;
 }
 
 void pool_free(struct pool *pool)
@@ -59,6 +63,7 @@ void pool_free(struct pool *pool)
         json_decref(pool->jobs[i].document);
     }
     free(pool->jobs);
+    json_decref(pool->numbers);
     *pool = (struct pool){0};
 }
 
@@ -188,8 +193,6 @@ enum status pool_divide(const struct pool *pool, int of, int *shares, struct err
 {
     size_t *order = calloc(pool->count + 1, sizeof *order);
     double *load = calloc((size_t)of, sizeof *load);
-    const char *last = NULL;
-    int share = 0;
     for (size_t i = 0; order && i < pool->count; i++) order[i] = i;
     sorted_jobs = pool->jobs;
     if (order && load) qsort(order, pool->count, sizeof *order, heavy_first_by_key);
@@ -197,13 +200,10 @@ enum status pool_divide(const struct pool *pool, int of, int *shares, struct err
         const struct pool_job *job = &pool->jobs[order[k]];
         shares[order[k]] = 0;
         if (!job->key) continue;
-        if (!last || strcmp(last, job->key)) {
-            share = 0;
-            for (int s = 1; s < of; s++)
-                if (load[s] < load[share]) share = s;
-            load[share] += job->weight;
-        }
-        last = job->key;
+        int share = 0;
+        for (int s = 1; s < of; s++)
+            if (load[s] < load[share]) share = s;
+        load[share] += job->weight;
         shares[order[k]] = share + 1;
     }
     const bool sound = order && load;

@@ -33,6 +33,7 @@ struct pool_job {
 struct pool {
     struct pool_job *jobs;
     size_t count, room;
+    json_t *numbers; /* of jobs, by their keys */
     size_t found;   /* in the cache */
     size_t damaged; /* were in the cache, but not whole: computed again */
     char note[512]; /* "", or why entries could not be kept */
@@ -57,7 +58,8 @@ struct pool_settings {
     void *progress_context;
 };
 
-/* Adds a job (name and key are copied) and returns its number, (size_t)-1 without memory. */
+/* Adds a job (name and key are copied) and returns its number, (size_t)-1 without memory. One whose
+ * key is there already is that job: nothing is computed twice. */
 size_t pool_add(struct pool *pool, const char *name, const char *key, double weight,
                 pool_compute *compute, const void *context);
 
@@ -65,7 +67,7 @@ size_t pool_add(struct pool *pool, const char *name, const char *key, double wei
 size_t pool_find(const struct pool *pool, const char *key);
 
 /* The share of each job, 1..of, into shares (of pool->count); 0: none. Even by weight: the heaviest
- * job goes where least is, equal keys go together. STATUS_ENVIRONMENT: no memory. */
+ * job goes where least is. STATUS_ENVIRONMENT: no memory. */
 enum status pool_divide(const struct pool *pool, int of, int *shares, struct error *error);
 
 /* Runs the jobs of the share. STATUS_ENVIRONMENT: no process or no memory; what single jobs say is
