@@ -261,7 +261,7 @@ static void change_table(struct buffer *to, const json_t *changes)
 /* Curves of one case. */
 struct curves {
     size_t count, nights;
-    const char *label[PAGE_SCHEMES];
+    const char *field, *label[PAGE_SCHEMES];
     double night[NIGHTS], error[PAGE_SCHEMES][NIGHTS], order[PAGE_SCHEMES][NIGHTS];
     struct plot_mark marks[MARKS];
     size_t mark_count;
@@ -273,6 +273,7 @@ static void read_curve(struct curves *curves, const json_t *trend)
     const json_t *error = json_object_get(trend, "error"), *order = json_object_get(trend, "order");
     const size_t k = curves->count++;
     curves->label[k] = value_text(trend, "label");
+    if (k == 0) curves->field = value_text(trend, "field");
     for (size_t i = 0; i < curves->nights; i++) {
         curves->error[k][i] = value_real(json_array_get(error, i));
         curves->order[k][i] = value_real(json_array_get(order, i));
@@ -304,7 +305,8 @@ static void read_marks(struct curves *curves, const json_t *changes, const char 
 static void plot_trend(struct page_writer *writer, const char *case_name, struct curves *curves)
 {
     struct plot_series series[2][PAGE_SCHEMES];
-    char name[96], title[256];
+    char name[96], title[256], error[64];
+    snprintf(error, sizeof error, "L1 of %.40s", curves->field);
     for (size_t k = 0; k < curves->count; k++)
         for (int panel = 0; panel < 2; panel++)
             series[panel][k] =
@@ -316,7 +318,7 @@ static void plot_trend(struct page_writer *writer, const char *case_name, struct
                                      .color = (int)k + 1,
                                      .size = 0.6};
     const struct plot_panel panels[2] = {{.x_label = "night",
-                                          .y_label = "L1 of density",
+                                          .y_label = error,
                                           .y_log = true,
                                           .key = PLOT_KEY_TOP,
                                           .series = series[0],
@@ -359,7 +361,8 @@ static void plot_trends(struct page_writer *writer, const json_t *history, size_
             read_marks(curves, json_object_get(history, "changes"), own);
             name = own;
         }
-        if (curves->count < PAGE_SCHEMES) read_curve(curves, trend);
+        const bool same = !curves->count || strcmp(curves->field, value_text(trend, "field")) == 0;
+        if (same && curves->count < PAGE_SCHEMES) read_curve(curves, trend);
     }
     if (curves->count) plot_trend(writer, name, curves);
     buffer_add(&writer->to, "</div>\n");

@@ -209,24 +209,50 @@ static json_t *series_of(const json_t *nights, const char *path)
     return series;
 }
 
+/* A curve has a point where its night has the figure. */
+static bool has_points(const json_t *series)
+{
+    size_t i;
+    const json_t *value;
+    json_array_foreach(series, i, value) if (isfinite(value_real(value))) return true;
+    return false;
+}
+
+/* The first of the fields that the study is judged by whose error and order the nights know. */
+static json_t *trend_of(const json_t *nights, const json_t *study)
+{
+    const char *name = value_text(study, "case"), *label = value_text(study, "label");
+    const json_t *levels = json_object_get(study, "levels"), *field,
+                 *finest = json_array_get(levels, json_array_size(levels) - 1);
+    const double n = value_member(finest, "n");
+    size_t i;
+    json_array_foreach(json_object_get(study, "measured"), i, field)
+    {
+        const char *what = json_string_value(field);
+        char path[PATH_LENGTH];
+        snprintf(path, sizeof path, "studies[%s, %s].levels[n %.10g].errors.%s.l1_cut", name, label,
+                 n, what);
+        json_t *error = series_of(nights, path);
+        snprintf(path, sizeof path, "studies[%s, %s].orders[%s, l1_cut].order", name, label, what);
+        json_t *order = series_of(nights, path);
+        if (has_points(error) && has_points(order))
+            return json_pack("{s:s, s:s, s:s, s:o, s:o, s:o}", "case", name, "label", label,
+                             "field", what, "n", result_number(n), "error", error, "order", order);
+        json_decref(error);
+        json_decref(order);
+    }
+    return NULL;
+}
+
 static json_t *trends(const json_t *nights, const json_t *results)
 {
     json_t *list = json_array();
-    const json_t *studies = json_object_get(results, "studies");
-    for (size_t i = 0; i < json_array_size(studies); i++) {
-        const json_t *study = json_array_get(studies, i),
-                     *levels = json_object_get(study, "levels");
-        const char *name = value_text(study, "case"), *label = value_text(study, "label");
-        const json_t *finest = json_array_get(levels, json_array_size(levels) - 1);
-        char error[PATH_LENGTH], order[PATH_LENGTH];
-        const double n = value_member(finest, "n");
-        snprintf(error, sizeof error, "studies[%s, %s].levels[n %.10g].errors.density.l1_cut", name,
-                 label, n);
-        snprintf(order, sizeof order, "studies[%s, %s].orders[density, l1_cut].order", name, label);
-        json_array_append_new(list,
-                              json_pack("{s:s, s:s, s:o, s:o, s:o}", "case", name, "label", label,
-                                        "n", result_number(n), "error", series_of(nights, error),
-                                        "order", series_of(nights, order)));
+    const json_t *study;
+    size_t i;
+    json_array_foreach(json_object_get(results, "studies"), i, study)
+    {
+        json_t *trend = trend_of(nights, study);
+        if (trend) json_array_append_new(list, trend);
     }
     return list;
 }

@@ -116,7 +116,7 @@ class Tree:
             raise Failed("the fault passed %s" % " ".join(names))
 
     def reported(self, pattern):
-        names = self.program("report", "--list")
+        names = "\n".join(line.split("\t")[3] for line in self.program("report", "--list").splitlines())
         if not re.search(pattern, names, re.M):
             raise Failed("a report would compute nothing that is called '%s'" % pattern)
 

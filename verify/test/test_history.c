@@ -27,11 +27,11 @@ static json_t *report(const char *mode, const char *git, double error, double or
     json_object_set_new(
         results, "studies",
         json_pack("[{s:s, s:s, s:s, s:[{s:i, s:{s:{s:f, s:f}}, s:f}], s:[{s:s, s:s, s:f, s:f, "
-                  "s:f}]}]",
+                  "s:f}], s:[s,s]}]",
                   "case", "sod", "label", "ia", "status", "pass", "levels", "n", 400, "errors",
                   "density", "l1_cut", error, "l2", 2 * error, "cpu_s", 5 * error, "orders",
                   "field", "density", "norm", "l1_cut", "order", order, "low", order - 0.01, "high",
-                  order + 0.01));
+                  order + 0.01, "measured", "mode_amplitude", "density"));
     json_object_set_new(
         results, "verify",
         json_pack("{s:[{s:s, s:s, s:s, s:f, s:f, s:f, s:s}, {s:s, s:s, s:s, s:f, s:f, s:f, s:s}]}",
@@ -147,6 +147,9 @@ static void moves_are_dated(void **state)
     assert_string_equal(json_string_value(json_object_get(change, "git_before")), "rev6");
     assert_string_equal(json_string_value(json_object_get(change, "verdict")), "worse");
     near_relative(number(change, "ratio"), 1.2, 1e-9);
+    /* of what the study is judged by, the first that has errors and orders */
+    assert_string_equal(json_string_value(json_object_get(trend, "field")), "density");
+    assert_int_equal(json_array_size(json_object_get(told, "trends")), 1);
     assert_int_equal(json_array_size(json_object_get(trend, "error")), 12);
     near_relative(value_real(json_array_get(json_object_get(trend, "error"), 11)), 1.2e-3, 1e-12);
     near_relative(value_real(json_array_get(json_object_get(trend, "order"), 0)), 0.95, 1e-12);
