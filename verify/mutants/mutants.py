@@ -109,6 +109,7 @@ class Worker:
     """A copy of the tree with its build, into which one fault after the other is put."""
 
     def __init__(self, source, folder):
+        folder = os.path.abspath(folder)
         self.tree, self.build = os.path.join(folder, "tree"), os.path.join(folder, "build")
         self.program = os.path.join(self.build, "sphproof")
         copy_tree(source, self.tree)
@@ -132,7 +133,8 @@ class Worker:
             demand(["ninja", "-C", self.build, target])
             command = [os.path.join(self.build, target)]
         try:
-            return quietly(command, timeout=PATIENCE).returncode
+            # there, since what a faulty test leaves behind must not lie in anybody's tree
+            return quietly(command, timeout=PATIENCE, cwd=self.build).returncode
         except subprocess.TimeoutExpired:
             return "hangs"
 
