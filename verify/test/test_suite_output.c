@@ -205,7 +205,7 @@ static void many(void **state)
     (void)state;
     struct check checks[9];
     struct figure fails[9];
-    char names[9][8], subject[] = "cubic";
+    char names[9][16], subject[] = "cubic";
     struct suite of = {.figures = fails, .figure_count = 9, .failed = 9};
     for (int i = 0; i < 9; i++) {
         snprintf(names[i], sizeof names[i], "c%d", i);
