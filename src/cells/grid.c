@@ -28,9 +28,10 @@ static bool reserve_points(struct grid *grid, size_t n)
     grid->order = malloc(capacity * sizeof *grid->order);
     grid->position = aligned_alloc(64, (capacity * sizeof *grid->position + 63) / 64 * 64);
     grid->radius = malloc(capacity * sizeof *grid->radius);
-    bool floats = (grid->radius2 = malloc(capacity * sizeof(float)));
+    /* copied in whole vectors, also those of the last cell */
+    bool floats = (grid->radius2 = calloc(capacity + COPIED, sizeof(float)));
     for (int a = 0; a < 3; a++)
-        floats &= (grid->place[a] = malloc(capacity * sizeof(float))) != NULL;
+        floats &= (grid->place[a] = calloc(capacity + COPIED, sizeof(float))) != NULL;
     grid->lists = malloc(capacity * sizeof *grid->lists);
     grid->part_begin = malloc((capacity + 1) * sizeof *grid->part_begin);
     grid->part_cell = malloc((capacity + 1) * sizeof *grid->part_cell);
