@@ -45,6 +45,10 @@ static void include_cells(struct layout_axis *axis, const double *centres, size_
 }
 
 /* A little air; something sensible where there is no data or no extent. */
+/* What differs by less, relative, is one value to whoever looks at a plot, and to a script in which
+ * limits have ten digits. */
+static const double one_value = 1e-8;
+
 static void finish(struct layout_axis *axis, double min, double max, double air)
 {
     if (min < max) {
@@ -58,12 +62,13 @@ static void finish(struct layout_axis *axis, double min, double max, double air)
     }
     if (axis->log) {
         double span = log(axis->max / axis->min);
-        double by = exp(span > 0 ? air * span : 0.5);
+        double by = exp(span > one_value ? air * span : 0.5);
         axis->min /= by;
         axis->max *= by;
     } else {
         double span = axis->max - axis->min;
-        double by = span > 0 ? air * span : 0.5 * fmax(fabs(axis->max), 1e-300);
+        double size = fmax(fabs(axis->min), fabs(axis->max));
+        double by = span > one_value * size ? air * span : 0.5 * fmax(size, 1e-300);
         axis->min -= by;
         axis->max += by;
     }

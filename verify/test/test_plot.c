@@ -100,6 +100,35 @@ static void inline_svg(void **state)
     }
 }
 
+/* Values that differ by round-off alone, or not at all, are a line in a plot, on either axis. */
+static void one_value(void **state)
+{
+    (void)state;
+    if (!have_gnuplot()) skip();
+    const double x[] = {1, 2, 3}, equal[] = {8.761e-4, 8.761e-4, 8.761e-4},
+                 nearly[] = {8.761e-4, 8.761e-4 * (1 + 1e-13), 8.761e-4 * (1 - 1e-13)};
+    for (int k = 0; k < 4; k++) {
+        const struct plot_series line = {.label = "a",
+                                         .kind = PLOT_LINES_POINTS,
+                                         .n = 3,
+                                         .x = x,
+                                         .y = k % 2 ? nearly : equal,
+                                         .color = 1,
+                                         .size = 1};
+        const struct plot_panel panel = {.x_label = "x",
+                                         .y_label = "y",
+                                         .y_log = k < 2,
+                                         .key = PLOT_KEY_NONE,
+                                         .series = &line,
+                                         .series_count = 1};
+        const struct plot plot = {
+            .name = "one", .title = "one value", .panels = &panel, .panel_count = 1};
+        char *svg, message[512] = "";
+        if (plot_svg(&plot, &svg, message, sizeof message)) fail_msg("%d: %s", k, message);
+        free(svg);
+    }
+}
+
 static void documents(void **state)
 {
     (void)state;
@@ -333,12 +362,10 @@ static void images(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(inline_svg), cmocka_unit_test(documents),
-        cmocka_unit_test(source),     cmocka_unit_test(formats),
-        cmocka_unit_test(processes),  cmocka_unit_test(missing_gnuplot),
-        cmocka_unit_test(markup),     cmocka_unit_test(gap),
-        cmocka_unit_test(map_counts), cmocka_unit_test(map_means),
-        cmocka_unit_test(images),
+        cmocka_unit_test(inline_svg),      cmocka_unit_test(one_value), cmocka_unit_test(documents),
+        cmocka_unit_test(source),          cmocka_unit_test(formats),   cmocka_unit_test(processes),
+        cmocka_unit_test(missing_gnuplot), cmocka_unit_test(markup),    cmocka_unit_test(gap),
+        cmocka_unit_test(map_counts),      cmocka_unit_test(map_means), cmocka_unit_test(images),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
