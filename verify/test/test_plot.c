@@ -105,26 +105,26 @@ static void one_value(void **state)
 {
     (void)state;
     if (!have_gnuplot()) skip();
-    const double x[] = {1, 2, 3}, equal[] = {8.761e-4, 8.761e-4, 8.761e-4},
+    const double nights[] = {1, 2, 3}, equal[] = {8.761e-4, 8.761e-4, 8.761e-4},
                  nearly[] = {8.761e-4, 8.761e-4 * (1 + 1e-13), 8.761e-4 * (1 - 1e-13)};
     for (int k = 0; k < 4; k++) {
         const struct plot_series line = {.label = "a",
                                          .kind = PLOT_LINES_POINTS,
                                          .n = 3,
-                                         .x = x,
+                                         .x = nights,
                                          .y = k % 2 ? nearly : equal,
                                          .color = 1,
                                          .size = 1};
-        const struct plot_panel panel = {.x_label = "x",
+        const struct plot_panel alone = {.x_label = "x",
                                          .y_label = "y",
                                          .y_log = k < 2,
                                          .key = PLOT_KEY_NONE,
                                          .series = &line,
                                          .series_count = 1};
-        const struct plot plot = {
-            .name = "one", .title = "one value", .panels = &panel, .panel_count = 1};
+        const struct plot drawn = {
+            .name = "one", .title = "one value", .panels = &alone, .panel_count = 1};
         char *svg, message[512] = "";
-        if (plot_svg(&plot, &svg, message, sizeof message)) fail_msg("%d: %s", k, message);
+        if (plot_svg(&drawn, &svg, message, sizeof message)) fail_msg("%d: %s", k, message);
         free(svg);
     }
 }
