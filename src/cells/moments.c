@@ -92,7 +92,7 @@ bool moments_invert(const struct cells_method *method, int count, const struct l
                     const double *weight, double inverse[CELLS_SQUARE], double *condition)
 {
     const int dim = method->box.dim;
-    double moments[CELLS_SQUARE], sums[CELLS_SYMMETRIC];
+    double moments[CELLS_SQUARE] = {0}, sums[CELLS_SYMMETRIC];
     squares(dim, count, lanes->stride, weight, lane(lanes, LANE_DX), sums);
     for (int a = 0; a < dim; a++)
         for (int b = 0; b < dim; b++) moments[a * dim + b] = sums[symmetric_at(dim, a, b)];
