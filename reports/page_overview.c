@@ -94,29 +94,16 @@ static void row(struct buffer *to, const json_t *results, const json_t *first,
 
 /* ---- 2D and 3D: by their runs, whatever they are judged by ---- */
 
-/* What a run is judged by, as its study is where there is one: L1 of a field, or the distance of a
- * scalar from its exact value. *name: what it is. */
-static double run_error(const json_t *run, const json_t *study, const char **name)
+/* What a run is judged by: L1 of a field, or the distance of a scalar from its exact value. *name:
+ * what it is. */
+static double run_error(const json_t *run, const char **name)
 {
-    static const char *const usual[] = {"azimuthal", "velocity"};
-    const json_t *errors = json_object_get(run, "errors");
-    const char *measured = json_string_value(json_array_get(json_object_get(study, "measured"), 0));
-    size_t i;
-    const json_t *entry;
-    for (size_t k = 0; k < sizeof usual / sizeof *usual && !measured; k++)
-        if (isfinite(value_inner(errors, usual[k], "l1"))) measured = usual[k];
+    const char *measured = json_string_value(json_array_get(json_object_get(run, "measured"), 0));
     *name = measured ? measured : "";
-    if (measured && isfinite(value_inner(errors, measured, "l1")))
-        return value_inner(errors, measured, "l1");
-    json_array_foreach(json_object_get(run, "functionals"), i, entry)
-    {
-        const double exact = value_member(entry, "reference");
-        const char *scalar = value_text(entry, "name");
-        if ((measured && strcmp(scalar, measured)) || !isfinite(exact)) continue;
-        *name = scalar;
-        return fabs(value_member(entry, "value") - exact);
-    }
-    return (double)NAN;
+    const double error = value_inner(json_object_get(run, "errors"), *name, "l1");
+    if (isfinite(error)) return error;
+    const json_t *scalar = value_named(json_object_get(run, "functionals"), *name);
+    return fabs(value_member(scalar, "value") - value_member(scalar, "reference"));
 }
 
 static void cloud_row(struct buffer *to, const json_t *results, const json_t *run,
@@ -125,7 +112,7 @@ static void cloud_row(struct buffer *to, const json_t *results, const json_t *ru
     const json_t *runs = json_object_get(results, "runs");
     const char *case_name = value_text(run, "case"), *what, *status = "ok";
     const json_t *study = find(json_object_get(results, "studies"), case_name, labels[0]);
-    run_error(run, study, &what);
+    run_error(run, &what);
     case_cells(to, case_name, value_member(run, "n"));
     buffer_add(to, "<td>");
     html_words(to, what);
@@ -134,7 +121,7 @@ static void cloud_row(struct buffer *to, const json_t *results, const json_t *ru
         const json_t *one = find(runs, case_name, labels[k]);
         const json_t *of = find(json_object_get(results, "studies"), case_name, labels[k]);
         if (one)
-            html_cell_number(to, run_error(one, study, &what));
+            html_cell_number(to, run_error(one, &what));
         else
             buffer_add(to, "<td class=\"n\">—</td>");
         if (one && strcmp(status_of(of, one), "ok")) status = status_of(of, one);

@@ -2,12 +2,44 @@
 #include "judged.h"
 
 #include <math.h>
+#include <string.h>
 
-static enum field main_field(const struct case_file *file)
+static bool has_gate(const struct case_file *file, int field)
 {
-    for (int f = 0; f < FIELDS; f++)
-        if (file->fields[f]) return (enum field)f;
-    return FIELD_DENSITY;
+    for (size_t i = 0; i < file->gate_count; i++)
+        if ((int)file->gates[i].field == field) return true;
+    return false;
+}
+
+size_t judged_names(const struct case_file *file, size_t functional_count,
+                    const char *const *functionals, const double *exact,
+                    const char *names[JUDGED_MAX])
+{
+    const struct problem *problem = problem_of(&file->settings);
+    size_t n = 0;
+    if (problem->circular == CIRCULAR_ROUND && file->dimension > 1) {
+        names[n++] = "azimuthal";
+        names[n++] = "radial";
+    }
+    for (int gated = 1; gated >= 0 && !problem->fieldless; gated--)
+        for (int f = 0; f < FIELDS; f++)
+            if (file->fields[f] && has_gate(file, f) == gated)
+                names[n++] = field_family.members[f]->name;
+    for (size_t i = 0; i < functional_count && problem->fieldless; i++)
+        if (isfinite(exact[i])) names[n++] = functionals[i];
+    return n;
+}
+
+size_t judged_names_of(const struct case_file *file, const struct run_result *result,
+                       const char *names[JUDGED_MAX])
+{
+    const char *functionals[PROBLEM_FUNCTIONALS_MAX];
+    double exact[PROBLEM_FUNCTIONALS_MAX];
+    for (size_t i = 0; i < result->functional_count; i++) {
+        functionals[i] = result->functionals[i].name;
+        exact[i] = result->functionals[i].exact;
+    }
+    return judged_names(file, result->functional_count, functionals, exact, names);
 }
 
 /* The components of the exact field at particle i; a scalar has one. Returns the sound speed. */
@@ -55,23 +87,24 @@ static double signal_of(const struct run_result *result, enum field field)
 
 void judged_of(const struct case_file *file, const struct run_result *result, struct judged *judged)
 {
-    const struct problem *problem = result->problem.problem;
-    const enum field field = main_field(file);
+    const char *names[JUDGED_MAX];
     *judged = (struct judged){"density", result->errors[FIELD_DENSITY].l1_cut, (double)NAN};
     if (result->problem.domain.dim == 1) return;
-    if (!problem->fieldless) {
-        const bool around = isfinite(result->azimuthal.l1);
-        judged->name = around ? "azimuthal" : field_family.members[field]->name;
-        judged->error = around ? result->azimuthal.l1 : result->errors[field].l1;
-        judged->signal = signal_of(result, around ? FIELD_VELOCITY : field);
-        return;
-    }
     *judged = (struct judged){"", (double)NAN, (double)NAN};
-    for (size_t i = 0; i < result->functional_count && !*judged->name; i++) {
-        const double exact = result->functionals[i].exact;
-        if (!isfinite(exact)) continue;
-        judged->name = result->functionals[i].name;
-        judged->error = fabs(result->functionals[i].value - exact);
-        judged->signal = exact < 0 || exact > 0 ? fabs(exact) : 1;
+    if (!judged_names_of(file, result, names)) return;
+    judged->name = names[0];
+    const int field = family_index(&field_family, names[0]);
+    if (field >= 0) {
+        judged->error = result->errors[field].l1;
+        judged->signal = signal_of(result, (enum field)field);
+    } else if (strcmp(names[0], "azimuthal") == 0) {
+        judged->error = result->azimuthal.l1;
+        judged->signal = signal_of(result, FIELD_VELOCITY);
+    }
+    for (size_t i = 0; i < result->functional_count && field < 0; i++) {
+        const struct run_functional *f = &result->functionals[i];
+        if (strcmp(f->name, names[0])) continue;
+        judged->error = fabs(f->value - f->exact);
+        judged->signal = f->exact < 0 || f->exact > 0 ? fabs(f->exact) : 1;
     }
 }

@@ -84,12 +84,15 @@ struct problem_ends {
 };
 #define PROBLEM_END(name) (1u << BOUNDARY_##name)
 
+/* Flows with azimuthal and radial errors: round the middle of the domain, and to it or from it. */
+enum circular { CIRCULAR_NOT, CIRCULAR_ROUND, CIRCULAR_RADIAL };
+
 struct problem {
     struct member member;  /* in cases: kind = NAME */
     const char *reference; /* exact solution, as case files name it */
     int least_dim, most_dim;
     bool carried;   /* exact everywhere in the periodic box, so that it may be boosted */
-    bool circular;  /* flows round or from the middle of the domain: azimuthal and radial errors */
+    enum circular circular;
     bool fieldless; /* of t > 0 only functionals are known: there are no errors of fields */
     bool filed;     /* its particles come from a file, always */
     bool heavy;     /* it takes gravity: any other has no solution in it */

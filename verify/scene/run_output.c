@@ -4,6 +4,7 @@
 
 #include <math.h>
 
+#include "judged.h"
 #include "output.h"
 #include "result.h"
 #include "snapshot_hdf5.h"
@@ -105,6 +106,7 @@ void run_add_json(const struct run_settings *settings, const struct run_result *
                   json_t *document)
 {
     const bool broke_down = result->status == STATUS_BROKE_DOWN;
+    const char *names[JUDGED_MAX];
     run_add_plan(settings, result, document);
     set_number(document, "time", result->time);
     json_object_set_new(document, "status", json_string(broke_down ? "broke_down" : "ok"));
@@ -113,6 +115,10 @@ void run_add_json(const struct run_settings *settings, const struct run_result *
     json_object_set_new(document, "conservation", conservation_json(result));
     json_object_set_new(document, "cost", cost_json(result));
     json_object_set_new(document, "functionals", run_functionals_json(result));
+    json_t *measured = json_array();
+    const size_t count = judged_names_of(&settings->file, result, names);
+    for (size_t i = 0; i < count; i++) json_array_append_new(measured, json_string(names[i]));
+    json_object_set_new(document, "measured", measured);
     set_number(document, "spacing", result->spacing);
     set_number(document, "h", result->h);
     json_object_set_new(document, "budget", budget_json(&result->budget));

@@ -4,6 +4,7 @@
 
 #include <math.h>
 
+#include "judged.h"
 #include "result.h"
 
 static void set(json_t *object, const char *name, double value)
@@ -136,23 +137,15 @@ static void add_fit(json_t *document, const struct order_fit *fit, const char *w
     if (fit->n) add(document, "orders", order_json(&order, what, norm), varied);
 }
 
-/* Parts of a circular flow's velocity before its fields; where no field is known, functionals that
- * are. */
 static json_t *measured_json(const struct study *study)
 {
     const struct study_result *result = &study->results[0];
-    const struct case_file *file = &study->settings.file;
-    json_t *names = json_array();
-    if (result->level_count && isfinite(result->levels[0].parts[0][NORM_L1]))
-        for (int part = 0; part < STUDY_PARTS; part++)
-            json_array_append_new(names, json_string(study_part_names[part]));
-    for (int f = 0; f < FIELDS && !problem_of(&study->settings.settings)->fieldless; f++)
-        if (file->fields[f])
-            json_array_append_new(names, json_string(field_family.members[f]->name));
-    for (size_t i = 0; i < result->functional_count && !json_array_size(names); i++)
-        if (isfinite(result->functional_exact[i]))
-            json_array_append_new(names, json_string(result->functional_names[i]));
-    return names;
+    const char *names[JUDGED_MAX];
+    const size_t n = judged_names(&study->settings.file, result->functional_count,
+                                  result->functional_names, result->functional_exact, names);
+    json_t *list = json_array();
+    for (size_t i = 0; i < n; i++) json_array_append_new(list, json_string(names[i]));
+    return list;
 }
 
 static void add_result(const struct study *study, const struct study_result *result,

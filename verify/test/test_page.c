@@ -224,6 +224,7 @@ static void in_two_dimensions(void **state)
     json_object_set_new(run, "dimension", json_integer(2));
     json_object_set_new(study, "dimension", json_integer(2));
     json_object_set_new(study, "measured", json_pack("[s]", "mode_amplitude"));
+    json_object_set_new(run, "measured", json_pack("[s]", "mode_amplitude"));
     json_array_append_new(json_object_get(study, "functionals"),
                           json_pack("{s:s, s:[f,f], s:f, s:f}", "name", "mode_amplitude", "values",
                                     0.5, 0.775, "extrapolated", 0.8, "exact", 0.9));

@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "judged.h"
 #include "near.h"
 #include "result.h"
 #include "study.h"
@@ -440,6 +441,29 @@ static void judges_see(void **state)
     study_free(&study);
 }
 
+/* What every case is judged by: nothing that its flow does not have, and gated fields first. */
+static void judged_by(void **state)
+{
+    static const struct {
+        const char *name, *first;
+    } cases[] = {{"sod", "density"},           {"gresho", "azimuthal"},
+                 {"rotation", "azimuthal"},    {"sedov_2d", "pressure"},
+                 {"noh_3d", "density"},        {"sound_wave_2d", "velocity"},
+                 {"kelvin_helmholtz", "known"}};
+    const char *const functionals[] = {"unknown", "known"};
+    const double exact[] = {(double)NAN, 0.5};
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct case_file file;
+        struct error error;
+        const char *names[JUDGED_MAX];
+        if (case_load(&file, cases[i].name, &error)) fail_msg("%s", error.message);
+        const size_t n = judged_names(&file, 2, functionals, exact, names);
+        assert_true(n >= 1 && n <= JUDGED_MAX);
+        assert_string_equal(names[0], cases[i].first);
+    }
+}
+
 /* Lattice sums: what floor there is, and whether it is what has taken the order away. */
 static void floors(void **state)
 {
@@ -495,6 +519,7 @@ int main(void)
         cmocka_unit_test(settings_without_effect),
         cmocka_unit_test(what_is_not_well),
         cmocka_unit_test(judges_see),
+        cmocka_unit_test(judged_by),
         cmocka_unit_test(floors),
         cmocka_unit_test(functionals_know_their_exact_values),
     };

@@ -83,7 +83,7 @@ const struct problem problem_gresho = {
     .least_dim = 2,
     .most_dim = 2,
     .carried = true,
-    .circular = true,
+    .circular = CIRCULAR_ROUND,
     .smooth = true,
     .ends = {{.also = PROBLEM_END(REFLECTING) | PROBLEM_END(FIXED)},
              {.also = PROBLEM_END(REFLECTING) | PROBLEM_END(FIXED)}},
