@@ -13,8 +13,6 @@
 #include "table.h"
 #include "text.h"
 
-enum { JOBS_MAX = 1024 };
-
 static void print_ladder(const struct study *study, const struct study_result *result,
                          const struct table_style *style)
 {

@@ -10,6 +10,7 @@
 #include "lattice_waves.h"
 #include "stress_noise.h"
 #include "stress_outcome.h"
+#include "stress_run.h"
 
 /* ---- columns: the cases that there are ---- */
 
@@ -70,47 +71,15 @@ static double paired(const struct run_result *result)
     return (double)pairs / (double)s->n;
 }
 
-static bool all_finite(const struct snapshot *s, int dim)
-{
-    for (size_t i = 0; i < s->n; i++) {
-        double sum = s->rho[i] + s->u[i] + s->P[i] + s->h[i];
-        for (int d = 0; d < dim; d++) sum += s->x[d][i] + s->v[d][i];
-        if (!isfinite(sum)) return false;
-    }
-    return true;
-}
-
-struct watch {
-    uint64_t budget;
-    bool out;
-};
-
-static bool watch_steps(void *context, double time, uint64_t steps)
-{
-    struct watch *watch = context;
-    (void)time;
-    watch->out = steps >= watch->budget;
-    return !watch->out;
-}
-
 static json_t *judge(const struct stress_cell *cell, const struct run_result *result,
-                     const struct watch *watch)
+                     const struct stress_watch *watch)
 {
     const double momentum_bound = 1e-9, energy_bound = 0.05;
     char reason[768] = "";
-    if (result->status == STATUS_BROKE_DOWN) {
-        snprintf(reason, sizeof reason, "%s: %s", stress_outcome_breakdown(result->message),
-                 result->message);
-        return stress_outcome((double)NAN, (double)NAN, "broke_down", reason);
-    }
-    if (!all_finite(&result->snapshot, result->problem.domain.dim))
-        return stress_outcome((double)NAN, (double)NAN, "broke_down",
-                              "silent NaN: the run did not notice");
+    json_t *unsound = stress_unsound(result, watch, (double)NAN);
+    if (unsound) return unsound;
     const double pairs = paired(result);
     int used = 0;
-    if (watch->out)
-        used += snprintf(reason, sizeof reason, "budget: t = %.4g after %llu steps; ", result->time,
-                         (unsigned long long)result->cost.steps);
     if (!(pairs <= cell->group->bound))
         used += snprintf(reason + used, sizeof reason - (size_t)used,
                          "%.2g of the particles are nearer to another one than half a spacing; ",
@@ -123,25 +92,6 @@ static json_t *judge(const struct stress_cell *cell, const struct run_result *re
                          result->momentum);
     if (used) reason[used - 2] = '\0';
     return stress_outcome((double)NAN, pairs, used ? "inaccurate" : "ok", reason);
-}
-
-static enum status run_case(const struct stress_cell *cell, json_t **document, struct error *error)
-{
-    struct run run;
-    struct run_result result;
-    struct watch watch = {.budget = cell->step_budget};
-    enum status status = run_resolve(&run, &cell->settings, error);
-    run.asked.progress = watch_steps;
-    run.asked.progress_context = &watch;
-    if (!status) status = run_execute(&run, &result, error);
-    if (status == STATUS_OK || status == STATUS_BROKE_DOWN) {
-        *document = judge(cell, &result, &watch);
-        run_free(&result);
-        return STATUS_OK;
-    }
-    if (status != STATUS_BAD_INPUT) return status;
-    *document = stress_outcome((double)NAN, (double)NAN, "refused", error->message);
-    return STATUS_OK;
 }
 
 /* ---- lattices ---- */
@@ -226,7 +176,7 @@ static enum status time_step(const struct stress_cell *cell, json_t **document, 
 
 enum status stress_cloud(const struct stress_cell *cell, json_t **document, struct error *error)
 {
-    if (cell->group->kind == STRESS_CLOUD) return run_case(cell, document, error);
+    if (cell->group->kind == STRESS_CLOUD) return stress_execute(cell, judge, document, error);
     return cell->group->kind == STRESS_LATTICE ? growth(cell, document, error)
                                                : time_step(cell, document, error);
 }

@@ -6,16 +6,9 @@
 
 #include "stress_outcome.h"
 
-/* Stops a run that has used up its steps. */
-struct watch {
-    uint64_t budget;
-    double first_step, last_step, last_time; /* mean time steps of the first and last 32 */
-    bool out_of_steps;
-};
-
 static bool watch_steps(void *context, double time, uint64_t steps)
 {
-    struct watch *watch = context;
+    struct stress_watch *watch = context;
     watch->last_step = (time - watch->last_time) / 32;
     if (watch->first_step <= 0) watch->first_step = watch->last_step;
     watch->last_time = time;
@@ -23,13 +16,35 @@ static bool watch_steps(void *context, double time, uint64_t steps)
     return !watch->out_of_steps;
 }
 
-static bool all_finite(const struct snapshot *s)
+static bool all_finite(const struct snapshot *s, int dim)
 {
-    const double *const fields[] = {s->x[0], s->v[0], s->rho, s->u, s->P, s->h, s->volume};
-    for (size_t f = 0; f < sizeof fields / sizeof *fields; f++)
-        for (size_t i = 0; i < s->n; i++)
-            if (!isfinite(fields[f][i])) return false;
+    for (size_t i = 0; i < s->n; i++) {
+        double sum = s->rho[i] + s->u[i] + s->P[i] + s->h[i] + s->volume[i];
+        for (int d = 0; d < dim; d++) sum += s->x[d][i] + s->v[d][i];
+        if (!isfinite(sum)) return false;
+    }
     return true;
+}
+
+json_t *stress_unsound(const struct run_result *result, const struct stress_watch *watch,
+                       double measured)
+{
+    char reason[768] = "";
+    if (result->status == STATUS_BROKE_DOWN) {
+        snprintf(reason, sizeof reason, "%s: %s", stress_outcome_breakdown(result->message),
+                 result->message);
+        return stress_outcome((double)NAN, (double)NAN, "broke_down", reason);
+    }
+    if (!all_finite(&result->snapshot, result->problem.domain.dim))
+        return stress_outcome((double)NAN, (double)NAN, "broke_down",
+                              "silent NaN: the run did not notice");
+    if (!watch->out_of_steps) return NULL;
+    const bool collapse = watch->last_step < 1e-3 * watch->first_step;
+    snprintf(reason, sizeof reason, "%s: t = %.4g of %.4g after %llu steps, dt %.2g, first %.2g",
+             collapse ? "time step collapse" : "budget", result->time,
+             settings_real(&result->settings, SETTING_t_end),
+             (unsigned long long)result->cost.steps, watch->last_step, watch->first_step);
+    return stress_outcome((double)NAN, measured, collapse ? "broke_down" : "inaccurate", reason);
 }
 
 /* Mean of the exact density over the window. */
@@ -48,31 +63,15 @@ static double mean_density(const struct run_result *result)
 }
 
 static json_t *judge_run(const struct stress_cell *cell, const struct run_result *result,
-                         const struct watch *watch)
+                         const struct stress_watch *watch)
 {
     char reason[768] = "";
     const bool drift = cell->group->kind == STRESS_DRIFT;
     const double error = result->errors[FIELD_DENSITY].l1 / mean_density(result);
     const double measured = drift ? result->energy : error;
     const size_t crossed = result->crossed;
-    if (result->status == STATUS_BROKE_DOWN) {
-        snprintf(reason, sizeof reason, "%s: %s", stress_outcome_breakdown(result->message),
-                 result->message);
-        return stress_outcome((double)NAN, (double)NAN, "broke_down", reason);
-    }
-    if (!all_finite(&result->snapshot))
-        return stress_outcome((double)NAN, (double)NAN, "broke_down",
-                              "silent NaN: the run did not notice");
-    if (watch->out_of_steps) {
-        const bool collapse = watch->last_step < 1e-3 * watch->first_step;
-        snprintf(reason, sizeof reason,
-                 "%s: t = %.4g of %.4g after %llu steps, dt %.2g, first %.2g",
-                 collapse ? "time step collapse" : "budget", result->time,
-                 settings_real(&result->settings, SETTING_t_end),
-                 (unsigned long long)result->cost.steps, watch->last_step, watch->first_step);
-        return stress_outcome((double)NAN, measured, collapse ? "broke_down" : "inaccurate",
-                              reason);
-    }
+    json_t *unsound = stress_unsound(result, watch, measured);
+    if (unsound) return unsound;
     const double momentum_bound = 1e-9, energy_bound = drift ? cell->group->bound : 0.05;
     int used = 0;
     if (!(measured <= cell->group->bound))
@@ -97,21 +96,27 @@ static json_t *judge_run(const struct stress_cell *cell, const struct run_result
     return stress_outcome((double)NAN, measured, good ? "ok" : "inaccurate", reason);
 }
 
-enum status stress_run(const struct stress_cell *cell, json_t **document, struct error *error)
+enum status stress_execute(const struct stress_cell *cell, stress_judge_run *judge,
+                           json_t **document, struct error *error)
 {
     struct run run;
     struct run_result result;
-    struct watch watch = {.budget = cell->step_budget};
+    struct stress_watch watch = {.budget = cell->step_budget};
     enum status status = run_resolve(&run, &cell->settings, error);
     run.asked.progress = watch_steps;
     run.asked.progress_context = &watch;
     if (!status) status = run_execute(&run, &result, error);
     if (status == STATUS_OK || status == STATUS_BROKE_DOWN) {
-        *document = judge_run(cell, &result, &watch);
+        *document = judge(cell, &result, &watch);
         run_free(&result);
         return STATUS_OK;
     }
     if (status != STATUS_BAD_INPUT) return status;
     *document = stress_outcome((double)NAN, (double)NAN, "refused", error->message);
     return STATUS_OK;
+}
+
+enum status stress_run(const struct stress_cell *cell, json_t **document, struct error *error)
+{
+    return stress_execute(cell, judge_run, document, error);
 }
