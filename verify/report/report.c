@@ -293,6 +293,14 @@ static void add_trouble(json_t *results, const char *name, const char *message)
     json_array_append_new(list, json_pack("{s:s, s:s}", "name", name, "message", message));
 }
 
+static json_t *run_document(const struct report *report, const struct report_piece *piece,
+                            const struct pool_job *job)
+{
+    json_t *document = json_copy(job->document);
+    describe_run(&report->cases[piece->case_number], piece->scheme, document);
+    return document;
+}
+
 static void add_documents(struct report *report, json_t *results)
 {
     json_t *runs = json_array(), *kernels = json_array(), *bench = json_array(), *verify = NULL;
@@ -305,8 +313,8 @@ static void add_documents(struct report *report, json_t *results)
         }
         switch (piece->kind) {
         case REPORT_RUN:
-            describe_run(&report->cases[piece->case_number], piece->scheme, job->document);
-            json_array_append(runs, job->document);
+            /* a copy: schemes that come to the same settings share the job */
+            json_array_append_new(runs, run_document(report, piece, job));
             break;
         case REPORT_KERNEL:
             json_array_append(kernels, job->document);

@@ -34,9 +34,9 @@ struct pool {
     struct pool_job *jobs;
     size_t count, room;
     json_t *numbers; /* of jobs, by their keys */
-    size_t found;   /* in the cache */
-    size_t damaged; /* were in the cache, but not whole: computed again */
-    char note[512]; /* "", or why entries could not be kept */
+    size_t found;    /* in the cache */
+    size_t damaged;  /* were in the cache, but not whole: computed again */
+    char note[512];  /* "", or why entries could not be kept */
 };
 
 /* done of total jobs; share: of the work that was to be done, 0..1. Called several times a second.
@@ -59,7 +59,8 @@ struct pool_settings {
 };
 
 /* Adds a job (name and key are copied) and returns its number, (size_t)-1 without memory. One whose
- * key is there already is that job: nothing is computed twice. */
+ * key is there already is that job: nothing is computed twice, and who changes its document copies
+ * it first. */
 size_t pool_add(struct pool *pool, const char *name, const char *key, double weight,
                 pool_compute *compute, const void *context);
 
