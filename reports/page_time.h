@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Conservation through time: momentum and energy of the runs of a case against their start.
- * Internal to pages. */
+ * Runs of a case through time: momentum, angular momentum and energy against their start; how
+ * regular their particles stand. Internal to pages. */
 #ifndef SPHPROOF_PAGE_TIME_H
 #define SPHPROOF_PAGE_TIME_H
 

@@ -55,6 +55,10 @@ static const struct reading_rule rules[] = {
     {"regions", "l1", 0, READING_PART, 1e-2, 1e-13},
     {"regions", "*", OUT},
     {"conservation", "*", 0, READING_ERROR, 0.1, 1e-12},
+    {"regularity", "density", 0, READING_PART, 0.1, 1e-12},
+    {"regularity", "gradient", 0, READING_PART, 0.1, 1e-12},
+    {"regularity", "spread", 0, READING_PART, 0.1, 1e-12},
+    {"regularity", "*", OUT}, /* nearest: better is neither more nor less; pairs are few */
     {"floors", "density", 0, READING_CHECK, 0, 1e-13},
     {"floors", "gradient", 0, READING_CHECK, 0, 1e-13},
     {"floors", "*", OUT},

@@ -32,7 +32,7 @@ static enum status compute_run(const struct report_piece *piece, json_t **docume
         json_object_set_new(*document, "profile",
                             piece->settings.file.dimension > 1 ? cloud_profile_json(&result)
                                                                : profile_json(&result));
-    json_object_set_new(*document, "through_time", trace_json(&trace));
+    json_object_set_new(*document, "through_time", trace_json(&trace, run.asked.file.dimension));
     run_free(&result);
     return status;
 }

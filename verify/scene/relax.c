@@ -9,6 +9,7 @@
 
 #include "grid.h"
 #include "kernel.h"
+#include "regularity.h"
 
 enum { SWEEPS = 60 };
 static const double reach = 2.5;                      /* spacings */
@@ -154,34 +155,21 @@ enum status relax_points(const struct relax_room *room, size_t n, double *const 
 enum status relax_measure(const struct domain *box, size_t n, const double *const x[3],
                           const double *volume, struct relax_quality *quality, struct error *error)
 {
-    struct cloud cloud;
     struct kernel kernel;
-    const int dim = box->dim;
-    double *const places[3] = {(double *)x[0], (double *)x[1], (double *)x[2]};
-    double density = 0, gradient = 0;
-    if (kernel_select(&kernel, "wendland_c4", 0, error)) return error->status;
-    enum status status = cloud_make(&cloud, box, n, places, error);
-    for (size_t i = 0; !status && i < n; i++) cloud.width[i] = judge_eta * root(volume[i], dim);
-    if (!status) status = find(&cloud, error);
-    for (size_t slot = 0; !status && slot < n; slot++) {
-        const struct grid_list *list = &grid_lists(cloud.grid)[slot];
-        const uint32_t *order = grid_order(cloud.grid);
-        const double h = cloud.width[order[slot]];
-        double sum = volume[order[slot]] * kernel_value(&kernel, 0, h, dim), to[3] = {0};
-        for (int32_t k = 0; k < list->count; k++) {
-            const int32_t other = list->slots[k];
-            double delta[3];
-            if ((size_t)other == slot || (size_t)other >= n) continue;
-            const double r = step_to(&cloud, slot, other, delta), V = volume[order[other]];
-            if (!(r < h)) continue;
-            sum += V * kernel_value(&kernel, r, h, dim);
-            for (int d = 0; d < dim && r > 0; d++)
-                to[d] += V * h * kernel_dr(&kernel, r, h, dim) * delta[d] / r;
-        }
-        density += (sum - 1) * (sum - 1);
-        for (int d = 0; d < dim; d++) gradient += to[d] * to[d];
-    }
-    *quality = (struct relax_quality){sqrt(density / (double)n), sqrt(gradient / (double)n)};
-    cloud_free(&cloud);
+    struct regularity found;
+    double *width = malloc(n * sizeof *width);
+    if (!width) return error_set(error, STATUS_ENVIRONMENT, "no memory for %zu points", n);
+    for (size_t i = 0; i < n; i++) width[i] = judge_eta * root(volume[i], box->dim);
+    const struct regularity_cloud cloud = {.box = *box,
+                                           .periodic = {true, true, true},
+                                           .n = n,
+                                           .x = {x[0], x[1], x[2]},
+                                           .volume = volume,
+                                           .h = width,
+                                           .kernel = &kernel};
+    enum status status = kernel_select(&kernel, "wendland_c4", 0, error);
+    if (!status) status = regularity_measure(&cloud, &found, error);
+    if (!status) *quality = (struct relax_quality){found.density, found.gradient};
+    free(width);
     return status;
 }

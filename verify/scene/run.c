@@ -403,12 +403,23 @@ static void keep_trace(const struct watch *watch, double time)
     trace_add(watch->run->asked.trace, time, &sums);
 }
 
+static void keep_look(const struct watch *watch, double time)
+{
+    struct snapshot seen;
+    simulation_snapshot(watch->simulation, &seen);
+    const struct regularity regularity =
+        regularity_of(&watch->run->problem, &watch->run->scheme.kernel, &seen);
+    trace_see(watch->run->asked.trace, time, &regularity);
+}
+
 static bool after_step(void *context, double time, uint64_t steps)
 {
     enum { STEPS_BETWEEN = 32 };
     const struct watch *watch = context;
     const struct run_settings *settings = &watch->run->asked;
+    const double t_end = settings_real(&watch->run->settings, SETTING_t_end);
     if (settings->trace && trace_wants(settings->trace, steps)) keep_trace(watch, time);
+    if (settings->trace && trace_looks(settings->trace, time, t_end)) keep_look(watch, time);
     if (steps % STEPS_BETWEEN || !settings->progress) return true;
     return settings->progress(settings->progress_context, time, steps);
 }
@@ -451,12 +462,18 @@ static enum status simulate(const struct run *run, struct run_result *result,
     }
     struct watch watch = {run, simulation};
     take_sums(run, simulation, &outcome.start);
-    if (asked->trace) keep_trace(&watch, 0);
+    if (asked->trace) {
+        keep_trace(&watch, 0);
+        keep_look(&watch, 0);
+    }
     outcome.status = steps(&watch, simulation, result, scene.t_end, &outcome.reason);
     simulation_cost(simulation, &result->cost);
     take_sums(run, simulation, &outcome.end);
     simulation_snapshot(simulation, &outcome.snapshot);
-    if (asked->trace) trace_add(asked->trace, outcome.snapshot.time, &outcome.end);
+    if (asked->trace) {
+        trace_add(asked->trace, outcome.snapshot.time, &outcome.end);
+        keep_look(&watch, outcome.snapshot.time);
+    }
     status = finish(result, &outcome, error);
     simulation_destroy(simulation); /* its memory serves for the errors */
     return status ? status : measure_errors(result, error);
@@ -490,6 +507,7 @@ enum status run_execute(const struct run *run, struct run_result *result, struct
         return status;
     }
     measure_functionals(result);
+    result->regularity = regularity_of(&result->problem, &result->scheme.kernel, &result->snapshot);
     result->peak_rss = peak_rss();
     if (result->status == STATUS_BROKE_DOWN)
         error_set(error, STATUS_BROKE_DOWN, "%s", result->message);

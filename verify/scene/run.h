@@ -12,6 +12,7 @@
 #include "growth.h"
 #include "norm.h"
 #include "problem.h"
+#include "regularity.h"
 #include "relax.h"
 #include "settings.h"
 #include "simulation.h"
@@ -29,7 +30,7 @@ struct run_settings {
     bool plain;                    /* by plain.c, not by the solver: the baseline of bench */
     simulation_progress *progress; /* called every 32 steps; may be NULL */
     void *progress_context;
-    struct trace *trace; /* {0}: gets conservation through time; NULL: nobody asks */
+    struct trace *trace; /* {0}: gets what happens through time; NULL: nobody asks */
 };
 
 /* A run with every choice made: no `auto` is left, the problem is solved. Its key, its plan and its
@@ -60,6 +61,7 @@ struct run_result {
                                     in 2D and 3D: |v - exact| */
     struct norms azimuthal, radial; /* of the velocity of a circular flow */
     double binned_density_l1;       /* in 1D */
+    struct regularity regularity;   /* of the final state, with the scheme's kernel */
     struct relax_quality start;     /* of a glass; NaN: it is none */
     size_t crossed;       /* neighbours of the start that are not next to each other any more */
     double spacing, h;    /* (box/n)^(1/d); mean smoothing length in the window, by volume */

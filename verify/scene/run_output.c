@@ -113,6 +113,7 @@ void run_add_json(const struct run_settings *settings, const struct run_result *
     if (broke_down) json_object_set_new(document, "message", json_string(result->message));
     json_object_set_new(document, "errors", run_errors_json(result));
     json_object_set_new(document, "conservation", conservation_json(result));
+    json_object_set_new(document, "regularity", regularity_json(&result->regularity));
     json_object_set_new(document, "cost", cost_json(result));
     json_object_set_new(document, "functionals", run_functionals_json(result));
     json_t *measured = json_array();

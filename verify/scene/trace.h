@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Conservation through time: sums over all particles after steps of a run, thinned evenly so that
- * any number of steps fits. */
+ * any number of steps fits; and how regular particles stand, at a few even times. */
 #ifndef SPHPROOF_TRACE_H
 #define SPHPROOF_TRACE_H
 
@@ -9,9 +9,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "regularity.h"
 #include "simulation.h"
 
-enum { TRACE_MAX = 128 };
+enum { TRACE_MAX = 128, TRACE_LOOKS = 16 };
 
 /* Begins as {0}. */
 struct trace {
@@ -19,6 +20,9 @@ struct trace {
     uint64_t stride; /* steps between two entries; a power of two */
     double time[TRACE_MAX + 1];
     struct conservation sums[TRACE_MAX + 1]; /* the first is the start */
+    size_t looks;
+    double looked[TRACE_LOOKS + 2]; /* times: start, first steps at or after even ones, end */
+    struct regularity seen[TRACE_LOOKS + 2];
 };
 
 /* Differences from the start, relative and >= 0: of mass and energy to their start; momentum in
@@ -34,7 +38,12 @@ struct trace_drift trace_drift(const struct conservation *start, const struct co
 bool trace_wants(const struct trace *trace, uint64_t step);
 void trace_add(struct trace *trace, double time, const struct conservation *sums);
 
-/* {"time", "mass", "momentum", "energy": arrays of the drift}. New reference. */
-json_t *trace_json(const struct trace *trace);
+/* Is regularity to be seen at this time of a run to t_end? The start and the end always are. */
+bool trace_looks(const struct trace *trace, double time, double t_end);
+void trace_see(struct trace *trace, double time, const struct regularity *regularity);
+
+/* {"time", "mass", "momentum", "angular_momentum" (null in 1D), "energy": arrays of the drift;
+ * "regularity": {"time", and the figures of regularity_json}}. New reference. */
+json_t *trace_json(const struct trace *trace, int dim);
 
 #endif

@@ -55,6 +55,18 @@ for name in plots:
 subprocess.run(["gnuplot", plots[0] + ".gp"], cwd=os.path.join(folder, "plots"), check=True)
 expect("a plot drawn again:", "<svg" in read("plots", plots[0] + ".svg"))
 
+for run in results["runs"]:
+    through, end = run["through_time"], run["regularity"]
+    seen = through["regularity"]
+    expect("times at which regularity is seen:", seen["time"][0] == 0 and seen["time"][-1] == run["time"]
+           and 3 <= len(seen["time"]) <= 18, (run["case"], seen["time"]))
+    for figure, value in end.items():
+        expect("the end of %s:" % figure, value == seen[figure][-1] or abs(value - seen[figure][-1]) <= 1e-9 * abs(value),
+               (run["case"], value, seen[figure]))
+    turning = run["conservation"]["angular_momentum"]
+    expect("angular momentum through time:", turning is None if through["angular_momentum"] is None
+           else turning == through["angular_momentum"][-1], run["case"])
+
 commands = [d["reproduce"] for d in results["runs"] + results["studies"] + results["kernels"]]
 expect("commands of the page:", len(commands) > 50, len(commands))
 for command in commands:

@@ -17,7 +17,8 @@ static const char *const results_text =
     "{'schema': 'sphproof/1', 'command': 'report', 'mode': 'quick', 'version': '1', 'git': 'abc',"
     "'compiler': 'gcc', 'flags': '-O3', 'date': '2001-02-03', 'machine': {'cores': 2},"
     "'runs': [{'through_time': {'time': [0, 0.1, 0.2], 'momentum': [0, 1e-16, 2e-16], 'energy': [0,"
-    " 0, 1e-9]}, 'case': 'sod', 'title': 'a <b> & c', 'label': 'ia', 'reproduce': 'sphproof run "
+    " 0, 1e-9], 'regularity': {'time': [0, 0.2], 'spread': [0, 0.1], 'paired': [0, 0]}}, 'case': "
+    "'sod', 'title': 'a <b> & c', 'label': 'ia', 'reproduce': 'sphproof run "
     "sod',"
     " 'n': 4, 'status': 'ok', 'errors': {'density': {'l1_cut': 0.00461}}, 'profile': {'x': [0, 1, "
     "2],"
@@ -116,7 +117,7 @@ static void judge_page(json_t *results, const char *const *contents, size_t n)
     for (size_t k = 0; k < n; k++)
         if (!strstr(page.html, contents[k])) fail_msg("the page lacks: %s", contents[k]);
     assert_int_equal(page.plots.file_count,
-                     json_array_size(json_object_get(results, "runs")) ? 12 : 0);
+                     json_array_size(json_object_get(results, "runs")) ? 14 : 0);
     page_free(&page);
     json_decref(results);
 }
@@ -180,6 +181,8 @@ static void folded_cases(void **state)
     /* a mean says what one run may be off it, where that is much */
     assert_non_null(strstr(good, " ± 15 %</td>"));
     assert_null(strstr(good, " ± 2 %</td>"));
+    assert_non_null(strstr(good, "plots/sod-conservation.dat"));
+    assert_non_null(strstr(good, "plots/sod-regularity.dat"));
     assert_non_null(strstr(good, "Means over 9 runs"));
     results = sound();
     json_t *run = json_array_get(json_object_get(results, "runs"), 0);
@@ -359,7 +362,7 @@ static void page_without_gnuplot(void **state)
     setenv("PATH", path, 1);
     free(path);
     assert_true(made);
-    assert_int_equal(page.plots.missing, 6);
+    assert_int_equal(page.plots.missing, 7);
     assert_non_null(strstr(page.plots.message, "gnuplot"));
     assert_null(strstr(page.html, "<svg"));
     assert_non_null(strstr(page.html, "4.61e-3"));

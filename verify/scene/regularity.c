@@ -1,0 +1,218 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "regularity.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "grid.h"
+#include "result.h"
+
+/* Sums over all points, as they come. */
+struct sums {
+    const struct regularity_cloud *cloud;
+    size_t whole; /* points whose neighbourhood is in the box */
+    double distance, squares, density, gradient;
+    size_t paired;
+};
+
+/* One point, as its neighbours come. */
+struct place {
+    size_t i;
+    double nearest, sum, to[3];
+};
+
+static struct place place_of(const struct regularity_cloud *cloud, size_t i, double widest)
+{
+    const double self = kernel_value(cloud->kernel, 0, cloud->h[i], cloud->box.dim);
+    return (struct place){.i = i, .nearest = widest, .sum = cloud->volume[i] * self};
+}
+
+/* delta: from the neighbour j to the place, its nearest image. */
+static void see(const struct regularity_cloud *cloud, struct place *place, size_t j,
+                const double delta[3])
+{
+    const int dim = cloud->box.dim;
+    const double h = cloud->h[place->i], V = cloud->volume[j];
+    double square = 0;
+    for (int d = 0; d < dim; d++) square += delta[d] * delta[d];
+    const double r = sqrt(square);
+    place->nearest = fmin(place->nearest, r);
+    if (!(r < h)) return;
+    place->sum += V * kernel_value(cloud->kernel, r, h, dim);
+    for (int d = 0; d < dim && r > 0; d++)
+        place->to[d] += V * h * kernel_dr(cloud->kernel, r, h, dim) * delta[d] / r;
+}
+
+static bool is_whole(const struct regularity_cloud *cloud, size_t i)
+{
+    for (int d = 0; d < cloud->box.dim; d++)
+        if (!cloud->periodic[d] && !(cloud->x[d][i] - cloud->box.lo[d] >= cloud->h[i] &&
+                                     cloud->box.hi[d] - cloud->x[d][i] >= cloud->h[i]))
+            return false;
+    return true;
+}
+
+static void add(struct sums *sums, const struct place *place)
+{
+    const struct regularity_cloud *cloud = sums->cloud;
+    const int dim = cloud->box.dim;
+    const double distance = place->nearest / pow(cloud->volume[place->i], 1. / dim);
+    sums->distance += distance;
+    sums->squares += distance * distance;
+    sums->paired += distance < 0.5;
+    if (!is_whole(cloud, place->i)) return;
+    sums->whole++;
+    sums->density += (place->sum - 1) * (place->sum - 1);
+    for (int d = 0; d < dim; d++) sums->gradient += place->to[d] * place->to[d];
+}
+
+/* ---- neighbours in 2D and 3D ---- */
+
+static void add_slot(struct sums *sums, const struct grid *grid, size_t slot, double widest)
+{
+    const struct regularity_cloud *cloud = sums->cloud;
+    const struct grid_list *list = &grid_lists(grid)[slot];
+    const double(*position)[4] = grid_positions(grid);
+    struct place place = place_of(cloud, grid_order(grid)[slot], widest);
+    for (int32_t k = 0; k < list->count; k++) {
+        const size_t other = (size_t)list->slots[k];
+        double delta[3];
+        if (other == slot || other >= cloud->n) continue;
+        for (int d = 0; d < cloud->box.dim; d++) {
+            const double side = grid_side(grid, d);
+            delta[d] = position[slot][d] - position[other][d];
+            if (side > 0) delta[d] -= side * round(delta[d] / side);
+        }
+        see(cloud, &place, grid_order(grid)[other], delta);
+    }
+    add(sums, &place);
+}
+
+/* Points are awake a block at a time, so that there are never the lists of all. */
+static enum status walk_blocks(struct sums *sums, struct grid *grid, unsigned char *asleep,
+                               double widest, struct error *error)
+{
+    enum { BLOCK = 65536 };
+    const struct regularity_cloud *cloud = sums->cloud;
+    enum status status = STATUS_OK;
+    for (size_t first = 0; !status && first < cloud->n; first += BLOCK) {
+        for (size_t i = 0; i < cloud->n; i++) asleep[i] = i < first || i - first >= BLOCK;
+        status = grid_search(grid, cloud->n, cloud->n, cloud->x, cloud->h, asleep, error);
+        for (size_t slot = 0; !status && slot < cloud->n; slot++)
+            if (!asleep[grid_order(grid)[slot]]) add_slot(sums, grid, slot, widest);
+    }
+    return status;
+}
+
+static enum status walk_grid(struct sums *sums, double widest, struct error *error)
+{
+    const struct regularity_cloud *cloud = sums->cloud;
+    struct grid_box box = {.dim = cloud->box.dim};
+    for (int d = 0; d < box.dim; d++) {
+        box.lo[d] = cloud->box.lo[d];
+        box.hi[d] = cloud->box.hi[d];
+        box.periodic[d] = cloud->periodic[d];
+    }
+    struct grid *grid = grid_create(&box, cloud->n, 1);
+    unsigned char *asleep = malloc(cloud->n);
+    const enum status status =
+        grid && asleep ? walk_blocks(sums, grid, asleep, widest, error)
+                       : error_set(error, STATUS_ENVIRONMENT, "no memory for %zu points", cloud->n);
+    free(asleep);
+    grid_destroy(grid);
+    return status;
+}
+
+/* ---- neighbours in 1D ---- */
+
+struct stand {
+    double x;
+    size_t i;
+};
+
+static int by_place(const void *a, const void *b)
+{
+    const double p = ((const struct stand *)a)->x, q = ((const struct stand *)b)->x;
+    return (p > q) - (p < q);
+}
+
+/* Those on one side of place k, out to its h; at least the next one. */
+static void walk_side(const struct regularity_cloud *cloud, const struct stand *row, size_t k,
+                      int step, struct place *place)
+{
+    const double side = domain_length(&cloud->box, 0);
+    const size_t n = cloud->n;
+    for (size_t away = 1; away < n; away++) {
+        const bool wraps = step > 0 ? k + away >= n : away > k;
+        if (wraps && !cloud->periodic[0]) return;
+        const size_t other = step > 0 ? (k + away) % n : (k + n - away) % n;
+        const double delta[3] = {row[k].x - row[other].x - (wraps ? step * side : 0)};
+        see(cloud, place, row[other].i, delta);
+        if (!(fabs(delta[0]) < cloud->h[place->i])) return;
+    }
+}
+
+static enum status walk_line(struct sums *sums, double widest, struct error *error)
+{
+    const struct regularity_cloud *cloud = sums->cloud;
+    struct stand *row = malloc(cloud->n * sizeof *row);
+    if (!row) return error_set(error, STATUS_ENVIRONMENT, "no memory for %zu points", cloud->n);
+    const double lo = cloud->box.lo[0], side = domain_length(&cloud->box, 0);
+    for (size_t i = 0; i < cloud->n; i++) {
+        const double x = cloud->x[0][i];
+        row[i] = (struct stand){cloud->periodic[0] ? x - side * floor((x - lo) / side) : x, i};
+    }
+    qsort(row, cloud->n, sizeof *row, by_place);
+    for (size_t k = 0; k < cloud->n; k++) {
+        struct place place = place_of(cloud, row[k].i, widest);
+        walk_side(cloud, row, k, 1, &place);
+        walk_side(cloud, row, k, -1, &place);
+        add(sums, &place);
+    }
+    free(row);
+    return STATUS_OK;
+}
+
+enum status regularity_measure(const struct regularity_cloud *cloud, struct regularity *regularity,
+                               struct error *error)
+{
+    struct sums sums = {.cloud = cloud};
+    double widest = 0;
+    for (size_t i = 0; i < cloud->n; i++) widest = fmax(widest, cloud->h[i]);
+    const enum status status =
+        cloud->box.dim == 1 ? walk_line(&sums, widest, error) : walk_grid(&sums, widest, error);
+    if (status) return status;
+    const double n = (double)cloud->n, whole = (double)sums.whole, mean = sums.distance / n;
+    *regularity = (struct regularity){
+        .nearest = mean,
+        .spread = sqrt(fmax(0, sums.squares / n - mean * mean)) / mean,
+        .paired = (double)sums.paired / n,
+        .density = sqrt(sums.density / whole),
+        .gradient = sqrt(sums.gradient / whole),
+    };
+    return STATUS_OK;
+}
+
+struct regularity regularity_of(const struct prepared *p, const struct kernel *kernel,
+                                const struct snapshot *s)
+{
+    struct regularity_cloud cloud = {.box = p->domain,
+                                     .n = s->n,
+                                     .x = {s->x[0], s->x[1], s->x[2]},
+                                     .volume = s->volume,
+                                     .h = s->h,
+                                     .kernel = kernel};
+    struct regularity found;
+    struct error error;
+    for (int d = 0; d < p->domain.dim; d++) cloud.periodic[d] = p->boundary[d] == BOUNDARY_PERIODIC;
+    if (s->n && !regularity_measure(&cloud, &found, &error)) return found;
+    return (struct regularity){(double)NAN, (double)NAN, (double)NAN, (double)NAN, (double)NAN};
+}
+
+json_t *regularity_json(const struct regularity *regularity)
+{
+    return json_pack(
+        "{s:o, s:o, s:o, s:o, s:o}", "nearest", result_number(regularity->nearest), "spread",
+        result_number(regularity->spread), "paired", result_number(regularity->paired), "density",
+        result_number(regularity->density), "gradient", result_number(regularity->gradient));
+}
