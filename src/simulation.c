@@ -340,11 +340,6 @@ void simulation_rates(const struct simulation *simulation, struct rates *rates)
                             .time_step = simulation->time_step};
 }
 
-void simulation_describe(const struct simulation *simulation, double *neighbours, double *condition)
-{
-    simulation->plan.sums->describe(simulation, neighbours, condition);
-}
-
 /* sum r x p, sum |r x p| and sum |r| m c. */
 static void add_turning(const struct simulation *simulation, struct conservation *sums)
 {

@@ -41,8 +41,8 @@ struct simulation_cost {
     double wall_s, cpu_s; /* set-up of the particles to t_end; cpu_s: all threads */
     uint64_t steps, particle_updates, pair_interactions, skipped_particle_updates;
     /* particles whose moment matrix could not be used (CONVENTIONS eq. 4.7), summed over the
-     * evaluations: all their pairs used the standard gradient */
-    uint64_t fallen_back;
+     * evaluations, and the most of one: all their pairs used the standard gradient */
+    uint64_t fallen_back, fallen_back_most;
 };
 
 /* The state, for reading: n values each, sorted by position where dim = 1; positions wrapped into
@@ -89,11 +89,6 @@ enum status simulation_run(struct simulation *simulation, double t_end,
                            simulation_progress *progress, void *context, struct error *error);
 void simulation_snapshot(const struct simulation *simulation, struct snapshot *snapshot);
 void simulation_rates(const struct simulation *simulation, struct rates *rates);
-/* In the order of the snapshot, right after simulation_create: how many particles are within h of
- * each, itself and images included; condition number of its moment matrix in the 2-norm, NaN where
- * the gradient has none, beyond 1000 where the standard gradient stands in for it. */
-void simulation_describe(const struct simulation *simulation, double *neighbours,
-                         double *condition);
 void simulation_conservation(const struct simulation *simulation, struct conservation *sums);
 void simulation_cost(const struct simulation *simulation, struct simulation_cost *cost);
 void simulation_destroy(struct simulation *simulation);

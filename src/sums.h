@@ -12,6 +12,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "description.h"
 #include "status.h"
 
 struct simulation;
@@ -48,9 +49,8 @@ struct sums {
      * alpha jumps up to and decays to; after the step, alpha. */
     void (*find_switch)(struct simulation *simulation);
     void (*apply_switch)(struct simulation *simulation, double dt);
-    /* Of each particle, after the rates: how many are within h of it, itself and images included;
-     * condition number of its moment matrix in the 2-norm, NaN where its gradient has none. */
-    void (*describe)(const struct simulation *simulation, double *neighbours, double *condition);
+    /* Of each particle, after the matrices; see description_each. */
+    void (*describe)(const struct simulation *simulation, description_visit *visit, void *context);
 
     /* Who sleeps: from the first rates, and after every step. Fill simulation->sleep. */
     enum status (*sleep_begin)(struct simulation *simulation, struct error *error);

@@ -196,42 +196,62 @@ enum status cells_arrange(struct cells *cells, const struct cells_fields *fields
     return STATUS_OK;
 }
 
-/* x_b - x_a along an axis, of the nearest image. */
-static double separation(const struct cells *cells, size_t a, size_t b, int axis)
+/* From slot a to slot b, the nearest image. */
+static double separate(const struct cells *cells, size_t a, size_t b, double x[3])
 {
-    const double side = grid_side(cells->grid, axis);
-    const double d = grid_positions(cells->grid)[b][axis] - grid_positions(cells->grid)[a][axis];
-    return side > 0 ? d - side * round(d / side) : d;
+    const double(*place)[4] = grid_positions(cells->grid);
+    double r2 = 0;
+    for (int k = 0; k < cells->method.box.dim; k++) {
+        const double side = grid_side(cells->grid, k);
+        x[k] = place[b][k] - place[a][k];
+        if (side > 0) x[k] -= side * round(x[k] / side);
+        r2 += x[k] * x[k];
+    }
+    return r2;
 }
 
-static double condition_of(const struct cells *cells, const struct cells_fields *fields, size_t i)
+static double condition_of(const struct cells *cells, const struct cells_fields *fields, size_t i,
+                           double C[CELLS_SQUARE])
 {
     const int dim = cells->method.box.dim;
-    double inverse[CELLS_SQUARE];
     if (cells->method.gradient == GRADIENT_STANDARD) return nan("");
-    if (!(fields->condition[i] <= cells->method.worst_condition)) return fields->condition[i];
     for (int a = 0; a < dim; a++)
-        for (int b = 0; b < dim; b++)
-            inverse[a * dim + b] = fields->matrix[symmetric_at(dim, a, b)][i];
-    return matrix_condition(dim, inverse); /* that of the matrix, too */
+        for (int b = 0; b < dim; b++) C[a * dim + b] = fields->matrix[symmetric_at(dim, a, b)][i];
+    if (!(fields->condition[i] <= cells->method.worst_condition)) return fields->condition[i];
+    return matrix_condition(dim, C); /* that of the matrix, too */
+}
+
+static struct description describe(const struct cells *cells, const struct cells_fields *fields,
+                                   size_t slot, size_t i)
+{
+    const int dim = cells->method.box.dim;
+    const struct grid_list *list = &grid_lists(cells->grid)[slot];
+    double C[CELLS_SQUARE], cotangent = HUGE_VAL;
+    struct description of = {.neighbours = 1, .condition = condition_of(cells, fields, i, C)};
+    const bool used = of.condition <= cells->method.worst_condition;
+    for (int32_t k = 0; k < list->count; k++) {
+        double x[3], Cx[3];
+        const double r2 = separate(cells, slot, (size_t)list->slots[k], x);
+        if (!(sqrt(r2) * fields->h_inverse[i] < 1)) continue;
+        of.neighbours++;
+        if (!used) continue;
+        for (int a = 0; a < dim; a++) {
+            Cx[a] = 0;
+            for (int b = 0; b < dim; b++) Cx[a] += C[a * dim + b] * x[b];
+        }
+        cotangent = fmin(cotangent, description_cotangent(dim, Cx, x));
+    }
+    of.angle = used && of.neighbours > 1 ? description_angle(cotangent) : nan("");
+    return of;
 }
 
 void cells_describe(const struct cells *cells, const struct cells_fields *fields,
-                    double *neighbours, double *condition)
+                    description_visit *visit, void *context)
 {
     for (size_t slot = 0; slot < cells->points; slot++) {
         const size_t i = grid_order(cells->grid)[slot];
-        const struct grid_list *list = &grid_lists(cells->grid)[slot];
         if (i >= fields->n) continue;
-        neighbours[i] = 1;
-        condition[i] = condition_of(cells, fields, i);
-        for (int32_t k = 0; k < list->count; k++) {
-            double r2 = 0;
-            for (int a = 0; a < cells->method.box.dim; a++) {
-                const double d = separation(cells, slot, (size_t)list->slots[k], a);
-                r2 += d * d;
-            }
-            neighbours[i] += sqrt(r2) * fields->h_inverse[i] < 1;
-        }
+        const struct description of = describe(cells, fields, slot, i);
+        visit(context, i, &of);
     }
 }

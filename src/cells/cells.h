@@ -12,6 +12,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "description.h"
 #include "grid.h"
 #include "kernel.h"
 #include "pair.h"
@@ -113,10 +114,9 @@ void cells_switch(struct cells *cells, const struct cells_fields *fields);
 /* signal alone, from velocities that have changed since the forces. */
 void cells_signal(struct cells *cells, const struct cells_fields *fields);
 
-/* Of each particle: how many are within h of it, itself and images included, and the condition
- * number of its matrix in the 2-norm (gradient=standard: NaN). For reports: not a fast loop. */
+/* Visits the particles, slot by slot. */
 void cells_describe(const struct cells *cells, const struct cells_fields *fields,
-                    double *neighbours, double *condition);
+                    description_visit *visit, void *context);
 
 /* Slots of the grid: particles, and their images in walls. */
 size_t cells_points(const struct cells *cells);

@@ -18,9 +18,6 @@ enum {
 /* How far beyond a first guess the search for a root may go without a second search. */
 static const double margin = 1.1;
 
-/* Beyond this condition number of a moment matrix, in the 2-norm, its inverse points anywhere. */
-static const double worst_condition = 1e3;
-
 struct room {
     struct cells *cells;
     struct cells_fields fields;
@@ -72,7 +69,7 @@ static struct cells_method method_of(const struct simulation *simulation)
         .div_v = plan->alpha,
         .conductivity = scheme->alpha_u,
         .noise = scheme->noise,
-        .worst_condition = worst_condition,
+        .worst_condition = DESCRIPTION_CONDITION,
         .jump = plan->jump,
         .alpha_min = scheme->alpha_min,
         .alpha_max = scheme->alpha_max,
@@ -416,7 +413,10 @@ static void find_balsara(struct simulation *simulation)
 static void matrix(struct simulation *simulation)
 {
     struct room *room = room_of(simulation);
-    simulation->cost.fallen_back += cells_matrix(room->cells, &room->fields);
+    const uint64_t fallen_back = cells_matrix(room->cells, &room->fields);
+    simulation->cost.fallen_back += fallen_back;
+    if (fallen_back > simulation->cost.fallen_back_most)
+        simulation->cost.fallen_back_most = fallen_back;
     if (simulation->plan.balsara) find_balsara(simulation);
 }
 
@@ -465,10 +465,10 @@ static double signal(struct simulation *simulation)
     return rate_of_all(simulation);
 }
 
-static void describe(const struct simulation *simulation, double *neighbours, double *condition)
+static void describe(const struct simulation *simulation, description_visit *visit, void *context)
 {
     const struct room *room = room_of(simulation);
-    cells_describe(room->cells, &room->fields, neighbours, condition);
+    cells_describe(room->cells, &room->fields, visit, context);
 }
 
 /* --- sleep ------------------------------------------------------------------------------------ */

@@ -64,12 +64,16 @@ static double count_within(const struct particles *a, ptrdiff_t i, ptrdiff_t ste
 }
 
 /* A matrix of 1D is a number. */
-static void describe(const struct simulation *simulation, double *neighbours, double *condition)
+static void describe(const struct simulation *simulation, description_visit *visit, void *context)
 {
     const struct particles *a = &simulation->particles;
     for (ptrdiff_t i = 0; i < a->n; i++) {
-        neighbours[i] = 1 + count_within(a, i, -1) + count_within(a, i, 1);
-        condition[i] = simulation->plan.matrix ? 1 : nan("");
+        const struct description of = {
+            .neighbours = 1 + count_within(a, i, -1) + count_within(a, i, 1),
+            .condition = simulation->plan.matrix ? 1 : nan(""),
+            .angle = simulation->plan.matrix ? 0 : nan(""),
+        };
+        visit(context, (size_t)i, &of);
     }
 }
 

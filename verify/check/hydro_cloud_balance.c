@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "check.h"
+#include "description.h"
 #include "hydro_cloud.h"
 #include "hydro_scene.h"
 #include "worst.h"
@@ -123,12 +124,17 @@ static void judge(struct check_run *run, const struct simulation *simulation,
                   where);
 }
 
-/* How many matrices cannot be used. */
-static double count_ill(const struct simulation *simulation, size_t n)
+static void count_one(void *context, size_t particle, const struct description *of)
 {
-    double neighbours[CLOUD_MAX], condition[CLOUD_MAX], count = 0;
-    simulation_describe(simulation, neighbours, condition);
-    for (size_t i = 0; i < n; i++) count += condition[i] > 1000 ? 1 : 0;
+    (void)particle;
+    if (of->condition > 1000) ++*(double *)context;
+}
+
+/* How many matrices cannot be used. */
+static double count_ill(const struct simulation *simulation)
+{
+    double count = 0;
+    description_each(simulation, count_one, &count);
     return count;
 }
 
@@ -157,11 +163,14 @@ static void measure(struct check_run *run, const void *subject)
     judge(run, simulation, &s, where);
     if (s.state == planes && s.scheme.gradient != GRADIENT_STANDARD) {
         struct simulation_cost cost;
-        const double ill = count_ill(simulation, cloud.n);
+        const double ill = count_ill(simulation);
         simulation_cost(simulation, &cost);
         check_measure(run, !(ill > 0), 0, 0, "some matrices cannot be used, %s", where);
         check_measure(run, fabs((double)cost.fallen_back - ill), 0, 0,
                       "matrices that were not used are counted, %s", where);
+        const struct description_sums sums = description_sum(simulation);
+        check_measure(run, fabs((double)sums.fallen_back - ill), 0, 0,
+                      "and so are the sums' particles, %s", where);
     }
     simulation_destroy(simulation);
 }

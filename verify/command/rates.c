@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 
 #include "command.h"
+#include "description_output.h"
 #include "output.h"
 #include "particle_file.h"
 #include "rate_check.h"
@@ -216,26 +217,28 @@ static enum status take_request(const struct options *options, int n, char **arg
 
 static void print_table(const struct request *r, const struct rate_table *t)
 {
+    char matrix[DESCRIPTION_TEXT];
     printf("%s, %dD, %zu particles; one evaluation, code units\n", r->source, t->dim, t->n);
     if (r->widths[0]) printf("h of the snapshot: %s\n", r->widths);
     if (r->file.ignored[0]) printf("columns that are not read: %s\n", r->file.ignored);
     printf("\n%8s %13s %13s %13s", "particle", "h", "rho", "P");
     for (int a = 0; a < t->dim; a++) printf("        dp%c/dt", "xyz"[a]);
-    printf(" %13s %6s %9s\n", "dU/dt", "neighb", "condition");
+    printf(" %13s %6s %9s %6s\n", "dU/dt", "neighb", "condition", "angle");
     for (size_t i = 0; i < t->n && i < ROWS_SHOWN; i++) {
         printf("%8zu %13.6g %13.6g %13.6g", i, t->h[i], t->rho[i], t->P[i]);
         for (int a = 0; a < t->dim; a++) printf(" %13.6g", t->force[a][i]);
-        printf(" %13.6g %6.0f", t->dU[i], t->neighbours[i]);
-        if (isnan(t->condition[i]))
-            printf(" %9s\n", "");
-        else
-            printf(" %9.3g\n", t->condition[i]);
+        printf(" %13.6g %6.0f", t->dU[i], t->described[i].neighbours);
+        if (!isnan(t->described[i].condition)) printf(" %9.3g", t->described[i].condition);
+        if (!isnan(t->described[i].angle)) printf(" %6.2f", t->described[i].angle);
+        printf("\n");
     }
     if (t->n > ROWS_SHOWN)
         printf("     ... %zu more; all of them with --csv or --json\n", t->n - ROWS_SHOWN);
     printf("\nsums: force (");
     for (int a = 0; a < t->dim; a++) printf("%s%.3g", a ? ", " : "", t->sum_force[a]);
     printf("), power %.3g\n", t->power);
+    description_text(&t->matrix, t->n, matrix);
+    if (matrix[0]) printf("matrices: %s\n", matrix);
 }
 
 static void print_check(const struct rate_check *check)
@@ -278,13 +281,13 @@ static json_t *particles_json(const struct request *r, const struct rate_table *
     const double *const force[3] = {t->force[0], t->force[1], t->force[2]};
     for (size_t i = 0; i < t->n; i++)
         json_array_append_new(
-            particles,
-            json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:i, s:o}", "x",
-                      vector(t->dim, r->scene.x, i), "h", result_number(t->h[i]), "rho",
-                      result_number(t->rho[i]), "P", result_number(t->P[i]), "force",
-                      vector(t->dim, force, i), "dU", result_number(t->dU[i]), "neighbours",
-                      (int)t->neighbours[i], "condition",
-                      isnan(t->condition[i]) ? json_null() : result_number(t->condition[i])));
+            particles, json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:i, s:o, s:o}", "x",
+                                 vector(t->dim, r->scene.x, i), "h", result_number(t->h[i]), "rho",
+                                 result_number(t->rho[i]), "P", result_number(t->P[i]), "force",
+                                 vector(t->dim, force, i), "dU", result_number(t->dU[i]),
+                                 "neighbours", (int)t->described[i].neighbours, "condition",
+                                 result_number_or_null(t->described[i].condition), "angle",
+                                 result_number_or_null(t->described[i].angle)));
     return particles;
 }
 
@@ -336,6 +339,7 @@ static enum status write_json(const struct options *options, const struct reques
     json_t *content = json_pack("{s:i, s:o, s:o, s:{s:o, s:o}}", "dim", t->dim, "settings",
                                 used_settings(r), "particles", particles_json(r, t), "sums",
                                 "force", vector(t->dim, sums, 0), "power", result_number(t->power));
+    json_object_set_new(content, "matrix", description_json(&t->matrix));
     if (check->count) {
         json_object_set_new(content, "comparison", comparison_json(check));
         json_object_set_new(content, "status", json_string(check->good ? "pass" : "fail"));
@@ -396,7 +400,8 @@ const struct command command_rates = {
         "dimension. So does a snapshot (see judge). Beside the keys of the scheme and gamma it\n"
         "needs its box, unless a snapshot says it: lo and hi (one number, or one for each\n"
         "direction), boundary (periodic, open or reflecting; one word or one each), gravity. h is\n"
-        "found to 1e-14 unless h_tolerance says otherwise. With --check (a CSV file, or a snapshot\n"
+        "found to 1e-14 unless h_tolerance says otherwise. With --check (a CSV file, or a "
+        "snapshot\n"
         "with accelerations; in single precision the tolerance is 1e-5) the exit status is 1 if a\n"
         "column departs by more than the tolerance; choices of the\n"
         "scheme are then changed one by one to see which of them explains it.",

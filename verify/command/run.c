@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "command.h"
+#include "description_output.h"
 #include "output.h"
 #include "picture.h"
 #include "progress.h"
@@ -104,13 +105,20 @@ static void print_errors(const struct run_settings *settings, const struct run_r
 static void print_rest(const struct run_result *result, const struct table_style *style)
 {
     const struct simulation_cost *cost = &result->cost;
-    char turning[48] = "";
+    char turning[48] = "", matrix[DESCRIPTION_TEXT];
     if (result->problem.domain.dim > 1)
         snprintf(turning, sizeof turning, "angular momentum %.1e  ", result->angular_momentum);
     printf("\n%sconservation%s     mass %.1e  momentum %.1e  %senergy %.1e  (relative, t = %g "
            "against 0)\n",
            style->bold, style->end, result->mass, result->momentum, turning, result->energy,
            result->time);
+    description_text(&result->matrix, result->n, matrix);
+    if (result->problem.domain.dim > 1 && matrix[0])
+        printf("%smatrices%s         %s\n", style->bold, style->end, matrix);
+    if (cost->fallen_back_most > result->matrix.fallen_back)
+        printf("                 in the course of the run up to %llu particles with the standard "
+               "gradient\n",
+               (unsigned long long)cost->fallen_back_most);
     printf("%scost%s             %.4g s wall, %.4g s CPU, %llu steps, %llu particle updates (%llu "
            "skipped),\n                 %llu pair interactions, %.1f MB\n",
            style->bold, style->end, cost->wall_s, cost->cpu_s, (unsigned long long)cost->steps,

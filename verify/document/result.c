@@ -55,6 +55,11 @@ json_t *result_number(double value)
     return json_real(value);
 }
 
+json_t *result_number_or_null(double value)
+{
+    return isnan(value) ? json_null() : result_number(value);
+}
+
 char *result_text(const json_t *document)
 {
     return json_dumps(document, JSON_COMPACT | JSON_REAL_PRECISION(17));

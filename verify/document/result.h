@@ -15,6 +15,9 @@ json_t *result_new(const char *command);
  * reference. */
 json_t *result_number(double value);
 
+/* The same; null for NaN: there is none. */
+json_t *result_number_or_null(double value);
+
 /* The document as text, 17 significant digits; malloced, NULL: no memory. */
 char *result_text(const json_t *document);
 

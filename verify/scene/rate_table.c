@@ -4,24 +4,24 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { ARRAYS = 9 };
+enum { ARRAYS = 7 };
 
 static bool allocate(struct rate_table *table)
 {
     const size_t n = table->n;
     double *next = table->storage = calloc(ARRAYS * n, sizeof *next);
-    double **const arrays[ARRAYS] = {&table->h,          &table->rho,       &table->P,
-                                     &table->neighbours, &table->condition, &table->force[0],
-                                     &table->force[1],   &table->dU,        &table->force[2]};
-    if (!next) return false;
+    double **const arrays[ARRAYS] = {&table->h,        &table->rho,      &table->P,
+                                     &table->force[0], &table->force[1], &table->dU,
+                                     &table->force[2]};
+    table->described = calloc(n, sizeof *table->described);
+    if (!next || !table->described) return false;
     for (int k = 0; k < ARRAYS; k++, next += n) *arrays[k] = next;
     return true;
 }
 
 /* Puts the solver's order back into the scene's; dE = v . F + dU where it is E that is integrated.
  */
-static void take(struct rate_table *table, const struct simulation *simulation, bool total,
-                 const double *neighbours, const double *condition)
+static void take(struct rate_table *table, const struct simulation *simulation, bool total)
 {
     struct snapshot s;
     struct rates rates;
@@ -34,8 +34,6 @@ static void take(struct rate_table *table, const struct simulation *simulation, 
         table->h[i] = s.h[k];
         table->rho[i] = s.rho[k];
         table->P[i] = s.P[k];
-        table->neighbours[i] = neighbours[k];
-        table->condition[i] = condition[k];
         for (int a = 0; a < table->dim; a++) {
             table->force[a][i] = rates.force[a][k];
             force[a] += rates.force[a][k];
@@ -48,6 +46,26 @@ static void take(struct rate_table *table, const struct simulation *simulation, 
     table->power = (double)power;
 }
 
+struct describing {
+    struct description *to;
+    const size_t *id;
+};
+
+static void keep(void *context, size_t particle, const struct description *of)
+{
+    const struct describing *describing = context;
+    describing->to[describing->id[particle]] = *of;
+}
+
+static void describe(struct rate_table *table, struct simulation *simulation)
+{
+    struct snapshot s;
+    simulation_snapshot(simulation, &s);
+    struct describing describing = {table->described, s.id};
+    description_each(simulation, keep, &describing);
+    table->matrix = description_sum(simulation);
+}
+
 enum status rate_table_make(struct rate_table *table, const struct scene *scene,
                             struct error *error)
 {
@@ -55,14 +73,11 @@ enum status rate_table_make(struct rate_table *table, const struct scene *scene,
     struct simulation *simulation = NULL;
     const enum status status = simulation_create(scene, &simulation, error);
     if (status) return status;
-    double *described = malloc(2 * scene->n * sizeof *described);
-    const bool there = described && allocate(table);
+    const bool there = allocate(table);
     if (there) {
-        simulation_describe(simulation, described, described + scene->n);
-        take(table, simulation, scene->scheme.energy == ENERGY_TOTAL, described,
-             described + scene->n);
+        take(table, simulation, scene->scheme.energy == ENERGY_TOTAL);
+        describe(table, simulation);
     }
-    free(described);
     simulation_destroy(simulation);
     return there ? STATUS_OK
                  : error_set(error, STATUS_ENVIRONMENT, "no memory for %zu particles", scene->n);
@@ -71,5 +86,6 @@ enum status rate_table_make(struct rate_table *table, const struct scene *scene,
 void rate_table_free(struct rate_table *table)
 {
     free(table->storage);
+    free(table->described);
     *table = (struct rate_table){0};
 }

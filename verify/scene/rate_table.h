@@ -4,14 +4,16 @@
 #ifndef SPHPROOF_RATE_TABLE_H
 #define SPHPROOF_RATE_TABLE_H
 
+#include "description.h"
 #include "simulation.h"
 
 struct rate_table {
     int dim;
     size_t n;
     double *h, *rho, *P, *force[3], *dU; /* n each; force = dp/dt, dU/dt of U = m u */
-    double *neighbours, *condition;      /* see simulation_describe */
-    double sum_force[3], power;          /* sums; power: of the total energy */
+    struct description *described;       /* n */
+    struct description_sums matrix;
+    double sum_force[3], power; /* sums; power: of the total energy */
     double *storage;
 };
 

@@ -66,6 +66,10 @@ struct scene run_scene(const struct run *run, const struct initial *initial)
     };
 }
 
+/* Nothing is known of matrices. */
+static const struct description_sums no_matrix = {(double)NAN, (double)NAN, (double)NAN,
+                                                  (double)NAN, 0};
+
 /* How good a glass is that fills a periodic box. */
 static enum status measure_start(struct run_result *result, const struct initial *initial,
                                  struct error *error)
@@ -92,8 +96,10 @@ static enum status begin(const struct run *run, struct run_result *result, struc
 {
     const double t_end = settings_real(&run->settings, SETTING_t_end);
     enum status status;
-    *result = (struct run_result){
-        .settings = run->settings, .scheme = run->scheme, .problem = run->problem};
+    *result = (struct run_result){.settings = run->settings,
+                                  .scheme = run->scheme,
+                                  .problem = run->problem,
+                                  .matrix = no_matrix};
     *initial = (struct initial){0};
     if ((!run->asked.any_window && (status = problem_check_time(&run->problem, t_end, error))) ||
         (status = initial_create(initial, &run->problem, &run->settings, error)))
@@ -468,6 +474,7 @@ static enum status simulate(const struct run *run, struct run_result *result,
     }
     outcome.status = steps(&watch, simulation, result, scene.t_end, &outcome.reason);
     simulation_cost(simulation, &result->cost);
+    if (!outcome.status) result->matrix = description_sum(simulation);
     take_sums(run, simulation, &outcome.end);
     simulation_snapshot(simulation, &outcome.snapshot);
     if (asked->trace) {
@@ -517,8 +524,10 @@ enum status run_execute(const struct run *run, struct run_result *result, struct
 enum status run_judge(const struct run *run, const struct snapshot *snapshot,
                       struct run_result *result, struct error *error)
 {
-    *result = (struct run_result){
-        .settings = run->settings, .scheme = run->scheme, .problem = run->problem};
+    *result = (struct run_result){.settings = run->settings,
+                                  .scheme = run->scheme,
+                                  .problem = run->problem,
+                                  .matrix = no_matrix};
     result->n = snapshot->n;
     enum status status = problem_check_time(&run->problem, snapshot->time, error);
     if (!status) status = keep_snapshot(result, snapshot, error);

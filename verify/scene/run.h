@@ -9,6 +9,7 @@
 
 #include "budget.h"
 #include "cases.h"
+#include "description.h"
 #include "growth.h"
 #include "norm.h"
 #include "problem.h"
@@ -70,7 +71,8 @@ struct run_result {
      * layers and gravity */
     double mass, momentum, angular_momentum, energy;
     struct simulation_cost cost;
-    double peak_rss; /* bytes, of the process so far */
+    struct description_sums matrix; /* at time; none after a breakdown */
+    double peak_rss;                /* bytes, of the process so far */
     struct plan_line plan[RUN_PLAN_MAX];
     size_t plan_count;
     char warnings[512];

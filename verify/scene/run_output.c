@@ -4,6 +4,7 @@
 
 #include <math.h>
 
+#include "description_output.h"
 #include "judged.h"
 #include "output.h"
 #include "result.h"
@@ -64,6 +65,16 @@ static json_t *cost_json(const struct run_result *result)
                      (json_int_t)result->peak_rss);
 }
 
+/* At the end; most: of one evaluation. */
+static json_t *matrix_json(const struct run_result *result)
+{
+    json_t *matrix = description_json(&result->matrix);
+    if (json_is_object(matrix))
+        json_object_set_new(matrix, "fallen_back_most",
+                            json_integer((json_int_t)result->cost.fallen_back_most));
+    return matrix;
+}
+
 static json_t *plan_json(const struct run_result *result)
 {
     json_t *lines = json_array();
@@ -115,6 +126,7 @@ void run_add_json(const struct run_settings *settings, const struct run_result *
     json_object_set_new(document, "conservation", conservation_json(result));
     json_object_set_new(document, "regularity", regularity_json(&result->regularity));
     json_object_set_new(document, "cost", cost_json(result));
+    json_object_set_new(document, "matrix", matrix_json(result));
     json_object_set_new(document, "functionals", run_functionals_json(result));
     json_t *measured = json_array();
     const size_t count = judged_names_of(&settings->file, result, names);

@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What the neighbours of particles make of their gradients: how many there are, how well the moment
+ * matrix T of gradient=ia and gradient=corrected can be inverted, and how far C x, C = T^-1, along
+ * which two particles push, points away from x, the line between them (CONVENTIONS eqs. 4.3 to
+ * 4.7): beyond a right angle they attract. For reports, not a fast loop. */
+#ifndef SPHPROOF_DESCRIPTION_H
+#define SPHPROOF_DESCRIPTION_H
+
+#include <math.h>
+#include <stddef.h>
+
+struct simulation;
+
+/* Beyond this condition number of a moment matrix, in the 2-norm, its inverse points anywhere. */
+#define DESCRIPTION_CONDITION 1e3
+
+struct description {
+    double neighbours; /* within h, the particle itself and images included */
+    double condition;  /* of T in the 2-norm: beyond that the standard gradient stands in; NaN: the
+                          gradient needs no matrix */
+    double angle; /* largest one between C x and x of a neighbour, degrees; NaN: C is not used, or
+                     nobody is near */
+};
+
+/* particle: its place in the snapshot. */
+typedef void description_visit(void *context, size_t particle, const struct description *of);
+
+/* Of all particles, in any order, right after simulation_create; later those that sleep have lost
+ * their neighbours. */
+void description_each(const struct simulation *simulation, description_visit *visit, void *context);
+
+/* Over the particles whose matrix is used; NaN where there are none. */
+struct description_sums {
+    double condition_max, condition_mean, angle_max, angle_mean; /* degrees */
+    size_t fallen_back; /* particles whose matrix is not: their pairs use the standard gradient */
+};
+
+/* Of the present state, after simulation_create or simulation_run. */
+struct description_sums description_sum(struct simulation *simulation);
+
+/* For the sums: the angle between a and b, as its cotangent, which falls from infinity to minus
+ * infinity; infinity where one of them is 0. */
+static inline double description_cotangent(int dim, const double *a, const double *b)
+{
+    double dot = 0, cross2 = 0;
+    for (int i = 0; i < dim; i++) {
+        dot += a[i] * b[i];
+        for (int j = 0; j < i; j++) {
+            const double turn = a[i] * b[j] - a[j] * b[i];
+            cross2 += turn * turn;
+        }
+    }
+    if (cross2 > 0) return dot / sqrt(cross2);
+    return dot < 0 ? -HUGE_VAL : HUGE_VAL;
+}
+
+/* Of that, the angle in degrees. */
+static inline double description_angle(double cotangent)
+{
+    return atan2(1, cotangent) * (180 / 3.14159265358979323846);
+}
+
+#endif
