@@ -50,6 +50,16 @@ static bool coarse_suspected(const struct suspicion_subject *s)
     return s->swapped(2, names, 2, volume, values, exacts, NULL);
 }
 
+/* A field at this part of the way from its exact solution to the other's: suspected beyond 2/3. */
+static bool between_suspected(const struct suspicion_subject *s, double part)
+{
+    static const char *const names[] = {"density", "pressure"};
+    static const double volume[] = {0.25, 0.5}, rho[] = {1, 1.25}, P[] = {0.75, 1.5};
+    const double off[] = {rho[0] + part * (P[0] - rho[0]), rho[1] + part * (P[1] - rho[1])};
+    const double *const values[] = {off, P}, *const exacts[] = {rho, P};
+    return s->swapped(2, names, 2, volume, values, exacts, NULL);
+}
+
 static void measure(struct check_run *run, const void *subject)
 {
     static const struct suspicion_subject right = {suspicion_zero, suspicion_repeated,
@@ -70,6 +80,7 @@ static void measure(struct check_run *run, const void *subject)
     expect(run, s->zero(LEVELS, tiny, NULL), false, "errors of round-off");
     expect(run, s->repeated(LEVELS, repeated, NULL), true, "the same error at levels 1 and 3");
     expect(run, s->repeated(LEVELS, close, NULL), false, "errors near each other");
+    expect(run, s->repeated(2, (const double[]){0, 0}, NULL), true, "no error at two levels");
     expect(run, s->repeated(LEVELS, honest, NULL), false, "an honest ladder");
     expect(run, s->idle("eta", LEVELS, honest, honest, NULL), true, "a setting without effect");
     expect(run, s->idle("eta", LEVELS, honest, close, NULL), false, "a setting with some effect");
@@ -77,6 +88,8 @@ static void measure(struct check_run *run, const void *subject)
     expect(run, tube_suspected(s, true, 1.1), true, "density and pressure exchanged");
     expect(run, tube_suspected(s, false, 1), false, "density and pressure much alike");
     expect(run, coarse_suspected(s), false, "an error that points to another field");
+    expect(run, between_suspected(s, 0.6666), false, "just over half as far from another field");
+    expect(run, between_suspected(s, 0.6667), true, "just under half as far from another field");
 }
 
 static bool never_zero(size_t n, const double *error, char *why)

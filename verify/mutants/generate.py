@@ -547,9 +547,11 @@ def nested(sites):
     return good
 
 
-def rewrite(source, left_out=()):
-    """The text of a source with its alternatives."""
-    text, sites = source.text, [s for s in source.sites if s.number not in left_out]
+def rewrite(source, active):
+    """The text of a source with its alternatives of these numbers."""
+    text, sites = source.text, [s for s in source.sites if s.number in active]
+    if not sites:
+        return text
 
     def render(start, end, inner):
         out, at, i = [], start, 0
@@ -582,7 +584,7 @@ def rewrite(source, left_out=()):
         return original
 
     out = render(0, len(text), sites)
-    # scalar loops; a stamp calls its body: with alternatives inside, twenty copies compile for minutes
+    # scalar loops; a stamp calls its body: with many alternatives inside, its copies compile for minutes
     out = re.sub(r'_Pragma\("omp simd[^"]*"\)', "", out)
     out = re.sub(r"#pragma omp simd.*(\\\n.*)*", lambda m: "\n" * m[0].count("\n"), out)
-    return re.sub(r"^ALWAYS_INLINE", "static", out, flags=re.M) if source.name.endswith(".c") else out
+    return re.sub(r"^ALWAYS_INLINE", "static", out, flags=re.M) if source.name.endswith(".c") and len(sites) > 40 else out

@@ -1,55 +1,48 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Included before every source of a tree that generate.py has rewritten: how one of its mutants is
- * switched on by the environment, SPHPROOF_MUTANT=number. With SPHPROOF_REACH defined nothing is
- * switched; a file named by SPHPROOF_REACH then tells for every mutant, one byte each, whether a
- * process came by (1) and whether the mutant would have made a difference there (2). */
+ * switched on by the environment, SPHPROOF_MUTANT=number. Where a file is named by SPHPROOF_REACH,
+ * nothing is switched; it then tells for every mutant, one byte each, whether a process came by (1)
+ * and whether the mutant would have made a difference there (2). */
 #ifndef SPHPROOF_SCHEMATA_H
 #define SPHPROOF_SCHEMATA_H
 
 /* No headers: a source may yet have to say which of their functions it wants. */
 char *getenv(const char *name);
 int atoi(const char *text);
+int open(const char *name, int flags, ...);
+long lseek(int file, long offset, int whence);
+void *mmap(void *at, unsigned long size, int protection, int flags, int file, long offset);
 
 #define SCHEMATA_GLOBAL __attribute__((weak, visibility("hidden")))
 
-SCHEMATA_GLOBAL int sphproof_mutant;
-
-#ifndef SPHPROOF_REACH
-
-SCHEMATA_GLOBAL __attribute__((constructor(101))) void sphproof_schemata(void)
-{
-    const char *number = getenv("SPHPROOF_MUTANT");
-    sphproof_mutant = number ? atoi(number) : 0;
-}
-
-#define SCHEMATA_ON(n)                (sphproof_mutant == (n))
-#define SCHEMATA_VALUE(n, mutant, is) (SCHEMATA_ON(n) ? (mutant) : (is))
-
-#else
-
-int open(const char *name, int flags, ...);
-void *mmap(void *at, unsigned long size, int protection, int flags, int file, long offset);
-
-SCHEMATA_GLOBAL char sphproof_nowhere[SPHPROOF_REACH];
-SCHEMATA_GLOBAL char *sphproof_reach = sphproof_nowhere;
+SCHEMATA_GLOBAL int sphproof_mutant; /* -1: watching */
+SCHEMATA_GLOBAL char *sphproof_reach;
 
 /* Shared memory: also what is told by a process that is killed arrives. */
 SCHEMATA_GLOBAL __attribute__((constructor(101))) void sphproof_schemata(void)
 {
-    const char *name = getenv("SPHPROOF_REACH");
-    /* O_RDWR; PROT_READ | PROT_WRITE, MAP_SHARED: as Linux has them */
-    const int file = name && sphproof_reach == sphproof_nowhere ? open(name, 2) : -1;
-    void *map = file < 0 ? (void *)-1 : mmap((void *)0, SPHPROOF_REACH, 3, 1, file, 0);
-    if (map != (void *)-1) sphproof_reach = map;
+    const char *number = getenv("SPHPROOF_MUTANT"), *name = getenv("SPHPROOF_REACH");
+    sphproof_mutant = number ? atoi(number) : 0;
+    /* O_RDWR; SEEK_END; PROT_READ | PROT_WRITE, MAP_SHARED: as Linux has them */
+    const int file = name ? open(name, 2) : -1;
+    if (file < 0) return;
+    sphproof_reach = mmap((void *)0, (unsigned long)lseek(file, 0, 2), 3, 1, file, 0);
+    if (sphproof_reach != (void *)-1) sphproof_mutant = -1;
 }
 
-#define SCHEMATA_ON(n) ((sphproof_reach[n] = 2), 0)
+static inline int sphproof_seen(int n, int same)
+{
+    if (sphproof_reach[n] < 2) sphproof_reach[n] = same ? 1 : 2;
+    return 0;
+}
+
+#define SCHEMATA_ON(n) (sphproof_mutant == (n) || (sphproof_mutant < 0 && sphproof_seen(n, 0)))
+/* is: evaluated once, and first; mutant: nothing but numbers. */
 #define SCHEMATA_VALUE(n, mutant, is)                                                              \
     (__extension__({                                                                               \
         __auto_type is_##n = (is);                                                                 \
-        if (sphproof_reach[n] < 2) sphproof_reach[n] = (mutant) == is_##n ? 1 : 2;                 \
-        is_##n;                                                                                    \
+        if (sphproof_mutant < 0) sphproof_seen(n, (mutant) == is_##n);                             \
+        sphproof_mutant == (n) ? (mutant) : is_##n;                                                \
     }))
 
-#endif
 #endif

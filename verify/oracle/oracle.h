@@ -72,7 +72,8 @@ bool oracle_covers_step(const struct integrator *integrator);
  * that the oracle does not know. */
 enum status oracle_step(struct oracle *oracle, long double dt, struct error *error);
 
-/* Steps to t_end; oracle_evaluate is called first. */
+/* Steps to t_end; oracle_evaluate is called first, and last where a step does not end with it: the
+ * derived fields are those of the state at t_end. */
 enum status oracle_run(struct oracle *oracle, long double t_end, struct error *error);
 
 #endif

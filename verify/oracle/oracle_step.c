@@ -224,6 +224,16 @@ static long double first_step(const struct oracle *oracle)
     return dt;
 }
 
+/* Where the last evaluation was not of the end: its density, pressure and h, by Newton's method. */
+static enum status find_end(struct oracle *oracle, struct error *error)
+{
+    const enum h_method method = oracle->scheme.h_method;
+    oracle->scheme.h_method = H_NEWTON;
+    const enum status status = oracle_evaluate(oracle, error);
+    oracle->scheme.h_method = method;
+    return status;
+}
+
 enum status oracle_run(struct oracle *oracle, long double t_end, struct error *error)
 {
     enum status status = oracle_evaluate(oracle, error);
@@ -237,5 +247,6 @@ enum status oracle_run(struct oracle *oracle, long double t_end, struct error *e
         status = oracle_step(oracle, dt, error);
         if (dt == left) oracle->time = t_end;
     }
+    if (!status && !oracle->scheme.integrator->ends_evaluated) status = find_end(oracle, error);
     return status;
 }

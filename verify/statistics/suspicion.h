@@ -21,10 +21,10 @@ bool suspicion_repeated(size_t n, const double *error, char *why);
 bool suspicion_idle_setting(const char *setting, size_t n, const double *before,
                             const double *after, char *why);
 
-/* A field that is nearer another field's exact solution than its own, at half the distance or less
+/* A field that is nearer another field's exact solution than its own, at less than half the distance
  * by the volume-weighted L1 over the n particles of the window. value[f], exact[f]: n numbers of
  * field f. Fields whose exact solutions are the same, or nearer each other than the errors are,
- * cannot be told apart and are not suspected. */
+ * cannot be told apart and are not suspected: by the triangle inequality they are not that near. */
 bool suspicion_swapped(size_t fields, const char *const *names, size_t n, const double *volume,
                        const double *const *value, const double *const *exact, char *why);
 

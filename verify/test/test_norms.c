@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include <gsl/gsl_cdf.h>
+#include <gsl/gsl_errno.h>
 
 #include "near.h"
 #include "norm.h"
@@ -180,6 +181,8 @@ static void test_richardson_unequal_ratios(void **state)
     const struct order_extrapolation e = order_extrapolate(spacing, value, NAN);
     near_relative(e.order, p, 1e-11);
     near_relative(e.value, 2.385, 1e-13);
+    near_relative(e.gci_fine, 1.25 * (2.385 - value[2]) / value[2], 1e-10);
+    near_relative(e.gci_coarse, 1.25 * (2.385 - value[1]) / value[1], 1e-10);
 }
 
 static void test_richardson_classes(void **state)
@@ -243,9 +246,174 @@ static void test_one_rise(void **state)
     }
 }
 
+/* Levels off their line by as much as replicates explain at 1 %, an F test, or just more: then the
+ * scatter has the last word. */
+static void test_order_curvature(void **state)
+{
+    (void)state;
+    const double e = 0.02, limit = gsl_cdf_fdist_Qinv(0.01, 2, 4 * 8);
+    const double spacing[] = {exp(3), exp(2), exp(1), 1};
+    const double error[] = {exp(5 + e), exp(4 - e), exp(3 - e), exp(2 + e)};
+    for (int more = 0; more < 2; more++) {
+        /* chi^2/2 = 4 e^2/(2 s^2) */
+        const double s2 = 2 * e * e / (limit * (more ? 1.001 : 0.999));
+        const double variance[] = {s2, s2, s2, s2};
+        struct order_fit fit;
+        assert_int_equal(
+            order_fit(4, spacing, error, &(struct order_noise){variance, 9}, &fit, NULL),
+            STATUS_OK);
+        const double freedom = 0.04 * 8 / (2 * 0.0081 + 2 * 0.0001);
+        near_relative((fit.high - fit.low) / 2,
+                      more ? t_975_2() * sqrt(2 * e * e / 5)
+                           : gsl_cdf_tdist_Pinv(0.975, freedom) * sqrt(s2 / 5),
+                      1e-9);
+    }
+}
+
+/* Noise that differs from level to level: weights, slope and interval by hand. A level that seems
+ * quiet is not believed: its variance is drawn towards the mean of all, by 24 to the replicates' 4.
+ */
+static void test_order_weights(void **state)
+{
+    (void)state;
+    const double x[] = {3, 2, 1, 0}, y[] = {3.3, 2.1, 0.7, 0.2};
+    const double variance[] = {0.04, 0.01, 0.09, 0.02};
+    double spacing[4], error[4], w[4], sum = 0, xbar = 0, ybar = 0, xx = 0, xy = 0;
+    double total = 0, parts = 0;
+    for (int i = 0; i < 4; i++) {
+        spacing[i] = exp(x[i]);
+        error[i] = exp(y[i]);
+        w[i] = 28 / (4 * variance[i] + 24 * 0.04);
+        sum += w[i];
+    }
+    for (int i = 0; i < 4; i++) xbar += w[i] * x[i] / sum, ybar += w[i] * y[i] / sum;
+    for (int i = 0; i < 4; i++) {
+        xx += w[i] * (x[i] - xbar) * (x[i] - xbar);
+        xy += w[i] * (x[i] - xbar) * (y[i] - ybar);
+    }
+    for (int i = 0; i < 4; i++) {
+        const double part = pow(w[i] * (x[i] - xbar) / xx, 2) * variance[i];
+        total += part;
+        parts += part * part / 4;
+    }
+    struct order_fit fit;
+    assert_int_equal(order_fit(4, spacing, error, &(struct order_noise){variance, 5}, &fit, NULL),
+                     STATUS_OK);
+    near_relative(fit.order, xy / xx, 1e-12);
+    near_relative((fit.high - fit.low) / 2,
+                  gsl_cdf_tdist_Pinv(0.975, total * total / parts) * sqrt(total), 1e-12);
+}
+
+static void test_gate_edges(void **state)
+{
+    (void)state;
+    const struct order_gate gate = {0, 1, 1};
+    struct order_fit fit = {.order = 0, .low = 0, .high = 2 * ORDER_HALF_WIDTH_MAX, .finest = 1};
+    assert_true(order_passes(&fit, &gate, NULL));
+    fit.order = 1;
+    assert_true(order_passes(&fit, &gate, NULL));
+    fit.high *= 1.001;
+    assert_false(order_passes(&fit, &gate, NULL));
+}
+
+/* Flat is what falls by less than a tenth of an order over all levels; a floor shows where the last
+ * order is below a third of the best, wherever that was. */
+static void test_class_limits(void **state)
+{
+    (void)state;
+    static const struct {
+        double order[4];
+        enum order_class class;
+    } cases[] = {
+        {{0.099, 0.099, 0.099, 0.099}, ORDER_FLOOR_LIMITED},
+        {{0.101, 0.101, 0.101, 0.101}, ORDER_ASYMPTOTIC},
+        {{-0.099, -0.099, -0.099, -0.099}, ORDER_FLOOR_LIMITED},
+        {{-0.101, -0.101, -0.101, -0.101}, ORDER_DIVERGING},
+        {{0.5, 0.5, 2, 0.66}, ORDER_FLOOR_LIMITED},
+        {{0.5, 2, 0.5, 0.66}, ORDER_FLOOR_LIMITED},
+        {{2, 0.5, 0.5, 0.66}, ORDER_FLOOR_LIMITED},
+        {{0.5, 2, 0.5, 0.67}, ORDER_ASYMPTOTIC},
+        {{-0.5, 2, 0.5, 0.66}, ORDER_OSCILLATING},
+        {{0.5, 2, -0.5, 0.66}, ORDER_FLOOR_LIMITED},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        double error[5] = {1};
+        for (int l = 1; l < 5; l++) error[l] = error[l - 1] / pow(2, cases[i].order[l - 1]);
+        if (class_of(error) != cases[i].class)
+            fail_msg("case %zu: %s", i, order_class_name(class_of(error)));
+    }
+}
+
+/* Orders are looked for from 1e-3 to 30; the library's own handler of errors is there afterwards.
+ */
+static void own_handler(const char *reason, const char *file, int line, int code)
+{
+    fail_msg("%s:%d: %s (%d)", file, line, reason, code);
+}
+
+static void test_richardson_range(void **state)
+{
+    (void)state;
+    gsl_error_handler_t *before = gsl_set_error_handler(own_handler);
+    const double orders[] = {2e-3, 0.009, 0.5, 4, 29.9999}, spacing[] = {4, 2, 1};
+    for (size_t i = 0; i < sizeof orders / sizeof *orders; i++) {
+        const double p = orders[i], value[] = {pow(4, p), pow(2, p), 1};
+        const struct order_extrapolation e = order_extrapolate(spacing, value, NAN);
+        assert_int_equal(e.class, ORDER_ASYMPTOTIC);
+        near_relative(e.order, p, 1e-9);
+        near_relative(e.gci_fine, 1.25, 1e-9); /* the value is all error */
+        near_relative(e.gci_coarse, 1.25, 1e-9);
+    }
+    const double beyond[] = {9e-4, -1, 30 * (1 + 5e-7)};
+    for (size_t i = 0; i < 3; i++) {
+        const double p = beyond[i], value[] = {pow(4, p), pow(2, p), 1};
+        assert_int_equal(order_extrapolate(spacing, value, NAN).class, ORDER_DIVERGING);
+    }
+    assert_true(gsl_set_error_handler(before) == own_handler);
+}
+
+/* Values whose exact limit is known: it must lie within the GCI of the finest, or the errors tell.
+ */
+static void test_richardson_exact(void **state)
+{
+    (void)state;
+    static const struct {
+        double value[3], exact;
+        enum order_class class;
+    } cases[] = {
+        /* 1 + 0.1 h: the finest is 1.1, its GCI 0.125 */
+        {{1.4, 1.2, 1.1}, 1, ORDER_ASYMPTOTIC},
+        {{1.4, 1.2, 1.1}, 0.976, ORDER_ASYMPTOTIC},
+        {{1.4, 1.2, 1.1}, 0.974, ORDER_PREASYMPTOTIC},
+        {{1.4, 1.2, 1.1}, 1.224, ORDER_ASYMPTOTIC},
+        /* falls on a third of the promised order, or on less */
+        {{1.4, 1.2, 1.1}, 0.716, ORDER_PREASYMPTOTIC},
+        {{1.4, 1.2, 1.1}, 0.714, ORDER_FLOOR_LIMITED},
+        {{-1.4, -1.2, -1.1}, -0.714, ORDER_FLOOR_LIMITED},
+        /* grows apart, and promises nothing; errors 4^0.099, 4^0.101 */
+        {{1, 1.1, 1.3}, 1.5, ORDER_PREASYMPTOTIC},
+        {{1, 1.1, 1.3}, 0.9, ORDER_DIVERGING},
+        {{1, 1.1, 1.3}, 1.2, ORDER_DIVERGING},
+        {{1.1471, 1.1, 1}, 0, ORDER_FLOOR_LIMITED},
+        {{1.1503, 1.1, 1}, 0, ORDER_PREASYMPTOTIC},
+        {{1.01, 1.1503, 1}, 0, ORDER_OSCILLATING},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        const struct order_extrapolation e =
+            order_extrapolate((double[]){4, 2, 1}, cases[i].value, cases[i].exact);
+        if (e.class != cases[i].class) fail_msg("case %zu: %s", i, order_class_name(e.class));
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_order_curvature),
+        cmocka_unit_test(test_order_weights),
+        cmocka_unit_test(test_gate_edges),
+        cmocka_unit_test(test_class_limits),
+        cmocka_unit_test(test_richardson_range),
+        cmocka_unit_test(test_richardson_exact),
         cmocka_unit_test(test_order_room),
         cmocka_unit_test(test_one_rise),
         cmocka_unit_test(test_worst),

@@ -1,0 +1,292 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Mutants are tried: what is run to notice them, which of it comes past which mutant, in what order, and
+when to stop. Part of verify/mutants/score.
+
+A unit is a test of the quick suite or one of its checks. Its key says what it runs: what is known of a
+unit (reach.json) and what it did not notice (the record) holds as long as the key does."""
+import collections
+import glob
+import hashlib
+import json
+import os
+import queue
+import re
+import resource
+import shutil
+import signal
+import subprocess
+import threading
+import time
+
+CHEAP = 1.0  # CPU-s: of these all are tried, of others as many as the patience allows
+
+
+class Unit:
+    def __init__(self, name, command, folder, key):
+        self.name, self.command, self.folder, self.key = name, command, folder, key
+
+
+def quietly(command, **more):
+    return subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, **more)
+
+
+# --- what is run --------------------------------------------------------------------------------------
+
+
+def hash_of(paths, tree):
+    h = hashlib.sha256()
+    for path in sorted(paths):
+        with open(path, "rb") as f:
+            h.update(os.path.relpath(path, tree).encode() + b"\0" + f.read())
+    return h.hexdigest()[:16]
+
+
+def files_below(top):
+    if os.path.isfile(top):
+        return [top]
+    return [os.path.join(folder, f) for folder, _, files in os.walk(top) for f in files if not f.endswith(".pyc")]
+
+
+def units_of(build, source, tree, wanted):
+    """The tests of the quick suite as they stand in meson; groups of checks one check at a time.
+    tree: the rewritten copy of source. wanted: a regular expression for their names."""
+    checked, tested = os.path.join(source, "verify", "check"), os.path.join(source, "verify", "test")
+    rooms = [os.path.join(source, r) for r in ("src", "reference", "reports", "cases", "verify")]
+    common = hash_of([f for r in rooms for f in files_below(r) if f.endswith((".c", ".h", ".def", ".in", ".case"))
+                      and not f.startswith((checked, tested))], source)
+    checks = checks_of(checked)
+    checks_key = hash_of(files_below(checked), source)
+    units = []
+    for test in json.loads(quietly(["meson", "introspect", "--tests", build]).stdout):
+        if not any(s.split(":")[-1] == "quick" for s in test["suite"]):
+            continue
+        command, folder = test["cmd"], test["workdir"] or build
+        program = os.path.join(build, command[0])
+        if command[1:2] == ["verify"] and "--mutants" in command:
+            for name in checks.get(command[2], command[2:3]):
+                units.append(Unit(name, [program, "verify", name, "--mutants", "--first", "--quiet", "--failures",
+                                         "@SCRATCH@/failures"], folder, common + checks_key))
+            continue
+        own = [p for w in command for p in files_below(w.replace(tree, source)) if p.startswith(tested)]
+        own += glob.glob(os.path.join(tested, os.path.basename(command[0]) + ".c")) + glob.glob(os.path.join(tested, "*.h"))
+        if test["name"] == "suite":
+            own += files_below(checked)
+        units.append(Unit(test["name"], [program if os.path.exists(program) else command[0]] + command[1:], folder,
+                          common + hash_of(own, source)))
+    return [u for u in units if re.search(wanted, u.name)]
+
+
+def checks_of(folder):
+    """Group: GROUP/CHECK, all that are quick, as their descriptors have them; a group whose descriptors
+    are made by a macro is not there."""
+    checks = collections.defaultdict(list)
+    for path in sorted(glob.glob(os.path.join(folder, "*.c"))):
+        with open(path) as f:
+            for group, name, rest in re.findall(r'\.group = "(\w+)",\s*\.name = "(\w+)",(.*?)\n};', f.read(), flags=re.S):
+                if ".slow = true" not in rest:
+                    checks[group].append("%s/%s" % (group, name))
+    return checks
+
+
+# --- running ------------------------------------------------------------------------------------------
+
+
+def limits(cpu):
+    def set_limits():
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 28, 1 << 28))
+        resource.setrlimit(resource.RLIMIT_AS, (6 << 30, 6 << 30))
+        resource.setrlimit(resource.RLIMIT_CPU, (cpu, cpu + 1))
+    return set_limits
+
+
+def run_unit(unit, place, scratch, environment, usual):
+    """'' if it passes, else how it fails; and its CPU-s. place: the folder of the first build and that
+    which stands for it. usual: its CPU-s without a mutant; three times that is a hang, on the clock
+    much more, for the machine may be busy."""
+    shutil.rmtree(scratch, ignore_errors=True)
+    os.makedirs(os.path.join(scratch, "cache"))
+    built, here = place
+    words = [w.replace("@SCRATCH@", scratch).replace(built, here) for w in unit.command]
+    process = subprocess.Popen(words, cwd=unit.folder.replace(built, here), stdin=subprocess.DEVNULL,
+                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True,
+                               preexec_fn=limits(int(3 + 3 * usual)),
+                               env=dict(os.environ, TMPDIR=scratch, XDG_CACHE_HOME=os.path.join(scratch, "cache"),
+                                        OMP_WAIT_POLICY="passive", **environment))
+    end, pause = time.time() + 30 + 30 * usual, 0.001
+    while True:
+        pid, status, used = os.wait4(process.pid, os.WNOHANG)
+        if pid or time.time() > end:
+            break
+        time.sleep(pause)
+        pause = min(0.05, 1.3 * pause)
+    try:
+        os.killpg(process.pid, signal.SIGKILL)
+    except ProcessLookupError:
+        pass
+    if not pid:
+        _, _, used = os.wait4(process.pid, 0)
+        status = signal.SIGXCPU
+    code = process.returncode = os.waitstatus_to_exitcode(status)
+    hangs = -code in (signal.SIGXCPU, signal.SIGKILL)
+    return "" if code in (0, 77) else "hangs" if hangs else "exit status %d" % code, used.ru_utime + used.ru_stime
+
+
+def copy_build(build, copy):
+    """The programs, to be run beside the first build's; what they are made of is left behind."""
+    shutil.rmtree(copy, ignore_errors=True)
+    shutil.copytree(build, copy, ignore=shutil.ignore_patterns("*.p", "*.a", "meson-*", "*.ninja", ".ninja*"),
+                    symlinks=True)
+
+
+def in_threads(function, workers):
+    threads = [threading.Thread(target=function, args=(i,)) for i in range(workers)]
+    for t in threads:
+        t.start()
+    for t in threads:
+        t.join()
+
+
+class Table:
+    """What is known of the units without a mutant: CPU-s, the mutants that they come past, and those
+    that would make a difference there. Kept in reach.json."""
+
+    def __init__(self, work, chosen):
+        self.work, self.build = work, os.path.join(work, "build")
+        self.count = 1 + max((m.number for m in chosen), default=0)
+        self.drawn = hashlib.sha256(repr(sorted((m.number, m.key) for m in chosen)).encode()).hexdigest()
+        self.path, self.lock = os.path.join(work, "reach.json"), threading.Lock()
+        self.units = {}
+        if os.path.exists(self.path):
+            with open(self.path) as f:
+                self.units = json.load(f)
+
+    def write(self):
+        with open(self.path + ".new", "w") as f:
+            json.dump(self.units, f)
+        os.replace(self.path + ".new", self.path)
+
+    def find(self, units, workers):
+        """One run of each unit of which nothing is known."""
+        waiting = queue.Queue()
+        for unit in units:
+            if self.units.get(unit.name, {}).get("key") != [unit.key, self.drawn]:
+                waiting.put(unit)
+
+        def work_off(worker):
+            marks = os.path.join(self.work, "marks%d" % worker)
+            while True:
+                try:
+                    unit = waiting.get_nowait()
+                except queue.Empty:
+                    return
+                with open(marks, "wb") as f:
+                    f.truncate(self.count)
+                failed, seconds = run_unit(unit, (self.build, os.path.join(self.work, "worker%d" % worker)),
+                                           os.path.join(self.work, "scratch%d" % worker), {"SPHPROOF_REACH": marks}, 200)
+                with open(marks, "rb") as f:
+                    seen = f.read()
+                entry = {"key": [unit.key, self.drawn], "seconds": round(seconds, 3), "failed": failed,
+                         "reached": [i for i, b in enumerate(seen) if b],
+                         "differs": [i for i, b in enumerate(seen) if b == 2]}
+                with self.lock:
+                    self.units[unit.name] = entry
+                    print("  reach of %-32s %6.2f CPU-s  %6d mutants, %6d would differ  %s"
+                          % (unit.name, seconds, len(entry["reached"]), len(entry["differs"]),
+                             "fails without any mutant: " + failed if failed else ""), flush=True)
+                    self.write()
+
+        for worker in range(workers):
+            copy_build(self.build, os.path.join(self.work, "worker%d" % worker))
+        in_threads(work_off, workers)
+
+    def sound(self, unit, place, scratch):
+        """Does it pass without any mutant? Asked when it notices its first."""
+        entry = self.units[unit.name]
+        if "sound" not in entry:
+            failed, seconds = run_unit(unit, place, scratch, {}, max(10, 3 * entry["seconds"]))
+            with self.lock:
+                entry["sound"], entry["failed"], entry["seconds"] = not failed, failed, round(seconds, 3)
+                if failed:
+                    print("  %s fails without any mutant: %s" % (unit.name, failed), flush=True)
+                self.write()
+        return entry["sound"]
+
+
+# --- judging ------------------------------------------------------------------------------------------
+
+
+class Judge:
+    def __init__(self, work, units, table, record, patience):
+        self.work, self.build, self.table, self.patience = work, os.path.join(work, "build"), table, patience
+        self.units = {u.name: u for u in units if not table.units[u.name]["failed"]}
+        self.differs, self.reached = collections.defaultdict(set), collections.defaultdict(set)
+        self.breadth = {}
+        for name in self.units:
+            entry = table.units[name]
+            for number in entry["differs"]:
+                self.differs[number].add(name)
+            for number in entry["reached"]:
+                self.reached[number].add(name)
+            self.breadth[name] = 1 + len(entry["reached"])
+        self.learnt, self.lock = collections.defaultdict(lambda: [0, 0]), threading.Lock()
+        for entry in record.values():
+            self.learn(entry)
+
+    def learn(self, entry):
+        for name in entry["ran"]:
+            noticed = name == entry.get("by")
+            for where in (entry["file"], ""):
+                at = self.learnt[where, name]
+                at[0] += noticed
+                at[1] += 1
+
+    def seconds(self, name):
+        return self.table.units[name]["seconds"]
+
+    def order(self, mutant, names):
+        """Most likely to notice for its time first: what a test did to this file, and elsewhere;
+        before anything is learnt, a test that comes past few others was written for this one."""
+        def worth(name):
+            here, all_ = self.learnt[mutant.file, name], self.learnt["", name]
+            start = 1 / (1 + self.breadth[name] / 1000)
+            rate = (here[0] + 2 * (all_[0] + 2 * start) / (all_[1] + 2)) / (here[1] + 2)
+            return -rate / (0.05 + self.seconds(name))
+        return sorted(names, key=worth)
+
+    def judge(self, mutant, near, before, worker):
+        """What became of it: a line of the record. before: the record's last, if any; what the same
+        units did not notice then need not be asked again."""
+        reaching = near if mutant.constant else self.differs[mutant.number]
+        place = self.build, os.path.join(self.work, "worker%d" % worker)
+        scratch = os.path.join(self.work, "scratch%d" % worker)
+        known = before["ran"] if before and before["outcome"] == "survived" else {}
+        ran = {n: k for n, k in known.items() if n in reaching and n in self.units and self.units[n].key == k}
+        by, how, costly, began = None, "", 0, time.time()
+        for name in self.order(mutant, [n for n in reaching if n not in ran]):
+            unit, usual = self.units[name], self.seconds(name)
+            if usual > CHEAP:
+                if costly and costly + usual > self.patience:
+                    continue
+                costly += usual
+            how, _ = run_unit(unit, place, scratch, {"SPHPROOF_MUTANT": str(mutant.number)}, usual)
+            if how and not self.table.sound(unit, place, scratch):
+                how = ""
+                continue
+            ran[name] = unit.key
+            if how:
+                by = name
+                break
+        entry = {"key": mutant.key, "file": mutant.file, "line": mutant.line, "change": mutant.change,
+                 "outcome": "killed" if by else "survived", "by": by, "how": how, "ran": ran,
+                 "why": "" if by else self.why(mutant, reaching, ran), "seconds": round(time.time() - began, 2)}
+        with self.lock:
+            self.learn(entry)
+        return entry
+
+    def why(self, mutant, reaching, ran):
+        if not mutant.constant and not self.reached[mutant.number]:
+            return "no test comes by"
+        if not reaching:
+            return "no test would see another value"
+        return "no test fails: %d of %d that come by" % (len(ran), len(reaching))
