@@ -16,7 +16,8 @@ from concurrent.futures import ThreadPoolExecutor
 
 PROGRAM, FOLDER, TABLE, MORE = sys.argv[1], sys.argv[2], sys.argv[3], sys.argv[4:]
 PATIENCE = 600 if MORE else 100  # seconds
-VERIFIED = ["none", "sign_narrow", "abort_in_dh", "exit_42", "loop_first"]
+VERIFIED = ["none", "sign_narrow", "exit_42"]  # also through `verify kernels`
+ENDLESS = ["loop_late", "loop_at_load"]  # seconds each, by night: loop_first is tried always
 RIGHT = ["wendland_c8", "gaussian", "super_gaussian", "table", "table_12", "table_4000"]
 
 
@@ -133,7 +134,8 @@ def main():
     table, bad = read_table(), 0
     by_name = {line[0]: line for line in table}
     with ThreadPoolExecutor(2) as pool:
-        outcomes = [(line[0], pool.submit(judge, line)) for line in table]
+        outcomes = [(line[0], pool.submit(judge, line)) for line in table
+                    if MORE or line[0] not in ENDLESS]
         if not MORE:
             outcomes += [(name, pool.submit(judge_verify, by_name[name])) for name in VERIFIED]
         else:
@@ -149,7 +151,7 @@ def main():
                               ("terminated", judge_interrupt(signal.SIGTERM))]:
             print("%-24s %s" % (name, trouble or "ok"))
             bad += trouble is not None
-    print("%d plug-ins, %d wrong verdicts" % (len(table), bad))
+    print("%d plug-ins, %d wrong verdicts" % (len(outcomes), bad))
     return 1 if bad else 0
 
 

@@ -310,7 +310,7 @@ static void every_problem_of_every_case(void **state)
                              *const wide[] = {
                                  "n=4096", "n=3000|lattice=hexagonal|contrast=2",
                                  "n=4096|lattice=jittered|waves=2|amplitude=0.005|direction=1",
-                                 "n=5000|equal_masses=yes|left=1 0.1 1.2|right=0.5 0.1 1"};
+                                 "n=2500|equal_masses=yes|left=1 0.1 1.2|right=0.5 0.1 1"};
     (void)state;
     for (const struct case_builtin *b = case_builtins; b->name; b++) {
         struct case_file file;
