@@ -5,11 +5,11 @@
  *   omega V = k U V - (p' + g rho_1)/rho,            omega p = k U p + gamma P (k u + V') + P' V,
  * at Chebyshev points (Trefethen 2000, Spectral Methods in MATLAB, chapters 6 and 9). It shares the
  * base state with the shooting, and nothing else. */
+#include "layer_collocation.h"
+
 #include <gsl/gsl_eigen.h>
 #include <math.h>
 #include <stdlib.h>
-
-#include "layer_mode.h"
 
 /* Points in y, and the matrix D of the derivative there (points x points). */
 struct grid {

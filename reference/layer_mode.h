@@ -15,28 +15,9 @@
 #include <complex.h>
 #include <stdbool.h>
 
-/* I is of a float. */
-#define LAYER_I ((double complex)I)
+#include "layer.h"
 
 enum { LAYER_MODE_NODES = 97 };
-
-/* T(y) is the step from -1 to 1: tanh(y/width) between walls at y = -+wall; or, periodic with
- * period 1, tanh(sin(2 pi y)/(2 pi width)), a step up at y = 0 and one down at 1/2. Any consistent
- * units. */
-struct layer {
-    double gamma, k, width;
-    double rho, rho_step; /* density rho + rho_step T(y) */
-    double U;             /* velocity U T(y) */
-    double P, g;          /* pressure at y = 0; gravity along -y, 0 in a periodic layer */
-    bool periodic;
-    double wall;        /* where not periodic */
-    bool pressure_node; /* periodic: p = 0 at y = -+1/4, where otherwise v = 0 */
-};
-
-struct layer_base {
-    double rho, U, P, c2; /* c2: sound speed squared */
-    double rho_dy, U_dy;  /* d/dy */
-};
 
 /* A perturbation: complex amplitudes, or real values. */
 struct layer_amplitude {
@@ -54,18 +35,9 @@ struct layer_mode {
     double complex v[LAYER_MODE_NODES], p[LAYER_MODE_NODES]; /* Chebyshev coefficients */
 };
 
-/* NULL, or a text that says what is wrong with a layer. */
-const char *layer_fault(const struct layer *layer);
-
-struct layer_base layer_base(const struct layer *layer, double y);
-
 /* By shooting (Runge & Kutta 8(9), secants to the complex root), to some 1e-11. False: no growing
  * mode was found, or no memory. The layer is valid. */
 bool layer_mode_find(const struct layer *layer, struct layer_mode *mode);
-
-/* omega of the fastest growing mode by another method: eigenvalues of the primitive equations at
- * so many Chebyshev points (>= 8). NaN: none grows, or no memory. */
-double complex layer_mode_collocation(const struct layer *layer, int points);
 
 /* Amplitudes at y: within the walls, or anywhere in a periodic layer. */
 struct layer_amplitude layer_mode_amplitude(const struct layer_mode *mode, double y);

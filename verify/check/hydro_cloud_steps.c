@@ -109,7 +109,7 @@ static void measure(struct check_run *run, const void *subject)
     struct error error = {0};
     char where[CLOUD_TEXT];
     hydro_cloud_describe(&s.scheme, s.dim, where);
-    if (!oracle_covers(&s.scheme)) {
+    if (!oracle_covers(&s.scheme) || !oracle_covers_step(s.scheme.integrator)) {
         check_skip(run, "%s: the oracle lacks one of these choices", where);
         return;
     }

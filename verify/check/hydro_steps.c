@@ -148,7 +148,7 @@ static void measure(struct check_run *run, const void *subject)
     struct error error = {0};
     char where[HYDRO_TEXT];
     hydro_describe(&s.scheme, where);
-    if (!oracle_covers(&s.scheme)) {
+    if (!oracle_covers(&s.scheme) || !oracle_covers_step(s.scheme.integrator)) {
         check_skip(run, "%s: the oracle lacks one of these choices", where);
         return;
     }

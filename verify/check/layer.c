@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "check.h"
+#include "layer_collocation.h"
 #include "layer_mode.h"
 #include "worst.h"
 

@@ -58,7 +58,7 @@ bool oracle_covers(const struct scheme *scheme)
     case H_PREDICTED:
         break;
     }
-    return oracle_covers_step(scheme->integrator);
+    return true;
 }
 
 enum status oracle_create(struct oracle *oracle, const struct scene *scene, struct error *error)
@@ -110,78 +110,6 @@ void oracle_free(struct oracle *oracle)
     oracle->distance = NULL;
 }
 
-int oracle_images(const struct oracle *oracle)
-{
-    return oracle->dim == 1 ? 1 : 0;
-}
-
-long double oracle_separation(const struct oracle *oracle, const struct oracle_particle *i,
-                              const struct oracle_particle *j, int image, oracle_vector x)
-{
-    for (int k = 0; k < 3; k++) {
-        x[k] = j->x[k] - i->x[k];
-        if (k < oracle->dim) x[k] -= oracle->period[k] * roundl(x[k] / oracle->period[k]);
-    }
-    x[0] += image * oracle->period[0];
-    return sqrtl(oracle_dot(x, x));
-}
-
-static long double *distance_at(const struct oracle *oracle, size_t i, size_t j, int image)
-{
-    return &oracle->distance[3 * (i * oracle->n + j) + (size_t)(image + 1)];
-}
-
-long double oracle_distance(const struct oracle *oracle, size_t i, size_t j, int image)
-{
-    return *distance_at(oracle, i, j, image);
-}
-
-static void find_distances(struct oracle *oracle)
-{
-    oracle_vector x;
-    for (size_t i = 0; i < oracle->n; i++)
-        for (size_t j = 0; j < oracle->n; j++)
-            for (int k = -oracle_images(oracle); k <= oracle_images(oracle); k++)
-                *distance_at(oracle, i, j, k) =
-                    oracle_separation(oracle, &oracle->particles[i], &oracle->particles[j], k, x);
-}
-
-static long double power(long double x, int n)
-{
-    long double y = 1;
-    while (n-- > 0) y *= x;
-    return y;
-}
-
-long double oracle_W(const struct oracle *oracle, long double r, long double h)
-{
-    return oracle->kernel.constant / power(h, oracle->dim) *
-           oracle_kernel_w(&oracle->kernel, r / h);
-}
-
-long double oracle_dW_dr(const struct oracle *oracle, long double r, long double h)
-{
-    return oracle->kernel.constant / power(h, oracle->dim + 1) *
-           oracle_kernel_dw(&oracle->kernel, r / h);
-}
-
-long double oracle_dW_dh(const struct oracle *oracle, long double r, long double h)
-{
-    return -(oracle->dim * oracle_W(oracle, r, h) + r * oracle_dW_dr(oracle, r, h)) / h;
-}
-
-long double oracle_Z(const struct oracle *oracle, const struct oracle_particle *a)
-{
-    switch (oracle->scheme.volume_element) {
-    case VOLUME_ENERGY:
-        return a->U;
-    case VOLUME_NUMBER:
-        return 1;
-    default:
-        return a->m;
-    }
-}
-
 /* The sums of particle i at width h: y, and what h follows, in units of a density (mass; with the
  * number element m_i n_i); with their derivatives in h. */
 struct sums {
@@ -222,17 +150,17 @@ static enum status solve_h(struct oracle *oracle, size_t i, struct error *error)
 {
     struct oracle_particle *a = &oracle->particles[i];
     const int d = oracle->dim;
-    const long double target = power(oracle->scheme.eta, d) * a->m;
+    const long double target = oracle_power(oracle->scheme.eta, d) * a->m;
     long double lo = 0, hi = 0, h = a->h;
     for (int k = 0; k < d; k++) hi = fmaxl(hi, oracle->period[k]);
     for (int round = 0; round < 200; round++) {
         const struct sums s = sum_density(oracle, i, h);
-        const long double residual = power(h, d) * s.rho - target;
+        const long double residual = oracle_power(h, d) * s.rho - target;
         if (residual > 0)
             hi = h;
         else
             lo = h;
-        const long double slope = power(h, d - 1) * (d * s.rho + h * s.drho);
+        const long double slope = oracle_power(h, d - 1) * (d * s.rho + h * s.drho);
         const long double newton = h - residual / slope;
         const long double next = newton > lo && newton < hi ? newton : (lo + hi) / 2;
         if (fabsl(next - h) <= 1e-17L * h || hi - lo <= 1e-17L * hi) {
@@ -269,7 +197,7 @@ static void predict_h(struct oracle *oracle, size_t i)
 static long double follow(const struct oracle *oracle, const struct oracle_particle *a)
 {
     const long double weight = oracle->scheme.integrator->follow * (oracle->gamma - 1);
-    return fmaxl(1 - weight * (power(a->h / a->width, oracle->dim) - 1), 0.5L);
+    return fmaxl(1 - weight * (oracle_power(a->h / a->width, oracle->dim) - 1), 0.5L);
 }
 
 static enum status find_primitives(struct oracle *oracle, struct error *error)
@@ -290,7 +218,7 @@ static enum status find_state(struct oracle *oracle, struct error *error)
     const bool energy = oracle->scheme.volume_element == VOLUME_ENERGY;
     const bool predicted = oracle->scheme.h_method != H_NEWTON && oracle->last_dt > 0;
     if (find_primitives(oracle, error)) return error->status;
-    find_distances(oracle);
+    oracle_find_distances(oracle);
     for (size_t i = 0; i < oracle->n; i++) {
         struct oracle_particle *a = &oracle->particles[i];
         if (predicted) {

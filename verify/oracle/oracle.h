@@ -64,7 +64,8 @@ void oracle_signals(struct oracle *oracle);
 /* The time step of the present signal speeds. */
 long double oracle_time_step(const struct oracle *oracle);
 
-/* Is everything that a scheme asks for written here a second time; the steps of this integrator? */
+/* Is everything that an evaluation with this scheme asks for written here a second time; the steps
+ * of this integrator? */
 bool oracle_covers(const struct scheme *scheme);
 bool oracle_covers_step(const struct integrator *integrator);
 

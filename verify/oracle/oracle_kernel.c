@@ -7,7 +7,7 @@
 
 #define pi 3.14159265358979323846264338327950288L
 
-static long double power(long double x, int n)
+long double oracle_power(long double x, int n)
 {
     long double y = 1;
     while (n-- > 0) y *= x;
@@ -27,7 +27,7 @@ static long double spline_w(int n, long double q)
     long double w = 0;
     for (int k = 0; 2 * k < n; k++) {
         const long double knot = 1 - 2.0L * k / n;
-        if (q < knot) w += factor_of_knot(n, k) * power(knot - q, n - 1);
+        if (q < knot) w += factor_of_knot(n, k) * oracle_power(knot - q, n - 1);
     }
     return w;
 }
@@ -37,7 +37,7 @@ static long double spline_dw(int n, long double q)
     long double dw = 0;
     for (int k = 0; 2 * k < n; k++) {
         const long double knot = 1 - 2.0L * k / n;
-        if (q < knot) dw -= factor_of_knot(n, k) * (n - 1) * power(knot - q, n - 2);
+        if (q < knot) dw -= factor_of_knot(n, k) * (n - 1) * oracle_power(knot - q, n - 2);
     }
     return dw;
 }
@@ -48,7 +48,7 @@ static long double cubic_w(int n, long double q)
 {
     (void)n;
     if (q >= 1) return 0;
-    return q <= 0.5L ? 1 - 6 * q * q + 6 * q * q * q : 2 * power(1 - q, 3);
+    return q <= 0.5L ? 1 - 6 * q * q + 6 * q * q * q : 2 * oracle_power(1 - q, 3);
 }
 
 static long double cubic_dw(int n, long double q)
@@ -67,22 +67,22 @@ static const long double wendland_terms[][4] = {
 static long double wendland_w(int a, long double q)
 {
     const long double *c = wendland_terms[a];
-    return q < 1 ? power(1 - q, a) * (c[0] + q * (c[1] + q * (c[2] + q * c[3]))) : 0;
+    return q < 1 ? oracle_power(1 - q, a) * (c[0] + q * (c[1] + q * (c[2] + q * c[3]))) : 0;
 }
 
 static long double wendland_dw(int a, long double q)
 {
     const long double *c = wendland_terms[a];
     if (q >= 1) return 0;
-    return power(1 - q, a) * (c[1] + q * (2 * c[2] + q * 3 * c[3])) -
-           a * power(1 - q, a - 1) * (c[0] + q * (c[1] + q * (c[2] + q * c[3])));
+    return oracle_power(1 - q, a) * (c[1] + q * (2 * c[2] + q * 3 * c[3])) -
+           a * oracle_power(1 - q, a - 1) * (c[0] + q * (c[1] + q * (c[2] + q * c[3])));
 }
 
 static long double sinc_w(int n, long double q)
 {
     if (q >= 1) return 0;
     const long double z = pi * q;
-    return power(z < 1e-6L ? 1 - z * z / 6 : sinl(z) / z, n);
+    return oracle_power(z < 1e-6L ? 1 - z * z / 6 : sinl(z) / z, n);
 }
 
 static long double sinc_dw(int n, long double q)
@@ -91,7 +91,7 @@ static long double sinc_dw(int n, long double q)
     const long double z = pi * q;
     const long double s = z < 1e-6L ? 1 - z * z / 6 : sinl(z) / z;
     const long double ds = z < 1e-4L ? -z / 3 + z * z * z / 30 : (cosl(z) - s) / z;
-    return n * power(s, n - 1) * ds * pi;
+    return n * oracle_power(s, n - 1) * ds * pi;
 }
 
 /* S_d: surface of the unit sphere. */
@@ -109,7 +109,7 @@ static long double constant_by_quadrature(const struct oracle_kernel *kernel, in
         sum = dim == 1 ? kernel->w(kernel->parameter, 0) : 0;
         for (int i = 1; i < n; i++) {
             const long double q = (long double)i / n;
-            sum += (i % 2 ? 4 : 2) * power(q, dim - 1) * kernel->w(kernel->parameter, q);
+            sum += (i % 2 ? 4 : 2) * oracle_power(q, dim - 1) * kernel->w(kernel->parameter, q);
         }
         sum /= 3 * n;
     }
@@ -134,7 +134,7 @@ static long double spline_constant(int n, int dim)
     long double sum = 0, beta = 1.0L / n;
     for (int k = 1; k < dim; k++) beta *= (long double)k / (n + k);
     for (int k = 0; 2 * k < n; k++)
-        sum += factor_of_knot(n, k) * power(1 - 2.0L * k / n, n + dim - 1) * beta;
+        sum += factor_of_knot(n, k) * oracle_power(1 - 2.0L * k / n, n + dim - 1) * beta;
     return 1 / (sphere(dim) * sum);
 }
 

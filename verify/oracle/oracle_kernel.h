@@ -23,4 +23,7 @@ struct oracle_kernel oracle_kernel_find(const struct kernel *source, int dim);
 long double oracle_kernel_w(const struct oracle_kernel *kernel, long double q);
 long double oracle_kernel_dw(const struct oracle_kernel *kernel, long double q);
 
+/* x^n, n >= 0. */
+long double oracle_power(long double x, int n);
+
 #endif

@@ -8,16 +8,6 @@
 /* Beyond this condition number in the 2-norm a matrix is not used (CONVENTIONS eq. 4.7). */
 static const long double worst_condition = 1e3L;
 
-long double oracle_dot(const oracle_vector a, const oracle_vector b)
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-void oracle_product(const struct oracle_matrix *A, const oracle_vector x, oracle_vector Ax)
-{
-    for (int a = 0; a < 3; a++) Ax[a] = oracle_dot(A->row[a], x);
-}
-
 /* Largest over smallest eigenvalue of a symmetric matrix, by Jacobi's rotations. */
 static long double condition_of(int dim, struct oracle_matrix A)
 {

@@ -12,7 +12,9 @@ int oracle_images(const struct oracle *oracle);
 long double oracle_separation(const struct oracle *oracle, const struct oracle_particle *i,
                               const struct oracle_particle *j, int image, oracle_vector x);
 
-/* The same length of particles i and j, as found at the start of the evaluation. */
+/* The same length of particles i and j, as oracle_find_distances found it at the start of the
+ * evaluation. */
+void oracle_find_distances(struct oracle *oracle);
 long double oracle_distance(const struct oracle *oracle, size_t i, size_t j, int image);
 
 /* W, dW/dr and dW/dh at a distance r. */

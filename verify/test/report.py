@@ -1,12 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""report.py SPHPROOF FOLDER: the report as a whole, into FOLDER: its files, that it stands alone, that
-each plot can be drawn again, that kept results are the computed ones, and what happens when things fail."""
+"""report.py SPHPROOF FOLDER: the report as a whole, into FOLDER: killed, resumed, repeated on an
+unchanged night, and repeated with damaged entries, what is found and that results are the same; its
+history; its files, that it stands alone, that each plot can be drawn again, that kept results are the
+computed ones, and what happens when things fail."""
+import glob
 import json
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
+import time
 import xml.etree.ElementTree as xml
 
 program, folder = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
@@ -36,11 +41,65 @@ def lasting(value):
     return [lasting(v) for v in value] if isinstance(value, list) else value
 
 
+def computed(value):
+    """Everything that must be the same in two reports of one program."""
+    if isinstance(value, dict):
+        drop = ("cost", "cpu_s", "wall_s", "seconds", "date", "found", "history", "bench", "ns_per_point", "ns_per_pair")
+        return {k: computed(v) for k, v in value.items() if k not in drop}
+    return [computed(v) for v in value] if isinstance(value, list) else value
+
+
+def sound(*arguments):
+    """The results of a report where all is well."""
+    done = report("--quick", "--out", folder, "--jobs", "2", *arguments)
+    expect("exit status of a sound report %s:" % (arguments,), done.returncode == 0, done.stdout[:500] + done.stderr)
+    expect("where the report is:", os.path.join(folder, "index.html") in done.stdout, done.stdout)
+    return json.loads(read("results.json"))
+
+
+def entries():
+    return glob.glob(os.path.join(folder, "cache", "*", "*.entry"))
+
+
+def kill_one():
+    """A report killed once it has kept some results; these, with their inodes."""
+    running = subprocess.Popen([program, "report", "--out", folder, "--jobs", "2", "--quiet"], start_new_session=True)
+    while running.poll() is None and len(entries()) < 5:
+        time.sleep(0.05)
+    expect("nothing to kill:", running.poll() is None)
+    os.killpg(running.pid, signal.SIGKILL)
+    running.wait()
+    for _ in range(200):  # its processes may still be about to end
+        try:
+            os.killpg(running.pid, 0)
+        except ProcessLookupError:
+            break
+        time.sleep(0.05)
+    expect("a page of nothing:", not os.path.exists(os.path.join(folder, "index.html")))
+    return {name: os.stat(name).st_ino for name in entries()}
+
+
 shutil.rmtree(folder, ignore_errors=True)
-done = report("--quick", "--out", os.path.join(folder, "a b", "é"), "--jobs", "2")
 folder = os.path.join(folder, "a b", "é")
-expect("exit status of a sound report:", done.returncode == 0, done.stdout[:500] + done.stderr)
-expect("where the report is:", os.path.join(folder, "index.html") in done.stdout, done.stdout)
+kept = kill_one()
+resumed = sound("--resume")
+expect("found after kill -9:", resumed["found"] == len(kept) >= 5, (resumed["found"], len(kept)))
+expect("computed twice:", kept.items() <= {name: os.stat(name).st_ino for name in entries()}.items())
+
+unchanged = sound()
+expect("found on an unchanged night:", unchanged["found"] == unchanged["computations"], unchanged["found"])
+expect("an unchanged night, results:", computed(unchanged) == computed(resumed))
+since = unchanged["history"]["since"]
+expect("an unchanged night, history:", since["worse"] == since["better"] == 0 and since["same"] > 1000, since)
+
+with open(entries()[0], "r+b") as file:
+    file.seek(200)
+    file.write(b"!")
+os.truncate(entries()[1], 100)
+mended = sound()
+expect("found beside damaged entries:", mended["found"] == mended["computations"] - 2, mended["found"])
+expect("mended, results:", computed(mended) == computed(resumed))
+expect("nights:", len([json.loads(line) for line in read("history.jsonl").splitlines()]) == 3)
 
 page, results = read("index.html"), json.loads(read("results.json"))
 expect("verdict:", "<h1>All is well</h1>" in page and results["verdict"]["status"] == "pass")
