@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What the files of the public library share: between its names and those of the rooms. */
+#ifndef SPHPROOF_LIBRARY_H
+#define SPHPROOF_LIBRARY_H
+
+#include "kernel.h"
+#include "simulation.h"
+#include "sphproof/common.h"
+#include "sphproof/kernels.h"
+#include "sphproof/simulations.h"
+
+struct sphproof_kernel {
+    struct kernel kernel;
+    int dim; /* the only one; 0: all */
+    bool negative, single, found_class;
+};
+
+/* Hands an error on; theirs may be NULL. Returns the status. */
+enum sphproof_status library_pass(enum status status, const struct error *ours,
+                                  struct sphproof_error *theirs);
+
+/* Sets an error of our own and returns its status. */
+enum sphproof_status library_fail(struct sphproof_error *theirs, enum status status,
+                                  const char *format, ...) __attribute__((format(printf, 3, 4)));
+
+/* Figures on their way to the user: counts those that fail, and keeps the first in error. */
+struct library_figures {
+    sphproof_figure_sink *sink; /* may be NULL */
+    void *context;
+    size_t count, failed;
+    struct sphproof_error *error;
+};
+void library_figure(struct library_figures *figures, const struct sphproof_figure *figure);
+
+/* The scene as the solver wants it, with arrays of the caller. rest: room for n zeros, for
+ * velocities that are not given. */
+enum sphproof_status library_scene(const struct sphproof_scene *theirs, bool sharp,
+                                   const double *rest, struct scene *scene,
+                                   struct sphproof_error *error);
+
+#endif

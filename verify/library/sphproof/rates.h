@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/** @file
+ * One evaluation of forces: nothing moves. */
+#ifndef SPHPROOF_PUBLIC_RATES_H
+#define SPHPROOF_PUBLIC_RATES_H
+
+#include <sphproof/simulations.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** Where rates go: n values each, in the order of the scene; NULL: not wanted. */
+struct sphproof_rates {
+    double *h;          /**< support radii; by default to a relative 1e-14, see key h_tolerance */
+    double *rho;        /**< densities */
+    double *P;          /**< pressures */
+    double *force[3];   /**< dp/dt = m dv/dt */
+    double *dU;         /**< dU/dt of U = m u */
+    double *neighbours; /**< particles within h, itself and images included */
+};
+
+/** Evaluates the scene once. SPHPROOF_BAD_INPUT: as sphproof_simulations_create. */
+enum sphproof_status sphproof_rates_evaluate(const struct sphproof_scene *scene,
+                                             const struct sphproof_rates *rates,
+                                             struct sphproof_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "sphproof/rates.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "library.h"
+#include "rate_table.h"
+
+static void put(double *to, const double *from, size_t n)
+{
+    if (to) memcpy(to, from, n * sizeof *to);
+}
+
+enum sphproof_status sphproof_rates_evaluate(const struct sphproof_scene *theirs,
+                                             const struct sphproof_rates *rates,
+                                             struct sphproof_error *error)
+{
+    struct scene scene;
+    struct error ours;
+    struct rate_table table = {0};
+    double *rest = calloc(theirs->n + 1, sizeof *rest);
+    if (!rest)
+        return library_fail(error, STATUS_ENVIRONMENT, "no memory for %zu particles", theirs->n);
+    enum sphproof_status status = library_scene(theirs, true, rest, &scene, error);
+    if (!status) status = library_pass(rate_table_make(&table, &scene, &ours), &ours, error);
+    if (!status) {
+        put(rates->h, table.h, table.n);
+        put(rates->rho, table.rho, table.n);
+        put(rates->P, table.P, table.n);
+        put(rates->dU, table.dU, table.n);
+        put(rates->neighbours, table.neighbours, table.n);
+        for (int a = 0; a < scene.dim; a++) put(rates->force[a], table.force[a], table.n);
+    }
+    rate_table_free(&table);
+    free(rest);
+    return status;
+}

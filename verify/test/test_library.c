@@ -1,0 +1,386 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The public library through its own headers: what is right passes, what is wrong is named. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "sphproof/convergence.h"
+#include "sphproof/gradients.h"
+#include "sphproof/rates.h"
+#include "sphproof/solutions.h"
+
+/* ---- kernels ---- */
+
+static double slope = 1; /* 1: the right derivative */
+
+/* Epanechnikov's parabola with an edge that is smooth: (1 - q^2)^3. */
+static double bump(double q, int dim)
+{
+    const double a = 1 - q * q;
+    (void)dim;
+    return q < 1 ? a * a * a : 0;
+}
+
+static double bump_slope(double q, int dim)
+{
+    const double a = 1 - q * q;
+    (void)dim;
+    return q < 1 ? -6 * slope * q * a * a : 0;
+}
+
+static const struct sphproof_shape shape = {.w = bump,
+                                            .dw = bump_slope,
+                                            .constant = {0, 35. / 32},
+                                            .knot_count = 0,
+                                            .smoothness = 2,
+                                            .name = "bump",
+                                            .dim = 1};
+
+struct seen {
+    int figures, failed;
+    char first[32]; /* that fails */
+};
+
+static void see(void *context, const struct sphproof_figure *figure)
+{
+    struct seen *seen = context;
+    assert_non_null(figure->formula);
+    seen->figures++;
+    if (!figure->passed && !seen->failed++)
+        snprintf(seen->first, sizeof seen->first, "%s", figure->property);
+}
+
+static void a_kernel_of_ones_own_is_certified(void **state)
+{
+    (void)state;
+    struct sphproof_kernel *kernel;
+    struct sphproof_error error;
+    struct seen seen = {0};
+    slope = 1;
+    assert_int_equal(sphproof_kernels_own(&shape, &kernel, &error), SPHPROOF_OK);
+    assert_true(fabs(sphproof_kernels_value(kernel, 0.5, 2, 1) - 35. / 64 * bump(0.25, 1)) < 1e-15);
+    assert_int_equal(sphproof_kernels_certify(kernel, 1, see, &seen, &error), SPHPROOF_OK);
+    assert_true(seen.figures >= 15 && seen.failed == 0);
+    assert_int_equal(sphproof_kernels_certify(kernel, 2, see, &seen, &error), SPHPROOF_BAD_INPUT);
+    slope = 1 + 1e-7;
+    seen = (struct seen){0};
+    assert_int_equal(sphproof_kernels_certify(kernel, 1, see, &seen, &error),
+                     SPHPROOF_CHECK_FAILED);
+    assert_true(seen.failed > 0);
+    assert_int_equal(error.status, SPHPROOF_CHECK_FAILED);
+    assert_memory_equal(error.message, seen.first, strlen(seen.first));
+    assert_int_equal(sphproof_kernels_certify(kernel, 1, NULL, NULL, NULL), SPHPROOF_CHECK_FAILED);
+    sphproof_kernels_free(kernel);
+    slope = 1;
+}
+
+static void a_kernel_that_is_none_is_refused(void **state)
+{
+    (void)state;
+    static const double knots[] = {0.7, 0.3};
+    struct sphproof_kernel *kernel;
+    struct sphproof_error error;
+    struct sphproof_shape wrong = shape;
+    assert_int_equal(sphproof_kernels_find("cubic", &kernel, &error), SPHPROOF_BAD_INPUT);
+    assert_non_null(strstr(error.message, "cubic_spline"));
+    assert_null(kernel);
+    assert_int_equal(sphproof_kernels_find("cubic", &kernel, NULL), SPHPROOF_BAD_INPUT);
+    wrong.dw = NULL;
+    assert_int_equal(sphproof_kernels_own(&wrong, &kernel, &error), SPHPROOF_BAD_INPUT);
+    wrong = shape, wrong.knots = knots, wrong.knot_count = 2;
+    assert_int_equal(sphproof_kernels_own(&wrong, &kernel, &error), SPHPROOF_BAD_INPUT);
+    wrong = shape, wrong.constant[1] = -1;
+    assert_int_equal(sphproof_kernels_own(&wrong, &kernel, &error), SPHPROOF_BAD_INPUT);
+    slope = (double)NAN;
+    assert_int_equal(sphproof_kernels_own(&shape, &kernel, &error), SPHPROOF_BAD_INPUT);
+    slope = 1;
+}
+
+/* ---- gradients ---- */
+
+enum fault { RIGHT, SHIFTED, HALF, FORGETFUL, ABSENT };
+
+struct own {
+    const char *name;
+    const struct sphproof_kernel *kernel;
+    enum fault fault;
+    int calls;
+};
+
+static bool gradients(void *context, const struct sphproof_cloud *cloud, const double *f,
+                      double *const gradient[])
+{
+    struct own *own = context;
+    struct sphproof_error error;
+    own->calls++;
+    if (sphproof_gradients_apply(own->name, own->kernel, cloud, f, gradient, &error)) return false;
+    for (int a = 0; a < cloud->dim; a++)
+        for (size_t i = 0; i < cloud->n; i++) {
+            if (own->fault == SHIFTED) gradient[a][i] += 1e-6 * cloud->x[a][i];
+            if (own->fault == HALF) gradient[a][i] *= 0.5;
+            if (own->fault == FORGETFUL) gradient[a][i] *= 1 + 1e-12 * own->calls;
+        }
+    return own->fault != ABSENT;
+}
+
+static int tried(const char *name, enum fault fault, int dim,
+                 struct sphproof_gradient_promise promise, struct sphproof_error *error)
+{
+    struct sphproof_kernel *kernel;
+    assert_int_equal(sphproof_kernels_find("wendland_c4", &kernel, NULL), SPHPROOF_OK);
+    struct own own = {name, kernel, fault, 0};
+    const int status =
+        (int)sphproof_gradients_check(gradients, &own, dim, &promise, NULL, NULL, error);
+    sphproof_kernels_free(kernel);
+    return status;
+}
+
+static void an_operator_is_held_to_its_promise(void **state)
+{
+    (void)state;
+    const struct sphproof_gradient_promise linear = {2, 0.85, 2.4, true, true, true, true},
+                                           conserving = {0, -1.2, 2.4, true, true, true, true};
+    struct sphproof_gradient_promise smaller = linear;
+    struct sphproof_error error;
+    for (int dim = 1; dim <= 2; dim++) {
+        assert_int_equal(tried("linear_exact", RIGHT, dim, linear, &error), SPHPROOF_OK);
+        assert_int_equal(tried("ia", RIGHT, dim, conserving, &error), SPHPROOF_OK);
+    }
+    assert_int_equal(tried("ia", RIGHT, 1, linear, &error), SPHPROOF_CHECK_FAILED);
+    assert_non_null(strstr(error.message, "exactness"));
+    smaller.exact = 0;
+    assert_int_equal(tried("ia", RIGHT, 1, smaller, &error), SPHPROOF_CHECK_FAILED);
+    assert_non_null(strstr(error.message, "order"));
+    assert_int_equal(tried("ia", SHIFTED, 1, conserving, &error), SPHPROOF_CHECK_FAILED);
+    assert_int_equal(tried("linear_exact", HALF, 1, linear, &error), SPHPROOF_CHECK_FAILED);
+    assert_int_equal(tried("ia", FORGETFUL, 1, conserving, &error), SPHPROOF_CHECK_FAILED);
+    assert_non_null(strstr(error.message, "repeats"));
+    assert_int_equal(tried("ia", ABSENT, 1, conserving, &error), SPHPROOF_CHECK_FAILED);
+    assert_int_equal(tried("none", RIGHT, 1, conserving, &error), SPHPROOF_CHECK_FAILED);
+    smaller.eta = 0;
+    assert_int_equal(tried("ia", RIGHT, 1, smaller, &error), SPHPROOF_BAD_INPUT);
+}
+
+static void densities_of_a_lattice(void **state)
+{
+    (void)state;
+    enum { N = 40 };
+    double x[N], m[N], h[N], rho[N];
+    struct sphproof_cloud cloud = {
+        .dim = 1, .n = N, .x = {x}, .periodic = true, .lo = {0}, .hi = {1}};
+    struct sphproof_kernel *kernel;
+    for (int i = 0; i < N; i++) x[i] = (i + 0.5) / N, m[i] = 2.385 / N;
+    assert_int_equal(sphproof_kernels_find("cubic_spline", &kernel, NULL), SPHPROOF_OK);
+    assert_int_equal(sphproof_gradients_density(kernel, 2, &cloud, m, h, rho, NULL), SPHPROOF_OK);
+    for (int i = 0; i < N; i++)
+        assert_true(fabs(rho[i] - 2.385) < 1e-9 && fabs(h[i] * N - 2) < 1e-9);
+    cloud.dim = 4;
+    assert_int_equal(sphproof_gradients_density(kernel, 2, &cloud, m, h, rho, NULL),
+                     SPHPROOF_BAD_INPUT);
+    sphproof_kernels_free(kernel);
+}
+
+/* ---- solutions ---- */
+
+/* Jump conditions and invariants, not figures: mass flux through Sod's shock is continuous. */
+static void solutions_obey_their_equations(void **state)
+{
+    (void)state;
+    const double left[] = {1, 0, 1}, right[] = {0.125, 0, 0.1};
+    double x[2], rho[2], v[2], P[2], shock;
+    struct sphproof_star star;
+    struct sphproof_error error;
+    assert_int_equal(sphproof_solutions_star(1.4, left, right, &star, &error), SPHPROOF_OK);
+    const double s = star.speed[4];
+    x[0] = 0.3 + 0.2 * (s - 1e-9), x[1] = 0.3 + 0.2 * (s + 1e-9);
+    assert_int_equal(
+        sphproof_solutions_riemann(1.4, left, right, 0.3, 0.2, 2, x, rho, v, P, &error),
+        SPHPROOF_OK);
+    assert_true(fabs(rho[0] * (v[0] - s) - rho[1] * (v[1] - s)) < 1e-13);
+    assert_true(fabs(P[0] + rho[0] * (v[0] - s) * v[0] - P[1] - rho[1] * (v[1] - s) * v[1]) <
+                1e-13);
+    assert_true(fabs(P[0] - star.P) < 1e-14 && fabs(rho[0] - star.rho_right) < 1e-14);
+    x[0] = 0.01, x[1] = 10;
+    assert_int_equal(sphproof_solutions_sedov(1.4, 3, 1, 0.85, 1, 2, x, rho, v, P, &shock, &error),
+                     SPHPROOF_OK);
+    assert_true(fabs(shock - 1) < 1e-2 && rho[1] == 1 && P[1] == 0 && P[0] > 0);
+    assert_int_equal(sphproof_solutions_noh(5. / 3, 2, 0.6, 2, x, rho, v, P, &error), SPHPROOF_OK);
+    assert_true(fabs(rho[0] - 16) < 1e-13 && v[0] == 0 && v[1] == -1);
+    x[0] = 0.2;
+    assert_int_equal(sphproof_solutions_gresho(1, x, rho, v, P, &error), SPHPROOF_OK);
+    assert_true(fabs(v[0] - 1) < 1e-15);
+    assert_int_equal(sphproof_solutions_yee(1.4, 5, 2, x, rho, v, P, &error), SPHPROOF_OK);
+    assert_true(fabs(P[0] - pow(rho[0], 1.4)) < 1e-13);
+    assert_int_equal(sphproof_solutions_wave(1.4, 1, 0, 1, 1e-3, 1, 0.3, 2, x, rho, v, P, &error),
+                     SPHPROOF_OK);
+    assert_true(fabs(P[0] - pow(rho[0], 1.4)) < 1e-13);
+}
+
+static void nonsense_is_refused(void **state)
+{
+    (void)state;
+    const double left[] = {1, 0, 1}, wrong[] = {-1, 0, 1};
+    double x = 0, y[3] = {7, 7, 7};
+    struct sphproof_error e;
+    assert_int_equal(sphproof_solutions_riemann(1.4, left, wrong, 0, 1, 1, &x, y, y + 1, y + 2, &e),
+                     SPHPROOF_BAD_INPUT);
+    assert_int_equal(sphproof_solutions_riemann(1.4, left, left, 0, -1, 1, &x, y, y + 1, y + 2, &e),
+                     SPHPROOF_BAD_INPUT);
+    assert_int_equal(sphproof_solutions_sedov(1.4, 4, 1, 1, 1, 1, &x, y, y + 1, y + 2, NULL, &e),
+                     SPHPROOF_BAD_INPUT);
+    assert_int_equal(sphproof_solutions_noh(1, 1, 1, 1, &x, y, y + 1, y + 2, &e),
+                     SPHPROOF_BAD_INPUT);
+    assert_int_equal(sphproof_solutions_yee(1.4, 100, 1, &x, y, y + 1, y + 2, &e),
+                     SPHPROOF_BAD_INPUT);
+    assert_int_equal(sphproof_solutions_wave(1.4, 1, 0, 1, 0.5, 1, 100, 1, &x, y, y + 1, y + 2, &e),
+                     SPHPROOF_BAD_INPUT);
+    assert_true(y[0] == 7 && y[1] == 7 && y[2] == 7);
+}
+
+/* ---- convergence ---- */
+
+static void an_order_passes_its_gate(void **state)
+{
+    (void)state;
+    const double spacing[] = {0.1, 0.05, 0.025, 0.0125};
+    const struct sphproof_gate gate = {1.8, 2.2, 1}, narrow = {2.1, 2.2, 1},
+                               small = {1.8, 2.2, 1e-9};
+    double at[4], exact[4] = {0};
+    struct sphproof_order order;
+    struct sphproof_norms norms;
+    struct sphproof_error error;
+    for (int l = 0; l < 4; l++) at[l] = 3 * spacing[l] * spacing[l];
+    assert_int_equal(sphproof_convergence_order(4, spacing, at, &order, &error), SPHPROOF_OK);
+    assert_true(fabs(order.order - 2) < 1e-12 && strcmp(order.kind, "asymptotic") == 0);
+    assert_int_equal(sphproof_convergence_gate(&order, &gate, &error), SPHPROOF_OK);
+    assert_int_equal(sphproof_convergence_gate(&order, &narrow, &error), SPHPROOF_CHECK_FAILED);
+    assert_int_equal(sphproof_convergence_gate(&order, &small, &error), SPHPROOF_CHECK_FAILED);
+    assert_int_equal(sphproof_convergence_order(3, spacing, at, &order, &error),
+                     SPHPROOF_BAD_INPUT);
+    assert_int_equal(sphproof_convergence_norms(4, NULL, at, exact, &norms, &error), SPHPROOF_OK);
+    assert_true(norms.linf == at[0] && fabs(norms.l1 - norms.mean) < 1e-15);
+    assert_int_equal(sphproof_convergence_norms(4, spacing, at, exact, &norms, &error),
+                     SPHPROOF_OK);
+    assert_true(norms.l1 > norms.mean); /* larger volumes where errors are larger */
+    at[2] = (double)NAN;
+    assert_int_equal(sphproof_convergence_norms(4, NULL, at, exact, &norms, &error), SPHPROOF_OK);
+    assert_true(isnan(norms.l1) && isnan(norms.linf));
+    assert_int_equal(sphproof_convergence_norms(0, NULL, at, exact, &norms, &error),
+                     SPHPROOF_BAD_INPUT);
+}
+
+/* ---- rates and simulations ---- */
+
+enum { N = 64 };
+static double x[N], v[N], m[N], u[N], y[N];
+static const char *const keys[] = {"kernel=cubic_spline", "eta=2.4", "integrator=leapfrog",
+                                   "energy=internal", NULL};
+
+/* In an order that is not that of their places. */
+static struct sphproof_scene scene_of_a_wave(void)
+{
+    for (int k = 0; k < N; k++) {
+        const int i = (k * 27) % N;
+        x[k] = (i + 0.5) / N, m[k] = 1. / N, u[k] = 1 + 0.1 * cos(2 * 3.14159265358979 * x[k]);
+        v[k] = 0.01 * k / N, y[k] = 0.5;
+    }
+    return (struct sphproof_scene){.dim = 1,
+                                   .n = N,
+                                   .x = {x},
+                                   .v = {v},
+                                   .m = m,
+                                   .u = u,
+                                   .lo = {0},
+                                   .hi = {1},
+                                   .gamma = 1.4,
+                                   .keys = keys};
+}
+
+static void rates_conserve(void **state)
+{
+    (void)state;
+    const struct sphproof_scene scene = scene_of_a_wave();
+    double force[N], dU[N], P[N], total = 0, power = 0, largest = 0;
+    const struct sphproof_rates rates = {.force = {force}, .dU = dU, .P = P};
+    struct sphproof_error error;
+    assert_int_equal(sphproof_rates_evaluate(&scene, &rates, &error), SPHPROOF_OK);
+    for (int i = 0; i < N; i++) {
+        assert_true(fabs(P[i] - 0.4 * u[i]) < 0.01); /* the order is the scene's */
+        total += force[i], power += v[i] * force[i] + dU[i],
+            largest = fmax(largest, fabs(force[i]));
+    }
+    assert_true(largest > 1e-3 && fabs(total) < 1e-13 && fabs(power) < 1e-13);
+}
+
+static void a_simulation_conserves(void **state)
+{
+    (void)state;
+    struct sphproof_scene scene = scene_of_a_wave();
+    struct sphproof_simulation *simulation;
+    struct sphproof_error error;
+    double place[N], rho[N];
+    const struct sphproof_state wanted = {.x = {place}, .rho = rho};
+    assert_int_equal(sphproof_simulations_create(&scene, &simulation, &error), SPHPROOF_OK);
+    const struct sphproof_sums before = sphproof_simulations_sums(simulation);
+    assert_true(sphproof_simulations_state(simulation, &wanted) == 0);
+    for (int i = 0; i < N; i++) assert_true(place[i] == x[i] && fabs(rho[i] - 1) < 0.01);
+    assert_int_equal(sphproof_simulations_run(simulation, 0.02, &error), SPHPROOF_OK);
+    assert_true(sphproof_simulations_state(simulation, &wanted) == 0.02);
+    const struct sphproof_sums after = sphproof_simulations_sums(simulation);
+    assert_true(fabs(after.momentum[0] - before.momentum[0]) < 1e-14);
+    assert_true(fabs(after.energy - before.energy) < 1e-6 && fabs(after.mass - 1) < 1e-14);
+    assert_int_equal(sphproof_simulations_run(simulation, 0.01, &error), SPHPROOF_BAD_INPUT);
+    sphproof_simulations_free(simulation);
+    sphproof_simulations_free(NULL);
+}
+
+static void a_scene_that_is_none_is_refused(void **state)
+{
+    (void)state;
+    static const char *const foreign[] = {"n=100", NULL}, *const unknown[] = {"kernle=ia", NULL};
+    const struct sphproof_rates rates = {0};
+    struct sphproof_error error;
+    struct sphproof_scene scene = scene_of_a_wave();
+    scene.keys = foreign;
+    assert_int_equal(sphproof_rates_evaluate(&scene, &rates, &error), SPHPROOF_BAD_INPUT);
+    assert_non_null(strstr(error.message, "n is no key of a scheme"));
+    scene.keys = unknown;
+    assert_int_equal(sphproof_rates_evaluate(&scene, &rates, &error), SPHPROOF_BAD_INPUT);
+    scene = scene_of_a_wave(), scene.boundary[0] = "rigid";
+    assert_int_equal(sphproof_rates_evaluate(&scene, &rates, &error), SPHPROOF_BAD_INPUT);
+    scene = scene_of_a_wave(), scene.dim = 2;
+    assert_int_equal(sphproof_rates_evaluate(&scene, &rates, &error), SPHPROOF_BAD_INPUT);
+    scene.x[1] = y, scene.v[1] = NULL, scene.hi[1] = 1, scene.boundary[1] = "reflecting";
+    assert_int_equal(sphproof_rates_evaluate(&scene, &rates, &error), SPHPROOF_OK);
+    y[5] = 1.5;
+    assert_int_equal(sphproof_rates_evaluate(&scene, &rates, &error), SPHPROOF_BAD_INPUT);
+    assert_non_null(strstr(error.message, "particle 5"));
+    scene = scene_of_a_wave(), m[3] = (double)NAN;
+    assert_int_equal(sphproof_rates_evaluate(&scene, &rates, &error), SPHPROOF_BAD_INPUT);
+    scene = scene_of_a_wave(), scene.gamma = 1;
+    assert_int_equal(sphproof_rates_evaluate(&scene, &rates, NULL), SPHPROOF_BAD_INPUT);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_kernel_of_ones_own_is_certified),
+        cmocka_unit_test(a_kernel_that_is_none_is_refused),
+        cmocka_unit_test(an_operator_is_held_to_its_promise),
+        cmocka_unit_test(densities_of_a_lattice),
+        cmocka_unit_test(solutions_obey_their_equations),
+        cmocka_unit_test(nonsense_is_refused),
+        cmocka_unit_test(an_order_passes_its_gate),
+        cmocka_unit_test(rates_conserve),
+        cmocka_unit_test(a_simulation_conserves),
+        cmocka_unit_test(a_scene_that_is_none_is_refused),
+    };
+    return cmocka_run_group_tests_name("library", tests, NULL, NULL);
+}
