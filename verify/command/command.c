@@ -16,14 +16,15 @@
 #include "commands.def"
 #undef COMMAND
 
-static const struct command *const commands[] = {
+const struct command *const command_table[] = {
 #define COMMAND(name) &command_##name,
 #include "commands.def"
 #undef COMMAND
 };
-enum { COMMANDS = sizeof commands / sizeof *commands, THREADS_MAX = 1024 };
+enum { COMMANDS = sizeof command_table / sizeof *command_table, THREADS_MAX = 1024 };
+const size_t command_count = COMMANDS;
 
-static const struct command_option common[] = {
+const struct command_option command_common[] = {
     {"json", "FILE|-", "write the result document (with - nothing else goes to standard output)"},
     {"threads", "T", "threads, 1 to 1024 (default 1); results do not depend on it"},
     {"quiet", NULL, "print neither tables nor progress"},
@@ -61,7 +62,7 @@ static enum status unknown_option(const struct options *options, const char *wor
                                   struct error *error)
 {
     const struct command_option *const lists[] = {
-        options->command ? options->command->options : NULL, common};
+        options->command ? options->command->options : NULL, command_common};
     const size_t most = count(lists[0]) + count(lists[1]);
     char(*names)[40] = malloc(most * sizeof *names);
     const char **list = malloc(most * sizeof *list);
@@ -125,7 +126,7 @@ static enum status take_option(struct line *line, int argc, char **argv, int *i,
     const size_t length = strcspn(word + 2, "=");
     const struct command *command = line->options.command;
     const struct command_option *own = command ? find(command->options, word + 2, length) : NULL;
-    const struct command_option *option = own ? own : find(common, word + 2, length);
+    const struct command_option *option = own ? own : find(command_common, word + 2, length);
     if (!option) return unknown_option(&line->options, word, error);
     const char *value = word[2 + length] == '=' ? word + 3 + length : NULL;
     if (!option->argument) {
@@ -149,10 +150,10 @@ static enum status find_command(const char *word, struct options *options, struc
 {
     const char *names[COMMANDS];
     for (size_t i = 0; i < COMMANDS; i++) {
-        names[i] = commands[i]->name;
+        names[i] = command_table[i]->name;
         if (strcmp(word, names[i]) != 0) continue;
-        options->command = commands[i];
-        options->values = calloc(count(commands[i]->options) + 1, sizeof *options->values);
+        options->command = command_table[i];
+        options->values = calloc(count(command_table[i]->options) + 1, sizeof *options->values);
         return options->values ? STATUS_OK : error_set(error, STATUS_ENVIRONMENT, "no memory");
     }
     return text_unknown(error, NULL, "command", word, names, COMMANDS);
@@ -197,11 +198,11 @@ static void print_help(const struct command *command)
         printf("sphproof: verification and convergence of SPH\n\nusage: sphproof COMMAND "
                "[ARGUMENT ...] [OPTION ...]\n\ncommands:\n");
         for (size_t i = 0; i < COMMANDS; i++)
-            printf("  %-10s %.*s\n", commands[i]->name, (int)strcspn(commands[i]->help, "\n"),
-                   commands[i]->help);
+            printf("  %-10s %.*s\n", command_table[i]->name,
+                   (int)strcspn(command_table[i]->help, "\n"), command_table[i]->help);
     }
     printf("\noptions of every command:\n");
-    print_options(common);
+    print_options(command_common);
     printf("\nexit status:\n");
 #define STATUS(name, code, text) printf("  %d  %s\n", code, text);
     STATUS_LIST(STATUS)

@@ -3,6 +3,8 @@
 #ifndef SPHPROOF_COMMAND_H
 #define SPHPROOF_COMMAND_H
 
+#include <stddef.h>
+
 #include "status.h"
 
 /* An option of one command; a list of them ends with a NULL name. */
@@ -41,6 +43,12 @@ const char *options_value(const struct options *options, const char *name);
 /* Bad usage of this command: STATUS_BAD_INPUT with the message and the synopsis. */
 enum status command_usage(const struct options *options, struct error *error, const char *format,
                           ...) __attribute__((format(printf, 3, 4)));
+
+/* All commands, and the options that each of them takes: what --help, the manual and the completion
+ * of shells are made of. */
+extern const struct command *const command_table[];
+extern const size_t command_count;
+extern const struct command_option command_common[];
 
 /* The whole program: finds the command, runs it, prints the error, returns the exit status. */
 int command_main(int argc, char **argv);
