@@ -66,6 +66,9 @@ setup_libclang() {
     python3 -c 'import sys; sys.path.append("/usr/lib/python3/dist-packages"); import clang.cindex' 2>/dev/null
 }
 
+# numpy, for the Python of the system: that of the package meson.
+setup_numpy() { /usr/bin/python3 -c 'import numpy' 2>/dev/null; }
+
 # Packages that are missing, among those for building (and with `full` or `nightly`, for those).
 setup_missing() {
     setup_compiles gcc || echo gcc libc6-dev
@@ -81,7 +84,8 @@ setup_missing() {
     case $1 in full | nightly)
         setup_compiles clang || echo clang
         setup_compiles clang -fopenmp || echo libomp-dev
-        setup_libclang || echo python3-clang ;;
+        setup_libclang || echo python3-clang
+        setup_numpy || echo python3-numpy ;;
     esac
     case $1 in nightly) setup_has valgrind || echo valgrind ;; esac
 }

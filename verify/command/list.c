@@ -11,6 +11,7 @@
 #include "kernel.h"
 #include "list.h"
 #include "operator.h"
+#include "place.h"
 #include "result.h"
 #include "settings.h"
 #include "snapshot_file.h"
@@ -203,6 +204,20 @@ static json_t *family_json(const struct family *family)
     return list;
 }
 
+/* What was installed with the program, and where. */
+static json_t *where(bool speak)
+{
+    static const char *const names[] = {"cases", "sphproof-1.schema.json"};
+    json_t *list = json_object();
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        char path[PLACE_LENGTH];
+        const bool found = place_find(names[i], path);
+        if (speak) printf("%-24s %s\n", names[i], found ? path : "not installed");
+        json_object_set_new(list, names[i], found ? json_string(path) : json_null());
+    }
+    return list;
+}
+
 static enum status choose(const char *word, const struct family **chosen, struct error *error)
 {
     const char *names[LISTS];
@@ -218,7 +233,8 @@ static enum status run(const struct options *options, int n, char **arguments, s
 {
     const struct family *chosen = NULL;
     const struct table_style style = table_style(options->color);
-    const bool markdown = options_value(options, "markdown");
+    const bool markdown = options_value(options, "markdown"),
+               places = options_value(options, "where");
     if (n > 1) return command_usage(options, error, "one family at a time");
     for (size_t i = 0; i < LISTS; i++) lists[i]();
     if (no_memory) return error_set(error, STATUS_ENVIRONMENT, "list: no memory");
@@ -226,8 +242,9 @@ static enum status run(const struct options *options, int n, char **arguments, s
     const bool only_keys = chosen && strcmp(chosen->name, "keys") == 0;
     if (markdown && !only_keys)
         return command_usage(options, error, "--markdown goes with `list keys` only");
-    json_t *families = json_object();
-    for (size_t i = 0; i < LISTS; i++) {
+    if (places && (n || markdown)) return command_usage(options, error, "--where stands alone");
+    json_t *families = json_object(), *installed = places ? where(options->speak) : NULL;
+    for (size_t i = 0; i < LISTS && !places; i++) {
         const struct family *family = lists[i]();
         if (chosen && chosen != family) continue;
         if (options->speak && !only_keys) print_family(family, &style);
@@ -240,15 +257,17 @@ static enum status run(const struct options *options, int n, char **arguments, s
     if (options->json) {
         json_t *document = result_new("list");
         json_object_set(document, "families", families);
+        if (places) json_object_set(document, "installed", installed);
         status = result_write(document, options->json, error);
         json_decref(document);
     }
-    json_decref(families);
+    json_decref(families), json_decref(installed);
     return status;
 }
 
 static const struct command_option own_options[] = {
     {"markdown", NULL, "the keys as a table for a README"},
+    {"where", NULL, "where the installed cases and the schema of results are"},
     {NULL, NULL, NULL},
 };
 

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "list.h"
+#include "place.h"
 #include "text.h"
 
 enum { SIZE_MAX_FILE = 65536 };
@@ -66,6 +67,16 @@ static enum status unknown_case(const char *name, struct error *error)
     return status;
 }
 
+/* A case that somebody has put beside the installed ones; their copies there are for reading. */
+static enum status load_installed(struct case_file *file, const char *name, struct error *error)
+{
+    char wanted[128], path[PLACE_LENGTH];
+    const int length = snprintf(wanted, sizeof wanted, "cases/%s.ini", name);
+    if (length < (int)sizeof wanted && place_find(wanted, path))
+        return load_path(file, path, error);
+    return unknown_case(name, error);
+}
+
 enum status case_load(struct case_file *file, const char *name, struct error *error)
 {
     const char *dot = strrchr(name, '.');
@@ -76,5 +87,5 @@ enum status case_load(struct case_file *file, const char *name, struct error *er
         if (strcmp(builtin->name, name) == 0)
             return case_parse(file, path, builtin->text, strlen(builtin->text), error);
     }
-    return unknown_case(name, error);
+    return load_installed(file, name, error);
 }

@@ -45,7 +45,8 @@ struct case_builtin {
 };
 extern const struct case_builtin case_builtins[];
 
-/* Reads a case: a path where name contains a slash or ends in .ini, else a built-in one.
+/* Reads a case: a path where name contains a slash or ends in .ini, else a built-in one, else one in
+ * the folder of installed cases.
  * STATUS_BAD_INPUT: no such case, or what is wrong with the file. */
 enum status case_load(struct case_file *file, const char *name, struct error *error);
 

@@ -16,7 +16,7 @@ import sys
 import tempfile
 
 LAYERS = {"src": set(), "reference": set(), "reports": set()}  # of these each knows nobody
-BESIDE = {"verify/test", "verify/fuzz", "verify/examples", "verify/mutants", "verify"}  # see all, seen by nobody
+BESIDE = {"verify/test", "verify/fuzz", "verify/examples", "verify/mutants", "verify/package", "verify"}  # see all, seen by nobody
 GENERATED = {"config.h", "kernel_names.h", "version.h"}
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.M)
 ROOM = re.compile(r"^\s*\['(\w+)', \[([^\]]*)\]", re.M)

@@ -52,7 +52,7 @@ double sphproof_kernels_dh(const struct sphproof_kernel *kernel, double r, doubl
 
 /** Measures every property that a kernel must have in dim dimensions (normalisation, derivatives,
  * support, continuity, moments, transform, lattice sums ...) and hands each figure to sink (may be
- * NULL). It calls w and dw some ten million times. SPHPROOF_CHECK_FAILED: a property does not hold;
+ * NULL). It calls w and dw some million times. SPHPROOF_CHECK_FAILED: a property does not hold;
  * the error names the first. Unlike the program's command `kernel` it runs your functions here, in
  * this process. */
 enum sphproof_status sphproof_kernels_certify(const struct sphproof_kernel *kernel, int dim,
