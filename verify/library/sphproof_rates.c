@@ -29,7 +29,8 @@ enum sphproof_status sphproof_rates_evaluate(const struct sphproof_scene *theirs
         put(rates->rho, table.rho, table.n);
         put(rates->P, table.P, table.n);
         put(rates->dU, table.dU, table.n);
-        put(rates->neighbours, table.neighbours, table.n);
+        for (size_t i = 0; rates->neighbours && i < table.n; i++)
+            rates->neighbours[i] = table.described[i].neighbours;
         for (int a = 0; a < scene.dim; a++) put(rates->force[a], table.force[a], table.n);
     }
     rate_table_free(&table);
