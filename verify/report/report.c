@@ -12,6 +12,7 @@
 #include "claims.h"
 #include "clock.h"
 #include "list.h"
+#include "pairing.h"
 #include "pool.h"
 #include "report_piece.h"
 #include "result.h"
@@ -63,6 +64,7 @@ struct report {
     size_t case_count, piece_count;
     struct stress stress;
     struct claims claims;
+    struct pairing pairing;
 };
 
 /* ---- what is to be computed ---- */
@@ -232,7 +234,9 @@ static enum status add_all(struct report *report, struct error *error)
                           error))
                 return error->status;
         }
-    if (claims_plan(&report->claims, report->nightly, &report->pool, error)) return error->status;
+    if (claims_plan(&report->claims, report->nightly, &report->pool, error) ||
+        pairing_plan(&report->pairing, report->nightly, &report->pool, error))
+        return error->status;
     return stress_plan(&report->stress, report->nightly, 0, NULL, &report->pool, error);
 }
 
@@ -376,7 +380,12 @@ static json_t *collect(struct report *report, const char *folder, double seconds
     json_t *stress = result_new("stress");
     stress_judge(&report->stress, &report->pool, stress);
     json_object_set_new(results, "stress", stress);
-    json_object_set_new(results, "claims", claims_judge(&report->claims, &report->pool));
+    json_t *claims = claims_judge(&report->claims, &report->pool);
+    json_t *pairing =
+        pairing_judge(&report->pairing, &report->pool, json_object_get(results, "kernels"));
+    json_array_extend(claims, pairing);
+    json_decref(pairing);
+    json_object_set_new(results, "claims", claims);
     add_written(results, "faults", folder);
     add_written(results, "score", folder);
     json_object_set_new(results, "verdict", verdict_make(results));
@@ -411,6 +420,7 @@ void report_destroy(struct report *report)
     for (size_t k = 0; k < report->piece_count; k++) free(report->pieces[k]);
     stress_free(&report->stress);
     claims_free(&report->claims);
+    pairing_free(&report->pairing);
     pool_free(&report->pool);
     free(report->cases), free(report->pieces);
     free(report);

@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The claim that Wendland functions keep particles from pairing because their Fourier transforms
+ * are nowhere negative (Dehnen & Aly 2012), measured: disordered gas comes to rest with every
+ * kernel, from few neighbours to many, in 2D and 3D, and it is seen who stands in pairs. */
+#ifndef SPHPROOF_PAIRING_H
+#define SPHPROOF_PAIRING_H
+
+#include <jansson.h>
+#include <stdbool.h>
+
+#include "pool.h"
+#include "run.h"
+
+struct pairing {
+    struct pairing_run *runs;
+    size_t count;
+};
+
+/* Adds the runs to a pool; pairing, which begins as {0}, must outlive it. */
+enum status pairing_plan(struct pairing *pairing, bool nightly, struct pool *pool,
+                         struct error *error);
+
+/* After the pool has run, one claim for each gradient: [{"name", "claim", "verdict", "bound",
+ * "ladders": [{"kernel", "dim", "first_negative_kh", "predicted" (null: never), "neighbours",
+ * "paired", "nearest" (lists; NaN where the run broke down), "verdict", "reproduce"}]}]. kernels:
+ * documents of `sphproof kernel`, for what theory says of each. New reference. */
+json_t *pairing_judge(const struct pairing *pairing, const struct pool *pool,
+                      const json_t *kernels);
+
+void pairing_free(struct pairing *pairing);
+
+#endif
