@@ -1,0 +1,260 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What `auto` stands for: eta of every kernel and cfl of every integrator as the tables of
+ * CONVENTIONS section 9 have them, and what the rest depends on as the keys' meanings say it, for
+ * every scheme of these choices in 1D and 2D. Argument: CONVENTIONS.md. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "integrator.h"
+#include "near.h"
+#include "run.h"
+
+enum { ROWS = 32, CELL = 40 };
+
+/* A row of the first table after a header that begins with a word: up to five cells. */
+struct row {
+    char cell[5][CELL];
+};
+struct table {
+    size_t n;
+    struct row row[ROWS];
+};
+static struct table kernels, integrators;
+
+static void read_table(struct table *table, const char *path, const char *first)
+{
+    char line[400], header[CELL];
+    FILE *file = fopen(path, "r");
+    bool inside = false;
+    snprintf(header, sizeof header, "| %s |", first);
+    assert_non_null(file);
+    while (fgets(line, sizeof line, file)) {
+        if (inside && line[0] != '|') break;
+        if (inside && line[1] == ' ') {
+            struct row *row = &table->row[table->n++];
+            assert_true(table->n < ROWS);
+            sscanf(line, "| %39[^|]| %39[^|]| %39[^|]| %39[^|]| %39[^|]|", row->cell[0],
+                   row->cell[1], row->cell[2], row->cell[3], row->cell[4]);
+            for (size_t i = 0; i < 5; i++) strtok(row->cell[i], " \n");
+        }
+        inside = inside || strncmp(line, header, strlen(header)) == 0;
+    }
+    fclose(file);
+}
+
+static const struct row *row_of(const struct table *table, const char *name)
+{
+    for (size_t i = 0; i < table->n; i++)
+        if (strcmp(table->row[i].cell[0], name) == 0) return &table->row[i];
+    fail_msg("%s is in no table of CONVENTIONS section 9", name);
+    return NULL;
+}
+
+/* "1.5", "0.8/eta", "sinc_n/2" */
+static double value_of(const char *cell, double eta, double sinc_n)
+{
+    if (strcmp(cell, "sinc_n/2") == 0) return sinc_n < 5 ? 2.5 : sinc_n / 2;
+    char *end;
+    const double value = strtod(cell, &end);
+    assert_true(end != cell && (*end == '\0' || strcmp(end, "/eta") == 0));
+    return *end ? value / eta : value;
+}
+
+/* The scheme of a case with these words; false where they exclude each other. */
+static bool scheme_of(const struct run_settings *base, size_t n, const char *const *words,
+                      struct run *run)
+{
+    struct run_settings settings = *base;
+    struct error error = {0};
+    assert_int_equal(
+        settings_apply(&settings.settings, (int)n, (char *const *)(uintptr_t)words, &error),
+        STATUS_OK);
+    return run_resolve(run, &settings, &error) == STATUS_OK;
+}
+
+static struct run_settings case_of(const char *name)
+{
+    struct run_settings settings;
+    struct error error = {0};
+    if (run_prepare(&settings, name, 0, NULL, &error)) fail_msg("%s", error.message);
+    return settings;
+}
+
+static void is(double got, double want, const struct run *run, const char *what)
+{
+    if (!(fabs(got - want) <= 1e-15 * want))
+        fail_msg("%s is %.17g, not %.17g, with %s %s", what, got, want,
+                 run->scheme.kernel.member.name, run->scheme.integrator->member.name);
+}
+
+/* What the keys say that auto is, of a scheme whose choices are made. */
+static void judge(const struct run *run, int dim)
+{
+    const struct scheme *s = &run->scheme;
+    const char *kernel = s->kernel.member.name;
+    const struct row *k = row_of(&kernels, kernel),
+                     *i = row_of(&integrators, s->integrator->member.name);
+    const bool midpoint = strcmp(i->cell[0], "predicted_midpoint") == 0, line = dim == 1,
+               vanilla = s->formulation == FORMULATION_VANILLA_ICE,
+               quadratic = strcmp(kernel, "quadratic_spline") == 0,
+               standard = s->gradient == GRADIENT_STANDARD;
+    const double eta = value_of(k->cell[line ? 1 : 2], 0, s->kernel.order);
+    const double alpha = quadratic && midpoint && line ? 0.75 : 1;
+    const double most = s->viscosity == VISCOSITY_TIME_DEPENDENT ? s->alpha_max : alpha;
+    const bool far = midpoint && line && quadratic && standard && s->h_method == H_PREDICTED &&
+                     s->volume_element == VOLUME_MASS && s->viscosity != VISCOSITY_NONE &&
+                     most <= 0.75;
+    is(s->eta, eta, run, "eta");
+    is(s->alpha, alpha, run, "alpha");
+    is(s->beta, 2 * alpha, run, "beta");
+    is(s->cfl, far ? 1.1 / eta : value_of(i->cell[line ? 3 : 4], eta, 0), run, "cfl");
+    assert_int_equal(s->energy, midpoint ? ENERGY_TOTAL : ENERGY_INTERNAL);
+    assert_int_equal(s->h_method, midpoint && vanilla ? H_PREDICTED : H_NEWTON);
+    assert_int_equal(s->pair_width, !midpoint || !vanilla                     ? PAIR_WIDTH_MEAN
+                                    : s->viscosity == VISCOSITY_RECONSTRUCTED ? PAIR_WIDTH_HARMONIC
+                                    : line && quadratic && standard           ? PAIR_WIDTH_MAX
+                                                                              : PAIR_WIDTH_MEAN);
+    const bool projected = s->viscosity == VISCOSITY_PROJECTED,
+               sloped = projected || s->viscosity == VISCOSITY_RECONSTRUCTED;
+    assert_int_equal(s->viscosity_form,
+                     !line && sloped ? VISCOSITY_FORM_SIGNAL : VISCOSITY_FORM_MU);
+    assert_int_equal(s->balsara, projected ? BALSARA_ON : BALSARA_OFF);
+    assert_int_equal(s->integrator->order, atoi(i->cell[1]));
+    assert_int_equal(s->integrator->evaluations, atoi(i->cell[2]));
+}
+
+/* Every kernel, integrator, gradient, formulation and viscosity of so many dimensions. */
+static void every_scheme(const char *name, int dim)
+{
+    const struct run_settings base = case_of(name);
+    const struct family *families[] = {&kernel_family, &integrator_family, &scheme_gradient_family,
+                                       &scheme_formulation_family, &scheme_viscosity_family};
+    static const char *const keys[] = {"kernel", "integrator", "gradient", "formulation",
+                                       "viscosity"};
+    size_t counts[5], all = 1, allowed = 0;
+    for (size_t f = 0; f < 5; f++)
+        all *= counts[f] = f < 2 ? families[f]->n : scheme_members(families[f], dim);
+    for (size_t c = 0; c < all; c++) {
+        char words[5][64];
+        const char *pointers[5];
+        size_t left = c;
+        for (size_t f = 0; f < 5; f++) {
+            snprintf(words[f], sizeof words[f], "%s=%s", keys[f],
+                     families[f]->members[left % counts[f]]->name);
+            pointers[f] = words[f];
+            left /= counts[f];
+        }
+        struct run run;
+        if (!scheme_of(&base, 5, pointers, &run)) continue;
+        judge(&run, dim);
+        allowed++;
+    }
+    assert_true(2 * allowed > all);
+}
+
+static void in_a_line(void **state)
+{
+    (void)state;
+    every_scheme("sod", 1);
+}
+
+static void in_a_plane(void **state)
+{
+    (void)state;
+    every_scheme("rest_2d", 2);
+}
+
+static void nothing_but_these(void **state)
+{
+    (void)state;
+    assert_int_equal(kernels.n, kernel_family.n);
+    assert_int_equal(integrators.n, integrator_family.n);
+}
+
+/* Where nothing is chosen at all; and what takes long steps away. */
+static void nothing_chosen(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name, *kernel;
+        enum gradient gradient;
+        enum viscosity viscosity;
+        enum volume_element element;
+        int dim;
+    } cases[] = {{"sod", "quadratic_spline", GRADIENT_STANDARD, VISCOSITY_CONSTANT, VOLUME_MASS, 1},
+                 {"rest_2d", "wendland_c4", GRADIENT_IA, VISCOSITY_PROJECTED, VOLUME_NUMBER, 2},
+                 {"rest_3d", "wendland_c4", GRADIENT_IA, VISCOSITY_PROJECTED, VOLUME_NUMBER, 3}};
+    struct run run;
+    for (size_t i = 0; i < 3; i++) {
+        const struct run_settings base = case_of(cases[i].name);
+        assert_true(scheme_of(&base, 0, NULL, &run));
+        assert_string_equal(run.scheme.kernel.member.name, cases[i].kernel);
+        assert_int_equal(run.scheme.gradient, cases[i].gradient);
+        assert_int_equal(run.scheme.viscosity, cases[i].viscosity);
+        assert_int_equal(run.scheme.volume_element, cases[i].element);
+        judge(&run, cases[i].dim);
+    }
+    const struct run_settings sod = case_of("sod");
+    static const struct {
+        const char *words[2];
+        double spacings;
+    } steps[] = {
+        {{"alpha=0.75", "t_end=0.1"}, 1.1},
+        {{"alpha=0.76", "t_end=0.1"}, 0.8},
+        {{"alpha=0.3", "t_end=0.1"}, 1.1},
+        {{"eta=1.6", "t_end=0.1"}, 0.8},
+        {{"h_method=newton", "t_end=0.1"}, 0.8},
+        {{"viscosity=none", "alpha=0.5"}, 0.8},
+        {{"volume_element=energy", "alpha=0.5"}, 0.8},
+        {{"viscosity=time_dependent", "alpha_max=0.7"}, 1.1},
+        {{"viscosity=time_dependent", "alpha_max=0.8"}, 0.8},
+        {{"kernel=cubic_spline", "alpha=0.5"}, 0.8},
+        {{"gradient=ia", "alpha=0.5"}, 0.8},
+    };
+    for (size_t i = 0; i < sizeof steps / sizeof *steps; i++) {
+        assert_true(scheme_of(&sod, 2, steps[i].words, &run));
+        is(run.scheme.cfl * run.scheme.eta, steps[i].spacings, &run, steps[i].words[0]);
+    }
+}
+
+/* sinc: half its exponent. */
+static void sinc(void **state)
+{
+    (void)state;
+    const struct run_settings sod = case_of("sod"), rest = case_of("rest_2d");
+    for (int n = 3; n <= 12; n++) {
+        char word[32];
+        struct run run;
+        snprintf(word, sizeof word, "sinc_n=%d", n);
+        const char *const words[] = {"kernel=sinc", word};
+        for (int dim = 1; dim <= 2; dim++) {
+            assert_true(scheme_of(dim == 1 ? &sod : &rest, 2, words, &run));
+            is(run.scheme.eta, n < 5 ? 2.5 : n / 2., &run, word);
+            assert_int_equal(run.scheme.kernel.smoothness[dim], n - 1);
+        }
+        assert_int_equal(run.scheme.kernel.stable_eta[0] > 0, n == 5);
+        assert_int_equal(run.scheme.kernel.stable_eta[1] > 0, n == 5);
+    }
+}
+
+int main(int argc, char **argv)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(nothing_but_these),
+        cmocka_unit_test(in_a_line),
+        cmocka_unit_test(in_a_plane),
+        cmocka_unit_test(nothing_chosen),
+        cmocka_unit_test(sinc),
+    };
+    if (argc != 2) return 2;
+    read_table(&kernels, argv[1], "kernel");
+    read_table(&integrators, argv[1], "integrator");
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
