@@ -18,7 +18,7 @@ import subprocess
 import threading
 import time
 
-CHEAP = 1.0  # CPU-s: of these all are tried, of others as many as the patience allows
+CHEAP = 0.3  # CPU-s: of these all are tried, of others as many as the patience allows
 
 
 class Unit:
@@ -151,10 +151,10 @@ class Table:
     """What is known of the units without a mutant: CPU-s, the mutants that they come past, and those
     that would make a difference there. Kept in reach.json."""
 
-    def __init__(self, work, chosen):
-        self.work, self.build = work, os.path.join(work, "build")
-        self.count = 1 + max((m.number for m in chosen), default=0)
-        self.drawn = hashlib.sha256(repr(sorted((m.number, m.key) for m in chosen)).encode()).hexdigest()
+    def __init__(self, work, drawn, shard):
+        self.work, self.build, self.shard = work, os.path.join(work, "build"), shard
+        self.count = 1 + max((m.number for m in drawn), default=0)
+        self.drawn = hashlib.sha256(repr(sorted((m.number, m.key) for m in drawn)).encode()).hexdigest()
         self.path, self.lock = os.path.join(work, "reach.json"), threading.Lock()
         self.units = {}
         if os.path.exists(self.path):
@@ -162,9 +162,15 @@ class Table:
                 self.units = json.load(f)
 
     def write(self):
-        with open(self.path + ".new", "w") as f:
+        new = self.path + self.shard + ".new"
+        with open(new, "w") as f:
             json.dump(self.units, f)
-        os.replace(self.path + ".new", self.path)
+        os.replace(new, self.path)
+
+    def place(self, worker):
+        """The folder of the first build and that which stands for it; the scratch folder."""
+        own = os.path.join(self.work, "%%s%d%s" % (worker, self.shard))
+        return (self.build, own % "worker"), own % "scratch"
 
     def find(self, units, workers):
         """One run of each unit of which nothing is known."""
@@ -174,7 +180,8 @@ class Table:
                 waiting.put(unit)
 
         def work_off(worker):
-            marks = os.path.join(self.work, "marks%d" % worker)
+            place, scratch = self.place(worker)
+            marks = scratch + ".marks"
             while True:
                 try:
                     unit = waiting.get_nowait()
@@ -182,8 +189,7 @@ class Table:
                     return
                 with open(marks, "wb") as f:
                     f.truncate(self.count)
-                failed, seconds = run_unit(unit, (self.build, os.path.join(self.work, "worker%d" % worker)),
-                                           os.path.join(self.work, "scratch%d" % worker), {"SPHPROOF_REACH": marks}, 200)
+                failed, seconds = run_unit(unit, place, scratch, {"SPHPROOF_REACH": marks}, 200)
                 with open(marks, "rb") as f:
                     seen = f.read()
                 entry = {"key": [unit.key, self.drawn], "seconds": round(seconds, 3), "failed": failed,
@@ -197,7 +203,7 @@ class Table:
                     self.write()
 
         for worker in range(workers):
-            copy_build(self.build, os.path.join(self.work, "worker%d" % worker))
+            copy_build(*self.place(worker)[0])
         in_threads(work_off, workers)
 
     def sound(self, unit, place, scratch):
@@ -217,8 +223,8 @@ class Table:
 
 
 class Judge:
-    def __init__(self, work, units, table, record, patience):
-        self.work, self.build, self.table, self.patience = work, os.path.join(work, "build"), table, patience
+    def __init__(self, units, table, record, patience):
+        self.table, self.patience = table, patience
         self.units = {u.name: u for u in units if not table.units[u.name]["failed"]}
         self.differs, self.reached = collections.defaultdict(set), collections.defaultdict(set)
         self.breadth = {}
@@ -258,8 +264,7 @@ class Judge:
         """What became of it: a line of the record. before: the record's last, if any; what the same
         units did not notice then need not be asked again."""
         reaching = near if mutant.constant else self.differs[mutant.number]
-        place = self.build, os.path.join(self.work, "worker%d" % worker)
-        scratch = os.path.join(self.work, "scratch%d" % worker)
+        place, scratch = self.table.place(worker)
         known = before["ran"] if before and before["outcome"] == "survived" else {}
         ran = {n: k for n, k in known.items() if n in reaching and n in self.units and self.units[n].key == k}
         by, how, costly, began = None, "", 0, time.time()

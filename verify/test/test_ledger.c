@@ -1,0 +1,239 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What a run says of itself, computed again from its particles: spacing, mean h, budgets (also of
+ * the mirrored problem), up to when a window is free of the mirrored tube, and how jitter is drawn.
+ */
+#include <float.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "initial.h"
+#include "near.h"
+#include "riemann.h"
+#include "run.h"
+
+static struct run resolved(const char *name, int n, const char *const *words)
+{
+    struct run_settings settings;
+    struct run run;
+    struct error error = {0};
+    if (run_prepare(&settings, name, n, (char *const *)(uintptr_t)words, &error) ||
+        run_resolve(&run, &settings, &error))
+        fail_msg("%s: %s", name, error.message);
+    return run;
+}
+
+static struct run_result ran(const char *name, int n, const char *const *words)
+{
+    const struct run run = resolved(name, n, words);
+    struct run_result result = {0};
+    struct error error = {0};
+    if (run_execute(&run, &result, &error)) fail_msg("%s: %s", name, error.message);
+    return result;
+}
+
+/* ---- sums over the particles of the window ---- */
+
+static bool in_window(const struct prepared *p, const struct snapshot *s, size_t i)
+{
+    double x[3] = {0}, square = 0;
+    bool inside = true;
+    problem_place(p, s, i, x);
+    for (int d = 0; d < p->domain.dim; d++) {
+        inside = inside && x[d] >= p->window.lo[d] && x[d] <= p->window.hi[d];
+        square += (x[d] - p->window.centre[d]) * (x[d] - p->window.centre[d]);
+    }
+    return inside && (!(p->window.radius > 0) || sqrt(square) <= p->window.radius);
+}
+
+static void means(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name, *words[3];
+        double volume; /* of the box */
+        int dim;
+    } cases[] = {{"sod", {"n=100", "t_end=0.05", "eta=2"}, 2, 1},
+                 {"lax", {"n=77", "t_end=0.02", "grade=0.5"}, 2, 1},
+                 {"gresho", {"n=16^2", "t_end=0.05", "window_radius=0.3"}, 1, 2},
+                 {"sound_wave_3d", {"n=8^3", "t_end=0.01", "eta=3"}, 1, 3}};
+    for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
+        struct run_result run = ran(cases[c].name, 3, cases[c].words);
+        const struct prepared *p = &run.problem;
+        const struct snapshot *s = &run.snapshot;
+        double h = 0, error = 0, volume = 0, box = 1;
+        size_t inside = 0;
+        for (int d = 0; d < p->domain.dim; d++) box *= domain_length(&p->domain, d);
+        for (size_t i = 0; i < s->n; i++) {
+            struct problem_state exact;
+            double x[3] = {0};
+            if (!in_window(p, s, i)) continue;
+            inside++;
+            for (int d = 0; d < p->domain.dim; d++) x[d] = s->x[d][i];
+            problem_sample(p, x, run.time, &exact);
+            h += s->volume[i] * s->h[i];
+            error += s->volume[i] * fabs(s->rho[i] - exact.rho);
+            volume += s->volume[i];
+        }
+        assert_int_equal(p->domain.dim, cases[c].dim);
+        near_relative(run.spacing, pow(box / (double)s->n, 1. / p->domain.dim), 1e-14);
+        near_relative(run.h, h / volume, 1e-13);
+        near_relative(run.errors[FIELD_DENSITY].l1, error / volume, 1e-12);
+        assert_int_equal(run.errors[FIELD_DENSITY].n, inside);
+        assert_true(inside > 0 && inside < s->n + (cases[c].dim == 3));
+        run_free(&run);
+    }
+}
+
+/* A mirrored tube has the same error in each of its regions, and gas as still. */
+static void mirrored_budgets(void **state)
+{
+    (void)state;
+    static const char *const tubes[][2][2] = {
+        {{"left=1,0,1", "right=0.125,0,0.1"}, {"right=1,0,1", "left=0.125,0,0.1"}},
+        {{"left=1,0.5,1", "right=0.5,-0.2,0.1"}, {"right=1,-0.5,1", "left=0.5,0.2,0.1"}},
+        {{"left=1,-1.5,0.4", "right=1,1.5,0.4"}, {"left=1,-1.5,0.4", "right=1,1.5,0.4"}},
+        {{"left=1,1,0.4", "right=1.3,-1,0.4"}, {"left=1.3,1,0.4", "right=1,-1,0.4"}},
+    };
+    for (size_t t = 0; t < sizeof tubes / sizeof *tubes; t++) {
+        struct run_result run[2];
+        for (int k = 0; k < 2; k++)
+            run[k] =
+                ran("sod", 4,
+                    (const char *const[]){tubes[t][k][0], tubes[t][k][1], "t_end=0.08", "n=300"});
+        const struct regions *regions = run[0].budget.regions;
+        assert_int_equal(run[0].n, run[1].n);
+        for (size_t r = 0; regions->names[r]; r++)
+            for (int f = 0; f < FIELDS; f++)
+                near_below(fabs(run[0].budget.l1[r][f] - run[1].budget.l1[r][f]),
+                           1e-7 * run[0].errors[f].l1);
+        assert_int_equal(isnan(run[0].budget.still), isnan(run[1].budget.still));
+        if (!isnan(run[0].budget.still))
+            near_below(fabs(run[0].budget.still - run[1].budget.still), 1e-9);
+        run_free(&run[0]);
+        run_free(&run[1]);
+    }
+}
+
+/* ---- windows ---- */
+
+/* The window of a tube in [-1, 1] is free until the first wave of the tube that starts at the box's
+ * ends is there; on its way it meets only gas as it was, if that is before 1/2 of the box. */
+static void windows(void **state)
+{
+    (void)state;
+    static const struct {
+        struct riemann_state left, right;
+        double lo, hi;
+    } cases[] = {{{1, 0, 1}, {0.125, 0, 0.1}, -0.8, 0.7},
+                 {{1, 0, 1}, {0.125, 0, 0.1}, -0.6, 0.9},
+                 {{0.445, 0.698, 3.528}, {0.5, 0, 0.571}, -0.7, 0.8},
+                 {{0.445, 0.698, 3.528}, {0.5, 0, 0.571}, -0.95, 0.7},
+                 {{1, 0.3, 0.4}, {1, 0.3, 0.7}, -0.75, 0.7},
+                 {{1, -2, 0.4}, {1, 2, 0.4}, -0.8, 0.9},
+                 {{1, -2, 0.4}, {1, 2, 0.4}, -0.9, 0.7},
+                 {{1, 0, 1}, {1, 0, 1}, -0.7, 0.8},
+                 {{1, 0.2, 1}, {1, 0.2, 1}, -0.8, 0.7}};
+    for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
+        const struct riemann_state *l = &cases[c].left, *r = &cases[c].right;
+        struct riemann_solution ends;
+        char words[3][96];
+        snprintf(words[0], sizeof words[0], "left=%.17g,%.17g,%.17g", l->rho, l->v, l->P);
+        snprintf(words[1], sizeof words[1], "right=%.17g,%.17g,%.17g", r->rho, r->v, r->P);
+        snprintf(words[2], sizeof words[2], "window=%.17g,%.17g", cases[c].lo, cases[c].hi);
+        const struct run run =
+            resolved("sod", 3, (const char *const[]){words[0], words[1], words[2]});
+        assert_null(riemann_solve(1.4, r, l, &ends));
+        const bool none = ends.right_wave == RIEMANN_NONE; /* sound, all the same */
+        const double from_lo = none ? l->v + sqrt(1.4 * l->P / l->rho) : ends.right_head,
+                     from_hi = none ? sqrt(1.4 * r->P / r->rho) - r->v : -ends.left_head;
+        const double limit = fmin((cases[c].lo + 1) / from_lo, (1 - cases[c].hi) / from_hi);
+        struct error error = {0};
+        assert_int_equal(problem_check_time(&run.problem, limit * (1 - 1e-9), &error), STATUS_OK);
+        assert_int_equal(problem_check_time(&run.problem, limit * (1 + 1e-9), &error),
+                         STATUS_BAD_INPUT);
+        const char *shown = strstr(error.message, "allowed: t_end <= "); /* rounded down */
+        assert_non_null(shown);
+        near_inside(strtod(shown + strlen("allowed: t_end <= "), NULL), limit * (1 - 2e-3), limit);
+    }
+}
+
+/* ---- jitter ---- */
+
+/* Of n numbers that should be uniform in [-1, 1]: mean, variance and extremes. */
+static void uniform(size_t n, const double *x)
+{
+    double sum = 0, squares = 0, most = 0;
+    for (size_t i = 0; i < n; i++) {
+        sum += x[i];
+        squares += x[i] * x[i];
+        most = fmax(most, fabs(x[i]));
+    }
+    const double root = sqrt((double)n);
+    near_below(fabs(sum / (double)n), 4 * sqrt(1 / 3.) / root);
+    near_below(fabs(squares / (double)n - 1 / 3.), 4 * sqrt(4 / 45.) / root);
+    near_inside(most, 1 - 12 / (double)n, 1 + 1e-9);
+}
+
+static void jitter(const char *name, const char *key, const char *lattice, double part)
+{
+    enum { MOST = 4096 };
+    static double moved[3][MOST];
+    struct initial start[3]; /* at rest; shaken with two seeds */
+    const char *const words[][4] = {{key, lattice, "jitter=0", "seed=1"},
+                                    {key, lattice, "jitter=0.3", "seed=1"},
+                                    {key, lattice, "jitter=0.3", "seed=2"}};
+    int dim = 0;
+    size_t alike = 0, n = 0;
+    for (size_t k = 0; k < 3; k++) {
+        struct error error = {0};
+        const struct run run = resolved(name, 4, words[k]);
+        if (initial_create(&start[k], &run.problem, &run.settings, &error))
+            fail_msg("%s", error.message);
+        dim = run.problem.domain.dim;
+        n = start[k].n;
+        assert_true(n <= MOST && n == start[0].n);
+        for (int d = 0; d < dim && k; d++) {
+            for (size_t i = 0; i < n; i++) {
+                const double share = pow(start[0].m[i] / start[0].rho[i], 1. / dim);
+                const double period = domain_length(&run.problem.domain, d);
+                const double away = start[k].x[d][i] - start[0].x[d][i];
+                moved[d][i] = (away - period * round(away / period)) / (part * share);
+                if (k == 2) alike += start[1].x[d][i] == start[2].x[d][i];
+            }
+            uniform(n, moved[d]);
+        }
+        double both =
+            0; /* directions know nothing of each other, nor particles of their neighbours */
+        for (size_t i = 0; i + 1 < n && k; i++)
+            both += moved[0][i] * (dim > 1 ? moved[1][i] : moved[0][i + 1]);
+        if (k) near_below(fabs(both / (double)n), 4 / 3. / sqrt((double)n));
+    }
+    assert_int_equal(alike, 0);
+    for (size_t k = 0; k < 3; k++) initial_free(&start[k]);
+}
+
+static void jitters(void **state)
+{
+    (void)state;
+    jitter("sod", "n=3000", "lattice=uniform", 0.3);
+    jitter("rest_2d", "n=50^2", "lattice=square", 0.3);
+    jitter("rest_3d", "n=14^3", "lattice=cubic", 0.3);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(means),
+        cmocka_unit_test(mirrored_budgets),
+        cmocka_unit_test(windows),
+        cmocka_unit_test(jitters),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
