@@ -4,7 +4,7 @@ returned status of the judged files, found with libclang (Debian: python3-clang)
 copy of the tree as alternatives that an environment variable switches on (schemata.h).
 
 What no switch reaches (numbers in initialisers, enumerators, arguments of macros at file scope) is
-found as text and has to be compiled singly."""
+found as text and compiled singly: single.py."""
 import bisect
 import glob
 import itertools
@@ -20,15 +20,15 @@ JUDGED = ("src/", "reference/", "verify/scene/", "verify/study/", "verify/statis
           "reports/verdict.c", "reports/junit.c", "reports/summary.c")
 PURE = set("""fabs sqrt cbrt pow exp expm1 log log1p log10 sin cos tan atan2 atan hypot floor ceil round fmin fmax
 fma isfinite isnan lround largest least power labs abs""".split())
-SWAPPED_CALLS = {"fmin": "fmax", "fmax": "fmin", "least": "largest", "largest": "least"}
-COMMUTE = {"fmin", "fmax", "least", "largest", "hypot", "strcmp", "calloc"}  # of strings equality is asked
+SWAPPED_CALLS = {"fmin": "fmax", "fmax": "fmin", "fminl": "fmaxl", "fmaxl": "fminl", "least": "largest", "largest": "least"}
+COMMUTE = {"fmin", "fmax", "fminl", "fmaxl", "least", "largest", "hypot", "strcmp", "calloc"}  # of strings equality is asked
 ARITHMETIC = {"+": "-", "-": "+", "*": "/", "/": "*"}
 COMPARE = {"<": ("<=", ">"), ">": (">=", "<"), "<=": ("<", ">="), ">=": (">", "<="), "==": ("!=",), "!=": ("==",),
            "&&": ("||",), "||": ("&&",)}
 BITS = {"&": "|", "|": "&", "<<": ">>", ">>": "<<", "%": "*"}
 ASSIGN = {"+=": "-=", "-=": "+=", "*=": "/=", "/=": "*=", "&=": "|=", "|=": "&=", "%=": "+="}
 # A leak is the sanitizers' business, text the messages' own.
-DROPPED_BY_NOBODY = re.compile(r"^(free|fclose|\(void\))\b|^\(void\)")
+DROPPED_BY_NOBODY = re.compile(r"^(\w*free\w*|fclose|closedir|json_decref|\(void\))\b|^\(void\)")
 
 
 def refuse(text, code=4):
@@ -488,7 +488,7 @@ def judged_files(tree, judged=JUDGED):
     for folder, _, files in os.walk(tree):
         for name in files:
             path = os.path.relpath(os.path.join(folder, name), tree)
-            if path.endswith((".c", ".h")) and path.startswith(tuple(judged)):
+            if path.endswith((".c", ".h", ".def")) and path.startswith(tuple(judged)):
                 names.append(path)
     return sorted(names)
 

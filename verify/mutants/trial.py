@@ -265,13 +265,18 @@ class Judge:
         units did not notice then need not be asked again."""
         reaching = near if mutant.constant else self.differs[mutant.number]
         place, scratch = self.table.place(worker)
+        if not mutant.number:  # compiled in place
+            place = self.table.build, self.table.build
         known = before["ran"] if before and before["outcome"] == "survived" else {}
         ran = {n: k for n, k in known.items() if n in reaching and n in self.units and self.units[n].key == k}
         by, how, costly, began = None, "", 0, time.time()
         for name in self.order(mutant, [n for n in reaching if n not in ran]):
             unit, usual = self.units[name], self.seconds(name)
+            if not mutant.number and not self.built(unit):
+                by, how = name, "does not compile"
+                break
             if usual > CHEAP:
-                if costly and costly + usual > self.patience:
+                if ran and costly + usual > self.patience:
                     continue
                 costly += usual
             how, _ = run_unit(unit, place, scratch, {"SPHPROOF_MUTANT": str(mutant.number)}, usual)
@@ -288,6 +293,13 @@ class Judge:
         with self.lock:
             self.learn(entry)
         return entry
+
+    def built(self, unit):
+        """The programs of a unit, after a source has been changed."""
+        build = self.table.build
+        targets = {os.path.relpath(w, build) for w in unit.command + [os.path.join(build, "sphproof")]
+                   if w.startswith(build) and os.path.isfile(w)}
+        return quietly(["ninja", "-C", build] + sorted(targets)).returncode == 0
 
     def why(self, mutant, reaching, ran):
         if not mutant.constant and not self.reached[mutant.number]:

@@ -23,6 +23,7 @@ int tiny_sum(int n);
 double tiny_never(double a, double b);
 double tiny_close(double a);
 int tiny_set(int *to);
+double tiny_weight(int i);
 """,
     "src/tiny.c": """#include "tiny.h"
 static const double close = 1e-9;
@@ -52,12 +53,18 @@ int tiny_set(int *to)
         return 1;
     return 0;
 }
+static const double weights[] = {0.5, 2.5};
+double tiny_weight(int i)
+{
+    return weights[i];
+}
 """,
     "test_tiny.c": """#include "tiny.h"
 int main(void)
 {
     int set = 0;
-    if (tiny_area(3, 4) != 12 || tiny_sum(5) != 10 || tiny_set(&set) != 0 || set != 7) return 1;
+    if (tiny_area(3, 4) != 12 || tiny_sum(5) != 10 || tiny_set(&set) != 0 || set != 7 ||
+        tiny_weight(0) != 0.5) return 1;
     return tiny_close(3e-9) > 0 ? 0 : 2;
 }
 """,
@@ -108,6 +115,10 @@ def main(score, work):
            "no test would see another value")
     expect("a factor of 10 the other way is noticed by nobody",
            survivors.get("close = 1e-9 -> / 10", {}).get("why") == "no test fails: 1 of 1 that come by")
+    expect("a constant in an initialiser is compiled singly and noticed",
+           "0.5 -> (0.5 * (1 + 1e-6))" in said and "0.5 -> (0.5 * (1 + 1e-6))" not in survivors)
+    expect("one that nobody reads survives",
+           survivors.get("2.5 -> (2.5 * (1 + 1e-6))", {}).get("why") == "no test fails: 1 of 1 that come by")
     expect("what is 5 where 10 is more", any(s["line"] == 12 for s in first["survivors"]))
 
     again, second = run()
