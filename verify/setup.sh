@@ -85,7 +85,9 @@ setup_missing() {
         setup_compiles clang || echo clang
         setup_compiles clang -fopenmp || echo libomp-dev
         setup_libclang || echo python3-clang
-        setup_numpy || echo python3-numpy ;;
+        setup_numpy || echo python3-numpy
+        PATH=$PATH:/usr/sbin setup_has slurmctld || echo slurm-wlm
+        PATH=$PATH:/usr/sbin setup_has munged || echo munge ;;
     esac
     case $1 in nightly) setup_has valgrind || echo valgrind ;; esac
 }

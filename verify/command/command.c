@@ -134,7 +134,8 @@ static enum status take_option(struct line *line, int argc, char **argv, int *i,
             return error_set(error, STATUS_BAD_INPUT, "--%s takes no argument", option->name);
         value = "";
     } else if (!value) {
-        if (*i + 1 >= argc || strncmp(argv[*i + 1], "--", 2) == 0)
+        const bool dashes = strcmp(option->argument, COMMAND_OPTIONS) == 0;
+        if (*i + 1 >= argc || (!dashes && strncmp(argv[*i + 1], "--", 2) == 0))
             return error_set(error, STATUS_BAD_INPUT, "--%s needs an argument: --%s %s",
                              option->name, option->name, option->argument);
         value = argv[++*i];
@@ -244,6 +245,8 @@ static enum status execute(struct line *line, int argc, char **argv, struct erro
     resolve_streams(line);
     if (options->json && (status = output_probe(options->json, error))) return status;
     if ((status = threads_check(options->threads, error))) return status;
+    line->options.count = line->n;
+    line->options.arguments = line->arguments;
     return options->command->run(options, line->n, line->arguments, error);
 }
 

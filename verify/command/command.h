@@ -7,6 +7,9 @@
 
 #include "status.h"
 
+/* What stands for an argument that consists of options itself. */
+#define COMMAND_OPTIONS "OPTIONS"
+
 /* An option of one command; a list of them ends with a NULL name. */
 struct command_option {
     const char *name;     /* without the dashes */
@@ -23,6 +26,8 @@ struct options {
     int color;        /* resolved: 1 where stdout may be coloured */
     const struct command *command;
     const char **values; /* of the command's own options, see options_value */
+    int count;           /* of arguments: those that a command is given, too */
+    char **arguments;
 };
 
 struct command {

@@ -23,6 +23,48 @@ static enum status take_share(struct pool_share *share, const struct options *op
     return STATUS_OK;
 }
 
+/* An engine that computes elsewhere meets this process in the cache. */
+static enum status take_engine(struct sharing *sharing, const struct options *options,
+                               const char *folder, bool force, struct error *error)
+{
+    const char *name = options_value(options, "engine");
+    const char *tasks = options_value(options, "engine-tasks");
+    double number = 0;
+    sharing->engine = engine_find(name ? name : "local", error);
+    if (!sharing->engine) return error->status;
+    if (tasks && !(text_integer(tasks, &number) && number >= 1 && number <= ENGINE_TASKS_MAX))
+        return error_set(error, STATUS_BAD_INPUT,
+                         "%s: --engine-tasks '%.40s': allowed: an integer from 1 to %d",
+                         options->command->name, tasks, ENGINE_TASKS_MAX);
+    sharing->tasks = (int)number;
+    if (!sharing->engine->compute)
+        return tasks || options_value(options, "engine-options")
+                   ? error_set(error, STATUS_BAD_INPUT,
+                               "%s: --engine-options and --engine-tasks need --engine slurm",
+                               options->command->name)
+                   : STATUS_OK;
+    if (sharing->pool.share.of || force)
+        return error_set(error, STATUS_BAD_INPUT, "%s: --engine %s and --%s exclude each other",
+                         options->command->name, sharing->engine->name, force ? "force" : "shard");
+    return folder ? STATUS_OK
+                  : error_set(error, STATUS_BAD_INPUT,
+                              "%s: --engine %s needs --cache DIR, which all machines see",
+                              options->command->name, sharing->engine->name);
+}
+
+/* Results of another build would not be found by who asked for them. */
+static enum status check_build(const struct sharing *sharing, const struct options *options,
+                               struct error *error)
+{
+    const char *build = options_value(options, "only-build");
+    if (!build || !sharing->pool.cache || strcmp(build, sharing->cache.build) == 0)
+        return STATUS_OK;
+    return error_set(error, STATUS_ENVIRONMENT,
+                     "%s: this is build %s, not %.40s: another program, C library, or processor "
+                     "whose sin, exp and pow have other last bits",
+                     options->command->name, sharing->cache.build, build);
+}
+
 enum status sharing_take(struct sharing *sharing, const struct options *options, int jobs,
                          const char *folder, bool force, struct error *error)
 {
@@ -44,10 +86,11 @@ enum status sharing_take(struct sharing *sharing, const struct options *options,
         return error_set(error, STATUS_BAD_INPUT,
                          "%s: --shard and --force exclude each other: begin with an empty cache",
                          options->command->name);
+    if (take_engine(sharing, options, folder, force, error)) return error->status;
     if (folder && sharing->list && access(folder, R_OK)) folder = NULL; /* and none is made */
     if (folder && cache_open(&sharing->cache, folder, force, error)) return error->status;
     if (folder) sharing->pool.cache = &sharing->cache;
-    return STATUS_OK;
+    return check_build(sharing, options, error);
 }
 
 enum status sharing_list(const struct sharing *sharing, const struct pool *pool,
@@ -83,7 +126,8 @@ static enum status say_share(const struct sharing *sharing, const struct pool *p
         const struct pool_job *job = &pool->jobs[i];
         if (job->elsewhere) continue;
         mine++;
-        if (job->error.status == STATUS_ENVIRONMENT || job->error.status == STATUS_BAD_INPUT)
+        if (job->crashed || job->error.status == STATUS_ENVIRONMENT ||
+            job->error.status == STATUS_BAD_INPUT)
             return error_set(error, job->error.status, "%.100s: %.400s", job->name,
                              job->error.message);
     }
@@ -95,13 +139,33 @@ static enum status say_share(const struct sharing *sharing, const struct pool *p
     return STATUS_OK;
 }
 
+static enum status compute_elsewhere(struct sharing *sharing, const struct pool *pool,
+                                     const struct options *options, struct error *error)
+{
+    const char *what = sharing->progress.what;
+    const struct engine_work work = {
+        .options = options,
+        .pool = pool,
+        .cache = &sharing->cache,
+        .jobs = options_value(options, "jobs") ? sharing->pool.jobs : 1,
+        .tasks = sharing->tasks,
+        .progress = &sharing->progress,
+    };
+    if (!sharing->engine->compute) return STATUS_OK;
+    const enum status status = sharing->engine->compute(&work, error);
+    progress_end(&sharing->progress);
+    progress_begin(&sharing->progress, what, options->quiet);
+    return status;
+}
+
 enum status sharing_run(struct sharing *sharing, struct pool *pool, const char *what,
                         const struct options *options, bool *whole, struct error *error)
 {
     progress_begin(&sharing->progress, what, options->quiet);
     sharing->pool.progress = show_progress;
     sharing->pool.progress_context = &sharing->progress;
-    const enum status status = pool_run(pool, &sharing->pool, error);
+    enum status status = compute_elsewhere(sharing, pool, options, error);
+    if (!status) status = pool_run(pool, &sharing->pool, error);
     progress_end(&sharing->progress);
     *whole = !sharing->pool.share.of;
     if (status) return status;

@@ -5,6 +5,7 @@
 #define SPHPROOF_SHARING_H
 
 #include "command.h"
+#include "engine.h"
 #include "pool.h"
 #include "progress.h"
 
@@ -17,6 +18,13 @@
     {"shard", "I/N",                                                                               \
      "only the Ith of N even shares, into the cache; the last, plain call finds "                  \
      "all"},                                                                                       \
+        {"only-build", "ID",                                                                       \
+         "refuse a share whose results that build of the program would not find"},                 \
+        {"engine", "local|slurm",                                                                  \
+         "who computes: this machine (default), or a cluster: an array of shares by sbatch"},      \
+        {"engine-options", COMMAND_OPTIONS,                                                        \
+         "handed to sbatch, as \"--partition=main --time=2:00:00\""},                              \
+        {"engine-tasks", "N", "tasks of the array (default: ten minutes' work each, or more)"},    \
     {                                                                                              \
         "list", NULL,                                                                              \
             "compute nothing: one line a computation, tabs between estimated seconds, share, "     \
@@ -26,6 +34,8 @@
 
 struct sharing {
     bool list;
+    const struct engine *engine;
+    int tasks;                 /* of the engine; 0: it decides */
     struct pool_settings pool; /* without progress */
     struct cache cache;        /* where pool.cache is not NULL */
     struct progress progress;

@@ -159,7 +159,8 @@ static void finish(struct worker *worker, struct pool *pool)
     close(worker->pipe);
     while (waitpid(worker->pid, &status, 0) < 0 && errno == EINTR) continue;
     json_t *reply = worker->text ? json_loadb(worker->text, worker->length, 0, NULL) : NULL;
-    if (WIFSIGNALED(status))
+    job->crashed = WIFSIGNALED(status);
+    if (job->crashed)
         error_set(&job->error, STATUS_BROKE_DOWN, "%s: its process was ended by signal %d (%s)",
                   job->name, WTERMSIG(status), strsignal(WTERMSIG(status)));
     else if (!WIFEXITED(status) || WEXITSTATUS(status) || !take_reply(pool, job, reply))

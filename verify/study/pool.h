@@ -26,6 +26,7 @@ struct pool_job {
     /* after pool_run: */
     bool done, cached;
     bool elsewhere;     /* it is in another share, or in none: nothing was done about it */
+    bool crashed;       /* its process did: nothing of it is kept */
     json_t *document;   /* NULL where there is none */
     struct error error; /* status of compute; STATUS_BROKE_DOWN also where its process crashed */
 };

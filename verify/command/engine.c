@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine.h"
+
+#include <string.h>
+
+#include "text.h"
+
+static const double least_s = 600; /* a task shorter than that is a burden to a scheduler */
+
+const struct engine engine_local = {.name = "local", .label = "processes on this machine"};
+
+static const struct engine *const engines[] = {
+#define ENGINE(name) &engine_##name,
+#include "engines.def"
+#undef ENGINE
+};
+enum { ENGINES = sizeof engines / sizeof *engines };
+
+const struct engine *engine_find(const char *name, struct error *error)
+{
+    const char *names[ENGINES];
+    for (size_t i = 0; i < ENGINES; i++) {
+        names[i] = engines[i]->name;
+        if (strcmp(name, names[i]) == 0) return engines[i];
+    }
+    text_unknown(error, "--engine", "engine", name, names, ENGINES);
+    return NULL;
+}
+
+int engine_tasks(double seconds, size_t count, int jobs)
+{
+    double tasks = seconds / (least_s * jobs);
+    if (tasks > (double)count) tasks = (double)count;
+    if (tasks > ENGINE_TASKS_MAX) tasks = ENGINE_TASKS_MAX;
+    return tasks >= 1 ? (int)tasks : 1;
+}

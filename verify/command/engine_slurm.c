@@ -1,0 +1,478 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * --engine slurm: an array of tasks, each a share of the study (--shard), into the cache.
+ *
+ * What is missing in the cache decides, never what Slurm says of a task: a share of which something
+ * is missing and that no task is at is submitted, and so whoever calls again attaches. Between
+ * calls a small file keeps the number of shares and how often each was submitted; the name of the
+ * array is made of the study's computations and its folder. */
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <math.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "clock.h"
+#include "engine.h"
+#include "list.h"
+#include "output.h"
+#include "result.h"
+#include "slurm.h"
+#include "slurm_share.h"
+
+enum { TRIES = 3, SHOWN = 10, LINE = 400 };
+
+/* seconds */
+static const double first_look = 0.5, last_look = 15, visible = 30, controller_away = 120;
+
+static volatile sig_atomic_t interrupted;
+
+static void note_interrupt(int number)
+{
+    (void)number;
+    interrupted = 1;
+}
+
+struct share {
+    size_t lacking; /* computations that the cache does not have */
+    int tries;      /* how often it was submitted */
+    bool live, failed;
+    double ended;               /* when its end was first seen; 0: not yet */
+    long job;                   /* its last array */
+    char state[24], reason[64]; /* of its last task; "" before */
+};
+
+struct array {
+    const struct engine_work *work;
+    char name[32], folder[CACHE_PATH_MAX], state[CACHE_PATH_MAX + 64];
+    int count;            /* of shares */
+    struct share *shares; /* [1..count] */
+    int *of;              /* the share of each job of the pool; 0: it is there, or of none */
+    size_t lacking, wanted;
+    double left, whole; /* estimated seconds: of what is lacking; of what lacked at the start */
+    double looked;      /* how long the last look into the cache took */
+    size_t waiting, running;
+    bool heard;  /* the controller has answered before */
+    double away; /* since when it has not answered; 0: it does */
+};
+
+/* ---- what is known of the study ---- */
+
+static enum status name_array(struct array *array, struct error *error)
+{
+    const struct pool *pool = array->work->pool;
+    const struct cache *cache = array->work->cache;
+    char *real = realpath(cache->folder, NULL);
+    uint64_t hash = cache_hash(CACHE_HASH, cache->build, strlen(cache->build));
+    if (real) hash = cache_hash(hash, real, strlen(real));
+    for (size_t i = 0; i < pool->count; i++)
+        if (pool->jobs[i].key)
+            hash = cache_hash(hash, pool->jobs[i].key, strlen(pool->jobs[i].key));
+    const int length = snprintf(array->folder, sizeof array->folder, "%s/slurm", real ? real : "");
+    free(real);
+    if (length >= (int)sizeof array->folder)
+        return error_set(error, STATUS_BAD_INPUT, "the path of the cache is too long");
+    snprintf(array->name, sizeof array->name, "sphproof-%016" PRIx64, hash);
+    snprintf(array->state, sizeof array->state, "%s/%s.json", array->folder, array->name);
+    return output_folder(array->folder, error);
+}
+
+/* {"tasks": shares, "tries": [...], "jobs": [arrays ...]} from an earlier call; NULL: none. */
+static json_t *load(const struct array *array)
+{
+    json_t *state = json_load_file(array->state, 0, NULL);
+    const json_int_t tasks = json_integer_value(json_object_get(state, "tasks"));
+    const json_t *tries = json_object_get(state, "tries"), *jobs = json_object_get(state, "jobs");
+    if (tasks >= 1 && tasks <= ENGINE_TASKS_MAX && json_array_size(tries) == (size_t)tasks &&
+        json_array_size(jobs) == (size_t)tasks)
+        return state;
+    json_decref(state);
+    return NULL;
+}
+
+static void remember(struct array *array, const json_t *state)
+{
+    for (int s = 1; s <= array->count; s++) {
+        const size_t i = (size_t)s - 1;
+        array->shares[s].tries =
+            (int)json_integer_value(json_array_get(json_object_get(state, "tries"), i));
+        array->shares[s].job =
+            (long)json_integer_value(json_array_get(json_object_get(state, "jobs"), i));
+    }
+}
+
+/* What another call may have submitted since. */
+static enum status refresh(struct array *array, struct error *error)
+{
+    json_t *state = load(array);
+    const json_int_t tasks = json_integer_value(json_object_get(state, "tasks"));
+    const bool same = !state || tasks == array->count;
+    if (same) remember(array, state);
+    json_decref(state);
+    return same ? STATUS_OK
+                : error_set(error, STATUS_ENVIRONMENT,
+                            "another call has divided this study anew: call again to attach to it");
+}
+
+static enum status save(const struct array *array, struct error *error)
+{
+    json_t *tries = json_array(), *jobs = json_array();
+    for (int s = 1; s <= array->count; s++) {
+        json_array_append_new(tries, json_integer(array->shares[s].tries));
+        json_array_append_new(jobs, json_integer(array->shares[s].job));
+    }
+    json_t *state =
+        json_pack("{s:i, s:o, s:o}", "tasks", array->count, "tries", tries, "jobs", jobs);
+    const enum status status = result_write(state, array->state, error);
+    json_decref(state);
+    return status;
+}
+
+/* What the cache lacks, of what it lacked before. */
+static void look(struct array *array)
+{
+    const struct pool *pool = array->work->pool;
+    const double began = clock_wall();
+    for (int s = 1; s <= array->count; s++) array->shares[s].lacking = 0;
+    array->lacking = 0;
+    array->left = 0;
+    for (size_t i = 0; i < pool->count; i++) {
+        if (!array->of[i]) continue;
+        if (cache_has(array->work->cache, pool->jobs[i].key)) {
+            array->of[i] = 0;
+            continue;
+        }
+        array->shares[array->of[i]].lacking++;
+        array->lacking++;
+        array->left += pool->jobs[i].weight;
+    }
+    array->looked = clock_wall() - began;
+}
+
+static enum status divide(struct array *array, struct error *error)
+{
+    const struct engine_work *work = array->work;
+    const struct pool *pool = work->pool;
+    size_t lacking = 0;
+    for (size_t i = 0; i < pool->count; i++) {
+        const struct pool_job *job = &pool->jobs[i];
+        if (!job->key || cache_has(work->cache, job->key)) continue;
+        array->whole += job->weight;
+        lacking++;
+    }
+    array->wanted = lacking;
+    if (!lacking) return STATUS_OK;
+    json_t *state = load(array); /* shares stay what they were */
+    array->count = state         ? (int)json_integer_value(json_object_get(state, "tasks"))
+                   : work->tasks ? work->tasks
+                                 : engine_tasks(array->whole, lacking, work->jobs);
+    array->shares = calloc((size_t)array->count + 1, sizeof *array->shares);
+    array->of = calloc(pool->count + 1, sizeof *array->of);
+    json_decref(state);
+    if (!array->shares || !array->of)
+        return error_set(error, STATUS_ENVIRONMENT, "no memory for %d shares", array->count);
+    return pool_divide(pool, array->count, array->of, error);
+}
+
+/* ---- submitting ---- */
+
+/* Numbers of the shares that `chosen` says, as sbatch takes them: 1,3-5; malloced. */
+static char *ranges(const struct array *array, const bool *chosen)
+{
+    char *text = NULL;
+    size_t size;
+    FILE *line = open_memstream(&text, &size);
+    if (!line) return NULL;
+    for (int s = 1, end; s <= array->count; s = end + 1) {
+        for (end = s; end <= array->count && chosen[end]; end++) continue;
+        if (end == s) continue;
+        fprintf(line, "%s%d", ftell(line) > 0 ? "," : "", s);
+        if (end - 1 > s) fprintf(line, "-%d", end - 1);
+    }
+    return fclose(line) ? free(text), NULL : text;
+}
+
+/* An entry that is written nowhere else: is there room at all? */
+static enum status probe(const struct array *array, struct error *error)
+{
+    return output_probe(array->state, error);
+}
+
+static enum status submit(struct array *array, const bool *chosen, struct error *error)
+{
+    long job = 0;
+    if (probe(array, error)) return error->status;
+    for (int s = 1; s <= array->count; s++) array->shares[s].tries += chosen[s];
+    if (save(array, error)) return error->status; /* before: nothing is submitted uncounted */
+    char *which = ranges(array, chosen);
+    const struct slurm_share share = {
+        .options = array->work->options,
+        .cache = array->work->cache,
+        .jobs = array->work->jobs,
+        .of = array->count,
+        .name = array->name,
+        .folder = array->folder,
+        .which = which,
+    };
+    const enum status status = which ? slurm_share_submit(&share, &job, error)
+                                     : error_set(error, STATUS_ENVIRONMENT, "no memory for shares");
+    free(which);
+    for (int s = 1; s <= array->count; s++) {
+        struct share *one = &array->shares[s];
+        if (!chosen[s]) continue;
+        if (status) {
+            one->tries--;
+            continue;
+        }
+        one->job = job;
+        one->live = true;
+        one->state[0] = '\0';
+        one->ended = 0;
+    }
+    struct error later = {0};
+    if (save(array, &later) && !status) *error = later;
+    return status ? status : later.status;
+}
+
+/* ---- watching ---- */
+
+/* Slurm holds a task that it could not start; it would wait for ever. */
+static bool held(const struct slurm_task *task)
+{
+    return task->live && strstr(task->reason, "launch failed");
+}
+
+static void hear(struct array *array, struct slurm_task *tasks, size_t count)
+{
+    array->waiting = array->running = 0;
+    for (int s = 1; s <= array->count; s++) array->shares[s].live = false;
+    for (size_t i = 0; i < count; i++) {
+        struct slurm_task *task = &tasks[i];
+        if (held(task)) task->live = slurm_cancel_task(task, NULL) != STATUS_OK;
+        if (task->index < 1 || task->index > array->count) continue;
+        struct share *share = &array->shares[task->index];
+        if (task->live) {
+            array->running += strcmp(task->state, "RUNNING") == 0;
+            array->waiting += strcmp(task->state, "PENDING") == 0;
+        }
+        if (!task->live && (share->live || task->job < share->job)) continue;
+        share->live = task->live;
+        share->job = task->job;
+        snprintf(share->state, sizeof share->state, "%s", task->state);
+        snprintf(share->reason, sizeof share->reason, "%s", task->reason);
+    }
+}
+
+/* Is it time to submit what is left of this share, or to give it up? */
+static bool due(struct array *array, struct share *share, int number)
+{
+    const double now = clock_wall();
+    if (!share->lacking || share->live || share->failed) return false;
+    if (share->tries && share->ended <= 0) share->ended = now;
+    /* one that ended well has written everything, which other machines may see a little later */
+    if (share->tries && strcmp(share->state, "COMPLETED") == 0 && now < share->ended + visible)
+        return false;
+    if (share->tries >= TRIES || strcmp(share->state, "CANCELLED") == 0) {
+        share->failed = true; /* who cancels a task does not want it again */
+        return false;
+    }
+    if (share->tries && !array->work->options->quiet)
+        fprintf(stderr,
+                "sphproof: note: share %d ended (%s) and %zu of its computations are missing: "
+                "submitted again (%d of %d)\n",
+                number, share->state[0] ? share->state : "not in the queue", share->lacking,
+                share->tries, TRIES - 1);
+    return true;
+}
+
+static enum status act(struct array *array, struct error *error)
+{
+    bool *chosen = calloc((size_t)array->count + 1, sizeof *chosen);
+    size_t number = 0;
+    if (!chosen) return error_set(error, STATUS_ENVIRONMENT, "no memory for shares");
+    for (int s = 1; s <= array->count; s++) number += chosen[s] = due(array, &array->shares[s], s);
+    const enum status status = number ? submit(array, chosen, error) : STATUS_OK;
+    free(chosen);
+    return status;
+}
+
+/* A controller that is being started again is waited for, unless it was never there. */
+static enum status be_patient(struct array *array, const struct error *trouble, struct error *error)
+{
+    const double now = clock_wall();
+    if (array->away <= 0) {
+        array->away = now;
+        if (!array->work->options->quiet)
+            fprintf(stderr, "sphproof: note: %s; trying again\n", trouble->message);
+    }
+    if (array->heard && now < array->away + controller_away) return STATUS_OK;
+    *error = *trouble;
+    return error->status;
+}
+
+/* One look at the cache and the queue, and what follows from it; of several who watch the same
+ * study one at a time. */
+static enum status step(struct array *array, struct error *error)
+{
+    struct slurm_task *tasks = NULL;
+    size_t count = 0;
+    const int lock = open(array->folder, O_RDONLY | O_CLOEXEC);
+    if (lock >= 0) flock(lock, LOCK_EX);
+    struct error trouble = {0};
+    enum status status = refresh(array, error);
+    const bool answers = !status && !slurm_queue(array->name, &tasks, &count, &trouble);
+    look(array); /* after the queue: what ended before has written its entries */
+    if (answers) {
+        array->heard = true;
+        array->away = 0;
+        hear(array, tasks, count);
+        if (array->lacking) status = act(array, error);
+    } else if (!status && array->lacking) {
+        status = be_patient(array, &trouble, error);
+    }
+    free(tasks);
+    if (lock >= 0) close(lock);
+    return status;
+}
+
+static bool over(const struct array *array)
+{
+    for (int s = 1; s <= array->count; s++)
+        if (array->shares[s].lacking && !array->shares[s].failed) return false;
+    return true;
+}
+
+static void wait_for(double seconds)
+{
+    const struct timespec time = {(time_t)seconds, (long)(1e9 * (seconds - floor(seconds)))};
+    nanosleep(&time, NULL); /* an interrupt ends it */
+}
+
+static void show(struct array *array)
+{
+    static char what[80];
+    snprintf(what, sizeof what, "%s, slurm: %zu run, %zu wait", array->work->options->command->name,
+             array->running, array->waiting);
+    array->work->progress->what = what;
+    progress_share(array->work->progress, array->wanted - array->lacking, array->wanted,
+                   array->whole > 0 ? 1 - array->left / array->whole : 1);
+}
+
+static enum status watch(struct array *array, struct error *error)
+{
+    const double began = clock_wall();
+    while (!interrupted) {
+        if (step(array, error)) return error->status;
+        if (over(array)) return STATUS_OK;
+        show(array);
+        /* a twentieth of what has passed; and at most a hundredth of the time spent on looking */
+        const double wait = fmin(fmax((clock_wall() - began) / 20, 1.01 * first_look), last_look);
+        wait_for(fmax(wait, 100 * array->looked));
+    }
+    return STATUS_OK;
+}
+
+/* ---- the end ---- */
+
+/* The last line that says something. */
+static void last_line(const char *path, char line[LINE])
+{
+    char part[LINE];
+    FILE *file = fopen(path, "r");
+    snprintf(line, LINE, "%s", file ? "(empty)" : "(there is none)");
+    while (file && fgets(part, sizeof part, file))
+        if (part[strspn(part, " \n")]) snprintf(line, LINE, "%.*s", (int)strcspn(part, "\n"), part);
+    if (file) fclose(file);
+    status_clean(line);
+}
+
+/* Which computations are missing, and where to look; what they wrote stays. */
+static enum status give_up(const struct array *array, struct error *error)
+{
+    const struct pool *pool = array->work->pool;
+    size_t shown = 0;
+    int first = 0;
+    char line[LINE], path[sizeof array->folder + 96];
+    for (int s = 1; s <= array->count; s++) {
+        const struct share *share = &array->shares[s];
+        if (!share->lacking || shown++ >= SHOWN) continue;
+        slurm_share_log(array->folder, array->name, share->job, s, path, sizeof path);
+        last_line(path, line);
+        if (!first) first = s;
+        fprintf(stderr, "sphproof: share %d of %d (%s, submitted %d times), log %s: %s\n", s,
+                array->count, share->state[0] ? share->state : "not in the queue", share->tries,
+                path, line);
+    }
+    shown = 0;
+    for (size_t i = 0; i < pool->count; i++)
+        if (array->of[i] && shown++ < SHOWN)
+            fprintf(stderr, "sphproof: missing: %s (share %d)\n", pool->jobs[i].name, array->of[i]);
+    unlink(array->state); /* the next call begins anew, with what is missing */
+    return error_set(error, STATUS_ENVIRONMENT,
+                     "--engine slurm: %zu computations are missing; what is done is kept in %.200s",
+                     array->lacking, array->work->cache->folder);
+}
+
+/* After an interrupt: are the tasks to go on? */
+static enum status leave(struct array *array, struct error *error)
+{
+    char answer[8] = "";
+    const size_t tasks = array->running + array->waiting;
+    if (isatty(STDIN_FILENO)) {
+        fprintf(stderr, "\r\033[KCancel the %zu tasks of %s? They go on otherwise. [y/N] ", tasks,
+                array->name);
+        if (!fgets(answer, sizeof answer, stdin)) answer[0] = '\0';
+    }
+    if (answer[0] != 'y' && answer[0] != 'Y')
+        return error_set(error, STATUS_ENVIRONMENT,
+                         "interrupted; %zu tasks go on: the same command attaches to them again, "
+                         "scancel --name=%s ends them",
+                         tasks, array->name);
+    if (slurm_cancel(array->name, error)) return error->status;
+    unlink(array->state);
+    return error_set(error, STATUS_ENVIRONMENT,
+                     "interrupted; its tasks are cancelled, what is done is kept in %.300s",
+                     array->work->cache->folder);
+}
+
+static enum status finish(struct array *array, struct error *error)
+{
+    if (array->lacking) return give_up(array, error);
+    if (array->running + array->waiting) slurm_cancel(array->name, NULL); /* nothing to do */
+    for (int s = 1; s <= array->count; s++) {
+        char path[sizeof array->folder + 96];
+        slurm_share_log(array->folder, array->name, array->shares[s].job, s, path, sizeof path);
+        unlink(path);
+    }
+    unlink(array->state);
+    return STATUS_OK;
+}
+
+static enum status compute(const struct engine_work *work, struct error *error)
+{
+    struct array array = {.work = work};
+    enum status status = name_array(&array, error);
+    if (!status) status = divide(&array, error);
+    if (!status && array.wanted) {
+        struct sigaction before, now = {.sa_handler = note_interrupt};
+        interrupted = 0;
+        sigaction(SIGINT, &now, &before);
+        status = watch(&array, error);
+        sigaction(SIGINT, &before, NULL);
+        if (!status) status = interrupted ? leave(&array, error) : finish(&array, error);
+    }
+    free(array.shares);
+    free(array.of);
+    return status;
+}
+
+const struct engine engine_slurm = {
+    .name = "slurm",
+    .label = "an array of jobs on a cluster",
+    .compute = compute,
+};

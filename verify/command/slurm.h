@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What is asked of Slurm, by its own commands: arrays of tasks under one name. Slurm's manuals:
+ * sbatch(1), squeue(1), scancel(1). */
+#ifndef SPHPROOF_SLURM_H
+#define SPHPROOF_SLURM_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "status.h"
+
+enum { SLURM_WORDS_MAX = 64 };
+
+/* A task of an array, as the controller knows it: for some minutes also after its end. */
+struct slurm_task {
+    long job;        /* of the array */
+    int index;       /* in the array */
+    bool live;       /* it waits, runs or will run again */
+    char state[24];  /* RUNNING, TIMEOUT ... */
+    char reason[64]; /* why it waits */
+};
+
+/* Runs sbatch with words (ends with NULL); *job: the array's number. */
+enum status slurm_submit(const char *const *words, long *job, struct error *error);
+
+/* All tasks of the arrays of this name; malloced, the caller frees. */
+enum status slurm_queue(const char *name, struct slurm_task **tasks, size_t *count,
+                        struct error *error);
+
+/* Cancels what is left of the arrays of this name. */
+enum status slurm_cancel(const char *name, struct error *error);
+
+/* Cancels a task that Slurm holds. */
+enum status slurm_cancel_task(const struct slurm_task *task, struct error *error);
+
+#endif

@@ -1,0 +1,93 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "slurm_share.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "slurm.h"
+
+enum { PATH_LENGTH = 4096 };
+
+void slurm_share_log(const char *folder, const char *name, long job, int share, char *path,
+                     size_t size)
+{
+    snprintf(path, size, "%s/%s-%ld_%d.log", folder, name, job, share);
+}
+
+/* Options that are not a share's: where results go, who computes. */
+static bool of_the_caller(const char *name)
+{
+    static const char *const names[] = {"engine", "engine-options", "engine-tasks", "history",
+                                        "jobs",   "list",           "plot",         "resume"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        if (strcmp(name, names[i]) == 0) return true;
+    return false;
+}
+
+/* A word as the shell reads it back. */
+static void put_quoted(FILE *line, const char *before, const char *word)
+{
+    fprintf(line, " '%s", before);
+    for (; *word; word++) {
+        if (*word == '\'')
+            fputs("'\\''", line);
+        else
+            fputc(*word, line);
+    }
+    fputc('\'', line);
+}
+
+/* The command line of a share; malloced. */
+static char *line_of(const struct slurm_share *share)
+{
+    const struct options *options = share->options;
+    const struct command_option *list = options->command->options;
+    char program[PATH_LENGTH] = "sphproof", *text = NULL, before[80];
+    size_t size;
+    const ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+    if (length > 0) program[length] = '\0';
+    FILE *line = open_memstream(&text, &size);
+    if (!line) return NULL;
+    fputs("exec", line);
+    put_quoted(line, "", program);
+    fprintf(line, " %s --shard $SLURM_ARRAY_TASK_ID/%d --only-build %s --jobs %d --threads %d",
+            options->command->name, share->of, share->cache->build, share->jobs, options->threads);
+    for (size_t i = 0; list && list[i].name; i++) {
+        if (!options->values[i] || of_the_caller(list[i].name)) continue;
+        snprintf(before, sizeof before, "--%s%s", list[i].name, list[i].argument ? "=" : "");
+        put_quoted(line, before, options->values[i]);
+    }
+    fputs(" --", line);
+    for (int i = 0; i < options->count; i++) put_quoted(line, "", options->arguments[i]);
+    return fclose(line) ? free(text), NULL : text;
+}
+
+enum status slurm_share_submit(const struct slurm_share *share, long *job, struct error *error)
+{
+    const char *words[SLURM_WORDS_MAX + 1] = {"sbatch", "--requeue", "--open-mode=append"};
+    char cpus[40], array[16 + strlen(share->which)], name[80], output[PATH_LENGTH + 200];
+    const char *given = options_value(share->options, "engine-options");
+    char *own = strdup(given ? given : ""), *rest = NULL, *wrap = line_of(share);
+    size_t n = 3;
+    snprintf(cpus, sizeof cpus, "--cpus-per-task=%d", share->jobs * share->options->threads);
+    snprintf(name, sizeof name, "--job-name=%s", share->name);
+    snprintf(array, sizeof array, "--array=%s", share->which);
+    snprintf(output, sizeof output, "--output=%s/%s-%%A_%%a.log", share->folder, share->name);
+    words[n++] = cpus;
+    enum status status =
+        own && wrap ? STATUS_OK : error_set(error, STATUS_ENVIRONMENT, "no memory for sbatch");
+    char *word = own ? strtok_r(own, " \t\n", &rest) : NULL;
+    for (; word && n < SLURM_WORDS_MAX - 6; word = strtok_r(NULL, " \t\n", &rest))
+        words[n++] = word;
+    if (word)
+        status = error_set(error, STATUS_BAD_INPUT, "--engine-options: more than %d words",
+                           SLURM_WORDS_MAX - 10);
+    const char *const last[] = {"--parsable", name, array, output, "--wrap", wrap};
+    memcpy(&words[n], last, sizeof last); /* what comes last counts */
+    if (!status) status = slurm_submit(words, job, error);
+    free(own);
+    free(wrap);
+    return status;
+}

@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""engine.py SPHPROOF: `--engine slurm` with scripts in place of Slurm's commands: what is missing is
+submitted again, twice at most; then it is said what, and nothing is lost. (slurm.py has the real ones.)"""
+import glob
+import json
+import os
+import subprocess
+import sys
+import tempfile
+
+program = os.path.abspath(sys.argv[1])
+faults = []
+QUICK = ["converge", "sod", "--n", "40,44,50,60", "t_end=0.1", "--replicates", "2"]
+
+
+def expect(what, well, got=""):
+    if not well:
+        faults.append("%s: %s" % (what, got))
+
+
+def study(*words):
+    done = subprocess.run([program, *words, "--json", "-"], capture_output=True, text=True, timeout=100)
+    document = json.loads(done.stdout) if done.stdout else {}
+    document.pop("date", None)
+    return done.returncode, document, done.stderr
+
+
+def without_times(document):
+    for level in document.get("levels", ()):
+        level.pop("cpu_s", None)
+    return document
+
+
+def entries():
+    return glob.glob("cache/*/*.entry")
+
+
+# Stands for Slurm's commands: sbatch computes the shares at once, but those of $SPARED; it counts itself.
+FAKE = """#!/bin/sh
+case ${0##*/} in
+squeue) [ ! -e submitted ] || echo "7 2 ${STATE:-TIMEOUT} None" ;;
+scancel) ;;
+sbatch)
+    echo >>submitted
+    while [ $# -gt 1 ]; do
+        case $1 in --array=*) array=${1#--array=} ;; --wrap) wrap=$2 ;; esac
+        shift
+    done
+    case $array in 1-3) array='1 2 3' ;; esac
+    for SLURM_ARRAY_TASK_ID in $array; do
+        [ "$SLURM_ARRAY_TASK_ID" = "$SPARED" ] || sh -c "SLURM_ARRAY_TASK_ID=$SLURM_ARRAY_TASK_ID; $wrap" >/dev/null
+    done
+    echo 7 ;;
+esac
+"""
+
+
+def test_engine():
+    os.makedirs("bin")
+    for name in ("sbatch", "squeue", "scancel"):
+        with open("bin/" + name, "w", encoding="ascii") as file:
+            file.write(FAKE)
+        os.chmod("bin/" + name, 0o755)
+    _, alone, _ = study(*QUICK)
+    for spared, state, submitted, code in (("", "", 1, 1), ("2", "TIMEOUT", 3, 4), ("2", "CANCELLED", 1, 4)):
+        for name in entries() + glob.glob("submitted"):
+            os.remove(name)
+        done = subprocess.run([program, *QUICK, "--cache", "cache", "--engine", "slurm", "--engine-tasks", "3",
+                               "--engine-options", "--partition=any", "--json", "slurm.json"], capture_output=True,
+                              text=True, env=dict(os.environ, PATH=os.path.abspath("bin") + ":" + os.environ["PATH"],
+                                                  SPARED=spared, STATE=state))
+        expect("slurm, %s" % state, done.returncode == code, done.stderr)
+        with open("submitted", encoding="ascii") as file:
+            expect("slurm, %s: submitted" % state, len(file.readlines()) == submitted, done.stderr)
+        if spared:
+            expect("slurm, %s: said" % state, "share 2 of 3 (%s" % state in done.stderr
+                   and "missing: sod, n = " in done.stderr, done.stderr)
+            expect("slurm, %s: kept" % state, 0 < len(entries()) < 8, entries())
+        else:
+            with open("slurm.json", encoding="utf-8") as file:
+                document = json.load(file)
+            document.pop("date")
+            expect("slurm: results", without_times(document) == without_times(alone))
+    _, _, stderr = study(*QUICK, "--cache", "cache", "--shard", "1/2", "--only-build", "0123")
+    expect("another build", "not 0123" in stderr, stderr)
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        test_engine()
+        os.chdir("/")
+    print("\n".join(faults) or "a study is computed elsewhere")
+    return bool(faults)
+
+
+sys.exit(main())

@@ -1,0 +1,213 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""slurm.py SPHPROOF DATA [--night FOLDER]: `--engine slurm` on a cluster of two nodes on this host. The
+results must be those of this machine alone, nothing that is finished may be computed again, and nothing
+may be lost by a node that loses its power, by kill -9 of who submitted or of a worker, or a full disk.
+With --night a whole quick report in FOLDER; Slurm must then be here, else the test is skipped."""
+import contextlib
+import glob
+import json
+import os
+import pty
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+import cluster
+
+program, data = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
+night = os.path.abspath(sys.argv[4]) if len(sys.argv) > 3 else None
+SLURM = ["--engine", "slurm"]
+QUICK = ["converge", "sod", "--n", "40,60,80,120", "t_end=0.1", "--replicates", "2"]
+# one computation of some seconds, and a few short ones
+LONG = ["converge", "sod", "--n", "100,140,200,5600", "t_end=0.1", "kernel=wendland_c6", "eta=9", "skip=none",
+        "integrator=rk3", "volume_element=energy", "--replicates", "1"]
+TIMES = ("cost", "cpu_s", "wall_s", "seconds", "date", "found", "history", "bench", "ns_per_point", "ns_per_pair")
+faults = []
+
+
+def expect(what, well, got=""):
+    if not well:
+        faults.append("%s: %s" % (what, got))
+
+
+def fixed(value):
+    """Everything that may not differ from what one machine alone says."""
+    if isinstance(value, dict):
+        return {k: fixed(v) for k, v in value.items() if k not in TIMES}
+    return [fixed(v) for v in value] if isinstance(value, list) else value
+
+
+def load(path):
+    with open(path, encoding="utf-8") as file:
+        return fixed(json.load(file))
+
+
+def alone(words):
+    subprocess.run([program, *words, "--json", "alone.json", "--quiet"], check=False)
+    return load("alone.json")
+
+
+def start(words, cache, *more, **options):
+    return subprocess.Popen([program, *words, "--cache", cache, *SLURM, *more], text=True, stdout=subprocess.DEVNULL,
+                            stderr=subprocess.PIPE, **options)
+
+
+def entries(cache):
+    return {name: os.stat(name).st_ino for name in glob.glob(os.path.join(cache, "*", "*.entry"))}
+
+
+def queue():
+    """State of each task that is not over: "1_2" -> RUNNING."""
+    said = subprocess.run(["squeue", "-h", "-r", "-o", "%i %T"], capture_output=True, text=True).stdout
+    return {task: state for task, state in map(str.split, said.splitlines()) if state != "COMPLETING"}
+
+
+def test_same(nodes):
+    """A study on two nodes; and again, when all is there and Slurm is not asked."""
+    running = start(QUICK, "same", "--engine-tasks", "2", "--json", "same.json")
+    said = running.communicate()[1]
+    expect("exit", running.returncode in (0, 1), said)
+    expect("two nodes", load("same.json") == alone(QUICK), said)
+    expect("what is left behind", not glob.glob("same/slurm/*"), glob.glob("same/slurm/*"))
+    path = dict(os.environ, PATH="/nowhere")
+    again = subprocess.run([program, *QUICK, "--cache", "same", *SLURM, "--json", "again.json", "--quiet"], env=path)
+    expect("all is there: no Slurm is needed", again.returncode in (0, 1) and load("again.json") == load("same.json"))
+    expect("nobody is left", not nodes.tasks(), nodes.tasks())
+
+
+def test_refused(nodes):
+    """What cannot be: exit 4 with the reason, and nothing is left in the queue."""
+    path = dict(os.environ, PATH="/nowhere")
+    others = queue().keys()
+    gone = os.path.join(nodes.folder, "gone.conf")
+    with open(nodes.conf, encoding="ascii") as file, open(gone, "w", encoding="ascii") as changed:
+        changed.write(file.read().replace("SlurmctldPort=%d" % nodes.ports[0],
+                                          "SlurmctldPort=%d" % cluster.free_ports(1)[0]))
+    for what, options, words, said in (
+            ("no sbatch", {"env": path}, (), "no command squeue"),
+            ("no controller", {"env": dict(os.environ, SLURM_CONF=gone)}, (), "Unable to contact slurm controller"),
+            ("no partition", {}, ("--engine-options", "--partition=none"), "invalid partition")):
+        running = start(QUICK, "refused", "--engine-tasks", "2", *words, **options)
+        heard = running.communicate()[1]
+        expect(what, running.returncode == 4 and said in heard, (running.returncode, heard))
+    expect("the queue", queue().keys() <= others, queue())
+    os.makedirs("small")
+    if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=48k", "none", "small"], capture_output=True).returncode:
+        return
+    running = start(QUICK, "small/cache", "--engine-tasks", "1")
+    heard = running.communicate()[1]
+    expect("a full disk", running.returncode == 4 and "No space left" in heard, (running.returncode, heard))
+
+
+def test_worker(nodes):
+    """kill -9 of a worker: its share is submitted again, and the caller says so."""
+    running = start(LONG, "worker", "--engine-tasks", "1", "--json", "worker.json")
+    nodes.wait(lambda: len(entries("worker")) == 0 and nodes.tasks() or len(entries("worker")) > 0, "task")
+    nodes.wait(nodes.tasks, "worker")
+    kept = entries("worker")
+    for pid in nodes.tasks():
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(pid, signal.SIGKILL)
+    said = running.communicate()[1]
+    expect("a worker was killed", running.returncode in (0, 1) and "submitted again (1 of 2)" in said, said)
+    expect("a worker was killed: results", load("worker.json") == alone(LONG), said)
+    expect("a worker was killed: computed twice", kept.items() <= entries("worker").items())
+
+
+def test_interrupt(nodes):
+    """Ctrl-C asks once; with y its own tasks are cancelled. Without a terminal they go on."""
+    others = queue().keys()
+    for answer, left in ((b"n\n", True), (b"y\n", False)):
+        lead, follow = pty.openpty()
+        running = subprocess.Popen([program, *LONG, "--cache", "interrupted", *SLURM, "--engine-tasks", "1"],
+                                   stdin=follow, stderr=follow, stdout=subprocess.DEVNULL, start_new_session=True)
+        os.close(follow)
+        text = b""
+        with contextlib.suppress(OSError):  # it has ended
+            while b"slurm: " not in text:
+                text += os.read(lead, 1000)
+            running.send_signal(signal.SIGINT)
+            while b"[y/N]" not in text:
+                text += os.read(lead, 1000)
+        with contextlib.suppress(OSError):
+            os.write(lead, answer)
+        expect("interrupted", running.wait(20) == 4, (running.returncode, text))
+        expect("interrupted, %s" % answer, bool(queue().keys() - others) == left, (queue(), others))
+        os.close(lead)
+    expect("interrupted, state", not glob.glob("interrupted/slurm/*.json"))
+
+
+def test_power(nodes):
+    """kill -9 of who submitted, then a node without power: a second call attaches, and Slurm starts the
+    task on the other node."""
+    first = start(LONG, "power", "--engine-tasks", "2", start_new_session=True)
+    nodes.wait(lambda: nodes.tasks("n0") and len(entries("power")) >= 3, "task on n0")
+    os.killpg(first.pid, signal.SIGKILL)
+    first.wait()
+    before = queue()
+    state = glob.glob("power/slurm/*.json")
+    expect("state", len(state) == 1, state)
+    nodes.crash("n0")
+    kept = entries("power")
+    expect("something to lose", len(kept) == 3 and len(before) == 1, (kept, before))
+    second = start(LONG, "power", "--json", "power.json")
+    yield  # seconds go by until Slurm knows
+    expect("attached", queue().keys() <= before.keys(), (queue(), before))
+    said = second.communicate(timeout=100)[1]
+    expect("a node without power", second.returncode in (0, 1), said)
+    expect("a node without power: results", load("power.json") == alone(LONG), said)
+    expect("a node without power: computed twice", kept.items() <= entries("power").items())
+    expect("a node without power: as one machine", len(entries("power")) == 4, entries("power"))
+
+
+def test_report(nodes):
+    """A quick report, of which a node dies in the middle, is the one of this machine alone."""
+    shutil.rmtree(night, ignore_errors=True)
+    words = [program, "report", "--quick", "--quiet", "--history", os.devnull, "--out"]
+    running = subprocess.Popen([*words, night + "/slurm", *SLURM, "--engine-tasks", "8"])
+    nodes.wait(lambda: len(entries(night + "/slurm/cache")) > 40 and nodes.tasks("n0"), "half of a report", 600)
+    kept = entries(night + "/slurm/cache")
+    nodes.crash("n0")
+    time.sleep(30)
+    nodes.start("n0")
+    expect("a report", running.wait(1800) == 0, running.returncode)
+    expect("a report: computed twice", kept.items() <= entries(night + "/slurm/cache").items())
+    subprocess.run([*words, night + "/alone"], check=False)
+    one, other = load(night + "/slurm/results.json"), load(night + "/alone/results.json")
+    expect("a report from two nodes", one == other, [key for key in one if one[key] != other.get(key)])
+
+
+def main():
+    if cluster.missing():
+        print("skipped: not here: %s (Debian: slurm-wlm, munge)" % " ".join(cluster.missing()))
+        return 1 if night else 77
+    signal.signal(signal.SIGALRM, lambda *_: sys.exit("too slow: %s" % faults))
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # so that daemons are ended
+    signal.alarm(3600 if night else 150)
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        nodes = cluster.Cluster(folder, data)
+        try:
+            nodes.begin()
+            if night:
+                test_report(nodes)
+            else:
+                test_same(nodes)
+                test_worker(nodes)
+                power = test_power(nodes)
+                next(power)
+                test_refused(nodes)
+                test_interrupt(nodes)
+                next(power, None)
+        finally:
+            nodes.end()
+            subprocess.run(["umount", "-l", "small"], capture_output=True)
+            os.chdir("/")
+    print("\n".join(faults) or "a cluster computes what one machine does")
+    return bool(faults)
+
+
+sys.exit(main())
