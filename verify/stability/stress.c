@@ -149,7 +149,9 @@ static enum status add_cell(struct stress_cell *cell, struct pool *pool, struct 
     snprintf(name, sizeof name, "stress %s: %s, %s", cell->group->member.name, cell->row.label,
              cell->column->label);
     const double n = settings_real(&cell->settings.settings, SETTING_n);
-    const double line = 1e-6 * n * n, cloud = cell->settings.file.dimension > 1 ? 2e-5 * n : 0;
+    /* waves of lattices: the forces again for every wavevector, and a run of noise */
+    const double each = cell->group->kind == STRESS_LATTICE ? 2e-4 : 2e-5;
+    const double line = 1e-6 * n * n, cloud = cell->settings.file.dimension > 1 ? each * n : 0;
     cell->job =
         pool_add(pool, name, key, 0.02 + (cloud > 0 ? cloud * sqrt(n) : line), compute, cell);
     return cell->job == (size_t)-1 ? error_set(error, STATUS_ENVIRONMENT, "no memory for a cell")
