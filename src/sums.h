@@ -24,6 +24,9 @@ struct sums {
     /* Allocates the room and simulation->particles (n, dim, empty). */
     enum status (*create)(struct simulation *simulation, ptrdiff_t n, struct error *error);
     void (*free)(struct simulation *simulation); /* the room; after a failed create, too */
+    /* What a room for n particles comes to, in bytes, by scheme and plan alone (the rest of the
+     * simulation is 0); see memory_bytes. */
+    double (*bytes)(const struct simulation *simulation, double n);
 
     /* Once, after the state has been set, with h a first guess: orders it, and moves apart
      * particles in one place that have no h. */

@@ -51,13 +51,26 @@ static void lay_out(struct cells *cells)
     add_groups(&cells->shift, GROUP_ACCELERATION, 1);
 }
 
+/* Doubles of the largest record. */
+static int record_size(const struct cells *cells)
+{
+    int size = cells->force.size;
+    if (cells->matrix.size > size) size = cells->matrix.size;
+    return cells->shift.size > size ? cells->shift.size : size;
+}
+
+double cells_bytes(const struct cells_method *method, double n, double neighbours)
+{
+    struct cells cells = {.method = *method};
+    lay_out(&cells);
+    return n * record_size(&cells) * (double)sizeof(double) + grid_bytes(n, neighbours);
+}
+
 static bool reserve_records(struct cells *cells, size_t n)
 {
     if (n + 1 <= cells->capacity) return true;
     free(cells->records);
-    int size = cells->force.size;
-    if (cells->matrix.size > size) size = cells->matrix.size;
-    if (cells->shift.size > size) size = cells->shift.size;
+    const int size = record_size(cells);
     cells->capacity = n + n / 4 + 8;
     cells->records =
         aligned_alloc(64, (cells->capacity * (size_t)size * sizeof(double) + 63) / 64 * 64);

@@ -74,6 +74,9 @@ struct cells;
 struct cells *cells_create(const struct cells_method *method, size_t n);
 void cells_destroy(struct cells *cells);
 
+/* What that comes to with lists of so many neighbours each, in bytes. */
+double cells_bytes(const struct cells_method *method, double n, double neighbours);
+
 /* So many threads, no more than the method's, do the work from here on. */
 void cells_team(struct cells *cells, int size);
 

@@ -6,6 +6,7 @@
 
 #include "breakdown.h"
 #include "cells.h"
+#include "memory.h"
 #include "solver.h"
 #include "stamp.h"
 #include "state.h"
@@ -92,14 +93,15 @@ static struct cells_method method_of(const struct simulation *simulation)
 
 /* --- memory ----------------------------------------------------------------------------------- */
 
-/* The room's own arrays, a run of n doubles each, behind each other. */
-static bool allocate_arrays(struct simulation *simulation, size_t n)
+enum { ARRAYS_MAX = 11 + 2 * CELLS_SYMMETRIC + CELLS_SQUARE };
+
+/* The arrays that a room has for the scheme. */
+static size_t list_arrays(const struct simulation *simulation, struct room *room,
+                          double **of[ARRAYS_MAX])
 {
-    struct room *room = room_of(simulation);
     const struct plan *plan = &simulation->plan;
     const size_t dim = (size_t)plan->dim, symmetric = dim * (dim + 1) / 2;
     const bool projected = simulation->scheme.viscosity == VISCOSITY_PROJECTED;
-    double **of[11 + 2 * CELLS_SYMMETRIC + CELLS_SQUARE];
     size_t count = 0;
     of[count++] = &room->radius;
     of[count++] = &room->kept;
@@ -112,6 +114,15 @@ static bool allocate_arrays(struct simulation *simulation, size_t n)
     for (size_t k = 0; plan->slope && k < dim * dim; k++) of[count++] = &room->fields.slope[k];
     for (size_t k = 0; projected && k < symmetric; k++) of[count++] = &room->fields.projector[k];
     if (plan->jump) of[count++] = &room->fields.alpha_local, of[count++] = &room->fields.decay;
+    return count;
+}
+
+/* A run of n doubles each, behind each other. */
+static bool allocate_arrays(struct simulation *simulation, size_t n)
+{
+    struct room *room = room_of(simulation);
+    double **of[ARRAYS_MAX];
+    const size_t count = list_arrays(simulation, room, of);
     const size_t stride = room->stride = (n + BATCH_MAX + 7) / 8 * 8;
     room->arrays = count;
     room->block = calloc(count * stride, sizeof(double));
@@ -161,6 +172,17 @@ static enum status create(struct simulation *simulation, ptrdiff_t n, struct err
         return error_set(error, STATUS_ENVIRONMENT, "no memory for %td particles", n);
     /* loops in whole vectors read a little beyond the ends */
     return particles_create(&simulation->particles, simulation->plan.dim, n, 8, error);
+}
+
+static double bytes(const struct simulation *simulation, double n)
+{
+    struct room room = {0};
+    double **of[ARRAYS_MAX];
+    const struct cells_method method = method_of(simulation);
+    const double arrays = (double)list_arrays(simulation, &room, of);
+    /* the first search goes further, and lists hold who is within the wider of two widths */
+    const double neighbours = memory_neighbours(method.box.dim, simulation->scheme.eta * margin);
+    return n * (arrays * sizeof(double) + 3) + cells_bytes(&method, n, neighbours);
 }
 
 static void free_room(struct simulation *simulation)
@@ -541,6 +563,7 @@ const struct sums cells_sums = {
     .dim_max = 3,
     .create = create,
     .free = free_room,
+    .bytes = bytes,
     .begin = begin,
     .reserve = reserve,
     .arrange = arrange,

@@ -405,11 +405,11 @@ size_t grid_parts(const struct grid *grid, const uint32_t **begin)
     return grid->parts;
 }
 
-double grid_bytes(size_t n, double neighbours, int dim)
+double grid_bytes(double n, double neighbours)
 {
-    (void)dim;
-    const double point = 2 * sizeof(uint32_t) + 4 * sizeof(double) + sizeof(float) +
-                         sizeof(struct grid_list) + 2 * sizeof(uint32_t);
-    return (double)n * (1.25 * point + (neighbours + 4) * sizeof(int32_t)) +
-           2.0 * CELLS_A_POINT * (double)n;
+    /* cell_of, order; position; radius, radius2 and place; list */
+    const double point =
+        2 * sizeof(uint32_t) + 4 * sizeof(double) + 5 * sizeof(float) + sizeof(struct grid_list);
+    /* lists end in half a vector of fillings, and at the end of a chunk half a list is left */
+    return n * (point + (neighbours + 0.5 * GRID_LANES) * sizeof(int32_t));
 }

@@ -62,7 +62,7 @@ int grid_longest(const struct grid *grid); /* list, in whole vectors */
  * threads. begin: parts + 1 slots. */
 size_t grid_parts(const struct grid *grid, const uint32_t **begin);
 
-/* Bytes that a grid of n points with lists of `neighbours` each takes. */
-double grid_bytes(size_t n, double neighbours, int dim);
+/* Bytes that a grid of n points with lists of `neighbours` each comes to use. */
+double grid_bytes(double n, double neighbours);
 
 #endif

@@ -27,6 +27,12 @@ static enum status create(struct simulation *simulation, ptrdiff_t n, struct err
     return particles_create(&simulation->particles, 1, n, GHOSTS_AT_START, error);
 }
 
+static double bytes(const struct simulation *simulation, double n)
+{
+    (void)simulation;
+    return n * sizeof(struct range) / GROUP;
+}
+
 static void free_room(struct simulation *simulation)
 {
     struct line *line = line_of(simulation);
@@ -83,6 +89,7 @@ const struct sums line_sums = {
     .dim_max = 1,
     .create = create,
     .free = free_room,
+    .bytes = bytes,
     .begin = order_begin,
     .reserve = reserve,
     .arrange = order_arrange,

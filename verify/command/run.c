@@ -135,6 +135,14 @@ static void print_plan(const struct run_result *result, const struct table_style
                result->plan[i].why);
 }
 
+static void print_estimate(const struct run_result *result, const struct table_style *style)
+{
+    const struct estimate *e = &result->estimate;
+    printf(
+        "\n%sit would take%s     about %.0f MB of memory; about %.2g steps, %.2g s of CPU time\n",
+        style->bold, style->end, 1e-6 * e->memory, e->steps, e->cpu_s);
+}
+
 static enum status check_files(const struct options *options, struct error *error)
 {
     const char *plot = options_value(options, "plot");
@@ -191,6 +199,7 @@ static enum status explain(const struct options *options, const struct run *run,
         print_head(settings, &result, &style);
         printf("n=%zu; nothing has been run\n", result.n);
         print_plan(&result, &style);
+        print_estimate(&result, &style);
     }
     if (!options->json) return STATUS_OK;
     json_t *document = result_new("run");
@@ -264,7 +273,8 @@ static const struct command_option own_options[] = {
      "F.hdf5 or F.h5: HDF5 in GADGET's layout"},
     {"plot", "FILE.svg|.png",
      "draw the profiles over the exact solution; in 2D and 3D maps (needs gnuplot)"},
-    {"explain", NULL, "print the plan: what would run and why; run nothing"},
+    {"explain", NULL,
+     "print the plan: what would run and why, memory and time it would take; run nothing"},
     {NULL, NULL, NULL},
 };
 

@@ -90,6 +90,15 @@ static enum status measure_start(struct run_result *result, const struct initial
     return status;
 }
 
+/* Before there is an array of n numbers; a file's particles are as many as they are. */
+static enum status check_size(const struct run *run, struct error *error)
+{
+    const struct initial none = {.n = (size_t)settings_real(&run->settings, SETTING_n)};
+    const struct scene scene = run_scene(run, &none);
+    const struct estimate estimate = estimate_size(&scene);
+    return run->settings.file[0] ? STATUS_OK : estimate_check(&estimate, none.n, error);
+}
+
 /* Everything before the first step. On an error nothing is left to free. */
 static enum status begin(const struct run *run, struct run_result *result, struct initial *initial,
                          struct error *error)
@@ -102,10 +111,12 @@ static enum status begin(const struct run *run, struct run_result *result, struc
                                   .matrix = no_matrix};
     *initial = (struct initial){0};
     if ((!run->asked.any_window && (status = problem_check_time(&run->problem, t_end, error))) ||
+        (status = check_size(run, error)) ||
         (status = initial_create(initial, &run->problem, &run->settings, error)))
         return status;
     const struct scene scene = run_scene(run, initial);
     result->n = initial->n;
+    result->estimate = estimate_run(&scene);
     if (run->settings.file[0]) result->settings.value[SETTING_n].real[0] = (double)initial->n;
     result->plan_count =
         plan_explain(&scene, result->plan, RUN_PLAN_MAX, result->warnings, sizeof result->warnings);
@@ -454,13 +465,14 @@ static enum status steps(struct watch *watch, struct simulation *simulation,
 }
 
 static enum status simulate(const struct run *run, struct run_result *result,
-                            const struct initial *initial, struct error *error)
+                            struct initial *initial, struct error *error)
 {
     const struct run_settings *asked = &run->asked;
     struct simulation *simulation = NULL;
     struct outcome outcome = {0};
     const struct scene scene = run_scene(run, initial);
     enum status status = simulation_create(&scene, &simulation, &outcome.reason);
+    initial_free(initial); /* the solver has copied it */
     if (status == STATUS_BROKE_DOWN) return broke_down_at_start(result, &outcome.reason);
     if (status) {
         *error = outcome.reason;
@@ -487,7 +499,7 @@ static enum status simulate(const struct run *run, struct run_result *result,
 }
 
 static enum status simulate_plainly(const struct run *run, struct run_result *result,
-                                    const struct initial *initial, struct error *error)
+                                    struct initial *initial, struct error *error)
 {
     struct plain plain;
     struct outcome outcome = {0};

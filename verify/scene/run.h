@@ -10,6 +10,7 @@
 #include "budget.h"
 #include "cases.h"
 #include "description.h"
+#include "estimate.h"
 #include "growth.h"
 #include "norm.h"
 #include "problem.h"
@@ -63,6 +64,7 @@ struct run_result {
     struct norms azimuthal, radial; /* of the velocity of a circular flow */
     double binned_density_l1;       /* in 1D */
     struct regularity regularity;   /* of the final state, with the scheme's kernel */
+    struct estimate estimate;       /* before the run */
     struct relax_quality start;     /* of a glass; NaN: it is none */
     size_t crossed;       /* neighbours of the start that are not next to each other any more */
     double spacing, h;    /* (box/n)^(1/d); mean smoothing length in the window, by volume */
@@ -98,7 +100,8 @@ struct scene run_scene(const struct run *run, const struct initial *initial);
  * STATUS_BAD_INPUT where the exact solution does not hold in the window up to t_end. */
 enum status run_execute(const struct run *run, struct run_result *result, struct error *error);
 
-/* All but the simulation: plan and warnings filled; n is what it would be. */
+/* All but the simulation: plan, estimate and warnings filled; n is what it would be. STATUS_*: as
+ * run_execute, also STATUS_ENVIRONMENT where memory will not do. */
 enum status run_explain(const struct run *run, struct run_result *result, struct error *error);
 
 /* No run: errors and functionals of a state that another code has computed, by the problem of a run

@@ -99,6 +99,11 @@ void run_add_plan(const struct run_settings *settings, const struct run_result *
                                       result_number(result->start.density), "gradient_rms",
                                       result_number(result->start.gradient)));
     json_object_set_new(document, "plan", plan_json(result));
+    json_object_set_new(document, "estimate",
+                        json_pack("{s:o, s:o, s:o}", "memory_bytes",
+                                  result_number(ceil(result->estimate.memory)), "steps",
+                                  result_number(result->estimate.steps), "cpu_s",
+                                  result_number(result->estimate.cpu_s)));
     json_object_set_new(document, "warnings", json_string(result->warnings));
 }
 

@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "memory.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "solver.h"
+
+double memory_neighbours(int dim, double eta)
+{
+    static const double ball[] = {0, 2, 3.14159265358979, 4.18879020478639};
+    return ball[dim] * pow(eta, dim);
+}
+
+/* Arrays of the particles that a run writes to: the others take no room. */
+static double arrays_of(const struct simulation *simulation)
+{
+    const struct plan *plan = &simulation->plan;
+    const struct integrator *integrator = simulation->scheme.integrator;
+    const bool line = plan->dim == 1,
+               keeps = strcmp(integrator->member.name, "predicted_midpoint") &&
+                       strcmp(integrator->member.name, "symplectic_euler");
+    enum { VECTORS = 5, SCALARS = 15, ORDERS = 3 }; /* x x_old p v F; id, order, spare */
+    double count = VECTORS * plan->dim + SCALARS + ORDERS;
+    if (keeps) count += plan->dim + 2; /* p_old, e_old, alpha_old */
+    if (plan->grad_h) count += 2;
+    if (plan->alpha) count += 2;
+    if (line || plan->own_gradient) count++;
+    if (line && plan->slope) count++;
+    return count + plan->dim + 1; /* those of a snapshot */
+}
+
+double memory_bytes(const struct scene *scene)
+{
+    struct simulation simulation = {.scheme = scene->scheme, .plan = plan_of_scene(scene)};
+    simulation.team.most = scene->threads > 1 ? scene->threads : 1;
+    const double n = (double)scene->n;
+    return sizeof(double) * n * arrays_of(&simulation) +
+           simulation.plan.sums->bytes(&simulation, n);
+}

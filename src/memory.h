@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What a run will ask for, said before it begins. */
+#ifndef SPHPROOF_MEMORY_H
+#define SPHPROOF_MEMORY_H
+
+struct scene;
+
+/* Bytes that a simulation of the scene comes to use, by its scheme, dimension, threads and number
+ * of particles (no array of it is read): within a tenth where particles are evenly spaced. */
+double memory_bytes(const struct scene *scene);
+
+/* How many are within h = eta spacings of a particle. */
+double memory_neighbours(int dim, double eta);
+
+#endif

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""memory.py SPHPROOF: what `run --explain` says a run will take, against what it takes; and runs for which there is
+not enough memory are refused before they begin, with the number."""
+import json
+import resource
+import subprocess
+import sys
+
+PROGRAM = sys.argv[1]
+WITHIN = 0.2
+RUNS = [["gresho", "n=120^2", "t_end=0.0005"],
+        ["sound_wave_3d", "n=20^3", "t_end=0.001", "kernel=wendland_c4", "eta=3.6", "gradient=standard",
+         "viscosity=constant"]]
+
+
+def sphproof(*words, limit=None, status=0):
+    def confine():
+        if limit:
+            resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
+    done = subprocess.run([PROGRAM, *words, "--threads", "1"], capture_output=True, text=True, timeout=100,
+                          preexec_fn=confine)
+    if done.returncode != status:
+        sys.exit("%s: exit status %d, not %d: %s" % (" ".join(words), done.returncode, status, done.stderr))
+    return done
+
+
+def main():
+    for words in RUNS:
+        said = json.loads(sphproof("run", *words, "--explain", "--json", "-").stdout)
+        estimate = said["estimate"]
+        assert "status" not in said and estimate["cpu_s"] > 0
+        run = json.loads(sphproof("run", *words, "--json", "-").stdout)
+        taken, steps = run["cost"]["peak_rss_bytes"], run["cost"]["steps"]
+        if not abs(estimate["memory_bytes"] / taken - 1) <= WITHIN:
+            sys.exit("%s: %.3g bytes are said, %.3g taken" % (" ".join(words), estimate["memory_bytes"], taken))
+        if not 0.3 * steps - 1 <= estimate["steps"] <= 3 * steps + 1:
+            sys.exit("%s: %r steps are said, %d made" % (" ".join(words), estimate["steps"], steps))
+        print("%s: %.1f MB said, %.1f taken" % (words[0], 1e-6 * estimate["memory_bytes"], 1e-6 * taken))
+    assert "MB of memory" in sphproof("run", *RUNS[0], "--explain").stdout
+    for more in ([], ["--explain"], ["--json", "-"]):
+        done = sphproof("run", "sound_wave_3d", "n=10000000", *more, limit=3 << 30, status=4)
+        if done.stdout or "n=10000000" not in done.stderr or "GB of memory" not in done.stderr or "3.22 GB" not in done.stderr:
+            sys.exit("what does not fit: %r %r" % (done.stdout, done.stderr))
+
+
+main()
