@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: GPL-3.0-or-later
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/** @file
  * A kernel of your own, checked by sphproof. Write one C file with the functions below, then
  *
  *     cc -O2 -shared -fPIC -I DIR_OF_THIS_HEADER my_kernel.c -o my_kernel.so -lm
@@ -19,32 +20,34 @@
 extern "C" {
 #endif
 
+/** Knots that there may be in a dimension. */
 enum { SPHPROOF_KERNEL_KNOTS_MAX = 4096 };
 
-/* Required: the shape w(q) and its derivative dw/dq for q >= 0. Both must be exactly 0 for q >= 1
- * (dw of a kernel declared C0 may have its one-sided value at q = 1 itself). */
+/** Required: the shape w(q) for q >= 0, exactly 0 for q >= 1. */
 double sphproof_kernel_w(double q, int dim);
+/** Required: its derivative dw/dq, exactly 0 for q >= 1 (that of a kernel declared C0 may have its
+ * one-sided value at q = 1 itself). */
 double sphproof_kernel_dw(double q, int dim);
 
-/* Optional: the constant C_d to full precision; else found by quadrature. */
+/** Optional: the constant C_d to full precision; else found by quadrature. */
 double sphproof_kernel_constant(int dim);
 
-/* Optional: the whole dW/dh; else -C_d h^-(d+1) (d w + q dw). */
+/** Optional: the whole dW/dh; else -C_d h^-(d+1) (d w + q dw). */
 double sphproof_kernel_dw_dh(double r, double h, int dim);
 
-/* Optional: the points 0 < q < 1 where some derivative of w jumps, ascending, written to knots;
+/** Optional: the points 0 < q < 1 where some derivative of w jumps, ascending, written to knots;
  * their number is returned. Else they are found by bisection. */
 int sphproof_kernel_knots(int dim, double *knots);
 
-/* Optional: the class k of C^k, the least over the origin (w continued as an even function), the
+/** Optional: the class k of C^k, the least over the origin (w continued as an even function), the
  * knots and the edge q = 1; else it is measured. */
 int sphproof_kernel_class(int dim);
 
-/* Optional: 1 if the kernel is meant to have a negative lobe. Its sign and monotony are then
+/** Optional: 1 if the kernel is meant to have a negative lobe. Its sign and monotony are then
  * reported, not required; 0, or no such function: W >= 0 and dW/dr <= 0 are required. */
 int sphproof_kernel_negative(int dim);
 
-/* Optional: a name for the results; else that of the file. */
+/** Optional: a name for the results; else that of the file. */
 const char *sphproof_kernel_name(void);
 
 #ifdef __cplusplus

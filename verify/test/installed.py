@@ -223,7 +223,7 @@ int main(void)
 
 def subproject(source, work):
     os.makedirs(os.path.join(work, "subprojects"))
-    ignored = shutil.ignore_patterns("build*", ".git", "out", "pool.*")
+    ignored = shutil.ignore_patterns("build*", ".git", "out")
     shutil.copytree(source, os.path.join(work, "subprojects/sphproof"), ignore=ignored)
     for name, text in PARENT.items():
         with open(os.path.join(work, name), "w", encoding="ascii") as file:
