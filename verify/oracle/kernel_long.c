@@ -3,12 +3,28 @@
  * the same rounded constants, and 11 bits more in every operation. */
 #include "kernel_long.h"
 
+#include <math.h>
 #include <string.h>
-#include <tgmath.h>
 
 #ifdef __clang__
 #pragma clang diagnostic ignored "-Wkeyword-macro"
 #endif
+/* Not <tgmath.h>: musl's macros say double themselves. One that a kernel needs and that is not here
+ * narrows its argument, which the compiler refuses. */
+#define cbrt cbrtl
+#define cos  cosl
+#define cosh coshl
+#define erf  erfl
+#define exp  expl
+#define fabs fabsl
+#define fmax fmaxl
+#define fmin fminl
+#define log  logl
+#define pow  powl
+#define sin  sinl
+#define sinh sinhl
+#define sqrt sqrtl
+#define tan  tanl
 #define double long double
 #define KERNEL(name, ...)
 #include "kernels.def"
