@@ -105,7 +105,7 @@ static void a_kernel_that_is_none_is_refused(void **state)
 
 /* ---- gradients ---- */
 
-enum fault { RIGHT, SHIFTED, HALF, FORGETFUL, ABSENT };
+enum fault { RIGHT, SHIFTED, HALF, FORGETFUL, ABSENT, CENTRE };
 
 struct own {
     const char *name;
@@ -125,6 +125,7 @@ static bool gradients(void *context, const struct sphproof_cloud *cloud, const d
         for (size_t i = 0; i < cloud->n; i++) {
             if (own->fault == SHIFTED) gradient[a][i] += 1e-6 * cloud->x[a][i];
             if (own->fault == HALF) gradient[a][i] *= 0.5;
+            if (own->fault == CENTRE && fabs(cloud->x[0][i] - 0.5) < 0.05) gradient[a][i] *= 1.001;
             if (own->fault == FORGETFUL) gradient[a][i] *= 1 + 1e-12 * own->calls;
         }
     return own->fault != ABSENT;
@@ -160,6 +161,8 @@ static void an_operator_is_held_to_its_promise(void **state)
     assert_non_null(strstr(error.message, "order"));
     assert_int_equal(tried("ia", SHIFTED, 1, conserving, &error), SPHPROOF_CHECK_FAILED);
     assert_int_equal(tried("linear_exact", HALF, 1, linear, &error), SPHPROOF_CHECK_FAILED);
+    assert_int_equal(tried("linear_exact", CENTRE, 1, linear, &error), SPHPROOF_CHECK_FAILED);
+    assert_non_null(strstr(error.message, "exactness"));
     assert_int_equal(tried("ia", FORGETFUL, 1, conserving, &error), SPHPROOF_CHECK_FAILED);
     assert_non_null(strstr(error.message, "repeats"));
     assert_int_equal(tried("ia", ABSENT, 1, conserving, &error), SPHPROOF_CHECK_FAILED);
