@@ -127,10 +127,10 @@ size_t plan_explain(const struct scene *scene, struct plan_line *lines, size_t m
     line(&writer, "density sum", true, plan.newton ? "inside the Newton iteration" : "one a step",
          "");
     line(&writer, "energy sum", plan.energy_sum, "volume_element=energy: P from the sum of U",
-         "volume_element=mass: pressure from density");
+         "pressure from density");
     line(&writer, "grad-h factors", plan.grad_h, "formulation=lagrangian",
          "formulation=vanilla_ice has none");
-    line(&writer, "moment matrix", plan.matrix, "gradient=ia: sum V x^2 W",
+    line(&writer, "moment matrix", plan.matrix, "gradients by the inverse of sum V x x^T W",
          "gradient=standard needs none");
     line(&writer, "velocity gradient", plan.slope,
          plan.balsara ? "for the Balsara factor of the viscosity"
