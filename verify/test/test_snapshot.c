@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Snapshots in HDF5 in every layout that is read, written here with what codes leave out or say
- * otherwise; and what must be refused, with the words that help. */
+ * otherwise; what must be refused, with the words that help; and what a run writes. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -11,6 +11,7 @@
 
 #include <cmocka.h>
 
+#include "run.h"
 #include "snapshot_file.h"
 
 #ifdef HAVE_HDF5
@@ -292,12 +293,144 @@ static void what_is_refused(void **state)
     refuses("other.hdf5", "stuff");
 }
 
+/* ---- what a run writes ---- */
+
+static size_t attribute_of(hid_t file, const char *name, hid_t type, void *values)
+{
+    const hid_t self = H5Aopen_by_name(file, "Header", name, H5P_DEFAULT, H5P_DEFAULT);
+    const hid_t space = H5Aget_space(self);
+    const hssize_t n = H5Sget_simple_extent_npoints(space);
+    assert_true(self >= 0 && n <= 6 && H5Aread(self, type, values) >= 0);
+    H5Sclose(space);
+    H5Aclose(self);
+    return (size_t)n;
+}
+
+static double number_of(hid_t file, const char *name)
+{
+    double value[6];
+    assert_int_equal(attribute_of(file, name, H5T_NATIVE_DOUBLE, value), 1);
+    return value[0];
+}
+
+/* columns: 0 for a plain list. */
+static void data_of(hid_t file, const char *name, hid_t type, size_t n, size_t columns,
+                    void *values)
+{
+    hsize_t shape[2] = {0};
+    const hid_t self = H5Dopen2(file, name, H5P_DEFAULT), space = H5Dget_space(self);
+    assert_int_equal(H5Sget_simple_extent_dims(space, shape, NULL), columns ? 2 : 1);
+    assert_true(shape[0] == n && shape[1] == columns);
+    assert_true(H5Dread(self, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0);
+    H5Sclose(space);
+    H5Dclose(self);
+}
+
+static void header_is_of(hid_t file, const struct run_result *run)
+{
+    const struct domain *box = &run->problem.domain;
+    static const char *const none[] = {"Flag_Sfr",        "Flag_Cooling", "Flag_Feedback",
+                                       "Flag_StellarAge", "Flag_Metals",  "Redshift",
+                                       "Omega0",          "OmegaLambda"};
+    static const char *const counts[] = {"NumPart_ThisFile", "NumPart_Total"};
+    double side[6], lo[6], masses[6];
+    unsigned count[6];
+    const size_t sides = attribute_of(file, "BoxSize", H5T_NATIVE_DOUBLE, side);
+    bool cube = true;
+    for (int d = 0; d < box->dim; d++) cube &= domain_length(box, d) == domain_length(box, 0);
+    assert_int_equal(sides, cube ? 1 : 3);
+    assert_int_equal(attribute_of(file, "Origin", H5T_NATIVE_DOUBLE, lo), 3);
+    for (size_t d = 0; d < (size_t)box->dim; d++) {
+        assert_true(side[sides > 1 ? d : 0] == domain_length(box, (int)d));
+        assert_true(lo[d] == box->lo[d]);
+    }
+    for (size_t k = 0; k < 2; k++) {
+        assert_int_equal(attribute_of(file, counts[k], H5T_NATIVE_UINT, count), 6);
+        for (size_t i = 0; i < 6; i++) assert_int_equal(count[i], i ? 0 : run->n);
+    }
+    assert_int_equal(attribute_of(file, "NumPart_Total_HighWord", H5T_NATIVE_UINT, count), 6);
+    for (size_t i = 0; i < 6; i++) assert_int_equal(count[i], 0);
+    assert_int_equal(attribute_of(file, "MassTable", H5T_NATIVE_DOUBLE, masses), 6);
+    for (size_t i = 0; i < 6; i++) assert_true(masses[i] == 0);
+    assert_true(number_of(file, "Time") == run->time);
+    assert_true(number_of(file, "Gamma") == run->problem.gamma);
+    assert_true(number_of(file, "Dimension") == box->dim);
+    assert_true(number_of(file, "NumFilesPerSnapshot") == 1);
+    assert_true(number_of(file, "Flag_DoublePrecision") == 1);
+    assert_true(number_of(file, "HubbleParam") == 1);
+    for (size_t k = 0; k < sizeof none / sizeof *none; k++)
+        assert_true(number_of(file, none[k]) == 0);
+}
+
+static void gas_is_of(hid_t file, const struct run_result *run)
+{
+    const struct snapshot *s = &run->snapshot;
+    const struct domain *box = &run->problem.domain;
+    const struct {
+        const char *name;
+        const double *values;
+    } lists[] = {{"PartType0/Masses", s->m},
+                 {"PartType0/Density", s->rho},
+                 {"PartType0/InternalEnergy", s->u},
+                 {"PartType0/Pressure", s->P},
+                 {"PartType0/SmoothingLength", s->h}};
+    double *x = malloc(7 * s->n * sizeof *x), *v = x + 3 * s->n, *list = v + 3 * s->n;
+    uint64_t *id = malloc(s->n * sizeof *id);
+    assert_true(x && id);
+    data_of(file, "PartType0/Coordinates", H5T_NATIVE_DOUBLE, s->n, 3, x);
+    data_of(file, "PartType0/Velocities", H5T_NATIVE_DOUBLE, s->n, 3, v);
+    data_of(file, "PartType0/ParticleIDs", H5T_NATIVE_UINT64, s->n, 0, id);
+    for (size_t i = 0; i < s->n; i++) {
+        assert_int_equal(id[i], i + 1);
+        for (int d = 0; d < 3; d++) {
+            const double place = d < box->dim ? s->x[d][i] - box->lo[d] : 0;
+            assert_true(x[3 * i + (size_t)d] == place);
+            assert_true(v[3 * i + (size_t)d] == (d < box->dim ? s->v[d][i] : 0));
+        }
+    }
+    for (size_t k = 0; k < sizeof lists / sizeof *lists; k++) {
+        data_of(file, lists[k].name, H5T_NATIVE_DOUBLE, s->n, 0, list);
+        assert_memory_equal(list, lists[k].values, s->n * sizeof *list);
+    }
+    free(x);
+    free(id);
+}
+
+/* In 1D, a plane that is no square, and space. */
+static void runs_are_written(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name, *words[2];
+    } cases[] = {{"sod", {"n=30", "t_end=0.01"}},
+                 {"shear", {"n=8^2", "t_end=0.01"}},
+                 {"rest_2d", {"n=12^2", "hi=1.2,1.5"}},
+                 {"rest_3d", {"n=8^3", "t_end=0.01"}}};
+    for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
+        struct run_settings settings;
+        struct run run;
+        struct run_result result;
+        struct error error = {0};
+        if (run_prepare(&settings, cases[c].name, 2, (char *const *)(uintptr_t)cases[c].words,
+                        &error) ||
+            run_resolve(&run, &settings, &error) || run_execute(&run, &result, &error) ||
+            run_write_snapshot(&result, path_of("run.hdf5"), &error))
+            fail_msg("%s: %s", cases[c].name, error.message);
+        const hid_t file = H5Fopen(path_of("run.hdf5"), H5F_ACC_RDONLY, H5P_DEFAULT);
+        assert_true(file >= 0);
+        header_is_of(file, &result);
+        gas_is_of(file, &result);
+        H5Fclose(file);
+        run_free(&result);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(gadget_says_little), cmocka_unit_test(several_files),
-        cmocka_unit_test(sph_exa_has_steps),  cmocka_unit_test(phantom_has_no_density),
-        cmocka_unit_test(what_is_refused),
+        cmocka_unit_test(runs_are_written),       cmocka_unit_test(gadget_says_little),
+        cmocka_unit_test(several_files),          cmocka_unit_test(sph_exa_has_steps),
+        cmocka_unit_test(phantom_has_no_density), cmocka_unit_test(what_is_refused),
     };
     char command[96];
     if (!mkdtemp(folder)) return 1;
