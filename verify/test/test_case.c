@@ -1,0 +1,194 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Case files: what every line of a good one becomes, and of bad ones the whole message: file, line,
+ * key, value and what is allowed. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "cases.h"
+
+#define HEAD                                                                                       \
+    "[case]\ntitle = A tube\ndimension = 1\nreference = riemann\n[initial]\nkind = riemann\n"      \
+    "left = 1 0 1\nright = 0.5 0 0.25\n[run]\nt_end = 0.125\nn = 300\n"
+
+static enum status parse(struct case_file *file, const char *text, struct error *error)
+{
+    *error = (struct error){0};
+    return case_parse(file, "some/folder/tube.v2.ini", text, strlen(text), error);
+}
+
+static void everything(void **state)
+{
+    (void)state;
+    struct case_file file;
+    struct error error;
+    const char *text = HEAD "; a comment\n[measure]\nfields = density, pressure\nexact = velocity\n"
+                            "window = -0.25 0.5\n"
+                            "[converge]\nn = 10 2e1 6^2 100\ndensity_l1_cut = 0.75 1.25 2e-3\n"
+                            "velocity_linf =  0.5\t1 3 known:  it jumps \n"
+                            "[report]\nbench = no\nquick = 50\nnight = 200 400 800\n";
+    if (parse(&file, text, &error)) fail_msg("%s", error.message);
+    assert_string_equal(file.name, "tube.v2");
+    assert_string_equal(file.title, "A tube");
+    assert_int_equal(file.dimension, 1);
+    assert_int_equal(file.settings.dim, 1);
+    assert_true(settings_real(&file.settings, SETTING_t_end) == 0.125);
+    assert_true(settings_real(&file.settings, SETTING_n) == 300);
+    assert_true(file.settings.value[SETTING_right].real[2] == 0.25);
+    assert_true(file.settings.value[SETTING_window].real[0] == -0.25 &&
+                file.settings.value[SETTING_window].real[1] == 0.5);
+    assert_int_equal(file.settings.value[SETTING_n].source, SOURCE_CASE);
+    assert_int_equal(file.settings.value[SETTING_eta].source, SOURCE_FALLBACK);
+    static const bool fields[] = {true, false, true, false}, exact[] = {false, true, false, false};
+    for (size_t f = 0; f < FIELDS; f++)
+        assert_true(file.fields[f] == fields[f] && file.exact[f] == exact[f]);
+    static const size_t ladder[] = {10, 20, 36, 100}, night[] = {200, 400, 800};
+    assert_int_equal(file.ladder_count, 4);
+    assert_memory_equal(file.ladder, ladder, sizeof ladder);
+    assert_int_equal(file.night_count, 3);
+    assert_memory_equal(file.night, night, sizeof night);
+    assert_true(file.quick_count == 1 && file.quick[0] == 50);
+    assert_false(file.bench);
+    assert_int_equal(file.gate_count, 2);
+    const struct case_gate *a = &file.gates[0], *b = &file.gates[1];
+    assert_true(a->field == FIELD_DENSITY && a->norm == NORM_L1_CUT && !a->known[0]);
+    assert_true(a->gate.low == 0.75 && a->gate.high == 1.25 && a->gate.bound == 2e-3);
+    assert_true(b->field == FIELD_VELOCITY && b->norm == NORM_LINF);
+    assert_true(b->gate.low == 0.5 && b->gate.high == 1 && b->gate.bound == 3);
+    assert_string_equal(b->known, "it jumps");
+    /* what is not said */
+    if (parse(&file, HEAD, &error)) fail_msg("%s", error.message);
+    for (size_t f = 0; f < FIELDS; f++) assert_true(file.fields[f] && !file.exact[f]);
+    assert_true(file.bench && file.gate_count == 0 && file.ladder_count == 0);
+    assert_true(file.quick_count == 0 && file.night_count == 0);
+}
+
+/* The line of a bad text is given by its number in it. */
+static void refused(const char *text, const char *message)
+{
+    struct case_file file;
+    struct error error;
+    assert_int_equal(parse(&file, text, &error), STATUS_BAD_INPUT);
+    if (strcmp(error.message, message) != 0)
+        fail_msg("'%s'\n   is not '%s'", error.message, message);
+}
+
+static void begins(const char *text, const char *message)
+{
+    struct case_file file;
+    struct error error;
+    assert_int_equal(parse(&file, text, &error), STATUS_BAD_INPUT);
+    if (strncmp(error.message, message, strlen(message)) != 0)
+        fail_msg("'%s'\n   does not begin '%s'", error.message, message);
+}
+
+#define AT(line) "some/folder/tube.v2.ini:" line ": "
+#define GATE                                                                                       \
+    "least order, greatest order, bound of the finest error; after them `known: WHY` in less "     \
+    "than "                                                                                        \
+    "160 characters, if it is known to fail"
+
+static void bad_lines(void **state)
+{
+    (void)state;
+    refused("", "some/folder/tube.v2.ini: the case file is empty");
+    refused(HEAD "[measure]\nfields =\n", AT("13") "fields = ; allowed: names of fields");
+    begins(HEAD "[measure]\nfields = density mass\n", AT("13") "no field 'mass'");
+    begins(HEAD "[measure]\nexact = densty\n",
+           AT("13") "no field 'densty'; did you mean 'density'? allowed: density velocity");
+    refused(HEAD "[converge]\nn = 10 20 30\n",
+            AT("13") "n = 10 20 30; allowed: rising numbers of particles, at least four");
+    refused(HEAD "[converge]\nn = 10 20 20 40\n",
+            AT("13") "n = 10 20 20 40; allowed: rising numbers of particles, at least four");
+    refused(HEAD "[converge]\nn = 3 20 30 40\n",
+            AT("13") "n = 3 20 30 40; allowed: rising numbers of particles, at least four");
+    refused(HEAD "[report]\nquick =\n", AT("13") "quick = ; allowed: rising numbers of particles");
+    refused(HEAD "[report]\nnight = 10 2x\n",
+            AT("13") "night = 10 2x; allowed: rising numbers of particles");
+    refused(HEAD "[report]\nbench = maybe\n", AT("13") "bench = maybe; allowed: yes no");
+    refused(HEAD "[converge]\ndensity_l1 = 1 1 1\n", AT("13") "density_l1 = 1 1 1; allowed: " GATE);
+    refused(HEAD "[converge]\ndensity_l1 = 1 2 0\n", AT("13") "density_l1 = 1 2 0; allowed: " GATE);
+    refused(HEAD "[converge]\ndensity_l1 = 1 2\n", AT("13") "density_l1 = 1 2; allowed: " GATE);
+    refused(HEAD "[converge]\ndensity_l1 = 1 2 3 known:\n",
+            AT("13") "density_l1 = 1 2 3 known:; allowed: " GATE);
+    refused(HEAD "[converge]\ndensity_l1 = 1 2 3\nvelocity_l1 = 1 2 3\n\ndensity_l1 = 1 2 3\n",
+            AT("16") "key density_l1 is given twice, first in line 13");
+    refused(HEAD "n = 400\n", AT("12") "key n is given twice, first in line 11");
+    refused("[case]\ntitle = a\ntitle = b\n", AT("3") "key title is given twice, first in line 2");
+    refused("[case]\ntitle =\n", AT("2") "title = ; allowed: a text");
+    refused("[case]\ndimension = 4\n", AT("2") "dimension = 4; allowed: 1 2 3");
+    refused("[case]\ndimension = 0\n", AT("2") "dimension = 0; allowed: 1 2 3");
+    refused("[case]\ndimension = 12\n", AT("2") "dimension = 12; allowed: 1 2 3");
+    begins("[case]\nreference = rieman\n",
+           AT("2") "no reference 'rieman'; did you mean 'riemann'? allowed: ");
+    refused("title = a\n", AT("1") "a key before the first section; allowed: [case] and the other "
+                                   "sections");
+    begins("[cases]\ntitle = a\n", AT("2") "no section 'cases'; did you mean 'case'? allowed: case "
+                                           "domain initial scheme run measure converge report");
+    refused("[run]\neta = 2\n", AT("2") "key eta stands in the section [scheme], not in [run]");
+    begins("[run]\nt_ned = 2\n", AT("2") "no key in [run] 't_ned'; did you mean 't_end'? allowed: "
+                                         "gamma n t_end skip");
+    begins("[case]\nfields = 2\n", AT("2") "no key in [case] 'fields'; allowed: title dimension "
+                                           "reference");
+    begins("[converge]\nm = 2\n", AT("2") "no key in [converge] 'm'");
+    begins("[converge]\ndensity_l3 = 2\n",
+           AT("2") "no key in [converge] 'density_l3'; did you mean 'density_l1'? allowed: n "
+                   "density_l1");
+    begins("[run]\nn = 2\n", AT("2") "n=2: allowed: an integer, or 64^2, from 4 to 10000000");
+    refused("[case]\nwhat is this\n",
+            AT("2") "not a line of a case file; allowed: [section], key = value, ; comment");
+    refused("[case]\ntitle = \x01\n",
+            AT("2") "byte 0x01 is not ASCII text; allowed: printable ASCII");
+    refused("[case]\ntitle = \xc3\xa9\n",
+            AT("2") "byte 0xc3 is not ASCII text; allowed: printable ASCII");
+    refused("[case]\n\r \n", AT("2") "byte 0x0d is not ASCII text; allowed: printable ASCII");
+}
+
+static void whole_files(void **state)
+{
+    (void)state;
+    char text[600], line[200];
+    struct case_file file;
+    struct error error;
+    refused("[case]\ntitle = a\ndimension = 1\n",
+            "some/folder/tube.v2.ini: key reference is missing in [case]");
+    refused("[case]\ntitle = a\nreference = riemann\n",
+            "some/folder/tube.v2.ini: key dimension is missing in [case]");
+    refused("[case]\ntitle = a\ndimension = 1\nreference = riemann\n[run]\nt_end = 1\n",
+            "some/folder/tube.v2.ini: key kind is missing in [initial]");
+    refused("[case]\ntitle = a\ndimension = 1\nreference = riemann\n[initial]\nkind = riemann\n"
+            "left = 1 0 1\nright = 1 0 2\n",
+            "some/folder/tube.v2.ini: key t_end is missing in [run]");
+    refused("[case]\ntitle = a\ndimension = 1\nreference = riemann\n[initial]\nkind = riemann\n"
+            "left = 1 0 1\n[run]\nt_end = 1\n",
+            "some/folder/tube.v2.ini: key right is missing in [initial]");
+    refused(HEAD "[initial]\nwaves = 2\n",
+            AT("13") "key waves and kind = riemann exclude each other");
+    refused("[case]\ntitle = a\ndimension = 1\nreference = simple_wave\n[initial]\nkind = riemann\n"
+            "left = 1 0 1\nright = 1 0 2\n[run]\nt_end = 1\n",
+            AT("4") "reference = simple_wave; allowed: riemann");
+    /* 180 characters are a line, with the ends that others write; one more is none */
+    memset(line, 'x', sizeof line);
+    line[180 - strlen("title = ")] = '\0';
+    const char *rest = strstr(HEAD, "dimension");
+    snprintf(text, sizeof text, "[case]\r\n \ttitle = %s\n%s", line, rest);
+    refused(text, AT("2") "a line of more than 180 characters");
+    line[178 - strlen("title = ")] = '\0';
+    snprintf(text, sizeof text, "[case]\r\n \ttitle = %s\n%s", line, rest);
+    assert_int_equal(parse(&file, text, &error), STATUS_OK);
+    assert_true(strncmp(file.title, line, 100) == 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(everything),
+        cmocka_unit_test(bad_lines),
+        cmocka_unit_test(whole_files),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
