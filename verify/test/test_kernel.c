@@ -170,15 +170,44 @@ static void test_select(void **state)
     assert_non_null(strstr(error.message, "3 to 12"));
 }
 
+/* Exactly 0 from the edge on, however near it; on both sides of a knot the same to what one step of
+ * q makes of it; flat at the origin. */
+static void test_edges(void **state)
+{
+    (void)state;
+    static const double beyond[] = {0, DBL_EPSILON, 1e-12, 1e-9, 1e-7, 5e-7, 1e-6, 1e-3, 0.5, 1e9};
+    for (size_t i = 0; i < kernel_family.n; i++)
+        for (int dim = 1; dim <= 3; dim++) {
+            struct kernel kernel;
+            assert_int_equal(kernel_select(&kernel, kernel_family.members[i]->name, 5, NULL),
+                             STATUS_OK);
+            for (size_t k = 0; k < sizeof beyond / sizeof *beyond; k++) {
+                const double q = 1 + beyond[k];
+                if (kernel.w(&kernel, q, dim) != 0 || kernel.dw(&kernel, q, dim) != 0)
+                    fail_msg("%s, %dD: not 0 at q = 1 + %g", kernel.member.name, dim, beyond[k]);
+            }
+            assert_true(kernel.w(&kernel, 0.99, dim) > 0 && kernel.dw(&kernel, 0.99, dim) < 0);
+            assert_true(fabs(kernel.dw(&kernel, 0, dim)) <= 1e-14 * kernel.w(&kernel, 0, dim));
+            for (int k = 0; k < kernel.knot_count; k++) {
+                const double at = kernel.knots[k], scale = kernel.w(&kernel, 0, dim);
+                const double before = nextafter(at, 0), after = nextafter(at, 1);
+                const double w = kernel.w(&kernel, at, dim), dw = kernel.dw(&kernel, at, dim);
+                assert_true(fabs(kernel.w(&kernel, before, dim) - w) <= 1e-14 * scale);
+                assert_true(fabs(kernel.w(&kernel, after, dim) - w) <= 1e-14 * scale);
+                assert_true(fabs(kernel.dw(&kernel, before, dim) - dw) <= 1e-13 * scale);
+                assert_true(fabs(kernel.dw(&kernel, after, dim) - dw) <= 1e-13 * scale);
+            }
+        }
+}
+
 int main(int argc, char **argv)
 {
     if (argc != 2) return 2;
     table_path = argv[1];
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_table),
-        cmocka_unit_test(test_sinc_constants),
-        cmocka_unit_test(test_sinc_limits),
-        cmocka_unit_test(test_select),
+        cmocka_unit_test(test_table),       cmocka_unit_test(test_sinc_constants),
+        cmocka_unit_test(test_sinc_limits), cmocka_unit_test(test_select),
+        cmocka_unit_test(test_edges),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

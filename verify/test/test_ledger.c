@@ -183,12 +183,14 @@ static void uniform(size_t n, const double *x)
 
 static void jitter(const char *name, const char *key, const char *lattice, double part)
 {
+    char amount[32];
+    snprintf(amount, sizeof amount, "jitter=%g", part);
     enum { MOST = 4096 };
     static double moved[3][MOST];
     struct initial start[3]; /* at rest; shaken with two seeds */
     const char *const words[][4] = {{key, lattice, "jitter=0", "seed=1"},
-                                    {key, lattice, "jitter=0.3", "seed=1"},
-                                    {key, lattice, "jitter=0.3", "seed=2"}};
+                                    {key, lattice, amount, "seed=1"},
+                                    {key, lattice, amount, "seed=2"}};
     int dim = 0;
     size_t alike = 0, n = 0;
     for (size_t k = 0; k < 3; k++) {
@@ -225,6 +227,10 @@ static void jitters(void **state)
     jitter("sod", "n=3000", "lattice=uniform", 0.3);
     jitter("rest_2d", "n=50^2", "lattice=square", 0.3);
     jitter("rest_3d", "n=14^3", "lattice=cubic", 0.3);
+    /* and over the ends of the box */
+    jitter("rest_2d", "n=40^2", "lattice=hexagonal", 0.49);
+    jitter("rest_3d", "n=1372", "lattice=fcc", 0.49);
+    jitter("rest_3d", "n=1458", "lattice=bcc", 0.49);
 }
 
 int main(void)

@@ -42,8 +42,12 @@ static double spacing_of(const struct which *at)
     return 2 / (double)at->n;
 }
 
+/* The same error everywhere; 0: errors as they are. */
+static double flat;
+
 static double error_of(const struct which *at, unsigned field, unsigned norm)
 {
+    if (flat > 0) return flat * (1 + 1e-6 * draw(run_number(at), field, norm));
     return (0.3 + field + 0.1 * norm) * pow(spacing_of(at), 1 + 0.25 * field) *
            draw(run_number(at), field, norm);
 }
@@ -678,6 +682,32 @@ static void not_allowed(void **state)
     study_free(&study);
 }
 
+/* A lost order is the floor's doing where the finest error is at most 20 times the lattice sums are
+ * off; of the standard gradient those of the gradient count, too. */
+static void floors(void **state)
+{
+    (void)state;
+    for (int side = -1; side <= 1; side += 2)
+        for (int standard = 0; standard < 2; standard++) {
+            struct kernel kernel;
+            double density, gradient;
+            assert_int_equal(kernel_select(&kernel, "quadratic_spline", 5, NULL), STATUS_OK);
+            measure_lattice(&kernel, 1, 1.75, &density, &gradient);
+            assert_true(fabs(gradient) > 1.5 * fabs(density));
+            const double floor = fabs(standard ? gradient : density);
+            flat = 20 * floor * (1 + 1e-3 * side);
+            struct study study =
+                made("sod", standard ? "eta=1.75,gradient=standard" : "eta=1.75,gradient=ia", 1);
+            flat = 0;
+            const struct study_result *result = &study.results[0];
+            near_relative(result->floor_density, density, 1e-14);
+            near_relative(result->floor_gradient, gradient, 1e-14);
+            assert_int_equal(result->orders[FIELD_DENSITY][NORM_L1_CUT].status, GATE_FAIL);
+            assert_int_equal(result->floor_explains, side < 0);
+            study_free(&study);
+        }
+}
+
 static void failing_runs(void **state)
 {
     struct study study;
@@ -712,7 +742,7 @@ int main(void)
         cmocka_unit_test(one_scheme),   cmocka_unit_test(replicates),
         cmocka_unit_test(combinations), cmocka_unit_test(circular),
         cmocka_unit_test(idle_keys),    cmocka_unit_test(not_allowed),
-        cmocka_unit_test(failing_runs),
+        cmocka_unit_test(floors),       cmocka_unit_test(failing_runs),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -108,6 +108,52 @@ static void keys_refuse_the_rest(void **state)
         }
 }
 
+static enum status set(enum setting key, double value, int count, struct settings *settings)
+{
+    char text[200] = "", number[40];
+    struct error error;
+    snprintf(number, sizeof number, "%s%.17g", setting_keys[key].type == SETTING_REALS ? " " : "",
+             value);
+    for (int i = 0; i < count; i++) strcat(text, number);
+    settings_init(settings);
+    return settings_set(settings, key, text, SOURCE_USER, NULL, &error);
+}
+
+/* A key takes both ends of what it says is allowed, unless it says above, and nothing beyond. */
+static void keys_take_their_ends(void **state)
+{
+    (void)state;
+    for (int i = 0; i < SETTINGS; i++) {
+        const struct setting_key *key = &setting_keys[i];
+        struct settings settings;
+        const enum setting_type type = key->type;
+        if (type == SETTING_CHOICE || type == SETTING_CHOICES || type == SETTING_PATH) continue;
+        const bool whole = type == SETTING_INTEGER || type == SETTING_COUNT;
+        const int n = type == SETTING_REALS ? key->count : 1;
+        const double step = whole ? 1 : 0;
+        const double below = whole ? key->lo - step : nextafter(key->lo, -HUGE_VAL),
+                     beyond = whole ? key->hi + step : nextafter(key->hi, HUGE_VAL),
+                     inside = whole ? key->lo + step : nextafter(key->lo, HUGE_VAL);
+        const struct {
+            double value;
+            bool allowed;
+        } tries[] = {{key->lo, !key->above},
+                     {inside, true},
+                     {key->hi, true},
+                     {below, false},
+                     {beyond, false}};
+        for (size_t k = 0; k < 5; k++) {
+            const bool taken = set((enum setting)i, tries[k].value, n, &settings) == STATUS_OK;
+            if (taken != tries[k].allowed)
+                fail_msg("%s = %.17g is %s", key->name, tries[k].value,
+                         taken ? "taken" : "refused");
+            if (taken)
+                for (int r = 0; r < n; r++)
+                    assert_true(settings.value[i].real[r] == tries[k].value);
+        }
+    }
+}
+
 static void built_in_cases_are_sound(void **state)
 {
     struct case_file file;
@@ -158,6 +204,7 @@ int main(void)
         cmocka_unit_test(textbook_scheme_has_no_surprises),
         cmocka_unit_test(keys_read_what_they_write),
         cmocka_unit_test(keys_refuse_the_rest),
+        cmocka_unit_test(keys_take_their_ends),
         cmocka_unit_test(built_in_cases_are_sound),
         cmocka_unit_test(damaged_cases_are_survived),
     };
