@@ -18,7 +18,7 @@ import subprocess
 import threading
 import time
 
-CHEAP = 0.3  # CPU-s: of these all are tried, of others as many as the patience allows
+CHEAP = 0.3  # CPU-s: of these all are tried, of others two, or as many as the patience allows
 
 
 class Unit:
@@ -102,7 +102,7 @@ def limits(cpu):
 
 def run_unit(unit, place, scratch, environment, usual):
     """'' if it passes, else how it fails; and its CPU-s. place: the folder of the first build and that
-    which stands for it. usual: its CPU-s without a mutant; three times that is a hang, on the clock
+    which stands for it. usual: its CPU-s without a mutant; twice that is a hang, on the clock
     much more, for the machine may be busy."""
     shutil.rmtree(scratch, ignore_errors=True)
     os.makedirs(os.path.join(scratch, "cache"))
@@ -110,7 +110,7 @@ def run_unit(unit, place, scratch, environment, usual):
     words = [w.replace("@SCRATCH@", scratch).replace(built, here) for w in unit.command]
     process = subprocess.Popen(words, cwd=unit.folder.replace(built, here), stdin=subprocess.DEVNULL,
                                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True,
-                               preexec_fn=limits(int(3 + 3 * usual)),
+                               preexec_fn=limits(int(2 + 2 * usual)),
                                env=dict(os.environ, TMPDIR=scratch, XDG_CACHE_HOME=os.path.join(scratch, "cache"),
                                         OMP_WAIT_POLICY="passive", **environment))
     end, pause = time.time() + 30 + 30 * usual, 0.001
@@ -252,12 +252,13 @@ class Judge:
 
     def order(self, mutant, names):
         """Most likely to notice for its time first: what a test did to this file, and elsewhere;
-        before anything is learnt, a test that comes past few others was written for this one."""
+        before anything is learnt, a test that comes past few others was written for this one. A test
+        that notices does so early, after a tenth of its time or so."""
         def worth(name):
             here, all_ = self.learnt[mutant.file, name], self.learnt["", name]
             start = 1 / (1 + self.breadth[name] / 1000)
             rate = (here[0] + 2 * (all_[0] + 2 * start) / (all_[1] + 2)) / (here[1] + 2)
-            return -rate / (0.05 + self.seconds(name))
+            return -rate / (0.05 + self.seconds(name) * (1 - 0.9 * min(1, rate)))
         return sorted(names, key=worth)
 
     def judge(self, mutant, near, before, worker):
@@ -269,16 +270,16 @@ class Judge:
             place = self.table.build, self.table.build
         known = before["ran"] if before and before["outcome"] == "survived" else {}
         ran = {n: k for n, k in known.items() if n in reaching and n in self.units and self.units[n].key == k}
-        by, how, costly, began = None, "", 0, time.time()
+        by, how, costly, tried, began = None, "", 0, 0, time.time()
         for name in self.order(mutant, [n for n in reaching if n not in ran]):
             unit, usual = self.units[name], self.seconds(name)
             if not mutant.number and not self.built(unit):
                 by, how = name, "does not compile"
                 break
             if usual > CHEAP:
-                if ran and costly + usual > self.patience:
+                if tried >= 2 and costly + usual > self.patience:
                     continue
-                costly += usual
+                costly, tried = costly + usual, tried + 1
             how, _ = run_unit(unit, place, scratch, {"SPHPROOF_MUTANT": str(mutant.number)}, usual)
             if how and not self.table.sound(unit, place, scratch):
                 how = ""

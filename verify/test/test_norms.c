@@ -191,6 +191,8 @@ static void test_richardson_classes(void **state)
     const double spacing[] = {4, 2, 1};
     struct order_extrapolation e = order_extrapolate(spacing, (double[]){1, 2, 1.5}, NAN);
     assert_true(e.class == ORDER_OSCILLATING && isnan(e.value));
+    e = order_extrapolate(spacing, (double[]){1, 1, 2}, NAN);
+    assert_true(e.class == ORDER_OSCILLATING && isnan(e.value));
     e = order_extrapolate(spacing, (double[]){1, 2, 4}, NAN);
     assert_true(e.class == ORDER_DIVERGING && isnan(e.value));
     e = order_extrapolate(spacing, (double[]){1, 1, 1}, NAN);
