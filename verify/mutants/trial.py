@@ -18,7 +18,8 @@ import subprocess
 import threading
 import time
 
-CHEAP = 0.3  # CPU-s: of these all are tried, of others two, or as many as the patience allows
+LEAST = 3  # so many tests are tried on a mutant, however long they take
+START = 0.03  # CPU-s: of a process
 
 
 class Unit:
@@ -258,7 +259,7 @@ class Judge:
             here, all_ = self.learnt[mutant.file, name], self.learnt["", name]
             start = 1 / (1 + self.breadth[name] / 1000)
             rate = (here[0] + 2 * (all_[0] + 2 * start) / (all_[1] + 2)) / (here[1] + 2)
-            return -rate / (0.05 + self.seconds(name) * (1 - 0.9 * min(1, rate)))
+            return -rate / (START + self.seconds(name) * (1 - 0.9 * min(1, rate)))
         return sorted(names, key=worth)
 
     def judge(self, mutant, near, before, worker):
@@ -270,16 +271,15 @@ class Judge:
             place = self.table.build, self.table.build
         known = before["ran"] if before and before["outcome"] == "survived" else {}
         ran = {n: k for n, k in known.items() if n in reaching and n in self.units and self.units[n].key == k}
-        by, how, costly, tried, began = None, "", 0, 0, time.time()
+        by, how, spent, tried, began = None, "", 0, 0, time.time()
         for name in self.order(mutant, [n for n in reaching if n not in ran]):
             unit, usual = self.units[name], self.seconds(name)
             if not mutant.number and not self.built(unit):
                 by, how = name, "does not compile"
                 break
-            if usual > CHEAP:
-                if tried >= 2 and costly + usual > self.patience:
-                    continue
-                costly, tried = costly + usual, tried + 1
+            if tried >= LEAST and spent + usual > self.patience:
+                continue
+            spent, tried = spent + usual + START, tried + 1
             how, _ = run_unit(unit, place, scratch, {"SPHPROOF_MUTANT": str(mutant.number)}, usual)
             if how and not self.table.sound(unit, place, scratch):
                 how = ""
