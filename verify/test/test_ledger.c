@@ -21,7 +21,7 @@
 static struct run resolved(const char *name, int n, const char *const *words)
 {
     struct run_settings settings;
-    struct run run;
+    struct run run = {0};
     struct error error = {0};
     if (run_prepare(&settings, name, n, (char *const *)(uintptr_t)words, &error) ||
         run_resolve(&run, &settings, &error))

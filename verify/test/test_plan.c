@@ -17,7 +17,7 @@
 static struct run resolved(const char *name, size_t n, char *const *words)
 {
     struct run_settings settings;
-    struct run run;
+    struct run run = {0};
     struct error error = {0};
     if (run_prepare(&settings, name, (int)n, words, &error) || run_resolve(&run, &settings, &error))
         fail_msg("%s", error.message);
