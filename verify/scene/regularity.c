@@ -7,10 +7,12 @@
 #include "grid.h"
 #include "result.h"
 
-/* Sums over all points, as they come. */
+/* Sums over all points, as they come. Distances as a mean and squares about it, updated point by
+ * point (Welford 1962): on a lattice the mean of the squares less the square of the mean is noise.
+ */
 struct sums {
     const struct regularity_cloud *cloud;
-    size_t whole; /* points whose neighbourhood is in the box */
+    size_t points, whole; /* whole: their neighbourhood is in the box */
     double distance, squares, density, gradient;
     size_t paired;
 };
@@ -57,8 +59,9 @@ static void add(struct sums *sums, const struct place *place)
     const struct regularity_cloud *cloud = sums->cloud;
     const int dim = cloud->box.dim;
     const double distance = place->nearest / pow(cloud->volume[place->i], 1. / dim);
-    sums->distance += distance;
-    sums->squares += distance * distance;
+    const double off = distance - sums->distance;
+    sums->distance += off / (double)++sums->points;
+    sums->squares += off * (distance - sums->distance);
     sums->paired += distance < 0.5;
     if (!is_whole(cloud, place->i)) return;
     sums->whole++;
@@ -182,10 +185,10 @@ enum status regularity_measure(const struct regularity_cloud *cloud, struct regu
     const enum status status =
         cloud->box.dim == 1 ? walk_line(&sums, widest, error) : walk_grid(&sums, widest, error);
     if (status) return status;
-    const double n = (double)cloud->n, whole = (double)sums.whole, mean = sums.distance / n;
+    const double n = (double)cloud->n, whole = (double)sums.whole;
     *regularity = (struct regularity){
-        .nearest = mean,
-        .spread = sqrt(fmax(0, sums.squares / n - mean * mean)) / mean,
+        .nearest = sums.distance,
+        .spread = sqrt(sums.squares / n) / sums.distance,
         .paired = (double)sums.paired / n,
         .density = sqrt(sums.density / whole),
         .gradient = sqrt(sums.gradient / whole),

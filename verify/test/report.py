@@ -36,7 +36,7 @@ def read(*path):
 def lasting(value):
     """Everything that must be the same in a report and in one from its cache."""
     if isinstance(value, dict):
-        drop = ("seconds", "date", "found")
+        drop = ("seconds", "date", "found", "history")
         return {k: lasting(v) for k, v in value.items() if k not in drop}
     return [lasting(v) for v in value] if isinstance(value, list) else value
 
