@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "bench_cells.h"
 #include "bench_limit.h"
 #include "bench_loops.h"
 #include "gradient_study.h"
@@ -16,13 +17,15 @@
 
 enum { VARIANTS = 3, PARTICLES = 1600, LIST = 1024 };
 enum { SOLVER_ROWS_MAX = 4 }; /* of a kernel and a gradient, see add_solver: steps and the loops */
+enum { CELLS_ROWS = 7 };      /* of a kernel in 2D or 3D, see add_cells */
 enum variant { STAMPED, UNSTAMPED, LIMIT };
 
 /* One measurement: what a row's column is made from. */
 struct job {
-    enum { JOB_NONE, JOB_LOOPS, JOB_STEP, JOB_OPERATOR, JOB_LIMIT } kind;
+    enum { JOB_NONE, JOB_LOOPS, JOB_CELLS, JOB_STEP, JOB_OPERATOR, JOB_LIMIT } kind;
     double pairs, particles; /* of the work done once */
     struct bench_loops loops;
+    struct bench_cells cells;
     struct run *run;
     struct operator_settings settings;
     const struct clouds_cloud *cloud;
@@ -69,6 +72,7 @@ static enum status work(void *context, uint64_t times, struct clock_taken *taken
 {
     struct job *job = context;
     if (job->kind == JOB_LOOPS) return bench_loops_work(&job->loops, times, taken, error);
+    if (job->kind == JOB_CELLS) return bench_cells_work(&job->cells, times, taken, error);
     if (job->kind == JOB_STEP) return step_work(job, times, taken, error);
     enum status status = STATUS_OK;
     const struct clock_taken start = clock_now();
@@ -156,8 +160,13 @@ static struct job *new_row(struct bench *bench, const char *kernel, const char *
 {
     assert(bench->row_count < bench->row_max);
     const size_t row = bench->row_count++;
-    bench->result->rows[row] = (struct bench_kernel_row){
-        .kernel = kernel, .what = what, .dim = dim, .on_cloud = on_cloud, .error = (double)NAN};
+    bench->result->rows[row] = (struct bench_kernel_row){.kernel = kernel,
+                                                         .what = what,
+                                                         .dim = dim,
+                                                         .on_cloud = on_cloud,
+                                                         .whole = row,
+                                                         .share = (double)NAN,
+                                                         .error = (double)NAN};
     return &bench->jobs[row * VARIANTS];
 }
 
@@ -220,6 +229,82 @@ static enum status add_solver(struct bench *bench, const char *kernel, const cha
     return STATUS_OK;
 }
 
+/* The arithmetic of a gradient operator on one contiguous array: what a pass comes to that does at
+ * least as much so many times. */
+static void set_limit(const struct bench *bench, struct job *limit, const struct kernel *kernel,
+                      const char *form, int dim, double times)
+{
+    for (size_t o = 0; o < operator_family.n; o++) {
+        if (strcmp(operator_family.members[o]->name, form) != 0) continue;
+        limit->kind = JOB_LIMIT;
+        limit->settings = (struct operator_settings){.kernel = kernel, .threads = 1};
+        limit->list = &bench->lists[dim - 1];
+        limit->limit =
+            bench_limit_find(kernel, (const struct operator_form *)operator_family.members[o], dim);
+        limit->pairs = LIST / times;
+    }
+}
+
+/* An evaluation in 2D or 3D and its parts; the first row of a gradient is the whole. */
+static const struct {
+    const char *what;
+    unsigned passes;
+    bool ia;
+    const char *limit; /* the operator, and how often */
+    double times;
+} cells_rows[CELLS_ROWS] = {
+    {"evaluation standard", CELLS_EVALUATION, false, NULL, 0},
+    {"search", CELLS_SEARCH, false, NULL, 0},
+    {"density", CELLS_DENSITY, false, "standard", 1},
+    {"force standard", CELLS_FORCE, false, "standard", 2},
+    {"evaluation ia", CELLS_EVALUATION, true, NULL, 0},
+    {"matrix", CELLS_MATRIX, true, "linear_exact", 1},
+    {"force ia", CELLS_FORCE, true, "standard", 2},
+};
+
+/* The solver's own scheme with a kernel and a gradient, and viscosity=constant. */
+static enum status cloud_scheme(const struct kernel *kernel, bool ia, int dim,
+                                struct scheme *scheme, struct error *error)
+{
+    char key[64];
+    char *arguments[] = {key, ia ? "gradient=ia" : "gradient=standard", "viscosity=constant"};
+    struct run_settings asked;
+    struct run *run = malloc(sizeof *run);
+    if (!run) return error_set(error, STATUS_ENVIRONMENT, "no memory");
+    snprintf(key, sizeof key, "kernel=%s", kernel->member.name);
+    enum status status =
+        run_prepare(&asked, dim == 2 ? "sound_wave_2d" : "sound_wave_3d", 3, arguments, error);
+    if (!status) status = run_resolve(run, &asked, error);
+    if (!status) *scheme = run->scheme;
+    free(run);
+    return status;
+}
+
+static enum status add_cells(struct bench *bench, const struct kernel *kernel, int dim,
+                             struct error *error)
+{
+    static const size_t side[] = {0, 0, 64, 16};
+    size_t whole = 0;
+    for (size_t r = 0; r < CELLS_ROWS; r++) {
+        struct scheme scheme;
+        if (cloud_scheme(kernel, cells_rows[r].ia, dim, &scheme, error)) return error->status;
+        struct job *job = new_row(bench, kernel->member.name, cells_rows[r].what, dim, false);
+        if (cells_rows[r].passes == CELLS_EVALUATION) whole = bench->row_count - 1;
+        bench->result->rows[bench->row_count - 1].whole = whole;
+        for (enum variant v = STAMPED; v <= UNSTAMPED; v++) {
+            job[v].kind = JOB_CELLS;
+            if (bench_cells_create(&job[v].cells, &scheme, dim, side[dim], v == STAMPED,
+                                   cells_rows[r].passes, error))
+                return error->status;
+            job[v].pairs = job[v].cells.pairs;
+            job[v].particles = (double)job[v].cells.fields.n;
+        }
+        if (cells_rows[r].limit)
+            set_limit(bench, &job[LIMIT], kernel, cells_rows[r].limit, dim, cells_rows[r].times);
+    }
+    return STATUS_OK;
+}
+
 static enum status add_operator(struct bench *bench, const struct kernel *kernel,
                                 const struct operator_form *form, int dim, struct error *error)
 {
@@ -262,7 +347,8 @@ static enum status choose_kernels(struct bench *bench, const struct sweep *sweep
         if (kernel_select(&bench->kernels[k], name, 5, error)) return error->status;
     }
     bench->row_max =
-        bench->kernel_count * (SOLVER_ROWS_MAX * scheme_members(&scheme_gradient_family, 1) +
+        bench->kernel_count * ((KERNEL_DIM_MAX - 1) * CELLS_ROWS +
+                               SOLVER_ROWS_MAX * scheme_members(&scheme_gradient_family, 1) +
                                KERNEL_DIM_MAX * operator_family.n);
     bench->jobs = calloc(bench->row_max * VARIANTS, sizeof *bench->jobs);
     bench->result->rows = calloc(bench->row_max, sizeof *bench->result->rows);
@@ -279,6 +365,8 @@ static enum status set_up(struct bench *bench, const struct sweep *sweep, struct
             if (add_solver(bench, kernel->member.name, scheme_gradient_family.members[g]->name,
                            error))
                 return error->status;
+        for (int dim = 2; dim <= KERNEL_DIM_MAX; dim++)
+            if (add_cells(bench, kernel, dim, error)) return error->status;
         for (int dim = 1; dim <= KERNEL_DIM_MAX; dim++)
             for (size_t o = 0; o < operator_family.n; o++)
                 if (add_operator(bench, kernel,
@@ -293,6 +381,7 @@ static void clean_up(struct bench *bench)
 {
     for (size_t k = 0; bench->jobs && k < bench->row_max * VARIANTS; k++) {
         if (bench->jobs[k].kind == JOB_LOOPS) bench_loops_free(&bench->jobs[k].loops);
+        if (bench->jobs[k].kind == JOB_CELLS) bench_cells_free(&bench->jobs[k].cells);
         free(bench->jobs[k].run);
     }
     for (int dim = 0; dim < KERNEL_DIM_MAX; dim++) {
@@ -339,6 +428,8 @@ enum status bench_kernels_measure(const struct sweep *sweep, const struct bench_
             *costs[v] = cost_of(&job[v], next);
             next += job[v].kind != JOB_NONE;
         }
+        if (row->whole < r)
+            row->share = row->ns_per_particle / result->rows[row->whole].ns_per_particle;
     }
 end:
     clean_up(&bench);
@@ -362,31 +453,33 @@ void bench_kernels_add_json(const struct bench_kernels *result, json_t *document
         const bool limit = isfinite(row->limit.ns_per_pair);
         json_array_append_new(
             rows,
-            json_pack("{s:s, s:s, s:s, s:i, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "kernel",
-                      row->kernel, "of", row->on_cloud ? "operator" : "solver", "what", row->what,
-                      "dim", row->dim, "pairs_per_particle", result_number(row->pairs),
-                      "ns_per_particle", result_number(row->ns_per_particle), "ns_per_pair",
-                      result_number(row->stamped.ns_per_pair), "spread",
-                      result_number(row->stamped.spread), "ns_per_pair_unstamped",
-                      result_number(row->unstamped.ns_per_pair), "ns_per_pair_limit",
-                      limit ? result_number(row->limit.ns_per_pair) : json_null(),
-                      "limit_over_this",
-                      limit ? result_number(row->limit.ns_per_pair / row->stamped.ns_per_pair)
-                            : json_null(),
-                      "error", row->on_cloud ? result_number(row->error) : json_null()));
+            json_pack(
+                "{s:s, s:s, s:s, s:i, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "kernel",
+                row->kernel, "of", row->on_cloud ? "operator" : "solver", "what", row->what, "dim",
+                row->dim, "pairs_per_particle", result_number(row->pairs), "ns_per_particle",
+                result_number(row->ns_per_particle), "share", result_number_or_null(row->share),
+                "ns_per_pair", result_number(row->stamped.ns_per_pair), "spread",
+                result_number(row->stamped.spread), "ns_per_pair_unstamped",
+                result_number(row->unstamped.ns_per_pair), "ns_per_pair_limit",
+                limit ? result_number(row->limit.ns_per_pair) : json_null(), "limit_over_this",
+                limit ? result_number(row->limit.ns_per_pair / row->stamped.ns_per_pair)
+                      : json_null(),
+                "error", row->on_cloud ? result_number(row->error) : json_null()));
     }
     json_object_set_new(document, "kernels", rows);
 }
 
 void bench_kernels_print(const struct bench_kernels *result, const struct table_style *style)
 {
-    printf("%s%-18s %-22s %3s %7s %9s %9s %7s %10s %9s %7s %10s%s\n", style->bold, "kernel", "what",
-           "dim", "pairs", "ns/part.", "ns/pair", "spread", "unstamped", "limit", "of it", "error",
-           style->end);
+    printf("%s%-18s %-22s %3s %7s %9s %6s %9s %7s %10s %9s %7s %10s%s\n", style->bold, "kernel",
+           "what", "dim", "pairs", "ns/part.", "share", "ns/pair", "spread", "unstamped", "limit",
+           "of it", "error", style->end);
     for (size_t i = 0; i < result->count; i++) {
         const struct bench_kernel_row *row = &result->rows[i];
-        printf("%-18s %-22s %3d %7.3g %9.4g %9.3g %6.0f%% %10.3g", row->kernel, row->what, row->dim,
-               row->pairs, row->ns_per_particle, row->stamped.ns_per_pair,
+        char share[16] = "";
+        if (!isnan(row->share)) snprintf(share, sizeof share, "%.0f%%", 100 * row->share);
+        printf("%-18s %-22s %3d %7.3g %9.4g %6s %9.3g %6.0f%% %10.3g", row->kernel, row->what,
+               row->dim, row->pairs, row->ns_per_particle, share, row->stamped.ns_per_pair,
                100 * row->stamped.spread, row->unstamped.ns_per_pair);
         if (isfinite(row->limit.ns_per_pair))
             printf(" %9.3g %6.0f%%", row->limit.ns_per_pair,
@@ -399,7 +492,12 @@ void bench_kernels_print(const struct bench_kernels *result, const struct table_
     printf(
         "%sns: CPU time of one thread. step: whole steps of the 1D solver (sound wave, n = %d), "
         "its limit the same\narithmetic with neighbours known; density, matrix, force: these loops "
-        "one by one. Others: gradient operators on\n4096 jittered points, search included, "
+        "one by one. In 2D and 3D evaluation: search and\nsums of 4096 jittered particles, h of "
+        "the "
+        "kernel's default; share: of the evaluation with its gradient (search\nand density: "
+        "standard); limit of density: arithmetic of the operator standard, of the matrix: of\n"
+        "linear_exact, of the force: twice that of standard. Others: gradient operators on\n4096 "
+        "jittered points, search included, "
         "h = 2.4 spacings; their limit is the same arithmetic on one\ncontiguous array. "
         "unstamped: every choice and the kernel behind a pointer. error: rms of a smooth\n"
         "field's gradient error, times h/max|f|.%s\n",

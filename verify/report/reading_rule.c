@@ -14,6 +14,7 @@ static const struct reading_rule rules[] = {
     {"", "limit_over_this", OUT},
     {"", "seed_plain_over_this", OUT},
     {"", "saves", OUT},
+    {"", "share", OUT},
     {"", "skipped_fraction", OUT},
     {"", "on_front", OUT},
     {"threads", "gain", OUT},

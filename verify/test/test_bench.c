@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "bench.h"
+#include "bench_cells.h"
 #include "bench_limit.h"
 #include "bench_loops.h"
 #include "bench_scaling.h"
@@ -370,6 +371,81 @@ static void test_promises_are_kept_or_seen_broken(void **state)
     bench_skips_free(&skips);
 }
 
+static void test_positions_along_every_axis_count(void **state)
+{
+    (void)state;
+    double x[3] = {0.1, 0.2, 0.3}, y[3] = {0.1, 0.5, 0.9}, z[3] = {0.1, 0.5, 0.900001};
+    struct snapshot a = {.n = 3, .x = {x, y}, .v = {x, y}, .rho = x, .u = x, .P = x, .h = x};
+    struct snapshot b = a;
+    assert_true(bench_skips_difference(&a, &b, 1) == 0);
+    b.x[1] = z;
+    near_relative(bench_skips_difference(&a, &b, 1), 1e-6 / 0.9, 1e-6);
+    b = a, b.v[1] = z;
+    near_relative(bench_skips_difference(&a, &b, 1), 1e-6 / 0.9, 1e-6);
+}
+
+static void test_promises_in_2d(void **state)
+{
+    (void)state;
+    static struct run_settings settings;
+    struct bench_skips skips;
+    struct error error = {0};
+    const struct bench_rules brief = {.least_s = 1e-6, .most_s = 0.01, .samples = 2};
+    char *keys[] = {"t_end=0.02", "n=16^2", "gradient=standard", "viscosity=constant"};
+    assert_int_equal(run_prepare(&settings, "gresho", 4, keys, &error), 0);
+    settings.threads = 1;
+    assert_int_equal(bench_skips_measure(&settings, 1, &brief, &skips, &error), 0);
+    bool matrix = false, slope = false, line = false;
+    for (size_t i = 0; i < skips.count; i++) {
+        const struct bench_skip *skip = &skips.skips[i];
+        assert_true(skip->kept);
+        matrix |= strcmp(skip->name, "moment matrix") == 0;
+        slope |= strcmp(skip->name, "velocity gradient") == 0;
+        line |= strcmp(skip->name, "order of neighbours") == 0;
+    }
+    assert_true(matrix && slope && !line);
+    bench_skips_free(&skips);
+}
+
+/* --- sums in 2D and 3D ------------------------------------------------------------------------ */
+
+/* Pairs, counted over all of them; each pass does what it is called, and no more. */
+static void test_cells(void **state)
+{
+    (void)state;
+    struct run_settings asked;
+    static struct run run;
+    static struct bench_cells bench;
+    struct error error;
+    struct clock_taken taken = {0};
+    char *keys[] = {"gradient=ia", "viscosity=constant"};
+    assert_int_equal(run_prepare(&asked, "sound_wave_2d", 2, keys, &error), 0);
+    assert_int_equal(run_resolve(&run, &asked, &error), 0);
+    assert_int_equal(bench_cells_create(&bench, &run.scheme, 2, 12, true, CELLS_DENSITY, &error),
+                     0);
+    const struct cells_fields *f = &bench.fields;
+    double pairs = 0, force = 0, size = 0;
+    for (size_t i = 0; i < f->n; i++) {
+        for (size_t j = 0; j < f->n; j++) {
+            const double dx = f->x[0][i] - f->x[0][j], dy = f->x[1][i] - f->x[1][j];
+            pairs += i != j && hypot(dx - round(dx), dy - round(dy)) * f->h_inverse[i] < 1;
+        }
+        force += f->F[0][i], size += fabs(f->F[0][i]);
+        const double rho = run.scheme.kernel.constant[2] * pow(f->h_inverse[i], 2) * f->sum_m[i];
+        near_inside(rho, 0.9, 1.1);
+        near_inside(f->condition[i], 1, 10);
+    }
+    assert_true(pairs == bench.pairs && size > 0 && fabs(force) <= 1e-12 * size);
+    const double before = f->sum_m[3], F = f->F[0][3];
+    f->sum_m[3] = f->F[0][3] = f->condition[3] = -1;
+    assert_int_equal(bench_cells_work(&bench, 2, &taken, &error), 0);
+    assert_true(f->sum_m[3] == before && f->F[0][3] == -1 && f->condition[3] == -1);
+    bench.passes = CELLS_MATRIX | CELLS_FORCE;
+    assert_int_equal(bench_cells_work(&bench, 1, &taken, &error), 0);
+    assert_true(f->F[0][3] == F && f->condition[3] > 0 && taken.cpu_s > 0);
+    bench_cells_free(&bench);
+}
+
 /* --- how cost grows --------------------------------------------------------------------------- */
 
 static void test_scaling(void **state)
@@ -518,6 +594,9 @@ int main(void)
         cmocka_unit_test(test_plain_refuses_other_schemes),
         cmocka_unit_test(test_difference_of_states),
         cmocka_unit_test(test_promises_are_kept_or_seen_broken),
+        cmocka_unit_test(test_positions_along_every_axis_count),
+        cmocka_unit_test(test_promises_in_2d),
+        cmocka_unit_test(test_cells),
         cmocka_unit_test(test_scaling),
         cmocka_unit_test(test_study),
         cmocka_unit_test(test_signal),
