@@ -132,12 +132,17 @@ class Worker:
         else:
             target = "verify/test/" + mutant.test
             demand(["ninja", "-C", self.build, target])
-            command = [os.path.join(self.build, target)]
+            command = self.command_of(os.path.join(self.build, target))
         try:
             # there, since what a faulty test leaves behind must not lie in anybody's tree
             return quietly(command, timeout=PATIENCE, cwd=self.build).returncode
         except subprocess.TimeoutExpired:
             return "hangs"
+
+    def command_of(self, program):
+        """With the arguments that meson runs it with."""
+        tests = json.loads(quietly(["meson", "introspect", "--tests", self.build]).stdout)
+        return next(t["cmd"] for t in tests if t["cmd"][0] == program)
 
     def judge(self, mutant):
         """'caught', or why it was not."""
