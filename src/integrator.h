@@ -28,11 +28,10 @@ struct integrator {
     double first_step; /* length of the first step over the usual one; 0: 1 */
     bool signal_pass;  /* velocities change after the last rates: time step by a pass of its own */
     bool ends_evaluated; /* the derived fields at the end of a step belong to its state */
-    /* Each in its own file; NULL where an integrator keeps nothing from step to step. Arrays that
+    /* Each in its own file; 0 where an integrator keeps nothing from step to step. Arrays that
      * follow the particles when their order changes are fields of struct particles (x_old ...). */
-    /* Allocates simulation->integrator_state. */
-    enum status (*create)(struct simulation *simulation, struct error *error);
-    void (*free)(struct simulation *simulation); /* it, also where create has failed */
+    /* Bytes of simulation->integrator_state, without pointers in it, zero before the first step. */
+    size_t keeps;
     /* Advances the state (x, p, e, alpha) by dt; rates of the state are there when it begins. */
     enum status (*step)(struct simulation *simulation, double dt, struct error *error);
     /* No step follows for now: brings the state to the present time if it is not there. */

@@ -9,6 +9,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "carrier.h"
 #include "status.h"
 
 /* SCALAR(name, meaning) or VECTOR(name, meaning). The first group is the state, the rest is derived
@@ -68,6 +69,10 @@ void particles_destroy(struct particles *particles);
 /* Makes room for more ghosts, keeping all values. Invalidates pointers to arrays. */
 enum status particles_grow_ghosts(struct particles *particles, ptrdiff_t ghosts,
                                   struct error *error);
+
+/* All values, those of ghosts included. Back: may invalidate pointers to arrays; fails without
+ * memory for as many ghosts. */
+void particles_carry(struct particles *particles, struct carrier *carrier);
 
 /* Puts the particle at place order[i] to place i, all of its values. Ghosts are not touched. */
 void particles_permute(struct particles *particles);

@@ -123,9 +123,9 @@ static enum status allocate(struct simulation *simulation, ptrdiff_t n, struct e
 {
     const struct integrator *integrator = simulation->scheme.integrator;
     enum status status = simulation->plan.sums->create(simulation, n, error);
-    if (!status && integrator->create) status = integrator->create(simulation, error);
     if (status) return status;
     bool there = (simulation->specific_energy = malloc((size_t)n * sizeof(double)));
+    there &= (simulation->integrator_state = calloc(1, integrator->keeps + 1)) != NULL;
     for (int k = 0; k < simulation->plan.dim; k++)
         there &= (simulation->wrapped[k] = malloc((size_t)n * sizeof(double))) != NULL;
     return there ? STATUS_OK
@@ -182,8 +182,7 @@ enum status simulation_create(const struct scene *scene, struct simulation **res
 void simulation_destroy(struct simulation *simulation)
 {
     if (!simulation) return;
-    const struct integrator *integrator = simulation->scheme.integrator;
-    if (integrator->free) integrator->free(simulation);
+    free(simulation->integrator_state);
     simulation->plan.sums->free(simulation);
     particles_destroy(&simulation->particles);
     hold_free(simulation);
@@ -298,6 +297,31 @@ enum status simulation_run(struct simulation *simulation, double t_end,
     if (!status) status = check_energy(simulation, error);
     stop_clocks(simulation);
     return status;
+}
+
+void simulation_carry(struct simulation *simulation, struct carrier *carrier)
+{
+    struct sleep *sleep = &simulation->sleep;
+    stop_clocks(simulation);
+    particles_carry(&simulation->particles, carrier);
+    CARRY(carrier, simulation->time);
+    CARRY(carrier, simulation->time_step);
+    CARRY(carrier, simulation->dt);
+    CARRY(carrier, simulation->dt_before);
+    CARRY(carrier, simulation->largest_dt);
+    CARRY(carrier, simulation->start_energy);
+    CARRY(carrier, simulation->cost);
+    CARRY(carrier, sleep->on);
+    CARRY(carrier, sleep->at_rest);
+    CARRY(carrier, sleep->rate);
+    CARRY(carrier, sleep->span_count);
+    CARRY(carrier, sleep->awake_count);
+    carry(carrier, sleep->spans, (size_t)sleep->span_count * sizeof *sleep->spans);
+    carry(carrier, simulation->integrator_state, simulation->scheme.integrator->keeps);
+    simulation->plan.sums->carry(simulation, carrier);
+    if (!carrier->back) return;
+    simulation->wall_start = seconds(CLOCK_MONOTONIC) - simulation->cost.wall_s;
+    simulation->cpu_start = seconds(CLOCK_PROCESS_CPUTIME_ID) - simulation->cost.cpu_s;
 }
 
 void simulation_snapshot(const struct simulation *simulation, struct snapshot *snapshot)

@@ -7,6 +7,7 @@
 #include <stdint.h>
 #include <stddef.h>
 
+#include "carrier.h"
 #include "scheme.h"
 #include "status.h"
 
@@ -87,6 +88,11 @@ typedef bool simulation_progress(void *context, double time, uint64_t steps);
  * state is then the last sound one. progress may be NULL. */
 enum status simulation_run(struct simulation *simulation, double t_end,
                            simulation_progress *progress, void *context, struct error *error);
+/* Hands over all that the next step depends on: to be kept, or (carrier->back) as it was kept, into
+ * a simulation that was created of the same scene by the same build and then goes on to the last
+ * bit as the one that was kept. Between steps: from simulation_progress, or before simulation_run.
+ * Look at carrier->failed; after a failure on the way back only simulation_destroy is allowed. */
+void simulation_carry(struct simulation *simulation, struct carrier *carrier);
 void simulation_snapshot(const struct simulation *simulation, struct snapshot *snapshot);
 void simulation_rates(const struct simulation *simulation, struct rates *rates);
 void simulation_conservation(const struct simulation *simulation, struct conservation *sums);

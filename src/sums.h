@@ -13,6 +13,7 @@
 #include <stddef.h>
 
 #include "description.h"
+#include "carrier.h"
 #include "status.h"
 
 struct simulation;
@@ -58,6 +59,9 @@ struct sums {
     /* Who sleeps: from the first rates, and after every step. Fill simulation->sleep. */
     enum status (*sleep_begin)(struct simulation *simulation, struct error *error);
     void (*sleep_update)(struct simulation *simulation);
+
+    /* What the room keeps from one step to the next. */
+    void (*carry)(struct simulation *simulation, struct carrier *carrier);
 };
 
 extern const struct sums line_sums, cells_sums;

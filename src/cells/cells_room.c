@@ -557,6 +557,16 @@ static void update_sleep(struct simulation *simulation)
     simulation->sleep.awake_count = count_awake(room, simulation->particles.n);
 }
 
+/* Neighbours are found anew in every evaluation. */
+static void carry_room(struct simulation *simulation, struct carrier *carrier)
+{
+    struct room *room = room_of(simulation);
+    carry(carrier, room->block, room->arrays * room->stride * sizeof *room->block);
+    if (room->asleep) carry(carrier, room->asleep, (size_t)simulation->particles.n);
+    CARRY(carrier, room->sorted_at);
+    CARRY(carrier, room->sorted);
+}
+
 const struct sums cells_sums = {
     .name = "cells",
     .dim_min = 2,
@@ -576,4 +586,5 @@ const struct sums cells_sums = {
     .describe = describe,
     .sleep_begin = begin_sleep,
     .sleep_update = update_sleep,
+    .carry = carry_room,
 };

@@ -17,7 +17,6 @@
 #ifndef INTEGRATOR_PREDICTED_MIDPOINT_H
 #define INTEGRATOR_PREDICTED_MIDPOINT_H
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "breakdown.h"
@@ -28,18 +27,6 @@
 struct predicted_midpoint {
     double ahead; /* the step whose middle x, v, U and alpha are at already; 0: none */
 };
-
-static enum status predicted_midpoint_create(struct simulation *simulation, struct error *error)
-{
-    simulation->integrator_state = calloc(1, sizeof(struct predicted_midpoint));
-    return simulation->integrator_state ? STATUS_OK
-                                        : error_set(error, STATUS_ENVIRONMENT, "no memory");
-}
-
-static void predicted_midpoint_free(struct simulation *simulation)
-{
-    free(simulation->integrator_state);
-}
 
 /* Advances the state by dt from its middle, predicts it for the first half of the step ahead, or
  * both in one walk over memory. Predicted x, v and U go where the evaluation reads them, x_old is
@@ -185,5 +172,6 @@ INTEGRATOR(predicted_midpoint,
            .member = {"predicted_midpoint", "midpoint with predicted rates, one evaluation a step",
                       "van Leer 1979"},
            .order = 2, .evaluations = 1, .cfl = 0.8, .cloud_cfl = 1.4, .cfl_per_width = true,
-           .predicts = true, .follow = 1.5, .first_step = 0.25, .create = predicted_midpoint_create,
-           .free = predicted_midpoint_free, .synchronise = predicted_midpoint_synchronise)
+           .predicts = true, .follow = 1.5, .first_step = 0.25,
+           .keeps = sizeof(struct predicted_midpoint),
+           .synchronise = predicted_midpoint_synchronise)

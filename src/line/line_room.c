@@ -83,6 +83,20 @@ static void describe(const struct simulation *simulation, description_visit *vis
     }
 }
 
+static void carry_line(struct simulation *simulation, struct carrier *carrier)
+{
+    struct line *line = line_of(simulation);
+    struct groups *groups = &line->groups;
+    CARRY(carrier, line->range_count);
+    carry(carrier, line->ranges, (size_t)line->range_count * sizeof *line->ranges);
+    CARRY(carrier, line->ghosts_filled);
+    CARRY(carrier, line->reach);
+    CARRY(carrier, line->predict_ratio);
+    CARRY(carrier, line->density_passes);
+    carry(carrier, groups->awake, (size_t)groups->count);
+    carry(carrier, groups->rate, (size_t)groups->count * sizeof *groups->rate);
+}
+
 const struct sums line_sums = {
     .name = "line",
     .dim_min = 1,
@@ -100,4 +114,5 @@ const struct sums line_sums = {
     .describe = describe,
     .sleep_begin = groups_begin,
     .sleep_update = groups_update,
+    .carry = carry_line,
 };

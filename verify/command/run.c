@@ -7,15 +7,18 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cache.h"
 #include "command.h"
 #include "description_output.h"
 #include "output.h"
 #include "picture.h"
 #include "progress.h"
 #include "result.h"
+#include "run_job.h"
 #include "run_plot.h"
 #include "snapshot_hdf5.h"
 #include "table.h"
+#include "text.h"
 
 static void print_head(const struct run_settings *settings, const struct run_result *result,
                        const struct table_style *style)
@@ -159,6 +162,7 @@ static enum status check_files(const struct options *options, struct error *erro
 
 struct progress_of_run {
     struct progress progress;
+    const struct checkpoint *checkpoint; /* NULL: none */
     double t_end;
 };
 
@@ -166,6 +170,7 @@ static bool show_progress(void *context, double time, uint64_t steps)
 {
     struct progress_of_run *of_run = context;
     (void)steps;
+    if (of_run->checkpoint) of_run->progress.from = of_run->checkpoint->began / of_run->t_end;
     progress_update(&of_run->progress, time, of_run->t_end);
     return true;
 }
@@ -238,6 +243,39 @@ static enum status present(const struct options *options, const struct run_setti
     return STATUS_OK;
 }
 
+/* The state of the run in a file, and what it belongs to. */
+struct kept {
+    bool wanted;
+    struct checkpoint checkpoint;
+    char build[CACHE_BUILD_MAX], *run;
+};
+
+/* run: of whoever calls, to be freed. */
+static enum status take_checkpoint(struct kept *kept, const struct options *options,
+                                   const struct run *run, struct error *error)
+{
+    const char *path = options_value(options, "checkpoint"),
+               *every = options_value(options, "every");
+    double seconds = 60;
+    if (!path && (every || options_value(options, "resume")))
+        return error_set(error, STATUS_BAD_INPUT, "run: --%s needs --checkpoint FILE",
+                         every ? "every" : "resume");
+    if (every && !(text_real(every, &seconds) && seconds >= 0))
+        return error_set(error, STATUS_BAD_INPUT,
+                         "run: --every '%.40s': allowed: seconds, a number >= 0", every);
+    if (!path) return STATUS_OK;
+    if (output_probe(path, error)) return error->status;
+    if (!(kept->run = run_job_key(run, "checkpoint", error))) return error->status;
+    cache_build(kept->build);
+    kept->wanted = true;
+    kept->checkpoint = (struct checkpoint){.path = path,
+                                           .build = kept->build,
+                                           .run = kept->run,
+                                           .every = seconds,
+                                           .resume = options_value(options, "resume")};
+    return STATUS_OK;
+}
+
 static enum status run_case(const struct options *options, int n, char **arguments,
                             struct error *error)
 {
@@ -251,12 +289,18 @@ static enum status run_case(const struct options *options, int n, char **argumen
     if (options_value(options, "explain")) return explain(options, &run, error);
     if (check_files(options, error)) return error->status;
 
-    struct progress_of_run of_run = {.t_end = settings_real(&run.settings, SETTING_t_end)};
+    struct kept kept = {0};
+    if (take_checkpoint(&kept, options, &run, error)) return error->status;
+    if (kept.wanted) run.asked.checkpoint = &kept.checkpoint;
+    struct progress_of_run of_run = {.checkpoint = run.asked.checkpoint,
+                                     .t_end = settings_real(&run.settings, SETTING_t_end)};
     progress_begin(&of_run.progress, settings.file.name, options->quiet);
     run.asked.progress = show_progress;
     run.asked.progress_context = &of_run;
     enum status status = run_execute(&run, &result, error);
     progress_end(&of_run.progress);
+    if (kept.checkpoint.trouble.status) remark(options, kept.checkpoint.trouble.message);
+    free(kept.run);
     if (status != STATUS_OK && status != STATUS_BROKE_DOWN) return status;
     struct error trouble = {0};
     if (present(options, &settings, &result, &trouble)) {
@@ -271,6 +315,9 @@ static const struct command_option own_options[] = {
     {"snapshot", "FILE",
      "write the particles at the end: x,vx,m,rho,u,P,h (x,y,vx,vy ...), one line each;\n"
      "F.hdf5 or F.h5: HDF5 in GADGET's layout"},
+    {"checkpoint", "FILE", "keep the run's state there, to go on from it to the last bit"},
+    {"every", "SECONDS", "so often (default 60)"},
+    {"resume", NULL, "go on from the checkpoint; from the start where there is none"},
     {"plot", "FILE.svg|.png",
      "draw the profiles over the exact solution; in 2D and 3D maps (needs gnuplot)"},
     {"explain", NULL,
@@ -291,5 +338,6 @@ const struct command command_run = {
                 "sphproof run sod n=800 kernel=cubic_spline eta=2 gradient=ia --plot sod.svg\n"
                 "sphproof run sod left=\"1 0.75 1\" t_end=0.15 --json -\n"
                 "sphproof run ./my_tube.ini --snapshot end.csv\n"
-                "sphproof run sound_wave --explain",
+                "sphproof run sedov_3d n=64^3 --checkpoint sedov.state --resume\n"
+              "sphproof run sound_wave --explain",
 };

@@ -31,7 +31,8 @@ static void say(const struct progress *progress, double time, const char *count,
 {
     const double passed = time - progress->began;
     char left[40] = "";
-    if (share > 0) snprintf(left, sizeof left, ", %.0f s left", passed * (1 - share) / share);
+    const double done = share - progress->from;
+    if (done > 0) snprintf(left, sizeof left, ", %.0f s left", passed * (1 - share) / done);
     fprintf(stderr, "%s%s: %s, %.0f s%s%s", progress->terminal ? "\r" : "", progress->what, count,
             passed, left, progress->terminal ? "\033[K" : "\n");
 }

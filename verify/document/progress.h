@@ -10,6 +10,7 @@
 struct progress {
     const char *what; /* one or two words; belongs to the caller */
     double began, spoke;
+    double from; /* share of the work that was done before: 0, or set after progress_begin */
     bool silent, terminal;
 };
 

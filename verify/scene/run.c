@@ -397,7 +397,9 @@ static enum status broke_down_at_start(struct run_result *result, const struct e
 
 struct watch {
     const struct run *run;
-    const struct simulation *simulation;
+    struct simulation *simulation;
+    struct run_result *result;
+    double until; /* where the present call of simulation_run ends */
 };
 
 /* Sums of what a run shall conserve: no momentum along a direction where walls, layers or gravity
@@ -435,6 +437,10 @@ static bool after_step(void *context, double time, uint64_t steps)
     const struct watch *watch = context;
     const struct run_settings *settings = &watch->run->asked;
     const double t_end = settings_real(&watch->run->settings, SETTING_t_end);
+    struct checkpoint *checkpoint = settings->checkpoint;
+    /* a step is always to follow: what it leaves beside the state describes the end */
+    if (checkpoint && time < watch->until && checkpoint_due(checkpoint))
+        checkpoint_save(checkpoint, watch->simulation, &watch->result->growth);
     if (settings->trace && trace_wants(settings->trace, steps)) keep_trace(watch, time);
     if (settings->trace && trace_looks(settings->trace, time, t_end)) keep_look(watch, time);
     if (steps % STEPS_BETWEEN || !settings->progress) return true;
@@ -448,19 +454,23 @@ static enum status steps(struct watch *watch, struct simulation *simulation,
     enum { STOPS = 17 };
     const struct prepared *p = &result->problem;
     const struct growing *growing = p->problem->growing;
+    const struct run_settings *asked = &watch->run->asked;
     simulation_progress *progress =
-        watch->run->asked.progress || watch->run->asked.trace ? after_step : NULL;
+        asked->progress || asked->trace || asked->checkpoint ? after_step : NULL;
     double times[2] = {0, 0};
     if (growing) growing->during(p, times);
-    for (int i = 0; growing && i < STOPS; i++) {
+    /* a run that is resumed has seen some of it */
+    for (int i = (int)result->growth.n; growing && i < STOPS; i++) {
         const double stop = times[0] + (times[1] - times[0]) * i / (STOPS - 1);
         struct snapshot seen;
         if (!(stop < t_end)) break;
+        watch->until = stop;
         const enum status status = simulation_run(simulation, stop, progress, watch, error);
         simulation_snapshot(simulation, &seen);
         if (status || seen.time < stop) return status;
         growth_see(&result->growth, stop, growing->amplitude(p, &seen));
     }
+    watch->until = t_end;
     return simulation_run(simulation, t_end, progress, watch, error);
 }
 
@@ -478,8 +488,13 @@ static enum status simulate(const struct run *run, struct run_result *result,
         *error = outcome.reason;
         return status;
     }
-    struct watch watch = {run, simulation};
+    struct watch watch = {run, simulation, result, 0};
     take_sums(run, simulation, &outcome.start);
+    if (asked->checkpoint && asked->checkpoint->resume &&
+        checkpoint_load(asked->checkpoint, simulation, &result->growth, error)) {
+        simulation_destroy(simulation);
+        return error->status;
+    }
     if (asked->trace) {
         keep_trace(&watch, 0);
         keep_look(&watch, 0);

@@ -9,6 +9,7 @@
 
 #include "budget.h"
 #include "cases.h"
+#include "checkpoint.h"
 #include "description.h"
 #include "estimate.h"
 #include "growth.h"
@@ -32,7 +33,8 @@ struct run_settings {
     bool plain;                    /* by plain.c, not by the solver: the baseline of bench */
     simulation_progress *progress; /* called every 32 steps; may be NULL */
     void *progress_context;
-    struct trace *trace; /* {0}: gets what happens through time; NULL: nobody asks */
+    struct checkpoint *checkpoint; /* where the run's state is kept; NULL: nowhere */
+    struct trace *trace;           /* {0}: gets what happens through time; NULL: nobody asks */
 };
 
 /* A run with every choice made: no `auto` is left, the problem is solved. Its key, its plan and its

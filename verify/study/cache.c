@@ -51,7 +51,7 @@ static uint64_t hash_mathematics(uint64_t hash)
 }
 
 /* Any change of the program, or of the library its mathematics come from, is another build. */
-static void build_id(char build[CACHE_BUILD_MAX])
+void cache_build(char build[CACHE_BUILD_MAX])
 {
     char bytes[1 << 16];
     size_t n;
@@ -113,7 +113,7 @@ enum status cache_open(struct cache *cache, const char *folder, bool force, stru
         return error_set(error, STATUS_BAD_INPUT, "the path of the cache is too long");
     const enum status status = output_folder(cache->folder, error);
     if (status) return status;
-    build_id(cache->build);
+    cache_build(cache->build);
     return STATUS_OK;
 }
 

@@ -22,6 +22,9 @@ struct cache {
     bool force;                  /* entries are written, not read */
 };
 
+/* Which build of the program this is, on this processor. */
+void cache_build(char build[CACHE_BUILD_MAX]);
+
 /* Makes the folder where needed. Looks at no entry. */
 enum status cache_open(struct cache *cache, const char *folder, bool force, struct error *error);
 

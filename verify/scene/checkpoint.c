@@ -1,0 +1,174 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "checkpoint.h"
+
+#include <errno.h>
+#include <jansson.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "clock.h"
+#include "output.h"
+
+/* First line: this, the build. Second: the run. Then the state, and at the end the checksum. */
+static const char magic[] = "sphproof-checkpoint/1";
+enum { HEAD_MAX = 1 << 16 };
+static const uint64_t seed = UINT64_C(0xcbf29ce484222325);
+
+bool checkpoint_due(struct checkpoint *checkpoint)
+{
+    const double now = clock_wall();
+    if (checkpoint->written <= 0) checkpoint->written = now;
+    if (now < checkpoint->written + checkpoint->every) return false;
+    checkpoint->written = now;
+    return true;
+}
+
+/* A file on its way, with the checksum of what has passed, in pieces of whatever size: Fowler, Noll
+ * and Vo's hash 1a. */
+struct stream {
+    FILE *file;
+    uint64_t sum;
+};
+
+static void add(struct stream *stream, const void *bytes, size_t n)
+{
+    const unsigned char *byte = bytes;
+    for (size_t i = 0; i < n; i++) stream->sum = (stream->sum ^ byte[i]) * UINT64_C(0x100000001b3);
+}
+
+static bool put(void *context, void *bytes, size_t n)
+{
+    struct stream *stream = context;
+    add(stream, bytes, n);
+    return fwrite(bytes, 1, n, stream->file) == n;
+}
+
+static bool get(void *context, void *bytes, size_t n)
+{
+    struct stream *stream = context;
+    if (fread(bytes, 1, n, stream->file) != n) return false;
+    add(stream, bytes, n);
+    return true;
+}
+
+void checkpoint_save(struct checkpoint *checkpoint, struct simulation *simulation,
+                     struct growth *growth)
+{
+    struct output output;
+    checkpoint->trouble = (struct error){0};
+    if (output_open(&output, checkpoint->path, &checkpoint->trouble)) return;
+    struct stream stream = {.file = output.stream, .sum = seed};
+    struct carrier carrier = {.bytes = put, .context = &stream};
+    fprintf(output.stream, "%s %s\n%s\n", magic, checkpoint->build, checkpoint->run);
+    CARRY(&carrier, *growth);
+    simulation_carry(simulation, &carrier);
+    fwrite(&stream.sum, sizeof stream.sum, 1, output.stream);
+    output_close(&output, &checkpoint->trouble); /* tells whether it worked */
+}
+
+/* One line without its end; false: there is none of that length. */
+static bool line_of(FILE *file, char *line, size_t size)
+{
+    if (!fgets(line, (int)size, file)) return false;
+    char *end = strchr(line, '\n');
+    if (end) *end = '\0';
+    return end;
+}
+
+static enum status refuse(const struct checkpoint *checkpoint, const char *why, struct error *error)
+{
+    return error_set(error, STATUS_BAD_INPUT, "--resume '%.200s': %s", checkpoint->path, why);
+}
+
+/* Which key differs between two runs; where it is not a setting, its name alone is said. */
+static enum status other_run(const struct checkpoint *checkpoint, const char *there,
+                             struct error *error)
+{
+    json_t *a = json_loads(there, 0, NULL), *b = json_loads(checkpoint->run, 0, NULL);
+    json_t *mine = json_object_get(b, "settings"), *value;
+    char why[300] = "is of another run";
+    const char *key;
+    json_object_foreach(b, key, value) if (!json_equal(value, json_object_get(a, key)))
+        snprintf(why, sizeof why, "is of another run: its '%.40s' differs", key);
+    json_object_foreach(mine, key, value)
+    {
+        const json_t *other = json_object_get(json_object_get(a, "settings"), key);
+        if (json_equal(value, other)) continue;
+        char *was = json_dumps(other, JSON_ENCODE_ANY), *is = json_dumps(value, JSON_ENCODE_ANY);
+        snprintf(why, sizeof why, "is of another run: %.40s is %.80s there, %.80s here", key,
+                 was ? was : "nothing", is ? is : "nothing");
+        free(was);
+        free(is);
+    }
+    json_decref(a);
+    json_decref(b);
+    return refuse(checkpoint, why, error);
+}
+
+static enum status check_head(const struct checkpoint *checkpoint, FILE *file, struct error *error)
+{
+    char first[sizeof magic + CHECKPOINT_WORD + 2];
+    char *run = malloc(HEAD_MAX);
+    enum status status = STATUS_OK;
+    if (!run) return error_set(error, STATUS_ENVIRONMENT, "no memory to resume");
+    if (!line_of(file, first, sizeof first) || strncmp(first, magic, strlen(magic)) != 0)
+        status = refuse(checkpoint, "is no checkpoint, or of another version", error);
+    else if (strcmp(first + strlen(magic) + 1, checkpoint->build) != 0)
+        status = refuse(checkpoint,
+                        "was written by another build of the program, or where sin, exp and pow "
+                        "have other last bits: only the same one goes on to the last bit",
+                        error);
+    else if (!line_of(file, run, HEAD_MAX))
+        status = refuse(checkpoint, "is damaged", error);
+    else if (strcmp(run, checkpoint->run) != 0)
+        status = other_run(checkpoint, run, error);
+    free(run);
+    return status;
+}
+
+/* Are the bytes from here on those that were written? */
+static bool is_whole(FILE *file)
+{
+    enum { PART = 1 << 20 };
+    struct stream stream = {.file = file, .sum = seed};
+    uint64_t sum;
+    const long begin = ftell(file);
+    char *part = malloc(PART);
+    if (!part || begin < 0 || fseek(file, 0, SEEK_END)) return free(part), false;
+    long left = ftell(file) - begin - (long)sizeof sum;
+    bool sound = left > 0 && !fseek(file, begin, SEEK_SET);
+    while (sound && left > 0) {
+        const size_t n = left < PART ? (size_t)left : PART;
+        sound = get(&stream, part, n);
+        left -= (long)n;
+    }
+    sound = sound && fread(&sum, sizeof sum, 1, file) == 1 && sum == stream.sum;
+    free(part);
+    return sound && !fseek(file, begin, SEEK_SET);
+}
+
+enum status checkpoint_load(struct checkpoint *checkpoint, struct simulation *simulation,
+                            struct growth *growth, struct error *error)
+{
+    FILE *file = fopen(checkpoint->path, "rb");
+    if (!file && errno == ENOENT) return STATUS_OK;
+    if (!file) return refuse(checkpoint, strerror(errno), error);
+    enum status status = check_head(checkpoint, file, error);
+    if (!status && !is_whole(file)) status = refuse(checkpoint, "is damaged", error);
+    struct stream stream = {.file = file, .sum = seed};
+    struct carrier carrier = {.bytes = get, .context = &stream, .back = true};
+    if (!status) {
+        CARRY(&carrier, *growth);
+        simulation_carry(simulation, &carrier);
+        if (carrier.failed) status = refuse(checkpoint, "is damaged, or too large", error);
+    }
+    fclose(file);
+    if (status) return status;
+    struct snapshot seen;
+    simulation_snapshot(simulation, &seen);
+    checkpoint->began = seen.time;
+    return STATUS_OK;
+}

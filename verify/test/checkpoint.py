@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""checkpoint.py SPHPROOF [SCENES] [SEED]: runs that are killed and resumed, on scenes drawn at random: the
+particles at the end and the document, times and memory aside, have the bytes of the uninterrupted run.
+Checkpoints that are damaged, or of another build or run, are refused with the reason."""
+import contextlib
+import json
+import os
+import random
+import subprocess
+import sys
+import tempfile
+import time
+
+program = os.path.abspath(sys.argv[1])
+scenes, seed = int(sys.argv[2]) if len(sys.argv) > 2 else 12, int(sys.argv[3]) if len(sys.argv) > 3 else 1
+faults = []
+# a case, its numbers of particles, an end that takes a few dozen steps or more
+LINES = [("sod", (100, 300), 0.05), ("strong_shock", (100, 200), 0.01), ("sound_wave", (64, 128), 0.2),
+         ("lax", (100, 200), 0.03), ("noh_1d", (100, 200), 0.1)]
+CLOUDS = [("sod_2d", (400, 900), 0.03), ("gresho", (256, 576), 0.03), ("kelvin_helmholtz", (256, 400), 0.05),
+          ("kelvin_helmholtz_mode", (256, 400), 0.6), ("sedov_2d", (256, 400), 0.02), ("sod_3d", (2000, 3000), 0.02),
+          ("rest_3d", (512, 729), 0.05), ("noh_2d", (400, 600), 0.02)]
+CHOICES = {"kernel": ["cubic_spline", "quintic_spline", "wendland_c2", "wendland_c4", "sinc"],
+           "gradient": ["standard", "ia"], "volume_element": ["mass", "energy", "number"],
+           "integrator": ["leapfrog", "modified_leapfrog", "symplectic_euler", "rk2", "vl2", "rk3",
+                          "predicted_midpoint"],
+           "viscosity": ["constant", "time_dependent", "reconstructed", "fading"],
+           "energy": ["internal", "total"], "skip": ["auto", "none"], "h_method": ["newton", "predicted"]}
+CLOUD_VISCOSITIES = ["cullen_dehnen", "projected"]
+
+
+def expect(what, well, got=""):
+    if not well:
+        faults.append("%s: %s" % (what, got))
+
+
+def draw(generator):
+    """Words of a run; some combinations exclude each other."""
+    cloud = generator.random() < 0.6
+    case, numbers, t_end = generator.choice(CLOUDS if cloud else LINES)
+    words = [case, "n=%d" % generator.randint(*numbers), "t_end=%g" % (t_end * generator.uniform(0.7, 1.3))]
+    for key in generator.sample(sorted(CHOICES), 3):
+        values = CHOICES[key] + (CLOUD_VISCOSITIES if cloud and key == "viscosity" else [])
+        words.append("%s=%s" % (key, generator.choice(values)))
+    return words
+
+
+def run(words, *more):
+    return subprocess.run([program, "run", *words, *more, "--quiet"], capture_output=True, text=True)
+
+
+def seen(stem):
+    """All that a run leaves but times and memory."""
+    with open(stem + ".json", encoding="utf-8") as file:
+        document = json.load(file)
+    for name in ("wall_s", "cpu_s", "peak_rss_bytes"):
+        document["cost"].pop(name, None)
+    document.pop("date")
+    with open(stem + ".csv", "rb") as file:
+        return document, file.read()
+
+
+def resume(words, files, generator, longest):
+    """kill -9 again and again, each after the first checkpoint it writes and a moment; how often."""
+    kills = 0
+    while True:
+        threads = ["--threads", generator.choice(["1", "2"])]
+        child = subprocess.Popen([program, "run", *words, *files, *threads, "--quiet", "--checkpoint", "state",
+                                  "--every", "0", "--resume"], stderr=subprocess.PIPE, text=True)
+        before = os.stat("state").st_ino if os.path.exists("state") else None
+        until = time.monotonic() + 60
+        while kills < 3 and child.poll() is None and time.monotonic() < until:
+            if os.path.exists("state") and os.stat("state").st_ino != before:
+                time.sleep(generator.uniform(0, longest))
+                break
+            time.sleep(0.001)
+        if kills >= 3 or child.poll() is not None:
+            said = child.communicate()[1]
+            return kills, said if child.returncode else ""
+        child.kill()
+        child.communicate()
+        kills += 1
+
+
+def test_bits():
+    generator = random.Random(seed)
+    resumed = done = 0
+    while done < scenes:
+        words = draw(generator)
+        began = time.monotonic()
+        if run(words, "--snapshot", "alone.csv", "--json", "alone.json").returncode:
+            continue  # keys that exclude each other, or a run that breaks down
+        longest = (time.monotonic() - began) / 3
+        done += 1
+        kills, said = resume(words, ["--snapshot", "again.csv", "--json", "again.json"], generator, longest)
+        resumed += kills
+        expect("resumed, %s" % " ".join(words), not said, said)
+        if said or not os.path.exists("again.json"):
+            break
+        (one, rows), (other, others) = seen("alone"), seen("again")
+        expect("particles of %s" % " ".join(words), rows == others)
+        expect("document of %s" % " ".join(words), one == other, [k for k in one if one[k] != other.get(k)])
+        with contextlib.suppress(FileNotFoundError):  # it was too short for one
+            os.remove("state")
+    expect("runs that were killed", resumed >= (scenes + 1) // 4, resumed)
+
+
+def test_refused():
+    words = ["sod", "n=100", "t_end=0.05"]
+    keep = ["--checkpoint", "state", "--every", "0"]
+    expect("a run", run(words, *keep).returncode == 0)
+    with open("state", "rb") as file:
+        whole = file.read()
+    head = whole.index(b"\n") + 1
+    for what, text, asked, said in (
+            ("another run", whole, words + ["eta=5"], "eta is"),
+            ("another case", whole, ["lax", "n=100", "t_end=0.05"], "is of another run"),
+            ("another build", b"sphproof-checkpoint/1 0123456789abcdef\n" + whole[head:], words, "another build"),
+            ("no checkpoint", b"x,vx,m,u\n", words, "is no checkpoint"), ("nothing", b"", words, "is no checkpoint"),
+            ("a bit", whole[:5000] + bytes([whole[5000] ^ 1]) + whole[5001:], words, "is damaged"),
+            ("cut short", whole[:-9], words, "is damaged"), ("a head", whole[:head], words, "is damaged")):
+        with open("state", "wb") as file:
+            file.write(text)
+        refused = run(asked, *keep, "--resume", "--json", "refused.json")
+        expect(what, refused.returncode == 2 and said in refused.stderr and not os.path.exists("refused.json"),
+               (refused.returncode, refused.stderr))
+    os.remove("state")
+    expect("no file", run(words, "--resume").returncode == 2)
+    expect("no place", run(words, "--checkpoint", "/nowhere/state").returncode == 4)
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        test_refused()
+        test_bits()
+        os.chdir("/")
+    print("\n".join(faults) or "runs go on to the last bit")
+    return bool(faults)
+
+
+sys.exit(main())
