@@ -59,7 +59,12 @@ bool plot_source(const struct plot *plot, char **script, char **data)
 {
     struct buffer output = {0}, file = {0}, to = {0};
     buffer_format(&output, "%s.svg", plot->name);
-    buffer_format(&file, "'%s.dat'", plot->name);
+    buffer_add(&file, "'"); /* in single quotes, where a quote is doubled */
+    for (const char *c = plot->name; *c; c++) {
+        if (*c == '\'') buffer_add(&file, "'");
+        buffer_add_bytes(&file, c, 1);
+    }
+    buffer_add(&file, ".dat'");
     if (output.failed || file.failed)
         to.failed = true;
     else

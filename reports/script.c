@@ -41,7 +41,13 @@ static void image_data(struct buffer *to, const struct plot_heat *heat)
 {
     buffer_format(to, "# %zu rows of %zu cells\n", heat->ny, heat->nx);
     for (size_t j = 0; j < heat->ny; j++) {
-        for (size_t i = 0; i < heat->nx; i++) number(to, heat->z[j * heat->nx + i]);
+        for (size_t i = 0; i < heat->nx; i++) {
+            const double z = heat->z[j * heat->nx + i];
+            if (isfinite(z))
+                buffer_format(to, " %.6g", z); /* more than colours show */
+            else
+                buffer_add(to, " NaN");
+        }
         buffer_add(to, "\n");
     }
     buffer_add(to, "\n\n");

@@ -319,7 +319,8 @@ static const struct command_option own_options[] = {
     {"every", "SECONDS", "so often (default 60)"},
     {"resume", NULL, "go on from the checkpoint; from the start where there is none"},
     {"plot", "FILE.svg|.png",
-     "draw the profiles over the exact solution; in 2D and 3D maps (needs gnuplot)"},
+     "draw the profiles over the exact solution; in 2D and 3D maps, with FILE.dat and\n"
+     "FILE.gp beside them: edit, and `gnuplot FILE.gp` draws FILE.svg again (needs gnuplot)"},
     {"explain", NULL,
      "print the plan: what would run and why, memory and time it would take; run nothing"},
     {NULL, NULL, NULL},

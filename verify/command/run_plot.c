@@ -200,7 +200,8 @@ static enum status draw_maps(const struct run_settings *settings, const struct r
                         .panels = panels,
                         .panel_count = panels_used};
     map_size(&plot, &map);
-    const enum status status = picture_write(&plot, path, error);
+    enum status status = picture_write(&plot, path, error);
+    if (!status) status = picture_source(&plot, path, error);
     free(values);
     map_free(&map);
     return status;

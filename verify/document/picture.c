@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "picture.h"
 
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "output.h"
 
@@ -29,5 +31,34 @@ enum status picture_write(const struct plot *plot, const char *path, struct erro
         status = output_close(&output, error);
     }
     free(bytes);
+    return status;
+}
+
+static enum status write_text(const char *stem, const char *end, const char *text,
+                              struct error *error)
+{
+    char path[4096];
+    struct output output;
+    if (snprintf(path, sizeof path, "%s%s", stem, end) >= (int)sizeof path)
+        return error_set(error, STATUS_ENVIRONMENT, "--plot '%.150s...': too long a name", stem);
+    if (output_open(&output, path, error)) return error->status;
+    fputs(text, output.stream); /* output_close tells whether it worked */
+    return output_close(&output, error);
+}
+
+enum status picture_source(const struct plot *plot, const char *path, struct error *error)
+{
+    struct plot named = *plot;
+    char *script = NULL, *data = NULL, *stem = strdup(path);
+    char *end = stem ? strrchr(stem, '.') : NULL;
+    if (end) *end = '\0';
+    const char *slash = stem ? strrchr(stem, '/') : NULL;
+    named.name = slash ? slash + 1 : stem;
+    enum status status = STATUS_OK;
+    if (!stem || !plot_source(&named, &script, &data))
+        status = error_set(error, STATUS_ENVIRONMENT, "--plot %.150s: no memory", path);
+    if (!status) status = write_text(stem, ".dat", data, error);
+    if (!status) status = write_text(stem, ".gp", script, error);
+    free(script), free(data), free(stem);
     return status;
 }

@@ -13,4 +13,8 @@ enum status picture_probe(const char *path, struct error *error);
 /* Draws plot to path. STATUS_ENVIRONMENT: no gnuplot, it failed, or the file cannot be written. */
 enum status picture_write(const struct plot *plot, const char *path, struct error *error);
 
+/* Beside a picture NAME.svg or NAME.png what draws it again: NAME.dat, and NAME.gp, with which
+ * `gnuplot NAME.gp` there makes NAME.svg. STATUS_ENVIRONMENT: they cannot be written. */
+enum status picture_source(const struct plot *plot, const char *path, struct error *error);
+
 #endif

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""maps.py SPHPROOF: beside a picture of a run in 2D lie its data and the script that draws it again; the data are
+the state's, row by row."""
+import math
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+
+PROGRAM = os.path.abspath(sys.argv[1])
+NAME = "a wave's map"  # a blank and a quote
+
+
+def blocks(path):
+    with open(path, encoding="ascii") as f:
+        parts = f.read().split("\n\n\n")
+    return [[[float(x) for x in line.split()] for line in part.split("\n") if line and line[0] != "#"]
+            for part in parts if part.strip()]
+
+
+def main():
+    if not shutil.which("gnuplot"):
+        sys.exit(77)
+    with tempfile.TemporaryDirectory() as folder:
+        picture = os.path.join(folder, NAME + ".svg")
+        subprocess.run([PROGRAM, "run", "sound_wave_2d", "n=16^2", "t_end=0", "--plot", picture, "--quiet"], check=True,
+                       timeout=60)
+        found = blocks(os.path.join(folder, NAME + ".dat"))
+        assert len(found) == 3, "density, speed and error: %d blocks" % len(found)
+        density = found[0]
+        assert len(density) == len(density[0]) == 16, "rows of cells: %d" % len(density)
+        # the wave runs along x: rows are alike, columns are not
+        for row in density:
+            assert all(abs(a - b) <= 1e-6 for a, b in zip(row, density[0])), "rows differ"
+        assert max(density[0]) - min(density[0]) > 1e-3 and math.isclose(sum(density[0]) / 16, 1, rel_tol=1e-3), density[0]
+        size = os.path.getsize(picture)
+        os.remove(picture)
+        subprocess.run(["gnuplot", NAME + ".gp"], cwd=folder, check=True, timeout=60)
+        with open(picture, encoding="utf-8") as f:
+            again = f.read()
+        assert "<svg" in again and again.count("<image") == 3 and len(again) > 0.3 * size, "drawn again: %d" % len(again)
+    print("a map's data and script draw it again")
+
+
+main()
