@@ -17,6 +17,7 @@
 #include "near.h"
 #include "riemann.h"
 #include "run.h"
+#include "shells.h"
 
 static struct run resolved(const char *name, int n, const char *const *words)
 {
@@ -233,13 +234,117 @@ static void jitters(void **state)
     jitter("rest_3d", "n=1458", "lattice=bcc", 0.49);
 }
 
+/* ---- what is summed over a start ---- */
+
+/* The scale of speeds: sum of m c, c of the state that the particles show; also of those that an
+ * end holds. */
+static void sound(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name, *words[2];
+    } cases[] = {{"sod", {"n=60", "h_method=newton"}},
+                 {"gresho", {"n=12^2", "jitter=0.1"}},
+                 {"rayleigh_taylor_mode", {"n=12^2", "h_method=newton"}},
+                 {"rest_3d", {"n=8^3", "volume_element=energy"}}};
+    for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
+        const struct run run = resolved(cases[c].name, 2, cases[c].words);
+        struct initial initial;
+        struct simulation *simulation;
+        struct snapshot s;
+        struct conservation sums;
+        struct error error = {0};
+        if (initial_create(&initial, &run.problem, &run.settings, &error))
+            fail_msg("%s", error.message);
+        const struct scene scene = run_scene(&run, &initial);
+        if (simulation_create(&scene, &simulation, &error)) fail_msg("%s", error.message);
+        simulation_snapshot(simulation, &s);
+        simulation_conservation(simulation, &sums);
+        double scale = 0, mass = 0, energy = 0;
+        for (size_t i = 0; i < s.n; i++) {
+            double square = 0, height = 0;
+            for (int d = 0; d < run.problem.domain.dim; d++) {
+                square += s.v[d][i] * s.v[d][i];
+                height += run.problem.gravity[d] * s.x[d][i];
+            }
+            scale += s.m[i] * sqrt(run.problem.gamma * s.P[i] / s.rho[i]);
+            mass += s.m[i];
+            energy += s.m[i] * (s.u[i] + 0.5 * square - height);
+            near_relative(s.P[i], (run.problem.gamma - 1) * s.rho[i] * s.u[i], 1e-13);
+            near_relative(s.volume[i], s.m[i] / s.rho[i], c == 3 ? 0.1 : 1e-13);
+        }
+        near_relative(sums.sound_scale, scale, 1e-12);
+        near_relative(sums.mass, mass, 1e-13);
+        near_relative(sums.energy, energy, 1e-12);
+        simulation_destroy(simulation);
+        initial_free(&initial);
+    }
+}
+
+/* Shells round the middle: as thick as particles are apart, or the least that there is room for, to
+ * the nearest end. */
+static void rings(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name, *words[2];
+    } cases[] = {{"rest_2d", {"n=2400", "hi=1.5,1"}},
+                 {"rest_2d", {"n=2400", "hi=1,1.5"}},
+                 {"noh_1d", {"n=4000", "t_end=0.1"}}};
+    static struct shells shells;
+    for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
+        const struct run run = resolved(cases[c].name, 2, cases[c].words);
+        const struct prepared *p = &run.problem;
+        struct initial initial;
+        struct error error = {0};
+        if (initial_create(&initial, p, &run.settings, &error)) fail_msg("%s", error.message);
+        double *volume = malloc(initial.n * sizeof *volume), reach = HUGE_VAL, sum = 0;
+        assert_non_null(volume);
+        size_t inside = 0;
+        for (size_t i = 0; i < initial.n; i++) volume[i] = initial.m[i] / initial.rho[i];
+        const struct snapshot s = {.n = initial.n,
+                                   .x = {initial.x[0], initial.x[1], initial.x[2]},
+                                   .v = {initial.v[0], initial.v[1], initial.v[2]},
+                                   .m = initial.m,
+                                   .rho = initial.rho,
+                                   .volume = volume};
+        for (size_t i = 0; i < s.n; i++)
+            if (in_window(p, &s, i)) sum += volume[i], inside++;
+        for (int d = 0; d < p->domain.dim; d++)
+            reach = fmin(reach, domain_length(&p->domain, d) / 2);
+        const double apart = pow(sum / (double)inside, 1. / p->domain.dim);
+        const double width = fmax(apart, reach / SHELLS_MAX);
+        shells_make(&shells, p, &s);
+        near_relative(shells.width, width, 1e-12);
+        assert_int_equal(shells.n, (size_t)fmin(SHELLS_MAX, ceil(reach / shells.width)));
+        assert_true(shells.n > 15);
+        double peak = 0;
+        for (size_t k = 0; k < shells.n; k++) {
+            double m = 0, V = 0;
+            for (size_t i = 0; i < s.n; i++) {
+                double place[3] = {0}, square = 0;
+                problem_place(p, &s, i, place);
+                for (int d = 0; d < p->domain.dim; d++)
+                    square += pow(place[d] - p->window.centre[d], 2);
+                if (floor(sqrt(square) / shells.width) != (double)k) continue;
+                m += s.m[i], V += volume[i];
+            }
+            if (V > 0) near_relative(shells.density[k], m / V, 1e-12);
+            assert_int_equal(isnan(shells.density[k]), !(V > 0));
+            peak = fmax(peak, shells.density[k]);
+        }
+        assert_true(shells_peak(&shells) == peak);
+        free(volume);
+        initial_free(&initial);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(means),
-        cmocka_unit_test(mirrored_budgets),
-        cmocka_unit_test(windows),
-        cmocka_unit_test(jitters),
+        cmocka_unit_test(means),   cmocka_unit_test(mirrored_budgets),
+        cmocka_unit_test(windows), cmocka_unit_test(jitters),
+        cmocka_unit_test(sound),   cmocka_unit_test(rings),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

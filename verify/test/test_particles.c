@@ -16,6 +16,7 @@
 #include "initial.h"
 #include "near.h"
 #include "particle_file.h"
+#include "profile.h"
 #include "value.h"
 
 static char path[] = "/tmp/sphproof_particles_XXXXXX";
@@ -280,11 +281,59 @@ static void curves(void **state)
     }
 }
 
+/* In 1D: every particle of the window in its place, and the exact curve to both ends of it, with
+ * all its bends. */
+static void line(void **state)
+{
+    (void)state;
+    static const char *const fields[] = {"density", "velocity", "pressure"};
+    struct run_result run = ran("sod", 2, (const char *const[]){"n=120", "window=-0.3,0.45"});
+    const struct snapshot *s = &run.snapshot;
+    json_t *profile = profile_json(&run);
+    const json_t *exact = json_object_get(profile, "exact");
+    size_t k = 0;
+    for (size_t i = 0; i < s->n; i++) {
+        struct problem_state state_there;
+        if (!(s->x[0][i] >= -0.3 && s->x[0][i] <= 0.45)) continue;
+        problem_sample(&run.problem, (double[3]){s->x[0][i]}, run.time, &state_there);
+        const double got[] = {s->rho[i], s->v[0][i], s->P[i]};
+        const double want[] = {state_there.rho, state_there.v[0], state_there.P};
+        assert_true(at(profile, "x", k) == s->x[0][i]);
+        for (size_t f = 0; f < 3; f++) {
+            char name[40];
+            snprintf(name, sizeof name, "exact_%s", fields[f]);
+            assert_true(at(profile, fields[f], k) == got[f]);
+            near_below(fabs(at(profile, name, k) - want[f]), 1e-14);
+        }
+        k++;
+    }
+    assert_int_equal(json_array_size(json_object_get(profile, "x")), k);
+    const size_t n = json_array_size(json_object_get(exact, "x"));
+    near_relative(at(exact, "x", 0), -0.3, 1e-12);
+    near_relative(at(exact, "x", n - 1), 0.45, 1e-12);
+    size_t next = 1;
+    for (int i = 0; i <= 1000; i++) { /* straight lines between its points are the solution */
+        struct problem_state state_there;
+        const double x = -0.3 + 0.75 * (i + 0.5) / 1001;
+        while (next + 1 < n && at(exact, "x", next) < x) next++;
+        const double x0 = at(exact, "x", next - 1), x1 = at(exact, "x", next);
+        const double part = (x - x0) / (x1 - x0);
+        problem_sample(&run.problem, (double[3]){x}, run.time, &state_there);
+        if (fabs(x / 0.2 - 1.7521557) < 0.05 || fabs(x / 0.2 - 0.92745) < 0.05)
+            continue; /* jumps */
+        near_below(fabs((1 - part) * at(exact, "density", next - 1) +
+                        part * at(exact, "density", next) - state_there.rho),
+                   2e-3);
+    }
+    json_decref(profile);
+    run_free(&run);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(good_files), cmocka_unit_test(bad_files), cmocka_unit_test(boxes),
-        cmocka_unit_test(starts),     cmocka_unit_test(curves),
+        cmocka_unit_test(starts),     cmocka_unit_test(curves),    cmocka_unit_test(line),
     };
     const int file = mkstemp(path);
     if (file < 0) return 1;

@@ -13,6 +13,7 @@
 
 #include "integrator.h"
 #include "run.h"
+#include "value.h"
 
 static struct run resolved(const char *name, size_t n, char *const *words)
 {
@@ -152,6 +153,10 @@ static void warns(const char *name, const char *words, const char *what)
     if (run_explain(&run, &plan, &error)) fail_msg("%s", error.message);
     if (*what ? !strstr(plan.warnings, what) : plan.warnings[0] != '\0')
         fail_msg("%s: '%s', not '%s'", words, plan.warnings, what);
+    json_t *document = json_object();
+    run_add_plan(&run.asked, &plan, document);
+    assert_string_equal(value_text(document, "warnings"), plan.warnings);
+    json_decref(document);
 }
 
 /* Off the widths whose sums are exact by more than 3 %; beyond what is stable; what loses digits.
