@@ -50,6 +50,29 @@ const char *fuzz_file(const uint8_t *bytes, size_t size)
     return path;
 }
 
+static char named[64];
+
+static void forget_named(void)
+{
+    unlink(named);
+}
+
+const char *fuzz_named_file(const uint8_t *bytes, size_t size)
+{
+    static int file = -1;
+    if (!*named) {
+        snprintf(named, sizeof named, "%s/sphproof-fuzz.XXXXXX",
+                 access("/dev/shm", W_OK) ? "/tmp" : "/dev/shm");
+        file = mkstemp(named);
+        atexit(forget_named);
+    }
+    if (file < 0 || ftruncate(file, 0) || pwrite(file, bytes, size, 0) != (ssize_t)size) {
+        perror("fuzz: no file in memory");
+        exit(STATUS_ENVIRONMENT);
+    }
+    return named;
+}
+
 char *fuzz_text(const uint8_t *bytes, size_t size)
 {
     char *text = malloc(size + 1);

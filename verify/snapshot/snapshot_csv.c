@@ -28,7 +28,7 @@ static enum status scale_widths(struct snapshot_file *file, char why[200], struc
 enum status snapshot_csv(const char *path, struct snapshot_file *file, struct csv *csv,
                          char why[200], struct error *error)
 {
-    const struct snapshot_options plain = {NULL};
+    const struct snapshot_options plain = {0};
     *csv = (struct csv){0};
     if (snapshot_read(path, &plain, file, error) || scale_widths(file, why, error))
         return error->status;

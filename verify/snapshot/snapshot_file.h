@@ -58,9 +58,9 @@ struct snapshot_file {
     struct snapshot_notes notes;
 };
 
-/* How to read: column names of the user's, "rho=Density,u=Energy"; NULL: none. */
 struct snapshot_options {
-    const char *map;
+    const char *map; /* column names of the user's, "rho=Density,u=Energy"; NULL: none */
+    bool here;       /* HDF5 is read in this process, which somebody guards already */
 };
 
 struct snapshot_source;

@@ -26,7 +26,7 @@ static const struct member *const members[] = {
 const struct family snapshot_reader_family = {"snapshots", "formats of snapshots that are read",
                                               members, sizeof members / sizeof *members};
 
-static enum status read_source(const struct snapshot_source *source,
+static enum status read_source(struct snapshot_source *source,
                                const struct snapshot_options *options, struct snapshot_file *file,
                                struct error *error)
 {
@@ -52,6 +52,17 @@ static enum status read_source(const struct snapshot_source *source,
                      source->path);
 }
 
+static enum status read_here(struct snapshot_source *source, const struct snapshot_options *options,
+                             struct snapshot_file *file, struct error *error)
+{
+    guard_call("the HDF5 library", (double)NAN, (double)NAN, 0);
+    enum status status = hdf5_open(source, error);
+    guard_back();
+    if (!status) status = read_source(source, options, file, error);
+    hdf5_close(source);
+    return status;
+}
+
 /* ---- HDF5, in the other process ---- */
 
 struct errand {
@@ -65,10 +76,7 @@ static enum status run_errand(const void *context, json_t **reply, struct error 
     const struct errand *errand = context;
     struct snapshot_file file = {0};
     (void)reply;
-    guard_call("the HDF5 library", (double)NAN, (double)NAN, 0);
-    enum status status = hdf5_open(errand->source, error);
-    guard_back();
-    if (!status) status = read_source(errand->source, errand->options, &file, error);
+    enum status status = read_here(errand->source, errand->options, &file, error);
     if (!status) {
         bool written = fwrite(&file, sizeof file, 1, errand->results) == 1;
         for (int c = 0; c < SNAPSHOT_COLUMNS; c++)
@@ -130,8 +138,9 @@ static enum status read_one(const char *path, const struct snapshot_options *opt
     *file = (struct snapshot_file){0};
     enum status status = source_open(&source, path, error);
     if (!status)
-        status = (source.hdf5 ? read_hdf5(&source, options, file, error)
-                              : read_source(&source, options, file, error));
+        status = (!source.hdf5    ? read_source
+                  : options->here ? read_here
+                                  : read_hdf5)(&source, options, file, error);
     source_free(&source);
     if (!status && options->map && strcmp(file->layout, "csv") && strcmp(file->layout, "splash"))
         status = error_set(error, STATUS_BAD_INPUT,
