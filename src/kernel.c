@@ -11,14 +11,36 @@
 #include "kernels.def"
 #undef KERNEL
 
-static const struct member *const members[] = {
-#define KERNEL(name, ...) &kernel_##name.member,
+enum {
+    BUILT_IN = 0
+#define KERNEL(name, ...) +1
 #include "kernels.def"
 #undef KERNEL
 };
 
+static const struct member *members[BUILT_IN + KERNEL_GUESTS_MAX] = {
+#define KERNEL(name, ...) &kernel_##name.member,
+#include "kernels.def"
+#undef KERNEL
+};
+static int guests;
+
 const struct family kernel_family = {"kernels", "kernels W(r,h), h = support radius", members,
-                                     sizeof members / sizeof *members};
+                                     BUILT_IN};
+
+int kernel_add(const struct kernel *guest)
+{
+    if (guests == KERNEL_GUESTS_MAX) return -1;
+    members[BUILT_IN + guests] = &guest->member;
+    return BUILT_IN + guests++;
+}
+
+int kernel_index(const char *name)
+{
+    for (int i = 0; i < BUILT_IN + guests; i++)
+        if (strcmp(members[i]->name, name) == 0) return i;
+    return -1;
+}
 
 static double power(double x, int n)
 {
@@ -72,9 +94,9 @@ static enum status unknown(const char *name, struct error *error)
 enum status kernel_select(struct kernel *kernel, const char *name, int sinc_order,
                           struct error *error)
 {
-    const struct member *member = family_find(&kernel_family, name);
-    if (!member) return unknown(name, error);
-    *kernel = *(const struct kernel *)member;
+    const int index = kernel_index(name);
+    if (index < 0) return unknown(name, error);
+    *kernel = *(const struct kernel *)members[index];
     if (kernel->order) {
         if (sinc_order < SINC_ORDER_MIN || sinc_order > SINC_ORDER_MAX)
             return error_set(error, STATUS_BAD_INPUT, "sinc_n = %d: allowed are %d to %d",
@@ -86,7 +108,7 @@ enum status kernel_select(struct kernel *kernel, const char *name, int sinc_orde
         if (sinc_order != 5) kernel->stable_eta[0] = kernel->stable_eta[1] = 0;
         for (int dim = 1; dim <= KERNEL_DIM_MAX; dim++) kernel->smoothness[dim] = sinc_order - 1;
     }
-    for (int dim = 1; dim <= KERNEL_DIM_MAX; dim++)
+    for (int dim = 1; dim <= KERNEL_DIM_MAX && !kernel->plugin_w; dim++)
         if (kernel->constant[dim] == 0) normalise(kernel, dim);
     return STATUS_OK;
 }

@@ -47,8 +47,20 @@ struct kernel {
 
 extern const struct family kernel_family;
 
-/* Copies the built-in kernel called name into *kernel and completes it: sinc_order (3..12) is used
- * by sinc only; constants without a closed form are computed by a fixed Gauss-Legendre rule.
+/* Guests: kernels that a program brings besides those of kernels.def. In kernel_family.members they
+ * stand behind its n members, so that who goes through the family does not meet them; they are
+ * found by name alone, and have no stamped loops. plugin_w is set, the constants are the guest's.
+ */
+enum { KERNEL_GUESTS_MAX = 16 };
+
+/* Takes a guest in (not owned, with a name that no other has); its place, -1: there is no room. */
+int kernel_add(const struct kernel *guest);
+
+/* Place in kernel_family.members of the kernel called name, a guest or not; -1: there is none. */
+int kernel_index(const char *name);
+
+/* Copies the kernel called name into *kernel and completes it: sinc_order (3..12) is used by sinc
+ * only; constants without a closed form are computed by a fixed Gauss-Legendre rule.
  * STATUS_BAD_INPUT: no such kernel, or sinc_order out of range. */
 enum status kernel_select(struct kernel *kernel, const char *name, int sinc_order,
                           struct error *error);

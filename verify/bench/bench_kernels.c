@@ -12,6 +12,7 @@
 #include "bench_limit.h"
 #include "bench_loops.h"
 #include "gradient_study.h"
+#include "guest.h"
 #include "result.h"
 #include "run.h"
 
@@ -195,7 +196,7 @@ static enum status add_solver(struct bench *bench, const char *kernel, const cha
         {"force", 1u << PASS_FORCE, false, true},
     };
     const bool ia = strcmp(gradient, "ia") == 0;
-    char keys[2][64];
+    char keys[2][SETTING_TEXT_MAX + 16];
     snprintf(keys[0], sizeof keys[0], "kernel=%s", kernel);
     snprintf(keys[1], sizeof keys[1], "gradient=%s", gradient);
     char *arguments[] = {keys[0],  keys[1],     "viscosity=constant",
@@ -236,11 +237,11 @@ static void set_limit(const struct bench *bench, struct job *limit, const struct
 {
     for (size_t o = 0; o < operator_family.n; o++) {
         if (strcmp(operator_family.members[o]->name, form) != 0) continue;
-        limit->kind = JOB_LIMIT;
         limit->settings = (struct operator_settings){.kernel = kernel, .threads = 1};
         limit->list = &bench->lists[dim - 1];
         limit->limit =
             bench_limit_find(kernel, (const struct operator_form *)operator_family.members[o], dim);
+        limit->kind = limit->limit ? JOB_LIMIT : JOB_NONE;
         limit->pairs = LIST / times;
     }
 }
@@ -327,6 +328,7 @@ static enum status add_operator(struct bench *bench, const struct kernel *kernel
     }
     job[LIMIT].list = &bench->lists[dim - 1];
     job[LIMIT].limit = bench_limit_find(kernel, form, dim);
+    if (!job[LIMIT].limit) job[LIMIT].kind = JOB_NONE;
     job[LIMIT].pairs = LIST;
     return STATUS_OK;
 }
@@ -344,7 +346,9 @@ static enum status choose_kernels(struct bench *bench, const struct sweep *sweep
     for (size_t k = 0; k < bench->kernel_count; k++) {
         const char *name =
             sweep->key_count ? sweep->keys[0].values[k] : kernel_family.members[k]->name;
-        if (kernel_select(&bench->kernels[k], name, 5, error)) return error->status;
+        const int index = kernel_index(name);
+        for (int dim = 1; dim <= KERNEL_DIM_MAX; dim++)
+            if (guest_select(&bench->kernels[k], index, 5, dim, error)) return error->status;
     }
     bench->row_max =
         bench->kernel_count * ((KERNEL_DIM_MAX - 1) * CELLS_ROWS +

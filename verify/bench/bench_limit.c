@@ -82,7 +82,8 @@ static bench_limit_loop *const (*const loops[])[KERNEL_DIM_MAX] = {KERNEL_NAMES(
 bench_limit_loop *bench_limit_find(const struct kernel *kernel, const struct operator_form *form,
                                    int dim)
 {
-    return loops[family_index(&kernel_family, kernel->member.name)][form->pair_vector][dim - 1];
+    const int stamp = kernel_stamp(kernel);
+    return stamp < 0 ? NULL : loops[stamp][form->pair_vector][dim - 1];
 }
 
 bool bench_limit_gradient(const struct kernel *kernel, const struct operator_form *form, int dim,

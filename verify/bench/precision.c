@@ -267,9 +267,10 @@ static enum status add_level(struct job *job, struct run_settings *settings, siz
     struct error reason;
     snprintf(key, sizeof key, "n=%zu", n);
     if (settings_apply(&settings->settings, 1, keys, error)) return error->status;
-    if (run_resolve(&job->run, settings, &reason))
-        snprintf(scheme->excluded, sizeof scheme->excluded, "%s", reason.message);
-    return STATUS_OK;
+    if (!run_resolve(&job->run, settings, &reason)) return STATUS_OK;
+    snprintf(scheme->excluded, sizeof scheme->excluded, "%s", reason.message);
+    if (reason.status == STATUS_CHECK_FAILED) *error = reason; /* a plug-in: no scheme */
+    return reason.status == STATUS_CHECK_FAILED ? reason.status : STATUS_OK;
 }
 
 /* Points of schemes that broke down go away, the others close up. */

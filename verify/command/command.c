@@ -7,6 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "guest.h"
 #include "output.h"
 #include "text.h"
 #include "threads.h"
@@ -28,6 +29,7 @@ const struct command_option command_common[] = {
     {"json", "FILE|-", "write the result document (with - nothing else goes to standard output)"},
     {"threads", "T", "threads, 1 to 1024 (default 1); results do not depend on it"},
     {"quiet", NULL, "print neither tables nor progress"},
+    {"uncertified", NULL, "use a plug-in kernel although its certificate is refused"},
     {"color", "auto|always|never", "colours in tables (default auto; NO_COLOR is respected)"},
     {"help", NULL, "this help; after a command, that command's"},
     {"version", NULL, "version, git revision and compiler"},
@@ -38,7 +40,7 @@ const struct command_option command_common[] = {
 struct line {
     struct options options;
     const char *color;
-    int help, version;
+    int help, version, uncertified;
     int n; /* arguments, command's name not counted */
     char **arguments;
 };
@@ -94,6 +96,9 @@ static enum status apply_common(struct line *line, const char *name, const char 
         break;
     case 'h':
         line->help = 1;
+        break;
+    case 'u':
+        line->uncertified = 1;
         break;
     case 'v':
         line->version = 1;
@@ -243,6 +248,7 @@ static enum status execute(struct line *line, int argc, char **argv, struct erro
         return error_set(error, STATUS_BAD_INPUT,
                          "no command given; `sphproof --help` lists the commands");
     resolve_streams(line);
+    guest_allow(line->uncertified);
     if (options->json && (status = output_probe(options->json, error))) return status;
     if ((status = threads_check(options->threads, error))) return status;
     line->options.count = line->n;

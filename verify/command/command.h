@@ -55,6 +55,10 @@ extern const struct command *const command_table[];
 extern const size_t command_count;
 extern const struct command_option command_common[];
 
+/* The place in kernel_family.members of the kernel that --kernel names: built-in, or the path of a
+ * plug-in; -1 where the option was not given. */
+enum status options_kernel(const struct options *options, int *index, struct error *error);
+
 /* The whole program: finds the command, runs it, prints the error, returns the exit status. */
 int command_main(int argc, char **argv);
 

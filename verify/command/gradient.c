@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "command.h"
+#include "guest.h"
 #include "point_cloud.h"
 #include "result.h"
 #include "text.h"
@@ -53,6 +54,7 @@ static enum status take_request(const struct options *options, int n, char **arg
     const char *name = options_value(options, "operator");
     const char *kernel = options_value(options, "kernel"), *dim = options_value(options, "dim");
     double number = 0;
+    int index;
     if (n != 1) return command_usage(options, error, "one cloud is needed, %d given", n);
     if (!name || !kernel || !dim)
         return command_usage(options, error, "--operator, --kernel and --dim are needed");
@@ -63,12 +65,12 @@ static enum status take_request(const struct options *options, int n, char **arg
         .threads = options->threads};
     if (!r->settings.form)
         return text_unknown_member(error, "gradient", "operator", name, &operator_family);
-    if (!family_find(&kernel_family, kernel))
-        return text_unknown_member(error, "gradient", "kernel", kernel, &kernel_family);
-    if (kernel_select(&r->kernel, kernel, SINC_ORDER, error)) return error->status;
     if (!text_integer(dim, &number) || !(number >= 1 && number <= DIM_MAX))
         return error_set(error, STATUS_BAD_INPUT, "gradient: --dim '%.40s': allowed: 1, 2, 3", dim);
     r->dim = (int)number;
+    if (options_kernel(options, &index, error) ||
+        guest_select(&r->kernel, index, SINC_ORDER, r->dim, error))
+        return error->status;
     r->tolerance = 1e-9;
     if (take_positive(options, "eta", &r->eta, error) ||
         take_positive(options, "h", &r->h, error) ||

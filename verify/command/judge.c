@@ -51,9 +51,8 @@ static enum status take_width(const char *text, struct width_meaning *width, str
 }
 
 static enum status take_request(const struct options *options, int n, struct judge_request *request,
-                                struct kernel *kernel, struct error *error)
+                                struct error *error)
 {
-    const char *name = options_value(options, "kernel");
     request->case_name = options_value(options, "case");
     request->left = options_value(options, "left");
     request->right = options_value(options, "right");
@@ -73,11 +72,7 @@ static enum status take_request(const struct options *options, int n, struct jud
         take_number(options, "time", &request->time, error) ||
         take_width(options_value(options, "h-is"), &request->width, error))
         return error->status;
-    if (!name) return STATUS_OK;
-    if (!family_find(&kernel_family, name))
-        return text_unknown_member(error, "judge", "kernel", name, &kernel_family);
-    request->kernel = kernel;
-    return kernel_select(kernel, name, 5, error);
+    return options_kernel(options, &request->kernel, error);
 }
 
 /* ---- for a person ---- */
@@ -198,11 +193,10 @@ static enum status write_page(const char *path, const struct judged *judged, siz
 static enum status run(const struct options *options, int n, char **arguments, struct error *error)
 {
     struct judge_request request = {0};
-    struct kernel kernel;
     struct judge_gate gates[JUDGE_GATES_MAX];
     size_t gate_count = 0, count = 0;
     const struct table_style style = table_style(options->color);
-    enum status status = take_request(options, n, &request, &kernel, error);
+    enum status status = take_request(options, n, &request, error);
     const char *html = options_value(options, "html");
     if (!status && html) status = output_probe(html, error);
     if (status) return status;

@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "command.h"
+
 #include <string.h>
 
-#include "command.h"
+#include "guest.h"
+#include "text.h"
 
 const char *options_value(const struct options *options, const char *name)
 {
@@ -9,4 +12,16 @@ const char *options_value(const struct options *options, const char *name)
     for (size_t i = 0; list && list[i].name; i++)
         if (strcmp(list[i].name, name) == 0) return options->values[i];
     return NULL;
+}
+
+enum status options_kernel(const struct options *options, int *index, struct error *error)
+{
+    const char *word = options_value(options, "kernel");
+    *index = -1;
+    if (!word) return STATUS_OK;
+    if (guest_is_path(word)) return guest_find(word, index, error);
+    *index = kernel_index(word);
+    return *index >= 0
+               ? STATUS_OK
+               : text_unknown_member(error, options->command->name, "kernel", word, &kernel_family);
 }

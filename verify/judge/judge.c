@@ -6,6 +6,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "guest.h"
+
+enum { SINC_ORDER = 5 };
+
 /* A median error above this part of the range of the exact values is no error at jumps. */
 #define JUDGE_FOREIGN      0.06
 #define JUDGE_FOREIGN_MEAN 0.2 /* and an L1 above this none of jumps that are a few h wide */
@@ -323,13 +327,16 @@ enum status judge_snapshot(const char *path, const struct judge_request *request
 {
     struct gas gas = {0};
     double period[3] = {0};
+    struct kernel kernel;
     *judged = (struct judged){.path = path};
     enum status status = snapshot_read(path, &request->options, &judged->file, error);
     if (!status) status = judge_place(request, judged, period, error);
     if (!status) status = complete(judged, judged->run.problem.gamma, error);
+    if (!status && request->kernel >= 0)
+        status = guest_select(&kernel, request->kernel, SINC_ORDER, judged->file.dim, error);
     if (!status)
-        status = conventions_find(&judged->file, period, request->kernel, &request->width,
-                                  &judged->conventions, error);
+        status = conventions_find(&judged->file, period, request->kernel < 0 ? NULL : &kernel,
+                                  &request->width, &judged->conventions, error);
     if (!status)
         status =
             gas_make(&gas, judged, period,

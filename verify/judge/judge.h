@@ -17,7 +17,7 @@ struct judge_request {
     const char *case_name;                 /* a case; with left and right: of its box */
     const char *left, *right;              /* "rho v P"; NULL: the case's */
     struct snapshot_value gamma, x0, time; /* where the user says them */
-    const struct kernel *kernel;           /* NULL: found */
+    int kernel;                            /* place in kernel_family.members; -1: found */
     struct width_meaning width;
     struct snapshot_options options;
 };

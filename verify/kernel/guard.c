@@ -20,39 +20,9 @@
 #include <sys/prctl.h>
 #endif
 
+#include "guard_trace.h"
 #include "output.h"
 #include "result.h"
-
-/* Shared by the two processes. Names of functions are literals, at the same address in both. */
-struct trace {
-    const char *volatile function;
-    volatile double a, b;
-    volatile int dim;
-    volatile long calls;
-    volatile int inside, begun, stuck, complete;
-};
-
-static struct trace nowhere, *trace = &nowhere;
-
-void guard_call(const char *function, double a, double b, int dim)
-{
-    trace->function = function;
-    trace->a = a;
-    trace->b = b;
-    trace->dim = dim;
-    trace->calls++;
-    trace->inside = 1;
-}
-
-void guard_back(void)
-{
-    trace->inside = 0;
-}
-
-void guard_begun(void)
-{
-    trace->begun = 1;
-}
 
 /* ---- in the other process ---- */
 
@@ -63,11 +33,12 @@ static void tick(int number)
 {
     static long calls;
     static int ticks;
+    const struct trace *now = &guard_watched->traces[0];
     (void)number;
-    ticks = trace->inside && trace->calls == calls ? ticks + 1 : 0;
-    calls = trace->calls;
+    ticks = now->inside && now->calls == calls ? ticks + 1 : 0;
+    calls = now->calls;
     if (ticks <= TICKS * GUARD_CALL_LIMIT) return;
-    trace->stuck = 1;
+    guard_watched->stuck = 1;
     raise(SIGKILL);
 }
 
@@ -121,7 +92,7 @@ static _Noreturn void child(guard_work *work, const void *context, pid_t parent,
                                  status ? error.message : "", "reply", reply ? reply : json_null());
     char *text = document ? result_text(document) : NULL;
     const size_t length = text ? strlen(text) : 0;
-    trace->complete = 1;
+    guard_watched->complete = 1;
     for (size_t sent = 0; sent < length;) {
         const ssize_t n = write(answer, text + sent, length - sent);
         if (n < 0 && errno != EINTR) break;
@@ -206,28 +177,11 @@ static enum ending listen_to(pid_t pid, double limit, struct stream *streams, in
     return ending;
 }
 
-static void place(const struct trace *seen, char *text, size_t size)
-{
-    char arguments[80] = "";
-    if (!seen->function) {
-        snprintf(text, size, "%s", "");
-        return;
-    }
-    if (isfinite(seen->b))
-        snprintf(arguments, sizeof arguments, "(%.9g, %.9g, %d)", seen->a, seen->b, seen->dim);
-    else if (isfinite(seen->a))
-        snprintf(arguments, sizeof arguments, "(%.9g, %d)", seen->a, seen->dim);
-    else if (seen->dim)
-        snprintf(arguments, sizeof arguments, "(%d)", seen->dim);
-    snprintf(text, size, " %s %s%s, call %ld", seen->inside ? "in" : "after", seen->function,
-             arguments, seen->calls);
-}
-
-static void explain(struct guard_verdict *verdict, const struct trace *seen, enum ending ending,
+static void explain(struct guard_verdict *verdict, const struct watch *seen, enum ending ending,
                     double limit, int outcome)
 {
     char where[200];
-    place(seen, where, sizeof where);
+    guard_place(&seen->traces[0], where, sizeof where);
     char *text = verdict->reason;
     const size_t size = sizeof verdict->reason;
     if (seen->stuck)
@@ -286,12 +240,12 @@ static enum status watch(pid_t pid, double limit, struct stream *streams,
     output_guard(pid);
     const enum ending ending = listen_to(pid, limit, streams, &outcome);
     output_guard(0);
-    const bool sound =
-        ending == ENDED && WIFEXITED(outcome) && WEXITSTATUS(outcome) == 0 && trace->complete;
-    verdict->begun = trace->begun;
+    const bool sound = ending == ENDED && WIFEXITED(outcome) && WEXITSTATUS(outcome) == 0 &&
+                       guard_watched->complete;
+    verdict->begun = guard_watched->begun;
     take_printed(verdict, &streams[1]);
     if (sound && take_answer(verdict, &streams[0], &status, error)) return status;
-    explain(verdict, trace, ending, limit, outcome);
+    explain(verdict, guard_watched, ending, limit, outcome);
     return verdict->begun ? STATUS_CHECK_FAILED : STATUS_BAD_INPUT;
 }
 
@@ -327,16 +281,13 @@ static enum status start(guard_work *work, const void *context, double limit,
 enum status guard_run(guard_work *work, const void *context, double limit,
                       struct guard_verdict *verdict, struct error *error)
 {
+    struct watch *before = guard_watched, *mine = guard_watch_make(error);
     *verdict = (struct guard_verdict){0};
-    void *shared =
-        mmap(NULL, sizeof *trace, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-    if (shared == MAP_FAILED)
-        return error_set(error, STATUS_ENVIRONMENT, "no memory: %s", strerror(errno));
-    trace = shared;
-    *trace = (struct trace){.a = (double)NAN, .b = (double)NAN};
+    if (!mine) return STATUS_ENVIRONMENT;
+    guard_watched = mine;
     const enum status status = start(work, context, limit, verdict, error);
-    trace = &nowhere;
-    munmap(shared, sizeof *trace);
+    guard_watched = before;
+    munmap(mine, sizeof *mine);
     return status;
 }
 

@@ -39,4 +39,12 @@ enum status guard_run(guard_work *work, const void *context, double limit,
                       struct guard_verdict *verdict, struct error *error);
 void guard_free(struct guard_verdict *verdict);
 
+/* From here on this process is the child of one that only waits for it: which ends as this one
+ * does, but where foreign code has crashed, ended the process or does not come back from a call for
+ * GUARD_WATCH_LIMIT seconds, says so of the kernel called subject and ends with
+ * STATUS_CHECK_FAILED. Before there are threads and open files; calls after the first one add their
+ * subjects. STATUS_ENVIRONMENT: no process, no memory. */
+enum { GUARD_WATCH_LIMIT = 5 };
+enum status guard_watch(const char *subject, struct error *error);
+
 #endif

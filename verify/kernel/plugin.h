@@ -5,6 +5,7 @@
  *     cc -O2 -shared -fPIC -I DIR_OF_THIS_HEADER my_kernel.c -o my_kernel.so -lm
  *     sphproof kernel ./my_kernel.so --dim 3          its certificate, exit status 1 if it is wrong
  *     sphproof verify kernels --kernel-plugin ./my_kernel.so
+ *     sphproof run sod kernel=./my_kernel.so          and so wherever a kernel is named
  *
  * The kernel is W(r,h) = C_d h^-d w(q), q = r/h, where h is the support radius and d = dim = 1, 2
  * or 3. A dimension that is not asked for is not called. What you supply is checked; what you leave
@@ -12,7 +13,8 @@
  * value, however often they are called. They run in a process of their own: one that crashes, ends
  * the process or does not return within a second is a kernel that fails (exit status 1), or no
  * kernel (2) if it does so in its first calls; what it prints is kept apart from results. If w and
- * dw are computed in single precision, say so: sphproof kernel F.so --precision single. */
+ * dw are computed in single precision, say so: sphproof kernel F.so --precision single. In runs with
+ * --threads several threads call w and dw at once. */
 #ifndef SPHPROOF_PLUGIN_H
 #define SPHPROOF_PLUGIN_H
 

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "guest.h"
 #include "integrator.h"
 #include "problem.h"
 #include "text.h"
@@ -150,6 +151,21 @@ static enum status read_choices(const struct setting_key *key, const char *text,
     return STATUS_OK;
 }
 
+static enum status read_choice(enum setting which, const char *text, const char *where, int *choice,
+                               struct error *error)
+{
+    const struct setting_key *key = &setting_keys[which];
+    if (which == SETTING_kernel && guest_is_path(text)) {
+        struct error reason;
+        if (!guest_find(text, choice, &reason)) return STATUS_OK;
+        return error_set(error, reason.status, "%s%s%s", where ? where : "", where ? ": " : "",
+                         reason.message);
+    }
+    *choice = family_index(key->family, text);
+    return *choice < 0 ? text_unknown_member(error, where, key->name, text, key->family)
+                       : STATUS_OK;
+}
+
 enum status settings_set(struct settings *settings, enum setting which, const char *text,
                          enum setting_source source, const char *where, struct error *error)
 {
@@ -164,9 +180,7 @@ enum status settings_set(struct settings *settings, enum setting which, const ch
     }
     switch (key->type) {
     case SETTING_CHOICE:
-        value.choice = family_index(key->family, text);
-        if (value.choice < 0)
-            return text_unknown_member(error, where, key->name, text, key->family);
+        if (read_choice(which, text, where, &value.choice, error)) return error->status;
         value.given = 0;
         good = true;
         break;
@@ -273,14 +287,13 @@ bool settings_foreign(const struct settings *settings, enum setting key)
 }
 
 /* What the scheme's keys say; what they leave open is told apart. */
-static enum status read_scheme(const struct settings *settings, struct scheme *scheme,
+static enum status read_scheme(const struct settings *settings, int dim, struct scheme *scheme,
                                struct scheme_open *open, struct error *error)
 {
 #define REAL_OF(key)   settings_real(settings, SETTING_##key)
 #define CHOICE_OF(key) settings_choice(settings, SETTING_##key)
 #define IS_AUTO(key)   settings->value[SETTING_##key].automatic
-    const struct member *kernel = kernel_family.members[CHOICE_OF(kernel)],
-                        *integrator = integrator_family.members[CHOICE_OF(integrator)];
+    const struct member *integrator = integrator_family.members[CHOICE_OF(integrator)];
     *scheme = (struct scheme){
         .gradient = (enum gradient)CHOICE_OF(gradient),
         .formulation = (enum formulation)CHOICE_OF(formulation),
@@ -318,7 +331,7 @@ static enum status read_scheme(const struct settings *settings, struct scheme *s
         .pair_width = IS_AUTO(pair_width),
         .h_method = IS_AUTO(h_method),
     };
-    return kernel_select(&scheme->kernel, kernel->name, (int)REAL_OF(sinc_n), error);
+    return guest_select(&scheme->kernel, CHOICE_OF(kernel), (int)REAL_OF(sinc_n), dim, error);
 #undef REAL_OF
 #undef CHOICE_OF
 #undef IS_AUTO
@@ -339,7 +352,7 @@ static void write_scheme(struct settings *settings, const struct scheme *scheme)
     const struct {
         enum setting key;
         int choice;
-    } choices[] = {{SETTING_kernel, family_index(&kernel_family, scheme->kernel.member.name)},
+    } choices[] = {{SETTING_kernel, kernel_index(scheme->kernel.member.name)},
                    {SETTING_gradient, (int)scheme->gradient},
                    {SETTING_volume_element, (int)scheme->volume_element},
                    {SETTING_viscosity, (int)scheme->viscosity},
@@ -356,7 +369,7 @@ enum status settings_scheme(struct settings *settings, int dim, struct scheme *s
                             struct error *error)
 {
     struct scheme_open open;
-    if (read_scheme(settings, scheme, &open, error)) return error->status;
+    if (read_scheme(settings, dim, scheme, &open, error)) return error->status;
     scheme_default(scheme, &open, dim);
     write_scheme(settings, scheme);
     return scheme_check(scheme, dim, error);

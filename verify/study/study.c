@@ -93,7 +93,9 @@ static enum status plan_combination(struct study *study, size_t c, struct pool *
     struct error reason = {0};
     if (sweep_apply(&study->sweep, c, &base, error)) return error->status;
     if (make_runs(study, c, &base, &reason)) {
-        if (study->sweep.count == 1) return error_set(error, reason.status, "%s", reason.message);
+        const bool refused = reason.status == STATUS_CHECK_FAILED; /* a plug-in: no combination */
+        if (study->sweep.count == 1 || refused)
+            return error_set(error, reason.status, "%s", reason.message);
         result->excluded = true;
         memcpy(result->message, reason.message, sizeof result->message);
         return STATUS_OK;

@@ -42,7 +42,10 @@ static enum status add_value(struct sweep *sweep, const char *word, struct error
     if (key->count == SWEEP_VALUES_MAX || strlen(word) >= SETTING_TEXT_MAX)
         return error_set(error, STATUS_BAD_INPUT, "--vary %s: at most %d values",
                          setting_keys[key->key].name, SWEEP_VALUES_MAX);
-    strcpy(key->values[key->count++], word);
+    if (key->key == SETTING_kernel)
+        settings_text(&trial, key->key, key->values[key->count++]); /* a plug-in with its content */
+    else
+        strcpy(key->values[key->count++], word);
     return STATUS_OK;
 }
 

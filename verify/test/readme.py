@@ -47,6 +47,8 @@ PLACES = {
     "sphproof converge CASE --n 402,804,1206,1602 [KEYS]": "sphproof converge sod --n 402,804,1206,1602",
     "sphproof diff OLD.json NEW.json": "sphproof run sod --json a.json; sphproof diff a.json a.json",
     "sphproof kernel ./mine.so --dim 3": "sphproof kernel build/verify/examples/wendland_c8.so --dim 3",
+    "sphproof converge sod kernel=./mine.so":
+        "sphproof converge sod kernel=build/verify/examples/wendland_c8.so --n 100,200,300,400  # exit 1",  # others' gates
     "sphproof gradient cloud.csv --operator ia --kernel wendland_c2 --dim 2 --eta 2":
         "printf 'x,y,volume,f\\n0,0,1,2\\n1,0,1,3\\n0,1,1,4\\n1,1,1,5\\n' >cloud.csv; "
         "sphproof gradient cloud.csv --operator ia --kernel wendland_c2 --dim 2 --eta 2",

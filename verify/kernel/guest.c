@@ -1,0 +1,230 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "guest.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "certificate.h"
+#include "guard.h"
+#include "user_kernel.h"
+
+enum { HASH_DIGITS = 16, PATH_SIZE = 200, NAME_SIZE = PATH_SIZE + 1 + HASH_DIGITS + 1 };
+
+struct guest {
+    char path[PATH_SIZE], name[NAME_SIZE];
+    struct kernel kernel;
+    struct user_kernel user[KERNEL_DIM_MAX + 1]; /* loaded once for each dimension */
+};
+
+static struct guest guests[KERNEL_GUESTS_MAX];
+static int guest_count;
+static bool allowed, any_certificate;
+
+void guest_allow(bool uncertified)
+{
+    allowed = true;
+    any_certificate = uncertified;
+}
+
+/* The digits behind a path, NULL: there are none. */
+static const char *hash_of(const char *word)
+{
+    const char *at = strrchr(word, '@');
+    if (!at || strlen(at + 1) != HASH_DIGITS) return NULL;
+    for (const char *c = at + 1; *c; c++)
+        if (!isxdigit((unsigned char)*c)) return NULL;
+    return at + 1;
+}
+
+bool guest_is_path(const char *word)
+{
+    const char *hash = hash_of(word);
+    char path[PATH_SIZE];
+    snprintf(path, sizeof path, "%.*s", (int)(hash ? hash - 1 - word : PATH_SIZE), word);
+    return allowed && user_kernel_is_path(path);
+}
+
+/* Fowler, Noll & Vo's FNV-1a of the file's content, 64 bits. */
+static enum status hash_file(const char *path, char digits[HASH_DIGITS + 1], struct error *error)
+{
+    unsigned char bytes[4096];
+    uint64_t hash = UINT64_C(0xcbf29ce484222325);
+    struct stat is;
+    FILE *file = stat(path, &is) ? NULL : fopen(path, "rb");
+    if (!file) return error_set(error, STATUS_BAD_INPUT, "kernel '%s': %s", path, strerror(errno));
+    if (!S_ISREG(is.st_mode)) {
+        fclose(file);
+        return error_set(error, STATUS_BAD_INPUT,
+                         "kernel '%s' is no file; allowed: a shared object", path);
+    }
+    for (size_t n; (n = fread(bytes, 1, sizeof bytes, file)) > 0;)
+        for (size_t i = 0; i < n; i++) hash = (hash ^ bytes[i]) * UINT64_C(0x100000001b3);
+    fclose(file);
+    snprintf(digits, HASH_DIGITS + 1, "%016" PRIx64, hash);
+    return STATUS_OK;
+}
+
+enum status guest_find(const char *word, int *index, struct error *error)
+{
+    char digits[HASH_DIGITS + 1], path[PATH_SIZE], name[NAME_SIZE];
+    const char *hash = hash_of(word);
+    const size_t length = hash ? (size_t)(hash - 1 - word) : strlen(word);
+    if (length >= sizeof path)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "kernel '%.60s...': a path of %zu characters; allowed: up to %d", word,
+                         length, PATH_SIZE - 1);
+    snprintf(path, sizeof path, "%.*s", (int)length, word);
+    if (hash_file(path, digits, error)) return error->status;
+    if (hash && strcmp(hash, digits) != 0)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "kernel '%s' is not the one that was meant: its content is %s, not %s",
+                         path, digits, hash);
+    snprintf(name, sizeof name, "%s@%s", path, digits);
+    if ((*index = kernel_index(name)) >= 0) return STATUS_OK;
+    if (guest_count == KERNEL_GUESTS_MAX)
+        return error_set(error, STATUS_BAD_INPUT, "kernel '%s': allowed: up to %d plug-ins", path,
+                         KERNEL_GUESTS_MAX);
+    struct guest *guest = &guests[guest_count];
+    strcpy(guest->path, path);
+    strcpy(guest->name, name);
+    guest->kernel.member = (struct member){guest->name, "user's kernel", ""};
+    if (guard_watch(guest->path, error)) return error->status;
+    guest_count++;
+    *index = kernel_add(&guest->kernel);
+    return STATUS_OK;
+}
+
+/* --- the certificate, in another process ------------------------------------------------------ */
+
+struct errand {
+    const char *path;
+    int dim;
+};
+
+/* ["name of a check that fails", ...] */
+static enum status certify(const void *context, json_t **reply, struct error *error)
+{
+    const struct errand *errand = context;
+    struct user_kernel user;
+    struct certificate *certificate = calloc(1, sizeof *certificate);
+    if (!certificate) return error_set(error, STATUS_ENVIRONMENT, "no memory for a certificate");
+    enum status status = user_kernel_load(&user, errand->path, errand->dim, NULL, error);
+    if (!status) {
+        const struct terms terms = user_kernel_terms(&user, errand->dim);
+        status = certificate_measure(certificate, &user.kernel, errand->dim, &terms, error);
+        *reply = json_array();
+        for (size_t k = 0; k < certificate->figure_count && !status; k++)
+            if (!certificate->figures[k].passed)
+                json_array_append_new(*reply, json_string(certificate->figures[k].property->name));
+        if (!status) certificate_free(certificate);
+        user_kernel_unload(&user);
+    }
+    free(certificate);
+    return status;
+}
+
+/* What speaks against it; "": nothing. */
+static void find_faults(const struct guard_verdict *verdict, char *text, size_t size)
+{
+    size_t k;
+    json_t *name;
+    text[0] = '\0';
+    json_array_foreach(verdict->reply, k, name)
+    {
+        const size_t used = strlen(text);
+        if (!strstr(text, json_string_value(name)))
+            snprintf(text + used, size - used, "%s%s",
+                     used ? ", " : "checks that fail: ", json_string_value(name));
+    }
+    if (!text[0] && verdict->printed_bytes)
+        snprintf(text, size, "it prints, which would mix with results: %.80s", verdict->printed);
+}
+
+static enum status check(const struct guest *guest, int dim, struct error *error)
+{
+    char faults[300];
+    const struct errand errand = {guest->path, dim};
+    struct guard_verdict verdict;
+    enum status status = guard_run(certify, &errand, GUARD_LIMIT, &verdict, error);
+    if (!verdict.ended && verdict.reason[0])
+        error_set(error, status, "kernel '%s' is refused: it %s", guest->path, verdict.reason);
+    if (!status) find_faults(&verdict, faults, sizeof faults);
+    if (!status && faults[0] && any_certificate)
+        fprintf(stderr, "sphproof: kernel '%s' is used although its certificate is refused: %s\n",
+                guest->path, faults);
+    else if (!status && faults[0])
+        status =
+            error_set(error, STATUS_CHECK_FAILED,
+                      "kernel '%s' is refused in dimension %d: %s (`sphproof kernel %s --dim %d` "
+                      "shows all; --uncertified takes it nevertheless)",
+                      guest->path, dim, faults, guest->path, dim);
+    guard_free(&verdict);
+    return status;
+}
+
+/* --- in this process -------------------------------------------------------------------------- */
+
+/* Its standard deviation over its support radius, along one direction. */
+static double deviation(const struct kernel *kernel, int dim)
+{
+    struct pieces pieces;
+    struct measure_moments moments;
+    struct error none;
+    if (pieces_find(&pieces, kernel, dim, NULL, &none)) return (double)NAN;
+    measure_moments(&pieces, &moments);
+    pieces_free(&pieces);
+    return sqrt(moments.second);
+}
+
+/* What eta is where nobody says it: that which makes it as wide as the cubic spline at its own, by
+ * the standard deviations of both (Dehnen & Aly 2012, section 2.4), to three places. */
+static double usual_eta(const struct kernel *kernel, int dim)
+{
+    struct kernel cubic;
+    kernel_select(&cubic, "cubic_spline", 5, NULL);
+    const double eta = (dim == 1 ? cubic.default_eta : cubic.cloud_eta) * deviation(&cubic, dim) /
+                       deviation(kernel, dim);
+    return isfinite(eta) ? round(1000 * eta) / 1000 : cubic.default_eta;
+}
+
+static enum status load(struct guest *guest, int dim, struct error *error)
+{
+    struct user_kernel *user = &guest->user[dim];
+    if (user_kernel_load(user, guest->path, dim, NULL, error)) return error->status;
+    struct kernel *kernel = &guest->kernel, *loaded = &user->kernel;
+    kernel->w = loaded->w;
+    kernel->dw = loaded->dw;
+    kernel->plugin_w = loaded->plugin_w;
+    kernel->plugin_dw = loaded->plugin_dw;
+    kernel->plugin_dw_dh = NULL; /* it agrees with w and dw, or the certificate says so */
+    kernel->knot_count = loaded->knot_count;
+    kernel->knots = loaded->knots;
+    kernel->constant[dim] = loaded->constant[dim];
+    kernel->smoothness[dim] = loaded->smoothness[dim];
+    if (dim == 1)
+        kernel->default_eta = usual_eta(loaded, dim);
+    else
+        kernel->cloud_eta = usual_eta(loaded, dim);
+    return STATUS_OK;
+}
+
+enum status guest_prepare(int index, int dim, struct error *error)
+{
+    struct guest *guest = guests + index - (int)kernel_family.n;
+    if (index < (int)kernel_family.n || guest->user[dim].library) return STATUS_OK;
+    if (check(guest, dim, error)) return error->status;
+    return load(guest, dim, error);
+}
+
+enum status guest_select(struct kernel *kernel, int index, int sinc_order, int dim,
+                         struct error *error)
+{
+    if (guest_prepare(index, dim, error)) return error->status;
+    return kernel_select(kernel, kernel_family.members[index]->name, sinc_order, error);
+}

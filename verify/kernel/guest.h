@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * A user's kernels in runs: wherever a kernel is named, the path of a shared object (plugin.h) may
+ * stand. It becomes a guest of kernel_family for this process, called PATH@HASH after the content
+ * of its file, so that documents and caches tell one from another; PATH@HASH may be typed as well
+ * and then wants that content. Its certificate is made first, in a process of its own (guard.h);
+ * then it is called in this one, which is watched from the first guest on (guard_watch). */
+#ifndef SPHPROOF_GUEST_H
+#define SPHPROOF_GUEST_H
+
+#include <stdbool.h>
+
+#include "kernel.h"
+
+/* Guests are welcome from here on; without this (tests, fuzzing) no path is looked at.
+ * uncertified: also those whose certificate fails. */
+void guest_allow(bool uncertified);
+
+/* Is word a path (PATH or PATH@HASH), not the name of a kernel? */
+bool guest_is_path(const char *word);
+
+/* The place of the kernel at that path in kernel_family.members. STATUS_BAD_INPUT: no such file,
+ * other content than HASH says, too many guests. */
+enum status guest_find(const char *word, int *index, struct error *error);
+
+/* Makes the guest at that place ready for use in dim dimensions; built-in kernels are.
+ * STATUS_CHECK_FAILED: it is refused, with the checks of its certificate that fail;
+ * STATUS_BAD_INPUT: it is no kernel. */
+enum status guest_prepare(int index, int dim, struct error *error);
+
+/* guest_prepare, then kernel_select, of the kernel at that place. */
+enum status guest_select(struct kernel *kernel, int index, int sinc_order, int dim,
+                         struct error *error);
+
+#endif
