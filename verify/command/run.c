@@ -41,8 +41,9 @@ static void print_head(const struct run_settings *settings, const struct run_res
 static void print_start(const struct run_result *result)
 {
     if (isnan(result->start.density)) return;
-    printf("start: a glass; rms of its density (wendland_c4, eta 3.6) %.2g, of h grad 1 %.2g\n",
-           result->start.density, result->start.gradient);
+    printf("start: a glass; rms of its density (wendland_c4, eta 3.6) %.2g, of h grad 1 %.2g; "
+           "distances of nearest neighbours +-%.2g %%\n",
+           result->start.density, result->start.gradient, 100 * result->start.spread);
 }
 
 static void print_norms(const char *name, const struct norms *e, const char *unit)
@@ -340,5 +341,5 @@ const struct command command_run = {
                 "sphproof run sod left=\"1 0.75 1\" t_end=0.15 --json -\n"
                 "sphproof run ./my_tube.ini --snapshot end.csv\n"
                 "sphproof run sedov_3d n=64^3 --checkpoint sedov.state --resume\n"
-              "sphproof run sound_wave --explain",
+                "sphproof run sound_wave --explain",
 };

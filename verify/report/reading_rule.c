@@ -60,6 +60,7 @@ static const struct reading_rule rules[] = {
     {"regularity", "gradient", 0, READING_PART, 0.1, 1e-12},
     {"regularity", "spread", 0, READING_PART, 0.1, 1e-12},
     {"regularity", "*", OUT}, /* nearest: better is neither more nor less; pairs are few */
+    {"start", "*", 0, READING_PART, 0.1, 1e-12},
     {"matrix", "*", 0, READING_PART, 0.1, 1e-6}, /* of matrices; angles in degrees */
     {"floors", "density", 0, READING_CHECK, 0, 1e-13},
     {"floors", "gradient", 0, READING_CHECK, 0, 1e-13},

@@ -7,9 +7,11 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "cache.h"
 #include "grid.h"
 #include "kernel.h"
 #include "regularity.h"
+#include "relax_store.h"
 
 enum { SWEEPS = 60 };
 static const double reach = 2.5;                      /* spacings */
@@ -131,7 +133,24 @@ static double root(double volume, int dim)
     return dim == 2 ? sqrt(volume) : cbrt(volume);
 }
 
-enum status relax_points(const struct relax_room *room, size_t n, double *const x[3],
+/* All that decides where points end: the box, where they begin, and their room there, which stands
+ * for that elsewhere. */
+static uint64_t content_of(const struct relax_room *room, size_t n, double *const x[3])
+{
+    const size_t dim = (size_t)room->box.dim;
+    uint64_t hash = cache_hash(CACHE_HASH, room->box.lo, dim * sizeof(double));
+    hash = cache_hash(hash, room->box.hi, dim * sizeof(double));
+    for (size_t d = 0; d < dim; d++) hash = cache_hash(hash, x[d], n * sizeof(double));
+    for (size_t i = 0; i < n; i++) {
+        double at[3] = {0};
+        for (size_t d = 0; d < dim; d++) at[d] = x[d][i];
+        const double volume = room->volume(room->context, at);
+        hash = cache_hash(hash, &volume, sizeof volume);
+    }
+    return hash;
+}
+
+static enum status relax(const struct relax_room *room, size_t n, double *const x[3],
                          struct error *error)
 {
     struct cloud cloud;
@@ -152,6 +171,16 @@ enum status relax_points(const struct relax_room *room, size_t n, double *const 
     return status;
 }
 
+enum status relax_points(const struct relax_room *room, size_t n, double *const x[3],
+                         struct error *error)
+{
+    const uint64_t content = content_of(room, n, x);
+    if (relax_store_find(content, room->box.dim, n, x)) return STATUS_OK;
+    const enum status status = relax(room, n, x, error);
+    if (!status) relax_store_keep(content, room->box.dim, n, x);
+    return status;
+}
+
 enum status relax_measure(const struct domain *box, size_t n, const double *const x[3],
                           const double *volume, struct relax_quality *quality, struct error *error)
 {
@@ -169,7 +198,7 @@ enum status relax_measure(const struct domain *box, size_t n, const double *cons
                                            .kernel = &kernel};
     enum status status = kernel_select(&kernel, "wendland_c4", 0, error);
     if (!status) status = regularity_measure(&cloud, &found, error);
-    if (!status) *quality = (struct relax_quality){found.density, found.gradient};
+    if (!status) *quality = (struct relax_quality){found.density, found.gradient, found.spread};
     free(width);
     return status;
 }

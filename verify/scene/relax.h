@@ -19,12 +19,14 @@ struct relax_room {
 };
 
 /* How good points are, by sums with the kernel wendland_c4 at eta = 3.6: rms of what sum V W
- * departs from 1, and of h |sum V grad W|, 0 on a lattice. Random points: about 0.15 and 0.3. */
+ * departs from 1, and of h |sum V grad W|, 0 on a lattice; and the deviation of the distances of
+ * nearest neighbours, over their mean. Random points: about 0.15, 0.3 and 0.5. */
 struct relax_quality {
-    double density, gradient;
+    double density, gradient, spread;
 };
 
-/* Moves n points, sweep by sweep. STATUS_BAD_INPUT: too few for a neighbourhood; or no memory. */
+/* Moves n points, sweep by sweep; those that have been moved so before are read where they are
+ * kept (relax_store.h). STATUS_BAD_INPUT: too few for a neighbourhood; or no memory. */
 enum status relax_points(const struct relax_room *room, size_t n, double *const x[3],
                          struct error *error);
 

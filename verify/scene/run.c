@@ -78,7 +78,7 @@ static enum status measure_start(struct run_result *result, const struct initial
     bool good = settings_choice(&result->settings, SETTING_lattice) == LATTICE_GLASS &&
                 !result->settings.file[0];
     for (int d = 0; d < p->domain.dim; d++) good &= p->boundary[d] == BOUNDARY_PERIODIC;
-    result->start = (struct relax_quality){(double)NAN, (double)NAN};
+    result->start = (struct relax_quality){(double)NAN, (double)NAN, (double)NAN};
     if (!good) return STATUS_OK;
     const double *const x[3] = {initial->x[0], initial->x[1], initial->x[2]};
     double *volume = malloc(initial->n * sizeof *volume);

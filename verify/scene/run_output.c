@@ -95,9 +95,10 @@ void run_add_plan(const struct run_settings *settings, const struct run_result *
     json_object_set_new(document, "window", window_json(&result->problem.window));
     if (!isnan(result->start.density))
         json_object_set_new(document, "start",
-                            json_pack("{s:o, s:o}", "density_rms",
+                            json_pack("{s:o, s:o, s:o}", "density_rms",
                                       result_number(result->start.density), "gradient_rms",
-                                      result_number(result->start.gradient)));
+                                      result_number(result->start.gradient), "spread",
+                                      result_number(result->start.spread)));
     json_object_set_new(document, "plan", plan_json(result));
     json_object_set_new(document, "estimate",
                         json_pack("{s:o, s:o, s:o}", "memory_bytes",

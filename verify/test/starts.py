@@ -127,6 +127,7 @@ def glasses(folder):
         demand(abs(error / glass["start"]["density_rms"] - 1) <= 0.3, "%s: %r, %r" % (case, glass["start"], error))
     random, _ = start("rest_2d", "n=24^2", "lattice=random")
     demand(random["errors"]["density"]["l2"] >= 0.05 and "start" not in random, "random points: %r" % random["errors"])
+    demand(0.01 < glass["start"]["spread"] < 0.2, "distances of neighbours in a glass: %r" % glass["start"])
     again = start("rest_2d", "n=24^2", "lattice=glass")[1]
     demand(start("rest_2d", "n=24^2", "lattice=glass")[1] == again, "a glass is not repeated")
     demand(start("rest_2d", "n=24^2", "lattice=glass", "seed=2")[1] != again, "the seed changes nothing")
@@ -168,8 +169,33 @@ def hdf5(folder):
         demand(list(gas["Velocities"][:, 0]) == state["vx"] and not gas["Velocities"][:, 2].any(), "velocities")
 
 
+def kept(folder):
+    """A glass is relaxed once, and read after that; one that is damaged is made again."""
+    def entries():
+        place = os.path.join(folder, "sphproof", "glass")
+        return [os.path.join(at, name) for at, _, names in os.walk(place) for name in names]
+
+    def points(*words):
+        path = os.path.join(folder, "kept.csv")
+        call("run", "rest_2d", "n=32^2", "t_end=0", "lattice=glass", *words, "--snapshot", path)
+        return read(path)
+
+    before = entries()
+    first = points()
+    new = [e for e in entries() if e not in before]
+    demand(len(new) == 1, "a glass is not kept: %r" % new)
+    made = os.stat(new[0]).st_ino
+    demand(points() == first and os.stat(new[0]).st_ino == made, "a glass that is kept is not read, or is another one")
+    text = read(new[0])
+    write(new[0], text[:len(text) // 2])
+    demand(points() == first and read(new[0]) == text, "a damaged glass is used")
+    demand(points("seed=2") != first and len(entries()) == len(before) + 2, "glasses of two seeds are one")
+
+
 def main():
     with tempfile.TemporaryDirectory() as folder:
+        os.environ["XDG_CACHE_HOME"] = folder
+        kept(folder)
         files(folder)
         ends(folder)
         glasses(folder)
