@@ -6,6 +6,7 @@
 
 #include "check.h"
 #include "lattice_waves.h"
+#include "stress_noise.h"
 
 /* What the greatest frequency of a wave is compared with: sound, of (gamma P/rho)^(1/2). */
 struct lattice_subject {
@@ -47,6 +48,22 @@ static void measure_wave(struct check_run *run, const struct lattice_subject *su
                   dim, whole[0], whole[1]);
 }
 
+/* Noise runs with leapfrog: a step that is short enough keeps noise as it is; one that is so long
+ * that already the first look finds nothing whole is growth, too. */
+static void measure_noise(struct check_run *run, const char *cfl, bool grows)
+{
+    char *keys[] = {"n=10^2",         "jitter=1e-6",         "viscosity=none", "energy=internal",
+                    "gamma=1.0001",   "kernel=cubic_spline", "eta=2.4",        "gradient=standard",
+                    "lattice=square", "integrator=leapfrog", (char *)cfl};
+    struct run_settings settings;
+    struct error error = {0};
+    if (run_prepare(&settings, "rest_2d", sizeof keys / sizeof *keys, keys, &error))
+        check_measure(run, 1, 0, 0, "%s", error.message);
+    settings.threads = 1;
+    check_measure(run, stress_noise_grows(&settings, 40) != grows, 0, 0, "noise with %s %s", cfl,
+                  grows ? "grows" : "does not grow");
+}
+
 static void measure(struct check_run *run, const void *subject)
 {
     const struct lattice_subject *of = subject ? subject : &right;
@@ -54,6 +71,8 @@ static void measure(struct check_run *run, const void *subject)
     measure_wave(run, of, 2, 20, (const int[]){1, 1, 0}, "standard");
     measure_wave(run, of, 2, 20, (const int[]){1, 0, 0}, "ia");
     measure_wave(run, of, 3, 12, (const int[]){1, 0, 0}, "standard");
+    measure_noise(run, "cfl=0.5", false);
+    measure_noise(run, "cfl=3", true);
 }
 
 static const struct lattice_subject isothermal = {0.7745966692414834}; /* (3/5)^(1/2) */

@@ -297,6 +297,7 @@ const struct stress_group stress_groups[] = {
      .column_title = "viscosity",
      .row_family = &integrator_family,
      .columns = ENTRIES({"none", "viscosity=none", true},
+                        {"none, gamma 1.0001", "viscosity=none;gamma=1.0001", true},
                         {"constant", "viscosity=constant;alpha=1", true}),
      .bound = 0.1},
 };

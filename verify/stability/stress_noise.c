@@ -39,7 +39,11 @@ double stress_noise_after(struct run_settings settings, double time)
 
 enum { EARLY = 20 }; /* spacings/c: the noise has found its balance of motion and pressure */
 
+/* From a jitter of 1e-6: it has grown already, and may not double again. */
+static const double much = 1e-3;
+
 bool stress_noise_grows(const struct run_settings *settings, double time)
 {
-    return !(stress_noise_after(*settings, time) <= 2 * stress_noise_after(*settings, EARLY));
+    const double early = stress_noise_after(*settings, EARLY);
+    return !(early <= much) || !(stress_noise_after(*settings, time) <= 2 * early);
 }
