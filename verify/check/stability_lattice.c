@@ -49,7 +49,7 @@ static void measure_wave(struct check_run *run, const struct lattice_subject *su
 }
 
 /* Noise runs with leapfrog: a step that is short enough keeps noise as it is; one that is so long
- * that already the first look finds nothing whole is growth, too. */
+ * that all is over at the first look is growth, too. */
 static void measure_noise(struct check_run *run, const char *cfl, bool grows)
 {
     char *keys[] = {"n=10^2",         "jitter=1e-6",         "viscosity=none", "energy=internal",
