@@ -9,6 +9,7 @@
 
 #include "failure.h"
 #include "problem.h"
+#include "value.h"
 
 /* Settings that make another problem of a case, beside a problem's own; the others are what one
  * wants to compare. */
@@ -173,6 +174,26 @@ static void leave_out_broken(struct diff *diff)
     free(out);
 }
 
+static void leave_out_times(struct diff *diff)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < diff->count; i++) {
+        const struct difference *d = &diff->list[i];
+        const struct reading *any = d->new ? d->new : d->old;
+        if (any->kind != READING_TIMING) diff->list[kept++] = *d;
+    }
+    diff->left_out_times = diff->count - kept;
+    diff->count = kept;
+}
+
+/* Do both documents name a processor, and not the same? */
+static bool of_two_processors(const json_t *old, const json_t *new)
+{
+    const char *before = value_text(json_object_get(old, "machine"), "processor");
+    const char *after = value_text(json_object_get(new, "machine"), "processor");
+    return *before && *after && strcmp(before, after) != 0;
+}
+
 /* The status of a whole that fails because a part of it does is no regression of its own. */
 static void count_causes(struct diff *diff)
 {
@@ -239,6 +260,7 @@ enum status diff_documents(const json_t *old, const json_t *new, double threshol
         j += order >= 0;
     }
     leave_out_broken(diff);
+    if (of_two_processors(old, new)) leave_out_times(diff);
     count_causes(diff);
     conclude(diff);
     qsort(diff->list, diff->count, sizeof *diff->list, worst_first);

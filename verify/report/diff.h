@@ -23,6 +23,7 @@ struct diff {
     size_t count, verdicts[READING_VERDICTS], regressions;
     size_t compared; /* figures that both documents have and that say something about each other */
     size_t left_out; /* figures of runs that broke down: the breakdown is what is compared */
+    size_t left_out_times; /* of two processors, which say nothing about each other */
     char
         problem[256]; /* "", or why no figures can be compared: two cases, nothing to compare ... */
     bool well;        /* no problem, no regression, nothing vanished, nothing incomparable */

@@ -72,6 +72,9 @@ void diff_add_json(const struct diff *diff, json_t *document)
     json_object_set_new(summary, "regressions", json_integer((json_int_t)diff->regressions));
     json_object_set_new(summary, "compared", json_integer((json_int_t)diff->compared));
     json_object_set_new(summary, "left_out", json_integer((json_int_t)diff->left_out));
+    if (diff->left_out_times)
+        json_object_set_new(summary, "left_out_times",
+                            json_integer((json_int_t)diff->left_out_times));
     json_object_set_new(document, "status", json_string(diff->well ? "pass" : "fail"));
     json_object_set_new(document, "problem", json_string(diff->problem));
     json_object_set_new(document, "figures", diff_figures_json(diff, diff->count));
@@ -163,6 +166,8 @@ void diff_print(const struct diff *diff, double threshold, bool exact, bool colo
            diff->verdicts[VERDICT_INCOMPARABLE], diff->verdicts[VERDICT_VANISHED],
            diff->verdicts[VERDICT_NEW]);
     if (diff->left_out) printf("; %zu left out, of runs that broke down", diff->left_out);
+    if (diff->left_out_times)
+        printf("; %zu times left out, of two processors", diff->left_out_times);
     printf(
         "\n%snoise: errors 0.1 %%, orders their 95 %% intervals, figures of checks a factor of 3 "
         "or ten floors,\nCPU times a factor of 1.5, wall clock 3; timings and counts of work "

@@ -76,6 +76,9 @@ def test_runs(run):
     for factor, expected in ((1.2, "same"), (2, "worse"), (1000, "worse"), (0.4, "better")):
         verdict("CPU times %g" % factor, slow, cost, cpu, times(factor), 0, expected)
     verdict("tiny times", run, cost, cpu, lambda v: 1e-5, 0, "same")
+    got, figures, document = diff(slow, moved(moved(slow, cost, times(1000)), ["machine", "processor"], lambda v: "other"))
+    expect("times of two processors", got == 0 and cpu not in figures and name in figures
+           and document["summary"]["left_out_times"] > 0, document["summary"])
     pairs = ["cost", "pair_interactions"]
     verdict("more work", run, pairs, "cost.pair_interactions", times(2), 0, "worse")
     energy, name = ["conservation", "energy"], "conservation.energy"

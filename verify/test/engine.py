@@ -85,10 +85,34 @@ def test_engine():
     expect("another build", "not 0123" in stderr, stderr)
 
 
+BITS = "import math\n"\
+       "print([f(0.37 * k) for f in (math.sin, math.cos, math.log,\n"\
+       "lambda x: math.exp(-x), lambda x: x ** (1 / 3), lambda x: x ** -0.4) for k in range(1, 400)])"
+
+
+def test_mathematics():
+    """Where sin, exp and pow have other last bits, nothing is found that was kept elsewhere."""
+    for name in entries():
+        os.remove(name)
+    study(*QUICK, "--cache", "cache")
+    usual = subprocess.run([sys.executable, "-c", BITS], capture_output=True).stdout
+    kept = []
+    for words in ("", "-AVX2,-FMA", "-AVX2_Usable,-FMA_Usable"):
+        other = dict(os.environ, GLIBC_TUNABLES="glibc.cpu.hwcaps=" + words) if words else dict(os.environ)
+        bits = subprocess.run([sys.executable, "-c", BITS], capture_output=True, env=other).stdout
+        listed = subprocess.run([program, *QUICK, "--cache", "cache", "--list"], capture_output=True, text=True, env=other)
+        found = listed.stdout.count("\tkept\t")
+        kept.append(found)
+        expect("found with other mathematics (%s)" % words, found == 8 if not words else bits == usual or not found, found)
+    if kept == [8, 8, 8]:
+        print("skipped: nothing changes the mathematics of this C library")
+
+
 def main():
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
         test_engine()
+        test_mathematics()
         os.chdir("/")
     print("\n".join(faults) or "a study is computed elsewhere")
     return bool(faults)
