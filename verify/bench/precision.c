@@ -9,7 +9,9 @@
 
 #include "judged.h"
 #include "result.h"
+#include "run_job.h"
 #include "study.h"
+#include "value.h"
 
 const double precision_targets[PRECISION_TARGETS] = {0.01, 0.003, 0.001};
 
@@ -273,9 +275,21 @@ static enum status add_level(struct job *job, struct run_settings *settings, siz
     return reason.status == STATUS_CHECK_FAILED ? reason.status : STATUS_OK;
 }
 
+/* A scheme that has failed at one n is not averaged at others. */
+static void average_all(const struct precision *precision, struct bench_subject *subjects,
+                        struct job *jobs)
+{
+    for (size_t i = 0; i < precision->point_count; i++) {
+        bool failed = subjects[i].failure.status != STATUS_OK;
+        for (size_t k = 0; k < i; k++)
+            failed |= jobs[k].point->scheme == jobs[i].point->scheme && subjects[k].failure.status;
+        if (!failed) average(&jobs[i], precision->order, &subjects[i].failure);
+    }
+}
+
 /* Points of schemes that broke down go away, the others close up. */
 static void collect(struct precision *precision, const struct bench_subject *subjects,
-                    struct job *jobs)
+                    const struct job *jobs)
 {
     struct precision_point *points = precision->points;
     size_t kept = 0;
@@ -287,12 +301,10 @@ static void collect(struct precision *precision, const struct bench_subject *sub
     }
     for (size_t i = 0; i < precision->point_count; i++) {
         struct precision_scheme *scheme = &precision->schemes[points[i].scheme];
-        struct error failure = subjects[i].failure;
-        if (scheme->excluded[0] ||
-            (!failure.status && !average(&jobs[i], precision->order, &failure)))
-            continue;
+        const struct error *failure = &subjects[i].failure;
+        if (scheme->excluded[0] || !failure->status) continue;
         snprintf(scheme->excluded, sizeof scheme->excluded, "n = %g: %.450s",
-                 settings_real(&jobs[i].run.settings, SETTING_n), failure.message);
+                 settings_real(&jobs[i].run.settings, SETTING_n), failure->message);
     }
     for (size_t i = 0; i < precision->point_count; i++) {
         struct precision_scheme *scheme = &precision->schemes[points[i].scheme];
@@ -304,6 +316,39 @@ static void collect(struct precision *precision, const struct bench_subject *sub
         kept++;
     }
     precision->point_count = kept;
+}
+
+static bool same_processor(const struct precision_point *a, const struct precision_point *b)
+{
+    return a->processor == b->processor ||
+           (a->processor && b->processor && strcmp(a->processor, b->processor) == 0);
+}
+
+static bool of_one_processor(const struct precision *precision,
+                             const struct precision_scheme *scheme)
+{
+    const struct precision_point *first = &precision->points[0];
+    for (size_t i = 0; i < scheme->count; i++)
+        if (!same_processor(first, &precision->points[scheme->first + i])) return false;
+    return true;
+}
+
+/* A front for each processor: times of two say nothing about each other. front: room for n. */
+static void fronts(struct precision *precision, const double *cost, double *wrong, bool *front)
+{
+    const size_t n = precision->point_count;
+    struct precision_point *points = precision->points;
+    for (size_t first = 0; first < n; first++) {
+        bool seen = false;
+        double *own = malloc(n * sizeof *own);
+        for (size_t i = 0; i < first; i++) seen |= same_processor(&points[i], &points[first]);
+        for (size_t i = 0; own && i < n; i++)
+            own[i] = same_processor(&points[i], &points[first]) ? wrong[i] : (double)NAN;
+        if (own && !seen) precision_front(n, cost, own, front);
+        for (size_t i = 0; own && !seen && i < n; i++)
+            if (same_processor(&points[i], &points[first])) points[i].on_front = front[i];
+        free(own);
+    }
 }
 
 static enum status judge(struct precision *precision, struct error *error)
@@ -321,11 +366,8 @@ static enum status judge(struct precision *precision, struct error *error)
                        ? precision->points[i].error
                        : (double)NAN;
     }
-    precision_front(n, cost, wrong, front);
-    for (size_t i = 0; i < n; i++) {
-        precision->points[i].on_front = front[i];
-        wrong[i] = precision->points[i].error;
-    }
+    fronts(precision, cost, wrong, front);
+    for (size_t i = 0; i < n; i++) wrong[i] = precision->points[i].error;
     for (size_t t = 0; t < PRECISION_TARGETS; t++)
         precision->cheapest[t] =
             (struct precision_way){precision_target(precision, t) * precision->signal, NAN, 0};
@@ -338,7 +380,8 @@ static enum status judge(struct precision *precision, struct error *error)
         if (scheme->reference == (cloud ? REFERENCE_SEED : REFERENCE_SEED_PLAIN))
             plain = scheme->merit;
         scheme->gain = plain / scheme->merit;
-        for (size_t t = 0; t < PRECISION_TARGETS && precision_competes(scheme); t++) {
+        const bool compared = precision_competes(scheme) && of_one_processor(precision, scheme);
+        for (size_t t = 0; t < PRECISION_TARGETS && compared; t++) {
             struct precision_way *way = &precision->cheapest[t];
             const double here = precision_cost_of(scheme->count, cost + scheme->first,
                                                   wrong + scheme->first, way->error);
@@ -349,52 +392,226 @@ static enum status judge(struct precision *precision, struct error *error)
     return STATUS_OK;
 }
 
-enum status precision_measure(const struct run_settings *settings, const struct sweep *sweep,
-                              const size_t *ladder, size_t count, const struct bench_rules *rules,
-                              struct precision *precision, struct error *error)
+/* What is to be measured: a job for each scheme and n, in the order of the points. */
+struct precision_work {
+    const struct precision *precision;
+    const struct bench_rules *rules;
+    size_t count, level_count;
+    struct bench_subject *subjects;
+    struct job *jobs;
+    size_t *level; /* of each job, in the ladder */
+    struct level {
+        const struct precision_work *work;
+        size_t number, pool_job;
+    } levels[CASE_LADDER_MAX];
+};
+
+static void work_free(struct precision_work *work)
+{
+    if (!work) return;
+    free(work->subjects), free(work->jobs), free(work->level);
+    free(work);
+}
+
+static enum status lay_out(const struct run_settings *settings, const struct sweep *sweep,
+                           const size_t *ladder, size_t count, struct precision *precision,
+                           struct error *error)
 {
     const size_t compared = settings->file.dimension > 1 ? 1 : 2; /* plain C knows 1D */
     const size_t schemes = sweep->count + compared + want_graded(settings, sweep),
                  most = schemes * count;
     *precision = (struct precision){.settings = settings, .scheme_count = schemes};
+    struct precision_work *work = precision->work = calloc(1, sizeof *work);
     precision->schemes = calloc(schemes, sizeof *precision->schemes);
     precision->points = calloc(most, sizeof *precision->points);
-    struct bench_subject *subjects = calloc(most, sizeof *subjects);
-    struct job *jobs = calloc(most, sizeof *jobs);
     struct run_settings *own = malloc(sizeof *own);
     enum status status = STATUS_OK;
-    if (!precision->schemes || !precision->points || !subjects || !jobs || !own)
+    if (work) {
+        work->subjects = calloc(most, sizeof *work->subjects);
+        work->jobs = calloc(most, sizeof *work->jobs);
+        work->level = calloc(most, sizeof *work->level);
+    }
+    if (!precision->schemes || !precision->points || !own || !work || !work->subjects ||
+        !work->jobs || !work->level)
         status = error_set(error, STATUS_ENVIRONMENT, "no memory for %zu points", most);
     if (!status) status = find_scale(settings, precision, error);
     size_t n = 0, own_schemes = 0;
     for (size_t i = 0; i < schemes && !status; i++) {
         status = prepare(precision, sweep, i, own, error);
         for (size_t l = 0; l < count && !status && !precision->schemes[i].excluded[0]; l++) {
-            status = add_level(&jobs[n], own, ladder[l], &precision->schemes[i], error);
+            struct job *job = &work->jobs[n];
+            status = add_level(job, own, ladder[l], &precision->schemes[i], error);
             if (status || precision->schemes[i].excluded[0]) continue;
             own_schemes += l == 0 && i < sweep->count;
-            jobs[n].point = &precision->points[n];
+            job->point = &precision->points[n];
             precision->points[n].scheme = i;
-            subjects[n] = (struct bench_subject){.work = execute, .context = &jobs[n]};
-            n++;
+            work->subjects[n] = (struct bench_subject){.work = execute, .context = job};
+            work->level[n++] = l;
         }
     }
     precision->point_count = n;
+    if (work) work->count = n, work->level_count = count, work->precision = precision;
     if (!status && !own_schemes)
         status =
             error_set(error, STATUS_BAD_INPUT, "bench: no combination of --vary is allowed: %s",
                       precision->schemes[0].excluded);
-    if (!status) status = bench_measure(subjects, n, rules, error);
+    free(own);
+    return status;
+}
+
+enum status precision_measure(const struct run_settings *settings, const struct sweep *sweep,
+                              const size_t *ladder, size_t count, const struct bench_rules *rules,
+                              struct precision *precision, struct error *error)
+{
+    enum status status = lay_out(settings, sweep, ladder, count, precision, error);
+    const struct precision_work *work = precision->work;
+    if (!status) status = bench_measure(work->subjects, work->count, rules, error);
     if (!status) {
-        collect(precision, subjects, jobs);
+        average_all(precision, work->subjects, work->jobs);
+        collect(precision, work->subjects, work->jobs);
         status = judge(precision, error);
     }
-    free(subjects), free(jobs), free(own);
     return status;
+}
+
+/* --- one n as a computation of a pool --------------------------------------------------------- */
+
+/* What was measured of a job; name "" in 1D. */
+static json_t *measured_json(const struct bench_subject *subject, const struct job *job)
+{
+    const struct precision_point *point = job->point;
+    const struct bench_time *time = &subject->time;
+    return json_pack("{s:i, s:s, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:I, s:i, s:s, s:o}", "status",
+                     (int)subject->failure.status, "message", subject->failure.message, "n",
+                     (json_int_t)point->n, "error", result_number(point->error), "error_spread",
+                     result_number(point->error_spread), "pairs", result_number(point->pairs),
+                     "wall_s", result_number(time->wall_s), "cpu_s", result_number(time->cpu_s),
+                     "spread", result_number(time->spread), "times", (json_int_t)time->times,
+                     "samples", time->samples, "error_of", job->judged.name ? job->judged.name : "",
+                     "signal", result_number(job->judged.signal));
+}
+
+static enum status measure_level(const void *context, json_t **document, struct error *error)
+{
+    const struct level *level = context;
+    const struct precision_work *work = level->work;
+    struct bench_subject *list = calloc(work->count, sizeof *list);
+    struct bench_rules rules = *work->rules;
+    size_t n = 0;
+    if (!list) return error_set(error, STATUS_ENVIRONMENT, "no memory for points");
+    rules.progress = NULL;
+    for (size_t i = 0; i < work->count; i++)
+        if (work->level[i] == level->number) list[n++] = work->subjects[i];
+    const enum status status = bench_measure(list, n, &rules, error);
+    if (!status) {
+        *document = result_new("bench"); /* says which machine this is */
+        json_t *points = json_array();
+        for (size_t i = 0; i < n; i++) {
+            struct job *job = list[i].context;
+            if (!list[i].failure.status) average(job, work->precision->order, &list[i].failure);
+            json_array_append_new(points, measured_json(&list[i], job));
+        }
+        json_object_set_new(*document, "points", points);
+    }
+    free(list);
+    return status;
+}
+
+/* All that decides what is measured at this n, as text; malloced. */
+static char *level_key(const struct level *level, double *weight, struct error *error)
+{
+    const struct precision_work *work = level->work;
+    char text[200];
+    uint64_t hash = CACHE_HASH;
+    *weight = 0;
+    for (size_t i = 0; i < work->count; i++) {
+        const struct run *run = &work->jobs[i].run;
+        if (work->level[i] != level->number) continue;
+        char *key = run_job_key(run, run->asked.plain ? "bench, plain" : "bench", error);
+        if (!key) return NULL;
+        hash = cache_hash(hash, key, strlen(key) + 1);
+        free(key);
+        *weight += (3 + work->rules->samples) * run_job_weight(run);
+    }
+    snprintf(text, sizeof text,
+             "{\"kind\":\"bench\",\"level\":%zu,\"runs\":\"%016llx\","
+             "\"samples\":%d,\"threads\":%d,\"time\":%.17g}",
+             level->number, (unsigned long long)hash, work->rules->samples,
+             work->precision->settings->threads, work->rules->least_s);
+    return strdup(text);
+}
+
+enum status precision_plan(const struct run_settings *settings, const struct sweep *sweep,
+                           const size_t *ladder, size_t count, const struct bench_rules *rules,
+                           struct precision *precision, struct pool *pool, struct error *error)
+{
+    enum status status = lay_out(settings, sweep, ladder, count, precision, error);
+    struct precision_work *work = precision->work;
+    if (work) work->rules = rules;
+    for (size_t l = 0; l < count && !status; l++) {
+        struct level *level = &work->levels[l];
+        char name[SWEEP_LABEL];
+        double weight;
+        *level = (struct level){.work = work, .number = l};
+        char *key = level_key(level, &weight, error);
+        snprintf(name, sizeof name, "bench %.100s, n = %zu", settings->file.name, ladder[l]);
+        if (key) level->pool_job = pool_add(pool, name, key, weight, measure_level, level);
+        if (!key || level->pool_job == (size_t)-1)
+            status = error_set(error, STATUS_ENVIRONMENT, "no memory for points");
+        free(key);
+    }
+    return status;
+}
+
+static void take_measured(const json_t *item, const char *processor, struct bench_subject *subject,
+                          struct job *job)
+{
+    struct precision_point *point = job->point;
+    const char *name = value_text(item, "error_of");
+    subject->failure.status = (enum status)value_member(item, "status");
+    snprintf(subject->failure.message, sizeof subject->failure.message, "%s",
+             value_text(item, "message"));
+    subject->time = (struct bench_time){.wall_s = value_member(item, "wall_s"),
+                                        .cpu_s = value_member(item, "cpu_s"),
+                                        .spread = value_member(item, "spread"),
+                                        .times = (uint64_t)value_member(item, "times"),
+                                        .samples = (int)value_member(item, "samples")};
+    job->judged = (struct judged){*name ? name : NULL, (double)NAN, value_member(item, "signal")};
+    point->n = (size_t)value_member(item, "n");
+    point->error = value_member(item, "error");
+    point->error_spread = value_member(item, "error_spread");
+    point->pairs = value_member(item, "pairs");
+    point->settings = job->run.settings;
+    point->processor = processor;
+}
+
+enum status precision_conclude(struct precision *precision, const struct pool *pool,
+                               struct error *error)
+{
+    const struct precision_work *work = precision->work;
+    for (size_t l = 0; l < work->level_count; l++) {
+        const struct pool_job *done = &pool->jobs[work->levels[l].pool_job];
+        const json_t *points = json_object_get(done->document, "points");
+        const char *processor = value_text(json_object_get(done->document, "machine"), "processor");
+        size_t next = 0;
+        if (!done->document || done->error.status) {
+            *error = done->error;
+            return error->status
+                       ? error->status
+                       : error_set(error, STATUS_ENVIRONMENT, "%s gave nothing", done->name);
+        }
+        for (size_t i = 0; i < work->count; i++)
+            if (work->level[i] == l)
+                take_measured(json_array_get(points, next++), processor, &work->subjects[i],
+                              &work->jobs[i]);
+    }
+    collect(precision, work->subjects, work->jobs);
+    return judge(precision, error);
 }
 
 void precision_free(struct precision *precision)
 {
+    work_free(precision->work);
     free(precision->schemes);
     free(precision->points);
     *precision = (struct precision){0};

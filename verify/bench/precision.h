@@ -12,6 +12,7 @@
 #include <jansson.h>
 
 #include "bench.h"
+#include "pool.h"
 #include "run.h"
 #include "sweep.h"
 
@@ -19,13 +20,14 @@ enum { PRECISION_TARGETS = 3, PRECISION_SHORT = 96 };
 extern const double precision_targets[PRECISION_TARGETS]; /* relative to the signal */
 
 struct precision_point {
-    size_t scheme, n; /* n: as the set-up allowed */
+    size_t scheme, n;       /* n: as the set-up allowed */
     double error, relative; /* geometric mean over neighbouring n where the solution jumps */
     double error_spread;    /* standard deviation of its logarithm; 0 of a single n */
     double pairs;           /* pair interactions */
     bool on_front;
     struct settings settings; /* as used, resolved */
     struct bench_time time;
+    const char *processor; /* that the time is of; NULL: all are of this one */
     struct error failure;
 };
 
@@ -62,6 +64,7 @@ struct precision {
     struct precision_scheme *schemes; /* references last */
     struct precision_point *points;   /* by scheme, then n */
     struct precision_way cheapest[PRECISION_TARGETS];
+    struct precision_work *work; /* what is to be measured; its own */
 };
 
 /* ladder: count rising numbers of particles. settings must live as long as the result. Schemes that
@@ -71,6 +74,16 @@ enum status precision_measure(const struct run_settings *settings, const struct 
                               const size_t *ladder, size_t count, const struct bench_rules *rules,
                               struct precision *precision, struct error *error);
 void precision_free(struct precision *precision);
+
+/* The same in two parts, for many machines: each n is a computation of the pool, in which all
+ * schemes are measured in turn; then, after pool_run, what came of it. Times are compared with
+ * those of the same processor only. rules must live until pool_run; the pool as long as the result.
+ */
+enum status precision_plan(const struct run_settings *settings, const struct sweep *sweep,
+                           const size_t *ladder, size_t count, const struct bench_rules *rules,
+                           struct precision *precision, struct pool *pool, struct error *error);
+enum status precision_conclude(struct precision *precision, const struct pool *pool,
+                               struct error *error);
 
 /* "case", "points", "schemes", "cheapest", "excluded" ... of a result document. */
 void precision_add_json(const struct precision *precision, json_t *document);

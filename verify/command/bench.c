@@ -15,6 +15,7 @@
 #include "precision_output.h"
 #include "progress.h"
 #include "result.h"
+#include "sharing.h"
 #include "text.h"
 
 /* What all kinds of benchmark are given. */
@@ -90,9 +91,49 @@ static enum status take_ladder(const struct request *request, const struct run_s
                      settings->file.name);
 }
 
+static enum status present(struct request *request, struct precision *precision, const char *plot,
+                           struct error *error)
+{
+    enum status status = plot ? precision_plot(precision, plot, error) : STATUS_OK;
+    if (!status) {
+        json_t *document = result_new("bench");
+        precision_add_json(precision, document);
+        status = write_result(request, document, error);
+        json_decref(document);
+    }
+    if (!status && request->options->speak) {
+        const struct table_style style = table_style(request->options->color);
+        precision_print(precision, &style);
+    }
+    return status;
+}
+
+/* Each n a computation of its own, for many machines. */
+static enum status in_shares(struct request *request, const struct run_settings *settings,
+                             const struct sweep *sweep, const size_t *ladder, size_t count,
+                             struct sharing *sharing, struct error *error)
+{
+    struct precision precision = {0};
+    struct pool pool = {0};
+    const char *plot = options_value(request->options, "plot");
+    bool whole = false;
+    enum status status =
+        precision_plan(settings, sweep, ladder, count, &request->rules, &precision, &pool, error);
+    if (!status && sharing->list)
+        status = sharing_list(sharing, &pool, error);
+    else if (!status)
+        status = sharing_run(sharing, &pool, "bench", request->options, &whole, error);
+    if (!status && whole) status = precision_conclude(&precision, &pool, error);
+    if (!status && whole) status = present(request, &precision, plot, error);
+    precision_free(&precision);
+    pool_free(&pool);
+    return status;
+}
+
 static enum status work_precision(struct request *request, struct error *error)
 {
     static struct run_settings settings;
+    static struct sharing sharing;
     struct sweep sweep;
     struct precision precision = {0};
     size_t ladder[CASE_LADDER_MAX], count;
@@ -100,23 +141,16 @@ static enum status work_precision(struct request *request, struct error *error)
     if (prepare_case(request, &settings, error) ||
         sweep_parse(&sweep, options_value(request->options, "vary"), error) ||
         take_ladder(request, &settings, ladder, &count, error) ||
-        (plot && picture_probe(plot, error)))
+        (plot && picture_probe(plot, error)) ||
+        sharing_take(&sharing, request->options, 1, NULL, false, error))
         return error->status;
+    if (sharing.list || sharing.pool.cache)
+        return in_shares(request, &settings, &sweep, ladder, count, &sharing, error);
     progress_begin(&request->progress, "bench", request->options->quiet);
     enum status status =
         precision_measure(&settings, &sweep, ladder, count, &request->rules, &precision, error);
     progress_end(&request->progress);
-    if (!status && plot) status = precision_plot(&precision, plot, error);
-    if (!status) {
-        json_t *document = result_new("bench");
-        precision_add_json(&precision, document);
-        status = write_result(request, document, error);
-        json_decref(document);
-    }
-    if (!status && request->options->speak) {
-        const struct table_style style = table_style(request->options->color);
-        precision_print(&precision, &style);
-    }
+    if (!status) status = present(request, &precision, plot, error);
     precision_free(&precision);
     return status;
 }
@@ -280,6 +314,10 @@ static enum status run(const struct options *options, int n, char **arguments, s
                                  "--kernels, --skips and --scaling exclude each other");
         chosen = modes[m].run;
     }
+    static const char *const of_shares[] = {"shard", "list", "cache", "engine"};
+    for (size_t i = 0; chosen != work_precision && i < sizeof of_shares / sizeof *of_shares; i++)
+        if (refuse_option(&request, "--kernels, --skips or --scaling", of_shares[i], error))
+            return error->status;
     if (read_rules(&request, error)) return error->status;
     if (n > 0 && !strchr(arguments[0], '=')) {
         request.case_name = arguments[0];
@@ -298,6 +336,7 @@ static const struct command_option own_options[] = {
     {"scaling", NULL, "time and memory against n, with exponents; gain of threads"},
     {"time", "S", "CPU time of a sample, at least (default 0.02 s)"},
     {"samples", "N", "samples of each measurement (default 5); the least counts"},
+    SHARING_OPTIONS,
     {NULL, NULL, NULL},
 };
 

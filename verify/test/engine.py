@@ -85,6 +85,23 @@ def test_engine():
     expect("another build", "not 0123" in stderr, stderr)
 
 
+def test_bench():
+    """What an error costs, each n on a machine of its own: figures that are no times are the same."""
+    words = ["bench", "sod", "--n", "40,60", "--samples", "1", "--time", "0.0001"]
+    _, alone, _ = study(*words)
+    for i in (1, 2):
+        done = subprocess.run([program, *words, "--cache", "bench", "--shard", "%d/2" % i], capture_output=True, text=True)
+        expect("a share of bench", "share %d of 2: 1 of 2 computations, 0" % i in done.stdout, done)
+    _, whole, _ = study(*words, "--cache", "bench")
+    _, again, _ = study(*words, "--cache", "bench")
+    figures = [[[p[k] for k in ("scheme", "n", "error", "error_spread", "pair_interactions", "settings")]
+                for p in document["points"]] for document in (alone, whole)]
+    expect("bench in shares", figures[0] == figures[1] and len(figures[0]) == 8, figures)
+    expect("bench in shares, times", whole == again)
+    status, _, said = study("bench", "--skips", "--cache", "bench")
+    expect("bench --skips in shares", status == 2 and "--cache" in said, said)
+
+
 BITS = "import math\n"\
        "print([f(0.37 * k) for f in (math.sin, math.cos, math.log,\n"\
        "lambda x: math.exp(-x), lambda x: x ** (1 / 3), lambda x: x ** -0.4) for k in range(1, 400)])"
@@ -113,6 +130,7 @@ def main():
         os.chdir(folder)
         test_engine()
         test_mathematics()
+        test_bench()
         os.chdir("/")
     print("\n".join(faults) or "a study is computed elsewhere")
     return bool(faults)

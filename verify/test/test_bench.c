@@ -520,6 +520,45 @@ static void test_study(void **state)
     precision_free(&precision);
 }
 
+/* In shares: each n by itself; of two processors each has a front of its own. */
+static void test_processors(void **state)
+{
+    (void)state;
+    static struct run_settings settings;
+    static const size_t ladder[] = {40, 60};
+    static const char *const processors[] = {"this", "that"};
+    struct sweep sweep;
+    struct error error = {0};
+    const struct bench_rules brief = {.least_s = 1e-6, .most_s = 1, .samples = 2};
+    const struct pool_settings how = {.jobs = 1};
+    assert_int_equal(run_prepare(&settings, "sod", 1, (char *[]){"t_end=0.1"}, &error), 0);
+    settings.threads = 1;
+    assert_int_equal(sweep_parse(&sweep, NULL, &error), 0);
+    for (int two = 0; two < 2; two++) {
+        struct precision precision;
+        struct pool pool = {0};
+        size_t on_front[2] = {0};
+        assert_int_equal(
+            precision_plan(&settings, &sweep, ladder, 2, &brief, &precision, &pool, &error), 0);
+        assert_int_equal(pool.count, 2);
+        assert_int_equal(pool_run(&pool, &how, &error), 0);
+        for (size_t l = 0; l < 2; l++)
+            json_object_set_new(json_object_get(pool.jobs[l].document, "machine"), "processor",
+                                json_string(processors[two * (int)l]));
+        /* the coarse runs were dear: on the same processor they are no good for anything */
+        json_t *points = json_object_get(pool.jobs[0].document, "points"), *point;
+        size_t k;
+        json_array_foreach(points, k, point) json_object_set_new(point, "cpu_s", json_real(1000));
+        assert_int_equal(precision_conclude(&precision, &pool, &error), 0);
+        assert_int_equal(precision.point_count, 8);
+        for (size_t i = 0; i < 8; i++) on_front[i % 2] += precision.points[i].on_front;
+        assert_true(on_front[1] > 0);
+        assert_int_equal(on_front[0] > 0, two);
+        precision_free(&precision);
+        pool_free(&pool);
+    }
+}
+
 /* A sound wave: errors in parts of the wave, not of the gas that carries it; second order. */
 static void test_signal(void **state)
 {
@@ -599,6 +638,7 @@ int main(void)
         cmocka_unit_test(test_cells),
         cmocka_unit_test(test_scaling),
         cmocka_unit_test(test_study),
+        cmocka_unit_test(test_processors),
         cmocka_unit_test(test_signal),
         cmocka_unit_test(test_plane),
     };
