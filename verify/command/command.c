@@ -43,6 +43,8 @@ struct line {
     int help, version, uncertified;
     int n; /* arguments, command's name not counted */
     char **arguments;
+    char **owned; /* texts of options that are given more than once */
+    int owned_count;
 };
 
 static size_t count(const struct command_option *list)
@@ -122,6 +124,19 @@ static enum status apply_common(struct line *line, const char *name, const char 
     return STATUS_OK;
 }
 
+/* An option that is given again: its values are lines of one text. */
+static enum status join(struct line *line, const char **slot, const char *value,
+                        struct error *error)
+{
+    const size_t size = strlen(*slot) + strlen(value) + 2;
+    char *text = malloc(size);
+    if (!text) return error_set(error, STATUS_ENVIRONMENT, "no memory");
+    snprintf(text, size, "%s\n%s", *slot, value);
+    line->owned[line->owned_count++] = text;
+    *slot = text;
+    return STATUS_OK;
+}
+
 /* One option at argv[*i]; moves *i to its last word. */
 static enum status take_option(struct line *line, int argc, char **argv, int *i,
                                struct error *error)
@@ -147,7 +162,10 @@ static enum status take_option(struct line *line, int argc, char **argv, int *i,
     }
     if (!own) return apply_common(line, option->name, value, error);
     const char **slot = &line->options.values[own - command->options];
-    if (*slot) return error_set(error, STATUS_BAD_INPUT, "--%s is given twice", option->name);
+    const char *more = option->argument ? strstr(option->argument, " ...") : NULL;
+    if (*slot && !(more && !more[4]))
+        return error_set(error, STATUS_BAD_INPUT, "--%s is given twice", option->name);
+    if (*slot) return join(line, slot, value, error);
     *slot = value;
     return STATUS_OK;
 }
@@ -275,11 +293,14 @@ int command_main(int argc, char **argv)
     output_prepare_process();
     struct line line = {.options = {.threads = 1}, .color = "auto"};
     line.arguments = calloc((size_t)argc + 1, sizeof *line.arguments);
-    enum status status = line.arguments ? execute(&line, argc, argv, &error)
-                                        : error_set(&error, STATUS_ENVIRONMENT, "no memory");
+    line.owned = calloc((size_t)argc + 1, sizeof *line.owned);
+    enum status status = line.arguments && line.owned
+                             ? execute(&line, argc, argv, &error)
+                             : error_set(&error, STATUS_ENVIRONMENT, "no memory");
     const enum status flushed = output_finish_process(&error);
     if (flushed) status = flushed;
     if (error.message[0] && status) fprintf(stderr, "sphproof: %s\n", error.message);
-    free(line.arguments), free(line.options.values);
+    for (int i = 0; i < line.owned_count; i++) free(line.owned[i]);
+    free(line.owned), free(line.arguments), free(line.options.values);
     return (int)status;
 }

@@ -13,7 +13,8 @@
 /* An option of one command; a list of them ends with a NULL name. */
 struct command_option {
     const char *name;     /* without the dashes */
-    const char *argument; /* what stands for its argument in the help; NULL: a flag */
+    const char *argument; /* what stands for its argument in the help; NULL: a flag; one that ends
+                           * with " ..." may be given again: its value has a line for each */
     const char *help;     /* one line */
 };
 

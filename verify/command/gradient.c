@@ -13,13 +13,15 @@
 #include "result.h"
 #include "text.h"
 
-enum { DIM_MAX = 3, ROWS_SHOWN = 20, SINC_ORDER = 5 };
+enum { DIM_MAX = 3, ROWS_SHOWN = 20, SINC_ORDER = 5, CHECKS_MAX = 64 };
 
 struct request {
     const char *path;
     int dim;
     double eta, h, tolerance;
-    const char *check; /* COLUMN=dx[,dy,dz] or NULL */
+    const char *checks; /* COLUMN=dx[,dy,dz], one a line, or NULL */
+    bool boxed;
+    double lo[DIM_MAX], hi[DIM_MAX];
     struct kernel kernel;
     struct operator_settings settings;
 };
@@ -30,10 +32,16 @@ struct answer {
 };
 
 struct judgement {
-    size_t field;                 /* whose gradient is judged */
+    const double *column;         /* whose gradient is judged */
+    size_t field;                 /* its place among the fields */
     const double *given[DIM_MAX]; /* columns of the file */
     size_t judged, failed, worst; /* points; the worst one's row */
     double departure, bound;      /* relative, at the worst point */
+};
+
+struct judgements {
+    size_t count;
+    struct judgement of[CHECKS_MAX];
 };
 
 /* ---- input ---- */
@@ -45,6 +53,35 @@ static enum status take_positive(const struct options *options, const char *name
     if (text && !(text_real(text, value) && *value > 0))
         return error_set(error, STATUS_BAD_INPUT,
                          "gradient: --%s '%.40s': allowed: a number above 0", name, text);
+    return STATUS_OK;
+}
+
+/* "0:1" for all directions, or one such pair for each. */
+static enum status take_box(const struct options *options, struct request *r, struct error *error)
+{
+    const char *text = options_value(options, "box");
+    int pairs = 0;
+    bool sound = true;
+    if (!text) return STATUS_OK;
+    for (const char *rest = text; sound && rest; pairs++) {
+        char pair[80];
+        double ends[2];
+        const size_t length = strcspn(rest, ",");
+        sound = pairs < r->dim && length < sizeof pair;
+        if (!sound) break;
+        memcpy(pair, rest, length);
+        pair[length] = '\0';
+        sound = text_reals(pair, ":", 2, ends) && ends[0] < ends[1];
+        r->lo[pairs] = ends[0], r->hi[pairs] = ends[1];
+        rest = rest[length] ? rest + length + 1 : NULL;
+    }
+    if (!sound || (pairs != 1 && pairs != r->dim))
+        return error_set(error, STATUS_BAD_INPUT,
+                         "gradient: --box '%.60s': allowed with --dim %d: LO:HI for all directions "
+                         "or one for each, separated by commas, LO below HI",
+                         text, r->dim);
+    for (int a = pairs; a < r->dim; a++) r->lo[a] = r->lo[0], r->hi[a] = r->hi[0];
+    r->boxed = true;
     return STATUS_OK;
 }
 
@@ -79,8 +116,9 @@ static enum status take_request(const struct options *options, int n, char **arg
     if (r->eta > 0 && r->h > 0)
         return error_set(error, STATUS_BAD_INPUT,
                          "gradient: --eta and --h exclude each other: both set the support radius");
-    r->check = options_value(options, "check");
-    if (!r->check && options_value(options, "tolerance"))
+    if (take_box(options, r, error)) return error->status;
+    r->checks = options_value(options, "check");
+    if (!r->checks && options_value(options, "tolerance"))
         return error_set(error, STATUS_BAD_INPUT, "gradient: --tolerance belongs to --check");
     return STATUS_OK;
 }
@@ -92,18 +130,21 @@ static int field_index(const struct point_cloud *pc, const char *name)
     return -1;
 }
 
-/* Reads COLUMN=dx[,dy,dz] and takes the judged columns out of the fields to differentiate. */
-static enum status take_check(const struct request *r, struct point_cloud *pc, struct judgement *j,
+/* Reads COLUMN=dx[,dy,dz], length characters of text. */
+static enum status take_check(const struct request *r, const struct point_cloud *pc,
+                              const char *check, size_t length, struct judgement *j,
                               struct error *error)
 {
     char text[1024];
-    if (strlen(r->check) >= sizeof text)
+    const int shown = (int)(length < 60 ? length : 60);
+    if (length >= sizeof text)
         return error_set(error, STATUS_BAD_INPUT, "gradient: --check is too long");
-    strcpy(text, r->check);
+    memcpy(text, check, length);
+    text[length] = '\0';
     char *rest = strchr(text, '=');
     if (!rest)
         return error_set(error, STATUS_BAD_INPUT,
-                         "gradient: --check '%.60s': allowed: COLUMN=dx[,dy,dz]", r->check);
+                         "gradient: --check '%.*s': allowed: COLUMN=dx[,dy,dz]", shown, check);
     *rest++ = '\0';
     int count = 0;
     bool distinct = true;
@@ -119,26 +160,80 @@ static enum status take_check(const struct request *r, struct point_cloud *pc, s
     }
     if (count != r->dim || rest || !distinct)
         return error_set(error, STATUS_BAD_INPUT,
-                         "gradient: --check '%.60s': allowed with --dim %d: %d distinct columns "
+                         "gradient: --check '%.*s': allowed with --dim %d: %d distinct columns "
                          "after the '='",
-                         r->check, r->dim, r->dim);
+                         shown, check, r->dim, r->dim);
     const int k = field_index(pc, text);
     if (k < 0)
         return text_unknown(error, "gradient: --check", "column", text, pc->name, pc->fields);
-    const double *judged = pc->field[k];
+    j->column = pc->field[k];
+    return STATUS_OK;
+}
+
+static bool is_given(const struct judgements *all, int dim, const double *column)
+{
+    for (size_t c = 0; c < all->count; c++)
+        for (int a = 0; a < dim; a++)
+            if (all->of[c].given[a] == column) return true;
+    return false;
+}
+
+/* Takes the columns that hold gradients out of the fields to differentiate. */
+static enum status leave_out_given(const struct request *r, struct point_cloud *pc,
+                                   struct judgements *all, struct error *error)
+{
     size_t kept = 0;
     for (size_t l = 0; l < pc->fields; l++) {
-        bool given = false;
-        for (int a = 0; a < r->dim; a++) given = given || j->given[a] == pc->field[l];
-        if (given && pc->field[l] == judged)
-            return error_set(error, STATUS_BAD_INPUT,
-                             "gradient: --check '%.60s': '%.40s' cannot be its own gradient",
-                             r->check, text);
+        const bool given = is_given(all, r->dim, pc->field[l]);
+        for (size_t c = 0; c < all->count; c++) {
+            if (all->of[c].column != pc->field[l]) continue;
+            if (given)
+                return error_set(error, STATUS_BAD_INPUT,
+                                 "gradient: --check: '%.40s' cannot be judged, and be a gradient "
+                                 "itself",
+                                 pc->name[l]);
+            all->of[c].field = kept;
+        }
         if (given) continue;
-        if (pc->field[l] == judged) j->field = kept;
         pc->field[kept] = pc->field[l], pc->name[kept++] = pc->name[l];
     }
     pc->fields = kept;
+    return STATUS_OK;
+}
+
+static enum status take_checks(const struct request *r, struct point_cloud *pc,
+                               struct judgements *all, struct error *error)
+{
+    for (const char *rest = r->checks; rest;) {
+        const size_t length = strcspn(rest, "\n");
+        if (all->count == CHECKS_MAX)
+            return error_set(error, STATUS_BAD_INPUT, "gradient: --check: at most %d", CHECKS_MAX);
+        if (take_check(r, pc, rest, length, &all->of[all->count], error)) return error->status;
+        for (size_t c = 0; c < all->count; c++)
+            if (all->of[c].column == all->of[all->count].column)
+                return error_set(error, STATUS_BAD_INPUT,
+                                 "gradient: --check '%.60s': this column is judged twice", rest);
+        all->count++;
+        rest = rest[length] ? rest + length + 1 : NULL;
+    }
+    return leave_out_given(r, pc, all, error);
+}
+
+/* Positions belong into the box: one outside is more likely a wrong box than meant. */
+static enum status place_in_box(const struct request *r, struct point_cloud *pc,
+                                struct error *error)
+{
+    struct points *points = &pc->cloud.points;
+    points->periodic = r->boxed;
+    for (int a = 0; a < r->dim && r->boxed; a++) {
+        points->lo[a] = r->lo[a], points->hi[a] = r->hi[a];
+        for (size_t i = 0; i < points->n; i++)
+            if (!(points->x[a][i] >= r->lo[a] && points->x[a][i] <= r->hi[a]))
+                return error_set(error, STATUS_BAD_INPUT,
+                                 "%.200s:%zu: %c = %.17g is not in the box from %.10g to %.10g",
+                                 r->path, pc->csv.line[i], "xyz"[a], points -> x[a][i], r -> lo[a],
+                                 r -> hi[a]);
+    }
     return STATUS_OK;
 }
 
@@ -289,21 +384,36 @@ static json_t *points_json(const struct request *r, const struct point_cloud *pc
     return points;
 }
 
+static json_t *box_json(const struct request *r)
+{
+    json_t *box = json_array();
+    for (int a = 0; a < r->dim; a++)
+        json_array_append_new(
+            box, json_pack("[o, o]", result_number(r->lo[a]), result_number(r->hi[a])));
+    return box;
+}
+
 static enum status write_answer(const struct options *options, const struct request *r,
                                 const struct point_cloud *pc, const struct answer *answer,
-                                const struct judgement *j, struct error *error)
+                                const struct judgements *all, struct error *error)
 {
     json_t *document = result_new("gradient");
     json_t *content =
         json_pack("{s:s, s:s, s:i, s:o}", "operator", r->settings.form->member.name, "kernel",
                   r->kernel.member.name, "dim", r->dim, "points", points_json(r, pc, answer));
-    if (r->check)
-        json_object_set_new(
-            content, "judgement",
+    json_t *judgements = json_array();
+    for (size_t c = 0; c < all->count; c++) {
+        const struct judgement *j = &all->of[c];
+        json_array_append_new(
+            judgements,
             json_pack("{s:s, s:s, s:i, s:i, s:i, s:o, s:o}", "column", pc->name[j->field], "status",
                       j->failed ? "fail" : "pass", "judged", (int)j->judged, "failed",
                       (int)j->failed, "worst_row", (int)j->worst + 1, "departure",
                       result_number(j->departure), "bound", result_number(j->bound)));
+    }
+    if (all->count) json_object_set(content, "judgements", judgements);
+    json_decref(judgements);
+    if (r->boxed) json_object_set_new(content, "box", box_json(r));
     enum status status;
     if (!document || !content || json_object_update(document, content))
         status = error_set(error, STATUS_ENVIRONMENT, "no memory for the result");
@@ -321,21 +431,25 @@ static enum status run(const struct options *options, int n, char **arguments, s
     struct request request = {0};
     struct point_cloud pc = {0};
     struct answer answer = {0};
-    struct judgement judgement = {0};
+    struct judgements judgements = {0};
+    bool failed = false;
     enum status status = take_request(options, n, arguments, &request, error);
     if (!status)
         status = point_cloud_read(request.path, request.dim, request.eta, request.h, &pc, error);
-    if (!status && request.check) status = take_check(&request, &pc, &judgement, error);
+    if (!status) status = take_checks(&request, &pc, &judgements, error);
+    if (!status) status = place_in_box(&request, &pc, error);
     if (!status) status = compute(&request, &pc, &answer, error);
     if (!status) {
-        if (request.check) judge(&request, &pc, &answer, &judgement);
-        if (options->speak) {
-            print_answer(&request, &pc, &answer);
-            if (request.check) print_judgement(&pc, &judgement);
+        for (size_t c = 0; c < judgements.count; c++) {
+            judge(&request, &pc, &answer, &judgements.of[c]);
+            failed = failed || judgements.of[c].failed;
         }
+        if (options->speak) print_answer(&request, &pc, &answer);
+        for (size_t c = 0; options->speak && c < judgements.count; c++)
+            print_judgement(&pc, &judgements.of[c]);
         if (options->json)
-            status = write_answer(options, &request, &pc, &answer, &judgement, error);
-        if (!status && judgement.failed) status = STATUS_CHECK_FAILED;
+            status = write_answer(options, &request, &pc, &answer, &judgements, error);
+        if (!status && failed) status = STATUS_CHECK_FAILED;
     }
     free(answer.memory), free(answer.point);
     point_cloud_free(&pc);
@@ -348,7 +462,9 @@ static const struct command_option own_options[] = {
     {"dim", "D", "1, 2 or 3"},
     {"eta", "E", "support radius h = eta volume^(1/dim) at each point"},
     {"h", "H", "the same support radius h for all points"},
-    {"check", "COLUMN=dx[,dy,dz]", "judge the gradient of COLUMN that these columns hold"},
+    {"box", "LO:HI[,LO:HI ...]", "the cloud is periodic: the box, for all directions or for each"},
+    {"check", "COLUMN=dx[,dy,dz] ...",
+     "judge the gradient of COLUMN that these columns hold; may be given again for other columns"},
     {"tolerance", "T", "of --check, relative to max(|gradient|, 1e-4 max|f|/h) (default 1e-9)"},
     {NULL, NULL, NULL},
 };
@@ -356,17 +472,21 @@ static const struct command_option own_options[] = {
 const struct command command_gradient = {
     .name = "gradient",
     .synopsis = "CLOUD.csv --operator OP --kernel K --dim D (--eta E | --h H)",
-    .help =
-        "gradients of the columns of a point cloud\n"
-        "The file holds columns x[,y,z],volume, then one column a field, and optionally h\n"
-        "(support radius), which wins over --eta and --h. Points with too few neighbours or an\n"
-        "ill-conditioned matrix are named; where no inverse exists the gradient is nan (JSON:\n"
-        "null). With --check the exit status is 1 if a given gradient departs from ours.",
+    .help = "gradients of the columns of a point cloud\n"
+            "The file holds columns x[,y,z],volume, then one column a field, and optionally h\n"
+            "(support radius), which wins over --eta and --h; separated by commas or blanks, "
+            "Fortran's\n"
+            "1.0D0 is a number. Points with too few neighbours or an\n"
+            "ill-conditioned matrix are named; where no inverse exists the gradient is nan (JSON:\n"
+            "null). With --check the exit status is 1 if a given gradient departs from ours.",
     .run = run,
     .options = own_options,
     .examples =
         "sphproof gradient cloud.csv --operator linear_exact --kernel wendland_c2 --dim 2 --eta 3\n"
         "sphproof gradient cloud.csv --operator ia --kernel cubic_spline --dim 1 --h 0.1 --json -\n"
         "sphproof gradient cloud.csv --operator standard --kernel cubic_spline --dim 2 --eta 2.4 "
-        "--check f=fx,fy",
+        "--check f=fx,fy\n"
+        "sphproof gradient cloud.csv --operator ia --kernel cubic_spline --dim 2 --eta 2.4 --box "
+        "0:1,0:2 "
+        "--check f=fx,fy --check g=gx,gy",
 };

@@ -96,7 +96,7 @@ static void test_judgement(void **state)
 
         write_cloud(&cloud, form, 1 + 1e-7);
         assert_int_equal(gradient(arguments, &document), STATUS_CHECK_FAILED);
-        const json_t *judgement = json_object_get(document, "judgement");
+        const json_t *judgement = json_array_get(json_object_get(document, "judgements"), 0);
         assert_int_equal(json_integer_value(json_object_get(judgement, "failed")), 1);
         assert_int_equal(json_integer_value(json_object_get(judgement, "worst_row")), 41);
         json_decref(document);
