@@ -175,11 +175,13 @@ ALWAYS_INLINE double pair_viscous_signal(enum viscosity viscosity,
     const double w = form.midpoint
                          ? pair_closing_at_midpoint(i, j, r, closing, numbers->near, &scale)
                          : largest(closing, 0);
-    const double speed = w / scale, c_sum = i->c + j->c;
+    /* one division for both quotients, by the scale and by the densities */
+    const double rho_sum = i->rho + j->rho, inverse = 1 / (scale * rho_sum), c_sum = i->c + j->c;
+    const double speed = form.midpoint ? w * rho_sum * inverse : w;
     const double alpha_half = form.varying ? 0.25 * (i->alpha + j->alpha) : 0.5 * numbers->alpha;
     const double beta = form.varying ? 2 * numbers->beta_ratio * alpha_half : numbers->beta;
     const double c_seen = form.fading ? least(c_sum, speed * (2 / pair_fade_below)) : c_sum;
-    return i->m * j->m * G * speed * (alpha_half * c_seen + 0.5 * beta * speed) / (i->rho + j->rho);
+    return i->m * j->m * G * speed * (alpha_half * c_seen + 0.5 * beta * speed) * (scale * inverse);
 }
 
 /* --- energy ----------------------------------------------------------------------------------- */

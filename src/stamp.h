@@ -34,6 +34,9 @@ ALWAYS_INLINE double least(double a, double b)
     return a < b ? a : b;
 }
 
+/* Eight lanes, then in pairs: the same order for every instruction set. */
+#define TREE(s) (((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + (s[6] + s[7])))
+
 /* The largest of count = whole vectors of positive values, by lanes: clang does not vectorise
  * reduction(max). */
 ALWAYS_INLINE double largest_of(const double *restrict values, ptrdiff_t count)

@@ -8,72 +8,85 @@
 #include "lanes.h"
 #include "matrix.h"
 
-static void add_groups(struct lanes_layout *layout, enum lanes_group first, int count)
+static void add_field(struct lanes_layout *layout, enum lanes_field field, int values)
 {
-    for (int g = 0; g < count; g++, layout->size += GATHER_GROUP)
-        layout->offset[(int)first + g] = layout->size;
+    layout->offset[field] = layout->used;
+    layout->used += values;
+    layout->size = (layout->used + GATHER_GROUP - 1) / GATHER_GROUP * GATHER_GROUP;
 }
 
-static void empty(struct lanes_layout *layout)
+static void add_numbers(struct lanes_layout *layout, enum lanes_field first, enum lanes_field last)
 {
-    layout->size = 0;
-    for (int g = 0; g < GROUPS; g++) layout->offset[g] = -1;
+    for (int field = (int)first; field <= (int)last; field++)
+        add_field(layout, (enum lanes_field)field, 1);
+}
+
+static void begin_layout(struct lanes_layout *layout, enum lanes_geometry geometry, int dim)
+{
+    *layout = (struct lanes_layout){.geometry = geometry};
+    for (int field = 0; field < FIELDS; field++) layout->offset[field] = -1;
+    add_field(layout, FIELD_PLACE, dim);
+}
+
+static void lay_out_force(struct lanes_layout *force, const struct cells_method *method)
+{
+    const int dim = method->box.dim, symmetric = dim * (dim + 1) / 2;
+    const bool viscous = method->viscosity != VISCOSITY_NONE,
+               dissipates = viscous || method->conductivity > 0,
+               lagrangian = method->formulation == FORMULATION_LAGRANGIAN;
+    begin_layout(force, LANES_CLOSING, dim);
+    if (dissipates || lagrangian) add_field(force, FIELD_WEIGHT, 1);
+    add_field(force, FIELD_VELOCITY, dim);
+    add_field(force, FIELD_H_INVERSE, 1);
+    if (viscous && !method->signal_form) add_field(force, FIELD_H, 1);
+    add_numbers(force, FIELD_VOLUME, FIELD_SOUND);
+    if (dissipates) add_field(force, FIELD_DENSITY, 1);
+    if (method->viscosity == VISCOSITY_TIME_DEPENDENT) add_field(force, FIELD_ALPHA, 1);
+    if (method->balsara) add_field(force, FIELD_BALSARA, 1);
+    if (method->conductivity > 0) add_field(force, FIELD_HEAT, 1);
+    if (lagrangian) add_field(force, FIELD_LAGRANGIAN, 3);
+    if (method->gradient != GRADIENT_STANDARD) add_field(force, FIELD_MATRIX, symmetric);
+    if (method->viscosity == VISCOSITY_RECONSTRUCTED) add_field(force, FIELD_SLOPE, dim * dim);
+    if (method->projected) add_field(force, FIELD_PROJECTOR, symmetric);
 }
 
 /* Which values each pass needs of a neighbour. */
 static void lay_out(struct cells *cells)
 {
     const struct cells_method *method = &cells->method;
-    const bool in_3d = method->box.dim == 3, matrix = method->gradient != GRADIENT_STANDARD;
-    empty(&cells->density);
-    add_groups(&cells->density, GROUP_PLACE, 1);
-    if (method->energy_element) add_groups(&cells->density, GROUP_LAGRANGIAN, 1);
-    empty(&cells->matrix);
-    add_groups(&cells->matrix, GROUP_PLACE, 1);
-    if (method->velocity_gradient) add_groups(&cells->matrix, GROUP_MOTION, 1);
-    add_groups(&cells->matrix, GROUP_GAS, 1);
-    struct lanes_layout *force = &cells->force;
-    empty(force);
-    add_groups(force, GROUP_PLACE, 1);
-    add_groups(force, GROUP_MOTION, 1);
-    add_groups(force, GROUP_GAS, 1);
-    if (method->viscosity != VISCOSITY_NONE || method->conductivity > 0)
-        add_groups(force, GROUP_VISCOSITY, 1);
-    if (method->formulation == FORMULATION_LAGRANGIAN) add_groups(force, GROUP_LAGRANGIAN, 1);
-    if (matrix) add_groups(force, GROUP_MATRIX, in_3d ? 2 : 1);
-    if (method->viscosity == VISCOSITY_RECONSTRUCTED) add_groups(force, GROUP_SLOPE, in_3d ? 3 : 1);
-    if (method->projected) add_groups(force, GROUP_PROJECTOR, in_3d ? 2 : 1);
-    empty(&cells->shift);
+    const int dim = method->box.dim;
+    begin_layout(&cells->density, LANES_DISTANCE, dim);
+    add_field(&cells->density, FIELD_WEIGHT, 1);
+    if (method->energy_element) add_field(&cells->density, FIELD_ENERGY, 1);
+    begin_layout(&cells->matrix, LANES_DIRECTION, dim);
+    add_field(&cells->matrix, FIELD_WEIGHT, 1);
+    if (method->velocity_gradient) add_field(&cells->matrix, FIELD_VELOCITY, dim);
+    lay_out_force(&cells->force, method);
+    cells->shift = (struct lanes_layout){0};
     if (!method->jump) return;
-    add_groups(&cells->shift, GROUP_PLACE, 1);
-    add_groups(&cells->shift, GROUP_MOTION, 1);
-    add_groups(&cells->shift, GROUP_GAS, 1);
-    add_groups(&cells->shift, GROUP_ACCELERATION, 1);
-}
-
-/* Doubles of the largest record. */
-static int record_size(const struct cells *cells)
-{
-    int size = cells->force.size;
-    if (cells->matrix.size > size) size = cells->matrix.size;
-    return cells->shift.size > size ? cells->shift.size : size;
+    begin_layout(&cells->shift, LANES_DIRECTION, dim);
+    add_field(&cells->shift, FIELD_WEIGHT, 1);
+    add_field(&cells->shift, FIELD_VELOCITY, dim);
+    add_field(&cells->shift, FIELD_H_INVERSE, 1);
+    add_field(&cells->shift, FIELD_VOLUME, 1);
+    add_field(&cells->shift, FIELD_SOUND, 1);
+    add_field(&cells->shift, FIELD_ACCELERATION, dim);
 }
 
 double cells_bytes(const struct cells_method *method, double n, double neighbours)
 {
     struct cells cells = {.method = *method};
     lay_out(&cells);
-    return n * record_size(&cells) * (double)sizeof(double) + grid_bytes(n, neighbours);
+    return n * lanes_longest_record(&cells) * (double)sizeof(double) + grid_bytes(n, neighbours);
 }
 
 static bool reserve_records(struct cells *cells, size_t n)
 {
     if (n + 1 <= cells->capacity) return true;
     free(cells->records);
-    const int size = record_size(cells);
+    const size_t size = (size_t)lanes_longest_record(cells);
     cells->capacity = n + n / 4 + 8;
-    cells->records =
-        aligned_alloc(64, (cells->capacity * (size_t)size * sizeof(double) + 63) / 64 * 64);
+    cells->records = aligned_alloc(64, (cells->capacity * size * sizeof(double) + 63) / 64 * 64);
     if (!cells->records) cells->capacity = 0;
     return cells->records != NULL;
 }
@@ -85,6 +98,7 @@ struct cells *cells_create(const struct cells_method *method, size_t n)
     cells->method = *method;
     cells->team = method->threads;
     cells->shapes = shapes_of(method->kernel, method->box.dim, method->stamped);
+    cells->own_w = method->kernel->w(method->kernel, 0, method->box.dim);
     lay_out(cells);
     struct lanes_layout *const layouts[] = {&cells->density, &cells->matrix, &cells->force,
                                             &cells->shift};
@@ -204,6 +218,11 @@ enum status cells_arrange(struct cells *cells, const struct cells_fields *fields
         grid_search(cells->grid, cells->points, fields->n, walls ? all : fields->x,
                     walls ? images->radius : radius, asleep, error);
     if (status) return status;
+    cells->lists = grid_lists(cells->grid);
+    cells->place = grid_positions(cells->grid);
+    cells->order = grid_order(cells->grid);
+    for (int a = 0; a < 3; a++)
+        cells->side[a] = grid_side(cells->grid, a) > 0 ? grid_side(cells->grid, a) : HUGE_VAL;
     if (!reserve_records(cells, cells->points) || !lanes_reserve(cells))
         return error_set(error, STATUS_ENVIRONMENT, "no memory for %zu particles", fields->n);
     return STATUS_OK;
@@ -212,12 +231,11 @@ enum status cells_arrange(struct cells *cells, const struct cells_fields *fields
 /* From slot a to slot b, the nearest image. */
 static double separate(const struct cells *cells, size_t a, size_t b, double x[3])
 {
-    const double(*place)[4] = grid_positions(cells->grid);
     double r2 = 0;
     for (int k = 0; k < cells->method.box.dim; k++) {
-        const double side = grid_side(cells->grid, k);
-        x[k] = place[b][k] - place[a][k];
-        if (side > 0) x[k] -= side * round(x[k] / side);
+        const double side = cells->side[k];
+        x[k] = cells->place[b][k] - cells->place[a][k];
+        if (side < HUGE_VAL) x[k] -= side * round(x[k] / side);
         r2 += x[k] * x[k];
     }
     return r2;
@@ -238,7 +256,7 @@ static struct description describe(const struct cells *cells, const struct cells
                                    size_t slot, size_t i)
 {
     const int dim = cells->method.box.dim;
-    const struct grid_list *list = &grid_lists(cells->grid)[slot];
+    const struct grid_list *list = &cells->lists[slot];
     double C[CELLS_SQUARE], cotangent = HUGE_VAL;
     struct description of = {.neighbours = 1, .condition = condition_of(cells, fields, i, C)};
     const bool used = of.condition <= cells->method.worst_condition;
@@ -262,7 +280,7 @@ void cells_describe(const struct cells *cells, const struct cells_fields *fields
                     description_visit *visit, void *context)
 {
     for (size_t slot = 0; slot < cells->points; slot++) {
-        const size_t i = grid_order(cells->grid)[slot];
+        const size_t i = cells->order[slot];
         if (i >= fields->n) continue;
         const struct description of = describe(cells, fields, slot, i);
         visit(context, i, &of);

@@ -8,34 +8,16 @@
 static void fill_records(struct cells *cells, const struct cells_fields *fields)
 {
     const struct lanes_layout *layout = &cells->density;
-    const double(*place)[4] = grid_positions(cells->grid);
-    const ptrdiff_t size = layout->size, energy = layout->offset[GROUP_LAGRANGIAN];
+    const int weight = layout->offset[FIELD_WEIGHT], energy = layout->offset[FIELD_ENERGY];
 #pragma omp parallel for num_threads(cells->team) if (cells->team > 1)
     for (size_t s = 0; s <= cells->points; s++) {
-        double *record = cells->records + (ptrdiff_t)s * size;
+        double *record = lanes_record(cells, layout, s);
         const bool sentinel = s == cells->points;
         int mirrored;
         const size_t i = sentinel ? 0 : lanes_source(cells, fields->n, s, &mirrored);
-        for (int a = 0; a < 3; a++) record[a] = place[s][a];
-        record[3] = sentinel ? 0 : cells->method.number ? 1 : fields->m[i];
-        if (energy >= 0) record[energy + 2] = sentinel ? 0 : fields->U[i];
+        record[weight] = sentinel ? 0 : cells->method.number ? 1 : fields->m[i];
+        if (energy >= 0) record[energy] = sentinel ? 0 : fields->U[i];
     }
-}
-
-/* sum m w and sum m (d w + q w') in one walk. */
-CLONES static void add_both(int count, double dim, const double *restrict q,
-                            const double *restrict w, const double *restrict dw,
-                            const double *restrict m, double *restrict sums)
-{
-    double value[GRID_LANES] = {0}, slope[GRID_LANES] = {0};
-    for (int k = 0; k < count; k += GRID_LANES)
-#pragma omp simd
-        for (int l = 0; l < GRID_LANES; l++) {
-            value[l] += m[k + l] * w[k + l];
-            slope[l] += m[k + l] * (dim * w[k + l] + q[k + l] * dw[k + l]);
-        }
-    sums[0] = TREE(value);
-    sums[1] = TREE(slope);
 }
 
 /* The sums over lanes that are gathered, at another width each time. */
@@ -43,18 +25,16 @@ static void sum_at(const struct cells *cells, const struct lanes *lanes, int cou
                    double U, double h_inverse, double sums[4])
 {
     const struct kernel *kernel = cells->method.kernel;
-    const int dim = cells->method.box.dim;
-    double *q = lane(lanes, LANE_Q), *w = lane(lanes, LANE_W), *dw = lane(lanes, LANE_W_J);
-    lanes_scale(count, lane(lanes, LANE_R), h_inverse, q);
-    cells->shapes.w(kernel, (size_t)count, q, w);
-    cells->shapes.dw(kernel, (size_t)count, q, dw);
-    const double own = kernel->w(kernel, 0, dim);
-    add_both(count, dim, q, w, dw, lane_of(lanes, &cells->density, GROUP_PLACE, 3), sums);
+    const struct lanes_layout *layout = &cells->density;
+    const double dim = cells->method.box.dim, own = cells->own_w, *r = lane(lanes, LANE_R);
+    cells->shapes.sums(kernel, (size_t)count, r, h_inverse, lane_of(lanes, layout, FIELD_WEIGHT),
+                       sums);
     sums[0] += m * own;
     sums[1] += m * (dim * own);
     sums[2] = sums[3] = 0;
     if (!cells->method.energy_element) return;
-    add_both(count, dim, q, w, dw, lane_of(lanes, &cells->density, GROUP_LAGRANGIAN, 2), sums + 2);
+    cells->shapes.sums(kernel, (size_t)count, r, h_inverse, lane_of(lanes, layout, FIELD_ENERGY),
+                       sums + 2);
     sums[2] += U * own;
     sums[3] += U * (dim * own);
 }
@@ -72,7 +52,7 @@ static void put_sums(const struct cells *cells, const struct cells_fields *field
 static void density_pass(struct cells *cells, const struct cells_fields *fields, size_t slot,
                          struct lanes *lanes)
 {
-    const size_t i = grid_order(cells->grid)[slot];
+    const size_t i = cells->order[slot];
     double sums[4];
     const int count = lanes_gather(cells, &cells->density, slot, lanes);
     sum_at(cells, lanes, count, cells->method.number ? 1 : fields->m[i],
@@ -115,7 +95,7 @@ static enum cells_outcome solve(const struct cells *cells, const struct lanes *l
 static void width_pass(struct cells *cells, const struct cells_fields *fields, size_t slot,
                        struct lanes *lanes)
 {
-    const size_t i = grid_order(cells->grid)[slot];
+    const size_t i = cells->order[slot];
     unsigned char *outcome = &cells->newton.outcome[i];
     double sums[4];
     if (*outcome != CELLS_OPEN) return;

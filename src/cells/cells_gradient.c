@@ -3,10 +3,10 @@
  * matrix with the weight W (ia) or -W'/r (corrected), at the widths that the scheme asks for. */
 #include <math.h>
 
-#include "sides.h"
+#include "pairs.h"
 #include "stamp.h"
 
-/* q at the particle's own width, at the neighbour's, or at a width of both. */
+/* q at the particle's own width and at the neighbour's, or at a width of both. */
 CLONES static void widths(enum pair_width width, int count, const double *restrict r,
                           double h_inverse, const double *restrict theirs, double *restrict q,
                           double *restrict q_j)
@@ -75,7 +75,7 @@ CLONES static void standard_means(int dim, int count, double constant, double h_
         standard_means_body(3, count, constant, h_inverse, theirs, lanes);
 }
 
-/* w(q), or -w'(q)/q from w' in place, as weight of a matrix. */
+/* -w'(q)/q from w', in place, as weight of a matrix. */
 CLONES static void corrected_weight(int count, const double *restrict q, double *restrict dw)
 {
 #pragma omp simd
@@ -90,40 +90,82 @@ CLONES static void along(int count, const double *restrict s, const double *rest
     for (int k = 0; k < count; k++) G[k] = s[k] * x[k];
 }
 
-/* Negative gradients by matrices along all axes, G_i = -C_i x w and G_j = -C_j x w_j, and their
- * mean. */
-ALWAYS_INLINE void matrix_body(int dim, int count, const struct lanes *lanes, const double *own,
-                               const double *theirs)
+/* What matrices make of pairs: lanes, and the matrices of the particle and of its neighbours. */
+struct by_matrices {
+    const double *x, *w, *w_j, *own, *theirs;
+    double *G, *G_i, *G_j;
+    ptrdiff_t stride;
+};
+
+/* Along one axis: the mean of G_i = -C_i x w and G_j = -C_j x w_j, and each of them if both are
+ * wanted. Axes are written out where this is called: loops in loops would not be vectorised. */
+ALWAYS_INLINE void matrix_along(int dim, bool both, int a, ptrdiff_t n, const struct by_matrices *m)
 {
-    const ptrdiff_t stride = lanes->stride;
-    const double *restrict x = lane(lanes, LANE_DX), *restrict C = theirs,
-                           *restrict w = lane(lanes, LANE_W), *restrict w_j = lane(lanes, LANE_W_J);
-    double *restrict G = lane(lanes, LANE_GX), *restrict G_i = lane(lanes, LANE_GX_I),
-                     *restrict G_j = lane(lanes, LANE_GX_J);
-#pragma omp simd
-    for (int k = 0; k < count; k++)
-        for (int a = 0; a < dim; a++) {
-            double mine = 0, other = 0;
-            for (int b = 0; b < dim; b++) {
-                const int ab = symmetric_at(dim, a, b);
-                mine -= own[ab] * x[b * stride + k];
-                other -= C[ab * stride + k] * x[b * stride + k];
-            }
-            mine *= w[k];
-            other *= w_j[k];
-            G_i[a * stride + k] = mine;
-            G_j[a * stride + k] = other;
-            G[a * stride + k] = 0.5 * (mine + other);
-        }
+    const double *restrict x = m->x, *restrict C = m->theirs, *restrict w = m->w,
+                           *restrict w_j = m->w_j;
+    double *restrict G = m->G, *restrict G_i = m->G_i, *restrict G_j = m->G_j;
+    const ptrdiff_t stride = m->stride;
+    const double half_i = -0.5 * w[n], half_j = -0.5 * w_j[n];
+    double g = 0, mine = 0, other = 0;
+    for (int b = 0; b < dim; b++) {
+        const int ab = symmetric_at(dim, a, b);
+        const double by_i = m->own[ab] * half_i, by_j = C[ab * stride + n] * half_j,
+                     xb = x[b * stride + n];
+        g += (by_i + by_j) * xb;
+        mine += by_i * xb;
+        other += by_j * xb;
+    }
+    G[a * stride + n] = g;
+    if (!both) return;
+    G_i[a * stride + n] = 2 * mine;
+    G_j[a * stride + n] = 2 * other;
 }
 
-CLONES static void by_matrix(int dim, int count, const struct lanes *lanes, const double *own,
-                             const double *theirs)
+/* Negative gradients by matrices along all axes. */
+ALWAYS_INLINE void matrix_body(int dim, bool both, int count, const struct lanes *lanes,
+                               const double *own, const double *theirs)
 {
-    if (dim == 2)
-        matrix_body(2, count, lanes, own, theirs);
+    const struct by_matrices m = {.x = lane(lanes, LANE_DX),
+                                  .w = lane(lanes, LANE_W),
+                                  .w_j = lane(lanes, LANE_W_J),
+                                  .own = own,
+                                  .theirs = theirs,
+                                  .G = lane(lanes, LANE_GX),
+                                  .G_i = lane(lanes, LANE_GX_I),
+                                  .G_j = lane(lanes, LANE_GX_J),
+                                  .stride = lanes->stride};
+#pragma omp simd
+    for (int k = 0; k < count; k++) {
+        matrix_along(dim, both, 0, k, &m);
+        matrix_along(dim, both, 1, k, &m);
+        if (dim == 3) matrix_along(dim, both, 2, k, &m);
+    }
+}
+
+CLONES static void by_matrix(int dim, bool both, int count, const struct lanes *lanes,
+                             const double *own, const double *theirs)
+{
+    if (dim == 2 && both)
+        matrix_body(2, true, count, lanes, own, theirs);
+    else if (dim == 2)
+        matrix_body(2, false, count, lanes, own, theirs);
+    else if (both)
+        matrix_body(3, true, count, lanes, own, theirs);
     else
-        matrix_body(3, count, lanes, own, theirs);
+        matrix_body(3, false, count, lanes, own, theirs);
+}
+
+/* Are all matrices to be used? Their first entry is positive then, and 0 where one is not. */
+CLONES static bool all_sound(int count, double own, const double *restrict theirs)
+{
+    double first[GRID_LANES];
+    for (int l = 0; l < GRID_LANES; l++) first[l] = own;
+    for (int k = 0; k < count; k += GRID_LANES)
+#pragma omp simd
+        for (int l = 0; l < GRID_LANES; l++) first[l] = least(first[l], theirs[k + l]);
+    double smallest = own;
+    for (int l = 0; l < GRID_LANES; l++) smallest = least(smallest, first[l]);
+    return smallest > 0;
 }
 
 CLONES static void mean(int count, const double *restrict a, const double *restrict b,
@@ -138,30 +180,42 @@ CLONES static void fall_back(int count, double own, const double *restrict their
                              const double *restrict s, const double *restrict x, double *restrict G)
 {
 #pragma omp simd
-    for (int k = 0; k < count; k++) G[k] = own * theirs[k] > 0 ? G[k] : s[k] * x[k];
+    for (int k = 0; k < count; k++) G[k] = least(own, theirs[k]) > 0 ? G[k] : s[k] * x[k];
 }
 
-/* w(q), w'(q) or what the gradient needs of them, in place of w. */
-static void pair_shapes(const struct cells *cells, int count, const double *q, double *w)
+/* w(q) or, of any but gradient=ia, w'(q) at both widths. */
+static void pair_shapes(const struct cells *cells, const struct pairs *pairs)
 {
     const struct cells_method *method = &cells->method;
-    if (method->gradient == GRADIENT_IA) {
-        cells->shapes.w(method->kernel, (size_t)count, q, w);
+    const struct shapes *shapes = &cells->shapes;
+    const struct lanes *lanes = pairs->lanes;
+    const double h_inverse = *pairs_own(pairs, FIELD_H_INVERSE),
+                 *theirs = pairs_theirs(pairs, FIELD_H_INVERSE), *r = lane(lanes, LANE_R);
+    const bool by_w = method->gradient == GRADIENT_IA;
+    double *w = lane(lanes, LANE_W), *w_j = lane(lanes, LANE_W_J);
+    if (method->pair_width == PAIR_WIDTH_MEAN) {
+        (by_w ? shapes->pair_w : shapes->pair_dw)(method->kernel, (size_t)pairs->count, r,
+                                                  h_inverse, theirs, w, w_j);
         return;
     }
-    cells->shapes.dw(method->kernel, (size_t)count, q, w);
-    if (method->gradient != GRADIENT_STANDARD) corrected_weight(count, q, w);
+    double *q = lane(lanes, LANE_Q);
+    widths(method->pair_width, pairs->count, r, h_inverse, theirs, q, lane(lanes, LANE_Q_J));
+    (by_w ? shapes->w : shapes->dw)(method->kernel, (size_t)pairs->count, q, w);
+    for (int k = 0; k < pairs->count; k++) w_j[k] = w[k];
 }
 
-/* The standard pair gradient's s, at both widths. */
-static void standard_pair(const struct cells *cells, int count, const struct lanes *lanes,
-                          double h_inverse, const double *theirs, double *s, double *s_j)
+/* The standard pair gradient's s at both widths, into the lanes of w. */
+static void standard_pair(const struct cells *cells, const struct pairs *pairs)
 {
     const struct cells_method *method = &cells->method;
-    const int dim = method->box.dim;
-    const double C = method->kernel->constant[dim], *r_inverse = lane(lanes, LANE_R_INVERSE);
+    const struct lanes *lanes = pairs->lanes;
+    const int dim = method->box.dim, count = pairs->count;
+    const double C = method->kernel->constant[dim], *r_inverse = lane(lanes, LANE_R_INVERSE),
+                 h_inverse = *pairs_own(pairs, FIELD_H_INVERSE),
+                 *theirs = pairs_theirs(pairs, FIELD_H_INVERSE);
     const bool mean_width = method->pair_width == PAIR_WIDTH_MEAN;
-    double *q = lane(lanes, LANE_Q), *q_j = lane(lanes, LANE_Q_J);
+    double *q = lane(lanes, LANE_Q), *q_j = lane(lanes, LANE_Q_J), *s = lane(lanes, LANE_W),
+           *s_j = lane(lanes, LANE_W_J);
     widths(method->pair_width, count, lane(lanes, LANE_R), h_inverse, theirs, q, q_j);
     cells->shapes.dw(method->kernel, (size_t)count, q, s);
     standard_sizes(dim, count, C, h_inverse, mean_width ? NULL : q_j, r_inverse, s);
@@ -173,31 +227,22 @@ static void standard_pair(const struct cells *cells, int count, const struct lan
     standard_sizes(dim, count, C, h_inverse, theirs, r_inverse, s_j);
 }
 
-static bool all_sound(int count, double own, const double *theirs, int padding_from)
-{
-    double least_of = own;
-    for (int k = 0; k < count; k++)
-        if (k < padding_from) least_of = least(least_of, theirs[k]);
-    return least_of > 0;
-}
-
 /* All of them for gradient=standard. */
-static void standard_gradients(const struct cells *cells, int count, const struct lanes *lanes,
-                               double h_inverse, const double *theirs)
+static void standard_gradients(const struct cells *cells, const struct pairs *pairs)
 {
     const struct cells_method *method = &cells->method;
-    const int dim = method->box.dim;
+    const struct lanes *lanes = pairs->lanes;
+    const int dim = method->box.dim, count = pairs->count;
     const bool both = method->formulation == FORMULATION_LAGRANGIAN;
     double *w = lane(lanes, LANE_W), *w_j = lane(lanes, LANE_W_J);
     if (!both && method->pair_width == PAIR_WIDTH_MEAN) {
-        double *q = lane(lanes, LANE_Q), *q_j = lane(lanes, LANE_Q_J);
-        widths(PAIR_WIDTH_MEAN, count, lane(lanes, LANE_R), h_inverse, theirs, q, q_j);
-        cells->shapes.dw(method->kernel, (size_t)count, q, w);
-        cells->shapes.dw(method->kernel, (size_t)count, q_j, w_j);
-        standard_means(dim, count, method->kernel->constant[dim], h_inverse, theirs, lanes);
+        pair_shapes(cells, pairs);
+        standard_means(dim, count, method->kernel->constant[dim],
+                       *pairs_own(pairs, FIELD_H_INVERSE), pairs_theirs(pairs, FIELD_H_INVERSE),
+                       lanes);
         return;
     }
-    standard_pair(cells, count, lanes, h_inverse, theirs, w, w_j);
+    standard_pair(cells, pairs);
     double *s = lane(lanes, LANE_SPARE);
     mean(count, w, w_j, s);
     for (int a = 0; a < dim; a++) {
@@ -209,39 +254,42 @@ static void standard_gradients(const struct cells *cells, int count, const struc
     }
 }
 
-/* G_i, G_j and their mean G of every pair, along every axis. */
-void cells_pair_gradients(const struct cells *cells, int count, int neighbours,
-                          const struct lanes *lanes, const double *record)
+/* The weights of the matrices: w, or -w'/q for gradient=corrected. */
+static void matrix_weights(const struct cells *cells, const struct pairs *pairs)
+{
+    const struct lanes *lanes = pairs->lanes;
+    const enum pair_width width = cells->method.pair_width;
+    pair_shapes(cells, pairs);
+    if (cells->method.gradient == GRADIENT_IA) return;
+    double *q = lane(lanes, LANE_Q), *q_j = lane(lanes, LANE_Q_J);
+    widths(width, pairs->count, lane(lanes, LANE_R), *pairs_own(pairs, FIELD_H_INVERSE),
+           pairs_theirs(pairs, FIELD_H_INVERSE), q, q_j);
+    corrected_weight(pairs->count, q, lane(lanes, LANE_W));
+    corrected_weight(pairs->count, width == PAIR_WIDTH_MEAN ? q_j : q, lane(lanes, LANE_W_J));
+}
+
+void cells_pair_gradients(const struct cells *cells, const struct pairs *pairs)
 {
     const struct cells_method *method = &cells->method;
-    const struct lanes_layout *layout = &cells->force;
-    const int dim = method->box.dim;
-    const double h_inverse = record[layout->offset[GROUP_GAS]];
-    const double *theirs = lane_of(lanes, layout, GROUP_GAS, 0);
-    double *w = lane(lanes, LANE_W), *w_j = lane(lanes, LANE_W_J);
+    const struct lanes *lanes = pairs->lanes;
+    const int dim = method->box.dim, count = pairs->count;
     if (method->gradient == GRADIENT_STANDARD) {
-        standard_gradients(cells, count, lanes, h_inverse, theirs);
+        standard_gradients(cells, pairs);
         return;
     }
-    double *q = lane(lanes, LANE_Q), *q_j = lane(lanes, LANE_Q_J);
-    widths(method->pair_width, count, lane(lanes, LANE_R), h_inverse, theirs, q, q_j);
-    pair_shapes(cells, count, q, w);
-    if (method->pair_width == PAIR_WIDTH_MEAN)
-        pair_shapes(cells, count, q_j, w_j);
-    else
-        for (int k = 0; k < count; k++) w_j[k] = w[k];
-    const double *own = record + layout->offset[GROUP_MATRIX];
-    by_matrix(dim, count, lanes, own, lane_of(lanes, layout, GROUP_MATRIX, 0));
-    const int symmetric = dim * (dim + 1) / 2;
-    const double *use = lane_of(lanes, layout, GROUP_MATRIX, symmetric);
-    if (all_sound(count, own[symmetric], use, neighbours)) return;
-    standard_pair(cells, count, lanes, h_inverse, theirs, w, w_j);
-    double *s = lane(lanes, LANE_SPARE);
-    mean(count, w, w_j, s);
+    const bool both = method->formulation == FORMULATION_LAGRANGIAN;
+    const double *own = pairs_own(pairs, FIELD_MATRIX), *theirs = pairs_theirs(pairs, FIELD_MATRIX);
+    matrix_weights(cells, pairs);
+    by_matrix(dim, both, count, lanes, own, theirs);
+    if (all_sound(count, own[0], theirs)) return;
+    standard_pair(cells, pairs);
+    double *s = lane(lanes, LANE_SPARE), *s_i = lane(lanes, LANE_W), *s_j = lane(lanes, LANE_W_J);
+    mean(count, s_i, s_j, s);
     for (int a = 0; a < dim; a++) {
         const double *x = lane(lanes, LANE_DX + a);
-        fall_back(count, own[symmetric], use, s, x, lane(lanes, LANE_GX + a));
-        fall_back(count, own[symmetric], use, w, x, lane(lanes, LANE_GX_I + a));
-        fall_back(count, own[symmetric], use, w_j, x, lane(lanes, LANE_GX_J + a));
+        fall_back(count, own[0], theirs, s, x, lane(lanes, LANE_GX + a));
+        if (!both) continue;
+        fall_back(count, own[0], theirs, s_i, x, lane(lanes, LANE_GX_I + a));
+        fall_back(count, own[0], theirs, s_j, x, lane(lanes, LANE_GX_J + a));
     }
 }

@@ -11,22 +11,25 @@
 static void fill_records(struct cells *cells, const struct cells_fields *fields)
 {
     const struct lanes_layout *layout = &cells->matrix;
-    const double(*place)[4] = grid_positions(cells->grid);
-    const int dim = cells->method.box.dim;
-    const ptrdiff_t size = layout->size, motion = layout->offset[GROUP_MOTION],
-                    gas = layout->offset[GROUP_GAS];
+    const int dim = cells->method.box.dim, weight = layout->offset[FIELD_WEIGHT],
+              velocity = layout->offset[FIELD_VELOCITY];
 #pragma omp parallel for num_threads(cells->team) if (cells->team > 1)
     for (size_t s = 0; s <= cells->points; s++) {
-        double *record = cells->records + (ptrdiff_t)s * size;
-        for (ptrdiff_t f = 0; f < size; f++) record[f] = 0;
-        for (int a = 0; a < 3; a++) record[a] = place[s][a];
-        if (s == cells->points) continue;
-        int mirrored;
-        const size_t i = lanes_source(cells, fields->n, s, &mirrored);
-        for (int a = 0; motion >= 0 && a < dim; a++)
-            record[motion + a] = lanes_sign(mirrored, a) * fields->v[a][i];
-        record[gas + 1] = fields->V[i];
+        double *record = lanes_record(cells, layout, s);
+        const bool sentinel = s == cells->points;
+        int mirrored = 0;
+        const size_t i = sentinel ? 0 : lanes_source(cells, fields->n, s, &mirrored);
+        record[weight] = sentinel ? 0 : fields->V[i];
+        for (int a = 0; velocity >= 0 && a < dim; a++)
+            record[velocity + a] = sentinel ? 0 : lanes_sign(mirrored, a) * fields->v[a][i];
     }
+}
+
+/* q = r/h. */
+CLONES static void scale(int count, const double *restrict r, double h_inverse, double *restrict q)
+{
+#pragma omp simd
+    for (int k = 0; k < count; k++) q[k] = r[k] * h_inverse;
 }
 
 /* V times -w'(q)/q, the weight of gradient=corrected; 0 where points coincide. */
@@ -40,7 +43,8 @@ CLONES static void slope_weight(int count, double h, const double *restrict r_in
 
 /* P = kappa M^2/tr M^2 with M = L L^T and kappa = smoothstep((s - 0.7)/0.25),
  * s = 2 tr M^2/(tr M)^2 - 1: 1 for simple shear, 0 for rotation. */
-static void project(int dim, const double L[CELLS_SQUARE], double projector[CELLS_SYMMETRIC])
+ALWAYS_INLINE void project_body(int dim, const double L[CELLS_SQUARE],
+                                double projector[CELLS_SYMMETRIC])
 {
     double M[CELLS_SQUARE], M2[CELLS_SQUARE], trace = 0, trace2 = 0;
     for (int a = 0; a < dim; a++)
@@ -55,22 +59,32 @@ static void project(int dim, const double L[CELLS_SQUARE], double projector[CELL
         }
     for (int a = 0; a < dim; a++) trace += M[a * dim + a], trace2 += M2[a * dim + a];
     const double s = trace2 > 0 ? 2 * trace2 / (trace * trace) - 1 : 0;
-    const double t = fmin(1, fmax(0, (s - 0.7) / 0.25)), kappa = t * t * (3 - 2 * t);
+    const double t = least(1, largest(0, (s - 0.7) / 0.25)), kappa = t * t * (3 - 2 * t);
     for (int a = 0; a < dim; a++)
         for (int b = a; b < dim; b++)
             projector[symmetric_at(dim, a, b)] = trace2 > 0 ? kappa * M2[a * dim + b] / trace2 : 0;
 }
 
-static void velocity_gradient(struct cells *cells, const struct cells_fields *fields, size_t i,
+static void project(int dim, const double L[CELLS_SQUARE], double projector[CELLS_SYMMETRIC])
+{
+    if (dim == 2)
+        project_body(2, L, projector);
+    else
+        project_body(3, L, projector);
+}
+
+static void velocity_gradient(struct cells *cells, const struct cells_fields *fields, size_t slot,
                               int count, struct lanes *lanes, const double *weight,
                               const double inverse[CELLS_SQUARE], bool sound)
 {
+    const struct lanes_layout *layout = &cells->matrix;
+    const size_t i = cells->order[slot];
     const int dim = cells->method.box.dim;
     double L[CELLS_SQUARE] = {0};
-    for (int a = 0; sound && a < dim; a++)
-        moments_gradient(dim, count, lanes, weight, inverse,
-                         lane_of(lanes, &cells->matrix, GROUP_MOTION, a), fields->v[a][i],
-                         L + a * dim);
+    if (sound)
+        moments_gradient(
+            dim, count, lanes, weight, inverse, lane_of(lanes, layout, FIELD_VELOCITY),
+            cells->records + (ptrdiff_t)slot * layout->size + layout->offset[FIELD_VELOCITY], L);
     for (int k = 0; k < dim * dim; k++) fields->slope[k][i] = L[k];
     if (!cells->method.projected) return;
     double projector[CELLS_SYMMETRIC] = {0};
@@ -82,23 +96,25 @@ static void matrix_pass(struct cells *cells, const struct cells_fields *fields, 
                         struct lanes *lanes)
 {
     const struct cells_method *method = &cells->method;
-    const size_t i = grid_order(cells->grid)[slot];
+    const size_t i = cells->order[slot];
     const int dim = method->box.dim, count = lanes_gather(cells, &cells->matrix, slot, lanes);
-    const double *V = lane_of(lanes, &cells->matrix, GROUP_GAS, 1);
-    double *q = lane(lanes, LANE_Q), *w = lane(lanes, LANE_W), *weight = lane(lanes, LANE_W_J);
+    const double *V = lane_of(lanes, &cells->matrix, FIELD_WEIGHT),
+                 h_inverse = fields->h_inverse[i];
+    double *dw = lane(lanes, LANE_W), *weight = lane(lanes, LANE_W_J);
     double inverse[CELLS_SQUARE], condition = 0;
     bool sound = false;
     if (method->gradient == GRADIENT_IA || method->velocity_gradient) {
-        moments_weigh(cells, count, lanes, fields->h_inverse[i], V);
+        moments_weigh(cells, count, lanes, h_inverse, V);
         sound = moments_invert(method, count, lanes, weight, inverse, &condition);
     }
     if (method->velocity_gradient)
-        velocity_gradient(cells, fields, i, count, lanes, weight, inverse, sound);
+        velocity_gradient(cells, fields, slot, count, lanes, weight, inverse, sound);
     if (method->gradient == GRADIENT_STANDARD) return;
     if (method->gradient != GRADIENT_IA) { /* corrected */
-        lanes_scale(count, lane(lanes, LANE_R), fields->h_inverse[i], q);
-        cells->shapes.dw(method->kernel, (size_t)count, q, w);
-        slope_weight(count, 1 / fields->h_inverse[i], lane(lanes, LANE_R_INVERSE), V, w, weight);
+        double *q = lane(lanes, LANE_Q);
+        scale(count, lane(lanes, LANE_R), h_inverse, q);
+        cells->shapes.dw(method->kernel, (size_t)count, q, dw);
+        slope_weight(count, 1 / h_inverse, lane(lanes, LANE_R_INVERSE), V, dw, weight);
         sound = moments_invert(method, count, lanes, weight, inverse, &condition);
     }
     fields->condition[i] = condition;

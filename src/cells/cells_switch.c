@@ -19,36 +19,35 @@ static double divergence_of(int dim, const struct cells_fields *fields, size_t i
 static void fill_records(struct cells *cells, const struct cells_fields *fields)
 {
     const struct lanes_layout *layout = &cells->shift;
-    const double(*place)[4] = grid_positions(cells->grid);
-    const int dim = cells->method.box.dim;
+    const int dim = cells->method.box.dim, *at = layout->offset;
 #pragma omp parallel for num_threads(cells->team) if (cells->team > 1)
     for (size_t s = 0; s <= cells->points; s++) {
-        double *record = cells->records + (ptrdiff_t)s * layout->size;
-        for (int f = 0; f < layout->size; f++) record[f] = 0;
-        for (int a = 0; a < 3; a++) record[a] = place[s][a];
-        if (s == cells->points) continue;
+        double *record = lanes_record(cells, layout, s);
+        for (int f = dim; f < layout->size; f++) record[f] = 0;
+        if (s == cells->points) {
+            record[at[FIELD_H_INVERSE]] = HUGE_VAL;
+            continue;
+        }
         int mirrored;
         const size_t i = lanes_source(cells, fields->n, s, &mirrored);
         const double divergence = divergence_of(dim, fields, i);
-        double *motion = record + layout->offset[GROUP_MOTION],
-               *gas = record + layout->offset[GROUP_GAS],
-               *pull = record + layout->offset[GROUP_ACCELERATION];
-        record[3] = fields->m[i] * (divergence > 0 ? 1 : divergence < 0 ? -1 : 0);
+        record[at[FIELD_WEIGHT]] = fields->m[i] * (divergence > 0 ? 1 : divergence < 0 ? -1 : 0);
         for (int a = 0; a < dim; a++) {
-            motion[a] = lanes_sign(mirrored, a) * fields->v[a][i];
-            pull[a] = lanes_sign(mirrored, a) * (fields->F[a][i] / fields->m[i]);
+            const double sign = lanes_sign(mirrored, a);
+            record[at[FIELD_VELOCITY] + a] = sign * fields->v[a][i];
+            record[at[FIELD_ACCELERATION] + a] = sign * (fields->F[a][i] / fields->m[i]);
         }
-        motion[3] = 1 / fields->h_inverse[i];
-        gas[1] = fields->V[i];
-        gas[3] = fields->c[i];
+        record[at[FIELD_H_INVERSE]] = fields->h_inverse[i];
+        record[at[FIELD_VOLUME]] = fields->V[i];
+        record[at[FIELD_SOUND]] = fields->c[i];
     }
 }
 
 /* v_sig of eq. 6.6: the largest cbar - min(0, v_ij . e_ij) of pairs within max(h_i, h_j), the
  * particle itself among them. */
-CLONES static double signal_of(int dim, int count, const struct lanes *lanes, double own_h,
+CLONES static double signal_of(int dim, int count, const struct lanes *lanes, double own_h_inverse,
                                double own_c, const double *own_v, const double *restrict v,
-                               const double *restrict h, const double *restrict c)
+                               const double *restrict h_inverse, const double *restrict c)
 {
     const ptrdiff_t stride = lanes->stride;
     const double *restrict r = lane(lanes, LANE_R),
@@ -62,7 +61,7 @@ CLONES static double signal_of(int dim, int count, const struct lanes *lanes, do
             double closing = (own_v[0] - v[n]) * x[n] + (own_v[1] - v[stride + n]) * x[stride + n];
             if (dim == 3) closing += (own_v[2] - v[2 * stride + n]) * x[2 * stride + n];
             const double speed = 0.5 * (own_c + c[n]) + largest(closing * r_inverse[n], 0);
-            top[l] = largest(top[l], r[n] < largest(own_h, h[n]) ? speed : 0);
+            top[l] = largest(top[l], pair_within(r[n], own_h_inverse, h_inverse[n]) ? speed : 0);
         }
     double most = own_c;
     for (int l = 0; l < GRID_LANES; l++) most = largest(most, top[l]);
@@ -87,33 +86,32 @@ static void switch_pass(struct cells *cells, const struct cells_fields *fields, 
 {
     const struct cells_method *method = &cells->method;
     const struct lanes_layout *layout = &cells->shift;
-    const size_t i = grid_order(cells->grid)[slot];
+    const size_t i = cells->order[slot];
     const int dim = method->box.dim, count = lanes_gather(cells, layout, slot, lanes);
     const double *record = cells->records + (ptrdiff_t)slot * layout->size,
                  *weight = lane(lanes, LANE_W_J), *w = lane(lanes, LANE_W);
-    double inverse[CELLS_SQUARE], condition, row[3], L[CELLS_SQUARE], change = 0;
-    moments_weigh(cells, count, lanes, fields->h_inverse[i], lane_of(lanes, layout, GROUP_GAS, 1));
-    if (moments_invert(method, count, lanes, weight, inverse, &condition))
-        for (int a = 0; a < dim; a++) {
-            moments_gradient(dim, count, lanes, weight, inverse,
-                             lane_of(lanes, layout, GROUP_ACCELERATION, a),
-                             record[layout->offset[GROUP_ACCELERATION] + a], row);
-            change += row[a];
-        }
+    double inverse[CELLS_SQUARE], condition, A_of[CELLS_SQUARE], L[CELLS_SQUARE], change = 0;
+    moments_weigh(cells, count, lanes, fields->h_inverse[i], lane_of(lanes, layout, FIELD_VOLUME));
+    if (moments_invert(method, count, lanes, weight, inverse, &condition)) {
+        moments_gradient(dim, count, lanes, weight, inverse,
+                         lane_of(lanes, layout, FIELD_ACCELERATION),
+                         record + layout->offset[FIELD_ACCELERATION], A_of);
+        for (int a = 0; a < dim; a++) change += A_of[a * dim + a];
+    }
     for (int k = 0; k < dim * dim; k++) L[k] = fields->slope[k][i];
     for (int a = 0; a < dim; a++)
         for (int b = 0; b < dim; b++) change -= L[a * dim + b] * L[b * dim + a];
     const double h_inverse = fields->h_inverse[i];
     double scale = method->kernel->constant[dim] / fields->rho[i];
     for (int a = 0; a < dim; a++) scale *= h_inverse;
-    const double R = scale * (record[3] * method->kernel->w(method->kernel, 0, dim) +
-                              lanes_dot(lane_of(lanes, layout, GROUP_PLACE, 3), w, count));
+    const double R = scale * (record[layout->offset[FIELD_WEIGHT]] * cells->own_w +
+                              lanes_dot(lane_of(lanes, layout, FIELD_WEIGHT), w, count));
     const double A = limiter(dim, L, divergence_of(dim, fields, i), R) * largest(-change, 0);
-    const double rate = h_inverse * signal_of(dim, count, lanes, 1 / h_inverse, fields->c[i],
-                                              record + layout->offset[GROUP_MOTION],
-                                              lane_of(lanes, layout, GROUP_MOTION, 0),
-                                              lane_of(lanes, layout, GROUP_MOTION, 3),
-                                              lane_of(lanes, layout, GROUP_GAS, 3));
+    const double rate = h_inverse * signal_of(dim, count, lanes, h_inverse, fields->c[i],
+                                              record + layout->offset[FIELD_VELOCITY],
+                                              lane_of(lanes, layout, FIELD_VELOCITY),
+                                              lane_of(lanes, layout, FIELD_H_INVERSE),
+                                              lane_of(lanes, layout, FIELD_SOUND));
     fields->alpha_local[i] =
         largest(method->alpha_min, method->alpha_max * (A / (A + rate * rate)));
     fields->decay[i] = 2 * 0.05 * rate;

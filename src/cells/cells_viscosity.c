@@ -3,62 +3,135 @@
  * Closing speeds, slopes and gradients are there. */
 #include <math.h>
 
-#include "sides.h"
+#include "pairs.h"
 #include "stamp.h"
 
-/* x . L x/r^2 for the particle's own L, and for the neighbours'. */
-ALWAYS_INLINE void slopes_body(int dim, int count, const struct lanes *lanes, const double *own,
-                               const double *theirs)
+/* What find_slopes reads, at the particle and at its neighbours; P NULL: not projected. */
+struct slopes {
+    const double *x, *own_L, *L, *own_P, *P, *own_v, *v;
+    ptrdiff_t stride;
+};
+
+struct slope_terms {
+    double own, theirs, noise;
+};
+
+/* What one axis adds for the neighbour in lane k. Axes are written out where this is called: loops
+ * in loops would not be vectorised. */
+ALWAYS_INLINE struct slope_terms slope_along(int dim, bool projected, int a, ptrdiff_t k,
+                                             const struct slopes *s)
 {
-    const ptrdiff_t stride = lanes->stride;
-    const double *restrict x = lane(lanes, LANE_DX),
-                           *restrict r_inverse = lane(lanes, LANE_R_INVERSE), *restrict L = theirs;
-    double *restrict slope_i = lane(lanes, LANE_SLOPE_I), *restrict slope_j =
-                                                              lane(lanes, LANE_SLOPE_J);
+    const double *restrict x = s->x, *restrict L = s->L, *restrict P = s->P, *restrict v = s->v;
+    const ptrdiff_t stride = s->stride;
+    const double xa = x[a * stride + k];
+    double u = 0, u_j = 0, e = 0;
+    for (int b = 0; b < dim; b++) {
+        const double xb = x[b * stride + k];
+        const int ab = symmetric_at(dim, a, b);
+        u += s->own_L[a * dim + b] * xb;
+        u_j += L[(a * dim + b) * stride + k] * xb;
+        if (projected) e += (s->own_P[ab] + P[ab * stride + k]) * xb;
+    }
+    const double moving = projected ? (s->own_v[a] - v[a * stride + k]) + 0.5 * (u + u_j) : 0;
+    return (struct slope_terms){xa * u, xa * u_j, (xa - 0.5 * e) * moving};
+}
+
+/* x . L x/r^2 of the particle and of its neighbours and, of viscosity=projected, how fast its noise
+ * closes, x/r . (1 - P_ij) (v_ij + (L_i + L_j) x/2). */
+ALWAYS_INLINE void slopes_body(int dim, bool projected, const struct pairs *pairs)
+{
+    const struct lanes *lanes = pairs->lanes;
+    const struct slopes slopes = {
+        .x = lane(lanes, LANE_DX),
+        .own_L = pairs_own(pairs, FIELD_SLOPE),
+        .L = pairs_theirs(pairs, FIELD_SLOPE),
+        .own_P = projected ? pairs_own(pairs, FIELD_PROJECTOR) : NULL,
+        .P = projected ? pairs_theirs(pairs, FIELD_PROJECTOR) : NULL,
+        .own_v = pairs_own(pairs, FIELD_VELOCITY),
+        .v = pairs_theirs(pairs, FIELD_VELOCITY),
+        .stride = lanes->stride,
+    };
+    const double *restrict r_inverse = lane(lanes, LANE_R_INVERSE);
+    double *restrict slope_i = lane(lanes, LANE_SLOPE_I),
+                     *restrict slope_j = lane(lanes, LANE_SLOPE_J),
+                     *restrict noise = lane(lanes, LANE_SPARE);
+    const int count = pairs->count;
 #pragma omp simd
     for (int k = 0; k < count; k++) {
-        double e[3] = {0}, mine = 0, other = 0;
-        for (int a = 0; a < dim; a++) e[a] = x[a * stride + k] * r_inverse[k];
-        for (int a = 0; a < dim; a++)
-            for (int b = 0; b < dim; b++) {
-                const double ee = e[a] * e[b];
-                mine += own[a * dim + b] * ee;
-                other += L[(a * dim + b) * stride + k] * ee;
-            }
-        slope_i[k] = mine;
-        slope_j[k] = other;
+        const struct slope_terms x = slope_along(dim, projected, 0, k, &slopes),
+                                 y = slope_along(dim, projected, 1, k, &slopes);
+        struct slope_terms sum = {x.own + y.own, x.theirs + y.theirs, x.noise + y.noise};
+        if (dim == 3) {
+            const struct slope_terms z = slope_along(dim, projected, 2, k, &slopes);
+            sum.own += z.own, sum.theirs += z.theirs, sum.noise += z.noise;
+        }
+        const double per_r2 = r_inverse[k] * r_inverse[k];
+        slope_i[k] = sum.own * per_r2;
+        slope_j[k] = sum.theirs * per_r2;
+        if (projected) noise[k] = sum.noise * r_inverse[k];
     }
 }
 
-CLONES static void slopes_along(int dim, int count, const struct lanes *lanes, const double *own,
-                                const double *theirs)
+CLONES static void find_slopes(int dim, bool projected, const struct pairs *pairs)
 {
-    if (dim == 2)
-        slopes_body(2, count, lanes, own, theirs);
+    if (dim == 2 && projected)
+        slopes_body(2, true, pairs);
+    else if (dim == 2)
+        slopes_body(2, false, pairs);
+    else if (projected)
+        slopes_body(3, true, pairs);
     else
-        slopes_body(3, count, lanes, own, theirs);
+        slopes_body(3, false, pairs);
 }
 
-/* K, what viscosity adds to a_i and a_j alike, for G = 1. */
-ALWAYS_INLINE void viscous_body(enum viscosity viscosity, bool signal_form, int count,
-                                const struct pair_numbers *numbers, const struct sides *sides,
-                                const struct lanes *lanes)
+/* minus v_ij . G of the neighbour in lane k, which heats where it is positive: v_ij . Gbar. */
+ALWAYS_INLINE double approach(int dim, ptrdiff_t stride, ptrdiff_t k, const double *own_v,
+                              const double *restrict v, const double *restrict G)
 {
-    const struct pair_numbers n = *numbers;
-    const double own_m = sides->own.m, own_h = sides->own.h, own_h_inverse = sides->own.h_inverse,
-                 own_c = sides->own.c, own_rho = sides->own.rho, own_alpha = sides->own.alpha;
-    const double *restrict m = sides->m, *restrict h = sides->h,
-                           *restrict h_inverse = sides->h_inverse, *restrict c = sides->c,
-                           *restrict rho = sides->rho, *restrict alpha = sides->alpha,
-                           *restrict slope_i = lane(lanes, LANE_SLOPE_I),
-                           *restrict slope_j = lane(lanes, LANE_SLOPE_J),
-                           *restrict r = lane(lanes, LANE_R),
-                           *restrict closing = lane(lanes, LANE_CLOSING);
-    const bool varying = viscosity == VISCOSITY_TIME_DEPENDENT;
-    const bool sloped = viscosity == VISCOSITY_RECONSTRUCTED;
+    double sum = (v[k] - own_v[0]) * G[k];
+    for (int a = 1; a < dim; a++) sum += (v[a * stride + k] - own_v[a]) * G[a * stride + k];
+    return sum;
+}
+
+/* K, what viscosity adds to a_i and a_j alike, for G = 1.
+ *
+ * With slopes viscosity that would cool is left out: with a matrix a pair may approach against its
+ * gradient. The linear term of viscosity=projected has both signs (CONVENTIONS, projected):
+ * PI = -nu cbar e . (1 - P_ij) u_ij/rhobar, u_ij = v_ij + (L_i + L_j) x/2, e = -x/r, times
+ * 1 - (v_ij . e/cbar)^2 or 0: what is as fast as sound is no noise, and to damp it may cool. */
+ALWAYS_INLINE void viscous_body(enum viscosity viscosity, bool signal_form, int dim,
+                                const struct cells_method *method, const struct pairs *pairs)
+{
+    const struct lanes *lanes = pairs->lanes;
+    const struct pair_numbers numbers = method->numbers;
+    const bool varying = viscosity == VISCOSITY_TIME_DEPENDENT,
+               projected = viscosity == VISCOSITY_PROJECTED,
+               sloped = projected || viscosity == VISCOSITY_RECONSTRUCTED;
+    const double *restrict m = pairs_theirs(pairs, FIELD_WEIGHT),
+                           *restrict h_inverse = pairs_theirs(pairs, FIELD_H_INVERSE),
+                           *restrict c = pairs_theirs(pairs, FIELD_SOUND),
+                           *restrict rho = pairs_theirs(pairs, FIELD_DENSITY),
+                           *restrict h = signal_form ? NULL : pairs_theirs(pairs, FIELD_H),
+                           *restrict alpha = varying ? pairs_theirs(pairs, FIELD_ALPHA) : NULL,
+                           *restrict v = pairs_theirs(pairs, FIELD_VELOCITY),
+                           *restrict factor = method->balsara ? pairs_theirs(pairs, FIELD_BALSARA)
+                                                              : lane(lanes, LANE_ONE);
+    const double
+        *restrict slope_i = lane(lanes, LANE_SLOPE_I),
+                  *restrict slope_j = lane(lanes, LANE_SLOPE_J), *restrict r = lane(lanes, LANE_R),
+                  *restrict closing = lane(lanes, LANE_CLOSING),
+                  *restrict noise = lane(lanes, LANE_SPARE), *restrict G = lane(lanes, LANE_GX);
+    const double *own_v = pairs_own(pairs, FIELD_VELOCITY);
+    const double own_m = *pairs_own(pairs, FIELD_WEIGHT),
+                 own_h_inverse = *pairs_own(pairs, FIELD_H_INVERSE),
+                 own_h = signal_form ? 0 : *pairs_own(pairs, FIELD_H),
+                 own_c = *pairs_own(pairs, FIELD_SOUND), own_rho = *pairs_own(pairs, FIELD_DENSITY),
+                 own_alpha = varying ? *pairs_own(pairs, FIELD_ALPHA) : 0,
+                 own_factor = method->balsara ? *pairs_own(pairs, FIELD_BALSARA) : 1,
+                 half_nu = 0.5 * method->noise;
     double *restrict K = lane(lanes, LANE_K);
 #pragma omp simd
-    for (int k = 0; k < count; k++) {
+    for (int k = 0; k < pairs->count; k++) {
         const struct pair_side i = {.m = own_m,
                                     .h = own_h,
                                     .h_inverse = own_h_inverse,
@@ -67,135 +140,86 @@ ALWAYS_INLINE void viscous_body(enum viscosity viscosity, bool signal_form, int 
                                     .alpha = own_alpha,
                                     .slope = sloped ? slope_i[k] : 0};
         const struct pair_side j = {.m = m[k],
-                                    .h = h[k],
+                                    .h = signal_form ? 0 : h[k],
                                     .h_inverse = h_inverse[k],
                                     .c = c[k],
                                     .rho = rho[k],
                                     .alpha = varying ? alpha[k] : 0,
                                     .slope = sloped ? slope_j[k] : 0};
-        K[k] = signal_form ? pair_viscous_signal(viscosity, &n, &i, &j, r[k], closing[k], 1)
-                           : pair_viscous(viscosity, &n, &i, &j, r[k], closing[k], 1);
+        const double f = 0.5 * (own_factor + factor[k]);
+        double term = signal_form
+                          ? pair_viscous_signal(viscosity, &numbers, &i, &j, r[k], closing[k], 1)
+                          : pair_viscous(viscosity, &numbers, &i, &j, r[k], closing[k], 1);
+        term *= projected ? f * f : f;
+        if (sloped) term = approach(dim, lanes->stride, k, own_v, v, G) > 0 ? term : 0;
+        if (projected) {
+            /* K = m_i m_j PI/2; fading towards the speed of sound */
+            const double c_sum = own_c + c[k], rho_sum = own_rho + rho[k];
+            const double inverse = 1 / (c_sum * rho_sum), mach = 2 * closing[k] * rho_sum * inverse;
+            const double still_noise = largest(1 - mach * mach, 0);
+            term += own_m * m[k] * half_nu * still_noise * (c_sum * c_sum * inverse) * noise[k];
+        }
+        K[k] = term;
     }
 }
 
-/* Times the mean Balsara factor of the pair, or its square. */
-CLONES static void limit_viscosity(int count, bool squared, double own,
-                                   const double *restrict theirs, double *restrict K)
-{
-#pragma omp simd
-    for (int k = 0; k < count; k++) {
-        const double f = 0.5 * (own + theirs[k]);
-        K[k] *= squared ? f * f : f;
-    }
-}
-
-#define VISCOUS_CASE(symbol, name, label, paper, signal_form)                                      \
+#define VISCOUS_CASE(symbol, name, label, paper, signal_form, dim)                                 \
     case symbol:                                                                                   \
-        viscous_body(symbol, signal_form, count, numbers, sides, lanes);                           \
+        viscous_body(symbol, signal_form, dim, method, pairs);                                     \
         break;
 
-#define VISCOUS(name, signal_form)                                                                 \
-    CLONES static void name(enum viscosity viscosity, int count,                                   \
-                            const struct pair_numbers *numbers, const struct sides *sides,         \
-                            const struct lanes *lanes)                                             \
+#define VISCOUS(name, LIST, signal_form, dim, ...)                                                 \
+    CLONES static void name(enum viscosity viscosity, const struct cells_method *method,           \
+                            const struct pairs *pairs)                                             \
     {                                                                                              \
         switch (viscosity) {                                                                       \
-            VISCOSITY_LINE_LIST(VISCOUS_CASE, signal_form)                                         \
+            LIST(VISCOUS_CASE, signal_form, dim)                                                   \
+            __VA_ARGS__                                                                            \
         case VISCOSITY_CULLEN_DEHNEN: /* comes as time_dependent */                                \
-        case VISCOSITY_PROJECTED:     /* comes as reconstructed */                                 \
             break;                                                                                 \
         }                                                                                          \
     }
-VISCOUS(viscous_mu, false)
-VISCOUS(viscous_signal, true)
+#define MU_NEVER case VISCOSITY_PROJECTED: /* has the signal form */
+#define SIGNAL_LIST(CHOICE, ...)                                                                   \
+    VISCOSITY_LINE_LIST(CHOICE, __VA_ARGS__)                                                       \
+    CHOICE(VISCOSITY_PROJECTED, "", "", "", __VA_ARGS__)
+VISCOUS(viscous_mu_2, VISCOSITY_LINE_LIST, false, 2, MU_NEVER)
+VISCOUS(viscous_mu_3, VISCOSITY_LINE_LIST, false, 3, MU_NEVER)
+VISCOUS(viscous_signal_2, SIGNAL_LIST, true, 2, )
+VISCOUS(viscous_signal_3, SIGNAL_LIST, true, 3, )
 
-/* minus v_ij . G, which heats where it is positive: v_ij . Gbar. */
-CLONES static void find_approach(int dim, int count, const struct lanes *lanes, const double *v,
-                                 const double *theirs, double *restrict approach)
+void cells_viscosity(const struct cells *cells, const struct pairs *pairs)
 {
-    const ptrdiff_t stride = lanes->stride;
-    const double *restrict G = lane(lanes, LANE_GX), *restrict w = theirs;
-    const double v0 = v[0], v1 = v[1], v2 = v[2];
-    const ptrdiff_t third = dim == 3 ? 2 * stride : 0;
-#pragma omp simd
-    for (int k = 0; k < count; k++) {
-        const double plane = (w[k] - v0) * G[k] + (w[stride + k] - v1) * G[stride + k];
-        approach[k] = dim == 3 ? plane + (w[third + k] - v2) * G[third + k] : plane;
+    const struct cells_method *method = &cells->method;
+    const int dim = method->box.dim;
+    if (method->viscosity == VISCOSITY_NONE) {
+        double *K = lane(pairs->lanes, LANE_K);
+        for (int k = 0; k < pairs->count; k++) K[k] = 0;
+        return;
     }
-}
-
-/* Viscosity that would cool is left out: with a matrix a pair may approach against its gradient. */
-CLONES static void never_cool(int count, const double *restrict approach, double *restrict K)
-{
-#pragma omp simd
-    for (int k = 0; k < count; k++) K[k] = approach[k] > 0 ? K[k] : 0;
-}
-
-/* The linear term of viscosity=projected, of both signs (CONVENTIONS, projected):
- * PI = -nu cbar e . (1 - P_ij) u_ij/rhobar, u_ij = v_ij + (L_i + L_j) x/2, e = -x/r, times
- * 1 - (v_ij . e/cbar)^2 or 0: what is as fast as sound is no noise, and to damp it may cool. */
-/* One axis of x . (1 - P_ij) (v_ij + (L_i + L_j) x/2), neighbour k. */
-ALWAYS_INLINE double noise_along(int dim, int a, ptrdiff_t stride, ptrdiff_t k,
-                                 const double *restrict x, const double *const own[3],
-                                 const double *restrict v, const double *restrict L,
-                                 const double *restrict P)
-{
-    double u = 0, e = 0;
-    for (int b = 0; b < dim; b++) {
-        const double xb = x[b * stride + k];
-        const int ab = symmetric_at(dim, a, b);
-        u += (own[1][a * dim + b] + L[(a * dim + b) * stride + k]) * xb;
-        e += (own[2][ab] + P[ab * stride + k]) * xb;
-    }
-    return (x[a * stride + k] - 0.5 * e) * ((own[0][a] - v[a * stride + k]) + 0.5 * u);
-}
-
-ALWAYS_INLINE void noise_body(int dim, int count, double nu, const struct sides *sides,
-                              const struct lanes *lanes, const double *const own[3],
-                              const double *const theirs[3])
-{
-    const ptrdiff_t stride = lanes->stride;
-    const double *restrict x = lane(lanes, LANE_DX),
-                           *restrict r_inverse = lane(lanes, LANE_R_INVERSE),
-                           *restrict v = theirs[0], *restrict L = theirs[1],
-                           *restrict P = theirs[2];
-    const double *restrict m = sides->m, *restrict c = sides->c, *restrict rho = sides->rho;
-    const double *restrict closing = lane(lanes, LANE_CLOSING);
-    double *restrict K = lane(lanes, LANE_K);
-    const double own_m = sides->own.m, own_c = sides->own.c, own_rho = sides->own.rho;
-#pragma omp simd
-    for (int k = 0; k < count; k++) {
-        double s = noise_along(dim, 0, stride, k, x, own, v, L, P) +
-                   noise_along(dim, 1, stride, k, x, own, v, L, P);
-        if (dim == 3) s += noise_along(dim, 2, stride, k, x, own, v, L, P);
-        /* K = m_i m_j PI/2, and e . (1 - P) u = -s/r; fading towards the speed of sound */
-        const double mach = 2 * closing[k] / (own_c + c[k]);
-        const double still_noise = largest(1 - mach * mach, 0);
-        K[k] += own_m * m[k] * (0.5 * nu) * still_noise * (own_c + c[k]) * (s * r_inverse[k]) /
-                (own_rho + rho[k]);
-    }
-}
-
-CLONES static void project_noise(int dim, int count, double nu, const struct sides *sides,
-                                 const struct lanes *lanes, const double *const own[3],
-                                 const double *const theirs[3])
-{
-    if (dim == 2)
-        noise_body(2, count, nu, sides, lanes, own, theirs);
+    if (method->viscosity == VISCOSITY_RECONSTRUCTED) find_slopes(dim, method->projected, pairs);
+    const enum viscosity viscosity = method->projected ? VISCOSITY_PROJECTED : method->viscosity;
+    if (method->signal_form)
+        (dim == 2 ? viscous_signal_2 : viscous_signal_3)(viscosity, method, pairs);
     else
-        noise_body(3, count, nu, sides, lanes, own, theirs);
+        (dim == 2 ? viscous_mu_2 : viscous_mu_3)(viscosity, method, pairs);
 }
 
 /* Conductivity (Price 2008), into heat: sum_j m_i m_j alpha_u v_u (u_i - u_j)/rhobar e_ij . Gbar.
  */
-CLONES static double conducted(int dim, int count, double alpha_u, const struct sides *sides,
-                               const struct lanes *lanes, double own_u, const double *restrict u)
+CLONES static double conducted(int dim, double alpha_u, const struct pairs *pairs)
 {
+    const struct lanes *lanes = pairs->lanes;
     const ptrdiff_t stride = lanes->stride;
+    const int count = pairs->count;
     const double *x = lane(lanes, LANE_DX),
                  *G = lane(lanes, LANE_GX), *restrict r_inverse = lane(lanes, LANE_R_INVERSE);
-    const double *restrict m = sides->m, *restrict rho = sides->rho, *restrict P = sides->P;
-    const double own_m = sides->own.m, own_P = sides->own.P, own_rho = sides->own.rho;
+    const double *restrict m = pairs_theirs(pairs, FIELD_WEIGHT),
+                           *restrict rho = pairs_theirs(pairs, FIELD_DENSITY),
+                           *restrict P = pairs_theirs(pairs, FIELD_PRESSURE),
+                           *restrict u = pairs_theirs(pairs, FIELD_HEAT);
+    const double own_m = *pairs_own(pairs, FIELD_WEIGHT), own_P = *pairs_own(pairs, FIELD_PRESSURE),
+                 own_rho = *pairs_own(pairs, FIELD_DENSITY), own_u = *pairs_own(pairs, FIELD_HEAT);
     double *restrict s = lane(lanes, LANE_SPARE);
     for (int k = 0; k < count; k++) s[k] = 0;
     for (int a = 0; a < dim; a++) {
@@ -213,52 +237,31 @@ CLONES static double conducted(int dim, int count, double alpha_u, const struct 
     return lanes_sum(s, count);
 }
 
-double cells_conduction(const struct cells *cells, int count, const struct sides *sides,
-                        const struct lanes *lanes, double own_u, const double *u)
+double cells_conduction(const struct cells *cells, const struct pairs *pairs)
 {
-    return conducted(cells->method.box.dim, count, cells->method.conductivity, sides, lanes, own_u,
-                     u);
+    return conducted(cells->method.box.dim, cells->method.conductivity, pairs);
 }
 
-void cells_viscosity(const struct cells *cells, int count, const struct lanes *lanes,
-                     const struct sides *sides, const double *record)
+CLONES static void approaches(int dim, const struct pairs *pairs, double *restrict found)
 {
-    const struct cells_method *method = &cells->method;
-    const struct lanes_layout *layout = &cells->force;
-    const int dim = method->box.dim;
-    double *K = lane(lanes, LANE_K);
-    if (method->viscosity == VISCOSITY_NONE) {
-        for (int k = 0; k < count; k++) K[k] = 0;
-        return;
+    const struct lanes *lanes = pairs->lanes;
+    const double *own_v = pairs_own(pairs, FIELD_VELOCITY),
+                 *restrict v = pairs_theirs(pairs, FIELD_VELOCITY),
+                 *restrict G = lane(lanes, LANE_GX);
+    if (dim == 2) {
+#pragma omp simd
+        for (int k = 0; k < pairs->count; k++)
+            found[k] = approach(2, lanes->stride, k, own_v, v, G);
+    } else {
+#pragma omp simd
+        for (int k = 0; k < pairs->count; k++)
+            found[k] = approach(3, lanes->stride, k, own_v, v, G);
     }
-    if (method->viscosity == VISCOSITY_RECONSTRUCTED)
-        slopes_along(dim, count, lanes, record + layout->offset[GROUP_SLOPE],
-                     lane_of(lanes, layout, GROUP_SLOPE, 0));
-    (method->signal_form ? viscous_signal : viscous_mu)(method->viscosity, count, &method->numbers,
-                                                        sides, lanes);
-    if (method->balsara)
-        limit_viscosity(count, method->projected, sides->own_balsara, sides->balsara, K);
-    if (method->viscosity == VISCOSITY_RECONSTRUCTED) {
-        double *approach = lane(lanes, LANE_SPARE);
-        find_approach(dim, count, lanes, record + layout->offset[GROUP_MOTION],
-                      lane_of(lanes, layout, GROUP_MOTION, 0), approach);
-        never_cool(count, approach, K);
-    }
-    if (method->projected)
-        project_noise(dim, count, method->noise, sides, lanes,
-                      (const double *const[3]){record + layout->offset[GROUP_MOTION],
-                                               record + layout->offset[GROUP_SLOPE],
-                                               record + layout->offset[GROUP_PROJECTOR]},
-                      (const double *const[3]){lane_of(lanes, layout, GROUP_MOTION, 0),
-                                               lane_of(lanes, layout, GROUP_SLOPE, 0),
-                                               lane_of(lanes, layout, GROUP_PROJECTOR, 0)});
 }
 
-/* sum_j V_j v_ij . G, which is div v of CONVENTIONS with the pair gradient. */
-double cells_divergence(int dim, int count, const struct lanes *lanes, const struct sides *sides,
-                        const double *v, const double *theirs)
+double cells_divergence(const struct cells *cells, const struct pairs *pairs)
 {
-    double *approach = lane(lanes, LANE_SPARE);
-    find_approach(dim, count, lanes, v, theirs, approach);
-    return -lanes_dot(sides->V, approach, count);
+    double *found = lane(pairs->lanes, LANE_SPARE);
+    approaches(cells->method.box.dim, pairs, found);
+    return -lanes_dot(pairs_theirs(pairs, FIELD_VOLUME), found, pairs->count);
 }

@@ -10,6 +10,15 @@
 
 #include "stamp.h"
 
+int lanes_longest_record(const struct cells *cells)
+{
+    const struct lanes_layout *const layouts[] = {&cells->density, &cells->matrix, &cells->force,
+                                                  &cells->shift};
+    int size = 0;
+    for (int k = 0; k < 4; k++) size = layouts[k]->size > size ? layouts[k]->size : size;
+    return size;
+}
+
 bool lanes_reserve(struct cells *cells)
 {
     /* an odd number of cache lines, so that arrays do not fall on the same cache sets */
@@ -20,18 +29,20 @@ bool lanes_reserve(struct cells *cells)
         free(lanes->block);
         /* half as much again, so that steps need not ask for more */
         lanes->stride = 8 * ((3 * stride / 16) | 1);
-        lanes->block = aligned_alloc(64, (LANES_OWN + GROUPS * GATHER_GROUP) *
+        lanes->block = aligned_alloc(64, (size_t)(LANES_OWN + lanes_longest_record(cells)) *
                                              (size_t)lanes->stride * sizeof(double));
         if (!lanes->block) return false;
+        for (ptrdiff_t k = 0; k < lanes->stride; k++) lane(lanes, LANE_ONE)[k] = 1;
     }
     return true;
 }
 
-/* What find_geometry works on; side 0: an open direction. */
+/* What geometry is found from, and where to. */
 struct geometry {
-    double at[3], side[3];
-    const double *x[3];
-    double *d[3], *r, *r_inverse;
+    const double *at, *side;     /* of the particle; periods, HUGE_VAL: open */
+    const double *x, *own_v, *v; /* axes a stride apart, as all that is found */
+    double *d, *r, *r_inverse, *closing;
+    ptrdiff_t stride;
 };
 
 /* The difference that is nearest to 0: exactly odd, so that both sides of a pair agree. */
@@ -42,19 +53,21 @@ ALWAYS_INLINE double nearest(double d, double side)
 }
 
 /* 1/r is 0 where points coincide: a pair without a direction. */
-ALWAYS_INLINE void geometry_body(int dim, bool wrapped, bool directed, int count,
+ALWAYS_INLINE void geometry_body(int dim, bool wrapped, enum lanes_geometry geometry, int count,
                                  const struct geometry *g)
 {
+    const bool moving = geometry == LANES_CLOSING;
+    const ptrdiff_t y = g->stride, z = dim == 3 ? 2 * g->stride : 0;
     const double x0 = g->at[0], y0 = g->at[1], z0 = g->at[2];
-    const double side_x = g->side[0] > 0 ? g->side[0] : HUGE_VAL,
-                 side_y = g->side[1] > 0 ? g->side[1] : HUGE_VAL,
-                 side_z = g->side[2] > 0 ? g->side[2] : HUGE_VAL;
-    const double *restrict x = g->x[0], *restrict y = g->x[1], *restrict z = g->x[2];
-    double *restrict dx = g->d[0], *restrict dy = g->d[1], *restrict dz = g->d[2],
-                     *restrict r = g->r, *restrict r_inverse = g->r_inverse;
+    const double vx = moving ? g->own_v[0] : 0, vy = moving ? g->own_v[1] : 0,
+                 vz = moving && dim == 3 ? g->own_v[2] : 0;
+    const double side_x = g->side[0], side_y = g->side[1], side_z = g->side[2];
+    const double *restrict x = g->x, *restrict v = g->v;
+    double *restrict d = g->d, *restrict r = g->r, *restrict r_inverse = g->r_inverse,
+                     *restrict closing = g->closing;
 #pragma omp simd
     for (int k = 0; k < count; k++) {
-        double a = x[k] - x0, b = y[k] - y0, c = dim == 3 ? z[k] - z0 : 0;
+        double a = x[k] - x0, b = x[y + k] - y0, c = dim == 3 ? x[z + k] - z0 : 0;
         if (wrapped) {
             a = nearest(a, side_x);
             b = nearest(b, side_y);
@@ -62,52 +75,69 @@ ALWAYS_INLINE void geometry_body(int dim, bool wrapped, bool directed, int count
         }
         const double r2 = dim == 3 ? a * a + b * b + c * c : a * a + b * b, root = sqrt(r2);
         r[k] = root;
-        if (!directed) continue;
-        dx[k] = a;
-        dy[k] = b;
-        dz[k] = c;
-        r_inverse[k] = r2 > 0 ? 1 / root : 0;
+        if (geometry == LANES_DISTANCE) continue;
+        d[k] = a;
+        d[y + k] = b;
+        if (dim == 3) d[z + k] = c;
+        const double inverse = r2 > 0 ? 1 / root : 0;
+        r_inverse[k] = inverse;
+        if (!moving) continue;
+        const double plane = (vx - v[k]) * a + (vy - v[y + k]) * b;
+        closing[k] = (dim == 3 ? plane + (vz - v[z + k]) * c : plane) * inverse;
     }
 }
 
-#define GEOMETRY(name, directed)                                                                   \
+#define GEOMETRY(name, wanted)                                                                     \
     CLONES static void name(int dim, bool wrapped, int count, const struct geometry *g)            \
     {                                                                                              \
         if (dim == 2 && wrapped)                                                                   \
-            geometry_body(2, true, directed, count, g);                                            \
+            geometry_body(2, true, wanted, count, g);                                              \
         else if (dim == 2)                                                                         \
-            geometry_body(2, false, directed, count, g);                                           \
+            geometry_body(2, false, wanted, count, g);                                             \
         else if (wrapped)                                                                          \
-            geometry_body(3, true, directed, count, g);                                            \
+            geometry_body(3, true, wanted, count, g);                                              \
         else                                                                                       \
-            geometry_body(3, false, directed, count, g);                                           \
+            geometry_body(3, false, wanted, count, g);                                             \
     }
-GEOMETRY(find_geometry, true)
-GEOMETRY(find_distances, false)
+GEOMETRY(find_distances, LANES_DISTANCE)
+GEOMETRY(find_directions, LANES_DIRECTION)
+GEOMETRY(find_closing, LANES_CLOSING)
 #undef GEOMETRY
 
 static void gather(const struct cells *cells, const struct lanes_layout *layout, size_t slot,
                    int from, int count, const struct lanes *lanes)
 {
-    const struct grid_list *list = &grid_lists(cells->grid)[slot];
-    const double *at = grid_positions(cells->grid)[slot];
-    struct geometry g = {.r = lane(lanes, LANE_R), .r_inverse = lane(lanes, LANE_R_INVERSE)};
-    for (int a = 0; a < 3; a++) {
-        g.at[a] = at[a];
-        g.side[a] = grid_side(cells->grid, a);
-        g.x[a] = lane_of(lanes, layout, GROUP_PLACE, a);
-        g.d[a] = lane(lanes, LANE_DX + a);
+    const struct grid_list *list = &cells->lists[slot];
+    const int dim = cells->method.box.dim;
+    struct geometry g = {.at = cells->place[slot],
+                         .side = cells->side,
+                         .x = lane_of(lanes, layout, FIELD_PLACE),
+                         .d = lane(lanes, LANE_DX),
+                         .r = lane(lanes, LANE_R),
+                         .r_inverse = lane(lanes, LANE_R_INVERSE),
+                         .closing = lane(lanes, LANE_CLOSING),
+                         .stride = lanes->stride};
+    layout->gather(cells->records, layout->size, list->slots + from, count, lane(lanes, LANES_OWN),
+                   lanes->stride);
+    switch (layout->geometry) {
+    case LANES_DISTANCE:
+        find_distances(dim, list->wrapped, count, &g);
+        break;
+    case LANES_DIRECTION:
+        find_directions(dim, list->wrapped, count, &g);
+        break;
+    case LANES_CLOSING:
+        g.v = lane_of(lanes, layout, FIELD_VELOCITY);
+        g.own_v = cells->records + (ptrdiff_t)slot * layout->size + layout->offset[FIELD_VELOCITY];
+        find_closing(dim, list->wrapped, count, &g);
+        break;
     }
-    layout->gather(cells->records, layout->size, list->slots + from, count,
-                   lanes->block + LANES_OWN * lanes->stride, lanes->stride);
-    (layout == &cells->density ? find_distances : find_geometry)(cells->method.box.dim,
-                                                                 list->wrapped, count, &g);
 }
 
 int lanes_gather(const struct cells *cells, const struct lanes_layout *layout, size_t slot,
                  const struct lanes *lanes)
 {
-    const int count = whole_vectors(grid_lists(cells->grid)[slot].count);
+    const int count = whole_vectors(cells->lists[slot].count);
     gather(cells, layout, slot, 0, count, lanes);
     return count;
 }
@@ -119,7 +149,7 @@ int lanes_gather_part(const struct cells *cells, const struct lanes_layout *layo
                       int from, const struct lanes *lanes)
 {
     const int most = LANES_BYTES / (int)sizeof(double) / (LANES_OWN + layout->size);
-    const int whole = whole_vectors(grid_lists(cells->grid)[slot].count);
+    const int whole = whole_vectors(cells->lists[slot].count);
     const int parts = (whole + most - 1) / most;
     const int part = parts > 1 ? whole_vectors((whole + parts - 1) / parts) : whole;
     const int count = part < whole - from ? part : whole - from;
@@ -139,7 +169,7 @@ void lanes_all(struct cells *cells, const struct cells_fields *fields, lanes_pas
         struct lanes *lanes = &cells->lanes[0];
 #endif
         for (size_t slot = begin[p]; slot < begin[p + 1]; slot++)
-            if (grid_lists(cells->grid)[slot].slots) pass(cells, fields, slot, lanes);
+            if (cells->lists[slot].slots) pass(cells, fields, slot, lanes);
     }
 }
 
@@ -161,13 +191,6 @@ CLONES static double dot(const double *restrict a, const double *restrict b, int
     return TREE(s);
 }
 
-CLONES static void scale_stamped(int count, const double *restrict r, double h_inverse,
-                                 double *restrict q)
-{
-#pragma omp simd
-    for (int k = 0; k < count; k++) q[k] = r[k] * h_inverse;
-}
-
 /* Stamped functions are static, and the public ones call them: clang 14 gives the dispatched symbol
  * a name of its own, so that another file would not find it. */
 double lanes_sum(const double *values, int count)
@@ -178,9 +201,4 @@ double lanes_sum(const double *values, int count)
 double lanes_dot(const double *a, const double *b, int count)
 {
     return dot(a, b, count);
-}
-
-void lanes_scale(int count, const double *r, double h_inverse, double *q)
-{
-    scale_stamped(count, r, h_inverse, q);
 }

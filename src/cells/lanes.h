@@ -9,62 +9,75 @@
 #include "shapes.h"
 #include "width.h"
 
-/* Values of a record by groups of four; which groups there are is the method's. */
-enum lanes_group {
-    GROUP_PLACE,      /* x y z m */
-    GROUP_MOTION,     /* vx vy vz h */
-    GROUP_GAS,        /* 1/h V P c */
-    GROUP_VISCOSITY,  /* rho alpha balsara u */
-    GROUP_LAGRANGIAN, /* b grad_h Z -; density with the energy element: U */
-    GROUP_MATRIX,     /* symmetric, and how far it is used: 1, or 0 for the standard gradient */
-    GROUP_MATRIX_2,
-    GROUP_SLOPE,
-    GROUP_SLOPE_2,
-    GROUP_SLOPE_3,
-    GROUP_PROJECTOR,
-    GROUP_PROJECTOR_2,
-    GROUP_ACCELERATION, /* ax ay az - */
-    GROUPS
+/* What a record may hold of a particle; which of it there is, is the method's. Records are what
+ * costs: they come from the second-level cache, again for every neighbour. */
+enum lanes_field {
+    FIELD_PLACE,     /* x y (z) */
+    FIELD_WEIGHT,    /* density: m, or 1; matrix: V; forces: m; switch: m sign(div v) */
+    FIELD_ENERGY,    /* density with the energy element: U */
+    FIELD_VELOCITY,  /* vx vy (vz) */
+    FIELD_H_INVERSE, /* 1/h */
+    FIELD_H,
+    FIELD_VOLUME, /* V */
+    FIELD_PRESSURE,
+    FIELD_SOUND,      /* c */
+    FIELD_DENSITY,    /* rho */
+    FIELD_ALPHA,      /* of the viscosity */
+    FIELD_BALSARA,    /* factor of the viscosity */
+    FIELD_HEAT,       /* u */
+    FIELD_LAGRANGIAN, /* b grad_h Z */
+    FIELD_MATRIX,     /* symmetric; all 0: not to be used, the pair has the standard gradient */
+    FIELD_SLOPE,
+    FIELD_PROJECTOR,    /* symmetric */
+    FIELD_ACCELERATION, /* ax ay (az) */
+    FIELDS
+};
+
+/* What is found of every pair when its records are gathered. */
+enum lanes_geometry {
+    LANES_DISTANCE,  /* r */
+    LANES_DIRECTION, /* and r_j - r_i, 1/r */
+    LANES_CLOSING    /* and how fast the pair closes */
 };
 
 struct lanes_layout {
-    int size;           /* doubles of a record */
-    int offset[GROUPS]; /* of a group; -1: absent */
+    enum lanes_geometry geometry;
+    int used, size;     /* doubles of a record; in whole groups */
+    int offset[FIELDS]; /* -1: absent */
     gather_loop *gather;
 };
 
 /* Arrays of the lanes that loops make. */
 enum lanes_array {
-    LANE_DX, /* r_j - r_i */
+    LANE_ONE, /* 1 everywhere */
+    LANE_DX,  /* r_j - r_i */
     LANE_DY,
     LANE_DZ,
     LANE_R,
-    LANE_R_INVERSE,
-    LANE_Q,
-    LANE_Q_J,
+    LANE_R_INVERSE, /* 0 where points coincide */
+    LANE_CLOSING,   /* -v_ij . e_ij */
     LANE_W,
     LANE_W_J,
     LANE_GX, /* minus the pair gradient: forces are along it */
     LANE_GY,
     LANE_GZ,
+    LANE_K,
+    LANE_SLOPE_I,
+    LANE_SLOPE_J,
+    LANE_SPARE,
+    LANE_Q,
+    LANE_Q_J,
     LANE_GX_I, /* at h_i and at h_j alone */
     LANE_GY_I,
     LANE_GZ_I,
     LANE_GX_J,
     LANE_GY_J,
     LANE_GZ_J,
-    LANE_CLOSING,
-    LANE_A_I,
-    LANE_A_J,
-    LANE_K,
-    LANE_SLOPE_I,
-    LANE_SLOPE_J,
-    LANE_SPARE,
     LANES_OWN
 };
 
 struct lanes {
-    double *block; /* LANES_OWN + records of GROUPS groups, stride each */
+    double *block; /* LANES_OWN arrays and those of the longest record, stride each */
     ptrdiff_t stride;
     int64_t pairs;
 };
@@ -82,7 +95,13 @@ struct cells {
     int team; /* threads at work */
     struct grid *grid;
     struct shapes shapes;
+    double own_w;  /* w(0) */
     size_t points; /* particles and their mirror images: slots run over both */
+    /* of the grid's last search */
+    const struct grid_list *lists;
+    const double (*place)[4];
+    const uint32_t *order;
+    double side[3]; /* periods; HUGE_VAL: open */
     struct cells_images {
         size_t capacity, count;
         uint32_t *source;        /* the particle that an image is of */
@@ -103,15 +122,15 @@ static inline double *lane(const struct lanes *lanes, int which)
 }
 
 static inline double *lane_of(const struct lanes *lanes, const struct lanes_layout *layout,
-                              enum lanes_group group, int value)
+                              enum lanes_field field)
 {
-    return lanes->block + (LANES_OWN + layout->offset[group] + value) * lanes->stride;
+    return lane(lanes, LANES_OWN + layout->offset[field]);
 }
 
 /* The particle at a slot; mirrored: the axes along which it is an image, as bits. */
 static inline size_t lanes_source(const struct cells *cells, size_t n, size_t slot, int *mirrored)
 {
-    const size_t point = grid_order(cells->grid)[slot];
+    const size_t point = cells->order[slot];
     *mirrored = point < n ? 0 : cells->images.mirrored[point - n];
     return point < n ? point : cells->images.source[point - n];
 }
@@ -122,9 +141,17 @@ static inline double lanes_sign(int mirrored, int axis)
     return mirrored >> axis & 1 ? -1 : 1;
 }
 
-/* Gathers the records of a slot's list and finds r_j - r_i, r and 1/r (for the density r alone).
- * Returns the number of lanes,
- * a multiple of GRID_LANES. */
+/* The record of a slot; its place is filled in. */
+static inline double *lanes_record(const struct cells *cells, const struct lanes_layout *layout,
+                                   size_t slot)
+{
+    double *record = cells->records + (ptrdiff_t)slot * layout->size;
+    for (int a = 0; a < cells->method.box.dim; a++) record[a] = cells->place[slot][a];
+    return record;
+}
+
+/* Gathers the records of a slot's list and finds the geometry of its pairs. Returns the number of
+ * lanes, a multiple of GRID_LANES. */
 int lanes_gather(const struct cells *cells, const struct lanes_layout *layout, size_t slot,
                  const struct lanes *lanes);
 
@@ -132,6 +159,9 @@ int lanes_gather(const struct cells *cells, const struct lanes_layout *layout, s
  * with all its lanes; parts depend on the list and the layout alone. Returns its lanes. */
 int lanes_gather_part(const struct cells *cells, const struct lanes_layout *layout, size_t slot,
                       int from, const struct lanes *lanes);
+
+/* Doubles of the longest record of all layouts. */
+int lanes_longest_record(const struct cells *cells);
 
 /* Room for lists of the grid's longest one. */
 bool lanes_reserve(struct cells *cells);
@@ -141,15 +171,9 @@ typedef void lanes_pass(struct cells *cells, const struct cells_fields *fields, 
                         struct lanes *lanes);
 void lanes_all(struct cells *cells, const struct cells_fields *fields, lanes_pass *pass);
 
-/* Eight lanes, then in pairs: the same order for every instruction set. */
-#define TREE(s) (((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + (s[6] + s[7])))
-
 /* Sums of count values, count a multiple of GRID_LANES, in a fixed order. */
 double lanes_sum(const double *values, int count);
 double lanes_dot(const double *a, const double *b, int count);
-
-/* q = r/h. */
-void lanes_scale(int count, const double *r, double h_inverse, double *q);
 
 /* Position of the entry (a, b) of a symmetric matrix. */
 static inline int symmetric_at(int dim, int a, int b)

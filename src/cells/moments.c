@@ -6,13 +6,6 @@
 #include "matrix.h"
 #include "stamp.h"
 
-CLONES static void product(int count, const double *restrict a, const double *restrict b,
-                           double *restrict ab)
-{
-#pragma omp simd
-    for (int k = 0; k < count; k++) ab[k] = a[k] * b[k];
-}
-
 /* All entries of sum weight x x^T in one walk. */
 ALWAYS_INLINE void squares_body(int dim, int count, ptrdiff_t stride, const double *restrict weight,
                                 const double *restrict x, double *restrict sums)
@@ -71,51 +64,72 @@ ALWAYS_INLINE void differences_body(int dim, int count, ptrdiff_t stride,
 }
 
 CLONES static void differences(int dim, int count, ptrdiff_t stride, const double *weight,
-                               const double *x, const double *f, double own, double sums[3])
+                               const double *x, const double *f, const double *own,
+                               double sums[CELLS_SQUARE])
 {
     if (dim == 2)
-        differences_body(2, count, stride, weight, x, f, own, sums);
+        for (int a = 0; a < 2; a++)
+            differences_body(2, count, stride, weight, x, f + a * stride, own[a], sums + 2 * a);
     else
-        differences_body(3, count, stride, weight, x, f, own, sums);
+        for (int a = 0; a < 3; a++)
+            differences_body(3, count, stride, weight, x, f + a * stride, own[a], sums + 3 * a);
 }
 
 void moments_weigh(const struct cells *cells, int count, const struct lanes *lanes,
                    double h_inverse, const double *V)
 {
-    double *q = lane(lanes, LANE_Q), *w = lane(lanes, LANE_W);
-    lanes_scale(count, lane(lanes, LANE_R), h_inverse, q);
-    cells->shapes.w(cells->method.kernel, (size_t)count, q, w);
-    product(count, V, w, lane(lanes, LANE_W_J));
+    cells->shapes.weights(cells->method.kernel, (size_t)count, lane(lanes, LANE_R), h_inverse, V,
+                          lane(lanes, LANE_W), lane(lanes, LANE_W_J));
+}
+
+ALWAYS_INLINE bool invert(int dim, double worst, const double *sums, double *inverse,
+                          double *condition)
+{
+    double moments[CELLS_SQUARE] = {0}, norm = 0, norm_inverse = 0;
+    for (int a = 0; a < dim; a++)
+        for (int b = 0; b < dim; b++) moments[a * dim + b] = sums[symmetric_at(dim, a, b)];
+    *condition = HUGE_VAL;
+    if (!matrix_invert(dim, moments, inverse)) return false;
+    for (int k = 0; k < dim * dim; k++) {
+        norm += moments[k] * moments[k];
+        norm_inverse += inverse[k] * inverse[k];
+    }
+    *condition = sqrt(norm) * sqrt(norm_inverse);
+    if (!(*condition <= worst)) *condition = matrix_condition(dim, moments);
+    return *condition <= worst;
 }
 
 bool moments_invert(const struct cells_method *method, int count, const struct lanes *lanes,
                     const double *weight, double inverse[CELLS_SQUARE], double *condition)
 {
     const int dim = method->box.dim;
-    double moments[CELLS_SQUARE] = {0}, sums[CELLS_SYMMETRIC];
+    const double worst = method->worst_condition;
+    double sums[CELLS_SYMMETRIC];
     squares(dim, count, lanes->stride, weight, lane(lanes, LANE_DX), sums);
+    return dim == 2 ? invert(2, worst, sums, inverse, condition)
+                    : invert(3, worst, sums, inverse, condition);
+}
+
+/* gradient = sums C, row by row. */
+ALWAYS_INLINE void rows_times_matrix(int dim, const double *sums, const double *inverse,
+                                     double *gradient)
+{
     for (int a = 0; a < dim; a++)
-        for (int b = 0; b < dim; b++) moments[a * dim + b] = sums[symmetric_at(dim, a, b)];
-    *condition = HUGE_VAL;
-    if (!matrix_invert(dim, moments, inverse)) return false;
-    double norm = 0, norm_inverse = 0;
-    for (int k = 0; k < dim * dim; k++) {
-        norm += moments[k] * moments[k];
-        norm_inverse += inverse[k] * inverse[k];
-    }
-    *condition = sqrt(norm) * sqrt(norm_inverse);
-    if (!(*condition <= method->worst_condition)) *condition = matrix_condition(dim, moments);
-    return *condition <= method->worst_condition;
+        for (int b = 0; b < dim; b++) {
+            double g = 0;
+            for (int c = 0; c < dim; c++) g += inverse[b * dim + c] * sums[a * dim + c];
+            gradient[a * dim + b] = g;
+        }
 }
 
 void moments_gradient(int dim, int count, const struct lanes *lanes, const double *weight,
-                      const double inverse[CELLS_SQUARE], const double *f, double own,
-                      double gradient[3])
+                      const double inverse[CELLS_SQUARE], const double *f, const double *own,
+                      double gradient[CELLS_SQUARE])
 {
-    double sums[3];
+    double sums[CELLS_SQUARE];
     differences(dim, count, lanes->stride, weight, lane(lanes, LANE_DX), f, own, sums);
-    for (int b = 0; b < dim; b++) {
-        gradient[b] = 0;
-        for (int c = 0; c < dim; c++) gradient[b] += inverse[b * dim + c] * sums[c];
-    }
+    if (dim == 2)
+        rows_times_matrix(2, sums, inverse, gradient);
+    else
+        rows_times_matrix(3, sums, inverse, gradient);
 }

@@ -16,10 +16,10 @@ void moments_weigh(const struct cells *cells, int count, const struct lanes *lan
 bool moments_invert(const struct cells_method *method, int count, const struct lanes *lanes,
                     const double *weight, double inverse[CELLS_SQUARE], double *condition);
 
-/* Row of the linear_exact gradient of a quantity f (CONVENTIONS eq. 4.4): C sum weight x (f - own);
- * f: the neighbours'. */
+/* The linear_exact gradient of a vector f (CONVENTIONS eq. 4.4), d f_a/d x_b at a dim + b:
+ * C sum weight x (f_a - own_a); f: the neighbours', axes a stride of the lanes apart. */
 void moments_gradient(int dim, int count, const struct lanes *lanes, const double *weight,
-                      const double inverse[CELLS_SQUARE], const double *f, double own,
-                      double gradient[3]);
+                      const double inverse[CELLS_SQUARE], const double *f, const double *own,
+                      double gradient[CELLS_SQUARE]);
 
 #endif

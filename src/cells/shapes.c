@@ -6,41 +6,90 @@
 #include "kernel_names.h"
 #include "stamp.h"
 
-#define BODY(function, shape, dim, attributes)                                                     \
+/* One loop over q. */
+#define LOOP(function, shape, dim, attributes)                                                     \
     attributes static void function(const struct kernel *kernel, size_t n,                         \
                                     const double *restrict q, double *restrict value)              \
     {                                                                                              \
         _Pragma("omp simd") for (size_t i = 0; i < n; i++) value[i] = shape(kernel, q[i], dim);    \
     }
 
-#define LOOPS(name)                                                                                \
+#define SUMS(function, w, dw, dim, attributes)                                                     \
+    attributes static void function(const struct kernel *kernel, size_t n,                         \
+                                    const double *restrict r, double h_inverse,                    \
+                                    const double *restrict m, double sums[2])                      \
     {                                                                                              \
-        {name##_w_1, name##_dw_1}, {name##_w_2, name##_dw_2},                                      \
+        double value[8] = {0}, slope[8] = {0};                                                     \
+        for (size_t k = 0; k < n; k += 8) _Pragma("omp simd") for (size_t l = 0; l < 8; l++)       \
+            {                                                                                      \
+                const double q = r[k + l] * h_inverse, shape = w(kernel, q, dim);                  \
+                value[l] += m[k + l] * shape;                                                      \
+                slope[l] += m[k + l] * (dim * shape + q * dw(kernel, q, dim));                     \
+            }                                                                                      \
+        sums[0] = TREE(value);                                                                     \
+        sums[1] = TREE(slope);                                                                     \
+    }
+
+#define WEIGHTS(function, shape, dim, attributes)                                                  \
+    attributes static void function(                                                               \
+        const struct kernel *kernel, size_t n, const double *restrict r, double h_inverse,         \
+        const double *restrict V, double *restrict w, double *restrict weight)                     \
+    {                                                                                              \
+        _Pragma("omp simd") for (size_t i = 0; i < n; i++)                                         \
         {                                                                                          \
-            name##_w_3, name##_dw_3                                                                \
+            w[i] = shape(kernel, r[i] * h_inverse, dim);                                           \
+            weight[i] = V[i] * w[i];                                                               \
         }                                                                                          \
     }
+
+#define PAIR(function, shape, dim, attributes)                                                     \
+    attributes static void function(                                                               \
+        const struct kernel *kernel, size_t n, const double *restrict r, double h_inverse,         \
+        const double *restrict theirs, double *restrict value, double *restrict value_j)           \
+    {                                                                                              \
+        _Pragma("omp simd") for (size_t i = 0; i < n; i++)                                         \
+        {                                                                                          \
+            value[i] = shape(kernel, r[i] * h_inverse, dim);                                       \
+            value_j[i] = shape(kernel, r[i] * theirs[i], dim);                                     \
+        }                                                                                          \
+    }
+
+#define BODIES(name, w, dw, dim, attributes)                                                       \
+    LOOP(name##_w_##dim, w, dim, attributes)                                                       \
+    LOOP(name##_dw_##dim, dw, dim, attributes)                                                     \
+    SUMS(name##_sums_##dim, w, dw, dim, attributes)                                                \
+    WEIGHTS(name##_weights_##dim, w, dim, attributes)                                              \
+    PAIR(name##_pair_w_##dim, w, dim, attributes)                                                  \
+    PAIR(name##_pair_dw_##dim, dw, dim, attributes)
+
+#define LOOPS_OF(name, dim)                                                                        \
+    {                                                                                              \
+        name##_w_##dim, name##_dw_##dim, name##_sums_##dim, name##_weights_##dim,                  \
+            name##_pair_w_##dim, name##_pair_dw_##dim                                              \
+    }
+
+/* In 1D only operators on clouds use them. */
+#define LOOPS(name)                                                                                \
+    {                                                                                              \
+        {name##_w_1, name##_dw_1, NULL, NULL, NULL, NULL}, LOOPS_OF(name, 2), LOOPS_OF(name, 3)    \
+    }
+
+#define ALL_BODIES(name, w, dw, attributes)                                                        \
+    LOOP(name##_w_1, w, 1, attributes)                                                             \
+    LOOP(name##_dw_1, dw, 1, attributes)                                                           \
+    BODIES(name, w, dw, 2, attributes)                                                             \
+    BODIES(name, w, dw, 3, attributes)
 
 #ifdef KERNEL_FILE
 
 #define KERNEL(name, ...)                                                                          \
-    BODY(name##_w_1, name##_w, 1, CLONES)                                                          \
-    BODY(name##_w_2, name##_w, 2, CLONES)                                                          \
-    BODY(name##_w_3, name##_w, 3, CLONES)                                                          \
-    BODY(name##_dw_1, name##_dw, 1, CLONES)                                                        \
-    BODY(name##_dw_2, name##_dw, 2, CLONES)                                                        \
-    BODY(name##_dw_3, name##_dw, 3, CLONES)                                                        \
+    ALL_BODIES(name, name##_w, name##_dw, CLONES)                                                  \
     const struct shapes shapes_##name[KERNEL_DIM_MAX] = LOOPS(name);
 #include KERNEL_FILE
 
 #else
 
-BODY(any_w_1, kernel->w, 1, )
-BODY(any_w_2, kernel->w, 2, )
-BODY(any_w_3, kernel->w, 3, )
-BODY(any_dw_1, kernel->dw, 1, )
-BODY(any_dw_2, kernel->dw, 2, )
-BODY(any_dw_3, kernel->dw, 3, )
+ALL_BODIES(any, kernel->w, kernel->dw, )
 
 static const struct shapes any[KERNEL_DIM_MAX] = LOOPS(any);
 

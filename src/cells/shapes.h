@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Kernel shapes over an array of q: one vectorised loop stamped for every kernel, dimension and
- * shape function, so that sums over gathered neighbours pay one call a point, not one a pair. */
+ * Kernel shapes over an array of points: loops stamped for every kernel and dimension, so that sums
+ * over gathered neighbours pay one call a point, not one a pair. */
 #ifndef SPHPROOF_SHAPES_H
 #define SPHPROOF_SHAPES_H
 
@@ -12,8 +12,26 @@
 /* value[i] = w(q[i]) or dw/dq(q[i]), i = 0..n-1, q >= 0; the arrays must not overlap. */
 typedef void shapes_loop(const struct kernel *kernel, size_t n, const double *q, double *value);
 
+/* The following ones take distances r, and n = whole vectors of eight. */
+
+/* sums[0] = sum m w(q), sums[1] = sum m (d w + q w'), q = r h_inverse: with C/h^d and -C/h^(d+1) a
+ * density and its derivative in h. */
+typedef void shapes_sums(const struct kernel *kernel, size_t n, const double *r, double h_inverse,
+                         const double *m, double sums[2]);
+
+/* w = w(q), weight = V w(q), q = r h_inverse. */
+typedef void shapes_weights(const struct kernel *kernel, size_t n, const double *r,
+                            double h_inverse, const double *V, double *w, double *weight);
+
+/* The shape function at either width of a pair: value at r h_inverse, value_j at r theirs. */
+typedef void shapes_pair(const struct kernel *kernel, size_t n, const double *r, double h_inverse,
+                         const double *theirs, double *value, double *value_j);
+
 struct shapes {
     shapes_loop *w, *dw;
+    shapes_sums *sums;
+    shapes_weights *weights;
+    shapes_pair *pair_w, *pair_dw;
 };
 
 /* The loops for this kernel in dim dimensions: stamped ones where both its shape functions are

@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Inside of the pair forces in 2D and 3D: what a stage hands on to the next. */
+#ifndef SPHPROOF_PAIRS_H
+#define SPHPROOF_PAIRS_H
+
+#include "lanes.h"
+
+/* The pairs of one particle that are worked on: as many of its neighbours as fit in the lanes. */
+struct pairs {
+    int count; /* lanes, in whole vectors */
+    const struct lanes *lanes;
+    const struct lanes_layout *layout;
+    const double *record; /* of the particle itself */
+};
+
+/* The particle's own value or values of a field that its records have. */
+static inline const double *pairs_own(const struct pairs *pairs, enum lanes_field field)
+{
+    return pairs->record + pairs->layout->offset[field];
+}
+
+/* Its neighbours' values; further values of the field lie a stride of the lanes apart. */
+static inline const double *pairs_theirs(const struct pairs *pairs, enum lanes_field field)
+{
+    return lane_of(pairs->lanes, pairs->layout, field);
+}
+
+/* The mean G of both particles' gradients of every pair along every axis, and, for the lagrangian
+ * form, G_i and G_j, into the lanes of these names. */
+void cells_pair_gradients(const struct cells *cells, const struct pairs *pairs);
+
+/* K of every pair: what viscosity adds to a_i and a_j alike. */
+void cells_viscosity(const struct cells *cells, const struct pairs *pairs);
+
+/* Heat that is conducted to the particle. */
+double cells_conduction(const struct cells *cells, const struct pairs *pairs);
+
+/* sum_j V_j v_ij . G, which is div v of CONVENTIONS with the pair gradient. */
+double cells_divergence(const struct cells *cells, const struct pairs *pairs);
+
+#endif
