@@ -173,17 +173,21 @@ class Table:
         own = os.path.join(self.work, "%%s%d%s" % (worker, self.shard))
         return (self.build, own % "worker"), own % "scratch"
 
-    def find(self, units, workers):
-        """One run of each unit of which nothing is known."""
+    def knows(self, unit):
+        return self.units.get(unit.name, {}).get("key") == [unit.key, self.drawn]
+
+    def find(self, units, workers, over):
+        """One run of each unit of which nothing is known, until it is over. Returns those that are
+        known."""
         waiting = queue.Queue()
         for unit in units:
-            if self.units.get(unit.name, {}).get("key") != [unit.key, self.drawn]:
+            if not self.knows(unit):
                 waiting.put(unit)
 
         def work_off(worker):
             place, scratch = self.place(worker)
             marks = scratch + ".marks"
-            while True:
+            while not over():
                 try:
                     unit = waiting.get_nowait()
                 except queue.Empty:
@@ -206,6 +210,9 @@ class Table:
         for worker in range(workers):
             copy_build(*self.place(worker)[0])
         in_threads(work_off, workers)
+        if not waiting.empty():
+            print("  %d tests are left out: half of the time was over" % waiting.qsize(), flush=True)
+        return [u for u in units if self.knows(u)]
 
     def sound(self, unit, place, scratch):
         """Does it pass without any mutant? Asked when it notices its first."""
