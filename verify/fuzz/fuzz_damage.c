@@ -65,7 +65,7 @@ static void change(struct file *file, uint64_t bits, uint64_t value)
     const size_t at = place_of(bits, file->size), length = (size_t)1 << (bits >> 1 & 3);
     if ((bits & 0xf0) == 0xf0) file->size = at + 1;
     for (size_t k = 0; k < length && at + k < file->size; k++)
-        file->bytes[at + k] = value & 1 ? odd[value >> 1 & 7] : (uint8_t)(value >> (8 * k + 4));
+        file->bytes[at + k] = (uint8_t)(value & 1 ? odd[value >> 1 & 7] : value >> (8 * k + 4));
 }
 
 static void damage(const struct batch *batch, int variant, struct file *file)
