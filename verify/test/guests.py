@@ -151,7 +151,8 @@ def by_night(folder):
                 "right = 0.125 0 0.1\n[scheme]\nkernel = %s\n[run]\nt_end = 0.1\n" % COPY)
     code, out, err = call("run", case, "n=50", "--json", "-")
     check(code == 0 and json.loads(out)["settings"]["kernel"] == name, "case file", err)
-    code, out, err = call("bench", "sod", "--vary", "kernel=cubic_spline," + COPY, "--n", "20,40", "--json", "-")
+    code, out, err = call("bench", "sod", "--vary", "kernel=cubic_spline," + COPY, "--n", "20,40", "t_end=0.05",
+                          "--time", "1e-5", "--samples", "2", "--json", "-")
     check(code == 0 and name in out, "bench", code, err[-300:])
     # harm
     wrong = os.path.join(FOLDER, "faulty_CONSTANT_SEVENTH_DIGIT.so")
