@@ -183,7 +183,7 @@ static void no_ladder(const char *text, size_t least, const char *why)
 static void ladders(void **state)
 {
     (void)state;
-    char text[400] = "4", most[400];
+    char text[400] = "4", most[408];
     ladder_is("100,50,200,50,100,100", 3, (const size_t[]){50, 100, 200});
     ladder_is("8^2,65,64,1e2", 3, (const size_t[]){64, 65, 100});
     ladder_is("4", 1, (const size_t[]){4});
