@@ -133,7 +133,7 @@ static void plot_first(struct page_writer *writer, const char *case_name, const 
         snprintf(slice, sizeof slice, " in the slice z = %.3g to %.3g",
                  value_real(json_array_get(z, 0)), value_real(json_array_get(z, 1)));
     snprintf(caption, sizeof caption,
-             "Scheme %s, n = %.0f, t = %.3g: means over the particles of each cell%s.",
+             "%s, n = %.0f, t = %.3g: means over the particles of each cell%s.",
              value_text(run, "label"), value_member(run, "n"), value_member(run, "time"), slice);
     if (n) plot_maps(writer, case_name, "maps", "Maps at the end", caption, map, panels, n);
 }

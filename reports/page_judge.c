@@ -6,6 +6,7 @@
 
 #include "html.h"
 #include "page.h"
+#include "page_cloud.h"
 #include "page_part.h"
 #include "style.h"
 #include "value.h"
@@ -84,6 +85,21 @@ static void profiles(struct page_writer *writer, const json_t *judged, size_t nu
     curves_free(&c);
 }
 
+/* In 2D and 3D: maps, and particles over the exact curve where there is one. */
+static void cloud(struct page_writer *writer, const json_t *judged, size_t number)
+{
+    char which[32];
+    json_t *labelled = json_copy((json_t *)judged);
+    const json_t *const one[] = {labelled};
+    snprintf(which, sizeof which, "judge-%zu", number);
+    if (!labelled || json_object_set_new(labelled, "label", json_string("this snapshot")))
+        writer->to.failed = true;
+    else
+        page_cloud_plots(writer, which, one, 1);
+    if (labelled) buffer_add(&writer->to, "</div>\n");
+    json_decref(labelled);
+}
+
 static void errors(struct buffer *to, const json_t *judged)
 {
     static const char *const norms[] = {"l1", "l2", "linf", "particle_mean"};
@@ -142,7 +158,10 @@ static void snapshot(struct page_writer *writer, const json_t *judged, size_t nu
     buffer_add(to, "</h2><p>");
     buffer_escape(to, value_text(judged, "verdict"));
     buffer_add(to, "</p>\n");
-    profiles(writer, judged, number);
+    if (json_integer_value(json_object_get(judged, "dim")) > 1)
+        cloud(writer, judged, number);
+    else
+        profiles(writer, judged, number);
     errors(to, judged);
     buffer_add(to, "<h3>What was assumed</h3>\n");
     assumptions(to, judged);
@@ -171,12 +190,12 @@ bool page_make_judge(struct page *page, const json_t *document)
     buffer_escape(to, value_text(document, "case"));
     buffer_add(to, "</p><h1>");
     buffer_escape(to, value_text(document, "verdict"));
-    buffer_add(to, "</h1></header>\n");
+    buffer_add(to, "</h1></header>\n<main>\n");
     if (json_array_size(snapshots))
         json_array_foreach(snapshots, k, one) snapshot(&writer, one, k);
     else
         snapshot(&writer, document, 0);
-    buffer_add(to, "</body></html>\n");
+    buffer_add(to, "</main></body></html>\n");
     page->html = buffer_take(to);
     page->plots = writer.plots;
     if (page->html) return true;

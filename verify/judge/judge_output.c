@@ -2,6 +2,7 @@
 #include <math.h>
 
 #include "judge.h"
+#include "cloud_profile.h"
 #include "profile.h"
 #include "result.h"
 
@@ -53,9 +54,8 @@ static json_t *one_json(const struct judged *judged, bool profiles)
         plane ? result_number(judged->transverse) : json_null(), "undisturbed",
         r->budget.regions ? result_number(r->budget.still) : json_null(), "foreign",
         judged->foreign, "verdict", judged->verdict);
-    /* what varies along x alone */
-    if (one && profiles && (!plane || problem_reads(r->problem.problem, SETTING_left)))
-        json_object_set_new(one, "profile", profile_json(r));
+    if (one && profiles)
+        json_object_set_new(one, "profile", plane ? cloud_profile_json(r) : profile_json(r));
     return one;
 }
 

@@ -269,7 +269,7 @@ def interrupts():
 def memory():
     mebi = 1 << 20
     done = sphproof("run", "sod", "n=10000000", limits=[(resource.RLIMIT_AS, 256 * mebi)])
-    row("no memory: run of 1e7 particles", done, 4, "no memory")
+    row("no memory: run of 1e7 particles", done, 4, "memory", "10000000")
     worst, status = None, set()
     for size in list(range(8, 40, 4)) + list(range(40, 200, 16)):
         done = sphproof("run", "sod", "n=200000", "t_end=1e-5", "--snapshot", "s.csv",

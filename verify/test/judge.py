@@ -267,6 +267,11 @@ def together(folder):
     ElementTree.fromstring(html.split("\n", 1)[1])
     assert all("<h2>%s</h2>" % name in html for name in paths[2:]), "a snapshot is missing"
     assert "quadratic_spline" in html and "not identifiable" not in html
+    judge(os.path.join(DATA, "gizmo_gresho2d_mfm_32.hdf5"), "--case", "gresho", "--gamma", "1.4", "--html", page)
+    with open(page, encoding="utf-8") as text:
+        html = text.read()
+    ElementTree.fromstring(html.split("\n", 1)[1])
+    assert html.count("<svg") == 2 and "azimuthal v" in html and "error |v" in html, "no maps or no curve"
     # two times of one run; the second has a mass more by 1e-3 and energies to match
     early = os.path.join(folder, "early.csv")
     subprocess.run([PROGRAM, "run", "sod", "n=60", "t_end=0.1", "--snapshot", early, "--quiet"], check=True)

@@ -120,9 +120,10 @@ def test_worker(nodes):
 def test_interrupt(nodes):
     """Ctrl-C asks once; with y its own tasks are cancelled. Without a terminal they go on."""
     others = queue().keys()
-    for answer, left in ((b"n\n", True), (b"y\n", False)):
+    for answer, left in ((b"n", True), (b"y", False)):  # each with a cache of its own: all is to be computed
+        cache = "interrupted-" + answer.decode()
         lead, follow = pty.openpty()
-        running = subprocess.Popen([program, *LONG, "--cache", "interrupted", *SLURM, "--engine-tasks", "1"],
+        running = subprocess.Popen([program, *LONG, "--cache", cache, *SLURM, "--engine-tasks", "1"],
                                    stdin=follow, stderr=follow, stdout=subprocess.DEVNULL, start_new_session=True)
         os.close(follow)
         text = b""
@@ -133,11 +134,11 @@ def test_interrupt(nodes):
             while b"[y/N]" not in text:
                 text += os.read(lead, 1000)
         with contextlib.suppress(OSError):
-            os.write(lead, answer)
+            os.write(lead, answer + b"\n")
         expect("interrupted", running.wait(20) == 4, (running.returncode, text))
         expect("interrupted, %s" % answer, bool(queue().keys() - others) == left, (queue(), others))
         os.close(lead)
-    expect("interrupted, state", not glob.glob("interrupted/slurm/*.json"))
+    expect("interrupted, state", not glob.glob("interrupted-y/slurm/*.json"))
 
 
 def test_power(nodes):
