@@ -17,7 +17,7 @@ from concurrent.futures import ThreadPoolExecutor
 PROGRAM, FOLDER, TABLE, MORE = sys.argv[1], sys.argv[2], sys.argv[3], sys.argv[4:]
 PATIENCE = 600 if MORE else 100  # seconds
 VERIFIED = ["none", "sign_narrow", "exit_42"]  # also through `verify kernels`
-ENDLESS = ["loop_late", "loop_at_load"]  # seconds each, by night: loop_first is tried always
+ENDLESS = ["loop_late", "loop_at_load"]  # seconds each
 RIGHT = ["wendland_c8", "gaussian", "super_gaussian", "table", "table_12", "table_4000"]
 
 
@@ -72,6 +72,13 @@ def judge(line):
                                "sign", "fundamental", "normalisation"):
         return None if words in names else "%s fails, not %s" % (", ".join(names), words)
     return None if words in text else "does not say %r but %s" % (words, text[-600:])
+
+
+def by_day(table):
+    """Of those that a whole certificate is made for, every third; all others but the endless ones."""
+    certified = [line for line in table if line[3] != "2" and "(" not in line[4] and "not" not in line[4]]
+    left_out = [line for k, line in enumerate(certified) if k % 3]
+    return [line for line in table if line not in left_out and line[0] not in ENDLESS]
 
 
 def judge_verify(line):
@@ -134,8 +141,7 @@ def main():
     table, bad = read_table(), 0
     by_name = {line[0]: line for line in table}
     with ThreadPoolExecutor(2) as pool:
-        outcomes = [(line[0], pool.submit(judge, line)) for line in table
-                    if MORE or line[0] not in ENDLESS]
+        outcomes = [(line[0], pool.submit(judge, line)) for line in (table if MORE else by_day(table))]
         if not MORE:
             outcomes += [(name, pool.submit(judge_verify, by_name[name])) for name in VERIFIED]
         else:
