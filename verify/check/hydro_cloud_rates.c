@@ -70,8 +70,8 @@ static void subjects(struct check_run *run)
 {
     add_turns(run, 2, 1);
     add_kernels(run, 2, 7);
-    add_turns(run, 3, 7);
-    add_kernels(run, 3, 23);
+    add_turns(run, 3, 13);
+    add_kernels(run, 3, 37);
 }
 
 static void all_subjects(struct check_run *run)
