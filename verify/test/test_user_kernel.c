@@ -60,8 +60,12 @@ static void test_right(void **state)
     (void)state;
     static const char *const names[] = {"wendland_c8", "gaussian", "super_gaussian",
                                         "table",       "table_12", "faulty_NONE"};
+    /* a smooth one and a table in each dimension, others in one; the test `plug-ins, looked at
+     * closely` has all in all by night */
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
-        for (int dim = 1; dim <= 3; dim++) assert_int_equal(rejected(names[i], dim, NULL), 0);
+        for (int dim = 1; dim <= 3; dim++)
+            if (i == 0 || i == 3 || (int)i % 3 + 1 == dim)
+                assert_int_equal(rejected(names[i], dim, NULL), 0);
 }
 
 static void test_derived(void **state)
