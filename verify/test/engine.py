@@ -8,27 +8,9 @@ import subprocess
 import sys
 import tempfile
 
-program = os.path.abspath(sys.argv[1])
-faults = []
+from studying import expect, faults, program, study, without_times
+
 QUICK = ["converge", "sod", "--n", "40,44,50,60", "t_end=0.1", "--replicates", "2"]
-
-
-def expect(what, well, got=""):
-    if not well:
-        faults.append("%s: %s" % (what, got))
-
-
-def study(*words):
-    done = subprocess.run([program, *words, "--json", "-"], capture_output=True, text=True, timeout=100)
-    document = json.loads(done.stdout) if done.stdout else {}
-    document.pop("date", None)
-    return done.returncode, document, done.stderr
-
-
-def without_times(document):
-    for level in document.get("levels", ()):
-        level.pop("cpu_s", None)
-    return document
 
 
 def entries():

@@ -11,31 +11,13 @@ import sys
 import tempfile
 import time
 
-program = os.path.abspath(sys.argv[1])
-faults = []
+from studying import expect, faults, program, study, without_times
+
 QUICK = ["converge", "sod", "--n", "40,60,80,120", "t_end=0.1", "--vary", "gradient",
          "--replicates", "1"]
 # long enough to be killed in the middle: half a second a run and more
 LONG = ["converge", "sod", "--n", "100,140,200,6400", "t_end=0.1", "kernel=wendland_c6", "eta=9", "skip=none",
         "integrator=rk3", "volume_element=energy", "--replicates", "1"]
-
-
-def expect(what, well, got=""):
-    if not well:
-        faults.append("%s: %s" % (what, got))
-
-
-def study(*words):
-    done = subprocess.run([program, *words, "--json", "-"], capture_output=True, text=True, timeout=300)
-    document = json.loads(done.stdout) if done.stdout else {}
-    document.pop("date", None)
-    return done.returncode, document, done.stderr
-
-
-def without_times(document):
-    for level in document.get("levels", ()):
-        level.pop("cpu_s", None)
-    return document
 
 
 def entries():
