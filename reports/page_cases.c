@@ -17,17 +17,6 @@ enum { QUANTITIES = 4, PRESSURE = 2, ENERGY = 3 };
 static const char *const quantities[QUANTITIES] = {"density", "velocity", "pressure",
                                                    "internal_energy"};
 
-/* Numbers of an array, malloced; *n is raised to its size if larger. NULL: no memory or no array.
- */
-static double *numbers(const json_t *array, size_t *n)
-{
-    size_t size = json_array_size(array);
-    double *values = size ? malloc(size * sizeof *values) : NULL;
-    for (size_t i = 0; values && i < size; i++) values[i] = value_real(json_array_get(array, i));
-    *n = values ? size : 0;
-    return values;
-}
-
 /* Internal energy of n gases of density rho and pressure P, malloced; NULL: no memory, or not both.
  */
 static double *energies(const double *rho, const double *P, size_t n, double gamma)
@@ -53,13 +42,13 @@ static void add_curve(struct curves *curves, const json_t *run)
     size_t k = curves->runs, n = 0, length;
     if (!profile || k == PAGE_SCHEMES) return;
     curves->label[k] = value_text(run, "label");
-    curves->x[k] = numbers(json_object_get(profile, "x"), &n);
+    curves->x[k] = value_numbers(json_object_get(profile, "x"), &n);
     curves->n[k] = n;
     for (int q = 0; q < ENERGY; q++) {
         char name[64];
         snprintf(name, sizeof name, "exact_%s", quantities[q]);
-        curves->value[k][q] = numbers(json_object_get(profile, quantities[q]), &length);
-        curves->residual[k][q] = numbers(json_object_get(profile, name), &n);
+        curves->value[k][q] = value_numbers(json_object_get(profile, quantities[q]), &length);
+        curves->residual[k][q] = value_numbers(json_object_get(profile, name), &n);
         if (length < curves->n[k]) curves->n[k] = length;
         if (n < curves->n[k]) curves->n[k] = n;
     }
@@ -72,9 +61,9 @@ static void add_curve(struct curves *curves, const json_t *run)
     curves->runs++;
     const json_t *exact = json_object_get(profile, "exact");
     if (curves->exact_x || !exact) return;
-    curves->exact_x = numbers(json_object_get(exact, "x"), &curves->exact_n);
+    curves->exact_x = value_numbers(json_object_get(exact, "x"), &curves->exact_n);
     for (int q = 0; q < ENERGY; q++) {
-        curves->exact[q] = numbers(json_object_get(exact, quantities[q]), &n);
+        curves->exact[q] = value_numbers(json_object_get(exact, quantities[q]), &n);
         if (n < curves->exact_n) curves->exact_n = n;
     }
     curves->exact[ENERGY] =

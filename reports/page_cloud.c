@@ -21,25 +21,15 @@ struct map {
 
 static const char *const map_names[MAPS] = {"density", "speed", "error"};
 
-/* Numbers of an array, malloced; *n: how many. NULL: none. */
-static double *numbers(const json_t *array, size_t *n)
-{
-    const size_t size = json_array_size(array);
-    double *values = size ? malloc(size * sizeof *values) : NULL;
-    *n = values ? size : 0;
-    for (size_t i = 0; i < *n; i++) values[i] = value_real(json_array_get(array, i));
-    return values;
-}
-
 static void read_map(struct map *map, const json_t *run)
 {
     const json_t *from = json_object_get(json_object_get(run, "profile"), "map");
-    map->x = numbers(json_object_get(from, "x"), &map->nx);
-    map->y = numbers(json_object_get(from, "y"), &map->ny);
+    map->x = value_numbers(json_object_get(from, "x"), &map->nx);
+    map->y = value_numbers(json_object_get(from, "y"), &map->ny);
     map->cells = map->nx * map->ny;
     for (int k = 0; k < MAPS; k++) {
         size_t n;
-        map->z[k] = numbers(json_object_get(from, map_names[k]), &n);
+        map->z[k] = value_numbers(json_object_get(from, map_names[k]), &n);
         if (n == map->cells) continue;
         free(map->z[k]);
         map->z[k] = NULL;
@@ -173,16 +163,16 @@ static void read_curves(struct curves *curves, const json_t *run)
     const json_t *profile = json_object_get(run, "profile"), *name;
     const json_t *exact = json_object_get(profile, "exact");
     size_t i, n;
-    curves->x = numbers(json_object_get(profile, "x"), &curves->n);
-    curves->exact_x = numbers(json_object_get(exact, "x"), &curves->exact_n);
+    curves->x = value_numbers(json_object_get(profile, "x"), &curves->n);
+    curves->exact_x = value_numbers(json_object_get(exact, "x"), &curves->exact_n);
     json_array_foreach(json_object_get(profile, "quantities"), i, name)
     {
         const char *word = json_string_value(name);
         if (i == QUANTITIES || !word) break;
         curves->names[i] = word;
-        curves->value[i] = numbers(json_object_get(profile, word), &n);
+        curves->value[i] = value_numbers(json_object_get(profile, word), &n);
         if (n < curves->n) curves->n = n;
-        curves->exact[i] = numbers(json_object_get(exact, word), &n);
+        curves->exact[i] = value_numbers(json_object_get(exact, word), &n);
         if (n < curves->exact_n) curves->exact_n = n;
         curves->quantities++;
     }

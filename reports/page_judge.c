@@ -14,18 +14,6 @@
 static const char *const fields[] = {"density", "velocity", "pressure"};
 enum { PANELS = sizeof fields / sizeof *fields };
 
-/* An array of numbers; NULL where there is none of n (any number where *n is 0). */
-static double *numbers(const json_t *array, size_t *n)
-{
-    const size_t size = json_array_size(array);
-    if (!size || (*n && size != *n)) return NULL;
-    double *values = malloc(size * sizeof *values);
-    for (size_t i = 0; values && i < size; i++)
-        values[i] = json_number_value(json_array_get(array, i));
-    *n = size;
-    return values;
-}
-
 struct curves {
     size_t n, exact_n;
     double *x, *exact_x, *y[PANELS], *exact[PANELS];
@@ -40,11 +28,15 @@ static void curves_free(struct curves *c)
 static bool curves_read(struct curves *c, const json_t *profile)
 {
     const json_t *exact = json_object_get(profile, "exact");
-    bool whole = (c->x = numbers(json_object_get(profile, "x"), &c->n)) &&
-                 (c->exact_x = numbers(json_object_get(exact, "x"), &c->exact_n));
-    for (int k = 0; k < PANELS && whole; k++)
-        whole = (c->y[k] = numbers(json_object_get(profile, fields[k]), &c->n)) &&
-                (c->exact[k] = numbers(json_object_get(exact, fields[k]), &c->exact_n));
+    c->x = value_numbers(json_object_get(profile, "x"), &c->n);
+    c->exact_x = value_numbers(json_object_get(exact, "x"), &c->exact_n);
+    bool whole = c->n && c->exact_n;
+    for (int k = 0; k < PANELS; k++) {
+        size_t n, exact_n;
+        c->y[k] = value_numbers(json_object_get(profile, fields[k]), &n);
+        c->exact[k] = value_numbers(json_object_get(exact, fields[k]), &exact_n);
+        whole = whole && n == c->n && exact_n == c->exact_n;
+    }
     return whole;
 }
 

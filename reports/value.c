@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 const char *value_text_or(const json_t *object, const char *name, const char *fallback)
@@ -56,6 +57,15 @@ size_t value_reals(const json_t *array, double *values, size_t most)
     const json_t *value;
     json_array_foreach(array, i, value) if (n < most) values[n++] = value_real(value);
     return n;
+}
+
+double *value_numbers(const json_t *array, size_t *n)
+{
+    const size_t size = json_array_size(array);
+    double *values = size ? malloc(size * sizeof *values) : NULL;
+    *n = values ? size : 0;
+    for (size_t i = 0; i < *n; i++) values[i] = value_real(json_array_get(array, i));
+    return values;
 }
 
 /* What stands there instead, in words. */

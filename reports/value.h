@@ -25,6 +25,11 @@ const json_t *value_named(const json_t *list, const char *name);
 /* The first numbers of an array, at most `most`; returns how many. */
 size_t value_reals(const json_t *array, double *values, size_t most);
 
+/* All numbers of an array, malloced; *n: how many. NULL and 0: no array, an empty one, or no
+ * memory.
+ */
+double *value_numbers(const json_t *array, size_t *n);
+
 enum { VALUE_MESSAGE = 200 };
 
 /* A member that has to be there; NULL, or -1, with a message (VALUE_MESSAGE bytes) where it is
