@@ -10,6 +10,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "cache.h"
 #include "certificate.h"
 #include "guard.h"
 #include "user_kernel.h"
@@ -50,11 +51,11 @@ bool guest_is_path(const char *word)
     return allowed && user_kernel_is_path(path);
 }
 
-/* Fowler, Noll & Vo's FNV-1a of the file's content, 64 bits. */
+/* The hash of the file's content. */
 static enum status hash_file(const char *path, char digits[HASH_DIGITS + 1], struct error *error)
 {
     unsigned char bytes[4096];
-    uint64_t hash = UINT64_C(0xcbf29ce484222325);
+    uint64_t hash = CACHE_HASH;
     struct stat is;
     FILE *file = stat(path, &is) ? NULL : fopen(path, "rb");
     if (!file) return error_set(error, STATUS_BAD_INPUT, "kernel '%s': %s", path, strerror(errno));
@@ -64,7 +65,7 @@ static enum status hash_file(const char *path, char digits[HASH_DIGITS + 1], str
                          "kernel '%s' is no file; allowed: a shared object", path);
     }
     for (size_t n; (n = fread(bytes, 1, sizeof bytes, file)) > 0;)
-        for (size_t i = 0; i < n; i++) hash = (hash ^ bytes[i]) * UINT64_C(0x100000001b3);
+        hash = cache_hash(hash, bytes, n);
     fclose(file);
     snprintf(digits, HASH_DIGITS + 1, "%016" PRIx64, hash);
     return STATUS_OK;

@@ -9,13 +9,13 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "cache.h"
 #include "clock.h"
 #include "output.h"
 
 /* First line: this, the build. Second: the run. Then the state, and at the end the checksum. */
 static const char magic[] = "sphproof-checkpoint/1";
 enum { HEAD_MAX = 1 << 16 };
-static const uint64_t seed = UINT64_C(0xcbf29ce484222325);
 
 bool checkpoint_due(struct checkpoint *checkpoint)
 {
@@ -26,23 +26,16 @@ bool checkpoint_due(struct checkpoint *checkpoint)
     return true;
 }
 
-/* A file on its way, with the checksum of what has passed, in pieces of whatever size: Fowler, Noll
- * and Vo's hash 1a. */
+/* A file on its way, with the hash of what has passed, in pieces of whatever size. */
 struct stream {
     FILE *file;
     uint64_t sum;
 };
 
-static void add(struct stream *stream, const void *bytes, size_t n)
-{
-    const unsigned char *byte = bytes;
-    for (size_t i = 0; i < n; i++) stream->sum = (stream->sum ^ byte[i]) * UINT64_C(0x100000001b3);
-}
-
 static bool put(void *context, void *bytes, size_t n)
 {
     struct stream *stream = context;
-    add(stream, bytes, n);
+    stream->sum = cache_hash(stream->sum, bytes, n);
     return fwrite(bytes, 1, n, stream->file) == n;
 }
 
@@ -50,7 +43,7 @@ static bool get(void *context, void *bytes, size_t n)
 {
     struct stream *stream = context;
     if (fread(bytes, 1, n, stream->file) != n) return false;
-    add(stream, bytes, n);
+    stream->sum = cache_hash(stream->sum, bytes, n);
     return true;
 }
 
@@ -60,7 +53,7 @@ void checkpoint_save(struct checkpoint *checkpoint, struct simulation *simulatio
     struct output output;
     checkpoint->trouble = (struct error){0};
     if (output_open(&output, checkpoint->path, &checkpoint->trouble)) return;
-    struct stream stream = {.file = output.stream, .sum = seed};
+    struct stream stream = {.file = output.stream, .sum = CACHE_HASH};
     struct carrier carrier = {.bytes = put, .context = &stream};
     fprintf(output.stream, "%s %s\n%s\n", magic, checkpoint->build, checkpoint->run);
     CARRY(&carrier, *growth);
@@ -133,7 +126,7 @@ static enum status check_head(const struct checkpoint *checkpoint, FILE *file, s
 static bool is_whole(FILE *file)
 {
     enum { PART = 1 << 20 };
-    struct stream stream = {.file = file, .sum = seed};
+    struct stream stream = {.file = file, .sum = CACHE_HASH};
     uint64_t sum;
     const long begin = ftell(file);
     char *part = malloc(PART);
@@ -158,7 +151,7 @@ enum status checkpoint_load(struct checkpoint *checkpoint, struct simulation *si
     if (!file) return refuse(checkpoint, strerror(errno), error);
     enum status status = check_head(checkpoint, file, error);
     if (!status && !is_whole(file)) status = refuse(checkpoint, "is damaged", error);
-    struct stream stream = {.file = file, .sum = seed};
+    struct stream stream = {.file = file, .sum = CACHE_HASH};
     struct carrier carrier = {.bytes = get, .context = &stream, .back = true};
     if (!status) {
         CARRY(&carrier, *growth);
