@@ -173,7 +173,7 @@ const struct check check_gradient_order = {
     .mutants = order_mutants,
 };
 
-/* Takes four times as long as all other checks of gradients. */
+/* Takes longer than all other checks of gradients together. */
 const struct check check_gradient_order_3d = {
     .group = "gradients",
     .name = "order_3d",
