@@ -27,6 +27,7 @@ struct integrator {
     double follow;
     double first_step; /* length of the first step over the usual one; 0: 1 */
     bool signal_pass;  /* velocities change after the last rates: time step by a pass of its own */
+    bool keeps_start;  /* of p, e and alpha in a step: uses p_old, e_old, alpha_old */
     bool ends_evaluated; /* the derived fields at the end of a step belong to its state */
     /* Each in its own file; 0 where an integrator keeps nothing from step to step. Arrays that
      * follow the particles when their order changes are fields of struct particles (x_old ...). */

@@ -2,7 +2,6 @@
 #include "memory.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "solver.h"
 
@@ -16,13 +15,10 @@ double memory_neighbours(int dim, double eta)
 static double arrays_of(const struct simulation *simulation)
 {
     const struct plan *plan = &simulation->plan;
-    const struct integrator *integrator = simulation->scheme.integrator;
-    const bool line = plan->dim == 1,
-               keeps = strcmp(integrator->member.name, "predicted_midpoint") &&
-                       strcmp(integrator->member.name, "symplectic_euler");
+    const bool line = plan->dim == 1;
     enum { VECTORS = 5, SCALARS = 15, ORDERS = 3 }; /* x x_old p v F; id, order, spare */
     double count = VECTORS * plan->dim + SCALARS + ORDERS;
-    if (keeps) count += plan->dim + 2; /* p_old, e_old, alpha_old */
+    if (simulation->scheme.integrator->keeps_start) count += plan->dim + 2;
     if (plan->grad_h) count += 2;
     if (plan->alpha) count += 2;
     if (line || plan->own_gradient) count++;

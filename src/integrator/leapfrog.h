@@ -12,4 +12,4 @@ static enum status leapfrog_step(struct simulation *simulation, double dt, struc
 
 #endif
 INTEGRATOR(leapfrog, .member = {"leapfrog", "kick-drift-kick leapfrog", "Springel 2005"},
-           .order = 2, .evaluations = 1, .cfl = 0.3, .signal_pass = true)
+           .order = 2, .evaluations = 1, .cfl = 0.3, .keeps_start = true, .signal_pass = true)

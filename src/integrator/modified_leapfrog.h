@@ -16,4 +16,4 @@ static enum status modified_leapfrog_step(struct simulation *simulation, double 
 #endif
 INTEGRATOR(modified_leapfrog,
            .member = {"modified_leapfrog", "leapfrog, evaluated again after the second kick", ""},
-           .order = 2, .evaluations = 2, .cfl = 0.3, .ends_evaluated = true)
+           .order = 2, .evaluations = 2, .cfl = 0.3, .keeps_start = true, .ends_evaluated = true)

@@ -14,4 +14,4 @@ static enum status rk2_step(struct simulation *simulation, double dt, struct err
 
 #endif
 INTEGRATOR(rk2, .member = {"rk2", "Runge-Kutta, Heun, SSP", "Shu & Osher 1988"}, .order = 2,
-           .evaluations = 2, .cfl = 0.3, .ends_evaluated = true)
+           .evaluations = 2, .cfl = 0.3, .keeps_start = true, .ends_evaluated = true)

@@ -16,4 +16,4 @@ static enum status rk3_step(struct simulation *simulation, double dt, struct err
 
 #endif
 INTEGRATOR(rk3, .member = {"rk3", "Runge-Kutta, three stages, SSP", "Ketcheson 2010"}, .order = 3,
-           .evaluations = 3, .cfl = 0.3, .ends_evaluated = true)
+           .evaluations = 3, .cfl = 0.3, .keeps_start = true, .ends_evaluated = true)

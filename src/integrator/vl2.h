@@ -14,4 +14,4 @@ static enum status vl2_step(struct simulation *simulation, double dt, struct err
 
 #endif
 INTEGRATOR(vl2, .member = {"vl2", "van Leer midpoint", "Stone & Gardiner 2009"}, .order = 2,
-           .evaluations = 2, .cfl = 0.3, .ends_evaluated = true)
+           .evaluations = 2, .cfl = 0.3, .keeps_start = true, .ends_evaluated = true)
