@@ -152,6 +152,9 @@ static void ladder_verdict(const struct ladder *ladder, char *verdict, size_t si
     const int last = ladder->runs[ladder->count - 1].neighbours;
     if (!ladder->sound)
         snprintf(verdict, size, "all runs broke down");
+    else if (!pairs && ladder->sound < ladder->count)
+        snprintf(verdict, size, "no pairs in %zu of %zu runs, others broke down", ladder->sound,
+                 ladder->count);
     else if (!pairs)
         snprintf(verdict, size, "no pairs up to %d", last);
     else if (isnan(ladder->predicted))
@@ -185,6 +188,7 @@ static json_t *ladder_json(const struct ladder *ladder, const char *verdict)
 /* What all ladders of a gradient say of the claim. */
 struct balance {
     size_t kept, broken, others; /* kernels nowhere negative without and with pairs; others with */
+    size_t unknown;              /* nowhere negative, without pairs in those runs that were sound */
     char worst[TEXT];            /* the first that is broken */
 };
 
@@ -195,7 +199,8 @@ static void balance_add(struct balance *balance, const struct ladder *ladder)
     if (!isnan(ladder->negative)) {
         balance->others += pairs;
     } else if (!pairs) {
-        balance->kept += ladder->sound > 0;
+        balance->kept += ladder->sound == ladder->count;
+        balance->unknown += ladder->sound < ladder->count;
     } else if (balance->broken++ == 0)
         snprintf(balance->worst, TEXT, "%s in %dD has %.1f %% in pairs at %d neighbours",
                  ladder->runs->kernel, ladder->runs->crowd->dim,
@@ -224,6 +229,8 @@ static json_t *judge_gradient(const struct pairing *pairing, const char *gradien
              gradient);
     if (balance.broken)
         snprintf(verdict, sizeof verdict, "does not hold: %s", balance.worst);
+    else if (balance.unknown)
+        snprintf(verdict, sizeof verdict, "not shown: runs broke down");
     else
         snprintf(verdict, sizeof verdict, "%s",
                  balance.others && balance.kept ? "holds" : "not shown: no other kernel has pairs");

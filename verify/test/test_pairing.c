@@ -17,6 +17,7 @@ struct planned {
     struct pairing pairing;
     struct pool pool;
     json_t *kernels; /* what theory says: Wendland functions never, others from 20 neighbours */
+    bool one_broken; /* the first run with a Wendland function, beside what all others find */
 };
 
 static bool is_wendland(const char *text)
@@ -52,8 +53,11 @@ static void free_all(struct planned *planned)
 /* Share in pairs of every run of the one kind of kernel, and of the other. */
 static void invent(struct planned *planned, double wendland, double others)
 {
+    bool broken = !planned->one_broken;
     for (size_t i = 0; i < planned->pool.count; i++) {
-        const double paired = is_wendland(planned->pool.jobs[i].key) ? wendland : others;
+        const bool of_first = is_wendland(planned->pool.jobs[i].key);
+        const double paired = of_first && !broken ? 9 : of_first ? wendland : others;
+        broken = broken || of_first;
         json_decref(planned->pool.jobs[i].document);
         planned->pool.jobs[i].document =
             json_pack("{s:s, s:{s:f, s:f}}", "status", paired <= 1 ? "ok" : "broke_down",
@@ -86,6 +90,21 @@ static void expect(struct planned *planned, double wendland, double others, cons
     json_decref(judged);
 }
 
+/* What a run would have found that broke down is not known: the claim is not shown by the others.
+ */
+static void judge_one_broken(struct planned *planned)
+{
+    invent(planned, 0, 0.3);
+    json_t *judged = pairing_judge(&planned->pairing, &planned->pool, planned->kernels);
+    json_t *standard = json_array_get(judged, 0), *ladder;
+    size_t l, broken = 0;
+    assert_string_equal(value_text(standard, "verdict"), "not shown: runs broke down");
+    json_array_foreach(json_object_get(standard, "ladders"), l, ladder) broken +=
+        !strcmp(value_text(ladder, "verdict"), "no pairs in 4 of 5 runs, others broke down");
+    assert_int_equal(broken, 1);
+    json_decref(judged);
+}
+
 static void verdicts_follow_from_figures(void **state)
 {
     struct planned planned;
@@ -98,6 +117,8 @@ static void verdicts_follow_from_figures(void **state)
     expect(&planned, 0, 0, "not shown", "no pairs up to", "no pairs up to");
     expect(&planned, 9, 0.3, "not shown", "all runs broke down", "pairs from");
     expect(&planned, 0, 9, "not shown", "no pairs up to", "all runs broke down");
+    planned.one_broken = true;
+    judge_one_broken(&planned);
     free_all(&planned);
 }
 
