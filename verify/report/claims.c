@@ -103,7 +103,7 @@ enum status claims_plan(struct claims *claims, bool nightly, struct pool *pool, 
     return STATUS_OK;
 }
 
-/* How far a run is from what is exact; infinite where it broke down. */
+/* How far a run is from what is exact; infinite where it broke down, NaN where it says nothing. */
 static double error_of(const struct claim *claim, const struct claim_run *run,
                        const struct pool *pool)
 {
@@ -114,18 +114,20 @@ static double error_of(const struct claim *claim, const struct claim_run *run,
     return exact != 0 ? fabs(value / exact - 1) : fabs(value);
 }
 
-enum answer { HOLDS, SAME, FAILS, ANSWERS };
+enum answer { HOLDS, SAME, FAILS, NOTHING, ANSWERS };
 
 static enum answer compare(double without, double with)
 {
-    if (!isfinite(with)) return isfinite(without) ? FAILS : SAME;
+    if (isnan(with) || isnan(without) || (isinf(with) && isinf(without))) return NOTHING;
+    if (isinf(with)) return FAILS;
     return with * matters < without ? HOLDS : with > without * matters ? FAILS : SAME;
 }
 
 static json_t *row_json(const struct claim *claim, const char *row, const struct claim_run *runs,
                         const struct pool *pool, size_t counts[ANSWERS])
 {
-    static const char *const words[] = {"holds", "no difference", "does not hold"};
+    static const char *const words[] = {"holds", "no difference", "does not hold",
+                                        "nothing to compare"};
     const double without = error_of(claim, &runs[0], pool), with = error_of(claim, &runs[1], pool);
     const enum answer answer = compare(without, with);
     char command[COMMAND_TEXT];
@@ -154,6 +156,8 @@ json_t *claims_judge(const struct claims *claims, const struct pool *pool)
             json_array_append_new(rows, row_json(claim, *row, runs, pool, counts));
         if (counts[HOLDS] == all)
             snprintf(verdict, sizeof verdict, "holds");
+        else if (counts[NOTHING] == all)
+            snprintf(verdict, sizeof verdict, "not shown: nothing to compare");
         else if (counts[HOLDS] == 0)
             snprintf(verdict, sizeof verdict, "does not hold");
         else

@@ -14,16 +14,19 @@
 #include "claims.h"
 #include "value.h"
 
-/* Errors of the runs without and with what is claimed, over and over. */
+/* Errors of the runs without and with what is claimed, over and over; 9: broke down, NaN: a
+ * document without the figure. */
 static void invent(struct pool *pool, const double *values)
 {
     for (size_t i = 0; i < pool->count; i++) {
         const double value = values[i % 2];
         json_decref(pool->jobs[i].document);
-        pool->jobs[i].document = json_pack("{s:s, s:[{s:s, s:f, s:f}, {s:s, s:f, s:f}]}", "status",
-                                           value < 9 ? "ok" : "broke_down", "functionals", "name",
-                                           "growth_rate", "value", 2 * (1 - value), "reference", 2.,
-                                           "name", "velocity_rms", "value", value, "reference", 0.);
+        pool->jobs[i].document =
+            isnan(value) ? json_pack("{s:s, s:[]}", "status", "ok", "functionals")
+                         : json_pack("{s:s, s:[{s:s, s:f, s:f}, {s:s, s:f, s:f}]}", "status",
+                                     value < 9 ? "ok" : "broke_down", "functionals", "name",
+                                     "growth_rate", "value", 2 * (1 - value), "reference", 2.,
+                                     "name", "velocity_rms", "value", value, "reference", 0.);
         assert_non_null(pool->jobs[i].document);
     }
 }
@@ -41,8 +44,11 @@ static void expect(struct planned *planned, double without, double with, const c
     size_t c, r, rows = 0;
     json_array_foreach(judged, c, claim)
     {
-        assert_string_equal(value_text(claim, "verdict"),
-                            strcmp(word, "no difference") == 0 ? "does not hold" : word);
+        assert_string_equal(value_text(claim, "verdict"), strcmp(word, "no difference") == 0
+                                                              ? "does not hold"
+                                                          : strcmp(word, "nothing to compare") == 0
+                                                              ? "not shown: nothing to compare"
+                                                              : word);
         json_array_foreach(json_object_get(claim, "rows"), r, row)
         {
             assert_string_equal(value_text(row, "verdict"), word);
@@ -67,6 +73,9 @@ static void verdicts_follow_from_figures(void **state)
     expect(&planned, 0.1, 0.11, "no difference");
     expect(&planned, 9, 0.1, "holds");
     expect(&planned, 0.1, 9, "does not hold");
+    expect(&planned, 9, 9, "nothing to compare");
+    expect(&planned, (double)NAN, 0.1, "nothing to compare");
+    expect(&planned, 0.1, (double)NAN, "nothing to compare");
     claims_free(&planned.claims);
     pool_free(&planned.pool);
 }
