@@ -8,8 +8,10 @@
 #include <string.h>
 
 #include "judged.h"
+#include "problem_list.h"
 #include "result.h"
 #include "run_job.h"
+#include "settings_output.h"
 #include "study.h"
 #include "value.h"
 
@@ -216,7 +218,7 @@ static bool want_graded(const struct run_settings *settings, const struct sweep 
     if (settings->file.dimension > 1) return false;
     for (size_t k = 0; k < sweep->key_count; k++)
         if (sweep->keys[k].key == SETTING_grade) return false;
-    return !settings_foreign(keys, SETTING_grade) && settings_real(keys, SETTING_grade) == 1;
+    return !problem_foreign(keys, SETTING_grade) && settings_real(keys, SETTING_grade) == 1;
 }
 
 /* Sets the scheme's keys. */

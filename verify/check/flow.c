@@ -10,6 +10,7 @@
 #include "kelvin_helmholtz.h"
 #include "noh.h"
 #include "problem.h"
+#include "problem_prepare.h"
 #include "vortex.h"
 #include "worst.h"
 

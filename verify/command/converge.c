@@ -8,6 +8,7 @@
 
 #include "command.h"
 #include "result.h"
+#include "settings_output.h"
 #include "sharing.h"
 #include "study.h"
 #include "table.h"

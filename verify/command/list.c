@@ -12,6 +12,7 @@
 #include "list.h"
 #include "operator.h"
 #include "place.h"
+#include "problem_list.h"
 #include "result.h"
 #include "settings.h"
 #include "snapshot_file.h"

@@ -8,11 +8,14 @@
 
 #include "command.h"
 #include "description_output.h"
+#include "initial.h"
+#include "initial_create.h"
 #include "output.h"
 #include "particle_file.h"
 #include "rate_check.h"
 #include "result.h"
 #include "run.h"
+#include "settings_output.h"
 #include "snapshot_csv.h"
 #include "text.h"
 

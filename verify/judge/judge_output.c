@@ -5,6 +5,7 @@
 #include "cloud_profile.h"
 #include "profile.h"
 #include "result.h"
+#include "settings_output.h"
 
 static json_t *kernel_json(const struct judged *judged)
 {

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "judge.h"
+#include "problem_list.h"
 
 static enum status set_real(struct settings *settings, enum setting key, double value,
                             struct error *error)

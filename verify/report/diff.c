@@ -9,6 +9,7 @@
 
 #include "failure.h"
 #include "problem.h"
+#include "problem_list.h"
 #include "value.h"
 
 /* Settings that make another problem of a case, beside a problem's own; the others are what one

@@ -10,6 +10,7 @@
 #include "cloud_profile.h"
 #include "league.h"
 #include "precision.h"
+#include "problem_list.h"
 #include "profile.h"
 #include "result.h"
 #include "run_job.h"

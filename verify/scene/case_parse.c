@@ -10,6 +10,8 @@
 
 #include "list.h"
 #include "problem.h"
+#include "problem_list.h"
+#include "problem_prepare.h"
 #include "text.h"
 
 enum { LINE_LENGTH_MAX = 180 };
@@ -363,7 +365,7 @@ static enum status check_keys(struct parser *parser)
         if (problem->keys[i].role == ROLE_NEEDED && !parser->seen_settings[problem->keys[i].key])
             return missing_key(parser, problem->keys[i].key);
     for (int i = 0; i < SETTINGS; i++)
-        if (parser->seen_settings[i] && settings_foreign(settings, (enum setting)i)) {
+        if (parser->seen_settings[i] && problem_foreign(settings, (enum setting)i)) {
             char what[120];
             snprintf(what, sizeof what, "key %s and kind = %s exclude each other",
                      setting_keys[i].name, problem->member.name);

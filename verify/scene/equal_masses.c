@@ -7,6 +7,7 @@
 #include <gsl/gsl_rng.h>
 #include <math.h>
 
+#include "initial.h"
 #include "relax.h"
 
 enum { CELLS_PLANE = 512, CELLS_SPACE = 96 }; /* per direction, of sums over the box */

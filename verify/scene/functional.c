@@ -2,7 +2,6 @@
 #include "functional.h"
 
 #include <math.h>
-#include <string.h>
 
 double functional_window_mean(const struct prepared *p, const struct snapshot *s,
                               const double *field)
@@ -77,15 +76,3 @@ static double at_rest(const struct prepared *p, double t)
 
 const struct functional functional_velocity_rms = {"velocity_rms", NULL, velocity_measured,
                                                    at_rest};
-
-const char *functional_name(const char *name)
-{
-    for (size_t i = 0; i < problem_family.n; i++) {
-        const struct problem *problem = (const struct problem *)problem_family.members[i];
-        for (const struct functional *const *f = problem->functionals; *f; f++)
-            if (strcmp((*f)->name, name) == 0) return (*f)->name;
-        if (problem->growing && strcmp(problem->growing->name, name) == 0)
-            return problem->growing->name;
-    }
-    return NULL;
-}

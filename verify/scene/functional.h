@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Functionals (problem.h) that several problems have, and the list of all. */
+ * Functionals (problem.h) that several problems have. */
 #ifndef SPHPROOF_FUNCTIONAL_H
 #define SPHPROOF_FUNCTIONAL_H
 
@@ -14,8 +14,5 @@ extern const struct functional functional_velocity_rms;
 /* Mean of a field of the particles over the window, weighted with volume. */
 double functional_window_mean(const struct prepared *p, const struct snapshot *s,
                               const double *field);
-
-/* The name itself, static, where a problem has a functional called so; else NULL. */
-const char *functional_name(const char *name);
 
 #endif

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "problem_list.h"
+
 static bool has_gate(const struct case_file *file, int field)
 {
     for (size_t i = 0; i < file->gate_count; i++)

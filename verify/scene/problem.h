@@ -9,12 +9,13 @@
 #include <stddef.h>
 
 #include "field.h"
-#include "initial.h"
 #include "settings.h"
 #include "simulation.h"
 #include "status.h"
 
 enum { PROBLEM_OWN_BYTES = 4096, PROBLEM_FUNCTIONALS_MAX = 6, PROBLEM_REGIONS_MAX = 8 };
+
+struct initial;
 
 /* The gas at one place and time. */
 struct problem_state {
@@ -91,7 +92,7 @@ struct problem {
     struct member member;  /* in cases: kind = NAME */
     const char *reference; /* exact solution, as case files name it */
     int least_dim, most_dim;
-    bool carried;   /* exact everywhere in the periodic box, so that it may be boosted */
+    bool carried; /* exact everywhere in the periodic box, so that it may be boosted */
     enum circular circular;
     bool fieldless; /* of t > 0 only functionals are known: there are no errors of fields */
     bool filed;     /* its particles come from a file, always */
@@ -110,7 +111,7 @@ struct problem {
      * is a vacuum: rho, P and u 0, and a velocity that joins its edges. */
     void (*sample)(const struct prepared *p, const double x[3], double t,
                    struct problem_state *state);
-    /* Particles of the initial state, undisturbed and without boost: see initial_allocate. */
+    /* Particles of the initial state, undisturbed and without boost: see initial.h. */
     enum status (*fill)(const struct prepared *p, const struct settings *settings,
                         struct initial *initial, struct error *error);
     /* Is the sample at t exact in the whole window: no wave from an image of the domain has come
@@ -125,21 +126,6 @@ struct problem {
     const struct growing *growing; /* NULL: nothing grows */
     const struct regions *regions; /* NULL: none */
 };
-
-/* The problem that the settings name. */
-const struct problem *problem_of(const struct settings *settings);
-
-/* Does it read the key? True for keys that no problem calls its own. */
-bool problem_reads(const struct problem *problem, enum setting key);
-
-/* The problem of the settings in dim dimensions; automatic keys of the problem get their values.
- * STATUS_BAD_INPUT: keys that cannot be together, or that the problem cannot be made of. */
-enum status problem_prepare(struct prepared *p, struct settings *settings, int dim,
-                            struct error *error);
-
-/* The same for a problem that need not be in the list. */
-enum status problem_prepare_as(struct prepared *p, const struct problem *problem,
-                               struct settings *settings, int dim, struct error *error);
 
 void problem_sample(const struct prepared *p, const double x[3], double t,
                     struct problem_state *state);

@@ -10,7 +10,9 @@
 #include "functional.h"
 #include "growth.h"
 #include "initial.h"
+#include "initial_create.h"
 #include "plain.h"
+#include "problem_prepare.h"
 
 enum status run_prepare(struct run_settings *settings, const char *case_name, int n,
                         char *const *arguments, struct error *error)

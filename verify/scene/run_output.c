@@ -8,6 +8,7 @@
 #include "judged.h"
 #include "output.h"
 #include "result.h"
+#include "settings_output.h"
 #include "snapshot_hdf5.h"
 
 static void set_number(json_t *object, const char *name, double value)

@@ -7,7 +7,6 @@
 
 #include "guest.h"
 #include "integrator.h"
-#include "problem.h"
 #include "text.h"
 
 #define MEMBERS(...)                                                                               \
@@ -36,6 +35,14 @@ const struct family settings_lattice_family = {
             MEMBER("glass", "2D, 3D: random points that have pushed each other apart",
                    "Diehl et al. 2015")),
     LATTICES};
+/* The words of the key kind; problem_list.c knows what they stand for. */
+static const struct member *const kinds[] = {
+#define PROBLEM(name) &(const struct member){#name, "", ""},
+#include "problems.def"
+#undef PROBLEM
+};
+static const struct family kind_family = {"problems", "initial states", kinds,
+                                          sizeof kinds / sizeof *kinds};
 static const struct family answer_family = {
     "answers", "no or yes", MEMBERS(MEMBER("no", "", ""), MEMBER("yes", "", "")), 2};
 static const struct family parity_family = {
@@ -266,26 +273,6 @@ int settings_choice_along(const struct settings *settings, enum setting key, int
     return value->choices[value->given > 1 ? direction : 0];
 }
 
-/* Keys that say nothing in 1D. */
-static bool needs_a_plane(enum setting key)
-{
-    return key == SETTING_direction || key == SETTING_boost || key == SETTING_viscosity_form ||
-           key == SETTING_balsara || key == SETTING_balsara_floor || key == SETTING_noise ||
-           key == SETTING_alpha_u || key == SETTING_window_radius || key == SETTING_boundary ||
-           key == SETTING_gravity;
-}
-
-static bool needs_a_line(enum setting key)
-{
-    return key == SETTING_grade || key == SETTING_grade_ratio;
-}
-
-bool settings_foreign(const struct settings *settings, enum setting key)
-{
-    return !problem_reads(problem_of(settings), key) ||
-           (settings->dim == 1 && needs_a_plane(key)) || (settings->dim > 1 && needs_a_line(key));
-}
-
 /* What the scheme's keys say; what they leave open is told apart. */
 static enum status read_scheme(const struct settings *settings, int dim, struct scheme *scheme,
                                struct scheme_open *open, struct error *error)
@@ -401,50 +388,4 @@ void settings_text(const struct settings *settings, enum setting which, char tex
         used +=
             snprintf(text + used, (size_t)(SETTING_TEXT_MAX - used), "%s%s", i ? " " : "", number);
     }
-}
-
-static json_t *choices_json(const struct setting_key *key, const struct setting_value *value)
-{
-    if (value->given == 1) return json_string(key->family->members[value->choices[0]]->name);
-    json_t *words = json_array();
-    for (int i = 0; i < value->given; i++)
-        json_array_append_new(words, json_string(key->family->members[value->choices[i]]->name));
-    return words;
-}
-
-json_t *settings_json(const struct settings *settings)
-{
-    json_t *object = json_object();
-    for (int i = 0; i < SETTINGS; i++) {
-        const struct setting_key *key = &setting_keys[i];
-        const struct setting_value *value = &settings->value[i];
-        json_t *item;
-        if (settings_foreign(settings, (enum setting)i)) continue;
-        if (key->type == SETTING_PATH && !settings->file[0]) continue;
-        switch (key->type) {
-        case SETTING_CHOICE:
-            item = json_string(key->family->members[value->choice]->name);
-            break;
-        case SETTING_PATH:
-            item = json_string(settings->file);
-            break;
-        case SETTING_CHOICES:
-            item = choices_json(key, value);
-            break;
-        case SETTING_INTEGER:
-        case SETTING_COUNT:
-            item = json_integer((json_int_t)value->real[0]);
-            break;
-        default:
-            if (value->given == 1 && key->type != SETTING_REALS) {
-                item = json_real(value->real[0]);
-                break;
-            }
-            item = json_array();
-            for (int j = 0; j < value->given; j++)
-                json_array_append_new(item, json_real(value->real[j]));
-        }
-        json_object_set_new(object, key->name, item);
-    }
-    return object;
 }

@@ -4,7 +4,6 @@
 #ifndef SPHPROOF_SETTINGS_H
 #define SPHPROOF_SETTINGS_H
 
-#include <jansson.h>
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -78,7 +77,7 @@ enum lattice {
 };
 enum skip { SKIP_AUTO, SKIP_NONE };
 enum parity { PARITY_SINUOUS, PARITY_VARICOSE };
-extern const struct family problem_family, settings_lattice_family, settings_skip_family;
+extern const struct family settings_lattice_family, settings_skip_family;
 
 /* Position of the key called name, or -1. */
 int setting_find(const char *name);
@@ -111,12 +110,5 @@ int settings_choice_along(const struct settings *settings, enum setting key, int
 
 /* The value as one would type it, full precision. */
 void settings_text(const struct settings *settings, enum setting key, char text[SETTING_TEXT_MAX]);
-
-/* All keys as used: numbers, names, "rho v P" as an array. Keys of other problems are left out. New
- * reference. */
-json_t *settings_json(const struct settings *settings);
-
-/* Is the key without meaning for the problem (left for a sound wave) or in so many dimensions? */
-bool settings_foreign(const struct settings *settings, enum setting key);
 
 #endif

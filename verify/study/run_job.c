@@ -7,6 +7,7 @@
 
 #include "cache.h"
 #include "result.h"
+#include "settings_output.h"
 
 /* What a file of particles holds decides the result, not its name alone; 0: it cannot be read, and
  * neither will the run. */

@@ -8,6 +8,7 @@
 
 #include "functional.h"
 #include "measure.h"
+#include "problem_list.h"
 #include "run_job.h"
 #include "value.h"
 
@@ -163,7 +164,7 @@ static void read_functionals(struct study_result *result, struct study_level *le
     json_array_foreach(json_object_get(run, "functionals"), i, entry)
     {
         if (i == PROBLEM_FUNCTIONALS_MAX) break;
-        result->functional_names[i] = functional_name(value_text(entry, "name"));
+        result->functional_names[i] = problem_functional_name(value_text(entry, "name"));
         level->functionals[i] += weight * value_member(entry, "value");
         result->functional_exact[i] = value_member(entry, "reference");
     }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Studies as JSON. */
+#include "problem_list.h"
 #include "study.h"
 
 #include <math.h>

@@ -295,6 +295,7 @@ def problem(tree):
 #include "entropy_wave.h"
 
 #include "functional.h"
+#include "initial.h"
 #include "problem.h"
 
 struct wave {

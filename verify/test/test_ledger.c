@@ -14,6 +14,7 @@
 #include <cmocka.h>
 
 #include "initial.h"
+#include "initial_create.h"
 #include "near.h"
 #include "riemann.h"
 #include "run.h"

@@ -14,6 +14,7 @@
 
 #include "measure.h"
 #include "near.h"
+#include "problem_list.h"
 #include "result.h"
 #include "study.h"
 #include "value.h"

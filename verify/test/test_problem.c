@@ -14,8 +14,12 @@
 
 #include "cases.h"
 #include "functional.h"
+#include "initial.h"
+#include "initial_create.h"
 #include "near.h"
 #include "problem.h"
+#include "problem_list.h"
+#include "problem_prepare.h"
 
 /* What a walk is about, and where it stopped. */
 struct walk {
@@ -294,7 +298,7 @@ static struct walk walk_case(const char *name, const char *keys, const struct pr
         const size_t length = strcspn(key, "=");
         char word[32];
         snprintf(word, sizeof word, "%.*s", (int)length, key);
-        if (settings_foreign(&walk.settings, (enum setting)setting_find(word))) continue;
+        if (problem_foreign(&walk.settings, (enum setting)setting_find(word))) continue;
         assert_int_equal(settings_apply(&walk.settings, 1, &key, &error), STATUS_OK);
     }
     walk_all(&walk, file.dimension);
@@ -330,10 +334,14 @@ static void every_problem_of_every_case(void **state)
 static void every_problem_by_itself(void **state)
 {
     (void)state;
+    assert_int_equal(setting_keys[SETTING_kind].family->n, problem_family.n);
     for (size_t i = 0; i < problem_family.n; i++) {
         const struct problem *problem = (const struct problem *)problem_family.members[i];
         struct walk walk = {.problem = problem, .sums = problem->least_dim > 1 ? 0.02 : 1e-12};
         struct error error;
+        /* the word that the settings know it by */
+        assert_string_equal(problem->member.name,
+                            setting_keys[SETTING_kind].family->members[i]->name);
         if (problem->filed) continue; /* it has no particles of its own */
         settings_init(&walk.settings);
         assert_int_equal(settings_set(&walk.settings, SETTING_kind, problem->member.name,
@@ -349,9 +357,9 @@ static void every_problem_by_itself(void **state)
         for (size_t j = 0; j < i; j++)
             assert_string_not_equal(problem->member.name, problem_family.members[j]->name);
         for (const struct functional *const *f = problem->functionals; *f; f++)
-            assert_string_equal(functional_name((*f)->name), (*f)->name);
+            assert_string_equal(problem_functional_name((*f)->name), (*f)->name);
     }
-    assert_null(functional_name("no_such"));
+    assert_null(problem_functional_name("no_such"));
 }
 
 /* ---- a problem of two dimensions that is not in the list: the vortex of Gresho & Chan ---- */

@@ -14,6 +14,7 @@
 #include "integrator.h"
 #include "near.h"
 #include "problem.h"
+#include "problem_prepare.h"
 #include "settings.h"
 
 static void resolve(struct settings *settings, struct scheme *scheme, int n, ...)

@@ -4,6 +4,7 @@
  * is given one, and is then judged by its own solution.) */
 #include <math.h>
 
+#include "initial.h"
 #include "problem.h"
 
 static enum status prepare(struct prepared *p, struct settings *settings, struct error *error)

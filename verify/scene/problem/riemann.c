@@ -8,6 +8,7 @@
 #include <math.h>
 
 #include "functional.h"
+#include "initial.h"
 #include "lattice.h"
 #include "problem.h"
 

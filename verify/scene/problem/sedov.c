@@ -6,6 +6,7 @@
 
 #include <math.h>
 
+#include "initial_fill.h"
 #include "problem.h"
 #include "shells.h"
 

@@ -5,6 +5,7 @@
  * Particles of equal masses. */
 #include <math.h>
 
+#include "initial_fill.h"
 #include "problem.h"
 
 static const double speed = 0.5;

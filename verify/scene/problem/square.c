@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "functional.h"
+#include "initial.h"
 #include "lattice.h"
 #include "problem.h"
 
