@@ -48,6 +48,12 @@ def files_below(top):
     return [os.path.join(folder, f) for folder, _, files in os.walk(top) for f in files if not f.endswith(".pyc")]
 
 
+def quick_tests(build):
+    """As meson tells them."""
+    tests = json.loads(quietly(["meson", "introspect", "--tests", build]).stdout)
+    return [t for t in tests if any(s.split(":")[-1] == "quick" for s in t["suite"])]
+
+
 def units_of(build, source, tree, wanted):
     """The tests of the quick suite as they stand in meson; groups of checks one check at a time.
     tree: the rewritten copy of source. wanted: a regular expression for their names."""
@@ -58,9 +64,7 @@ def units_of(build, source, tree, wanted):
     checks = checks_of(checked)
     checks_key = hash_of(files_below(checked), source)
     units = []
-    for test in json.loads(quietly(["meson", "introspect", "--tests", build]).stdout):
-        if not any(s.split(":")[-1] == "quick" for s in test["suite"]):
-            continue
+    for test in quick_tests(build):
         command, folder = test["cmd"], test["workdir"] or build
         program = os.path.join(build, command[0])
         if command[1:2] == ["verify"] and "--mutants" in command:

@@ -1,0 +1,519 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Inverses and condition numbers of small matrices, and the moments over neighbours that they are
+ * made of, against quadruple precision and against matrices whose singular values are known. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "near.h"
+
+#include <float.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include "cells/matrix.h"
+#include "cells/moments.h"
+#include "kernel.h"
+
+/* With twice the digits of double, and some. */
+#ifdef __SIZEOF_FLOAT128__
+__extension__ typedef __float128 real;
+#else
+typedef long double real;
+#endif
+
+static uint64_t state_of_draws = 1;
+
+/* Evenly in [-1, 1). */
+static double draw(void)
+{
+    state_of_draws = state_of_draws * 6364136223846793005u + 1442695040888963407u;
+    return ldexp((double)(int64_t)(state_of_draws ^ state_of_draws >> 29), -63);
+}
+
+/* By cofactors in extended precision; returns the determinant. */
+static real exact_inverse(int dim, const double *a, real *inverse)
+{
+    real determinant = 0;
+    if (dim == 1) {
+        inverse[0] = 1, determinant = a[0];
+    } else if (dim == 2) {
+        inverse[0] = a[3], inverse[1] = -a[1], inverse[2] = -a[2], inverse[3] = a[0];
+        determinant = (real)a[0] * a[3] - (real)a[1] * a[2];
+    } else {
+        for (int i = 0; i < 3; i++)
+            for (int j = 0; j < 3; j++) {
+                const int p = (j + 1) % 3, q = (j + 2) % 3, r = (i + 1) % 3, s = (i + 2) % 3;
+                inverse[3 * i + j] =
+                    (real)a[3 * p + r] * a[3 * q + s] - (real)a[3 * p + s] * a[3 * q + r];
+            }
+        for (int j = 0; j < 3; j++) determinant += a[j] * inverse[3 * j];
+    }
+    for (int k = 0; k < dim * dim; k++) inverse[k] /= determinant;
+    return determinant;
+}
+
+static real size_of(real x)
+{
+    return x < 0 ? -x : x;
+}
+
+/* Elements of the inverse against the exact ones, in units of what rounding the elements of a may
+ * change them by, sum |inverse| |a| |inverse| epsilon. */
+static double inverse_error(int dim, const double *a, const double *inverse)
+{
+    real exact[9];
+    double worst = 0;
+    exact_inverse(dim, a, exact);
+    for (int i = 0; i < dim; i++)
+        for (int j = 0; j < dim; j++) {
+            real room = 0;
+            for (int p = 0; p < dim; p++)
+                for (int q = 0; q < dim; q++)
+                    room += size_of(exact[i * dim + p] * a[p * dim + q] * exact[q * dim + j]);
+            const double error =
+                (double)(size_of(inverse[i * dim + j] - exact[i * dim + j]) / room / DBL_EPSILON);
+            if (!(error <= worst)) worst = error;
+        }
+    return worst;
+}
+
+/* A product of two rotations by drawn angles and what stands between them: singular values 1, s, t;
+ * in 1D and 2D the first of them. */
+static void with_singular_values(int dim, double s, double t, double *a)
+{
+    const double values[] = {1, s, t};
+    real m[9] = {0};
+    for (int i = 0; i < dim; i++) m[i * dim + i] = values[i];
+    for (int side = 0; side < 2; side++)
+        for (int p = 0; p < dim; p++)
+            for (int q = p + 1; q < dim; q++) {
+                const double angle = 3 * draw();
+                const long double c = cosl(angle), d = sinl(angle);
+                for (int k = 0; k < dim; k++) {
+                    real *x = side ? &m[k * dim + p] : &m[p * dim + k];
+                    real *y = side ? &m[k * dim + q] : &m[q * dim + k];
+                    const real u = *x, v = *y;
+                    *x = c * u - d * v, *y = d * u + c * v;
+                }
+            }
+    for (int k = 0; k < dim * dim; k++) a[k] = (double)m[k];
+}
+
+/* Drawn matrices, plain ones and nearly singular ones; then with lengths in units along each axis
+ * that powers of 2 lie between, which the inverse of a moment matrix must not notice. */
+static void test_inverse(void **state)
+{
+    (void)state;
+    double worst[4] = {0}, in_units[4] = {0};
+    for (int trial = 0; trial < 6000; trial++) {
+        const int dim = 1 + trial % 3;
+        double a[9], b[9], inverse[9], other[9];
+        if (trial < 3000)
+            for (int k = 0; k < dim * dim; k++) a[k] = draw();
+        else
+            with_singular_values(dim, pow(10, -6 * fabs(draw())), pow(10, -12 * fabs(draw())), a);
+        assert_true(matrix_invert(dim, a, inverse));
+        worst[dim] = fmax(worst[dim], inverse_error(dim, a, inverse));
+        int axis[3];
+        for (int i = 0; i < 3; i++) axis[i] = (int)(10 * draw());
+        for (int i = 0; i < dim; i++)
+            for (int j = 0; j < dim; j++) {
+                double sum = 0;
+                for (int k = 0; k < dim; k++) sum += a[i * dim + k] * a[j * dim + k];
+                b[i * dim + j] = sum;
+            }
+        if (!(matrix_condition(dim, b) < 1e12)) continue;
+        double c[9];
+        for (int i = 0; i < dim; i++)
+            for (int j = 0; j < dim; j++) c[i * dim + j] = ldexp(b[i * dim + j], axis[i] + axis[j]);
+        assert_true(matrix_invert(dim, c, other));
+        for (int i = 0; i < dim; i++)
+            for (int j = 0; j < dim; j++)
+                other[i * dim + j] = ldexp(other[i * dim + j], axis[i] + axis[j]);
+        in_units[dim] = fmax(in_units[dim], inverse_error(dim, b, other));
+    }
+    for (int dim = 1; dim <= 3; dim++) {
+        near_below(worst[dim], 3);
+        near_below(in_units[dim], dim < 3 ? 3 : 200);
+    }
+}
+
+/* With columns that differ in size, however much, the condition number is as good as any. */
+static void test_condition(void **state)
+{
+    (void)state;
+    double worst[2] = {0};
+    for (int trial = 0; trial < 3000; trial++) {
+        const int dim = 1 + trial % 3;
+        double a[9], high = 0, low = HUGE_VAL;
+        with_singular_values(dim, 1, 1, a);
+        for (int j = 0; j < dim; j++) {
+            const double size = pow(10, 60 * draw());
+            for (int i = 0; i < dim; i++) a[i * dim + j] *= size;
+            high = fmax(high, size), low = fmin(low, size);
+        }
+        const double found = matrix_condition(dim, a);
+        worst[0] = fmax(worst[0], fabs(found / (high / low) - 1) / DBL_EPSILON);
+        const double s = pow(10, -5 * fabs(draw())), t = s * pow(10, -4 * fabs(draw()));
+        with_singular_values(dim, s, t, a);
+        const double condition = dim == 1 ? 1 : dim == 2 ? 1 / s : 1 / t;
+        worst[1] = fmax(worst[1],
+                        fabs(matrix_condition(dim, a) / condition - 1) / (condition * DBL_EPSILON));
+    }
+    near_below(worst[0], 4);
+    near_below(worst[1], 4);
+    near_relative(matrix_condition(2, (double[]){1, 0, 0, 1e-300}), 1e300, 1e-15);
+    assert_true(matrix_condition(3, (double[]){1, 0, 0, 0, 1, 0, 0, 0, 1}) == 1);
+    assert_true(matrix_condition(3, (double[]){1, 0, 0, 0, 0, 0, 0, 0, 0}) == HUGE_VAL);
+    assert_true(matrix_condition(1, (double[]){-DBL_MAX}) == 1);
+    assert_true(matrix_condition(1, (double[]){DBL_TRUE_MIN}) == 1);
+    assert_true(matrix_condition(2, (double[]){1, 0, 0, 0}) == HUGE_VAL);
+    assert_true(matrix_condition(3, (double[9]){0}) == HUGE_VAL);
+}
+
+/* No number among four, at each place: no inverse and no condition number. What overflows has none
+ * either, and neither has what is singular; the caller's array is left alone. */
+static void test_none(void **state)
+{
+    (void)state;
+    for (int dim = 1; dim <= 3; dim++)
+        for (int k = 0; k < dim * dim; k++)
+            for (int kind = 0; kind < 3; kind++) {
+                double a[9], inverse[9], kept[9];
+                with_singular_values(dim, 0.7, 0.4, a);
+                a[k] = kind ? (kind == 1 ? HUGE_VAL : -HUGE_VAL) : nan("");
+                for (int i = 0; i < 9; i++) inverse[i] = kept[i] = i + 0.5;
+                assert_false(matrix_invert(dim, a, inverse));
+                assert_memory_equal(inverse, kept, sizeof kept);
+                assert_true(isnan(matrix_condition(dim, a)));
+            }
+    static const struct {
+        int dim;
+        double a[9];
+    } singular[] = {
+        {1, {0}},
+        {2, {0, 1, 0, 1}},
+        {2, {1, 1, 0, 0}},
+        {2, {0, 0, 1, 1}},
+        {2, {3, 1, 3, 1}},
+        {2, {1, 0, 1, 0}},
+        {3, {1, 2, 3, 4, 5, 6, 7, 8, 9}},
+        {3, {0, 1, 1, 0, 1, 2, 0, 1, 3}},
+        {3, {1, 1, 0, 1, 2, 0, 1, 3, 0}},
+        {3, {1, 1, 1, 1, 1, 1, 1, 1, 2}},
+    };
+    for (size_t i = 0; i < sizeof singular / sizeof *singular; i++) {
+        double inverse[9] = {7, 7, 7, 7, 7, 7, 7, 7, 7}, kept[9];
+        memcpy(kept, inverse, sizeof kept);
+        assert_false(matrix_invert(singular[i].dim, singular[i].a, inverse));
+        assert_memory_equal(inverse, kept, sizeof kept);
+        assert_true(matrix_condition(singular[i].dim, singular[i].a) > 1e15);
+    }
+}
+
+/* Like matrix_invert's elimination of a matrix whose rows and columns have largest elements of 1
+ * and whose determinant is small, but exchanged before, not during it. */
+static void eliminated(int dim, const double *a, double *inverse)
+{
+    int row[3] = {0, 1, 2}, column[3] = {0, 1, 2};
+    double work[9], left[9];
+    memcpy(left, a, sizeof left);
+    for (int k = 0; k < dim; k++) { /* the order of the pivots, by plain Gauss elimination */
+        int p = k, q = k;
+        for (int i = k; i < dim; i++)
+            for (int j = k; j < dim; j++)
+                if (fabs(left[dim * row[i] + column[j]]) > fabs(left[dim * row[p] + column[q]]))
+                    p = i, q = j;
+        const int r = row[k], c = column[k];
+        row[k] = row[p], row[p] = r, column[k] = column[q], column[q] = c;
+        const double reciprocal = 1 / left[dim * row[k] + column[k]];
+        for (int i = k + 1; i < dim; i++)
+            for (int j = k + 1; j < dim; j++)
+                left[dim * row[i] + column[j]] -=
+                    left[dim * row[i] + column[k]] * (left[dim * row[k] + column[j]] * reciprocal);
+    }
+    for (int i = 0; i < dim; i++)
+        for (int j = 0; j < dim; j++) work[dim * i + j] = a[dim * row[i] + column[j]];
+    for (int k = 0; k < dim; k++) {
+        const double reciprocal = 1 / work[dim * k + k];
+        for (int j = 0; j < dim; j++)
+            work[dim * k + j] = (j == k ? 1 : work[dim * k + j]) * reciprocal;
+        for (int i = 0; i < dim; i++) {
+            const double factor = work[dim * i + k];
+            for (int j = 0; j < dim && i != k; j++)
+                work[dim * i + j] = (j == k ? 0 : work[dim * i + j]) - factor * work[dim * k + j];
+        }
+    }
+    for (int i = 0; i < dim; i++)
+        for (int j = 0; j < dim; j++) inverse[dim * column[i] + row[j]] = work[dim * i + j];
+}
+
+static double norm_of(int n, const double *a)
+{
+    double sum = 0;
+    for (int k = 0; k < n; k++) sum += a[k] * a[k];
+    return sqrt(sum);
+}
+
+/* Singular is what has a scaled condition number of 1/(16 epsilon) or more in Frobenius' norm: that
+ * of (1 1; 1 1 + e) is a little less than 4/e. */
+static void test_singular_from(void **state)
+{
+    (void)state;
+    for (int e = 60; e < 69; e++) {
+        double inverse[4];
+        const double a[] = {1, 1, 1, 1 + e * DBL_EPSILON};
+        assert_true(matrix_invert(2, a, inverse) == (e >= 64));
+    }
+    const double limit = 1 / (16 * DBL_EPSILON), e = 80 * DBL_EPSILON;
+    double t = sqrt((sqrt(236) - 14) / 4); /* where (5 + t^2) (4 + 2 t^2) = (e limit)^2 */
+    int at_limit = 0;
+    for (int step = -300; step < 300; step++) {
+        const double near_t = t * (1 + step * (abs(step) < 280 ? DBL_EPSILON : 1e-10));
+        const double a[] = {1, 0, 0, 0, 1, 1, near_t, 1, 1 - e};
+        double inverse[9], expected[9];
+        eliminated(3, a, expected);
+        const double norms = norm_of(9, a) * norm_of(9, expected);
+        assert_true(matrix_invert(3, a, inverse) == (norms < limit));
+        if (abs(step) >= 280) assert_true((norms < limit) == (step < 0));
+        at_limit += norms == limit;
+    }
+    assert_true(at_limit > 0);
+}
+
+/* Which way is taken shows in the last bits: in 1D 1/a by elimination, which is right to the last
+ * one, by cofactors 1/(a/|a| |a|); of diag(1, d) by elimination 1 and 1/d, by cofactors d (1/d). */
+static void test_way(void **state)
+{
+    (void)state;
+    int plain[2] = {0};
+    for (int trial = 0; trial < 4000; trial++) {
+        const double a = pow(10, trial % 2 ? 110 * draw() : copysign(100, draw()) + 2 * draw()),
+                     d = pow(10, 3 * (draw() - 1));
+        const bool usual = a > 1e-100 && a<1e100, far = d> 1e-2;
+        double inverse[4];
+        assert_true(matrix_invert(1, &a, inverse));
+        assert_true(inverse[0] == (usual ? 1 / (a * (1 / a) * a) : 1 / a));
+        plain[0] += usual && inverse[0] != 1 / a;
+        assert_true(matrix_invert(2, (double[]){1, 0, 0, d}, inverse));
+        assert_true(inverse[0] == (far ? d * (1 / d) : 1));
+        plain[1] += far && inverse[0] != 1;
+    }
+    assert_true(plain[0] > 100 && plain[1] > 50);
+    const double d =
+        0.027000000000000007; /* where the ways differ at either limit, which is beyond */
+    for (int sign = -1; sign <= 1; sign += 2) {
+        const double scale = sign < 0 ? 1e-100 : 1e100;
+        double inverse[4];
+        assert_true(d * (1 / (d * scale)) != 1 / scale);
+        assert_true(matrix_invert(2, (double[]){scale, 0, 0, d * scale}, inverse));
+        assert_true(inverse[0] == 1 / scale);
+    }
+    const double p = 0.10200000000000001, q = 0.098039215686274508;
+    double inverse[9];
+    assert_true(p * q == 1e-2 && q * (1 / 1e-2) != 1 / p);
+    assert_true(matrix_invert(3, (double[]){1, 0, 0, 0, p, 0, 0, 0, q}, inverse));
+    assert_true(inverse[4] == 1 / p);
+    assert_true(matrix_invert(2, (double[]){DBL_MAX, 0, 0, 1}, inverse));
+    assert_true(inverse[0] == 1 / DBL_MAX && inverse[3] == 1);
+    const double small =
+        0x1p-24; /* what is left after the first pivot stands beside the diagonal */
+    const double beside[] = {1, 1, 1, 1, 1, 1 + small, 1, 1 + small, 1};
+    assert_true(matrix_invert(3, beside, inverse));
+    near_below(inverse_error(3, beside, inverse), 3);
+}
+
+/* Neither what stands behind the last element is read, nor what stands behind the inverse written.
+ */
+static void test_room(void **state)
+{
+    (void)state;
+    const size_t page = (size_t)sysconf(_SC_PAGESIZE);
+    char *pages = mmap(NULL, 2 * page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    assert_true(pages != MAP_FAILED);
+    assert_int_equal(mprotect(pages + page, page, PROT_NONE), 0);
+    for (int trial = 0; trial < 6; trial++) {
+        const int dim = 1 + trial % 3;
+        double inverse[16], *a = (double *)(void *)(pages + page) - dim * dim;
+        with_singular_values(dim, trial < 3 ? 1e-3 : 0.9, trial < 3 ? 1e-6 : 0.8, a);
+        for (int k = 0; k < 16; k++) inverse[k] = 1234;
+        assert_true(matrix_invert(dim, a, inverse));
+        for (int k = dim * dim; k < 16; k++) assert_true(inverse[k] == 1234);
+        assert_true(matrix_condition(dim, a) >= 1);
+    }
+    munmap(pages, 2 * page);
+}
+
+/* The same bits, also where pivots are alike: the first of them is taken. */
+static void test_pivots(void **state)
+{
+    (void)state;
+    static const double elements[] = {1, -1, 0.999, -0.999, 0.3, 0};
+    int met = 0;
+    for (int trial = 0; trial < 20000; trial++) {
+        const int dim = 2 + trial % 2;
+        double a[9] = {0}, inverse[9], expected[9];
+        for (int k = 0; k < dim * dim; k++) {
+            const int which = (int)(3 + 3 * draw());
+            a[k] = elements[which] - (which > 1 && which < 5 ? 1e-4 * (int)(4 * draw()) : 0);
+        }
+        bool full = true;
+        for (int i = 0; i < dim; i++) {
+            bool one[2] = {false, false};
+            for (int k = 0; k < dim; k++)
+                one[0] = one[0] || fabs(a[dim * i + k]) == 1,
+                one[1] = one[1] || fabs(a[dim * k + i]) == 1;
+            full = full && one[0] && one[1];
+        }
+        real exact[9];
+        if (!full || size_of(exact_inverse(dim, a, exact)) > 0.0099 ||
+            !(size_of(exact_inverse(dim, a, exact)) > 1e-9))
+            continue;
+        met++;
+        eliminated(dim, a, expected);
+        assert_true(matrix_invert(dim, a, inverse));
+        for (int k = 0; k < dim * dim; k++) assert_true(inverse[k] == expected[k]);
+    }
+    assert_true(met > 100);
+}
+
+enum { NEIGHBOURS = 3 * GRID_LANES };
+
+/* The lanes of drawn neighbours; where flat, on a line (2D) or in a plane (3D), but for so much. */
+struct drawn {
+    double block[LANES_OWN * NEIGHBOURS], weight[NEIGHBOURS], f[3 * NEIGHBOURS], own[3];
+    struct lanes lanes;
+};
+
+static void draw_neighbours(int dim, double flat, struct drawn *drawn)
+{
+    drawn->lanes = (struct lanes){.block = drawn->block, .stride = NEIGHBOURS};
+    for (int k = 0; k < LANES_OWN * NEIGHBOURS; k++) drawn->block[k] = 1e3 * draw();
+    for (int k = 0; k < NEIGHBOURS; k++) {
+        for (int a = 0; a < dim; a++) lane(&drawn->lanes, LANE_DX)[a * NEIGHBOURS + k] = draw();
+        lane(&drawn->lanes, LANE_DX)[(dim - 1) * NEIGHBOURS + k] *= flat;
+        lane(&drawn->lanes, LANE_R)[k] = fabs(draw());
+        drawn->weight[k] = fabs(draw());
+    }
+    for (int k = 0; k < 3 * NEIGHBOURS; k++) drawn->f[k] = draw();
+    for (int a = 0; a < 3; a++) drawn->own[a] = draw();
+}
+
+/* sum weight x_a g, g = x_b or f_b - own_b, of the first count. */
+static double sum_of(const struct drawn *drawn, int count, int a, int b, bool of_f)
+{
+    const double *x = drawn->block + LANE_DX * NEIGHBOURS;
+    real sum = 0;
+    for (int k = 0; k < count; k++) {
+        const real g =
+            of_f ? (real)drawn->f[b * NEIGHBOURS + k] - drawn->own[b] : (real)x[b * NEIGHBOURS + k];
+        sum += (real)drawn->weight[k] * x[a * NEIGHBOURS + k] * g;
+    }
+    return (double)sum;
+}
+
+/* Against sums in quadruple precision. The condition number is that of Frobenius' norm where this
+ * suffices, else that of the 2-norm, and at most the worst that is allowed where there is an
+ * inverse. */
+static void test_moments(void **state)
+{
+    (void)state;
+    int by_norm = 0;
+    for (int trial = 0; trial < 600; trial++) {
+        const int dim = 2 + trial % 2, count = GRID_LANES * (1 + trial % 3);
+        struct drawn drawn;
+        draw_neighbours(dim, trial < 300 ? 1 : 1e-3, &drawn);
+        double moments[9], inverse[9], condition, gradient[16], norm = 0, norm_inverse = 0;
+        for (int a = 0; a < dim; a++)
+            for (int b = 0; b < dim; b++) moments[dim * a + b] = sum_of(&drawn, count, a, b, false);
+        struct cells_method method = {.box.dim = dim, .worst_condition = HUGE_VAL};
+        assert_true(
+            moments_invert(&method, count, &drawn.lanes, drawn.weight, inverse, &condition));
+        near_below(inverse_error(dim, moments, inverse), 1e4);
+        for (int k = 0; k < dim * dim; k++)
+            norm += moments[k] * moments[k], norm_inverse += inverse[k] * inverse[k];
+        near_relative(condition, sqrt(norm * norm_inverse), 1e-8);
+        const double two = matrix_condition(dim, moments);
+        by_norm += condition > 1.01 * two;
+        for (int which = 0; which < 4; which++) {
+            double found, other[9];
+            method.worst_condition = which == 0   ? condition
+                                     : which == 1 ? condition * (1 - 1e-15)
+                                     : which == 2 ? two * (1 + 1e-6)
+                                                  : two * (1 - 1e-6);
+            assert_true(moments_invert(&method, count, &drawn.lanes, drawn.weight, other, &found) ==
+                        (which < 3));
+            near_relative(found, which == 0 ? condition : two, 1e-9);
+            if (which < 3)
+                assert_memory_equal(other, inverse, sizeof(double) * (size_t)(dim * dim));
+            if (which == 2) { /* as much as is allowed is allowed */
+                method.worst_condition = found;
+                assert_true(
+                    moments_invert(&method, count, &drawn.lanes, drawn.weight, other, &found));
+            }
+        }
+        for (int k = 0; k < 16; k++) gradient[k] = 1234;
+        moments_gradient(dim, count, &drawn.lanes, drawn.weight, inverse, drawn.f, drawn.own,
+                         gradient);
+        for (int k = dim * dim; k < 16; k++) assert_true(gradient[k] == 1234);
+        for (int a = 0; a < dim; a++)
+            for (int b = 0; b < dim; b++) {
+                double expected = 0, size = 0;
+                for (int c = 0; c < dim; c++) {
+                    const double term = inverse[dim * b + c] * sum_of(&drawn, count, c, a, true);
+                    expected += term, size += fabs(term) + fabs(inverse[dim * b + c]);
+                }
+                near_below(fabs(gradient[dim * a + b] - expected), 1e-14 * size);
+            }
+    }
+    assert_true(by_norm > 300);
+    for (int dim = 2; dim <= 3; dim++) { /* no inverse at all */
+        struct drawn drawn;
+        double inverse[9], condition = 1;
+        draw_neighbours(dim, 0, &drawn);
+        const struct cells_method method = {.box.dim = dim, .worst_condition = HUGE_VAL};
+        assert_false(
+            moments_invert(&method, GRID_LANES, &drawn.lanes, drawn.weight, inverse, &condition));
+        assert_true(condition == HUGE_VAL);
+    }
+}
+
+/* w(q) and V w(q) of either kind of kernel loop. */
+static void test_weights(void **state)
+{
+    (void)state;
+    for (int trial = 0; trial < 40; trial++) {
+        const int dim = 2 + trial % 2, count = GRID_LANES * (1 + trial % 3);
+        struct drawn drawn;
+        struct kernel kernel;
+        draw_neighbours(dim, 1, &drawn);
+        assert_int_equal(kernel_select(&kernel, "wendland_c4", 5, NULL), STATUS_OK);
+        const struct cells cells = {.method = {.box.dim = dim, .kernel = &kernel},
+                                    .shapes = shapes_of(&kernel, dim, trial % 4 < 2)};
+        moments_weigh(&cells, count, &drawn.lanes, 1.25, drawn.weight);
+        for (int k = 0; k < count; k++) {
+            const double r = lane(&drawn.lanes, LANE_R)[k], h = 0.8;
+            const double w = kernel_value(&kernel, r, h, dim) * pow(h, dim) / kernel.constant[dim];
+            near_below(fabs(lane(&drawn.lanes, LANE_W)[k] - w), 1e-14);
+            near_below(fabs(lane(&drawn.lanes, LANE_W_J)[k] - drawn.weight[k] * w), 1e-14);
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_inverse), cmocka_unit_test(test_condition),
+        cmocka_unit_test(test_none),    cmocka_unit_test(test_singular_from),
+        cmocka_unit_test(test_way),     cmocka_unit_test(test_room),
+        cmocka_unit_test(test_pivots),  cmocka_unit_test(test_moments),
+        cmocka_unit_test(test_weights),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
