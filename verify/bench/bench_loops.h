@@ -11,6 +11,8 @@
 #include "line/line.h"
 #include "plan.h"
 
+enum { BENCH_LOOPS_PARTICLES = 1600 }; /* that tables are made with */
+
 struct bench_loops {
     struct scheme scheme;
     struct loops loops; /* points into scheme: do not move the struct */

@@ -9,15 +9,12 @@
 #include "bench_cells.h"
 #include "bench_loops.h"
 #include "integrator.h"
-#include "result.h"
-
-enum { WITHOUT, WITH, SIDES, LOOP_PARTICLES = 1600 };
 
 /* Work that keys bring back; where the case's own scheme does not leave it out, nothing is shown.
  */
 enum when { ALWAYS, PREDICTED, INVISCID, UNIFORM };
 static const struct {
-    const char *name, *keys[SIDES]; /* ALPHA stands for the scheme's own alpha */
+    const char *name, *keys[BENCH_SIDES]; /* ALPHA stands for the scheme's own alpha */
     enum when when;
     enum bench_promise promise;
     double bound;
@@ -117,7 +114,7 @@ static enum status work(void *context, uint64_t times, struct clock_taken *taken
 struct bench {
     struct bench_skips *result;
     size_t max;
-    struct job *jobs; /* SIDES a skip; then one whole step of each case */
+    struct job *jobs; /* BENCH_SIDES a skip; then one whole step of each case */
     struct bench_subject *subjects;
 };
 
@@ -170,7 +167,7 @@ static struct bench_skip *new_skip(struct bench *bench, size_t c, const char *na
 
 static struct job *jobs_of(const struct bench *bench, const struct bench_skip *skip)
 {
-    return &bench->jobs[(size_t)(skip - bench->result->skips) * SIDES];
+    return &bench->jobs[(size_t)(skip - bench->result->skips) * BENCH_SIDES];
 }
 
 /* A run with more keys; malloced. NULL: they cannot be, or no memory. */
@@ -191,10 +188,11 @@ static enum status add_switches(struct bench *bench, size_t c, const struct sche
 {
     for (size_t s = 0; s < SWITCHES; s++) {
         if (!applies(switches[s].when, scheme)) continue;
-        struct bench_skip *skip = new_skip(bench, c, switches[s].name, switches[s].keys[WITH]);
+        struct bench_skip *skip =
+            new_skip(bench, c, switches[s].name, switches[s].keys[BENCH_WITH]);
         skip->promise = switches[s].promise;
         skip->bound = switches[s].bound;
-        for (int side = WITHOUT; side <= WITH; side++) {
+        for (int side = BENCH_WITHOUT; side <= BENCH_WITH; side++) {
             struct job *job = &jobs_of(bench, skip)[side];
             job->run =
                 run_with(&bench->result->cases[c], switches[s].keys[side], scheme->alpha, error);
@@ -235,7 +233,7 @@ static enum status add_loops(struct job *job, const struct scheme *scheme, enum 
 {
     job->loops = calloc(1, sizeof *job->loops);
     if (!job->loops) return error_set(error, STATUS_ENVIRONMENT, "no memory");
-    return bench_loops_create(job->loops, scheme, LOOP_PARTICLES, true, 1u << pass, error);
+    return bench_loops_create(job->loops, scheme, BENCH_LOOPS_PARTICLES, true, 1u << pass, error);
 }
 
 static enum status add_cells(struct job *job, const struct scheme *scheme, int dim, unsigned pass,
@@ -266,8 +264,8 @@ static enum status add_cloud_extras(struct bench *bench, size_t c, int dim,
         if (e == EXTRA_MATRIX) with.viscosity = scheme->viscosity;
         if (e == EXTRA_SLOPE) with.gradient = scheme->gradient;
         struct job *job = jobs_of(bench, new_skip(bench, c, extras[e].name, extras[e].keys));
-        if (add_cells(&job[WITH], &with, dim, passes[k].pass, error) ||
-            add_cells(&job[WITHOUT], scheme, dim, passes[k].pass, error))
+        if (add_cells(&job[BENCH_WITH], &with, dim, passes[k].pass, error) ||
+            add_cells(&job[BENCH_WITHOUT], scheme, dim, passes[k].pass, error))
             return error->status;
     }
     return STATUS_OK;
@@ -282,9 +280,9 @@ static enum status add_extras(struct bench *bench, size_t c, const struct scheme
         struct scheme with = *scheme;
         if (!scheme_with(e, &with)) continue;
         struct job *job = jobs_of(bench, new_skip(bench, c, extras[e].name, extras[e].keys));
-        if (add_loops(&job[WITH], &with, extras[e].pass, error)) return error->status;
+        if (add_loops(&job[BENCH_WITH], &with, extras[e].pass, error)) return error->status;
         if (extras[e].instead == PASS_NONE) continue;
-        if (add_loops(&job[WITHOUT], scheme, extras[e].instead, error)) return error->status;
+        if (add_loops(&job[BENCH_WITHOUT], scheme, extras[e].instead, error)) return error->status;
     }
     return STATUS_OK;
 }
@@ -292,7 +290,7 @@ static enum status add_extras(struct bench *bench, size_t c, const struct scheme
 static enum status add_case(struct bench *bench, size_t c, struct error *error)
 {
     const struct run_settings *settings = &bench->result->cases[c];
-    struct job *whole = &bench->jobs[bench->max * SIDES + c];
+    struct job *whole = &bench->jobs[bench->max * BENCH_SIDES + c];
     whole->run = run_with(settings, "skip=none", 0, error);
     if (!whole->run || add_switches(bench, c, &whole->run->scheme, error) ||
         add_extras(bench, c, &whole->run->scheme, error))
@@ -324,18 +322,18 @@ static double sensitivity(const struct job *job)
 
 static void judge(struct bench_skip *skip, const struct job *job)
 {
-    const struct run_result *a = &job[WITHOUT].last, *b = &job[WITH].last;
-    skip->l1[WITHOUT] = a->errors[FIELD_DENSITY].l1;
-    skip->l1[WITH] = b->errors[FIELD_DENSITY].l1;
+    const struct run_result *a = &job[BENCH_WITHOUT].last, *b = &job[BENCH_WITH].last;
+    skip->l1[BENCH_WITHOUT] = a->errors[FIELD_DENSITY].l1;
+    skip->l1[BENCH_WITH] = b->errors[FIELD_DENSITY].l1;
     if (a->cost.skipped_particle_updates)
         skip->skipped = (double)a->cost.skipped_particle_updates /
                         (double)(a->cost.skipped_particle_updates + a->cost.particle_updates);
     skip->difference = skip->promise == PROMISE_ERROR
-                           ? skip->l1[WITHOUT] / skip->l1[WITH] - 1
+                           ? skip->l1[BENCH_WITHOUT] / skip->l1[BENCH_WITH] - 1
                            : bench_skips_difference(&a->snapshot, &b->snapshot,
                                                     domain_length(&a->problem.domain, 0));
     if (skip->promise == PROMISE_ROUND_OFF && skip->difference > skip->bound)
-        skip->bound = fmax(skip->bound, 10 * sensitivity(&job[WITH]));
+        skip->bound = fmax(skip->bound, 10 * sensitivity(&job[BENCH_WITH]));
     skip->kept = skip->difference <= skip->bound;
 }
 
@@ -344,34 +342,34 @@ static void finish(struct bench *bench, const struct bench_subject *of_job[])
     for (size_t s = 0; s < bench->result->count; s++) {
         struct bench_skip *skip = &bench->result->skips[s];
         const struct job *job = jobs_of(bench, skip);
-        const struct bench_subject *const *times = &of_job[s * SIDES];
-        if (job[WITH].loops || job[WITH].cells) {
+        const struct bench_subject *const *times = &of_job[s * BENCH_SIDES];
+        if (job[BENCH_WITH].loops || job[BENCH_WITH].cells) {
             /* a particle's update of the whole run, and what the pass adds to it */
-            const size_t whole = bench->max * SIDES + skip->case_index;
+            const size_t whole = bench->max * BENCH_SIDES + skip->case_index;
             const struct run_result *run = &bench->jobs[whole].last;
             const double update = of_job[whole]->time.cpu_s / (double)run->cost.particle_updates;
-            const double without = times[WITHOUT] ? times[WITHOUT]->time.cpu_s : 0;
-            skip->cpu_s[WITHOUT] = update;
-            const double n =
-                job[WITH].cells ? (double)job[WITH].cells->fields.n : (double)LOOP_PARTICLES;
-            skip->cpu_s[WITH] = update + (times[WITH]->time.cpu_s - without) / n;
-            skip->spread = fmax(of_job[whole]->time.spread, times[WITH]->time.spread);
+            const double without = times[BENCH_WITHOUT] ? times[BENCH_WITHOUT]->time.cpu_s : 0;
+            skip->cpu_s[BENCH_WITHOUT] = update;
+            const double n = job[BENCH_WITH].cells ? (double)job[BENCH_WITH].cells->fields.n
+                                                   : (double)BENCH_LOOPS_PARTICLES;
+            skip->cpu_s[BENCH_WITH] = update + (times[BENCH_WITH]->time.cpu_s - without) / n;
+            skip->spread = fmax(of_job[whole]->time.spread, times[BENCH_WITH]->time.spread);
             continue;
         }
-        for (int side = WITHOUT; side <= WITH; side++) {
+        for (int side = BENCH_WITHOUT; side <= BENCH_WITH; side++) {
             skip->cpu_s[side] = times[side]->time.cpu_s;
             skip->spread = fmax(skip->spread, times[side]->time.spread);
         }
         judge(skip, job);
     }
     for (size_t c = 0; c < bench->result->case_count; c++)
-        bench->result->n[c] = bench->jobs[bench->max * SIDES + c].last.n;
+        bench->result->n[c] = bench->jobs[bench->max * BENCH_SIDES + c].last.n;
 }
 
 static enum status measure(struct bench *bench, const struct bench_rules *rules,
                            struct error *error)
 {
-    const size_t all = bench->max * SIDES + bench->result->case_count;
+    const size_t all = bench->max * BENCH_SIDES + bench->result->case_count;
     const struct bench_subject **of_job = calloc(all, sizeof *of_job);
     struct bench_subject *subjects = calloc(all, sizeof *subjects);
     enum status status = STATUS_OK;
@@ -406,7 +404,7 @@ enum status bench_skips_measure(const struct run_settings *cases, size_t count,
                                    .cases = malloc(count * sizeof *cases),
                                    .n = calloc(count, sizeof(size_t)),
                                    .skips = calloc(bench.max, sizeof *result->skips)};
-    bench.jobs = calloc(bench.max * SIDES + count, sizeof *bench.jobs);
+    bench.jobs = calloc(bench.max * BENCH_SIDES + count, sizeof *bench.jobs);
     enum status status = STATUS_OK;
     if (!result->cases || !result->n || !result->skips || !bench.jobs)
         status = error_set(error, STATUS_ENVIRONMENT, "no memory");
@@ -415,7 +413,7 @@ enum status bench_skips_measure(const struct run_settings *cases, size_t count,
         status = add_case(&bench, c, error);
     }
     if (!status) status = measure(&bench, rules, error);
-    for (size_t k = 0; bench.jobs && k < bench.max * SIDES + count; k++) {
+    for (size_t k = 0; bench.jobs && k < bench.max * BENCH_SIDES + count; k++) {
         free(bench.jobs[k].run);
         run_free(&bench.jobs[k].last);
         if (bench.jobs[k].loops) bench_loops_free(bench.jobs[k].loops);
@@ -431,81 +429,4 @@ void bench_skips_free(struct bench_skips *result)
 {
     free(result->cases), free(result->n), free(result->skips);
     *result = (struct bench_skips){0};
-}
-
-/* --- results ---------------------------------------------------------------------------------- */
-
-static const char *const promises[] = {
-#define PROMISE(name, text) text,
-    BENCH_PROMISE_LIST(PROMISE)
-#undef PROMISE
-};
-
-static json_t *number_or_null(double value)
-{
-    return isnan(value) ? json_null() : result_number(value);
-}
-
-void bench_skips_add_json(const struct bench_skips *result, json_t *document)
-{
-    json_t *list = json_array();
-    for (size_t s = 0; s < result->count; s++) {
-        const struct bench_skip *skip = &result->skips[s];
-        json_array_append_new(
-            list,
-            json_pack("{s:s, s:I, s:s, s:s, s:o, s:o, s:o, s:o, s:o, s:s, s:o, s:o, s:s}", "case",
-                      result->cases[skip->case_index].file.name, "n",
-                      (json_int_t)result->n[skip->case_index], "skip", skip->name, "against",
-                      skip->keys, "cpu_s", result_number(skip->cpu_s[WITHOUT]),
-                      "cpu_s_without_skip", result_number(skip->cpu_s[WITH]), "saves",
-                      result_number(skip->cpu_s[WITH] / skip->cpu_s[WITHOUT]), "spread",
-                      result_number(skip->spread), "skipped_fraction",
-                      number_or_null(skip->skipped), "promise", promises[skip->promise],
-                      "difference", number_or_null(skip->difference), "bound",
-                      skip->promise == PROMISE_UNUSED ? json_null() : result_number(skip->bound),
-                      "status", skip->kept ? "pass" : "fail"));
-    }
-    json_object_set_new(document, "skips", list);
-}
-
-static void print_answer(const struct bench_skip *skip, const struct table_style *style)
-{
-    const bool compared = skip->promise == PROMISE_BITS || skip->promise == PROMISE_ROUND_OFF;
-    if (skip->promise == PROMISE_UNUSED || (compared && !(skip->difference > 0))) {
-        printf("  %s", promises[compared ? PROMISE_BITS : PROMISE_UNUSED]);
-        return;
-    }
-    printf("  %s%s%s: ", skip->kept ? "" : style->bad, skip->kept ? "" : "NOT ",
-           promises[skip->promise]);
-    if (skip->promise == PROMISE_ERROR)
-        printf("L1 %.4e against %.4e", skip->l1[WITHOUT], skip->l1[WITH]);
-    else
-        printf("%.1e", skip->difference);
-    if (skip->promise != PROMISE_BITS) printf(" (bound %.0e)", skip->bound);
-    if (!skip->kept) printf("%s", style->end);
-}
-
-void bench_skips_print(const struct bench_skips *result, const struct table_style *style)
-{
-    printf("%s%-16s %6s  %-32s %8s %7s %9s  %s%s\n", style->bold, "case", "n", "left out", "saves",
-           "spread", "updates", "the answer", style->end);
-    for (size_t s = 0; s < result->count; s++) {
-        const struct bench_skip *skip = &result->skips[s];
-        printf("%-16s %6zu  %-32s %7.2fx %6.0f%%", result->cases[skip->case_index].file.name,
-               result->n[skip->case_index], skip->name, skip->cpu_s[WITH] / skip->cpu_s[WITHOUT],
-               100 * skip->spread);
-        if (isnan(skip->skipped))
-            printf(" %9s", "");
-        else
-            printf(" %8.0f%%", -100 * skip->skipped);
-        print_answer(skip, style);
-        printf("\n");
-    }
-    printf("%ssaves: CPU time with the work over that without, both runs of one benchmark; passes "
-           "that the plan\ndoes not contain are timed by themselves (n = %d; in 2D and 3D 1600 and "
-           "1728) on top of a "
-           "particle's whole update. updates: particle\nupdates left out. Differences: largest of "
-           "any field at t_end over the field's largest value;\nbound of round-off: 1e-8, or ten "
-           "times what steps longer by a part of 1e-11 change%s\n",
-           style->faint, LOOP_PARTICLES, style->end);
 }

@@ -24,18 +24,21 @@ enum bench_promise {
 #undef PROMISE
 };
 
+/* With the work left out, and with it done. */
+enum bench_side { BENCH_WITHOUT, BENCH_WITH, BENCH_SIDES };
+
 struct bench_skip {
     size_t case_index;
     const char *name; /* of the work left out */
     const char *keys; /* that bring it back, or the pass by itself */
     enum bench_promise promise;
     double bound; /* of the difference; 0 for bits; round-off: wider where the case amplifies it */
-    double difference; /* as the promise defines it; NaN where there is nothing to compare */
-    double l1[2];      /* of density: left out, done */
-    double cpu_s[2];   /* left out, done: of a run, or of a particle's update */
-    double spread;     /* the larger of both */
-    double skipped;    /* fraction of particle updates left out; NaN: no such thing */
-    bool kept;         /* the promise */
+    double difference;      /* as the promise defines it; NaN where there is nothing to compare */
+    double l1[BENCH_SIDES]; /* of density */
+    double cpu_s[BENCH_SIDES]; /* of a run, or of a particle's update */
+    double spread;             /* the larger of both */
+    double skipped;            /* fraction of particle updates left out; NaN: no such thing */
+    bool kept;                 /* the promise */
 };
 
 struct bench_skips {

@@ -11,16 +11,8 @@
 #include "problem_list.h"
 #include "result.h"
 #include "run_job.h"
-#include "settings_output.h"
 #include "study.h"
 #include "value.h"
-
-const double precision_targets[PRECISION_TARGETS] = {0.01, 0.003, 0.001};
-
-double precision_target(const struct precision *precision, size_t t)
-{
-    return (precision->dim > 1 ? 10 : 1) * precision_targets[t];
-}
 
 /* What the seed program does, its errors corrected: on top of the user's keys, which say what is
  * computed. */
@@ -45,33 +37,6 @@ static const char *const seed_keys[] = {
 static const char *const textbook_keys[] = {"kernel=cubic_spline", "eta=2.4", "gradient=standard",
                                             "viscosity=constant"};
 #define LENGTH(list) (sizeof(list) / sizeof *(list))
-
-void precision_front(size_t n, const double *cost, const double *error, bool *on_front)
-{
-    for (size_t i = 0; i < n; i++) {
-        on_front[i] = isfinite(cost[i]) && isfinite(error[i]);
-        for (size_t j = 0; j < n && on_front[i]; j++)
-            if (cost[j] <= cost[i] && error[j] <= error[i] &&
-                (cost[j] < cost[i] || error[j] < error[i]))
-                on_front[i] = false;
-    }
-}
-
-double precision_cost_of(size_t n, const double *cost, const double *error, double target)
-{
-    double least = NAN;
-    if (n && error[0] <= target) least = cost[0];
-    for (size_t i = 1; i < n; i++) {
-        if (!(error[i] <= target)) continue;
-        double here = cost[i];
-        if (error[i - 1] > target && error[i] > 0) {
-            const double part = log(error[i - 1] / target) / log(error[i - 1] / error[i]);
-            here = cost[i - 1] * pow(cost[i] / cost[i - 1], part);
-        }
-        if (!(least <= here)) least = here;
-    }
-    return least;
-}
 
 /* --- one point -------------------------------------------------------------------------------- */
 
@@ -182,16 +147,6 @@ static enum status find_scale(const struct run_settings *settings, struct precis
     if (!(precision->signal > 1e-12 * precision->mean_density))
         precision->signal = precision->mean_density;
     return STATUS_OK;
-}
-
-static double merit_of(const struct precision *precision, double error, double cpu_s)
-{
-    return pow(error, (1. + precision->dim) / precision->order) * cpu_s;
-}
-
-bool precision_competes(const struct precision_scheme *scheme)
-{
-    return scheme->reference == REFERENCE_NONE || scheme->reference == REFERENCE_GRADED;
 }
 
 /* "kernel=a eta=2" -> "a eta=2": names say themselves what they are. */
@@ -320,80 +275,6 @@ static void collect(struct precision *precision, const struct bench_subject *sub
     precision->point_count = kept;
 }
 
-static bool same_processor(const struct precision_point *a, const struct precision_point *b)
-{
-    return a->processor == b->processor ||
-           (a->processor && b->processor && strcmp(a->processor, b->processor) == 0);
-}
-
-static bool of_one_processor(const struct precision *precision,
-                             const struct precision_scheme *scheme)
-{
-    const struct precision_point *first = &precision->points[0];
-    for (size_t i = 0; i < scheme->count; i++)
-        if (!same_processor(first, &precision->points[scheme->first + i])) return false;
-    return true;
-}
-
-/* A front for each processor: times of two say nothing about each other. front: room for n. */
-static void fronts(struct precision *precision, const double *cost, double *wrong, bool *front)
-{
-    const size_t n = precision->point_count;
-    struct precision_point *points = precision->points;
-    for (size_t first = 0; first < n; first++) {
-        bool seen = false;
-        double *own = malloc(n * sizeof *own);
-        for (size_t i = 0; i < first; i++) seen |= same_processor(&points[i], &points[first]);
-        for (size_t i = 0; own && i < n; i++)
-            own[i] = same_processor(&points[i], &points[first]) ? wrong[i] : (double)NAN;
-        if (own && !seen) precision_front(n, cost, own, front);
-        for (size_t i = 0; own && !seen && i < n; i++)
-            if (same_processor(&points[i], &points[first])) points[i].on_front = front[i];
-        free(own);
-    }
-}
-
-static enum status judge(struct precision *precision, struct error *error)
-{
-    const size_t n = precision->point_count;
-    double *cost = malloc((2 * n + 1) * sizeof *cost), *wrong = cost + n;
-    bool *front = malloc((n + 1) * sizeof *front);
-    if (!cost || !front) {
-        free(cost), free(front);
-        return error_set(error, STATUS_ENVIRONMENT, "no memory for %zu points", n);
-    }
-    for (size_t i = 0; i < n; i++) {
-        cost[i] = precision->points[i].time.cpu_s;
-        wrong[i] = precision_competes(&precision->schemes[precision->points[i].scheme])
-                       ? precision->points[i].error
-                       : (double)NAN;
-    }
-    fronts(precision, cost, wrong, front);
-    for (size_t i = 0; i < n; i++) wrong[i] = precision->points[i].error;
-    for (size_t t = 0; t < PRECISION_TARGETS; t++)
-        precision->cheapest[t] =
-            (struct precision_way){precision_target(precision, t) * precision->signal, NAN, 0};
-    double plain = NAN;
-    for (size_t i = precision->scheme_count; i-- > 0;) {
-        struct precision_scheme *scheme = &precision->schemes[i];
-        const size_t last = scheme->first + scheme->count - 1;
-        scheme->merit = scheme->count ? merit_of(precision, wrong[last], cost[last]) : (double)NAN;
-        const bool cloud = precision->dim > 1;
-        if (scheme->reference == (cloud ? REFERENCE_SEED : REFERENCE_SEED_PLAIN))
-            plain = scheme->merit;
-        scheme->gain = plain / scheme->merit;
-        const bool compared = precision_competes(scheme) && of_one_processor(precision, scheme);
-        for (size_t t = 0; t < PRECISION_TARGETS && compared; t++) {
-            struct precision_way *way = &precision->cheapest[t];
-            const double here = precision_cost_of(scheme->count, cost + scheme->first,
-                                                  wrong + scheme->first, way->error);
-            if (here <= way->cpu_s || isnan(way->cpu_s)) way->cpu_s = here, way->scheme = i;
-        }
-    }
-    free(cost), free(front);
-    return STATUS_OK;
-}
-
 /* What is to be measured: a job for each scheme and n, in the order of the points. */
 struct precision_work {
     const struct precision *precision;
@@ -471,7 +352,7 @@ enum status precision_measure(const struct run_settings *settings, const struct 
     if (!status) {
         average_all(precision, work->subjects, work->jobs);
         collect(precision, work->subjects, work->jobs);
-        status = judge(precision, error);
+        status = precision_judge(precision, error);
     }
     return status;
 }
@@ -608,7 +489,7 @@ enum status precision_conclude(struct precision *precision, const struct pool *p
                               &work->jobs[i]);
     }
     collect(precision, work->subjects, work->jobs);
-    return judge(precision, error);
+    return precision_judge(precision, error);
 }
 
 void precision_free(struct precision *precision)
@@ -617,65 +498,4 @@ void precision_free(struct precision *precision)
     free(precision->schemes);
     free(precision->points);
     *precision = (struct precision){0};
-}
-
-/* --- results ---------------------------------------------------------------------------------- */
-
-static json_t *point_json(const struct precision *precision, const struct precision_point *point)
-{
-    static const char *const references[] = {"", "graded", "seed", "seed_plain"};
-    const struct precision_scheme *scheme = &precision->schemes[point->scheme];
-    json_t *item = json_pack(
-        "{s:s, s:o, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:i, s:o, s:o, s:b}", "scheme",
-        scheme->label, "settings", settings_json(&point->settings), "n", (json_int_t)point->n,
-        "error", result_number(point->error), "error_over_signal", result_number(point->relative),
-        "error_spread", result_number(point->error_spread), "wall_s",
-        result_number(point->time.wall_s), "cpu_s", result_number(point->time.cpu_s), "spread",
-        result_number(point->time.spread), "samples", point->time.samples, "pair_interactions",
-        result_number(point->pairs), "figure_of_merit",
-        result_number(merit_of(precision, point->error, point->time.cpu_s)), "on_front",
-        point->on_front);
-    if (scheme->reference)
-        json_object_set_new(item, "reference", json_string(references[scheme->reference]));
-    return item;
-}
-
-void precision_add_json(const struct precision *precision, json_t *document)
-{
-    json_t *points = json_array(), *schemes = json_array(), *ways = json_array(),
-           *excluded = json_array();
-    for (size_t i = 0; i < precision->point_count; i++)
-        json_array_append_new(points, point_json(precision, &precision->points[i]));
-    for (size_t i = 0; i < precision->scheme_count; i++) {
-        const struct precision_scheme *scheme = &precision->schemes[i];
-        if (!scheme->count)
-            json_array_append_new(excluded, json_pack("{s:s, s:s}", "scheme", scheme->label,
-                                                      "reason", scheme->excluded));
-        else
-            json_array_append_new(schemes,
-                                  json_pack("{s:s, s:o, s:o}", "scheme", scheme->label,
-                                            "figure_of_merit", result_number(scheme->merit),
-                                            "seed_plain_over_this", result_number(scheme->gain)));
-    }
-    for (size_t t = 0; t < PRECISION_TARGETS; t++) {
-        const struct precision_way *way = &precision->cheapest[t];
-        const bool reached = isfinite(way->cpu_s);
-        json_array_append_new(
-            ways,
-            json_pack("{s:f, s:o, s:o, s:o}", "target", precision_target(precision, t), "error",
-                      result_number(way->error), "cpu_s",
-                      reached ? result_number(way->cpu_s) : json_null(), "scheme",
-                      reached ? json_string(precision->schemes[way->scheme].label) : json_null()));
-    }
-    json_object_set_new(document, "case", json_string(precision->settings->file.name));
-    json_object_set_new(document, "title", json_string(precision->settings->file.title));
-    json_object_set_new(document, "mean_density", result_number(precision->mean_density));
-    json_object_set_new(document, "signal", result_number(precision->signal));
-    json_object_set_new(document, "dimension", json_integer(precision->dim));
-    json_object_set_new(document, "error_of", json_string(precision->error_of));
-    json_object_set_new(document, "expected_order", json_integer(precision->order));
-    json_object_set_new(document, "points", points);
-    json_object_set_new(document, "schemes", schemes);
-    json_object_set_new(document, "cheapest", ways);
-    json_object_set_new(document, "excluded", excluded);
 }

@@ -9,8 +9,6 @@
 #ifndef SPHPROOF_PRECISION_H
 #define SPHPROOF_PRECISION_H
 
-#include <jansson.h>
-
 #include "bench.h"
 #include "pool.h"
 #include "run.h"
@@ -85,13 +83,17 @@ enum status precision_plan(const struct run_settings *settings, const struct swe
 enum status precision_conclude(struct precision *precision, const struct pool *pool,
                                struct error *error);
 
-/* "case", "points", "schemes", "cheapest", "excluded" ... of a result document. */
-void precision_add_json(const struct precision *precision, json_t *document);
-
 /* The t-th target, in parts of the signal; ten times as much in 2D and 3D. */
 double precision_target(const struct precision *precision, size_t t);
 
 /* --- the arithmetic, by itself ---------------------------------------------------------------- */
+
+/* Fills what is judged of points that are there: the front, gains, the cheapest ways.
+ * STATUS_ENVIRONMENT: no memory. */
+enum status precision_judge(struct precision *precision, struct error *error);
+
+/* error^((d+1)/p) cpu_s: the same at every resolution, at the case's order p. */
+double precision_merit(const struct precision *precision, double error, double cpu_s);
 
 /* Does a scheme compete for the front and for the cheapest way? */
 bool precision_competes(const struct precision_scheme *scheme);

@@ -8,6 +8,8 @@
 #include <string.h>
 
 #include "picture.h"
+#include "result.h"
+#include "settings_output.h"
 
 static double merit_of(const struct precision_scheme *scheme)
 {
@@ -252,4 +254,63 @@ enum status precision_plot(const struct precision *precision, const char *path, 
     }
     free(list), free(picture.x);
     return status;
+}
+
+static json_t *point_json(const struct precision *precision, const struct precision_point *point)
+{
+    static const char *const references[] = {"", "graded", "seed", "seed_plain"};
+    const struct precision_scheme *scheme = &precision->schemes[point->scheme];
+    json_t *item = json_pack(
+        "{s:s, s:o, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:i, s:o, s:o, s:b}", "scheme",
+        scheme->label, "settings", settings_json(&point->settings), "n", (json_int_t)point->n,
+        "error", result_number(point->error), "error_over_signal", result_number(point->relative),
+        "error_spread", result_number(point->error_spread), "wall_s",
+        result_number(point->time.wall_s), "cpu_s", result_number(point->time.cpu_s), "spread",
+        result_number(point->time.spread), "samples", point->time.samples, "pair_interactions",
+        result_number(point->pairs), "figure_of_merit",
+        result_number(precision_merit(precision, point->error, point->time.cpu_s)), "on_front",
+        point->on_front);
+    if (scheme->reference)
+        json_object_set_new(item, "reference", json_string(references[scheme->reference]));
+    return item;
+}
+
+void precision_add_json(const struct precision *precision, json_t *document)
+{
+    json_t *points = json_array(), *schemes = json_array(), *ways = json_array(),
+           *excluded = json_array();
+    for (size_t i = 0; i < precision->point_count; i++)
+        json_array_append_new(points, point_json(precision, &precision->points[i]));
+    for (size_t i = 0; i < precision->scheme_count; i++) {
+        const struct precision_scheme *scheme = &precision->schemes[i];
+        if (!scheme->count)
+            json_array_append_new(excluded, json_pack("{s:s, s:s}", "scheme", scheme->label,
+                                                      "reason", scheme->excluded));
+        else
+            json_array_append_new(schemes,
+                                  json_pack("{s:s, s:o, s:o}", "scheme", scheme->label,
+                                            "figure_of_merit", result_number(scheme->merit),
+                                            "seed_plain_over_this", result_number(scheme->gain)));
+    }
+    for (size_t t = 0; t < PRECISION_TARGETS; t++) {
+        const struct precision_way *way = &precision->cheapest[t];
+        const bool reached = isfinite(way->cpu_s);
+        json_array_append_new(
+            ways,
+            json_pack("{s:f, s:o, s:o, s:o}", "target", precision_target(precision, t), "error",
+                      result_number(way->error), "cpu_s",
+                      reached ? result_number(way->cpu_s) : json_null(), "scheme",
+                      reached ? json_string(precision->schemes[way->scheme].label) : json_null()));
+    }
+    json_object_set_new(document, "case", json_string(precision->settings->file.name));
+    json_object_set_new(document, "title", json_string(precision->settings->file.title));
+    json_object_set_new(document, "mean_density", result_number(precision->mean_density));
+    json_object_set_new(document, "signal", result_number(precision->signal));
+    json_object_set_new(document, "dimension", json_integer(precision->dim));
+    json_object_set_new(document, "error_of", json_string(precision->error_of));
+    json_object_set_new(document, "expected_order", json_integer(precision->order));
+    json_object_set_new(document, "points", points);
+    json_object_set_new(document, "schemes", schemes);
+    json_object_set_new(document, "cheapest", ways);
+    json_object_set_new(document, "excluded", excluded);
 }

@@ -9,7 +9,7 @@
 #include "check_registry.h"
 #include "cloud_profile.h"
 #include "league.h"
-#include "precision.h"
+#include "precision_output.h"
 #include "problem_list.h"
 #include "profile.h"
 #include "result.h"

@@ -1,0 +1,224 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Orders, extrapolated values, gates and suspicions of a study whose runs are done. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "measure.h"
+#include "problem_list.h"
+#include "study_read.h"
+
+/* An order lost to the lattice sums shows a relative error of this many floors at most. */
+static const double floor_reach = 20;
+
+static enum status fit_orders(const struct study *study, struct study_result *result,
+                              struct error *error)
+{
+    double spacing[CASE_LADDER_MAX], errors[CASE_LADDER_MAX], variance[CASE_LADDER_MAX];
+    const struct order_noise noise = {variance, study->replicates};
+    const size_t n = result->level_count;
+    for (size_t l = 0; l < n; l++) spacing[l] = result->levels[l].spacing;
+    for (int f = 0; f < FIELDS; f++)
+        for (int m = 0; m < NORMS; m++) {
+            for (size_t l = 0; l < n; l++) {
+                const double spread = result->levels[l].spread[f][m];
+                errors[l] = result->levels[l].errors[f][m];
+                variance[l] = spread * spread / (double)study->replicates;
+            }
+            if (order_fit(n, spacing, errors, study->replicates > 1 ? &noise : NULL,
+                          &result->orders[f][m].fit, error))
+                return error->status;
+        }
+    const struct regions *regions = result->levels[0].budget.regions;
+    for (size_t r = 0; regions && regions->names[r]; r++) {
+        bool everywhere = true;
+        for (size_t l = 0; l < n; l++) {
+            errors[l] = result->levels[l].budget.l1[r][FIELD_DENSITY];
+            everywhere = everywhere && errors[l] > 0;
+        }
+        if (everywhere && order_fit(n, spacing, errors, NULL, &result->regions[r], error))
+            return error->status;
+    }
+    return STATUS_OK;
+}
+
+/* Of what only 2D and 3D have: parts of the velocity, and functionals that are known exactly. (In
+ * 1D a mean's error goes through 0, and has no order.) */
+static enum status fit_cloud_orders(struct study_result *result, struct error *error)
+{
+    double spacing[CASE_LADDER_MAX], errors[CASE_LADDER_MAX];
+    const size_t n = result->level_count;
+    for (size_t l = 0; l < n; l++) spacing[l] = result->levels[l].spacing;
+    for (int part = 0; part < STUDY_PARTS; part++) {
+        for (size_t l = 0; l < n; l++) errors[l] = result->levels[l].parts[part][NORM_L1_CUT];
+        if (isfinite(errors[0]) && order_fit(n, spacing, errors, NULL, &result->parts[part], error))
+            return error->status;
+    }
+    for (size_t i = 0; i < result->functional_count; i++) {
+        const double exact = result->functional_exact[i];
+        for (size_t l = 0; l < n; l++) errors[l] = fabs(result->levels[l].functionals[i] - exact);
+        if (isfinite(exact) &&
+            order_fit(n, spacing, errors, NULL, &result->functional_errors[i], error))
+            return error->status;
+    }
+    return STATUS_OK;
+}
+
+static void extrapolate(struct study_result *result)
+{
+    const struct study_level *last = &result->levels[result->level_count - 3];
+    const double spacing[3] = {last[0].spacing, last[1].spacing, last[2].spacing};
+    for (size_t i = 0; i < result->functional_count; i++) {
+        const double values[3] = {last[0].functionals[i], last[1].functionals[i],
+                                  last[2].functionals[i]};
+        result->functionals[i] = order_extrapolate(spacing, values, result->functional_exact[i]);
+    }
+}
+
+static void judge_gates(struct study_result *result, const struct case_file *file)
+{
+    const struct study_level *finest = &result->levels[result->level_count - 1];
+    const bool standard = result->scheme.gradient == GRADIENT_STANDARD;
+    measure_lattice(&result->scheme.kernel, file->dimension, result->scheme.eta,
+                    &result->floor_density, &result->floor_gradient);
+    const double floor =
+        fmax(fabs(result->floor_density), standard ? fabs(result->floor_gradient) : 0);
+    for (size_t i = 0; i < file->gate_count; i++) {
+        const struct case_gate *gate = &file->gates[i];
+        struct study_order *order = &result->orders[gate->field][gate->norm];
+        order->gate = gate->gate;
+        if (file->ladder_count) {
+            const double coarser = (double)file->ladder[file->ladder_count - 1] / (double)finest->n;
+            order->gate.bound *= pow(fmax(1, coarser), gate->gate.low / file->dimension);
+        }
+        order->status = order_passes(&order->fit, &order->gate, order->why) ? GATE_PASS : GATE_FAIL;
+        order->known = gate->known;
+        if (order->status == GATE_FAIL && *gate->known) order->status = GATE_KNOWN;
+        if (order->status != GATE_FAIL) continue;
+        result->status = STATUS_CHECK_FAILED;
+        result->floor_explains |= !(order->fit.order >= order->gate.low) &&
+                                  finest->errors[gate->field][gate->norm] <= floor_reach * floor;
+    }
+}
+
+/* Gas that no wave has reached: noise that was put there is none of its own. */
+static void judge_stillness(struct study_result *result)
+{
+    result->still = NAN;
+    for (size_t l = 0; l < result->level_count; l++)
+        if (result->levels[l].budget.regions)
+            result->still = fmax(result->still, result->levels[l].budget.still);
+    if (isnan(result->still) || study_is_random(&result->settings)) return;
+    result->still_status = result->still <= STUDY_STILL_BOUND ? GATE_PASS : GATE_FAIL;
+    if (result->still_status == GATE_FAIL) result->status = STATUS_CHECK_FAILED;
+}
+
+static void suspect(struct study_result *result, const struct case_file *file)
+{
+    double errors[CASE_LADDER_MAX];
+    char why[SUSPICION_TEXT];
+    for (int field = 0; field < FIELDS && !result->suspicion[0]; field++) {
+        if (file->exact[field] || problem_of(&result->settings)->fieldless) continue;
+        for (size_t i = 0; i < result->level_count; i++)
+            errors[i] = result->levels[i].errors[field][NORM_L1];
+        if (suspicion_zero(result->level_count, errors, why) ||
+            suspicion_repeated(result->level_count, errors, why))
+            snprintf(result->suspicion, sizeof result->suspicion, "%s: %.160s",
+                     field_family.members[field]->name, why);
+    }
+    if (result->suspicion[0]) result->status = STATUS_CHECK_FAILED;
+}
+
+/* ---- settings without effect ---- */
+
+/* Does alpha vary by a switch, between alpha_min and alpha_max? */
+static bool is_switched(int viscosity)
+{
+    return viscosity == VISCOSITY_TIME_DEPENDENT || viscosity == VISCOSITY_CULLEN_DEHNEN;
+}
+
+/* Do these settings say anything to the solver that the key could change? `skip` must not. */
+static bool is_read(enum setting key, const struct settings *settings)
+{
+    const int viscosity = settings_choice(settings, SETTING_viscosity);
+    const int kernel = settings_choice(settings, SETTING_kernel);
+    switch (key) {
+    case SETTING_skip:
+        return false;
+    case SETTING_sinc_n:
+        return strcmp(kernel_family.members[kernel]->name, "sinc") == 0;
+    case SETTING_alpha:
+    case SETTING_beta:
+        return viscosity != VISCOSITY_NONE && !is_switched(viscosity);
+    case SETTING_alpha_min:
+    case SETTING_alpha_max:
+        return is_switched(viscosity);
+    case SETTING_seed:
+        return study_is_random(settings);
+    case SETTING_grade_ratio:
+        return settings_real(settings, SETTING_grade) < 1;
+    case SETTING_h_tolerance:
+        return settings_choice(settings, SETTING_h_method) == H_NEWTON;
+    default:
+        return true;
+    }
+}
+
+bool study_suspect_same(const char *what, const struct study_result *a,
+                        const struct study_result *b, char *why)
+{
+    double before[CASE_LADDER_MAX * FIELDS], after[CASE_LADDER_MAX * FIELDS];
+    size_t n = 0;
+    for (size_t l = 0; l < a->level_count && l < b->level_count; l++)
+        for (int f = 0; f < FIELDS; f++, n++) {
+            before[n] = a->levels[l].errors[f][NORM_L1];
+            after[n] = b->levels[l].errors[f][NORM_L1];
+        }
+    return suspicion_idle_setting(what, n, before, after, why);
+}
+
+/* Every pair of combinations that differ in one key only and should have differed in their results:
+ * suspicious where none of a key's pairs does. */
+static void suspect_idle(struct study *study)
+{
+    size_t stride = study->sweep.count;
+    for (size_t k = 0; k < study->sweep.key_count; k++) {
+        const struct sweep_key *key = &study->sweep.keys[k];
+        char why[SUSPICION_TEXT] = "";
+        size_t pairs = 0, same = 0;
+        stride /= key->count;
+        for (size_t c = 0; c < study->sweep.count; c++) {
+            const struct study_result *a = &study->results[c], *b = a + stride;
+            if ((c / stride) % key->count == key->count - 1) continue;
+            if (a->excluded || b->excluded || !is_read(key->key, &a->settings) ||
+                !is_read(key->key, &b->settings))
+                continue;
+            pairs++;
+            same += study_suspect_same(setting_keys[key->key].name, a, b, why);
+        }
+        if (!pairs || same < pairs) continue;
+        memcpy(study->suspicion, why, sizeof study->suspicion);
+        study->status = STATUS_CHECK_FAILED;
+    }
+}
+
+enum status study_judge(struct study *study, const struct pool *pool, struct error *error)
+{
+    for (size_t c = 0; c < study->sweep.count; c++) {
+        struct study_result *result = &study->results[c];
+        if (result->excluded) continue;
+        if (study_read_levels(study, c, pool, error)) return error->status;
+        if (result->status == STATUS_OK) {
+            if (fit_orders(study, result, error) ||
+                (study->settings.file.dimension > 1 && fit_cloud_orders(result, error)))
+                return error->status;
+            extrapolate(result);
+            judge_gates(result, &study->settings.file);
+            judge_stillness(result);
+            suspect(result, &study->settings.file);
+        }
+        if (result->status > study->status) study->status = result->status;
+    }
+    suspect_idle(study);
+    return STATUS_OK;
+}
