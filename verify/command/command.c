@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "command.h"
 
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -272,19 +271,6 @@ static enum status execute(struct line *line, int argc, char **argv, struct erro
     line->options.count = line->n;
     line->options.arguments = line->arguments;
     return options->command->run(options, line->n, line->arguments, error);
-}
-
-enum status command_usage(const struct options *options, struct error *error, const char *format,
-                          ...)
-{
-    char what[300];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(what, sizeof what, format, arguments);
-    va_end(arguments);
-    return error_set(error, STATUS_BAD_INPUT, "%s: %s (usage: sphproof %s %s)",
-                     options->command->name, what, options->command->name,
-                     options->command->synopsis);
 }
 
 int command_main(int argc, char **argv)

@@ -5,13 +5,6 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-const struct property property_list[] = {
-#define PROPERTY(name, formula) {#name, formula, property_##name},
-#include "properties.def"
-#undef PROPERTY
-};
-const size_t property_count = sizeof property_list / sizeof *property_list;
-
 /* Powers of h are exact at 1 only: a wrong power hides there. */
 const double property_width[PROPERTY_WIDTHS] = {1, 0.0371, 2.385, 41.7};
 
