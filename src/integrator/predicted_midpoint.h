@@ -138,23 +138,6 @@ static enum status name_unsound(const struct simulation *simulation, struct erro
     }
 }
 
-/* While steps follow each other, the end of one is joined with the prediction of the next. Should
- * somebody wake in between: those who slept have x_old = x, alpha_old = alpha
- * and no rates, which is what the prediction would have left. */
-static enum status predicted_midpoint_step(struct simulation *simulation, double dt,
-                                           struct error *error)
-{
-    struct predicted_midpoint *state = simulation->integrator_state;
-    if (state->ahead <= 0) move_all(simulation, predict_midpoint, 0, dt);
-    const enum status status = evaluate_rates_of_primitives(simulation, error);
-    if (status) return status;
-    const double ahead = simulation_next_step(simulation, simulation_time_after(simulation, dt));
-    const double unsound =
-        move_all(simulation, ahead > 0 ? advance_and_predict : advance_from_midpoint, dt, ahead);
-    state->ahead = ahead;
-    return unsound > 0 ? name_unsound(simulation, error) : STATUS_OK;
-}
-
 /* Back from the middle of a step that does not follow. */
 static void predicted_midpoint_synchronise(struct simulation *simulation)
 {
@@ -165,6 +148,25 @@ static void predicted_midpoint_synchronise(struct simulation *simulation)
     for (int k = 0; k < a->dim; k++) memcpy(a->x[k], a->x_old[k], bytes);
     if (simulation->plan.alpha) memcpy(a->alpha, a->alpha_old, bytes);
     state->ahead = 0;
+}
+
+/* While steps follow each other, the end of one is joined with the prediction of the next. Should
+ * somebody wake in between: those who slept have x_old = x, alpha_old = alpha
+ * and no rates, which is what the prediction would have left. */
+static enum status predicted_midpoint_step(struct simulation *simulation, double dt,
+                                           struct error *error)
+{
+    struct predicted_midpoint *state = simulation->integrator_state;
+    /* t_end has come nearer: another step than was predicted for */
+    if (state->ahead > 0 && state->ahead != dt) predicted_midpoint_synchronise(simulation);
+    if (state->ahead <= 0) move_all(simulation, predict_midpoint, 0, dt);
+    const enum status status = evaluate_rates_of_primitives(simulation, error);
+    if (status) return status;
+    const double ahead = simulation_next_step(simulation, simulation_time_after(simulation, dt));
+    const double unsound =
+        move_all(simulation, ahead > 0 ? advance_and_predict : advance_from_midpoint, dt, ahead);
+    state->ahead = ahead;
+    return unsound > 0 ? name_unsound(simulation, error) : STATUS_OK;
 }
 
 #endif

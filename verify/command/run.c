@@ -147,7 +147,9 @@ static void print_estimate(const struct run_result *result, const struct table_s
         style->bold, style->end, 1e-6 * e->memory, e->steps, e->cpu_s);
 }
 
-static enum status check_files(const struct options *options, struct error *error)
+/* snapshots: on the way; its path is NULL where there are none. */
+static enum status check_files(const struct options *options, const struct snapshots *snapshots,
+                               struct error *error)
 {
     const char *plot = options_value(options, "plot");
     const char *snapshot = options_value(options, "snapshot");
@@ -158,7 +160,12 @@ static enum status check_files(const struct options *options, struct error *erro
         return error->status;
     if (plot && picture_probe(plot, error)) return error->status;
     if (snapshot && output_probe(snapshot, error)) return error->status;
-    return STATUS_OK;
+    if (!snapshots->path) return STATUS_OK;
+    char *first = snapshots_path(snapshots, 0);
+    const enum status status = first ? output_probe(first, error)
+                                     : error_set(error, STATUS_ENVIRONMENT, "no memory for a path");
+    free(first);
+    return status;
 }
 
 struct progress_of_run {
@@ -215,8 +222,21 @@ static enum status explain(const struct options *options, const struct run *run,
     return status;
 }
 
+static void print_snapshots(const struct snapshots *snapshots, double t_end)
+{
+    const size_t count = snapshots_count(snapshots, t_end);
+    char *first = snapshots_path(snapshots, 0), *last = snapshots_path(snapshots, count - 1);
+    if (first && last)
+        printf("snapshots        %s to %s, t = 0 to %.9g in steps of %.9g; %s at the end\n", first,
+               last, snapshots_time(snapshots, count - 1), snapshots->every, snapshots->path);
+    free(first);
+    free(last);
+}
+
+/* snapshots: NULL where there is none. */
 static enum status present(const struct options *options, const struct run_settings *settings,
-                           const struct run_result *result, struct error *error)
+                           const struct snapshots *snapshots, const struct run_result *result,
+                           struct error *error)
 {
     const char *plot = options_value(options, "plot");
     const char *snapshot = options_value(options, "snapshot");
@@ -230,17 +250,40 @@ static enum status present(const struct options *options, const struct run_setti
         print_errors(settings, result, &style);
         if (result->problem.domain.dim > 1) print_functionals(result, &style);
         print_rest(result, &style);
+        if (snapshots && !snapshots->trouble.status)
+            print_snapshots(snapshots, settings_real(&result->settings, SETTING_t_end));
     }
     /* what cannot be written takes nothing else with it; the first trouble is told */
-    struct error trouble[3] = {0};
-    write_json(options, settings, result, &trouble[0]);
-    if (snapshot) run_write_snapshot(result, snapshot, &trouble[1]);
-    if (plot) run_plot(settings, result, plot, &trouble[2]);
+    struct error trouble[4] = {0};
+    if (snapshots) trouble[0] = snapshots->trouble;
+    write_json(options, settings, result, &trouble[1]);
+    if (snapshot) run_write_snapshot(result, snapshot, &trouble[2]);
+    if (plot) run_plot(settings, result, plot, &trouble[3]);
     for (size_t i = 0; i < sizeof trouble / sizeof *trouble; i++)
         if (trouble[i].status) {
             *error = trouble[i];
             return error->status;
         }
+    return STATUS_OK;
+}
+
+/* Snapshots on the way; snapshots->path is NULL where none are asked for. */
+static enum status take_snapshots(struct snapshots *snapshots, const struct options *options,
+                                  const struct run *run, struct error *error)
+{
+    const char *every = options_value(options, "snapshot-every");
+    struct error why = {0};
+    *snapshots = (struct snapshots){0};
+    if (!every) return STATUS_OK;
+    snapshots->path = options_value(options, "snapshot");
+    if (!snapshots->path || strcmp(snapshots->path, "-") == 0)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "run: --snapshot-every needs --snapshot FILE, after which its files are "
+                         "named");
+    if (!text_real(every, &snapshots->every)) snapshots->every = 0;
+    if (snapshots_check(snapshots, settings_real(&run->settings, SETTING_t_end), &why))
+        return error_set(error, STATUS_BAD_INPUT, "run: --snapshot-every '%.40s': %s", every,
+                         why.message);
     return STATUS_OK;
 }
 
@@ -273,6 +316,7 @@ static enum status take_checkpoint(struct kept *kept, const struct options *opti
                                            .build = kept->build,
                                            .run = kept->run,
                                            .every = seconds,
+                                           .snapshot = -1,
                                            .resume = options_value(options, "resume")};
     return STATUS_OK;
 }
@@ -287,8 +331,11 @@ static enum status run_case(const struct options *options, int n, char **argumen
     if (run_prepare(&settings, arguments[0], n - 1, arguments + 1, error)) return error->status;
     settings.threads = options->threads;
     if (run_resolve(&run, &settings, error)) return error->status;
+    struct snapshots snapshots;
+    if (take_snapshots(&snapshots, options, &run, error)) return error->status;
+    if (snapshots.path) run.asked.snapshots = &snapshots;
     if (options_value(options, "explain")) return explain(options, &run, error);
-    if (check_files(options, error)) return error->status;
+    if (check_files(options, &snapshots, error)) return error->status;
 
     struct kept kept = {0};
     if (take_checkpoint(&kept, options, &run, error)) return error->status;
@@ -298,13 +345,14 @@ static enum status run_case(const struct options *options, int n, char **argumen
     progress_begin(&of_run.progress, settings.file.name, options->quiet);
     run.asked.progress = show_progress;
     run.asked.progress_context = &of_run;
+    run.asked.each_step = true;
     enum status status = run_execute(&run, &result, error);
     progress_end(&of_run.progress);
     if (kept.checkpoint.trouble.status) remark(options, kept.checkpoint.trouble.message);
     free(kept.run);
     if (status != STATUS_OK && status != STATUS_BROKE_DOWN) return status;
     struct error trouble = {0};
-    if (present(options, &settings, &result, &trouble)) {
+    if (present(options, &settings, run.asked.snapshots, &result, &trouble)) {
         *error = trouble;
         status = trouble.status;
     }
@@ -316,6 +364,8 @@ static const struct command_option own_options[] = {
     {"snapshot", "FILE",
      "write the particles at the end: x,vx,m,rho,u,P,h (x,y,vx,vy ...), one line each;\n"
      "F.hdf5 or F.h5: HDF5 in GADGET's layout"},
+    {"snapshot-every", "TIME",
+     "also F_0000.csv at the start, F_0001.csv after TIME of the simulation, and so on"},
     {"checkpoint", "FILE", "keep the run's state there, to go on from it to the last bit"},
     {"every", "SECONDS", "so often (default 60)"},
     {"resume", NULL, "go on from the checkpoint; from the start where there is none"},
@@ -341,5 +391,6 @@ const struct command command_run = {
                 "sphproof run sod left=\"1 0.75 1\" t_end=0.15 --json -\n"
                 "sphproof run ./my_tube.ini --snapshot end.csv\n"
                 "sphproof run sedov_3d n=64^3 --checkpoint sedov.state --resume\n"
+                "sphproof run gresho --snapshot gresho.hdf5 --snapshot-every 0.5\n"
                 "sphproof run sound_wave --explain",
 };

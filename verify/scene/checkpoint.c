@@ -57,6 +57,7 @@ void checkpoint_save(struct checkpoint *checkpoint, struct simulation *simulatio
     struct carrier carrier = {.bytes = put, .context = &stream};
     fprintf(output.stream, "%s %s\n%s\n", magic, checkpoint->build, checkpoint->run);
     CARRY(&carrier, *growth);
+    CARRY(&carrier, checkpoint->snapshot);
     simulation_carry(simulation, &carrier);
     fwrite(&stream.sum, sizeof stream.sum, 1, output.stream);
     output_close(&output, &checkpoint->trouble); /* tells whether it worked */
@@ -155,6 +156,7 @@ enum status checkpoint_load(struct checkpoint *checkpoint, struct simulation *si
     struct carrier carrier = {.bytes = get, .context = &stream, .back = true};
     if (!status) {
         CARRY(&carrier, *growth);
+        CARRY(&carrier, checkpoint->snapshot);
         simulation_carry(simulation, &carrier);
         if (carrier.failed) status = refuse(checkpoint, "is damaged, or too large", error);
     }

@@ -16,6 +16,7 @@ struct checkpoint {
     const char *run;   /* JSON object, one line: all that decides the run's result */
     double every;      /* seconds of wall time between two writes */
     bool resume;       /* begin with what the file has, if there is one */
+    double snapshot;   /* goes with the state: time of the last snapshot on the way; < 0: none */
     /* kept by the functions below: */
     double written;       /* when it was last; 0: not yet */
     double began;         /* the time at which this process took the run over; 0: at the start */

@@ -92,12 +92,20 @@ static enum status measure_start(struct run_result *result, const struct initial
     return status;
 }
 
+static void add_snapshots(const struct run *run, const struct scene *scene,
+                          struct estimate *estimate)
+{
+    if (run->asked.snapshots)
+        estimate->memory += snapshots_memory(run->asked.snapshots, scene->dim, (double)scene->n);
+}
+
 /* Before there is an array of n numbers; a file's particles are as many as they are. */
 static enum status check_size(const struct run *run, struct error *error)
 {
     const struct initial none = {.n = (size_t)settings_real(&run->settings, SETTING_n)};
     const struct scene scene = run_scene(run, &none);
-    const struct estimate estimate = estimate_size(&scene);
+    struct estimate estimate = estimate_size(&scene);
+    add_snapshots(run, &scene, &estimate);
     return run->settings.file[0] ? STATUS_OK : estimate_check(&estimate, none.n, error);
 }
 
@@ -119,6 +127,7 @@ static enum status begin(const struct run *run, struct run_result *result, struc
     const struct scene scene = run_scene(run, initial);
     result->n = initial->n;
     result->estimate = estimate_run(&scene);
+    add_snapshots(run, &scene, &result->estimate);
     if (run->settings.file[0]) result->settings.value[SETTING_n].real[0] = (double)initial->n;
     result->plan_count =
         plan_explain(&scene, result->plan, RUN_PLAN_MAX, result->warnings, sizeof result->warnings);
@@ -441,12 +450,70 @@ static bool after_step(void *context, double time, uint64_t steps)
     const double t_end = settings_real(&watch->run->settings, SETTING_t_end);
     struct checkpoint *checkpoint = settings->checkpoint;
     /* a step is always to follow: what it leaves beside the state describes the end */
-    if (checkpoint && time < watch->until && checkpoint_due(checkpoint))
+    if (checkpoint && time < watch->until && checkpoint_due(checkpoint)) {
+        checkpoint->snapshot = settings->snapshots ? snapshots_last(settings->snapshots) : -1;
         checkpoint_save(checkpoint, watch->simulation, &watch->result->growth);
+    }
+    if (settings->snapshots && time < watch->until &&
+        snapshots_keep(settings->snapshots, watch->simulation, time, watch->until))
+        return false;
     if (settings->trace && trace_wants(settings->trace, steps)) keep_trace(watch, time);
     if (settings->trace && trace_looks(settings->trace, time, t_end)) keep_look(watch, time);
-    if (steps % STEPS_BETWEEN || !settings->progress) return true;
+    if (!settings->progress || (steps % STEPS_BETWEEN && !settings->each_step)) return true;
     return settings->progress(settings->progress_context, time, steps);
+}
+
+/* A snapshot on the way; what cannot be written or kept does not end the run. */
+static void leave_snapshot(const struct watch *watch, size_t number)
+{
+    struct snapshots *snapshots = watch->run->asked.snapshots;
+    struct run_result moment = *watch->result; /* of which nothing is measured yet */
+    struct snapshot seen;
+    struct error error = {0};
+    char *path = snapshots_path(snapshots, number);
+    simulation_snapshot(watch->simulation, &seen);
+    if (!path)
+        error_set(&error, STATUS_ENVIRONMENT, "no memory for a path");
+    else if (!keep_snapshot(&moment, &seen, &error))
+        run_write_snapshot(&moment, path, &error);
+    if (error.status) snapshots_fail(snapshots, &error);
+    run_free(&moment);
+    free(path);
+}
+
+/* From the state that was kept to each snapshot that is due, and back. */
+static void go_aside(const struct watch *watch)
+{
+    struct snapshots *snapshots = watch->run->asked.snapshots;
+    for (; snapshots->next < snapshots->count; snapshots->next++) {
+        const double time = snapshots_time(snapshots, snapshots->next);
+        struct error error;
+        if (time > snapshots->reach) break;
+        snapshots_return(snapshots, watch->simulation);
+        if (simulation_run(watch->simulation, time, NULL, NULL, &error))
+            snapshots_fail(snapshots, &error);
+        else
+            leave_snapshot(watch, snapshots->next);
+    }
+    snapshots_return(snapshots, watch->simulation);
+    snapshots_go_on(snapshots);
+}
+
+static enum status run_until(struct watch *watch, double until, simulation_progress *progress,
+                             struct error *error)
+{
+    struct snapshots *snapshots = watch->run->asked.snapshots;
+    struct snapshot seen;
+    watch->until = until;
+    if (snapshots) {
+        simulation_snapshot(watch->simulation, &seen);
+        snapshots_keep(snapshots, watch->simulation, seen.time, until);
+    }
+    for (;;) {
+        if (snapshots && snapshots->state) go_aside(watch);
+        const enum status status = simulation_run(watch->simulation, until, progress, watch, error);
+        if (!snapshots || !snapshots->state) return status;
+    }
 }
 
 /* To t_end, with stops where the problem says that something grows. */
@@ -458,7 +525,8 @@ static enum status steps(struct watch *watch, struct simulation *simulation,
     const struct growing *growing = p->problem->growing;
     const struct run_settings *asked = &watch->run->asked;
     simulation_progress *progress =
-        asked->progress || asked->trace || asked->checkpoint ? after_step : NULL;
+        asked->progress || asked->trace || asked->checkpoint || asked->snapshots ? after_step
+                                                                                 : NULL;
     double times[2] = {0, 0};
     if (growing) growing->during(p, times);
     /* a run that is resumed has seen some of it */
@@ -466,14 +534,12 @@ static enum status steps(struct watch *watch, struct simulation *simulation,
         const double stop = times[0] + (times[1] - times[0]) * i / (STOPS - 1);
         struct snapshot seen;
         if (!(stop < t_end)) break;
-        watch->until = stop;
-        const enum status status = simulation_run(simulation, stop, progress, watch, error);
+        const enum status status = run_until(watch, stop, progress, error);
         simulation_snapshot(simulation, &seen);
         if (status || seen.time < stop) return status;
         growth_see(&result->growth, stop, growing->amplitude(p, &seen));
     }
-    watch->until = t_end;
-    return simulation_run(simulation, t_end, progress, watch, error);
+    return run_until(watch, t_end, progress, error);
 }
 
 static enum status simulate(const struct run *run, struct run_result *result,
@@ -500,6 +566,11 @@ static enum status simulate(const struct run *run, struct run_result *result,
     if (asked->trace) {
         keep_trace(&watch, 0);
         keep_look(&watch, 0);
+    }
+    if (asked->snapshots) {
+        simulation_snapshot(simulation, &outcome.snapshot);
+        snapshots_begin(asked->snapshots, outcome.snapshot.time,
+                        asked->checkpoint ? asked->checkpoint->snapshot : -1, scene.t_end);
     }
     outcome.status = steps(&watch, simulation, result, scene.t_end, &outcome.reason);
     simulation_cost(simulation, &result->cost);

@@ -17,6 +17,7 @@
 #include "problem.h"
 #include "regularity.h"
 #include "relax.h"
+#include "snapshots.h"
 #include "settings.h"
 #include "simulation.h"
 #include "suspicion.h"
@@ -33,7 +34,9 @@ struct run_settings {
     bool plain;                    /* by plain.c, not by the solver: the baseline of bench */
     simulation_progress *progress; /* called every 32 steps; may be NULL */
     void *progress_context;
+    bool each_step;                /* it is called after each: they may be long */
     struct checkpoint *checkpoint; /* where the run's state is kept; NULL: nowhere */
+    struct snapshots *snapshots;   /* snapshots on the way; NULL: none */
     struct trace *trace;           /* {0}: gets what happens through time; NULL: nobody asks */
 };
 

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """checkpoint.py SPHPROOF [SCENES] [SEED]: runs that are killed and resumed, on scenes drawn at random: the
-particles at the end and the document, times and memory aside, have the bytes of the uninterrupted run.
+particles at the end and on the way and the document, times and memory aside, have the bytes of the uninterrupted run.
 Checkpoints that are damaged, or of another build or run, are refused with the reason."""
 import contextlib
+import glob
 import json
 import os
 import random
@@ -60,6 +61,15 @@ def seen(stem):
         return document, file.read()
 
 
+def on_the_way(stem):
+    """Number -> bytes."""
+    found = {}
+    for path in glob.glob(stem + "_????.csv"):
+        with open(path, "rb") as file:
+            found[path[len(stem):]] = file.read()
+    return found
+
+
 def resume(words, files, generator, longest):
     """kill -9 again and again, each after the first checkpoint it writes and a moment; how often."""
     kills = 0
@@ -88,17 +98,22 @@ def test_bits():
     while done < scenes:
         words = draw(generator)
         began = time.monotonic()
-        if run(words, "--snapshot", "alone.csv", "--json", "alone.json").returncode:
+        way = ["--snapshot-every", "%.3g" % (float(words[2].partition("=")[2]) / generator.uniform(1.5, 9))]
+        if run(words, "--snapshot", "alone.csv", *way, "--json", "alone.json").returncode:
             continue  # keys that exclude each other, or a run that breaks down
         longest = (time.monotonic() - began) / 3
         done += 1
-        kills, said = resume(words, ["--snapshot", "again.csv", "--json", "again.json"], generator, longest)
+        kills, said = resume(words, ["--snapshot", "again.csv", *way, "--json", "again.json"], generator, longest)
         resumed += kills
         expect("resumed, %s" % " ".join(words), not said, said)
         if said or not os.path.exists("again.json"):
             break
         (one, rows), (other, others) = seen("alone"), seen("again")
         expect("particles of %s" % " ".join(words), rows == others)
+        expect("snapshots on the way of %s" % " ".join(words), on_the_way("alone") == on_the_way("again") != {},
+               [k for k, rows in on_the_way("alone").items() if rows != on_the_way("again").get(k)])
+        for path in glob.glob("a*_????.csv"):
+            os.remove(path)
         expect("document of %s" % " ".join(words), one == other, [k for k in one if one[k] != other.get(k)])
         with contextlib.suppress(FileNotFoundError):  # it was too short for one
             os.remove("state")

@@ -2,15 +2,19 @@
 """memory.py SPHPROOF: what `run --explain` says a run will take, against what it takes; and runs for which there is
 not enough memory are refused before they begin, with the number."""
 import json
+import os
 import resource
 import subprocess
 import sys
+import tempfile
 
-PROGRAM = sys.argv[1]
+PROGRAM = os.path.abspath(sys.argv[1])
 WITHIN = 0.2
 RUNS = [["gresho", "n=120^2", "t_end=0.0005"],
         ["sound_wave_3d", "n=20^3", "t_end=0.001", "kernel=wendland_c4", "eta=3.6", "gradient=standard",
          "viscosity=constant"]]
+
+AWAY = ["--snapshot", "end.csv", "--snapshot-every", "0.0003"]
 
 
 def sphproof(*words, limit=None, status=0):
@@ -25,7 +29,11 @@ def sphproof(*words, limit=None, status=0):
 
 
 def main():
-    for words in RUNS:
+    bytes_of = [json.loads(sphproof("run", *RUNS[0], "--explain", "--json", "-", *more).stdout)["estimate"]["memory_bytes"]
+                for more in ([], AWAY)]
+    if bytes_of[1] - bytes_of[0] < 300 * 120**2 or os.path.exists("end_0000.csv"):
+        sys.exit("snapshots on the way: %r" % bytes_of)
+    for words in [*RUNS, RUNS[0] + AWAY]:
         said = json.loads(sphproof("run", *words, "--explain", "--json", "-").stdout)
         estimate = said["estimate"]
         assert "status" not in said and estimate["cpu_s"] > 0
@@ -37,10 +45,15 @@ def main():
             sys.exit("%s: %r steps are said, %d made" % (" ".join(words), estimate["steps"], steps))
         print("%s: %.1f MB said, %.1f taken" % (words[0], 1e-6 * estimate["memory_bytes"], 1e-6 * taken))
     assert "MB of memory" in sphproof("run", *RUNS[0], "--explain").stdout
-    for more in ([], ["--explain"], ["--json", "-"]):
+    for more in ([], ["--explain"], ["--json", "-"], AWAY):
         done = sphproof("run", "sound_wave_3d", "n=10000000", *more, limit=3 << 30, status=4)
         if done.stdout or "n=10000000" not in done.stderr or "GB of memory" not in done.stderr or "3.22 GB" not in done.stderr:
             sys.exit("what does not fit: %r %r" % (done.stdout, done.stderr))
 
 
-main()
+with tempfile.TemporaryDirectory() as folder:
+    os.chdir(folder)
+    try:
+        main()
+    finally:
+        os.chdir("/")

@@ -1,0 +1,130 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "snapshots.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "snapshot_hdf5.h"
+
+/* Steps before a snapshot's time: the last two are made equal, and one prepares the next. */
+static const double steps_aside = 4;
+
+/* The end's own one is no nearer than that, in intervals. */
+static const double round_off = 1e-9;
+
+enum status snapshots_check(const struct snapshots *snapshots, double t_end, struct error *error)
+{
+    const double every = snapshots->every;
+    if (every > 0 && every <= t_end && t_end / every <= SNAPSHOTS_MOST) return STATUS_OK;
+    return error_set(error, STATUS_BAD_INPUT, "allowed: a time from t_end/%d to t_end = %.6g",
+                     SNAPSHOTS_MOST, t_end);
+}
+
+size_t snapshots_count(const struct snapshots *snapshots, double t_end)
+{
+    return (size_t)ceil(t_end / snapshots->every * (1 - round_off));
+}
+
+double snapshots_time(const struct snapshots *snapshots, size_t number)
+{
+    return (double)number * snapshots->every;
+}
+
+char *snapshots_path(const struct snapshots *snapshots, size_t number)
+{
+    const char *slash = strrchr(snapshots->path, '/'), *dot = strrchr(snapshots->path, '.');
+    const size_t length = strlen(snapshots->path);
+    const size_t stem = dot && (!slash || dot > slash) ? (size_t)(dot - snapshots->path) : length;
+    char *path = malloc(length + sizeof "_0000");
+    if (path)
+        snprintf(path, length + sizeof "_0000", "%.*s_%04zu%s", (int)stem, snapshots->path,
+                 number % SNAPSHOTS_MOST, snapshots->path + stem);
+    return path;
+}
+
+double snapshots_memory(const struct snapshots *snapshots, int dim, double n)
+{
+    static const double kept[] = {0, 180, 350, 480}; /* a particle's state, measured */
+    const double image = 250;                        /* of a file that is made in memory */
+    return n * (kept[dim] + (snapshot_hdf5_wanted(snapshots->path) ? image : 0));
+}
+
+void snapshots_begin(struct snapshots *snapshots, double time, double last, double t_end)
+{
+    const double over = fmax(time, last);
+    snapshots->count = snapshots_count(snapshots, t_end);
+    snapshots->next = (size_t)(over / snapshots->every);
+    while (over > 0 && snapshots_time(snapshots, snapshots->next) <= over) snapshots->next++;
+}
+
+double snapshots_last(const struct snapshots *snapshots)
+{
+    return snapshots->next ? snapshots_time(snapshots, snapshots->next - 1) : -1;
+}
+
+/* Bytes on their way into a buffer, or out of it; without one they are counted. */
+struct buffer {
+    unsigned char *bytes;
+    size_t used;
+};
+
+static bool put(void *context, void *bytes, size_t n)
+{
+    struct buffer *buffer = context;
+    if (buffer->bytes) memcpy(buffer->bytes + buffer->used, bytes, n);
+    buffer->used += n;
+    return true;
+}
+
+static bool get(void *context, void *bytes, size_t n)
+{
+    struct buffer *buffer = context;
+    memcpy(bytes, buffer->bytes + buffer->used, n);
+    buffer->used += n;
+    return true;
+}
+
+bool snapshots_keep(struct snapshots *snapshots, struct simulation *simulation, double time,
+                    double stop)
+{
+    struct rates rates;
+    struct error error;
+    struct buffer buffer = {0};
+    struct carrier carrier = {.bytes = put, .context = &buffer};
+    if (snapshots->next >= snapshots->count) return false;
+    simulation_rates(simulation, &rates);
+    snapshots->reach = fmin(stop, time + steps_aside * rates.time_step);
+    if (snapshots_time(snapshots, snapshots->next) > snapshots->reach) return false;
+    simulation_carry(simulation, &carrier);
+    snapshots->size = buffer.used;
+    buffer = (struct buffer){.bytes = malloc(snapshots->size)};
+    if (buffer.bytes) {
+        simulation_carry(simulation, &carrier);
+        snapshots->state = buffer.bytes;
+        return true;
+    }
+    error_set(&error, STATUS_ENVIRONMENT, "no memory for a snapshot at t = %.9g",
+              snapshots_time(snapshots, snapshots->next++));
+    snapshots_fail(snapshots, &error);
+    return false;
+}
+
+void snapshots_return(struct snapshots *snapshots, struct simulation *simulation)
+{
+    struct buffer buffer = {.bytes = snapshots->state};
+    struct carrier carrier = {.bytes = get, .context = &buffer, .back = true};
+    simulation_carry(simulation, &carrier);
+}
+
+void snapshots_go_on(struct snapshots *snapshots)
+{
+    free(snapshots->state);
+    snapshots->state = NULL;
+}
+
+void snapshots_fail(struct snapshots *snapshots, const struct error *error)
+{
+    if (!snapshots->trouble.status) snapshots->trouble = *error;
+}

@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""snapshots.py SPHPROOF: snapshots on the way (`run --snapshot-every`). The run knows nothing of them: its results
+are those of a run without, to the last bit; and each is, to the last bit, what a run leaves that ends there. What
+cannot be is refused, what cannot be written is said and takes nothing else with it."""
+import csv
+import glob
+import json
+import os
+import re
+import resource
+import subprocess
+import sys
+import tempfile
+
+program = os.path.abspath(sys.argv[1])
+faults = []
+# words, end, interval in the end, which of the snapshots are compared with runs that end there
+RUNS = [(["sod", "n=200"], 0.2, 0.07, (0, 1, 7, 14)),
+        (["sound_wave", "n=64", "viscosity=none"], 0.5, 0.002, (1, 2, 250, 499)),  # several within each step
+        (["strong_shock", "n=100", "integrator=leapfrog", "skip=none"], 0.006, 0.11, (1, 8)),
+        (["gresho", "n=16^2", "viscosity=cullen_dehnen"], 0.4, 0.3, (0, 2)),
+        (["kelvin_helmholtz_mode", "n=16^2"], 0.9, 0.09, (2, 7, 11)),  # has stops of its own
+        (["noh_3d", "n=12^3", "integrator=vl2"], 0.05, 0.5, (0, 1))]
+
+
+def expect(what, well, got=""):
+    if not well:
+        faults.append("%s: %s" % (what, got))
+
+
+def run(words, *more, **options):
+    return subprocess.run([program, "run", *words, *more], capture_output=True, text=True, timeout=100, **options)
+
+
+def get(path):
+    with open(path, "rb") as file:
+        return file.read()
+
+
+def seen(path):
+    """A document but for times and memory."""
+    document = json.loads(get(path))
+    for name in ("wall_s", "cpu_s", "peak_rss_bytes"):
+        document["cost"].pop(name)
+    document["estimate"].pop("memory_bytes")
+    document.pop("date")
+    return document
+
+
+def number(k):
+    return "way_%04d.csv" % k
+
+
+def test_bits():
+    for words, t_end, part, which in RUNS:
+        name, every = " ".join(words), repr(part * t_end)
+        long = [*words, "t_end=%r" % t_end]
+        for path in glob.glob("way*"):
+            os.remove(path)
+        one = run(long, "--snapshot", "plain.csv", "--json", "plain.json")
+        other = run(long, "--snapshot", "way.csv", "--json", "way.json", "--snapshot-every", every)
+        expect(name, one.returncode == other.returncode == 0, one.stderr + other.stderr)
+        if one.returncode or other.returncode:
+            continue
+        expect("%s: particles at the end" % name, get("plain.csv") == get("way.csv"))
+        expect("%s: results" % name, seen("plain.json") == seen("way.json"))
+        count = -int(-1 // part)
+        names = sorted(glob.glob("way_*"))
+        expect("%s: files" % name, names == [number(k) for k in range(count)], names)
+        for k in which:
+            done = run([*words, "t_end=%r" % (k * part * t_end)], "--snapshot", "short.csv", "--quiet")
+            expect("%s: number %d" % (name, k), done.returncode == 0 and get("short.csv") == get(number(k)),
+                   done.stderr)
+    expect("what is said", re.search(r"way_0000.csv to way_0001.csv, t = 0 to 0.025 in steps of 0.025; way.csv",
+                                     other.stdout), other.stdout)
+
+
+def test_interval():
+    """One that divides t_end leaves none but the usual one there; a name without ending; HDF5 says its time."""
+    for every, count in (("0.05", 4), ("0.2", 1), ("0.1", 2), ("0.19", 2), ("0.0666666666666666666", 3)):
+        for path in glob.glob("folder.d/*"):
+            os.remove(path)
+        os.makedirs("folder.d", exist_ok=True)
+        done = run(["sod", "n=64"], "--snapshot", "folder.d/end", "--snapshot-every", every)
+        names = sorted(os.listdir("folder.d"))
+        expect("every %s" % every, done.returncode == 0 and names == ["end"] + ["end_%04d" % k for k in range(count)],
+               names or done.stderr)
+    done = run(["sod", "n=64"], "--snapshot", "end.hdf5", "--snapshot-every", "0.06")
+    if "without HDF5" in done.stderr:
+        return
+    judged = subprocess.run([program, "judge", "end_0002.hdf5", "--case", "sod", "--json", "-"], capture_output=True,
+                            text=True)
+    expect("HDF5", judged.returncode == 0 and json.loads(judged.stdout)["time"] == 0.12, judged.stdout + judged.stderr)
+
+
+def rows(path):
+    with open(path, encoding="ascii") as file:
+        return [[float(value) for value in line] for line in list(csv.reader(file))[1:]]
+
+
+def test_late():
+    """A resumed run that is asked for a snapshot within its next step: it was on its way to another time. The step is
+    made anew; one that was predicted for the other time would miss by 1.06e-3 here."""
+    words = ["sod", "n=100", "--quiet"]
+    first = run(words, "--checkpoint", "late.state", "--every", "0")
+    again = run(words, "--checkpoint", "late.state", "--resume", "--snapshot", "late.csv", "--snapshot-every", "0.1985")
+    alone = run(words, "t_end=0.1985", "--snapshot", "alone.csv")
+    expect("late", first.returncode == again.returncode == alone.returncode == 0, again.stderr)
+    missed = max(abs(a - b) for one, other in zip(rows("late_0001.csv"), rows("alone.csv")) for a, b in zip(one, other))
+    expect("late: is near", 0 < missed < 6e-4, missed)
+    expect("late: what is over", not os.path.exists("late_0000.csv"))
+
+
+def test_refused():
+    for every in ("0", "-0.1", "nan", "inf", "0.21", "1e-9", "x", "", "0.1x"):
+        done = run(["sod", "n=64"], "--snapshot", "bad.csv", "--snapshot-every", every)
+        expect("every '%s'" % every, done.returncode == 2 and "from t_end/10000 to t_end = 0.2" in done.stderr and
+               not glob.glob("bad*"), (done.returncode, done.stderr))
+    for words in ([], ["--snapshot", "-"]):
+        done = run(["sod", "n=64"], "--snapshot-every", "0.1", *words)
+        expect("no name", done.returncode == 2 and "needs --snapshot FILE" in done.stderr and not done.stdout, done.stderr)
+    done = run(["sod", "n=64"], "--snapshot-every", "0.1", "--snapshot", "nowhere/s.csv")
+    expect("no folder", done.returncode == 4 and "nowhere" in done.stderr, done.stderr)
+
+
+def test_trouble():
+    """One file cannot be written: the others and all results are there, and it is said."""
+    os.makedirs("lost_0002.csv/full")
+    done = run(["sod", "n=64"], "--snapshot", "lost.csv", "--snapshot-every", "0.05", "--json", "lost.json")
+    expect("one is lost", done.returncode == 4 and "lost_0002.csv" in done.stderr, (done.returncode, done.stderr))
+    expect("others", all(map(os.path.isfile, ("lost_0000.csv", "lost_0001.csv", "lost_0003.csv", "lost.csv", "lost.json"))))
+    expect("nothing half", not [name for name in os.listdir(".") if "tmp" in name], os.listdir("."))
+    full = run(["sod", "n=3000", "t_end=1e-4"], "--snapshot", "large.csv", "--snapshot-every", "5e-5", "--json", "large.json",
+               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (100000, 100000)))
+    expect("no room", full.returncode == 4 and "large_0000.csv" in full.stderr and not glob.glob("large*csv") and
+           os.path.exists("large.json"), (full.returncode, full.stderr, glob.glob("large*")))
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        test_bits()
+        test_interval()
+        test_late()
+        test_refused()
+        test_trouble()
+        os.chdir("/")
+    print("\n".join(faults) or "a run knows nothing of its snapshots")
+    return bool(faults)
+
+
+sys.exit(main())
