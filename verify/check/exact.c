@@ -311,6 +311,7 @@ static const struct check_mutant wave_mutants[] = {
 const struct check check_exact_wave = {
     .group = "exact",
     .name = "simple_wave",
+    .cost = 1,
     .property = "initial state, conservation laws, dU/dt + dF/dx = 0, time of breaking",
     .measure = measure_wave,
     .mutants = wave_mutants,

@@ -188,6 +188,7 @@ static const struct check_mutant corrections_mutants[] = {
 const struct check check_gradient_corrections = {
     .group = "gradients",
     .name = "corrections",
+    .cost = 0.6,
     .property = "normalised_corrected: |sum V p| h = 0 (homogeneity), |sum V p (x) x - 1| = 0 "
                 "(isotropy), before and after each correction",
     .measure = measure_corrections,

@@ -186,6 +186,7 @@ static const struct check_mutant mutants[] = {
 const struct check check_hydro_cloud_balance = {
     .group = "clouds",
     .name = "balance",
+    .cost = 0.4,
     .property = "sum F = 0, total power = 0, with forces along r_ij sum r x F = 0",
     .subjects = subjects,
     .measure = measure,
@@ -257,6 +258,7 @@ static const struct check_mutant stamped_mutants[] = {
 const struct check check_hydro_cloud_stamped = {
     .group = "clouds",
     .name = "stamped",
+    .cost = 0.2,
     .property = "stamped loops = unstamped loops in 2D and 3D, for every kernel",
     .subjects = stamped_subjects,
     .measure = measure_stamped,

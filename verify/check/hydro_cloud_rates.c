@@ -286,6 +286,7 @@ static struct cloud_subject of_mutant(const struct cloud_subject *mutant)
 const struct check check_hydro_cloud_rates = {
     .group = "clouds",
     .name = "rates",
+    .cost = 3,
     .property = PROPERTY,
     .subjects = subjects,
     .measure = measure,
@@ -295,6 +296,7 @@ const struct check check_hydro_cloud_rates = {
 const struct check check_hydro_cloud_rates_all = {
     .group = "clouds",
     .name = "rates_all",
+    .cost = 33,
     .property = PROPERTY ", for every combination in 2D and every choice in 3D",
     .slow = true,
     .subjects = all_subjects,

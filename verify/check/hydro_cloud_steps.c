@@ -172,6 +172,7 @@ static const struct check_mutant mutants[] = {
 const struct check check_hydro_cloud_steps = {
     .group = "clouds",
     .name = "time_stepping",
+    .cost = 2,
     .property = "the state at t_end and the number of steps in 2D and 3D equal the oracle's",
     .subjects = subjects,
     .measure = measure,

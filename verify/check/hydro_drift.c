@@ -105,6 +105,7 @@ static const struct check_mutant drift_mutants[] = {
 const struct check check_hydro_drift = {
     .group = "hydro",
     .name = "conservation",
+    .cost = 0.3,
     .property = "momentum and mass to round-off, energy to round-off (total) or the order in dt",
     .measure = measure_drift,
     .mutants = drift_mutants,

@@ -222,6 +222,7 @@ static const struct check_mutant mutants[] = {
 const struct check check_hydro_rates = {
     .group = "hydro",
     .name = "rates",
+    .cost = 0.8,
     .property = "rho, h, P, dp/dt, de/dt, dalpha/dt, dt equal the oracle's, all pairs, long double",
     .subjects = subjects,
     .measure = measure,

@@ -248,6 +248,7 @@ static const struct check_mutant mutants[] = {
 const struct check check_hydro_steps = {
     .group = "hydro",
     .name = "time_stepping",
+    .cost = 0.8,
     .property = "the state at t_end and the number of steps equal the oracle's",
     .subjects = subjects,
     .measure = measure,

@@ -279,6 +279,7 @@ static const struct check_mutant layer_mutants[] = {
 const struct check check_exact_layer = {
     .group = "exact",
     .name = "layer_modes",
+    .cost = 0.5,
     .property = "growing modes of shear and stratified layers: two methods, the linear equations",
     .measure = measure_layer,
     .mutants = layer_mutants,

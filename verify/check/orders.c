@@ -263,6 +263,7 @@ static const struct check_mutant order_mutants[] = {
 const struct check check_norms_order = {
     .group = "norms",
     .name = "order",
+    .cost = 0.7,
     .property = "slope of log error against log spacing; its 95 % interval covers in 95 % of cases",
     .measure = measure_order,
     .mutants = order_mutants,

@@ -343,6 +343,7 @@ static const struct check_mutant limit_mutants[] = {
 const struct check check_stability_limits = {
     .group = "stability",
     .name = "limits",
+    .cost = 0.9,
     .property = "first unstable eta of a lattice, gamma 1.4, no viscosity",
     .measure = measure_limits,
     .mutants = limit_mutants,

@@ -19,8 +19,9 @@ void slurm_share_log(const char *folder, const char *name, long job, int share, 
 /* Options that are not a share's: where results go, who computes. */
 static bool of_the_caller(const char *name)
 {
-    static const char *const names[] = {"engine", "engine-options", "engine-tasks", "history",
-                                        "jobs",   "list",           "plot",         "resume"};
+    static const char *const names[] = {"engine",  "engine-options", "engine-tasks", "failures",
+                                        "history", "jobs",           "junit",        "list",
+                                        "plot",    "resume"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (strcmp(name, names[i]) == 0) return true;
     return false;

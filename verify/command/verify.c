@@ -12,10 +12,12 @@
 #include "output.h"
 #include "progress.h"
 #include "result.h"
+#include "sharing.h"
 #include "suite.h"
 #include "suite_output.h"
 #include "text.h"
 #include "user_figures.h"
+#include "verify_shares.h"
 
 enum { FOLDER_LENGTH = 1000 };
 
@@ -27,6 +29,8 @@ static const struct command_option verify_options[] = {
     {"kernel-plugin", "F.so", "check a kernel of your own as well (see `sphproof kernel --help`)"},
     {"junit", "FILE", "write a JUnit file"},
     {"failures", "DIR", "where failing checks leave data (default: failures/ beside the program)"},
+    {"jobs", "J", "checks side by side (default 1), each in a process of its own"},
+    SHARING_OPTIONS,
     {NULL, NULL, NULL},
 };
 
@@ -90,6 +94,18 @@ static void keep_failures(const struct suite *suite, const struct options *optio
         fprintf(stderr, "sphproof: %s\n", error.message);
 }
 
+/* Tells what the suite found, and frees it. */
+static enum status present(const struct options *options, struct suite *suite, enum status status,
+                           struct error *error)
+{
+    if (options->speak)
+        suite_output_table(suite, stdout, options->color, options_value(options, "details"));
+    keep_failures(suite, options);
+    const enum status written = write_results(suite, options, error);
+    suite_free(suite);
+    return written ? written : status;
+}
+
 static enum status run(const struct options *options, int n, char **arguments, struct error *error)
 {
     const char *junit = options_value(options, "junit");
@@ -109,6 +125,13 @@ static enum status run(const struct options *options, int n, char **arguments, s
         .context = &progress,
     };
     gsl_set_error_handler_off();
+    bool whole = true;
+    if (verify_shares_wanted(options)) {
+        status = verify_shares_run(&suite, &choice, options, &whole, error);
+        return !whole || (status != STATUS_OK && status != STATUS_CHECK_FAILED)
+                   ? status
+                   : present(options, &suite, status, error);
+    }
     struct user_figures user = {0};
     const char *plugin = options_value(options, "kernel-plugin");
     if (plugin && user_figures_measure(&user, plugin, error)) return error->status;
@@ -120,25 +143,22 @@ static enum status run(const struct options *options, int n, char **arguments, s
     user_figures_free(&user);
     if (status != STATUS_OK && status != STATUS_CHECK_FAILED) return status;
 
-    if (options->speak)
-        suite_output_table(&suite, stdout, options->color, options_value(options, "details"));
-    keep_failures(&suite, options);
-    const enum status written = write_results(&suite, options, error);
-    suite_free(&suite);
-    return written ? written : status;
+    return present(options, &suite, status, error);
 }
 
 const struct command command_verify = {
     .name = "verify",
     .synopsis = "[GROUP|GROUP/CHECK ...] [--mutants] [--slow] [--first] [--details]",
-    .help = "check kernels, gradients, solver, exact solutions and norms\n\n"
-            "Every check states a property, the measured value, its bound and the noise floor.\n"
-            "Without a GROUP all groups run; GROUP/CHECK is one of its checks. Exit status 1 if a\n"
-            "figure is beyond its bound or, with --mutants, if a deliberately wrong variant is not\n"
-            "rejected.",
+    .help =
+        "check kernels, gradients, solver, exact solutions and norms\n\n"
+        "Every check states a property, the measured value, its bound and the noise floor.\n"
+        "Without a GROUP all groups run; GROUP/CHECK is one of its checks. Exit status 1 if a\n"
+        "figure is beyond its bound or, with --mutants, if a deliberately wrong variant is not\n"
+        "rejected.",
     .run = run,
     .options = verify_options,
     .examples = "sphproof verify\nsphproof verify kernels gradients\n"
                 "sphproof verify hydro/time_stepping\n"
+                "sphproof verify --mutants --cache shared --shard 2/3\n"
                 "sphproof verify --mutants --json verify.json --junit verify.xml",
 };

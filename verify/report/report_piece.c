@@ -143,10 +143,21 @@ static enum status compute(const void *context, json_t **document, struct error 
     return STATUS_OK;
 }
 
+/* About how many seconds a piece takes that is no run. */
+static double weight_of(const struct report_piece *piece)
+{
+    static const double weights[] = {0, 0, 0.1, 2, 5};
+    const struct suite_choice choice = {
+        .groups = &piece->where, .group_count = 1, .slow = piece->slow};
+    double checks = 0;
+    for (size_t i = 0; piece->kind == REPORT_CHECKS && i < check_registry_count; i++)
+        if (suite_chosen(check_registry[i], &choice)) checks += suite_cost(check_registry[i]);
+    return weights[piece->kind] + checks;
+}
+
 enum status report_piece_add(struct pool *pool, struct report_piece *piece, struct error *error)
 {
     static const char *const names[] = {"profile", "checks", "kernel", "league", "work-precision"};
-    static const double weights[] = {0, 4, 0.1, 2, 5}; /* about seconds */
     char name[128], *run = NULL, *key = name;
     snprintf(name, sizeof name, "%s of %s", names[piece->kind], piece->where);
     if (piece->kind == REPORT_CHECKS && piece->slow) strcat(name, ", slow ones too");
@@ -156,7 +167,7 @@ enum status report_piece_add(struct pool *pool, struct report_piece *piece, stru
         (run_resolve(&piece->run, &piece->settings, error) ||
          !(key = run = run_job_key(&piece->run, RUN_JOB_PROFILE, error))))
         return error->status;
-    const double weight = run ? run_job_weight(&piece->run) : weights[piece->kind];
+    const double weight = run ? run_job_weight(&piece->run) : weight_of(piece);
     piece->job = pool_add(pool, name, key, weight, compute, piece);
     free(run);
     return piece->job == (size_t)-1

@@ -46,6 +46,7 @@ struct check {
     const char *name;
     const char *property; /* one line, a formula where it helps */
     bool slow;            /* not in the quick suite */
+    double cost; /* seconds that it takes with its mutants, about: shares are even by it; 0: few */
     /* Adds the right subjects, in order. NULL: measure is called once, with NULL as the right one.
      */
     void (*subjects)(struct check_run *run);

@@ -43,12 +43,10 @@ static bool take_figures(struct suite *suite, struct check_run *run)
     for (size_t i = 0; i < run->figure_count; i++) {
         if (!list_grow(&suite->figures, suite->figure_count, sizeof *suite->figures)) return false;
         suite->figures[suite->figure_count++] = run->figures[i];
-        suite->passed += run->figures[i].status == FIGURE_PASS;
-        suite->skipped += run->figures[i].status == FIGURE_SKIP;
         failed += run->figures[i].status == FIGURE_FAIL;
         run->figures[i].subject = NULL;
     }
-    suite->failed += failed;
+    suite->failed += failed; /* for those who stop at the first */
     for (size_t i = 0; failed && i < run->series_count; i++) {
         if (!list_grow(&suite->series, suite->series_count, sizeof *suite->series)) return false;
         suite->series[suite->series_count++] = run->series[i];
@@ -157,6 +155,19 @@ static void count_mutants(struct suite *suite)
     }
 }
 
+enum status suite_count(struct suite *suite)
+{
+    suite->passed = suite->failed = suite->skipped = suite->mutants = suite->mutants_detected = 0;
+    for (size_t i = 0; i < suite->figure_count; i++) {
+        suite->passed += suite->figures[i].status == FIGURE_PASS;
+        suite->failed += suite->figures[i].status == FIGURE_FAIL;
+        suite->skipped += suite->figures[i].status == FIGURE_SKIP;
+    }
+    count_mutants(suite);
+    return suite->failed || suite->mutants_detected < suite->mutants ? STATUS_CHECK_FAILED
+                                                                     : STATUS_OK;
+}
+
 bool suite_names(const char *name, const struct check *check)
 {
     const size_t length = strcspn(name, "/");
@@ -164,7 +175,13 @@ bool suite_names(const char *name, const struct check *check)
            (!name[length] || strcmp(name + length + 1, check->name) == 0);
 }
 
-static bool chosen(const struct check *check, const struct suite_choice *choice)
+double suite_cost(const struct check *check)
+{
+    const double few = 0.03; /* of one that does not say what it costs */
+    return check->cost > 0 ? check->cost : few;
+}
+
+bool suite_chosen(const struct check *check, const struct suite_choice *choice)
 {
     if (check->slow && !choice->slow) return false;
     for (size_t i = 0; i < choice->group_count; i++)
@@ -179,7 +196,7 @@ enum status suite_run(struct suite *suite, const struct check *const *checks, si
     bool sound = true;
     *suite = (struct suite){0};
     for (size_t i = 0; i < count && sound && !(choice->first && suite->failed); i++) {
-        if (!chosen(checks[i], choice)) continue;
+        if (!suite_chosen(checks[i], choice)) continue;
         if (choice->progress) choice->progress(choice->context, checks[i], i, count);
         sound =
             run_subjects(suite, checks[i]) && (!choice->mutants || run_mutants(suite, checks[i]));
@@ -188,10 +205,8 @@ enum status suite_run(struct suite *suite, const struct check *const *checks, si
         suite_free(suite);
         return error_set(error, STATUS_ENVIRONMENT, "verify: no memory");
     }
-    count_mutants(suite);
     suite->seconds = clock_wall() - began;
-    return suite->failed || suite->mutants_detected < suite->mutants ? STATUS_CHECK_FAILED
-                                                                     : STATUS_OK;
+    return suite_count(suite);
 }
 
 const char **suite_groups(const struct check *const *checks, size_t count, size_t *total)

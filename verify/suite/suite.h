@@ -4,6 +4,8 @@
 #ifndef SPHPROOF_SUITE_H
 #define SPHPROOF_SUITE_H
 
+#include <jansson.h>
+
 #include "check.h"
 #include "status.h"
 
@@ -56,8 +58,24 @@ enum status suite_run(struct suite *suite, const struct check *const *checks, si
                       const struct suite_choice *choice, struct error *error);
 void suite_free(struct suite *suite);
 
+/* What suite_run found of one check, as a document, and what suite_run would have found of several,
+ * from their documents in the order of the checks. STATUS_*: as suite_run, also STATUS_ENVIRONMENT
+ * where a document is not one of its check; the suite is then empty. */
+json_t *suite_keep(const struct suite *suite);
+enum status suite_join(struct suite *suite, const struct check *const *checks,
+                       const json_t *const *documents, size_t count, struct error *error);
+
 /* value/bound of a figure, the measure of how near it is to failing; infinite for a NaN. */
 double suite_ratio(double value, double bound);
+
+/* Seconds that a check takes with its mutants, about; > 0. */
+double suite_cost(const struct check *check);
+
+/* Is it one of those that were chosen? */
+bool suite_chosen(const struct check *check, const struct suite_choice *choice);
+
+/* All figures and outcomes are there: counts them. STATUS_OK or STATUS_CHECK_FAILED. */
+enum status suite_count(struct suite *suite);
 
 /* Does GROUP or GROUP/NAME mean this check? */
 bool suite_names(const char *name, const struct check *check);

@@ -17,6 +17,13 @@ enum { SERIES_SHOWN = 8, PATH_LENGTH = 1024 };
 
 static const char *const status_names[] = {"pass", "fail", "skip"};
 
+int suite_output_status(const char *word)
+{
+    for (int s = 0; s < (int)(sizeof status_names / sizeof *status_names); s++)
+        if (strcmp(status_names[s], word) == 0) return s;
+    return -1;
+}
+
 /* The figures of one check stand together, in suite->figures[begin..end-1]. */
 struct tally {
     const struct check *check;

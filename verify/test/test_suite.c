@@ -377,6 +377,55 @@ static void test_registry(void **state)
     free(names);
 }
 
+/* Everything that a suite says of its figures and mutants, but for seconds. */
+static json_t *told(const struct suite *suite)
+{
+    json_t *document = suite_keep(suite), *checks = json_object_get(document, "checks");
+    for (size_t i = 0; i < json_array_size(checks); i++)
+        json_object_del(json_array_get(checks, i), "seconds");
+    json_object_del(document, "seconds");
+    return document;
+}
+
+/* Checks that ran one by one, each elsewhere, say what they say together. */
+static void test_joined(void **state)
+{
+    (void)state;
+    enum { PARTS = 4 };
+    const struct check *const checks[PARTS] = {&good, &failing, &leaky, &vacuous};
+    const struct suite_choice choice = {.mutants = true};
+    struct suite suite, joined;
+    struct error error;
+    json_t *documents[PARTS];
+    for (size_t i = 0; i < PARTS; i++) {
+        suite_run(&suite, &checks[i], 1, &choice, NULL);
+        documents[i] = suite_keep(&suite);
+        suite_free(&suite);
+        char *text = json_dumps(documents[i], JSON_REAL_PRECISION(17));
+        json_decref(documents[i]);
+        documents[i] = json_loads(text, 0, NULL);
+        free(text);
+    }
+    const json_t *const *from = (const json_t *const *)documents;
+    assert_int_equal(suite_run(&suite, checks, PARTS, &choice, NULL), STATUS_CHECK_FAILED);
+    assert_int_equal(suite_join(&joined, checks, from, PARTS, &error), STATUS_CHECK_FAILED);
+    json_t *one = told(&suite), *other = told(&joined);
+    assert_true(json_equal(one, other));
+    assert_int_equal(joined.failed, 3);
+    assert_int_equal(joined.series_count, suite.series_count);
+    assert_true(joined.series_count > 0 && joined.series[0].check == &failing);
+    assert_true(isnan(joined.figures[3].value) && joined.figures[3].status == FIGURE_FAIL);
+    suite_free(&joined);
+    assert_int_equal(suite_join(&joined, checks, from, 1, &error), STATUS_OK);
+    suite_free(&joined);
+    assert_int_equal(suite_join(&joined, checks + 1, from, 1, &error), STATUS_ENVIRONMENT);
+    assert_null(joined.figures);
+    json_decref(one);
+    json_decref(other);
+    suite_free(&suite);
+    for (size_t i = 0; i < PARTS; i++) json_decref(documents[i]);
+}
+
 int main(int argc, char **argv)
 {
     group_argument_count = argc - 1;
@@ -387,6 +436,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_mutant_value),
         cmocka_unit_test(test_groups_are_listed_once),
         cmocka_unit_test(test_good),
+        cmocka_unit_test(test_joined),
         cmocka_unit_test(test_failing),
         cmocka_unit_test(test_undetected_mutant),
         cmocka_unit_test(test_vacuous),

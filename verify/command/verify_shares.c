@@ -1,0 +1,100 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "verify_shares.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "check_registry.h"
+#include "sharing.h"
+
+bool verify_shares_wanted(const struct options *options)
+{
+    static const char *const names[] = {"jobs",         "cache",  "shard",          "list",
+                                        "engine-tasks", "engine", "engine-options", "only-build"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        if (options_value(options, names[i])) return true;
+    return false;
+}
+
+/* One check with its mutants, in a process of its own. */
+struct part {
+    const struct check *check;
+    char name[128];
+    bool mutants;
+    size_t job;
+};
+
+static enum status compute(const void *context, json_t **document, struct error *error)
+{
+    const struct part *part = context;
+    const struct suite_choice choice = {.slow = true, .mutants = part->mutants};
+    struct suite suite;
+    const enum status status = suite_run(&suite, &part->check, 1, &choice, error);
+    if (status != STATUS_OK && status != STATUS_CHECK_FAILED) return status;
+    *document = suite_keep(&suite);
+    suite_free(&suite);
+    return status;
+}
+
+static enum status plan(struct pool *pool, struct part *parts, size_t *count,
+                        const struct suite_choice *choice, struct error *error)
+{
+    for (size_t i = 0; i < check_registry_count; i++) {
+        const struct check *check = check_registry[i];
+        struct part *part = &parts[*count];
+        char key[sizeof part->name + 32];
+        if (!suite_chosen(check, choice)) continue;
+        *part = (struct part){.check = check, .mutants = choice->mutants};
+        snprintf(part->name, sizeof part->name, "%s/%s", check->group, check->name);
+        snprintf(key, sizeof key, "check %s%s", part->name, part->mutants ? " with mutants" : "");
+        part->job = pool_add(pool, part->name, key, suite_cost(check), compute, part);
+        if (part->job == (size_t)-1)
+            return error_set(error, STATUS_ENVIRONMENT, "verify: no memory for a check");
+        ++*count;
+    }
+    return STATUS_OK;
+}
+
+static enum status join(struct suite *suite, const struct pool *pool, const struct part *parts,
+                        size_t count, struct error *error)
+{
+    const struct check *checks[count + 1];
+    const json_t *documents[count + 1];
+    for (size_t i = 0; i < count; i++) {
+        const struct pool_job *job = &pool->jobs[parts[i].job];
+        if (!job->document) {
+            *error = job->error;
+            return error->status;
+        }
+        checks[i] = parts[i].check;
+        documents[i] = job->document;
+    }
+    return suite_join(suite, checks, documents, count, error);
+}
+
+enum status verify_shares_run(struct suite *suite, const struct suite_choice *choice,
+                              const struct options *options, bool *whole, struct error *error)
+{
+    static const char *const others[] = {"first", "kernel-plugin"};
+    struct sharing sharing;
+    struct pool pool = {0};
+    size_t count = 0;
+    *whole = false;
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+        if (options_value(options, others[i]))
+            return error_set(error, STATUS_BAD_INPUT,
+                             "verify: --%s and checks side by side or in shares exclude each other",
+                             others[i]);
+    if (sharing_take(&sharing, options, 1, NULL, false, error)) return error->status;
+    struct part *parts = calloc(check_registry_count + 1, sizeof *parts);
+    enum status status = parts ? plan(&pool, parts, &count, choice, error)
+                               : error_set(error, STATUS_ENVIRONMENT, "verify: no memory");
+    if (!status && sharing.list)
+        status = sharing_list(&sharing, &pool, error);
+    else if (!status)
+        status = sharing_run(&sharing, &pool, "checks", options, whole, error);
+    if (!status && *whole) status = join(suite, &pool, parts, count, error);
+    pool_free(&pool);
+    free(parts);
+    return status;
+}

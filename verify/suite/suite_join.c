@@ -1,0 +1,116 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * A check that ran elsewhere: what it found, out of a suite and into another one. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "list.h"
+#include "result.h"
+#include "suite.h"
+#include "suite_output.h"
+#include "value.h"
+
+static json_t *numbers(const double *values, size_t n)
+{
+    json_t *array = json_array();
+    for (size_t i = 0; i < n; i++) json_array_append_new(array, result_number(values[i]));
+    return array;
+}
+
+json_t *suite_keep(const struct suite *suite)
+{
+    json_t *document = json_object(), *series = json_array();
+    suite_output_json(suite, document);
+    for (size_t i = 0; i < suite->series_count; i++) {
+        const struct series *s = &suite->series[i];
+        json_array_append_new(series, json_pack("{s:s, s:o, s:o}", "label", s->label, "x",
+                                                numbers(s->x, s->n), "y", numbers(s->y, s->n)));
+    }
+    json_object_set_new(document, "series", series);
+    json_object_set_new(document, "seconds", json_real(suite->seconds));
+    return document;
+}
+
+static bool is_of(const json_t *entry, const char *name, const struct check *check)
+{
+    return strcmp(value_text(entry, "group"), check->group) == 0 &&
+           strcmp(value_text(entry, name), check->name) == 0;
+}
+
+static bool join_figure(struct suite *suite, const struct check *check, const json_t *entry)
+{
+    const int status = suite_output_status(value_text(entry, "status"));
+    struct figure figure = {.check = check,
+                            .value = value_member(entry, "value"),
+                            .bound = value_member(entry, "bound"),
+                            .floor = value_member(entry, "floor"),
+                            .seconds = value_member(entry, "seconds"),
+                            .status = (enum figure_status)status};
+    if (status < 0 || !is_of(entry, "name", check) ||
+        !list_grow(&suite->figures, suite->figure_count, sizeof figure) ||
+        !(figure.subject = strdup(value_text(entry, "subject"))))
+        return false;
+    suite->figures[suite->figure_count++] = figure;
+    return true;
+}
+
+static bool join_outcome(struct suite *suite, const struct check *check, const json_t *entry)
+{
+    const struct check_mutant *mutant = check->mutants;
+    const char *name = value_text(entry, "mutant");
+    while (mutant && mutant->name && strcmp(mutant->name, name) != 0) mutant++;
+    if (!mutant || !mutant->name || !is_of(entry, "check", check) ||
+        !list_grow(&suite->outcomes, suite->outcome_count, sizeof *suite->outcomes))
+        return false;
+    suite->outcomes[suite->outcome_count++] = (struct mutant_outcome){
+        .check = check,
+        .mutant = mutant,
+        .value = value_member(entry, "value"),
+        .bound = value_member(entry, "bound"),
+        .detected = json_is_true(json_object_get(entry, "detected")),
+    };
+    return true;
+}
+
+static bool join_series(struct suite *suite, const struct check *check, const json_t *entry)
+{
+    size_t n, m;
+    struct series series = {.check = check,
+                            .label = strdup(value_text(entry, "label")),
+                            .x = value_numbers(json_object_get(entry, "x"), &n),
+                            .y = value_numbers(json_object_get(entry, "y"), &m)};
+    series.n = n;
+    if (n == m && series.label && list_grow(&suite->series, suite->series_count, sizeof series)) {
+        suite->series[suite->series_count++] = series;
+        return true;
+    }
+    free(series.label), free(series.x), free(series.y);
+    return false;
+}
+
+static bool join_all(struct suite *suite, const struct check *check, const json_t *list,
+                     bool (*join)(struct suite *, const struct check *, const json_t *))
+{
+    for (size_t i = 0; i < json_array_size(list); i++)
+        if (!join(suite, check, json_array_get(list, i))) return false;
+    return json_is_array(list);
+}
+
+enum status suite_join(struct suite *suite, const struct check *const *checks,
+                       const json_t *const *documents, size_t count, struct error *error)
+{
+    *suite = (struct suite){0};
+    for (size_t i = 0; i < count; i++) {
+        const json_t *from = documents[i];
+        if (!join_all(suite, checks[i], json_object_get(from, "checks"), join_figure) ||
+            !join_all(suite, checks[i], json_object_get(from, "mutants"), join_outcome) ||
+            !join_all(suite, checks[i], json_object_get(from, "series"), join_series)) {
+            suite_free(suite);
+            return error_set(error, STATUS_ENVIRONMENT,
+                             "verify: what is kept of %s/%s is not of this program, or there is no "
+                             "memory for it",
+                             checks[i]->group, checks[i]->name);
+        }
+        suite->seconds += value_member(from, "seconds");
+    }
+    return suite_count(suite);
+}
