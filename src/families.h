@@ -19,7 +19,8 @@
 #define GRADIENT_LIST(CHOICE, ...)                                                                 \
     GRADIENT_LINE_LIST(CHOICE, __VA_ARGS__)                                                        \
     CHOICE(GRADIENT_CORRECTED, "corrected", "as ia with the weight -W'/r in place of W",           \
-           "Bonet & Lok 1999, in conservative form", __VA_ARGS__)
+           "Bonet & Lok 1999, in conservative form", __VA_ARGS__)                                  \
+    CHOICE(GRADIENT_BLENDED, "blended", "ia, but standard where h changes steeply", "", __VA_ARGS__)
 
 #define FORMULATION_LIST(CHOICE, ...)                                                              \
     CHOICE(FORMULATION_VANILLA_ICE, "vanilla_ice", "(P_i + P_j)/(rho_i rho_j), lambda = 1",        \

@@ -46,6 +46,7 @@ static void lay_out_force(struct lanes_layout *force, const struct cells_method 
     if (method->conductivity > 0) add_field(force, FIELD_HEAT, 1);
     if (lagrangian) add_field(force, FIELD_LAGRANGIAN, 3);
     if (method->gradient != GRADIENT_STANDARD) add_field(force, FIELD_MATRIX, symmetric);
+    if (method->gradient == GRADIENT_BLENDED) add_field(force, FIELD_STEEP, 1);
     if (method->viscosity == VISCOSITY_RECONSTRUCTED) add_field(force, FIELD_SLOPE, dim * dim);
     if (method->projected) add_field(force, FIELD_PROJECTOR, symmetric);
 }
@@ -61,6 +62,7 @@ static void lay_out(struct cells *cells)
     begin_layout(&cells->matrix, LANES_DIRECTION, dim);
     add_field(&cells->matrix, FIELD_WEIGHT, 1);
     if (method->velocity_gradient) add_field(&cells->matrix, FIELD_VELOCITY, dim);
+    if (method->gradient == GRADIENT_BLENDED) add_field(&cells->matrix, FIELD_H, 1);
     lay_out_force(&cells->force, method);
     cells->shift = (struct lanes_layout){0};
     if (!method->jump) return;

@@ -62,6 +62,7 @@ struct cells_fields {
     double *sum_Z, *sum_Z_dh;        /* energy element */
     double *matrix[CELLS_SYMMETRIC]; /* C h^-d times C of eq. ia: gradient = matrix x w(q) */
     double *condition;               /* of the moment matrix */
+    double *steep;                   /* blended: the standard gradient's share */
     double *slope[CELLS_SQUARE];     /* (grad v): d v_a/d x_b at a dim + b */
     double *projector[CELLS_SYMMETRIC];
     double *alpha_local, *decay;        /* of the switch */

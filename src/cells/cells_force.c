@@ -67,6 +67,7 @@ ALWAYS_INLINE void fill_record(int dim, const struct cells *cells,
         group[1] = fields->grad_h[i];
         group[2] = method->energy_element ? fields->U[i] : method->number ? 1 : fields->m[i];
     }
+    if (at[FIELD_STEEP] >= 0) record[at[FIELD_STEEP]] = fields->steep[i];
     fill_matrices(dim, mirrored, cells, fields, i, record);
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Pair gradients in 2D and 3D, the one part of the pair force that knows the kernel: standard, by a
- * matrix with the weight W (ia) or -W'/r (corrected), at the widths that the scheme asks for. */
+ * matrix with the weight W (ia) or -W'/r (corrected), or of standard and ia what the particles'
+ * shares say (blended), at the widths that the scheme asks for. */
 #include <math.h>
 
 #include "pairs.h"
@@ -175,15 +176,41 @@ CLONES static void mean(int count, const double *restrict a, const double *restr
     for (int k = 0; k < count; k++) m[k] = 0.5 * (a[k] + b[k]);
 }
 
-/* Where either matrix is not to be used, the pair's gradient is the standard one. */
-CLONES static void fall_back(int count, double own, const double *restrict theirs,
-                             const double *restrict s, const double *restrict x, double *restrict G)
+/* What part of a pair's gradient is the standard one: all of it where either matrix is not to be
+ * used, else the mean of the particles' shares (NULL: none have). */
+CLONES static void standard_shares(int count, double own, const double *restrict theirs,
+                                   double own_share, const double *restrict shares,
+                                   double *restrict part)
 {
 #pragma omp simd
-    for (int k = 0; k < count; k++) G[k] = least(own, theirs[k]) > 0 ? G[k] : s[k] * x[k];
+    for (int k = 0; k < count; k++) {
+        const double mean_share = shares ? 0.5 * (own_share + shares[k]) : 0;
+        part[k] = least(own, theirs[k]) > 0 ? mean_share : 1;
+    }
 }
 
-/* w(q) or, of any but gradient=ia, w'(q) at both widths. */
+/* That part of G becomes s x. */
+CLONES static void blend(int count, const double *restrict part, const double *restrict s,
+                         const double *restrict x, double *restrict G)
+{
+#pragma omp simd
+    for (int k = 0; k < count; k++) G[k] = (1 - part[k]) * G[k] + part[k] * (s[k] * x[k]);
+}
+
+/* Is there no share of the standard gradient? */
+CLONES static bool none_steep(int count, double own, const double *restrict theirs)
+{
+    double most[GRID_LANES];
+    for (int l = 0; l < GRID_LANES; l++) most[l] = own;
+    for (int k = 0; k < count; k += GRID_LANES)
+#pragma omp simd
+        for (int l = 0; l < GRID_LANES; l++) most[l] = largest(most[l], theirs[k + l]);
+    double steepest = own;
+    for (int l = 0; l < GRID_LANES; l++) steepest = largest(steepest, most[l]);
+    return !(steepest > 0);
+}
+
+/* w(q) or, of the gradients that have w' in them, w'(q) at both widths. */
 static void pair_shapes(const struct cells *cells, const struct pairs *pairs)
 {
     const struct cells_method *method = &cells->method;
@@ -191,7 +218,7 @@ static void pair_shapes(const struct cells *cells, const struct pairs *pairs)
     const struct lanes *lanes = pairs->lanes;
     const double h_inverse = *pairs_own(pairs, FIELD_H_INVERSE),
                  *theirs = pairs_theirs(pairs, FIELD_H_INVERSE), *r = lane(lanes, LANE_R);
-    const bool by_w = method->gradient == GRADIENT_IA;
+    const bool by_w = method->gradient == GRADIENT_IA || method->gradient == GRADIENT_BLENDED;
     double *w = lane(lanes, LANE_W), *w_j = lane(lanes, LANE_W_J);
     if (method->pair_width == PAIR_WIDTH_MEAN) {
         (by_w ? shapes->pair_w : shapes->pair_dw)(method->kernel, (size_t)pairs->count, r,
@@ -260,7 +287,7 @@ static void matrix_weights(const struct cells *cells, const struct pairs *pairs)
     const struct lanes *lanes = pairs->lanes;
     const enum pair_width width = cells->method.pair_width;
     pair_shapes(cells, pairs);
-    if (cells->method.gradient == GRADIENT_IA) return;
+    if (cells->method.gradient != GRADIENT_CORRECTED) return;
     double *q = lane(lanes, LANE_Q), *q_j = lane(lanes, LANE_Q_J);
     widths(width, pairs->count, lane(lanes, LANE_R), *pairs_own(pairs, FIELD_H_INVERSE),
            pairs_theirs(pairs, FIELD_H_INVERSE), q, q_j);
@@ -281,15 +308,21 @@ void cells_pair_gradients(const struct cells *cells, const struct pairs *pairs)
     const double *own = pairs_own(pairs, FIELD_MATRIX), *theirs = pairs_theirs(pairs, FIELD_MATRIX);
     matrix_weights(cells, pairs);
     by_matrix(dim, both, count, lanes, own, theirs);
-    if (all_sound(count, own[0], theirs)) return;
+    const bool blended = method->gradient == GRADIENT_BLENDED;
+    const double own_share = blended ? *pairs_own(pairs, FIELD_STEEP) : 0,
+                 *shares = blended ? pairs_theirs(pairs, FIELD_STEEP) : NULL;
+    if (all_sound(count, own[0], theirs) && (!blended || none_steep(count, own_share, shares)))
+        return;
+    double *part = lane(lanes, LANE_K);
+    standard_shares(count, own[0], theirs, own_share, shares, part);
     standard_pair(cells, pairs);
     double *s = lane(lanes, LANE_SPARE), *s_i = lane(lanes, LANE_W), *s_j = lane(lanes, LANE_W_J);
     mean(count, s_i, s_j, s);
     for (int a = 0; a < dim; a++) {
         const double *x = lane(lanes, LANE_DX + a);
-        fall_back(count, own[0], theirs, s, x, lane(lanes, LANE_GX + a));
+        blend(count, part, s, x, lane(lanes, LANE_GX + a));
         if (!both) continue;
-        fall_back(count, own[0], theirs, s_i, x, lane(lanes, LANE_GX_I + a));
-        fall_back(count, own[0], theirs, s_j, x, lane(lanes, LANE_GX_J + a));
+        blend(count, part, s_i, x, lane(lanes, LANE_GX_I + a));
+        blend(count, part, s_j, x, lane(lanes, LANE_GX_J + a));
     }
 }

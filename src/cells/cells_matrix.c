@@ -12,7 +12,7 @@ static void fill_records(struct cells *cells, const struct cells_fields *fields)
 {
     const struct lanes_layout *layout = &cells->matrix;
     const int dim = cells->method.box.dim, weight = layout->offset[FIELD_WEIGHT],
-              velocity = layout->offset[FIELD_VELOCITY];
+              velocity = layout->offset[FIELD_VELOCITY], width = layout->offset[FIELD_H];
 #pragma omp parallel for num_threads(cells->team) if (cells->team > 1)
     for (size_t s = 0; s <= cells->points; s++) {
         double *record = lanes_record(cells, layout, s);
@@ -20,6 +20,7 @@ static void fill_records(struct cells *cells, const struct cells_fields *fields)
         int mirrored = 0;
         const size_t i = sentinel ? 0 : lanes_source(cells, fields->n, s, &mirrored);
         record[weight] = sentinel ? 0 : fields->V[i];
+        if (width >= 0) record[width] = sentinel ? 0 : 1 / fields->h_inverse[i];
         for (int a = 0; velocity >= 0 && a < dim; a++)
             record[velocity + a] = sentinel ? 0 : lanes_sign(mirrored, a) * fields->v[a][i];
     }
@@ -92,6 +93,21 @@ static void velocity_gradient(struct cells *cells, const struct cells_fields *fi
     for (int k = 0; k < dim * (dim + 1) / 2; k++) fields->projector[k][i] = projector[k];
 }
 
+/* The standard gradient's share, CONVENTIONS eq. 4.8: smoothstep((|grad h| - 0.05)/0.1), grad h by
+ * linear_exact; all of it where there is none. */
+static double find_steep(const struct cells *cells, size_t slot, int count,
+                         const struct lanes *lanes, const double *weight,
+                         const double inverse[CELLS_SQUARE], bool sound)
+{
+    const struct lanes_layout *layout = &cells->matrix;
+    const double own = cells->records[(ptrdiff_t)slot * layout->size + layout->offset[FIELD_H]];
+    if (!sound) return 1;
+    const double slope = moments_steepness(cells->method.box.dim, count, lanes, weight, inverse,
+                                           lane_of(lanes, layout, FIELD_H), own);
+    const double t = least(1, largest(0, (slope - 0.05) / 0.1));
+    return t * t * (3 - 2 * t);
+}
+
 static void matrix_pass(struct cells *cells, const struct cells_fields *fields, size_t slot,
                         struct lanes *lanes)
 {
@@ -102,15 +118,18 @@ static void matrix_pass(struct cells *cells, const struct cells_fields *fields, 
                  h_inverse = fields->h_inverse[i];
     double *dw = lane(lanes, LANE_W), *weight = lane(lanes, LANE_W_J);
     double inverse[CELLS_SQUARE], condition = 0;
+    const bool blended = method->gradient == GRADIENT_BLENDED,
+               by_w = blended || method->gradient == GRADIENT_IA;
     bool sound = false;
-    if (method->gradient == GRADIENT_IA || method->velocity_gradient) {
+    if (by_w || method->velocity_gradient) {
         moments_weigh(cells, count, lanes, h_inverse, V);
         sound = moments_invert(method, count, lanes, weight, inverse, &condition);
     }
     if (method->velocity_gradient)
         velocity_gradient(cells, fields, slot, count, lanes, weight, inverse, sound);
     if (method->gradient == GRADIENT_STANDARD) return;
-    if (method->gradient != GRADIENT_IA) { /* corrected */
+    if (blended) fields->steep[i] = find_steep(cells, slot, count, lanes, weight, inverse, sound);
+    if (method->gradient == GRADIENT_CORRECTED) {
         double *q = lane(lanes, LANE_Q);
         scale(count, lane(lanes, LANE_R), h_inverse, q);
         cells->shapes.dw(method->kernel, (size_t)count, q, dw);

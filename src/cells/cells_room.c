@@ -93,7 +93,7 @@ static struct cells_method method_of(const struct simulation *simulation)
 
 /* --- memory ----------------------------------------------------------------------------------- */
 
-enum { ARRAYS_MAX = 11 + 2 * CELLS_SYMMETRIC + CELLS_SQUARE };
+enum { ARRAYS_MAX = 12 + 2 * CELLS_SYMMETRIC + CELLS_SQUARE };
 
 /* The arrays that a room has for the scheme. */
 static size_t list_arrays(const struct simulation *simulation, struct room *room,
@@ -110,6 +110,7 @@ static size_t list_arrays(const struct simulation *simulation, struct room *room
     if (plan->energy_sum) of[count++] = &room->sum_Z, of[count++] = &room->sum_Z_dh;
     if (plan->balsara) of[count++] = &room->balsara;
     if (plan->matrix) of[count++] = &room->fields.condition;
+    if (simulation->scheme.gradient == GRADIENT_BLENDED) of[count++] = &room->fields.steep;
     for (size_t k = 0; plan->matrix && k < symmetric; k++) of[count++] = &room->fields.matrix[k];
     for (size_t k = 0; plan->slope && k < dim * dim; k++) of[count++] = &room->fields.slope[k];
     for (size_t k = 0; projected && k < symmetric; k++) of[count++] = &room->fields.projector[k];

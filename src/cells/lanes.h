@@ -27,6 +27,7 @@ enum lanes_field {
     FIELD_HEAT,       /* u */
     FIELD_LAGRANGIAN, /* b grad_h Z */
     FIELD_MATRIX,     /* symmetric; all 0: not to be used, the pair has the standard gradient */
+    FIELD_STEEP,      /* share of the standard gradient: blended */
     FIELD_SLOPE,
     FIELD_PROJECTOR,    /* symmetric */
     FIELD_ACCELERATION, /* ax ay (az) */

@@ -75,6 +75,15 @@ CLONES static void differences(int dim, int count, ptrdiff_t stride, const doubl
             differences_body(3, count, stride, weight, x, f + a * stride, own[a], sums + 3 * a);
 }
 
+CLONES static void differences_of_one(int dim, int count, ptrdiff_t stride, const double *weight,
+                                      const double *x, const double *f, double own, double sums[3])
+{
+    if (dim == 2)
+        differences_body(2, count, stride, weight, x, f, own, sums);
+    else
+        differences_body(3, count, stride, weight, x, f, own, sums);
+}
+
 void moments_weigh(const struct cells *cells, int count, const struct lanes *lanes,
                    double h_inverse, const double *V)
 {
@@ -132,4 +141,17 @@ void moments_gradient(int dim, int count, const struct lanes *lanes, const doubl
         rows_times_matrix(2, sums, inverse, gradient);
     else
         rows_times_matrix(3, sums, inverse, gradient);
+}
+
+double moments_steepness(int dim, int count, const struct lanes *lanes, const double *weight,
+                         const double inverse[CELLS_SQUARE], const double *f, double own)
+{
+    double sums[3], square = 0;
+    differences_of_one(dim, count, lanes->stride, weight, lane(lanes, LANE_DX), f, own, sums);
+    for (int a = 0; a < dim; a++) {
+        double g = 0;
+        for (int b = 0; b < dim; b++) g += inverse[a * dim + b] * sums[b];
+        square += g * g;
+    }
+    return sqrt(square);
 }

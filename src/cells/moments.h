@@ -22,4 +22,8 @@ void moments_gradient(int dim, int count, const struct lanes *lanes, const doubl
                       const double inverse[CELLS_SQUARE], const double *f, const double *own,
                       double gradient[CELLS_SQUARE]);
 
+/* The length of the same gradient of a number. */
+double moments_steepness(int dim, int count, const struct lanes *lanes, const double *weight,
+                         const double inverse[CELLS_SQUARE], const double *f, double own);
+
 #endif

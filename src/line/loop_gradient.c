@@ -16,7 +16,8 @@ ALWAYS_INLINE double own_gradient(const struct kernel *kernel, kernel_shape *w, 
         return -g * dw(kernel, r * h_inverse, 1);
     case GRADIENT_IA:
         return g * (r * w(kernel, r * h_inverse, 1));
-    case GRADIENT_CORRECTED: /* needs two dimensions */
+    case GRADIENT_CORRECTED: /* these need two dimensions */
+    case GRADIENT_BLENDED:
         break;
     }
     return 0;

@@ -196,6 +196,11 @@ static void corrected_for_ia(struct scene *scene)
     scene->scheme.gradient = GRADIENT_CORRECTED;
 }
 
+static void ia_for_blended(struct scene *scene)
+{
+    scene->scheme.gradient = GRADIENT_IA;
+}
+
 static void vanilla_for_lagrangian(struct scene *scene)
 {
     scene->scheme.formulation = FORMULATION_VANILLA_ICE;
@@ -250,6 +255,8 @@ static const struct check_mutant mutants[] = {
     {"cloud_loose_h", "h solved to 1e-5 only", SPOIL(loose_h, 2, .alpha_u = 0)},
     {"cloud_gradient", "corrected where ia is asked for",
      SPOIL(corrected_for_ia, 3, .gradient = GRADIENT_IA)},
+    {"cloud_blended", "ia where blended is asked for",
+     SPOIL(ia_for_blended, 2, .gradient = GRADIENT_BLENDED)},
     {"cloud_formulation", "vanilla_ice where lagrangian is asked for",
      SPOIL(vanilla_for_lagrangian, 3, .formulation = FORMULATION_LAGRANGIAN)},
     {"cloud_element", "mass element where number is asked for",

@@ -15,6 +15,7 @@ bool oracle_covers(const struct scheme *scheme)
     case GRADIENT_STANDARD:
     case GRADIENT_IA:
     case GRADIENT_CORRECTED:
+    case GRADIENT_BLENDED:
         break;
     }
     switch (scheme->formulation) {

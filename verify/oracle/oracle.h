@@ -26,6 +26,7 @@ struct oracle_particle {
     struct oracle_matrix C;           /* inverse of the moments of the gradient in use */
     long double condition;            /* of those moments, in the 2-norm; standard: 0 */
     bool ill;                         /* beyond the bound: pairs use the standard gradient */
+    long double steep;                /* blended: the standard gradient's share */
     struct oracle_matrix L;           /* linear_exact gradient of v: d v_a/d x_b at [a][b] */
     struct oracle_matrix projector;   /* onto the direction of the local shear */
     long double balsara;

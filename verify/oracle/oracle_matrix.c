@@ -137,6 +137,26 @@ static void find_slope(const struct oracle *oracle, size_t i)
     find_balsara(oracle, a);
 }
 
+/* The standard gradient's share by the linear_exact gradient of h, from the moments of W. */
+static void find_steep(const struct oracle *oracle, size_t i)
+{
+    struct oracle_particle *a = &oracle->particles[i];
+    oracle_vector rises = {0}, slope;
+    for (size_t j = 0; j < oracle->n; j++)
+        for (int k = -oracle_images(oracle); k <= oracle_images(oracle); k++) {
+            const struct oracle_particle *b = &oracle->particles[j];
+            const long double r = oracle_distance(oracle, i, j, k);
+            oracle_vector x;
+            if (r >= a->width) continue;
+            oracle_separation(oracle, a, b, k, x);
+            for (int c = 0; c < 3; c++)
+                rises[c] += b->V * oracle_W(oracle, r, a->width) * (b->width - a->width) * x[c];
+        }
+    oracle_product(&a->C, rises, slope);
+    const long double t = (sqrtl(oracle_dot(slope, slope)) - 0.05L) / 0.1L;
+    a->steep = t <= 0 ? 0 : t >= 1 ? 1 : 3 * t * t - 2 * t * t * t;
+}
+
 static void find_matrix(const struct oracle *oracle, size_t i)
 {
     struct oracle_particle *a = &oracle->particles[i];
@@ -145,6 +165,7 @@ static void find_matrix(const struct oracle *oracle, size_t i)
     a->condition = condition_of(oracle->dim, T);
     a->ill = !(a->condition <= worst_condition);
     if (!a->ill) a->C = invert(oracle->dim, T);
+    if (!a->ill && oracle->scheme.gradient == GRADIENT_BLENDED) find_steep(oracle, i);
 }
 
 void oracle_find_matrices(struct oracle *oracle)

@@ -39,11 +39,9 @@ static void single_gradient(const struct oracle *oracle, bool standard,
     gradient(oracle, standard, x, h, &C, G);
 }
 
-static void find_gradients(const struct oracle *oracle, const struct oracle_particle *a,
-                           const struct oracle_particle *b, const oracle_vector x,
-                           struct gradients *G)
+static void find_either(const struct oracle *oracle, bool standard, const struct oracle_particle *a,
+                        const struct oracle_particle *b, const oracle_vector x, struct gradients *G)
 {
-    const bool standard = oracle->scheme.gradient == GRADIENT_STANDARD || a->ill || b->ill;
     const long double harmonic = 2 * a->width * b->width / (a->width + b->width);
     gradient(oracle, standard, x, a->width, &a->C, G->i);
     gradient(oracle, standard, x, b->width, &b->C, G->j);
@@ -57,6 +55,24 @@ static void find_gradients(const struct oracle *oracle, const struct oracle_part
     case PAIR_WIDTH_HARMONIC:
         single_gradient(oracle, standard, a, b, x, harmonic, G->mean);
         break;
+    }
+}
+
+static void find_gradients(const struct oracle *oracle, const struct oracle_particle *a,
+                           const struct oracle_particle *b, const oracle_vector x,
+                           struct gradients *G)
+{
+    const enum gradient gradient = oracle->scheme.gradient;
+    const bool standard = gradient == GRADIENT_STANDARD || a->ill || b->ill;
+    struct gradients other;
+    find_either(oracle, standard, a, b, x, G);
+    if (standard || gradient != GRADIENT_BLENDED) return;
+    find_either(oracle, true, a, b, x, &other);
+    const long double share = (a->steep + b->steep) / 2;
+    for (int k = 0; k < 3; k++) {
+        G->i[k] = (1 - share) * G->i[k] + share * other.i[k];
+        G->j[k] = (1 - share) * G->j[k] + share * other.j[k];
+        G->mean[k] = (1 - share) * G->mean[k] + share * other.mean[k];
     }
 }
 

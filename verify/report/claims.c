@@ -57,6 +57,16 @@ static const struct claim {
      "velocity_rms",
      {"jitter=0.05 gradient=standard", "jitter=0.05 gradient=ia",
       "equal_masses=yes gradient=standard", "equal_masses=yes gradient=ia"}},
+    {"blended_square",
+     "The gradient blended keeps a square of equal masses at rest better than the gradient ia "
+     "does.",
+     "square",
+     "n=32^2",
+     "n=64^2",
+     "gradient=ia",
+     "gradient=blended",
+     "velocity_rms",
+     {"equal_masses=yes", "equal_masses=yes jitter=0.05"}},
 };
 enum { CLAIMS = sizeof claims_made / sizeof *claims_made };
 

@@ -91,6 +91,7 @@ CHANGE(width_harmonic, scheme.pair_width, PAIR_WIDTH_HARMONIC)
 CHANGE(standard, scheme.gradient, GRADIENT_STANDARD)
 CHANGE(ia, scheme.gradient, GRADIENT_IA)
 CHANGE(corrected, scheme.gradient, GRADIENT_CORRECTED)
+CHANGE(blended, scheme.gradient, GRADIENT_BLENDED)
 CHANGE(vanilla_ice, scheme.formulation, FORMULATION_VANILLA_ICE)
 CHANGE(lagrangian, scheme.formulation, FORMULATION_LAGRANGIAN)
 CHANGE(mass, scheme.volume_element, VOLUME_MASS)
@@ -128,6 +129,7 @@ static const struct {
     {standard, "gradient: theirs is standard"},
     {ia, "gradient: theirs is ia"},
     {corrected, "gradient: theirs is corrected"},
+    {blended, "gradient: theirs is blended"},
     {vanilla_ice, "pressure: their formulation is vanilla_ice"},
     {lagrangian, "pressure: their formulation is lagrangian, with grad-h factors"},
     {mass, "volume element: theirs is mass"},

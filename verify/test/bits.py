@@ -28,7 +28,7 @@ RUNS = [
     "gresho n=32^2 t_end=0.05",
     "gresho n=24^2 t_end=0.05 viscosity=cullen_dehnen balsara=on kernel=cubic_spline",
     "sod_2d n=2000 t_end=0.05 gradient=corrected integrator=rk2 viscosity=reconstructed",
-    "square n=24^2 t_end=0.05 formulation=lagrangian volume_element=energy integrator=leapfrog",
+    "square n=24^2 t_end=0.05 gradient=blended formulation=lagrangian volume_element=energy integrator=leapfrog",
     "sod_3d n=4000 t_end=0.02 gradient=standard viscosity=constant kernel=wendland_c2",
     "rest_3d n=12^3 t_end=0.1 jitter=0.2",
     "rest_3d n=10^3 t_end=0.1 jitter=0.2 kernel=quintic_spline viscosity=time_dependent h_method=newton",

@@ -183,7 +183,7 @@ def main():
         random.seed(2385 + seed)
         for dim in (2, 3):
             for change, words in SCENES:
-                gradient = random.choice(["standard", "ia", "corrected"])
+                gradient = random.choice(["standard", "ia", "corrected", "blended"])
                 rows = draw(dim)
                 change(rows, dim)
                 document = json.loads(run(rows, dim, words + ["gradient=" + gradient]).stdout)
