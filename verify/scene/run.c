@@ -7,12 +7,12 @@
 #include <string.h>
 #include <sys/resource.h>
 
-#include "functional.h"
 #include "growth.h"
 #include "initial.h"
 #include "initial_create.h"
 #include "plain.h"
 #include "problem_prepare.h"
+#include "run_measure.h"
 
 enum status run_prepare(struct run_settings *settings, const char *case_name, int n,
                         char *const *arguments, struct error *error)
@@ -211,157 +211,6 @@ static enum status keep_snapshot(struct run_result *result, const struct snapsho
     return STATUS_OK;
 }
 
-/* What errors are measured of, n numbers each. */
-struct comparison {
-    double *exact[FIELDS];            /* of the fields at the particles; velocity: along x */
-    double *place;                    /* 0 in the window, 2 beside it, NaN nowhere */
-    double *none;                     /* 0 */
-    double *jump;                     /* |v - exact v| */
-    double *azimuthal[2], *radial[2]; /* measured, exact */
-    double *storage;
-};
-
-static bool compare(struct comparison *of, const struct run_result *result)
-{
-    const struct prepared *p = &result->problem;
-    const struct snapshot *s = &result->snapshot;
-    double *next = of->storage = calloc((FIELDS + 7) * s->n, sizeof *next);
-    double **const arrays[] = {&of->place,        &of->none,      &of->jump,     &of->azimuthal[0],
-                               &of->azimuthal[1], &of->radial[0], &of->radial[1]};
-    if (!next) return false;
-    for (int f = 0; f < FIELDS; f++, next += s->n) of->exact[f] = next;
-    for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++, next += s->n) *arrays[k] = next;
-    for (size_t i = 0; i < s->n; i++) {
-        struct problem_state state;
-        double x[3] = {0}, place[3], v[3], exact_v[3] = {0}, squares = 0, nowhere = 0;
-        for (int d = 0; d < p->domain.dim; d++) x[d] = s->x[d][i], nowhere += 0 * x[d];
-        problem_sample(p, x, result->time, &state);
-        for (int f = 0; f < FIELDS; f++) of->exact[f][i] = problem_field(&state, (enum field)f);
-        problem_place(p, s, i, place);
-        problem_velocity(p, s, i, v);
-        for (int d = 0; d < p->domain.dim; d++) {
-            exact_v[d] = state.v[d] - p->boost[d];
-            squares += (v[d] - exact_v[d]) * (v[d] - exact_v[d]);
-        }
-        of->place[i] = nowhere + (window_contains(&p->window, place) ? 0 : 2);
-        of->jump[i] = sqrt(squares);
-        if (!problem_is_circular(p)) continue;
-        problem_circular(p, place, v, &of->azimuthal[0][i], &of->radial[0][i]);
-        problem_circular(p, place, exact_v, &of->azimuthal[1][i], &of->radial[1][i]);
-    }
-    return true;
-}
-
-/* Is a field nearer another one's exact values than its own? */
-static enum status suspect(struct run_result *result, const double *const *measured,
-                           const struct comparison *of, struct error *error)
-{
-    static const char *const names[] = {"density", "velocity", "pressure", "energy"};
-    const struct snapshot *s = &result->snapshot;
-    double *inside = malloc((2 * FIELDS + 1) * s->n * sizeof *inside); /* the window's particles */
-    double *volume = inside + 2 * FIELDS * s->n;
-    const double *value[FIELDS], *exact[FIELDS];
-    size_t n = 0;
-    if (!inside) return error_set(error, STATUS_ENVIRONMENT, "no memory for the errors");
-    for (size_t field = 0; field < FIELDS; field++) {
-        value[field] = inside + field * s->n;
-        exact[field] = inside + (FIELDS + field) * s->n;
-    }
-    for (size_t i = 0; i < s->n; i++) {
-        if (of->place[i] > 1) continue;
-        for (size_t field = 0; field < FIELDS; field++) {
-            inside[field * s->n + n] = measured[field][i];
-            inside[(FIELDS + field) * s->n + n] = of->exact[field][i];
-        }
-        volume[n++] = s->volume[i];
-    }
-    /* about a point-like explosion the energy a mass has grows without bound */
-    const size_t bounded = result->problem.problem->singular ? FIELD_INTERNAL_ENERGY : FIELDS;
-    suspicion_swapped(bounded, names, n, volume, value, exact, result->suspicion);
-    free(inside);
-    return STATUS_OK;
-}
-
-static const struct norms no_norms = {.l1 = (double)NAN,
-                                      .l2 = (double)NAN,
-                                      .linf = (double)NAN,
-                                      .particle_mean = (double)NAN,
-                                      .l1_cut = (double)NAN};
-
-/* On a line: also what bins and regions say. */
-static void measure_line(struct run_result *result, const double *const *measured,
-                         const struct comparison *of)
-{
-    const struct snapshot *s = &result->snapshot;
-    const double window[2] = {result->problem.window.lo[0], result->problem.window.hi[0]};
-    double means[NORM_BINS];
-    for (int field = 0; field < FIELDS; field++)
-        result->errors[field] =
-            norm_errors(s->n, s->x[0], window, s->volume, measured[field], of->exact[field]);
-    for (int field = 0; field < FIELDS; field++)
-        result->errors[field].l1_cut =
-            norm_l1_cut(s->n, s->x[0], window, domain_length(&result->problem.domain, 0), s->volume,
-                        measured[field], of->exact[field]);
-    problem_means(&result->problem, FIELD_DENSITY, result->time, NORM_BINS, means);
-    result->binned_density_l1 =
-        norm_binned_l1(s->n, s->x[0], window, s->volume, s->rho, NORM_BINS, means);
-}
-
-static void measure_cloud(struct run_result *result, const double *const *measured,
-                          const struct comparison *of)
-{
-    static const double window[2] = {-1, 1};
-    const struct snapshot *s = &result->snapshot;
-    for (int field = 0; field < FIELDS; field++) {
-        const bool vector = field == FIELD_VELOCITY;
-        result->errors[field] =
-            norm_errors(s->n, of->place, window, s->volume, vector ? of->jump : measured[field],
-                        vector ? of->none : of->exact[field]);
-    }
-    result->binned_density_l1 = (double)NAN;
-    if (!problem_is_circular(&result->problem)) return;
-    result->azimuthal =
-        norm_errors(s->n, of->place, window, s->volume, of->azimuthal[0], of->azimuthal[1]);
-    result->radial = norm_errors(s->n, of->place, window, s->volume, of->radial[0], of->radial[1]);
-}
-
-static enum status measure_errors(struct run_result *result, struct error *error)
-{
-    const struct snapshot *s = &result->snapshot;
-    const double *const measured[FIELDS] = {s->rho, s->v[0], s->P, s->u};
-    struct comparison of;
-    result->azimuthal = result->radial = no_norms;
-    if (result->problem.problem->fieldless) {
-        for (int field = 0; field < FIELDS; field++) result->errors[field] = no_norms;
-        result->binned_density_l1 = (double)NAN;
-        return STATUS_OK;
-    }
-    if (!compare(&of, result))
-        return error_set(error, STATUS_ENVIRONMENT, "no memory for the errors");
-    (result->problem.domain.dim == 1 ? measure_line : measure_cloud)(result, measured, &of);
-    const enum status status = suspect(result, measured, &of, error);
-    budget_measure(&result->problem, s, (const double *const *)of.exact, &result->budget);
-    free(of.storage);
-    return status;
-}
-
-static void measure_functionals(struct run_result *result)
-{
-    const struct prepared *p = &result->problem;
-    const struct growing *growing = p->problem->growing;
-    result->h = functional_window_mean(p, &result->snapshot, result->snapshot.h);
-    for (const struct functional *const *f = p->problem->functionals; *f; f++) {
-        if ((*f)->present && !(*f)->present(p)) continue;
-        result->functionals[result->functional_count++] = (struct run_functional){
-            .name = (*f)->name,
-            .value = (*f)->measure(p, &result->snapshot),
-            .exact = (*f)->exact ? (*f)->exact(p, result->time) : (double)NAN};
-    }
-    if (!growing) return;
-    result->functionals[result->functional_count++] =
-        (struct run_functional){growing->name, growth_rate(&result->growth), growing->rate(p)};
-}
-
 /* Sums at the end against t = 0. */
 static void measure_conservation(struct run_result *result, const struct conservation *start,
                                  const struct conservation *end)
@@ -399,10 +248,8 @@ static enum status broke_down_at_start(struct run_result *result, const struct e
 {
     result->status = STATUS_BROKE_DOWN;
     snprintf(result->message, sizeof result->message, "%s", reason->message);
-    result->binned_density_l1 = (double)NAN;
     result->mass = result->momentum = result->angular_momentum = result->energy = (double)NAN;
-    result->azimuthal = result->radial = no_norms;
-    for (int field = 0; field < FIELDS; field++) result->errors[field] = no_norms;
+    run_measure_nothing(result);
     return STATUS_OK;
 }
 
@@ -583,7 +430,7 @@ static enum status simulate(const struct run *run, struct run_result *result,
     }
     status = finish(result, &outcome, error);
     simulation_destroy(simulation); /* its memory serves for the errors */
-    return status ? status : measure_errors(result, error);
+    return status ? status : run_measure_errors(result, error);
 }
 
 static enum status simulate_plainly(const struct run *run, struct run_result *result,
@@ -599,7 +446,7 @@ static enum status simulate_plainly(const struct run *run, struct run_result *re
     plain_snapshot(&plain, &outcome.snapshot);
     const enum status status = finish(result, &outcome, error);
     plain_free(&plain);
-    return status ? status : measure_errors(result, error);
+    return status ? status : run_measure_errors(result, error);
 }
 
 enum status run_execute(const struct run *run, struct run_result *result, struct error *error)
@@ -613,7 +460,7 @@ enum status run_execute(const struct run *run, struct run_result *result, struct
         run_free(result);
         return status;
     }
-    measure_functionals(result);
+    run_measure_functionals(result);
     result->regularity = regularity_of(&result->problem, &result->scheme.kernel, &result->snapshot);
     result->peak_rss = peak_rss();
     if (result->status == STATUS_BROKE_DOWN)
@@ -631,11 +478,11 @@ enum status run_judge(const struct run *run, const struct snapshot *snapshot,
     result->n = snapshot->n;
     enum status status = problem_check_time(&run->problem, snapshot->time, error);
     if (!status) status = keep_snapshot(result, snapshot, error);
-    if (!status) status = measure_errors(result, error);
+    if (!status) status = run_measure_errors(result, error);
     if (status)
         run_free(result);
     else
-        measure_functionals(result);
+        run_measure_functionals(result);
     return status;
 }
 
