@@ -31,14 +31,12 @@ static void begin_layout(struct lanes_layout *layout, enum lanes_geometry geomet
 static void lay_out_force(struct lanes_layout *force, const struct cells_method *method)
 {
     const int dim = method->box.dim, symmetric = dim * (dim + 1) / 2;
-    const bool viscous = method->viscosity != VISCOSITY_NONE,
-               dissipates = viscous || method->conductivity > 0,
+    const bool dissipates = method->viscosity != VISCOSITY_NONE || method->conductivity > 0,
                lagrangian = method->formulation == FORMULATION_LAGRANGIAN;
     begin_layout(force, LANES_CLOSING, dim);
     if (dissipates || lagrangian) add_field(force, FIELD_WEIGHT, 1);
     add_field(force, FIELD_VELOCITY, dim);
     add_field(force, FIELD_H_INVERSE, 1);
-    if (viscous && !method->signal_form) add_field(force, FIELD_H, 1);
     add_numbers(force, FIELD_VOLUME, FIELD_SOUND);
     if (dissipates) add_field(force, FIELD_DENSITY, 1);
     if (method->viscosity == VISCOSITY_TIME_DEPENDENT) add_field(force, FIELD_ALPHA, 1);

@@ -18,9 +18,7 @@ static void fill_sentinel(struct cells *cells)
     for (int f = cells->method.box.dim; f < layout->size; f++) record[f] = 0;
     /* far beyond its own width, too; a density keeps quotients finite, and its matrix is as good as
      * any */
-    const double h_inverse = 16 / (record[0] > 0 ? record[0] : 1);
-    record[at[FIELD_H_INVERSE]] = h_inverse;
-    if (at[FIELD_H] >= 0) record[at[FIELD_H]] = 1 / h_inverse;
+    record[at[FIELD_H_INVERSE]] = 16 / (record[0] > 0 ? record[0] : 1);
     if (at[FIELD_DENSITY] >= 0) record[at[FIELD_DENSITY]] = 1;
     if (at[FIELD_MATRIX] >= 0) record[at[FIELD_MATRIX]] = 1;
 }
@@ -53,7 +51,6 @@ ALWAYS_INLINE void fill_record(int dim, const struct cells *cells,
     for (int a = 0; a < dim; a++)
         record[at[FIELD_VELOCITY] + a] = lanes_sign(mirrored, a) * fields->v[a][i];
     record[at[FIELD_H_INVERSE]] = fields->h_inverse[i];
-    if (at[FIELD_H] >= 0) record[at[FIELD_H]] = 1 / fields->h_inverse[i];
     record[at[FIELD_VOLUME]] = fields->V[i];
     record[at[FIELD_PRESSURE]] = fields->P[i];
     record[at[FIELD_SOUND]] = fields->c[i];

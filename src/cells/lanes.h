@@ -17,8 +17,8 @@ enum lanes_field {
     FIELD_ENERGY,    /* density with the energy element: U */
     FIELD_VELOCITY,  /* vx vy (vz) */
     FIELD_H_INVERSE, /* 1/h */
-    FIELD_H,
-    FIELD_VOLUME, /* V */
+    FIELD_H,         /* of the matrix pass alone */
+    FIELD_VOLUME,    /* V */
     FIELD_PRESSURE,
     FIELD_SOUND,      /* c */
     FIELD_DENSITY,    /* rho */
