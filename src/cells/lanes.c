@@ -143,7 +143,7 @@ int lanes_gather(const struct cells *cells, const struct lanes_layout *layout, s
 }
 
 /* Bytes of lanes that the first-level cache holds beside records. */
-enum { LANES_BYTES = 40 << 10 };
+enum { LANES_BYTES = 24 << 10 };
 
 int lanes_gather_part(const struct cells *cells, const struct lanes_layout *layout, size_t slot,
                       int from, const struct lanes *lanes)
