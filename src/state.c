@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "cube_root.h"
 #include "stamp.h"
 
 /* Stamped functions are static here, and the public ones call them: clang 14 gives the dispatched
@@ -59,7 +60,7 @@ ALWAYS_INLINE double power(double x, int dim)
 
 ALWAYS_INLINE double root(double x, int dim)
 {
-    return dim == 1 ? x : dim == 2 ? sqrt(x) : cbrt(x);
+    return dim == 1 ? x : dim == 2 ? sqrt(x) : cube_root(x);
 }
 
 /* The slope of eq. 3.10 near the existence limit of h, where Newton's step has no length. */
@@ -97,7 +98,7 @@ ALWAYS_INLINE void close_body(const struct particles *particles, ptrdiff_t first
         } else {
             V[i] = m[i] * (slope * share);
             rho[i] = sum;
-            h[i] = gas->eta * root(V[i], dim);
+            h[i] = dim == 1 ? gas->eta * V[i] : 1 / asked; /* the same */
             P[i] = gamma_1 * sum * u * largest(0.5, 1 + follow * (1 - power(h[i] * s, dim)));
         }
         c[i] = sqrt(gas->gamma * gamma_1 * u);

@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cube_root.h"
 #include "gather.h"
 #include "grid.h"
 #include "near.h"
@@ -170,12 +171,26 @@ static void gathers(void **state)
     }
 }
 
+/* Of every size that a density may have in some units. */
+static void cube_roots(void **state)
+{
+    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
+    (void)state;
+    for (int k = 0; k < 20000; k++) {
+        const double x = ldexp(1 + gsl_rng_uniform(rng), k % 2000 - 1000);
+        near_relative(cube_root(x), (double)cbrtl(x), 4.5e-16); /* cbrt errs by more */
+    }
+    assert_true(isnan(cube_root(NAN)));
+    gsl_rng_free(rng);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(lists_hold_every_pair),
         cmocka_unit_test(refuses),
         cmocka_unit_test(gathers),
+        cmocka_unit_test(cube_roots),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
