@@ -169,6 +169,7 @@ static enum status lay_cells(struct grid *grid, size_t n, const double *radius, 
 /* Into the box: round-off may end at the upper edge, which is the lower one. */
 static double wrapped(double x, double lo, double side)
 {
+    if (x >= lo && x < lo + side) return x; /* nearly everybody: no division, no call */
     const double y = x - side * floor((x - lo) / side);
     return y < lo + side ? y : lo;
 }
@@ -391,7 +392,7 @@ const struct grid_list *grid_lists(const struct grid *grid)
 
 double grid_side(const struct grid *grid, int axis)
 {
-    return axis < grid->box.dim && grid->box.periodic[axis] ? grid->side[axis] : 0;
+    return grid_wraps(grid, axis) ? grid->side[axis] : 0;
 }
 
 int grid_longest(const struct grid *grid)

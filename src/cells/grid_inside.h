@@ -67,6 +67,11 @@ struct grid {
     find_loop *find;
 };
 
+static inline bool grid_wraps(const struct grid *grid, int axis)
+{
+    return axis < grid->box.dim && grid->box.periodic[axis];
+}
+
 static inline size_t grid_cell_at(const struct grid *grid, const ptrdiff_t c[3])
 {
     return (size_t)grid->column[c[1] + grid->cells[1] * c[2]] * (size_t)grid->cells[0] +
@@ -102,7 +107,7 @@ static inline struct look grid_look_along(const struct grid *grid, int axis, ptr
 {
     const ptrdiff_t k = grid_cells_within(grid, axis, radius), cells = grid->cells[axis];
     struct look look = {at - k, 2 * k + 1, false, false};
-    if (axis < grid->box.dim && grid->box.periodic[axis]) {
+    if (grid_wraps(grid, axis)) {
         look.all = look.count >= cells;
         look.across = look.all || look.from < 0 || at + k >= cells;
         if (look.all) look = (struct look){0, cells, true, true};

@@ -269,7 +269,7 @@ static int search_cell(struct grid *grid, const ptrdiff_t c[3], struct candidate
     if (!any) return 0;
     float side[3];
     for (int a = 0; a < 3; a++)
-        side[a] = grid_side(grid, a) > 0 ? (float)(grid->side[a] / grid->unit) : HUGE_VALF;
+        side[a] = grid_wraps(grid, a) ? (float)(grid->side[a] / grid->unit) : HUGE_VALF;
     const size_t count = find_candidates(grid, c, &region, candidates);
     if (count == SIZE_MAX) return -1;
     int longest = 0;
