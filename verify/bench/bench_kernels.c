@@ -22,7 +22,7 @@ enum variant { STAMPED, UNSTAMPED, LIMIT };
 
 /* One measurement: what a row's column is made from. */
 struct job {
-    enum { JOB_NONE, JOB_LOOPS, JOB_CELLS, JOB_STEP, JOB_OPERATOR, JOB_LIMIT } kind;
+    enum { JOB_NONE, JOB_LOOPS, JOB_CELLS, JOB_STEP, JOB_OPERATOR, JOB_LIMIT, JOB_NEAR } kind;
     double pairs, particles; /* of the work done once */
     struct bench_loops loops;
     struct bench_cells cells;
@@ -33,6 +33,9 @@ struct job {
     double *gradient[3]; /* into the bench's scratch */
     bench_limit_loop *limit;
     const struct bench_neighbours *list;
+    const float *places[3]; /* LIST of them */
+    int dim;
+    size_t near; /* of them that were found, lest the work be left out */
 };
 
 struct bench {
@@ -44,6 +47,7 @@ struct bench {
     double *fields[KERNEL_DIM_MAX], *scratch;
     struct bench_neighbours lists[KERNEL_DIM_MAX];
     double *list_memory;
+    float places[3][LIST]; /* in cells around the ball of radius 1 */
     struct bench_kernels *result;
 };
 
@@ -81,6 +85,8 @@ static enum status work(void *context, uint64_t times, struct clock_taken *taken
         uint64_t pairs;
         if (job->kind == JOB_LIMIT) {
             job->limit(job->settings.kernel, job->list, sums);
+        } else if (job->kind == JOB_NEAR) {
+            job->near += bench_limit_near(job->dim, LIST, job->places);
         } else {
             status = operator_apply(&job->settings, &job->cloud->cloud, 1, &job->field,
                                     job->gradient, NULL, &pairs, error);
@@ -142,6 +148,9 @@ static enum status make_clouds(struct bench *bench, struct error *error)
         make_list(bench, dim, rng);
         if (n > most) most = n;
     }
+    for (int a = 0; a < 3; a++)
+        for (size_t m = 0; m < LIST; m++)
+            bench->places[a][m] = (float)(3 * gsl_rng_uniform(rng) - 1.5);
     bench->scratch = malloc(3 * most * sizeof(double));
     if (!bench->scratch) goto no_memory;
     for (size_t k = 0; k < bench->row_max * VARIANTS; k++)
@@ -250,7 +259,7 @@ static const struct {
     const char *what;
     unsigned passes;
     bool ia;
-    const char *limit; /* the operator, and how often */
+    const char *limit; /* the operator, and how often; NULL: of the search, or of all parts */
     double times;
 } cells_rows[CELLS_ROWS] = {
     {"evaluation standard", CELLS_EVALUATION, false, NULL, 0},
@@ -301,6 +310,12 @@ static enum status add_cells(struct bench *bench, const struct kernel *kernel, i
         }
         if (cells_rows[r].limit)
             set_limit(bench, &job[LIMIT], kernel, cells_rows[r].limit, dim, cells_rows[r].times);
+        if (cells_rows[r].passes == CELLS_SEARCH)
+            job[LIMIT] =
+                (struct job){.kind = JOB_NEAR,
+                             .pairs = LIST / bench_limit_candidates(dim),
+                             .places = {bench->places[0], bench->places[1], bench->places[2]},
+                             .dim = dim};
     }
     return STATUS_OK;
 }
@@ -394,6 +409,21 @@ static void clean_up(struct bench *bench)
     free(bench->jobs), free(bench->scratch), free(bench->list_memory), free(bench->kernels);
 }
 
+/* The limit of an evaluation is that of its parts; with ia, too, it searches and sums densities. */
+static void add_limits(struct bench_kernels *result)
+{
+    double parts = 0;
+    for (size_t r = 0; r < result->count; r++) {
+        const struct bench_kernel_row *row = &result->rows[r];
+        if (row->whole == r) continue;
+        double *limit = &result->rows[row->whole].limit.ns_per_pair;
+        const bool first = row->whole + 1 == r;
+        if (first) *limit = strcmp(row->what, "search") == 0 ? 0 : parts;
+        *limit += row->limit.ns_per_pair;
+        if (strcmp(row->what, "density") == 0) parts = *limit;
+    }
+}
+
 static struct bench_cost cost_of(const struct job *job, const struct bench_subject *subject)
 {
     if (job->kind == JOB_NONE || subject->failure.status)
@@ -434,6 +464,7 @@ enum status bench_kernels_measure(const struct sweep *sweep, const struct bench_
         if (row->whole < r)
             row->share = row->ns_per_particle / result->rows[row->whole].ns_per_particle;
     }
+    add_limits(result);
 end:
     clean_up(&bench);
     free(subjects);

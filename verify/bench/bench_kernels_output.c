@@ -57,11 +57,12 @@ void bench_kernels_print(const struct bench_kernels *result, const struct table_
         "one by one. In 2D and 3D evaluation: search and\nsums of 4096 jittered particles, h of "
         "the "
         "kernel's default; share: of the evaluation with its gradient (search\nand density: "
-        "standard); limit of density: arithmetic of the operator standard, of the matrix: of\n"
-        "linear_exact, of the force: twice that of standard. Others: gradient operators on\n4096 "
-        "jittered points, search included, "
-        "h = 2.4 spacings; their limit is the same arithmetic on one\ncontiguous array. "
-        "unstamped: every choice and the kernel behind a pointer. error: rms of a smooth\n"
+        "standard); limit of search: distances of all points in cells of that width; of density: "
+        "arithmetic of the\noperator standard, of the matrix: of linear_exact, of the force: twice "
+        "that of standard; of the evaluation:\nthe sum. Others: gradient operators on 4096 "
+        "jittered points, search included, h = 2.4 "
+        "spacings;\ntheir limit is the same arithmetic on one contiguous array. "
+        "unstamped: every choice and the kernel behind\na pointer. error: rms of a smooth "
         "field's gradient error, times h/max|f|.%s\n",
         style->faint, BENCH_LOOPS_PARTICLES, style->end);
 }

@@ -86,6 +86,33 @@ bench_limit_loop *bench_limit_find(const struct kernel *kernel, const struct ope
     return stamp < 0 ? NULL : loops[stamp][form->pair_vector][dim - 1];
 }
 
+CLONES static size_t near(int dim, size_t n, const float *restrict x, const float *restrict y,
+                          const float *restrict z)
+{
+    enum { LANES = 64 };
+    int32_t found[LANES] = {0};
+    size_t sum = 0;
+    for (size_t begin = 0; begin < n; begin += LANES)
+#pragma omp simd
+        for (size_t k = 0; k < LANES; k++) {
+            const size_t m = begin + k;
+            const float plane = x[m] * x[m] + y[m] * y[m];
+            found[k] += (dim == 3 ? plane + z[m] * z[m] : plane) < 1;
+        }
+    for (size_t k = 0; k < LANES; k++) sum += (size_t)found[k];
+    return sum;
+}
+
+size_t bench_limit_near(int dim, size_t n, const float *const x[3])
+{
+    return dim == 3 ? near(3, n, x[0], x[1], x[2]) : near(2, n, x[0], x[1], x[1]);
+}
+
+double bench_limit_candidates(int dim)
+{
+    return dim == 3 ? 27 / (4 * M_PI / 3) : 9 / M_PI;
+}
+
 bool bench_limit_gradient(const struct kernel *kernel, const struct operator_form *form, int dim,
                           const double *sums, double f_0, double h, double *gradient)
 {

@@ -23,6 +23,13 @@ enum { BENCH_LIMIT_SUMS = 32 };
 bench_limit_loop *bench_limit_find(const struct kernel *kernel, const struct operator_form *form,
                                    int dim);
 
+/* How many of n places, n a multiple of 64, lie nearer to 0 than 1: what a search cannot do without
+ * once its candidates lie side by side, in single precision. dim is 2 or 3. */
+size_t bench_limit_near(int dim, size_t n, const float *const x[3]);
+
+/* Candidates that it has for each neighbour, where it looks through cells as wide as the radius. */
+double bench_limit_candidates(int dim);
+
 /* The gradient at the point from the sums; f_0: the field there, h its support radius. False where
  * the matrix has no inverse. */
 bool bench_limit_gradient(const struct kernel *kernel, const struct operator_form *form, int dim,

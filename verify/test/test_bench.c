@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <cmocka.h>
+#include <gsl/gsl_rng.h>
 
 #include "bench.h"
 #include "bench_cells.h"
@@ -208,6 +209,32 @@ static void test_limit_does_the_same_arithmetic(void **state)
                 compare_limit(&kernel, (const struct operator_form *)operator_family.members[o],
                               dim);
     }
+}
+
+/* Who is near, by the plain definition, and that both kinds are there. */
+static void test_limit_of_the_search(void **state)
+{
+    enum { PLACES = 192 };
+    float x[3][PLACES];
+    const float *const at[3] = {x[0], x[1], x[2]};
+    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
+    (void)state;
+    for (int a = 0; a < 3; a++)
+        for (int k = 0; k < PLACES; k++) x[a][k] = (float)(2 * gsl_rng_uniform(rng) - 1);
+    for (int dim = 2; dim <= 3; dim++) {
+        size_t near = 0;
+        for (int k = 0; k < PLACES; k++) {
+            double r2 = 0;
+            for (int a = 0; a < dim; a++) r2 += (double)x[a][k] * (double)x[a][k];
+            near += sqrt(r2) < 1;
+        }
+        assert_true(near > PLACES / 3 && near < PLACES - 10);
+        assert_int_equal(bench_limit_near(dim, PLACES, at), near);
+    }
+    /* a ball takes pi/6 of its cube, three times as wide are 27 of them */
+    near_relative(bench_limit_candidates(3) * M_PI / 6, 27. / 8, 1e-14);
+    near_relative(bench_limit_candidates(2) * M_PI / 4, 9. / 4, 1e-14);
+    gsl_rng_free(rng);
 }
 
 /* However often the loops are repeated, they work on ordinary numbers: no overflow, nothing that
@@ -628,6 +655,7 @@ int main(void)
         cmocka_unit_test(test_front),
         cmocka_unit_test(test_cost_of_an_error),
         cmocka_unit_test(test_limit_does_the_same_arithmetic),
+        cmocka_unit_test(test_limit_of_the_search),
         cmocka_unit_test(test_loops_stand_still),
         cmocka_unit_test(test_plain_is_the_solver),
         cmocka_unit_test(test_plain_refuses_other_schemes),
