@@ -17,7 +17,7 @@ struct integrator {
     int order;
     int evaluations;    /* of the rates, a step */
     double cfl;         /* default of the key cfl, in support radii; see the member's comment */
-    double cloud_cfl;   /* the same in 2D and 3D; 0: cfl */
+    double cloud_cfl;   /* the same in 2D and 3D, unless viscosity takes the form mu; 0: cfl */
     bool cfl_per_width; /* the default is cfl / eta: in particle spacings */
     /* Density sums stand evenly between steps, and energy is not kept to a high order: h may be
      * predicted, and total energy is the one to integrate (see scheme_default). */

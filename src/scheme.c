@@ -58,9 +58,13 @@ void scheme_default(struct scheme *scheme, const struct scheme_open *open, int d
         own && standard && kernel->predicted.cfl > 0 && scheme->eta == kernel->default_eta &&
         scheme->viscosity != VISCOSITY_NONE && most_alpha <= kernel->predicted.alpha &&
         scheme->h_method == H_PREDICTED && scheme->volume_element == VOLUME_MASS;
-    scheme->cfl = long_steps                             ? kernel->predicted.cfl
-                  : dim > 1 && integrator->cloud_cfl > 0 ? integrator->cloud_cfl
-                                                         : integrator->cfl;
+    /* mu grows as h/r where particles close: in a strong shock (sedov_2d) longer steps would leave
+     * cold gas ahead of it without internal energy */
+    const bool bounded = scheme->viscosity == VISCOSITY_NONE ||
+                         scheme->viscosity_form == VISCOSITY_FORM_SIGNAL;
+    scheme->cfl = long_steps                                        ? kernel->predicted.cfl
+                  : dim > 1 && bounded && integrator->cloud_cfl > 0 ? integrator->cloud_cfl
+                                                                    : integrator->cfl;
     if (integrator->cfl_per_width) scheme->cfl /= scheme->eta;
 }
 

@@ -264,8 +264,8 @@ static const char *outcome_of(const json_t *entry)
     return json_string_value(json_object_get(entry, "outcome"));
 }
 
-/* Something that no cell may be: a prediction that fails, a fault nobody noticed, or round-off that
- * the default scheme lets grow where it is not known to. */
+/* Something that no cell may be: a prediction that fails, a fault nobody noticed, round-off that the
+ * default scheme lets grow where it is not known to, or a breakdown where all have to survive. */
 static bool is_wrong(const struct stress_cell *cell, const json_t *entry)
 {
     const char *outcome = outcome_of(entry),
@@ -274,7 +274,8 @@ static bool is_wrong(const struct stress_cell *cell, const json_t *entry)
     const bool theory = kind == STRESS_LIMIT || kind == STRESS_STEP || kind == STRESS_LATTICE ||
                         kind == STRESS_CLOUD_STEP;
     const bool amplified = kind == STRESS_AMPLIFY && is_scheme(cell, 0) && !cell->group->known;
-    return strncmp(reason, "silent NaN", 10) == 0 || strncmp(reason, "crash", 5) == 0 ||
+    const bool lost = cell->group->survives && strcmp(outcome, "broke_down") == 0;
+    return lost || strncmp(reason, "silent NaN", 10) == 0 || strncmp(reason, "crash", 5) == 0 ||
            strcmp(outcome, "refused") == 0 || ((theory || amplified) && strcmp(outcome, "ok") != 0);
 }
 

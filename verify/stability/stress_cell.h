@@ -40,6 +40,7 @@ struct stress_group {
     const struct stress_entry *(*made)(void); /* what makes them */
     double bound;                             /* of what is measured: above it is inaccurate */
     const char *known; /* STRESS_AMPLIFY: why the default scheme may miss it; NULL: it may not */
+    bool survives;     /* no cell may break down */
 };
 
 extern const struct stress_group stress_groups[];

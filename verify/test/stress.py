@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""stress.py SPHPROOF [GROUP ...]: the stress test of these groups (or what round-off comes to, and
+"""stress.py SPHPROOF [GROUP ...]: the stress test of these groups (or what round-off comes to, blasts, and
 random tubes) holds what it promises.
 
 Every cell has an outcome, and a reason unless it is ok; the default scheme survives what the seed
@@ -43,7 +43,7 @@ def check_again(program, cell):
 
 
 def main():
-    program, groups = sys.argv[1], sys.argv[2:] or ["amplification", "tubes"]
+    program, groups = sys.argv[1], sys.argv[2:] or ["amplification", "tubes", "blasts"]
     document = stress(program, groups)
     cells = document["cells"]
     runs = [c for c in cells if c["command"].startswith("sphproof run")]

@@ -111,10 +111,12 @@ static void judge(const struct run *run, int dim)
     const bool far = midpoint && line && quadratic && standard && s->h_method == H_PREDICTED &&
                      s->volume_element == VOLUME_MASS && s->viscosity != VISCOSITY_NONE &&
                      most <= 0.75;
+    const bool mu = midpoint && !line && s->viscosity != VISCOSITY_NONE &&
+                    s->viscosity_form == VISCOSITY_FORM_MU;
     is(s->eta, eta, run, "eta");
     is(s->alpha, alpha, run, "alpha");
     is(s->beta, 2 * alpha, run, "beta");
-    is(s->cfl, far ? 1.1 / eta : value_of(i->cell[line ? 3 : 4], eta, 0), run, "cfl");
+    is(s->cfl, far ? 1.1 / eta : value_of(i->cell[line || mu ? 3 : 4], eta, 0), run, "cfl");
     assert_int_equal(s->energy, midpoint ? ENERGY_TOTAL : ENERGY_INTERNAL);
     assert_int_equal(s->h_method, midpoint && vanilla ? H_PREDICTED : H_NEWTON);
     assert_int_equal(s->pair_width, !midpoint || !vanilla                     ? PAIR_WIDTH_MEAN
