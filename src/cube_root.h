@@ -10,7 +10,7 @@
 
 /* x^(1/3) to one unit in the last place; x > 0, neither subnormal nor within a factor of 4 of the
  * largest double. The upper half of a double's bits is nearly a logarithm: a third of it, shifted,
- * is good to 1/32 (FreeBSD, s_cbrt.c). Two steps of Halley's method and one of Newton's follow.
+ * is good to 1/32 (as in FreeBSD). Two steps of Halley's method and one of Newton's follow.
  * 2^52 turns an integer in the lower bits into a number, and back. */
 ALWAYS_INLINE double cube_root(double x)
 {

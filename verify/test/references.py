@@ -19,7 +19,7 @@ TEXTS = (".c", ".h", ".def", ".py", ".sh", ".md", ".txt", ".ini", ".build", ".op
 SKIP = {os.path.join("reports", "out"), os.path.join("verify", "fuzz", "corpus")}
 # made by the build or a run, or given by the system, or an example's file that the user has
 FOREIGN = {"config.h", "version.h", "cmocka.h", "summary.md", "my_kernel.c", "file.c", "cloud.csv",
-           "particles.csv", "theirs.csv", "mine.csv", "out.csv", "code.sh"}
+           "particles.csv", "theirs.csv", "mine.csv", "out.csv", "kh.csv", "code.sh"}
 
 COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.S)
 # a file called *.c or *.h, or a path; capitals are placeholders (NAME.h, F.csv)
