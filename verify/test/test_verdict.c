@@ -141,6 +141,43 @@ static void alone(void **state)
     }
 }
 
+/* A check is told by the figure that is farthest beyond its bound, in units of it; no number is
+ * farther than any. And passed, failed and skipped ones are different numbers. */
+static void farthest(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *last, *told;
+    } rows[] = {{"'value': 0.5, 'bound': 0.125", "c"},
+                {"'value': 0.5, 'bound': 0.5", "b"},
+                {"'value': 'nan', 'bound': 1", "c"},
+                {"'value': 1, 'bound': 0", "c"}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        char text[1024];
+        snprintf(text, sizeof text,
+                 "{'verify': {'checks': ["
+                 "{'group': 'g', 'name': 'n', 'subject': 'a', 'status': 'pass'},"
+                 "{'group': 'g', 'name': 'n', 'subject': 'b', 'status': 'fail', 'value': 3, "
+                 "'bound': 1}, {'group': 'g', 'name': 'n', 'subject': 'c', 'status': 'fail', %s}]},"
+                 "'faults': {'faults': [{'status': 'pass'}, {'status': 'fail'}, {'status': 'fail'},"
+                 "{'status': 'skip'}]}}",
+                 rows[k].last);
+        for (char *c = text; *c; c++)
+            if (*c == '\'') *c = '"';
+        json_t *results = json_loads(text, 0, NULL);
+        assert_non_null(results);
+        json_t *made = verdict_make(results);
+        const json_t *first = json_array_get(json_object_get(made, "failures"), 0);
+        assert_string_equal(json_string_value(json_object_get(first, "subject")), rows[k].told);
+        assert_int_equal(json_integer_value(json_object_get(made, "figures_passed")), 1);
+        assert_int_equal(json_integer_value(json_object_get(made, "figures_failed")), 2);
+        assert_int_equal(json_integer_value(json_object_get(made, "faults_right")), 1);
+        assert_int_equal(json_integer_value(json_object_get(made, "faults")), 3);
+        json_decref(made);
+        json_decref(results);
+    }
+}
+
 /* A long subject is cut at the end of a word, whose comma goes as well. */
 static void cut(void **state)
 {
@@ -176,6 +213,7 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(verdict),      cmocka_unit_test(junit), cmocka_unit_test(summary),
         cmocka_unit_test(long_summary), cmocka_unit_test(alone), cmocka_unit_test(cut),
+        cmocka_unit_test(farthest),
     };
     folder = argc > 1 ? argv[1] : "";
     return cmocka_run_group_tests(tests, NULL, NULL);
