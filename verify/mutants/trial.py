@@ -20,6 +20,7 @@ import time
 
 LEAST = 3  # so many tests are tried on a mutant, however long they take
 START = 0.03  # CPU-s: of a process
+ROUNDS = (0.5, 4, float("inf"))  # CPU-s of a test, at most: what is cheap is tried on every mutant first
 
 
 class Unit:
@@ -177,6 +178,18 @@ class Table:
         own = os.path.join(self.work, "%%s%d%s" % (worker, self.shard))
         return (self.build, own % "worker"), own % "scratch"
 
+    def copy_builds(self, workers):
+        for worker in range(workers):
+            copy_build(*self.place(worker)[0])
+
+    def in_rounds(self, units):
+        """Cheap units first, as far as it is known what they take; the cheapest notice most."""
+        rounds = [[] for _ in ROUNDS]
+        for unit in units:
+            seconds = self.units.get(unit.name, {}).get("seconds", ROUNDS[0])
+            rounds[next(i for i, most in enumerate(ROUNDS) if seconds <= most)].append(unit)
+        return [r for r in rounds if r]
+
     def knows(self, unit):
         return self.units.get(unit.name, {}).get("key") == [unit.key, self.drawn]
 
@@ -211,11 +224,9 @@ class Table:
                              "fails without any mutant: " + failed if failed else ""), flush=True)
                     self.write()
 
-        for worker in range(workers):
-            copy_build(*self.place(worker)[0])
         in_threads(work_off, workers)
         if not waiting.empty():
-            print("  %d tests are left out: half of the time was over" % waiting.qsize(), flush=True)
+            print("  %d tests are left out: half of the time that was left was over" % waiting.qsize(), flush=True)
         return [u for u in units if self.knows(u)]
 
     def sound(self, unit, place, scratch):
@@ -235,29 +246,33 @@ class Table:
 
 
 class Judge:
-    def __init__(self, units, table, record, patience):
-        self.table, self.patience = table, patience
-        self.units = {u.name: u for u in units if not table.units[u.name]["failed"]}
+    def __init__(self, table, record, patience):
+        self.table, self.patience, self.units, self.breadth = table, patience, {}, {}
         self.differs, self.reached = collections.defaultdict(set), collections.defaultdict(set)
-        self.breadth = {}
-        for name in self.units:
-            entry = table.units[name]
-            for number in entry["differs"]:
-                self.differs[number].add(name)
-            for number in entry["reached"]:
-                self.reached[number].add(name)
-            self.breadth[name] = 1 + len(entry["reached"])
         self.learnt, self.lock = collections.defaultdict(lambda: [0, 0]), threading.Lock()
         for entry in record.values():
             self.learn(entry)
 
+    def admit(self, units):
+        """Further units, of which the table knows what they come past."""
+        for unit in units:
+            entry, name = self.table.units[unit.name], unit.name
+            if entry["failed"]:
+                continue
+            self.units[name], self.breadth[name] = unit, 1 + len(entry["reached"])
+            for number in entry["differs"]:
+                self.differs[number].add(name)
+            for number in entry["reached"]:
+                self.reached[number].add(name)
+
     def learn(self, entry):
-        for name in entry["ran"]:
-            noticed = name == entry.get("by")
-            for where in (entry["file"], ""):
-                at = self.learnt[where, name]
-                at[0] += noticed
-                at[1] += 1
+        with self.lock:
+            for name in entry["ran"]:
+                noticed = name == entry.get("by")
+                for where in (entry["file"], ""):
+                    at = self.learnt[where, name]
+                    at[0] += noticed
+                    at[1] += 1
 
     def seconds(self, name):
         return self.table.units[name]["seconds"]
@@ -274,8 +289,8 @@ class Judge:
         return sorted(names, key=worth)
 
     def judge(self, mutant, near, before, worker):
-        """What became of it: a line of the record. before: the record's last, if any; what the same
-        units did not notice then need not be asked again."""
+        """What became of it: a line of the record. before: the record's last, or that of the round
+        before, if any; what the same units did not notice then need not be asked again."""
         reaching = near if mutant.constant else self.differs[mutant.number]
         place, scratch = self.table.place(worker)
         if not mutant.number:  # compiled in place
@@ -302,8 +317,7 @@ class Judge:
         entry = {"key": mutant.key, "file": mutant.file, "line": mutant.line, "change": mutant.change,
                  "outcome": "killed" if by else "survived", "by": by, "how": how, "ran": ran,
                  "why": "" if by else self.why(mutant, reaching, ran), "seconds": round(time.time() - began, 2)}
-        with self.lock:
-            self.learn(entry)
+        self.learn({**entry, "ran": [n for n in ran if n not in known]})
         return entry
 
     def built(self, unit):

@@ -135,6 +135,7 @@ def main(score, work):
     expect("a broken list is refused by its line", "equivalent.txt:4" in run(code=2)[0])
     os.remove(os.path.join(tree, "verify/mutants/equivalent.txt"))
 
+    in_rounds(expect, score)
     parts = [run("--shard", "%d/3" % i)[1]["chosen"] for i in (1, 2, 3)]
     expect("shards are all of it", sum(parts) == first["generated"])
     expect("a sample is no larger than asked for", run("--sample", "7", "--seed", "3")[1]["chosen"] == 7)
@@ -149,6 +150,43 @@ def main(score, work):
     for failure in failures:
         print("not so: " + failure)
     return 1 if failures else 0
+
+
+def in_rounds(expect, score):
+    """Cheap tests come first; what they notice is not asked again, and what survives is told once."""
+    import importlib.machinery
+    import types
+    import trial
+    table = trial.Table.__new__(trial.Table)
+    table.units = {"dear": {"seconds": 7}, "cheap": {"seconds": 0.2}, "middling": {"seconds": 1}}
+    names = ["dear", "cheap", "middling", "new"]
+    rounds = table.in_rounds([types.SimpleNamespace(name=n) for n in names])
+    expect("cheap tests, and new ones, come first, then what is dearer",
+           [[u.name for u in r] for r in rounds] == [["cheap", "new"], ["middling"], ["dear"]])
+    asked, told, admitted = [], [], []
+
+    def judge_one(m, near, before, worker):
+        asked.append((m.key, len(admitted)))
+        return {"outcome": "killed" if m.key in admitted else "survived"}
+
+    table = types.SimpleNamespace(copy_builds=lambda workers: None, find=lambda units, workers, over: units)
+    judge = types.SimpleNamespace(table=table, admit=admitted.extend, judge=judge_one)
+
+    class Mutant:
+        def __init__(self, key):
+            self.key, self.file = key, "f"
+
+    mutants = [Mutant(k) for k in ("a", "b", "c")]
+    command = importlib.machinery.SourceFileLoader("score_command", score).load_module()  # its name has no suffix
+    command.try_all(mutants, [["a"], ["b"]], judge, lambda: {"f": set()}, {},
+                    lambda m, entry: told.append((m.key, entry["outcome"])), 1, lambda: float("inf"))
+    expect("what the first round notices is not asked in the second: %s" % asked,
+           asked == [("a", 1), ("b", 1), ("c", 1), ("b", 2), ("c", 2)])
+    expect("each is told once: %s" % told, told == [("a", "killed"), ("b", "killed"), ("c", "survived")])
+    left, told[:] = iter([9, 9, 9, -1] + [-1] * 99), []
+    command.try_all(mutants, [["x"], ["y"]], judge, lambda: {"f": set()}, {},
+                    lambda m, entry: told.append((m.key, entry["outcome"])), 1, lambda: next(left))
+    expect("when the time is over, those that were asked are told: %s" % told, 1 <= len(told) < 3)
 
 
 def write(path, text):

@@ -14,6 +14,7 @@
 #include "near.h"
 #include "norm.h"
 #include "order.h"
+#include "suspicion.h"
 #include "worst.h"
 
 static void test_norms_by_hand(void **state)
@@ -258,7 +259,7 @@ static void test_order_curvature(void **state)
     const double error[] = {exp(5 + e), exp(4 - e), exp(3 - e), exp(2 + e)};
     for (int more = 0; more < 2; more++) {
         /* chi^2/2 = 4 e^2/(2 s^2) */
-        const double s2 = 2 * e * e / (limit * (more ? 1.001 : 0.999));
+        const double s2 = 2 * e * e / (limit * (more ? 1 + 5e-8 : 1 - 5e-8));
         const double variance[] = {s2, s2, s2, s2};
         struct order_fit fit;
         assert_int_equal(
@@ -407,6 +408,174 @@ static void test_richardson_exact(void **state)
     }
 }
 
+/* What is nowhere makes every norm no number, wherever it stands; what is exact has none but 0;
+ * what lies outside of the window counts for nothing, even where it has no value. */
+static void test_norms_at_their_limits(void **state)
+{
+    (void)state;
+    const double window[] = {0, 2}, volume[] = {0.5, 0.5, 0.5}, exact[] = {3, 4, 5};
+    struct norms norms = norm_errors(2, (double[]){0.5, 1}, window, volume, exact, exact);
+    assert_true(norms.l1 == 0 && norms.l2 == 0 && norms.linf == 0 && norms.particle_mean == 0);
+    norms = norm_errors(2, (double[]){0.5, 1}, window, volume, (double[]){4, 6}, exact);
+    near_relative(norms.l1, 1.5, 1e-15);
+    assert_true(norms.l1_cut == norms.l1);
+    norms = norm_errors(2, (double[]){0.5, HUGE_VAL}, window, volume, exact, exact);
+    assert_true(isnan(norms.l1) && isnan(norms.l2) && isnan(norms.linf));
+    norms = norm_errors(1, (double[]){0.5}, window, volume, (double[]){HUGE_VAL}, exact);
+    assert_true(isnan(norms.linf));
+    const double places[][3] = {{NAN, 1, 1}, {HUGE_VAL, 1, 1}, {0.5, NAN, 1}};
+    for (size_t k = 0; k < 3; k++)
+        assert_true(isnan(norm_l1_cut(2, places[k], window, 0, volume, exact, exact)));
+    const double x[] = {0.5, 1, 9};
+    assert_true(
+        isnan(norm_l1_cut(1, x, window, 0, (double[]){NAN, 1}, (double[]){4, 6, 7}, exact)));
+    near_relative(norm_l1_cut(3, x, window, 0, volume, (double[]){4, 6, NAN}, exact), 1.5, 1e-15);
+}
+
+static double scaled_step(const void *at, double x)
+{
+    return 1e-15 * step(at, x);
+}
+
+static void no_handler(const char *reason, const char *file, int line, int number)
+{
+    (void)reason, (void)file, (void)line, (void)number;
+}
+
+/* Bins in a window whose length is not 1; what lies on its upper end is in the last one. */
+static void test_bins_of_a_window(void **state)
+{
+    (void)state;
+    const double window[] = {-1, 3}, at = 0.3, x[] = {-1, 0.5, 1.5, 3}, volume[] = {1, 1, 1, 1};
+    double means[4] = {0, 10, 20, 30};
+    near_relative(norm_binned_l1(4, x, window, volume, (double[]){1, 12, 24, 38}, 4, means),
+                  (1. + 2 + 4 + 8) / 4, 1e-15);
+    gsl_error_handler_t *before = gsl_set_error_handler(no_handler);
+    norm_bin_means(scaled_step, &at, window, 4, means); /* as good in any unit */
+    assert_true(gsl_set_error_handler(before) == no_handler);
+    near_relative(means[1], 1e-15 * (3 - 2 * at), 1e-9);
+}
+
+/* Messages name what is suspected, and nothing beyond the last element is asked. */
+static void test_suspicions(void **state)
+{
+    (void)state;
+    char why[SUSPICION_TEXT];
+    assert_false(suspicion_zero(2, (double[]){2, 1, 0}, why));
+    assert_true(suspicion_zero(2, (double[]){2, 0, 1}, why) && strstr(why, "level 1 is"));
+    assert_false(suspicion_repeated(2, (double[]){2, 1, 1}, why));
+    assert_false(suspicion_repeated(2, (double[]){1, 1 + 3e-12, 1e9}, why));
+    assert_true(suspicion_repeated(2, (double[]){1, 1 + 5e-13, 1e-9}, why));
+    assert_true(suspicion_repeated(3, (double[]){1, 4, 4, 7}, why));
+    assert_string_equal(why, "levels 1 and 2 have the same error 4: was one not run?");
+    assert_false(suspicion_idle_setting("eta", 2, (double[]){1, 2}, (double[]){3, 2}, why));
+    assert_true(suspicion_idle_setting("eta", 2, (double[]){1, 2, 3}, (double[]){1, 2, 4}, why));
+    assert_true(suspicion_idle_setting("eta", 1, (double[]){1}, (double[]){1}, why));
+    assert_string_equal(why, "changing eta changed nothing: is it read at all?");
+
+    const char *const names[] = {"u", "v", "w"};
+    const double volume[] = {1, 2, 100};
+    /* value, exact of two fields; whether the second is nearer the first's solution than its own */
+    static const struct {
+        double value[2][3], exact[2][3];
+        bool suspected;
+    } cases[] = {
+        {{{0, 9}, {1, 9}}, {{0, 9}, {3.000002, 9}}, true},
+        {{{0, 9}, {1, 9}}, {{0, 9}, {2.999998, 9}}, false},
+        {{{0, 0}, {1e-8, 0}}, {{0, 0}, {1e-7, 0}}, true},
+        {{{0.9, 9, 5}, {1, 9, 5}}, {{0.9, 9, 7}, {2, 9, 5}}, true},
+        {{{1, 0, 5}, {1, 9, 7}}, {{1, 0, 7}, {2, 9, 5}}, false},
+        {{{0, 2.5, 5}, {4, 2.5, 7}}, {{0, 2.5, 5}, {4, 0, 5}}, false},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        const double *const value[] = {cases[k].value[0], cases[k].value[1]};
+        const double *const exact[] = {cases[k].exact[0], cases[k].exact[1]};
+        if (suspicion_swapped(2, names, 2, volume, value, exact, why) != cases[k].suspected)
+            fail_msg("case %zu: %s", k, why);
+    }
+    const double one[] = {1}, two[] = {2}, far[] = {9};
+    const double *const value[] = {one, two}, *const exact[] = {one, far};
+    assert_true(suspicion_swapped(2, names, 1, volume, value, exact, why));
+    assert_string_equal(why, "v is nearer the exact u than its own exact solution");
+}
+
+/* The words of the classes, and what decides between them at its limits. */
+static void test_class_words(void **state)
+{
+    (void)state;
+    static const char *const words[] = {"asymptotic", "floor-limited", "pre-asymptotic",
+                                        "oscillating", "diverging"};
+    for (int k = ORDER_ASYMPTOTIC; k <= ORDER_DIVERGING; k++)
+        assert_string_equal(order_class_name((enum order_class)k), words[k]);
+    assert_int_equal(class_of((double[]){16, 8, 8, 4, 2}), ORDER_OSCILLATING);
+    assert_int_equal(class_of((double[]){16, 8, 8, 4, 3.9}), ORDER_OSCILLATING);
+    for (int more = 0; more < 2; more++) /* a third of the best order, but for 5e-7 of it */
+        assert_int_equal(class_of((double[]){512, 64, 8, 1, exp2(-1 - (more - 0.5) * 1e-6)}),
+                         more ? ORDER_ASYMPTOTIC : ORDER_FLOOR_LIMITED);
+    struct order_fit fit;
+    assert_true(log(3) / log(59049) == ORDER_FLAT); /* not less: no floor */
+    assert_int_equal(order_fit(4, (double[]){59049, 2187, 27, 1},
+                               (double[]){3, pow(3, 0.7), pow(3, 0.3), 1}, NULL, &fit, NULL),
+                     STATUS_OK);
+    assert_int_equal(fit.class, ORDER_ASYMPTOTIC);
+    struct error failure;
+    assert_int_equal(
+        order_fit(4, (double[]){3, 2, 1, 0}, (double[]){8, 4, 2, 1}, NULL, &fit, &failure),
+        STATUS_BAD_INPUT);
+    assert_int_equal(
+        order_fit(4, (double[]){4, 2.5, 2.5, 1}, (double[]){8, 4, 2, 1}, NULL, &fit, &failure),
+        STATUS_BAD_INPUT);
+    assert_non_null(strstr(failure.message, "spacing 2 is 2.5"));
+    const struct order_gate gate = {0, 1, 1};
+    fit = (struct order_fit){.high = 2 * ORDER_HALF_WIDTH_MAX * (1 + 5e-7), .finest = 1};
+    assert_false(order_passes(&fit, &gate, NULL));
+}
+
+/* Three values that converge to something else than the exact one, 1, from above or below, by their
+ * errors; and what is reached but for round-off. */
+static void test_richardson_against_exact(void **state)
+{
+    (void)state;
+    const double spacing[] = {0.4, 0.2, 0.1}, wider[] = {2, 1, 0.5};
+    const double third = exp2(1. / 3 * (1 - 5e-7)), more = exp2(1. / 3 * (1 + 5e-7));
+    const struct {
+        double error[3];
+        enum order_class class;
+    } cases[] = {
+        {{10, 5, 3}, ORDER_PREASYMPTOTIC},
+        {{3.232, 3.11, 3}, ORDER_FLOOR_LIMITED},
+        {{third + 2 * (third - 1), third, 1}, ORDER_FLOOR_LIMITED},
+        {{more + 2 * (more - 1), more, 1}, ORDER_PREASYMPTOTIC},
+        {{-2, -1, 1}, ORDER_DIVERGING}, /* no order at all, and as far off as before */
+        {{-8, -5, -1}, ORDER_PREASYMPTOTIC},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++)
+        for (int sign = -1; sign <= 1; sign += 2) {
+            const double *e = cases[k].error;
+            const struct order_extrapolation found =
+                order_extrapolate(sign < 0 ? spacing : wider,
+                                  (double[]){1 + sign * e[0], 1 + sign * e[1], 1 + sign * e[2]}, 1);
+            if (found.class != cases[k].class)
+                fail_msg("case %zu, sign %d: %s", k, sign, order_class_name(found.class));
+        }
+    for (double p = 0.3; p < 4; p += 0.003) {
+        double value[3];
+        for (int i = 0; i < 3; i++) value[i] = 1 + pow(spacing[i], p);
+        const struct order_extrapolation found = order_extrapolate(spacing, value, NAN);
+        near_relative(found.order, p, 1e-11);
+    }
+    struct order_extrapolation e = order_extrapolate(spacing, (double[]){0, 0, 0}, NAN);
+    assert_int_equal(e.class, ORDER_FLOOR_LIMITED);
+    e = order_extrapolate(spacing, (double[]){1000 + 16e-11, 1000 + 4e-11, 1000}, NAN);
+    assert_int_equal(e.class, ORDER_ASYMPTOTIC);
+    e = order_extrapolate(spacing, (double[]){1000 + 8e-11, 1000 + 4e-11, 1000}, NAN);
+    assert_int_equal(e.class, ORDER_FLOOR_LIMITED);
+    e = order_extrapolate(spacing, (double[]){1000 + 1.3e-9, 1000 + 5e-10, 1000}, NAN);
+    assert_int_equal(e.class, ORDER_ASYMPTOTIC);
+    e = order_extrapolate(spacing, (double[]){1 + 3e-12, 1 + 1e-12, 1}, 1 - 1.3e-12);
+    assert_int_equal(e.class, ORDER_ASYMPTOTIC); /* 1.25e-12, and 1e-13 */
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -429,6 +598,11 @@ int main(void)
         cmocka_unit_test(test_richardson_nasa),
         cmocka_unit_test(test_richardson_unequal_ratios),
         cmocka_unit_test(test_richardson_classes),
+        cmocka_unit_test(test_norms_at_their_limits),
+        cmocka_unit_test(test_bins_of_a_window),
+        cmocka_unit_test(test_suspicions),
+        cmocka_unit_test(test_class_words),
+        cmocka_unit_test(test_richardson_against_exact),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
