@@ -89,7 +89,7 @@ class Cluster:
         self.wait(lambda: self.states() == ["idle", "idle"], "two idle nodes")
 
     def states(self):
-        done = subprocess.run(["sinfo", "-h", "-N", "-o", "%t"], capture_output=True, text=True)
+        done = subprocess.run(["sinfo", "-h", "-N", "-p", "main", "-o", "%t"], capture_output=True, text=True)
         return done.stdout.split()
 
     def wait(self, ready, what, limit=20):

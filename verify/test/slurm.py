@@ -2,12 +2,15 @@
 """slurm.py SPHPROOF DATA [--night FOLDER]: `--engine slurm` on a cluster of two nodes on this host. The
 results must be those of this machine alone, nothing that is finished may be computed again, and nothing
 may be lost by a node that loses its power, by kill -9 of who submitted or of a worker, or a full disk.
-With --night a whole quick report in FOLDER; Slurm must then be here, else the test is skipped."""
+Tasks that are requeued, preempted, out of time or killed are done again, or it is said which.
+With --night a whole quick report in FOLDER, and a task beyond its --time; Slurm must then be here, else the test is skipped."""
 import contextlib
+import functools
 import glob
 import json
 import os
 import pty
+import re
 import shutil
 import signal
 import subprocess
@@ -24,8 +27,10 @@ QUICK = ["converge", "sod", "--n", "40,60,80,120", "t_end=0.1", "--replicates", 
 # one computation of some seconds, and a few short ones
 LONG = ["converge", "sod", "--n", "100,140,200,5600", "t_end=0.1", "kernel=wendland_c6", "eta=9", "skip=none",
         "integrator=rk3", "volume_element=energy", "--replicates", "1"]
+HELD = [*LONG[:3], "100,140,200,8000", *LONG[4:]]
 TIMES = ("cost", "cpu_s", "wall_s", "seconds", "date", "found", "history", "bench", "ns_per_point", "ns_per_pair")
 faults = []
+held = set()  # tasks that were stopped
 
 
 def expect(what, well, got=""):
@@ -102,19 +107,88 @@ def test_refused(nodes):
     expect("a full disk", running.returncode == 4 and "No space left" in heard, (running.returncode, heard))
 
 
+def kill(nodes):
+    for pid in nodes.tasks():
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(pid, signal.SIGKILL)
+
+
 def test_worker(nodes):
     """kill -9 of a worker: its share is submitted again, and the caller says so."""
     running = start(LONG, "worker", "--engine-tasks", "1", "--json", "worker.json")
     nodes.wait(lambda: len(entries("worker")) == 0 and nodes.tasks() or len(entries("worker")) > 0, "task")
     nodes.wait(nodes.tasks, "worker")
     kept = entries("worker")
-    for pid in nodes.tasks():
-        with contextlib.suppress(ProcessLookupError):
-            os.kill(pid, signal.SIGKILL)
+    kill(nodes)
     said = running.communicate()[1]
     expect("a worker was killed", running.returncode in (0, 1) and "submitted again (1 of 2)" in said, said)
     expect("a worker was killed: results", load("worker.json") == alone(LONG), said)
     expect("a worker was killed: computed twice", kept.items() <= entries("worker").items())
+
+
+def hold(nodes):
+    """Waits for a new task that is at its first computation, the long one, and stops it there: its name."""
+    def new():
+        return [task for task, state in queue().items() if state == "RUNNING" and "_" in task and task not in held]
+
+    nodes.wait(lambda: new() and len(nodes.tasks()) >= 2, "task and its worker", 200)
+    for pid in nodes.tasks():
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(pid, signal.SIGSTOP)
+    held.add(new()[0])
+    return max(held, key=lambda task: int(task.split("_")[0]))
+
+
+@functools.cache
+def held_alone():
+    return alone(HELD)
+
+
+def scontrol(*words):
+    done = subprocess.run(["scontrol", *words], capture_output=True, text=True)
+    expect("scontrol %s" % " ".join(words), done.returncode == 0, done.stderr)
+
+
+def test_again(nodes):
+    """Tasks that Slurm itself ends before they are done: it starts them again, or else they are submitted again."""
+    urgent = ["sbatch", "--partition=urgent", "--nodes=2", "--output=/dev/null", "--wrap", "sleep 1"]
+    for what, end, more, said in (
+            ("requeued", lambda job: scontrol("requeue", job), (), None),
+            ("preempted, requeued", lambda job: subprocess.run(urgent, stdout=subprocess.DEVNULL), (), None),
+            ("preempted, ended", lambda job: subprocess.run(urgent, stdout=subprocess.DEVNULL), ("--no-requeue",),
+             "(PREEMPTED)"),
+            ("out of time", lambda job: scontrol("update", "jobid=" + job, "EndTime=now"), ("--time=10",), "(TIMEOUT)")):
+        cache = re.sub(r"\W+", "-", what)
+        options = ("--engine-options", *more) if more else ()
+        running = start(HELD, cache, "--engine-tasks", "1", "--json", "again.json", *options)
+        end(hold(nodes))
+        heard = running.communicate(timeout=100)[1]
+        expect(what, running.returncode in (0, 1), heard)
+        expect("%s: results" % what, load("again.json") == held_alone(), heard)
+        expect("%s: submitted" % what, heard.count("submitted again") == (said is not None), heard)
+        expect("%s: said" % what, said is None or "share 1 ended %s" % said in heard, heard)
+        expect("%s: nobody is left" % what, not nodes.tasks(), nodes.tasks())
+
+
+def test_given_up(nodes, end, state, *more):
+    """A task that never gets done is submitted three times in all; then it is said what is missing, and where the
+    log is; nothing that is finished is lost."""
+    subprocess.run([program, *HELD, "--cache", "given-up", "--shard", "2/2"], stdout=subprocess.DEVNULL)
+    kept = entries("given-up")
+    expect("given up: something to lose", len(kept) == 3, kept)
+    running = start(HELD, "given-up", "--engine-tasks", "1", *more)
+    for _ in range(3):
+        end(hold(nodes))
+    heard = running.communicate(timeout=300)[1]
+    expect("given up", running.returncode == 4 and "submitted again (2 of 2)" in heard, (running.returncode, heard))
+    found = re.search(r"share 1 of 1 \(%s, submitted 3 times\), log (\S+):" % state, heard)
+    expect("given up: log", found and os.path.exists(found[1]), heard)
+    expect("given up: what", "missing: sod, n = 8000 (share 1)" in heard, heard)
+    expect("given up: kept", entries("given-up") == kept, entries("given-up"))
+    again = start(HELD, "given-up", "--engine-tasks", "1", "--json", "given-up.json")
+    heard = again.communicate(timeout=100)[1]
+    expect("given up: computed twice", kept.items() <= entries("given-up").items())
+    expect("given up, called again", again.returncode in (0, 1) and load("given-up.json") == held_alone(), heard)
 
 
 def test_interrupt(nodes):
@@ -137,6 +211,7 @@ def test_interrupt(nodes):
             os.write(lead, answer + b"\n")
         expect("interrupted", running.wait(20) == 4, (running.returncode, text))
         expect("interrupted, %s" % answer, bool(queue().keys() - others) == left, (queue(), others))
+        nodes.wait(lambda: not queue().keys() - others, "end of what goes on", 60)
         os.close(lead)
     expect("interrupted, state", not glob.glob("interrupted-y/slurm/*.json"))
 
@@ -187,13 +262,14 @@ def main():
         return 1 if night else 77
     signal.signal(signal.SIGALRM, lambda *_: sys.exit("too slow: %s" % faults))
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # so that daemons are ended
-    signal.alarm(3600 if night else 150)
+    signal.alarm(3600 if night else 280)
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
         nodes = cluster.Cluster(folder, data)
         try:
             nodes.begin()
             if night:
+                test_given_up(nodes, lambda task: None, "TIMEOUT", "--engine-options", "--time=1")
                 test_report(nodes)
             else:
                 test_same(nodes)
@@ -203,6 +279,10 @@ def main():
                 test_refused(nodes)
                 test_interrupt(nodes)
                 next(power, None)
+                nodes.start("n0")  # which had no power
+                nodes.wait(lambda: nodes.states() == ["idle", "idle"], "two idle nodes", 60)
+                test_again(nodes)
+                test_given_up(nodes, lambda task: kill(nodes), "FAILED")
         finally:
             nodes.end()
             subprocess.run(["umount", "-l", "small"], capture_output=True)
