@@ -170,7 +170,7 @@ static enum status check_files(const struct options *options, const struct snaps
 
 struct progress_of_run {
     struct progress progress;
-    const struct checkpoint *checkpoint; /* NULL: none */
+    bool stepping;
     double t_end;
 };
 
@@ -178,7 +178,8 @@ static bool show_progress(void *context, double time, uint64_t steps)
 {
     struct progress_of_run *of_run = context;
     (void)steps;
-    if (of_run->checkpoint) of_run->progress.from = of_run->checkpoint->began / of_run->t_end;
+    if (!of_run->stepping) progress_from(&of_run->progress, time / of_run->t_end);
+    of_run->stepping = true;
     progress_update(&of_run->progress, time, of_run->t_end);
     return true;
 }
@@ -340,8 +341,7 @@ static enum status run_case(const struct options *options, int n, char **argumen
     struct kept kept = {0};
     if (take_checkpoint(&kept, options, &run, error)) return error->status;
     if (kept.wanted) run.asked.checkpoint = &kept.checkpoint;
-    struct progress_of_run of_run = {.checkpoint = run.asked.checkpoint,
-                                     .t_end = settings_real(&run.settings, SETTING_t_end)};
+    struct progress_of_run of_run = {.t_end = settings_real(&run.settings, SETTING_t_end)};
     progress_begin(&of_run.progress, settings.file.name, options->quiet);
     run.asked.progress = show_progress;
     run.asked.progress_context = &of_run;

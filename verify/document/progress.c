@@ -13,6 +13,13 @@ void progress_begin(struct progress *progress, const char *what, bool quiet)
 {
     *progress = (struct progress){.what = what, .silent = quiet, .began = clock_wall()};
     progress->terminal = isatty(STDERR_FILENO);
+    progress->since = progress->began;
+}
+
+void progress_from(struct progress *progress, double share)
+{
+    progress->from = share;
+    progress->since = clock_wall();
 }
 
 /* Is it time to say something? */
@@ -32,7 +39,8 @@ static void say(const struct progress *progress, double time, const char *count,
     const double passed = time - progress->began;
     char left[40] = "";
     const double done = share - progress->from;
-    if (done > 0) snprintf(left, sizeof left, ", %.0f s left", passed * (1 - share) / done);
+    if (done > 0)
+        snprintf(left, sizeof left, ", %.0f s left", (time - progress->since) * (1 - share) / done);
     fprintf(stderr, "%s%s: %s, %.0f s%s%s", progress->terminal ? "\r" : "", progress->what, count,
             passed, left, progress->terminal ? "\033[K" : "\n");
 }

@@ -10,12 +10,15 @@
 struct progress {
     const char *what; /* one or two words; belongs to the caller */
     double began, spoke;
-    double from; /* share of the work that was done before: 0, or set after progress_begin */
+    double from, since; /* the share of the work from which time is reckoned, and when that was */
     bool silent, terminal;
 };
 
 /* quiet: nothing is ever said. */
 void progress_begin(struct progress *progress, const char *what, bool quiet);
+/* Only now, at this share of it, does the work go on as it will: what is left is reckoned from
+ * here, without what was set up, or done by another process. */
+void progress_from(struct progress *progress, double share);
 /* done of total, in any unit; cheap enough to be called every step. */
 void progress_update(struct progress *progress, double done, double total);
 /* done of total pieces of unequal size: share of the work, 0..1, tells the time that is left. */

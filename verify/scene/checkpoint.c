@@ -161,9 +161,5 @@ enum status checkpoint_load(struct checkpoint *checkpoint, struct simulation *si
         if (carrier.failed) status = refuse(checkpoint, "is damaged, or too large", error);
     }
     fclose(file);
-    if (status) return status;
-    struct snapshot seen;
-    simulation_snapshot(simulation, &seen);
-    checkpoint->began = seen.time;
-    return STATUS_OK;
+    return status;
 }

@@ -19,7 +19,6 @@ struct checkpoint {
     double snapshot;   /* goes with the state: time of the last snapshot on the way; < 0: none */
     /* kept by the functions below: */
     double written;       /* when it was last; 0: not yet */
-    double began;         /* the time at which this process took the run over; 0: at the start */
     struct error trouble; /* why the last write failed: the file is then the one before */
 };
 

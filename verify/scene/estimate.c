@@ -2,10 +2,9 @@
 #include "estimate.h"
 
 #include <math.h>
-#include <sys/resource.h>
-#include <unistd.h>
 
 #include "integrator.h"
+#include "limits.h"
 #include "memory.h"
 
 /* The program with its libraries, and what does not grow with n. */
@@ -65,20 +64,9 @@ struct estimate estimate_run(const struct scene *scene)
     return estimate;
 }
 
-/* Bytes that there are. */
-static double available(void)
-{
-    struct rlimit limit;
-    const long pages = sysconf(_SC_PHYS_PAGES), size = sysconf(_SC_PAGESIZE);
-    double bytes = pages > 0 && size > 0 ? (double)pages * (double)size : HUGE_VAL;
-    if (!getrlimit(RLIMIT_AS, &limit) && limit.rlim_cur != RLIM_INFINITY)
-        bytes = fmin(bytes, (double)limit.rlim_cur);
-    return bytes;
-}
-
 enum status estimate_check(const struct estimate *estimate, size_t n, struct error *error)
 {
-    const double there = available();
+    const double there = limits_memory("");
     if (estimate->memory <= there) return STATUS_OK;
     return error_set(error, STATUS_ENVIRONMENT,
                      "n=%zu takes about %.3g GB of memory, more than the %.3g GB that there are", n,

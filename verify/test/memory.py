@@ -49,6 +49,29 @@ def main():
         done = sphproof("run", "sound_wave_3d", "n=10000000", *more, limit=3 << 30, status=4)
         if done.stdout or "n=10000000" not in done.stderr or "GB of memory" not in done.stderr or "3.22 GB" not in done.stderr:
             sys.exit("what does not fit: %r %r" % (done.stdout, done.stderr))
+    try_group()
+
+
+def try_group():
+    """The same in a control group, where one may be made here."""
+    group, file = "/sys/fs/cgroup/sphproof-test-%d" % os.getpid(), "memory.max"
+    if os.path.exists("/sys/fs/cgroup/memory"):
+        group, file = group.replace("cgroup/", "cgroup/memory/"), "memory.limit_in_bytes"
+    try:
+        os.mkdir(group)
+    except OSError:
+        return
+    try:
+        with open(os.path.join(group, file), "w", encoding="ascii") as limit:
+            limit.write("1000001536")
+        done = subprocess.run(["sh", "-c", 'echo $$ >%s/cgroup.procs; exec "$@"' % group, "sh", PROGRAM, "run", "sound_wave_3d",
+                               "n=10000000"], capture_output=True, text=True, timeout=100)
+        if done.returncode != 4 or "n=10000000" not in done.stderr or "more than the 1 GB" not in done.stderr:
+            sys.exit("more than a control group has: %r" % done)
+    except OSError as reason:
+        print("no control group can be tried: %s" % reason)
+    finally:
+        os.rmdir(group)
 
 
 with tempfile.TemporaryDirectory() as folder:

@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What control groups allow, read from folders that look like theirs. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+#include "limits.h"
+#include "near.h"
+#include "output.h"
+
+static char root[] = "limits-XXXXXX";
+
+static void put(const char *folder, const char *name, const char *text)
+{
+    char path[300];
+    struct output output;
+    struct error error;
+    snprintf(path, sizeof path, "%s/%s", root, folder);
+    assert_int_equal(output_folder(path, &error), STATUS_OK);
+    snprintf(path, sizeof path, "%s/%s/%s", root, folder, name);
+    assert_int_equal(output_open(&output, path, &error), STATUS_OK);
+    fputs(text, output.stream);
+    assert_int_equal(output_close(&output, &error), STATUS_OK);
+}
+
+static void same(double bytes, double expected)
+{
+    near_relative(bytes, expected, 1e-15);
+}
+
+static void groups_are_nested(void **state)
+{
+    const double all = limits_memory("nowhere");
+    (void)state;
+    assert_true(all > 1e8);
+    put("proc/self", "cgroup", "0::/jobs/7/step\n");
+    same(limits_memory(root), all); /* nothing there says anything */
+    put("sys/fs/cgroup/jobs/7/step", "memory.max", "max\n");
+    same(limits_memory(root), all);
+    put("sys/fs/cgroup/jobs", "memory.max", "40000000\n");
+    same(limits_memory(root), 4e7);
+    put("sys/fs/cgroup/jobs/7", "memory.max", "30000000\n");
+    same(limits_memory(root), 3e7);
+    put("sys/fs/cgroup/jobs/7/step", "memory.max", "50000000\n");
+    same(limits_memory(root), 3e7);
+    put("sys/fs/cgroup", "memory.max", "20000000\n"); /* a container's own */
+    same(limits_memory(root), 2e7);
+}
+
+static void first_version(void **state)
+{
+    const double all = limits_memory("nowhere");
+    (void)state;
+    put("proc/self", "cgroup", "9:name=systemd:/\n4:memory:/jobs/8\n3:cpuset:/jobs/7\n");
+    put("sys/fs/cgroup/memory/jobs/8", "memory.limit_in_bytes", "9223372036854771712\n");
+    same(limits_memory(root), all);
+    put("sys/fs/cgroup/memory/jobs", "memory.limit_in_bytes", "10000000\n");
+    same(limits_memory(root), 1e7);
+    put("proc/self", "cgroup", "4:memory:/a/path/of/the/host\n");
+    same(limits_memory(root), all);
+    put("sys/fs/cgroup/memory", "memory.limit_in_bytes", "15000000\n");
+    same(limits_memory(root), 1.5e7);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(groups_are_nested),
+        cmocka_unit_test(first_version),
+    };
+    char command[64];
+    if (!mkdtemp(root)) return 1;
+    const int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    snprintf(command, sizeof command, "rm -r %s", root);
+    return system(command) ? 1 : failed;
+}
