@@ -290,12 +290,14 @@ static void gate_words(struct buffer *to, const json_t *gate)
 {
     buffer_add(to, "<td>");
     if (json_is_object(gate)) {
-        html_number(to, value_member(gate, "low"));
-        buffer_add(to, " to ");
-        html_number(to, value_member(gate, "high"));
-        double bound = value_member(gate, "bound");
+        double low = value_member(gate, "low"), bound = value_member(gate, "bound");
+        if (isfinite(low)) { /* else any order will do */
+            html_number(to, low);
+            buffer_add(to, " to ");
+            html_number(to, value_member(gate, "high"));
+        }
         if (isfinite(bound)) {
-            buffer_add(to, ", finest ≤ ");
+            buffer_add(to, isfinite(low) ? ", finest ≤ " : "finest ≤ ");
             html_number(to, bound);
         }
     }

@@ -4,12 +4,14 @@
 #include "cases.h"
 
 #include <ini.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "list.h"
 #include "problem.h"
+#include "problem_list.h"
 #include "problem_list.h"
 #include "problem_prepare.h"
 #include "text.h"
@@ -194,31 +196,64 @@ static bool gate_name(const char *name, int *field, int *norm)
     return false;
 }
 
-static void set_gate(struct parser *parser, int field, int norm, const char *name,
-                     const char *value)
+#define ORDER_GATE    "least order, greatest order, bound of the finest error; or "
+#define ERROR_GATE    "order for shorter ladders, bound of the finest error"
+#define KNOWN_FAILURE "; `known: WHY` after them, if it is known to fail"
+
+/* The numbers of a gate's value and why it is known to fail, "" where it is not; false where the
+ * value is none. */
+static bool read_gate(const char *value, size_t count, double *numbers, const char **why)
 {
     static const char mark[] = "known:";
-    double numbers[3];
     char text[256];
-    struct case_file *file = parser->file;
-    struct case_gate *gate = &file->gates[file->gate_count];
-    if (!first_time(parser, &parser->seen_gates[field * NORMS + norm], name)) return;
-    const char *known = strstr(value, mark), *why = known ? known + strlen(mark) : "";
+    const char *known = strstr(value, mark);
+    *why = known ? known + strlen(mark) : "";
     snprintf(text, sizeof text, "%.*s", known ? (int)(known - value) : 200, value);
     for (size_t n = strlen(text); n && text[n - 1] == ' '; n--) text[n - 1] = '\0';
-    while (*why == ' ') why++;
-    if (!text_reals(text, " \t,", 3, numbers) || !(numbers[0] < numbers[1]) || !(numbers[2] > 0) ||
-        (known && !*why) || strlen(why) >= sizeof gate->known) {
-        fail_value(
-            parser, name, value,
-            "least order, greatest order, bound of the finest error; after them `known: WHY` "
-            "in less than 160 characters, if it is known to fail");
+    while (**why == ' ') ++*why;
+    return text_reals(text, " \t,", count, numbers) && numbers[count - 1] > 0 &&
+           !(known && !**why) && strlen(*why) < sizeof((struct case_gate *)NULL)->known;
+}
+
+static void add_gate(struct parser *parser, const char *name, struct case_gate gate,
+                     const char *why)
+{
+    struct case_file *file = parser->file;
+    for (size_t i = 0; i < file->gate_count; i++) {
+        const struct case_gate *other = &file->gates[i];
+        if (other->functional == gate.functional && other->field == gate.field &&
+            other->norm == gate.norm) {
+            first_time(parser, &parser->seen_gates[i], name);
+            return;
+        }
+    }
+    if (file->gate_count == CASE_GATES_MAX) {
+        fail(parser, "too many gates", "");
         return;
     }
-    *gate = (struct case_gate){
-        (enum field)field, (enum norm)norm, {numbers[0], numbers[1], numbers[2]}, ""};
-    snprintf(gate->known, sizeof gate->known, "%s", why);
-    file->gate_count++;
+    parser->seen_gates[file->gate_count] = parser->line;
+    snprintf(gate.known, sizeof gate.known, "%s", why);
+    file->gates[file->gate_count++] = gate;
+}
+
+/* Of a functional, or NULL and of a field's norm. */
+static void set_gate(struct parser *parser, const char *functional, int field, int norm,
+                     const char *name, const char *value)
+{
+    double numbers[3];
+    const char *why;
+    struct case_gate gate = {.functional = functional};
+    if (!functional) gate.field = (enum field)field, gate.norm = (enum norm)norm;
+    if (!functional && read_gate(value, 3, numbers, &why) && numbers[0] < numbers[1])
+        gate.gate = (struct order_gate){numbers[0], numbers[1], numbers[2]};
+    else if (read_gate(value, 2, numbers, &why) && numbers[0] >= 0)
+        gate.gate = (struct order_gate){numbers[0], INFINITY, numbers[1]};
+    else {
+        fail_value(parser, name, value,
+                   functional ? ERROR_GATE KNOWN_FAILURE : ORDER_GATE ERROR_GATE KNOWN_FAILURE);
+        return;
+    }
+    add_gate(parser, name, gate, why);
 }
 
 /* A key that is not allowed in its section: says where it belongs, or what is near. */
@@ -289,7 +324,9 @@ static int take_pair(void *context, const char *section, const char *name, const
                          parser->error))
             parser->failed = true;
     } else if (strcmp(section, "converge") == 0 && gate_name(name, &field, &norm)) {
-        set_gate(parser, field, norm, name, value);
+        set_gate(parser, NULL, field, norm, name, value);
+    } else if (strcmp(section, "converge") == 0 && problem_functional_name(name)) {
+        set_gate(parser, problem_functional_name(name), 0, 0, name, value);
     } else {
         unknown(parser, section, name);
     }
@@ -389,10 +426,35 @@ static void find_judge(struct parser *parser)
     }
 }
 
+/* What a functional's gate needs: a problem that has it, in 2D or 3D (in 1D no order is found of
+ * functionals). */
+static enum status check_gates(struct parser *parser)
+{
+    const struct case_file *file = parser->file;
+    const struct problem *problem = problem_of(&file->settings);
+    for (size_t i = 0; i < file->gate_count; i++) {
+        const char *functional = file->gates[i].functional;
+        char what[120];
+        if (!functional) continue;
+        parser->line = parser->seen_gates[i];
+        if (!problem_functional(problem, functional)) {
+            snprintf(what, sizeof what, "key %.40s and kind = %.40s exclude each other", functional,
+                     problem->member.name);
+            return fail(parser, what, "");
+        }
+        if (file->dimension == 1) {
+            snprintf(what, sizeof what,
+                     "key %.40s in [converge] and dimension = 1 exclude each other", functional);
+            return fail(parser, what, "");
+        }
+    }
+    return STATUS_OK;
+}
+
 static enum status check_complete(struct parser *parser)
 {
     find_judge(parser);
-    if (check_keys(parser)) return parser->error->status;
+    if (check_keys(parser) || check_gates(parser)) return parser->error->status;
     const char *reference = problem_of(&parser->file->settings)->reference;
     if (strcmp(parser->reference, reference) == 0) return STATUS_OK;
     parser->line = parser->seen_extras[EXTRA_reference];

@@ -12,15 +12,18 @@
 #include "settings.h"
 #include "status.h"
 
-enum { CASE_LADDER_MAX = ORDER_LEVELS_MAX, CASE_GATES_MAX = FIELDS * NORMS };
+enum { CASE_LADDER_MAX = ORDER_LEVELS_MAX, CASE_GATES_MAX = FIELDS * NORMS + 16 /* functionals */ };
 
-/* A gate of [converge]: `density_l1 = LOW HIGH BOUND`, or `... known: WHY` of a weakness that is
- * shown and fails nothing. */
+/* A gate of [converge]: `density_l1 = LOW HIGH BOUND`; where no order can be asked for, and of
+ * functionals (`growth_rate = ORDER BOUND`, of |value - exact|), of the finest error alone: ORDER
+ * is then what the bound is raised by where a ladder ends before the case's. With `... known: WHY`
+ * of a weakness that is shown and fails nothing. */
 struct case_gate {
+    const char *functional; /* its name, static; NULL: of a field's norm */
     enum field field;
     enum norm norm;
-    struct order_gate gate;
-    char known[160]; /* why it is expected to fail; "" if it is not */
+    struct order_gate gate; /* of the error alone: low = ORDER, high = INFINITY */
+    char known[160];        /* why it is expected to fail; "" if it is not */
 };
 
 struct case_file {
@@ -45,9 +48,9 @@ struct case_builtin {
 };
 extern const struct case_builtin case_builtins[];
 
-/* Reads a case: a path where name contains a slash or ends in .ini, else a built-in one, else one in
- * the folder of installed cases.
- * STATUS_BAD_INPUT: no such case, or what is wrong with the file. */
+/* Reads a case: a path where name contains a slash or ends in .ini, else a built-in one, else one
+ * in the folder of installed cases. STATUS_BAD_INPUT: no such case, or what is wrong with the file.
+ */
 enum status case_load(struct case_file *file, const char *name, struct error *error);
 
 /* The same from a text of length bytes; path is used in messages and for the name. */

@@ -9,7 +9,7 @@
 static bool has_gate(const struct case_file *file, int field)
 {
     for (size_t i = 0; i < file->gate_count; i++)
-        if ((int)file->gates[i].field == field) return true;
+        if (!file->gates[i].functional && (int)file->gates[i].field == field) return true;
     return false;
 }
 

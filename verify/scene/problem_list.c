@@ -56,14 +56,18 @@ bool problem_foreign(const struct settings *settings, enum setting key)
            (settings->dim == 1 && needs_a_plane(key)) || (settings->dim > 1 && needs_a_line(key));
 }
 
+const char *problem_functional(const struct problem *problem, const char *name)
+{
+    for (const struct functional *const *f = problem->functionals; *f; f++)
+        if (strcmp((*f)->name, name) == 0) return (*f)->name;
+    return problem->growing && strcmp(problem->growing->name, name) == 0 ? problem->growing->name
+                                                                         : NULL;
+}
+
 const char *problem_functional_name(const char *name)
 {
-    for (size_t i = 0; i < problem_family.n; i++) {
-        const struct problem *problem = (const struct problem *)problem_family.members[i];
-        for (const struct functional *const *f = problem->functionals; *f; f++)
-            if (strcmp((*f)->name, name) == 0) return (*f)->name;
-        if (problem->growing && strcmp(problem->growing->name, name) == 0)
-            return problem->growing->name;
-    }
-    return NULL;
+    const char *found = NULL;
+    for (size_t i = 0; i < problem_family.n && !found; i++)
+        found = problem_functional((const struct problem *)problem_family.members[i], name);
+    return found;
 }

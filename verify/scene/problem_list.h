@@ -17,7 +17,10 @@ bool problem_reads(const struct problem *problem, enum setting key);
 /* Is the key without meaning for the problem (left for a sound wave) or in so many dimensions? */
 bool problem_foreign(const struct settings *settings, enum setting key);
 
-/* The name itself, static, where a problem has a functional called so; else NULL. */
+/* The name itself, static, where the problem has a functional called so; else NULL. */
+const char *problem_functional(const struct problem *problem, const char *name);
+
+/* The same of any problem. */
 const char *problem_functional_name(const char *name);
 
 #endif

@@ -64,7 +64,8 @@ struct study_result {
     double functional_exact[PROBLEM_FUNCTIONALS_MAX];
     struct order_extrapolation functionals[PROBLEM_FUNCTIONALS_MAX]; /* of the three finest */
     /* In 2D and 3D: of L1 of the parts, and of |functional - exact|; n = 0: there is none. */
-    struct order_fit parts[STUDY_PARTS], functional_errors[PROBLEM_FUNCTIONALS_MAX];
+    struct order_fit parts[STUDY_PARTS];
+    struct study_order functional_errors[PROBLEM_FUNCTIONALS_MAX]; /* gate: of any order */
     double floor_density, floor_gradient; /* lattice sums of kernel and eta, relative */
     bool floor_explains;                  /* a failed order is of the size of the floor */
     double still;                         /* largest of the levels' budgets; NaN: none */

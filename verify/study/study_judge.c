@@ -58,7 +58,7 @@ static enum status fit_cloud_orders(struct study_result *result, struct error *e
         const double exact = result->functional_exact[i];
         for (size_t l = 0; l < n; l++) errors[l] = fabs(result->levels[l].functionals[i] - exact);
         if (isfinite(exact) &&
-            order_fit(n, spacing, errors, NULL, &result->functional_errors[i], error))
+            order_fit(n, spacing, errors, NULL, &result->functional_errors[i].fit, error))
             return error->status;
     }
     return STATUS_OK;
@@ -75,6 +75,26 @@ static void extrapolate(struct study_result *result)
     }
 }
 
+/* What a gate is of; NULL: of a functional that these settings have no exact value of. */
+static struct study_order *gated(struct study_result *result, const struct case_gate *gate)
+{
+    if (!gate->functional) return &result->orders[gate->field][gate->norm];
+    for (size_t i = 0; i < result->functional_count; i++)
+        if (strcmp(result->functional_names[i], gate->functional) == 0)
+            return result->functional_errors[i].fit.n ? &result->functional_errors[i] : NULL;
+    return NULL;
+}
+
+static bool passes(const struct case_gate *gate, struct study_order *order)
+{
+    if (isfinite(gate->gate.high)) return order_passes(&order->fit, &order->gate, order->why);
+    order->gate.low = -INFINITY;
+    if (order->fit.finest <= order->gate.bound) return true;
+    snprintf(order->why, sizeof order->why, "finest error %.3g exceeds %.3g", order->fit.finest,
+             order->gate.bound);
+    return false;
+}
+
 static void judge_gates(struct study_result *result, const struct case_file *file)
 {
     const struct study_level *finest = &result->levels[result->level_count - 1];
@@ -85,18 +105,20 @@ static void judge_gates(struct study_result *result, const struct case_file *fil
         fmax(fabs(result->floor_density), standard ? fabs(result->floor_gradient) : 0);
     for (size_t i = 0; i < file->gate_count; i++) {
         const struct case_gate *gate = &file->gates[i];
-        struct study_order *order = &result->orders[gate->field][gate->norm];
+        struct study_order *order = gated(result, gate);
+        if (!order) continue;
         order->gate = gate->gate;
         if (file->ladder_count) {
             const double coarser = (double)file->ladder[file->ladder_count - 1] / (double)finest->n;
             order->gate.bound *= pow(fmax(1, coarser), gate->gate.low / file->dimension);
         }
-        order->status = order_passes(&order->fit, &order->gate, order->why) ? GATE_PASS : GATE_FAIL;
+        order->status = passes(gate, order) ? GATE_PASS : GATE_FAIL;
         order->known = gate->known;
         if (order->status == GATE_FAIL && *gate->known) order->status = GATE_KNOWN;
         if (order->status != GATE_FAIL) continue;
         result->status = STATUS_CHECK_FAILED;
-        result->floor_explains |= !(order->fit.order >= order->gate.low) &&
+        result->floor_explains |= isfinite(gate->gate.high) &&
+                                  !(order->fit.order >= order->gate.low) &&
                                   finest->errors[gate->field][gate->norm] <= floor_reach * floor;
     }
 }

@@ -164,7 +164,9 @@ static void add_result(const struct study *study, const struct study_result *res
     for (int part = 0; part < STUDY_PARTS; part++)
         add_fit(document, &result->parts[part], study_part_names[part], "l1_cut", varied);
     for (size_t i = 0; i < result->functional_count; i++)
-        add_fit(document, &result->functional_errors[i], result->functional_names[i], "error",
+        if (result->functional_errors[i].fit.n)
+            add(document, "orders",
+                order_json(&result->functional_errors[i], result->functional_names[i], "error"),
                 varied);
     for (size_t i = 0; i < result->functional_count; i++)
         add(document, "functionals", functional_json(result, i), varied);

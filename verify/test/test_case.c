@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Case files: what every line of a good one becomes, and of bad ones the whole message: file, line,
  * key, value and what is allowed. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -87,10 +88,47 @@ static void begins(const char *text, const char *message)
 }
 
 #define AT(line) "some/folder/tube.v2.ini:" line ": "
-#define GATE                                                                                       \
-    "least order, greatest order, bound of the finest error; after them `known: WHY` in less "     \
-    "than "                                                                                        \
-    "160 characters, if it is known to fail"
+#define FLAT                                                                                       \
+    "[case]\ntitle = A vortex\ndimension = 2\nreference = gresho\n[domain]\nlo = 0\nhi = 1\n"      \
+    "[initial]\nkind = gresho\n[run]\nt_end = 1\n"
+#define FUNCTIONAL_GATE                                                                            \
+    "order for shorter ladders, bound of the finest error; `known: WHY` after them, if it is "     \
+    "known to fail"
+#define GATE "least order, greatest order, bound of the finest error; or " FUNCTIONAL_GATE
+
+/* A gate of a functional: the order that raises its bound, and the bound. */
+static void functionals(void **state)
+{
+    (void)state;
+    struct case_file file;
+    struct error error;
+    if (parse(&file,
+              FLAT "[converge]\nn = 64 100 144 256\npeak_velocity = 1 0.25 known: slow\n"
+                   "velocity_l1 = 0.5 3\ndisc_error = 0 2e-2\n",
+              &error))
+        fail_msg("%s", error.message);
+    assert_int_equal(file.gate_count, 3);
+    const struct case_gate *a = &file.gates[0], *b = &file.gates[1], *c = &file.gates[2];
+    assert_string_equal(a->functional, "peak_velocity");
+    assert_true(a->gate.low == 1 && a->gate.bound == 0.25);
+    assert_string_equal(a->known, "slow");
+    assert_true(!b->functional && b->field == FIELD_VELOCITY && b->norm == NORM_L1);
+    assert_true(b->gate.low == 0.5 && isinf(b->gate.high) && b->gate.bound == 3);
+    assert_string_equal(c->functional, "disc_error");
+    assert_true(c->gate.low == 0 && c->gate.bound == 2e-2 && !c->known[0]);
+    refused(FLAT "[converge]\ndisc_error = 1 2 3\n",
+            AT("13") "disc_error = 1 2 3; allowed: " FUNCTIONAL_GATE);
+    refused(FLAT "[converge]\ndisc_error = 1 0\n",
+            AT("13") "disc_error = 1 0; allowed: " FUNCTIONAL_GATE);
+    refused(FLAT "[converge]\ndisc_error = -1 1\n",
+            AT("13") "disc_error = -1 1; allowed: " FUNCTIONAL_GATE);
+    refused(FLAT "[converge]\ndisc_error = 1 1\n\ndisc_error = 1 1\n",
+            AT("15") "key disc_error is given twice, first in line 13");
+    refused(FLAT "[converge]\n\nplateau = 1 1\n",
+            AT("14") "key plateau and kind = gresho exclude each other");
+    refused(HEAD "[converge]\nmean_pressure = 1 1\n",
+            AT("13") "key mean_pressure in [converge] and dimension = 1 exclude each other");
+}
 
 static void bad_lines(void **state)
 {
@@ -112,7 +150,8 @@ static void bad_lines(void **state)
     refused(HEAD "[report]\nbench = maybe\n", AT("13") "bench = maybe; allowed: yes no");
     refused(HEAD "[converge]\ndensity_l1 = 1 1 1\n", AT("13") "density_l1 = 1 1 1; allowed: " GATE);
     refused(HEAD "[converge]\ndensity_l1 = 1 2 0\n", AT("13") "density_l1 = 1 2 0; allowed: " GATE);
-    refused(HEAD "[converge]\ndensity_l1 = 1 2\n", AT("13") "density_l1 = 1 2; allowed: " GATE);
+    refused(HEAD "[converge]\ndensity_l1 = 1\n", AT("13") "density_l1 = 1; allowed: " GATE);
+    refused(HEAD "[converge]\ndensity_l1 = -1 2\n", AT("13") "density_l1 = -1 2; allowed: " GATE);
     refused(HEAD "[converge]\ndensity_l1 = 1 2 3 known:\n",
             AT("13") "density_l1 = 1 2 3 known:; allowed: " GATE);
     refused(HEAD "[converge]\ndensity_l1 = 1 2 3\nvelocity_l1 = 1 2 3\n\ndensity_l1 = 1 2 3\n",
@@ -187,6 +226,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(everything),
+        cmocka_unit_test(functionals),
         cmocka_unit_test(bad_lines),
         cmocka_unit_test(whole_files),
     };
