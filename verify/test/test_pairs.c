@@ -73,7 +73,6 @@ static void make(struct drawn *drawn, const struct cells_method *method)
     fill(drawn, FIELD_WEIGHT, 1, 0.5, 2);
     fill(drawn, FIELD_VELOCITY, dim, -1, 1);
     fill(drawn, FIELD_H_INVERSE, 1, 0.5, 2);
-    fill(drawn, FIELD_H, 1, 0.5, 2);
     fill(drawn, FIELD_VOLUME, 1, 0.5, 2);
     fill(drawn, FIELD_PRESSURE, 1, 0.5, 2);
     fill(drawn, FIELD_SOUND, 1, 0.1, 2);
@@ -187,8 +186,8 @@ static long double viscosity_of(const struct drawn *drawn, int k, long double *s
     if (method->signal_form) {
         pi = (alpha * seen + beta / 2 * w) * w / rho;
     } else {
-        const long double h = ((long double)get(drawn, FIELD_H, 0, -1) +
-                               get(drawn, FIELD_H, 0, k)) /
+        const long double h = (1 / (long double)get(drawn, FIELD_H_INVERSE, 0, -1) +
+                               1 / (long double)get(drawn, FIELD_H_INVERSE, 0, k)) /
                               4,
                           mu = h * w * r / (r * r + 0.01L * h * h);
         pi = (alpha * seen * mu + beta * mu * mu) / rho;
