@@ -183,10 +183,12 @@ class Table:
             copy_build(*self.place(worker)[0])
 
     def in_rounds(self, units):
-        """Cheap units first, as far as it is known what they take; the cheapest notice most."""
+        """Cheap units first; the cheapest notice most. What is new is cheap if it is a program of the
+        build, and dearer if it is a script that calls some."""
         rounds = [[] for _ in ROUNDS]
         for unit in units:
-            seconds = self.units.get(unit.name, {}).get("seconds", ROUNDS[0])
+            usual = ROUNDS[not unit.command[0].startswith(self.build)]
+            seconds = self.units.get(unit.name, {}).get("seconds", usual)
             rounds[next(i for i, most in enumerate(ROUNDS) if seconds <= most)].append(unit)
         return [r for r in rounds if r]
 

@@ -28,9 +28,10 @@ void shells_make(struct shells *shells, const struct prepared *p, const struct s
 {
     double mass[SHELLS_MAX] = {0}, volume[SHELLS_MAX] = {0}, reach = (double)INFINITY;
     for (int d = 0; d < p->domain.dim; d++) reach = fmin(reach, 0.5 * domain_length(&p->domain, d));
-    shells->width = fmax(mean_spacing(p, s), reach / SHELLS_MAX);
+    shells->width = mean_spacing(p, s);
     shells->n = 0;
-    if (!(shells->width > 0)) return;
+    if (!(shells->width > 0)) return; /* nothing in the window */
+    shells->width = fmax(shells->width, reach / SHELLS_MAX);
     shells->n = (size_t)fmin(SHELLS_MAX, ceil(reach / shells->width));
     for (size_t i = 0; i < s->n; i++) {
         const double place = floor(radius_of(p, s, i) / shells->width);

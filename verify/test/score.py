@@ -158,11 +158,12 @@ def in_rounds(expect, score):
     import types
     import trial
     table = trial.Table.__new__(trial.Table)
+    table.build = "/build"
     table.units = {"dear": {"seconds": 7}, "cheap": {"seconds": 0.2}, "middling": {"seconds": 1}}
-    names = ["dear", "cheap", "middling", "new"]
-    rounds = table.in_rounds([types.SimpleNamespace(name=n) for n in names])
-    expect("cheap tests, and new ones, come first, then what is dearer",
-           [[u.name for u in r] for r in rounds] == [["cheap", "new"], ["middling"], ["dear"]])
+    units = [types.SimpleNamespace(name=n, command=["python3" if n == "script" else "/build/test"])
+             for n in ("dear", "cheap", "middling", "new", "script")]
+    expect("cheap tests, and new ones that are no scripts, come first, then what is dearer",
+           [[u.name for u in r] for r in table.in_rounds(units)] == [["cheap", "new"], ["middling", "script"], ["dear"]])
     asked, told, admitted = [], [], []
 
     def judge_one(m, near, before, worker):
