@@ -3,6 +3,7 @@
 """first_failure.py BUILD: what of the tests that ran last in BUILD fails first and most specifically:
 how far over its bound, for which member, the command that shows it, the plot's path. Then the other
 tests that failed. verify/run ends with these lines."""
+import glob
 import json
 import os
 import sys
@@ -11,7 +12,8 @@ OTHERS_SHOWN = 12
 
 
 def results(build):
-    with open(os.path.join(build, "meson-logs/testlog.json"), encoding="utf-8") as file:
+    logs = glob.glob(os.path.join(glob.escape(build), "meson-logs/testlog*.json"))  # under a wrapper its name is added
+    with open(max(logs, key=os.path.getmtime), encoding="utf-8") as file:
         return [json.loads(line) for line in file if line.strip()]
 
 

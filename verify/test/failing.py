@@ -3,6 +3,7 @@
 off by 3e-11 in its outer half."""
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -24,10 +25,11 @@ def sphproof(*words):
     return done.returncode, done.stdout, done.stderr
 
 
-def last_words(log):
-    """Of a build folder whose tests left this log."""
-    os.makedirs("meson-logs", exist_ok=True)
-    with open("meson-logs/testlog.json", "w", encoding="utf-8") as file:
+def last_words(log, name="testlog.json"):
+    """Of a build folder whose tests left this log, and nothing else."""
+    shutil.rmtree("meson-logs", ignore_errors=True)
+    os.makedirs("meson-logs")
+    with open(os.path.join("meson-logs", name), "w", encoding="utf-8") as file:
         file.writelines(json.dumps(line) + "\n" for line in log)
     done = subprocess.run([sys.executable, first_failure, "."], capture_output=True, text=True, check=True)
     return done.stdout
@@ -78,6 +80,7 @@ def main():
     expect("results of an earlier run", first["headline"] not in said and "0x1d != 0" in said and
            "--print-errorlogs" in said, said)
     expect("all well", last_words([good]) == "")
+    expect("under a wrapper", "0x1d != 0" in last_words([other], "testlog-valgrind.json"))
     code, out, _ = sphproof("--json", "verify/test/kernels.json")
     with open("verify/test/kernels.json", encoding="utf-8") as file:
         expect("repaired", code == 0 and json.load(file)["failures"] == [] and not os.path.exists("failures"), out)
