@@ -1,13 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """engine.py SPHPROOF: `--engine slurm` with scripts in place of Slurm's commands: what is missing is
-submitted again, twice at most; then it is said what, and nothing is lost. (slurm.py has the real ones.)
-And the progress of one run whose steps are long."""
-import contextlib
+submitted again, twice at most; then it is said what, and nothing is lost. (slurm.py has the real ones.)"""
 import glob
 import json
 import os
-import pty
-import re
 import subprocess
 import sys
 import tempfile
@@ -111,30 +107,12 @@ def test_mathematics():
         print("skipped: nothing changes the mathematics of this C library")
 
 
-def test_long_steps():
-    """A run of few and long steps says how far it is, and what is left without the time that its start took."""
-    lead, follow = pty.openpty()
-    running = subprocess.Popen([program, "run", "rest_3d", "n=32^3", "t_end=0.2", "--threads", "1"], stderr=follow,
-                               stdout=subprocess.PIPE, text=True)
-    os.close(follow)
-    text = b""
-    with contextlib.suppress(OSError):  # the other side is closed
-        while part := os.read(lead, 1 << 12):
-            text += part
-    os.close(lead)
-    steps = re.search(r"(\d+) steps", running.communicate()[0])
-    expect("long steps: few", steps and int(steps[1]) < 32, steps)
-    shown = re.findall(rb"rest_3d: \S+ of 0.2 \((\d+) %\), \d+ s, (\d+) s left", text)
-    expect("long steps: progress", len(shown) > 2 and int(shown[-1][0]) > 50, text)
-
-
 def main():
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
         test_engine()
         test_mathematics()
         test_bench()
-        test_long_steps()
         os.chdir("/")
     print("\n".join(faults) or "a study is computed elsewhere")
     return bool(faults)
