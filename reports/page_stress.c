@@ -169,7 +169,8 @@ static bool is_number(const json_t *entry, const char *name)
     return json_is_number(json_object_get(entry, name));
 }
 
-static void cell(struct buffer *to, const json_t *entry)
+/* stable_below: a predicted growth that is none; NaN: no growth is predicted. */
+static void cell(struct buffer *to, const json_t *entry, double stable_below)
 {
     const char *outcome = value_text(entry, "outcome");
     buffer_format(to, "<td class=\"%s\" title=\"", outcome);
@@ -181,9 +182,11 @@ static void cell(struct buffer *to, const json_t *entry)
     if (!strcmp(outcome, "inaccurate")) buffer_add(to, "≉ ");
     if (!strcmp(outcome, "wrong")) buffer_add(to, "≠ ");
     const bool measured = is_number(entry, "measured"), predicted = is_number(entry, "predicted");
+    const bool stable = predicted && !measured && value_member(entry, "predicted") < stable_below;
+    if (stable) buffer_add(to, "stable");
     if (measured) html_number(to, value_member(entry, "measured"));
     if (measured && predicted) buffer_add(to, " <span>of ");
-    if (predicted) html_number(to, value_member(entry, "predicted"));
+    if (predicted && !stable) html_number(to, value_member(entry, "predicted"));
     if (measured && predicted) buffer_add(to, "</span>");
     if (!measured && !predicted) html_words(to, strcmp(outcome, "ok") ? outcome : "none");
     buffer_add(to, "</td>");
@@ -228,9 +231,13 @@ static void map(struct buffer *to, const json_t *group, const json_t *cells)
     size_t r, c, i;
     buffer_format(to, "<h3><code>%s</code> <span>", name);
     buffer_escape(to, value_text(group, "title"));
-    buffer_add(to, "</span></h3>\n<div class=\"scroll\"><table class=\"map\"><thead><tr><th>");
+    buffer_add(to, "</span></h3>\n<p class=\"facts\">");
+    buffer_escape(to, value_text(group, "number"));
+    buffer_add(to, "</p>\n<div class=\"scroll\"><table class=\"map\"><thead><tr><th>");
+    buffer_escape(to, value_text(group, "row_title"));
+    buffer_add(to, " ↓ ");
     buffer_escape(to, value_text(group, "column_title"));
-    buffer_add(to, "</th>");
+    buffer_add(to, " →</th>");
     json_array_foreach(columns, c, column)
     {
         buffer_add(to, "<th>");
@@ -243,7 +250,7 @@ static void map(struct buffer *to, const json_t *group, const json_t *cells)
         buffer_add(to, "<tr>");
         html_cell(to, json_string_value(row));
         json_array_foreach(cells, i, entry) if (belongs(entry, name, json_string_value(row)))
-            cell(to, entry);
+            cell(to, entry, value_member(group, "stable_below"));
         buffer_add(to, "</tr>\n");
     }
     buffer_add(to, "</tbody></table></div>\n");
@@ -281,9 +288,8 @@ void page_stress(struct page_writer *writer, const json_t *stress)
         buffer_add(to, "</div>\n");
     }
     buffer_add(to,
-               "<p>A number is the L1 error of density over its mean (<code>quiet</code>: the "
-               "drift of energy; <code>limits</code>, <code>steps</code>: measured of "
-               "predicted); a colour is the outcome: <span class=\"map\"><span class=\"ok\"> ok "
+               "<p>What a number is stands above each map; a colour is the outcome: <span "
+               "class=\"map\"><span class=\"ok\"> ok "
                "</span> <span class=\"inaccurate\"> ≉ inaccurate </span> <span "
                "class=\"broke_down\"> broke down </span></span>. A pointer resting on a cell shows "
                "its reason and its "

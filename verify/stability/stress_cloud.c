@@ -97,7 +97,7 @@ static json_t *judge(const struct stress_cell *cell, const struct run_result *re
 /* ---- lattices ---- */
 
 /* Slower than this is not seen in a noise run that quick. */
-static const double slowest = 0.02;
+const double stress_cloud_slowest = 0.02;
 
 static enum status lattice_worst(const struct stress_cell *cell, struct lattice_wave *worst,
                                  int where[3], double *spacing, struct error *error)
@@ -121,12 +121,12 @@ static enum status growth(const struct stress_cell *cell, json_t **document, str
     char reason[256];
     const struct run_settings *settings = &cell->settings;
     if (lattice_worst(cell, &worst, where, &spacing, error)) return error->status;
-    if (worst.growth < slowest) {
+    if (worst.growth < stress_cloud_slowest) {
         const bool grows = stress_noise_grows(settings, 60);
         snprintf(reason, sizeof reason,
                  "no wave grows faster than %.2g c/dx; noise %s in 60 dx/c; greatest frequency "
                  "%.3f c/dx",
-                 slowest, grows ? "grows" : "does not grow", worst.frequency);
+                 stress_cloud_slowest, grows ? "grows" : "does not grow", worst.frequency);
         *document = stress_outcome(worst.growth, (double)NAN, grows ? "inaccurate" : "ok", reason);
         return STATUS_OK;
     }

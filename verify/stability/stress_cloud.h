@@ -14,4 +14,7 @@ const struct stress_entry *stress_clouds(void);
  * largest time step, by the lattice's greatest frequency and by noise runs. */
 enum status stress_cloud(const struct stress_cell *cell, json_t **document, struct error *error);
 
+/* Of STRESS_LATTICE: a growth rate below this, in c/dx, is called none. */
+extern const double stress_cloud_slowest;
+
 #endif

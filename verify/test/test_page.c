@@ -343,6 +343,30 @@ static void words(void **state)
     free(html);
 }
 
+/* Where no growth is predicted and none was found, round-off is no growth rate; and every map says
+ * what its numbers are. */
+static void growth_on_lattices(void **state)
+{
+    (void)state;
+    json_t *results = sound();
+    json_object_set_new(
+        results, "stress",
+        json_pack("{s:[{s:s, s:s, s:s, s:s, s:f, s:n}, {s:s, s:s, s:s, s:s, s:f, s:f}], s:[{s:s, "
+                  "s:s, s:s, s:s, s:s, s:f, s:[s], s:[s, s]}]}",
+                  "cells", "group", "g", "row", "r", "column", "c", "outcome", "ok", "predicted",
+                  5e-7, "measured", "group", "g", "row", "r", "column", "d", "outcome", "ok",
+                  "predicted", 0.5, "measured", 0.25, "groups", "name", "g", "title", "t", "number",
+                  "what it is", "row_title", "kernel", "column_title", "lattice", "stable_below",
+                  0.02, "rows", "r", "columns", "c", "d"));
+    char *html = page_of(results);
+    assert_non_null(strstr(html, ">stable</td>"));
+    assert_null(strstr(html, "5e-07"));
+    assert_non_null(strstr(html, ">0.25 <span>of 0.5</span></td>"));
+    assert_non_null(strstr(html, ">what it is</p>"));
+    assert_non_null(strstr(html, "<th>kernel ↓ lattice →</th>"));
+    free(html);
+}
+
 /* Results with nothing in them still make a page, and no verdict out of nothing. */
 static void empty_page(void **state)
 {
@@ -491,6 +515,7 @@ int main(void)
         cmocka_unit_test(overshoots),
         cmocka_unit_test(since),
         cmocka_unit_test(words),
+        cmocka_unit_test(growth_on_lattices),
         cmocka_unit_test(broke_since),
         cmocka_unit_test(empty_page),
         cmocka_unit_test(page_without_gnuplot),
