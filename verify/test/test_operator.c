@@ -215,6 +215,37 @@ static void test_states(void **state)
     }
 }
 
+/* What is exactly h away is no neighbour; pairs are those of the lists, with any number of threads;
+ * and a volume that is none is refused by its point. */
+static void test_edges(void **state)
+{
+    (void)state;
+    const struct kernel kernel = kernel_named("wendland_c4");
+    const double x[] = {0, 0.5, 1, 0.75}, y[] = {0, 0, 0, 0.25}, h[] = {0.5, 0.50000001, 2, 0.4};
+    double V[] = {1, 1, 1, 1};
+    for (int threads = 1; threads <= 2; threads++)
+        for (size_t o = 0; o < operator_family.n; o++) {
+            const struct operator_settings settings = {operator_at(o), &kernel, false, threads};
+            const struct cloud cloud = {{.dim = 2, .n = 4, .x = {x, y}}, V, h};
+            static const uint32_t expected[] = {1, 4, 4, 3};
+            struct computed c;
+            compute(&settings, &cloud, &c);
+            for (int i = 0; i < 4; i++) assert_int_equal(c.point[i].neighbours, expected[i]);
+            assert_true(c.pairs == 12);
+            release(&c);
+        }
+    static const double wrong[] = {0, -1, (double)NAN, (double)INFINITY};
+    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) {
+        struct error error;
+        V[2] = wrong[k];
+        const struct operator_settings settings = {operator_at(0), &kernel, false, 1};
+        const struct cloud cloud = {{.dim = 2, .n = 4, .x = {x, y}}, V, h};
+        assert_int_equal(operator_apply(&settings, &cloud, 0, NULL, NULL, NULL, NULL, &error),
+                         STATUS_BAD_INPUT);
+        assert_non_null(strstr(error.message, "point 2: volume"));
+    }
+}
+
 static void test_odd_clouds(void **state)
 {
     (void)state;
@@ -431,7 +462,8 @@ int main(void)
         cmocka_unit_test(test_brute_force), cmocka_unit_test(test_same_result),
         cmocka_unit_test(test_periodic),    cmocka_unit_test(test_states),
         cmocka_unit_test(test_odd_clouds),  cmocka_unit_test(test_summation),
-        cmocka_unit_test(test_matrix),      cmocka_unit_test(test_units),
+        cmocka_unit_test(test_edges),       cmocka_unit_test(test_matrix),
+        cmocka_unit_test(test_units),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
