@@ -115,15 +115,17 @@ static enum status execute(void *context, uint64_t times, struct clock_taken *ta
 /* --- all of them ------------------------------------------------------------------------------ */
 
 /* The case's order: the middle of its gate on L1(density), which for shock tubes is a little
- * below 1. */
+ * below 1, or what such a gate of the error alone says. */
 static int order_of(const struct run_settings *settings)
 {
     const struct case_file *file = &settings->file;
     for (size_t i = 0; i < file->gate_count; i++) {
         const struct case_gate *gate = &file->gates[i];
-        if (gate->field != FIELD_DENSITY || (gate->norm != NORM_L1 && gate->norm != NORM_L1_CUT))
+        if (gate->functional || gate->field != FIELD_DENSITY ||
+            (gate->norm != NORM_L1 && gate->norm != NORM_L1_CUT))
             continue;
-        const double middle = (gate->gate.low + gate->gate.high) / 2;
+        const double low = gate->gate.low, high = gate->gate.high,
+                     middle = isfinite(high) ? (low + high) / 2 : low;
         return middle > 1 ? (int)lround(middle) : 1;
     }
     return file->dimension > 1 && problem_of(&settings->settings)->smooth ? 2 : 1;

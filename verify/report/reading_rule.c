@@ -126,6 +126,7 @@ static const struct reading_rule rules[] = {
     /* contexts: what follows from settings, what says how sure another figure is */
     {"precision", "*", OUT},
     {"resolution", "*", OUT},
+    {"window", "*", OUT},
     {"", "negative", OUT},
     {"", "underflow", OUT},
     {"", "n", OUT},

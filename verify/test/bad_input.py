@@ -51,7 +51,7 @@ FILES = {
     "foreign.ini": GOOD.replace("kind = riemann", "kind = riemann\nwaves = 2"),
     "gate.ini": GOOD + "[converge]\ndensity_l1 = 1.1 0.9 1\n",
     "known.ini": GOOD + "[converge]\ndensity_l1 = 0.9 1.1 1 known:\n",
-    "known2.ini": GOOD + "[converge]\ndensity_l1 = 0.9 1.1 known: it is so\n",
+    "known2.ini": GOOD + "[converge]\ndensity_l1 = 0.9 known: it is so\n",
     "ladder.ini": GOOD + "[converge]\nn = 100 200 400\n",
     "field.ini": GOOD + "fields = density presure\n",
     "bracket.ini": GOOD + "[converge\n",

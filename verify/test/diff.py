@@ -258,6 +258,8 @@ def test_kinds():
              ["bench", "sod", "--n", "40,60", "--samples", "1", "--time", "1e-4"],
              ["bench", "--scaling", "--n", "50,100", "--samples", "1", "--time", "1e-4"],
              ["bench", "--kernels", "--vary", "kernel=cubic_spline", "--samples", "1", "--time", "1e-4"],
+             ["run", "sedov_2d", "n=16^2", "t_end=1e-3"], ["run", "noh_3d", "n=12^3", "t_end=1e-3"],
+             ["run", "gresho", "n=12^2", "t_end=1e-2"],
              ["converge", "sod", "--n", "40,60,80,120", "--vary", "kernel=cubic_spline,quartic_spline"])
     documents = [made_by(*words) for words in kinds]
     for document, words in zip(documents, kinds):

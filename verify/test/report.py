@@ -103,6 +103,9 @@ expect("nights:", len([json.loads(line) for line in read("history.jsonl").splitl
 
 page, results = read("index.html"), json.loads(read("results.json"))
 expect("verdict:", "<h1>All is well</h1>" in page and results["verdict"]["status"] == "pass")
+itself = os.path.join(folder, "results.json")
+done = subprocess.run([program, "diff", itself, itself], capture_output=True, text=True)
+expect("a figure that nobody can compare:", done.returncode == 0 and "\nwell: " in done.stdout, done)
 expect("asks the network:", not re.search(r"(src|href)=\"(https?:)?//|url\(|@import|<script", page))
 xml.fromstring(page.replace("<!DOCTYPE html>", ""))
 xml.fromstring(read("junit.xml"))
