@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "integrator.h"
-#include "limits.h"
+#include "allowance.h"
 #include "memory.h"
 
 /* The program with its libraries, and what does not grow with n. */
@@ -66,7 +66,7 @@ struct estimate estimate_run(const struct scene *scene)
 
 enum status estimate_check(const struct estimate *estimate, size_t n, struct error *error)
 {
-    const double there = limits_memory("");
+    const double there = allowance_memory("");
     if (estimate->memory <= there) return STATUS_OK;
     return error_set(error, STATUS_ENVIRONMENT,
                      "n=%zu takes about %.3g GB of memory, more than the %.3g GB that there are", n,

@@ -353,7 +353,8 @@ def kill_reports(count):
 
 def cached_reports(cache):
     """Faults of a report that has nothing left to compute."""
-    size = sum(-(-os.path.getsize(os.path.join(cache, name)) // 4096) * 4 for name in os.listdir(cache))
+    size = sum(4 + sum(-(-os.path.getsize(os.path.join(inside, name)) // 4096) * 4 for name in names)
+               for inside, _, names in os.walk(cache))
     with small_disk("full disk, report", size + 200) as place:
         if place:
             shutil.copytree(cache, os.path.join(folder, place, "report", "cache"))

@@ -238,7 +238,7 @@ static void test_viscosity(void **state)
         static const enum lanes_array made[] = {LANE_K, LANE_SLOPE_I, LANE_SLOPE_J, LANE_SPARE};
         const double *K = lane(&drawn.lanes, LANE_K);
         double behind[4];
-        for (int a = 0; a < 4; a++) behind[a] = lane(&drawn.lanes, made[a])[COUNT];
+        for (int a = 0; a < 4; a++) behind[a] = lane(&drawn.lanes, (int)made[a])[COUNT];
         for (int a = 0; a < 3; a++) lane(&drawn.lanes, LANE_GX + a)[3] = 0; /* heats nobody */
         cells_viscosity(drawn.cells, &drawn.pairs);
         for (int k = 0; k < COUNT; k++) {
@@ -247,7 +247,7 @@ static void test_viscosity(void **state)
             near_below((double)fabsl(K[k] - expected), (round % 2 ? 3e-6 : 1e-12) * (double)size);
             zero += expected == 0, other += expected != 0;
         }
-        for (int a = 0; a < 4; a++) assert_true(lane(&drawn.lanes, made[a])[COUNT] == behind[a]);
+        for (int a = 0; a < 4; a++) assert_true(lane(&drawn.lanes, (int)made[a])[COUNT] == behind[a]);
         release(&drawn);
     }
     assert_true(zero > 400 && other > 400);

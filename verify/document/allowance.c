@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "limits.h"
+#include "allowance.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -56,7 +56,7 @@ static double of_groups(const char *root)
     return least;
 }
 
-double limits_memory(const char *root)
+double allowance_memory(const char *root)
 {
     struct rlimit limit;
     const long pages = sysconf(_SC_PHYS_PAGES), size = sysconf(_SC_PAGESIZE);

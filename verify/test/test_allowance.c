@@ -9,7 +9,7 @@
 #include <unistd.h>
 #include <cmocka.h>
 
-#include "limits.h"
+#include "allowance.h"
 #include "near.h"
 #include "output.h"
 
@@ -35,36 +35,36 @@ static void same(double bytes, double expected)
 
 static void groups_are_nested(void **state)
 {
-    const double all = limits_memory("nowhere");
+    const double all = allowance_memory("nowhere");
     (void)state;
     assert_true(all > 1e8);
     put("proc/self", "cgroup", "0::/jobs/7/step\n");
-    same(limits_memory(root), all); /* nothing there says anything */
+    same(allowance_memory(root), all); /* nothing there says anything */
     put("sys/fs/cgroup/jobs/7/step", "memory.max", "max\n");
-    same(limits_memory(root), all);
+    same(allowance_memory(root), all);
     put("sys/fs/cgroup/jobs", "memory.max", "40000000\n");
-    same(limits_memory(root), 4e7);
+    same(allowance_memory(root), 4e7);
     put("sys/fs/cgroup/jobs/7", "memory.max", "30000000\n");
-    same(limits_memory(root), 3e7);
+    same(allowance_memory(root), 3e7);
     put("sys/fs/cgroup/jobs/7/step", "memory.max", "50000000\n");
-    same(limits_memory(root), 3e7);
+    same(allowance_memory(root), 3e7);
     put("sys/fs/cgroup", "memory.max", "20000000\n"); /* a container's own */
-    same(limits_memory(root), 2e7);
+    same(allowance_memory(root), 2e7);
 }
 
 static void first_version(void **state)
 {
-    const double all = limits_memory("nowhere");
+    const double all = allowance_memory("nowhere");
     (void)state;
     put("proc/self", "cgroup", "9:name=systemd:/\n4:memory:/jobs/8\n3:cpuset:/jobs/7\n");
     put("sys/fs/cgroup/memory/jobs/8", "memory.limit_in_bytes", "9223372036854771712\n");
-    same(limits_memory(root), all);
+    same(allowance_memory(root), all);
     put("sys/fs/cgroup/memory/jobs", "memory.limit_in_bytes", "10000000\n");
-    same(limits_memory(root), 1e7);
+    same(allowance_memory(root), 1e7);
     put("proc/self", "cgroup", "4:memory:/a/path/of/the/host\n");
-    same(limits_memory(root), all);
+    same(allowance_memory(root), all);
     put("sys/fs/cgroup/memory", "memory.limit_in_bytes", "15000000\n");
-    same(limits_memory(root), 1.5e7);
+    same(allowance_memory(root), 1.5e7);
 }
 
 int main(void)
