@@ -93,6 +93,7 @@ static const struct reading_rule rules[] = {
     {"cells", "measured", 0, READING_PART, 0.1, 1e-13},
     {"cells", "predicted", 0, READING_NEUTRAL, 1e-6, 1e-13},
     {"groups", "bound", 0, READING_NEUTRAL, 1e-9, 0},
+    {"groups", "stable_below", 0, READING_NEUTRAL, 1e-9, 0},
     /* sums over what is judged one by one: one fault is one regression */
     {"verdict", "*", OUT},
     {"summary", "*", OUT},

@@ -144,7 +144,7 @@ def check_program(stage, work, commands):
     if shutil.which("bash"):
         for words, wanted in (("sphproof conv", {"converge"}), ("sphproof run so", {"sod", "sod_2d", "sod_3d", "sod_standard", "sound_wave",
                                "sound_wave_2d", "sound_wave_3d"}), ("sphproof run sod kernel = cub", {"cubic_spline"}),
-                              ("sphproof run sod --sn", {"--snapshot"}), ("sphproof judge a --case gre", {"gresho"}),
+                              ("sphproof run sod --sn", {"--snapshot", "--snapshot-every"}), ("sphproof judge a --case gre", {"gresho"}),
                               ("sphproof list --color ne", {"never"})):
             script = ('. "$1"; COMP_WORDS=(%s); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _sphproof; printf "%%s\\n" "${COMPREPLY[@]}"' % words)
             got = set(must("bash", "-c", script, "bash", os.path.join(moved, "share/bash-completion/completions/sphproof"), cwd="/").split())

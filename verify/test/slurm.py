@@ -25,7 +25,7 @@ night = os.path.abspath(sys.argv[4]) if len(sys.argv) > 3 else None
 SLURM = ["--engine", "slurm"]
 QUICK = ["converge", "sod", "--n", "40,60,80,120", "t_end=0.1", "--replicates", "2"]
 # one computation of some seconds, and a few short ones
-LONG = ["converge", "sod", "--n", "100,140,200,5600", "t_end=0.1", "kernel=wendland_c6", "eta=9", "skip=none",
+LONG = ["converge", "sod", "--n", "100,140,200,20000", "t_end=0.1", "kernel=wendland_c6", "eta=9", "skip=none",
         "integrator=rk3", "volume_element=energy", "--replicates", "1"]
 HELD = [*LONG[:3], "100,140,200,8000", *LONG[4:]]
 TIMES = ("cost", "cpu_s", "wall_s", "seconds", "date", "found", "history", "bench", "ns_per_point", "ns_per_pair")
