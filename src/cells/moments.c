@@ -63,25 +63,16 @@ ALWAYS_INLINE void differences_body(int dim, int count, ptrdiff_t stride,
     if (dim == 3) sums[2] = TREE(sz);
 }
 
-CLONES static void differences(int dim, int count, ptrdiff_t stride, const double *weight,
-                               const double *x, const double *f, const double *own,
-                               double sums[CELLS_SQUARE])
+CLONES static void differences(int dim, int fields, int count, ptrdiff_t stride,
+                               const double *weight, const double *x, const double *f,
+                               const double *own, double *sums)
 {
     if (dim == 2)
-        for (int a = 0; a < 2; a++)
+        for (int a = 0; a < fields; a++)
             differences_body(2, count, stride, weight, x, f + a * stride, own[a], sums + 2 * a);
     else
-        for (int a = 0; a < 3; a++)
+        for (int a = 0; a < fields; a++)
             differences_body(3, count, stride, weight, x, f + a * stride, own[a], sums + 3 * a);
-}
-
-CLONES static void differences_of_one(int dim, int count, ptrdiff_t stride, const double *weight,
-                                      const double *x, const double *f, double own, double sums[3])
-{
-    if (dim == 2)
-        differences_body(2, count, stride, weight, x, f, own, sums);
-    else
-        differences_body(3, count, stride, weight, x, f, own, sums);
 }
 
 void moments_weigh(const struct cells *cells, int count, const struct lanes *lanes,
@@ -136,7 +127,7 @@ void moments_gradient(int dim, int count, const struct lanes *lanes, const doubl
                       double gradient[CELLS_SQUARE])
 {
     double sums[CELLS_SQUARE];
-    differences(dim, count, lanes->stride, weight, lane(lanes, LANE_DX), f, own, sums);
+    differences(dim, dim, count, lanes->stride, weight, lane(lanes, LANE_DX), f, own, sums);
     if (dim == 2)
         rows_times_matrix(2, sums, inverse, gradient);
     else
@@ -147,7 +138,7 @@ double moments_steepness(int dim, int count, const struct lanes *lanes, const do
                          const double inverse[CELLS_SQUARE], const double *f, double own)
 {
     double sums[3], square = 0;
-    differences_of_one(dim, count, lanes->stride, weight, lane(lanes, LANE_DX), f, own, sums);
+    differences(dim, 1, count, lanes->stride, weight, lane(lanes, LANE_DX), f, &own, sums);
     for (int a = 0; a < dim; a++) {
         double g = 0;
         for (int b = 0; b < dim; b++) g += inverse[a * dim + b] * sums[b];

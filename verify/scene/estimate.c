@@ -3,8 +3,8 @@
 
 #include <math.h>
 
-#include "integrator.h"
 #include "allowance.h"
+#include "integrator.h"
 #include "memory.h"
 
 /* The program with its libraries, and what does not grow with n. */

@@ -292,9 +292,8 @@ static const char *outcome_of(const json_t *entry)
     return json_string_value(json_object_get(entry, "outcome"));
 }
 
-/* Something that no cell may be: a prediction that fails, a fault nobody noticed, round-off that
- * the default scheme lets grow where it is not known to, or a breakdown where all have to survive.
- */
+/* Something that no cell may be: a prediction that fails, a fault nobody noticed, a breakdown where
+ * all have to survive, or round-off that the default scheme lets grow where it is not known to. */
 static bool is_wrong(const struct stress_cell *cell, const json_t *entry)
 {
     const char *outcome = outcome_of(entry),

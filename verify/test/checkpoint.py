@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """checkpoint.py SPHPROOF [SCENES] [SEED]: runs that are killed and resumed, on scenes drawn at random: the
-particles at the end and on the way and the document, times and memory aside, have the bytes of the uninterrupted run.
+particles at the end and on the way and the document, times and memory aside, have the bytes of the uninterrupted run,
+and those at the end and the document the bytes of a run without snapshots on the way.
 Checkpoints that are damaged, or of another build or run, are refused with the reason."""
 import contextlib
 import glob
@@ -103,6 +104,8 @@ def test_bits():
             continue  # keys that exclude each other, or a run that breaks down
         longest = (time.monotonic() - began) / 3
         done += 1
+        without = run(words, "--snapshot", "plain.csv", "--json", "plain.json")
+        expect("a run without snapshots, %s" % " ".join(words), without.returncode == 0, without.stderr)
         kills, said = resume(words, ["--snapshot", "again.csv", *way, "--json", "again.json"], generator, longest)
         resumed += kills
         expect("resumed, %s" % " ".join(words), not said, said)
@@ -110,11 +113,15 @@ def test_bits():
             break
         (one, rows), (other, others) = seen("alone"), seen("again")
         expect("particles of %s" % " ".join(words), rows == others)
+        expect("document of %s" % " ".join(words), one == other, [k for k in one if one[k] != other.get(k)])
         expect("snapshots on the way of %s" % " ".join(words), on_the_way("alone") == on_the_way("again") != {},
                [k for k, rows in on_the_way("alone").items() if rows != on_the_way("again").get(k)])
+        plain, still = seen("plain")
+        for document in (plain, one):
+            document.get("estimate", {}).pop("memory_bytes", None)  # room for going aside
+        expect("%s knows nothing of snapshots" % " ".join(words), (plain, still) == (one, rows))
         for path in glob.glob("a*_????.csv"):
             os.remove(path)
-        expect("document of %s" % " ".join(words), one == other, [k for k in one if one[k] != other.get(k)])
         with contextlib.suppress(FileNotFoundError):  # it was too short for one
             os.remove("state")
     expect("runs that were killed", resumed >= (scenes + 1) // 4, resumed)

@@ -420,6 +420,8 @@ static void test_joined(void **state)
     suite_free(&joined);
     assert_int_equal(suite_join(&joined, checks + 1, from, 1, &error), STATUS_ENVIRONMENT);
     assert_null(joined.figures);
+    json_array_clear(json_object_get(documents[0], "checks")); /* a check that measured nothing */
+    assert_int_equal(suite_join(&joined, checks, from, 1, &error), STATUS_ENVIRONMENT);
     json_decref(one);
     json_decref(other);
     suite_free(&suite);
