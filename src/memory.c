@@ -1,15 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "memory.h"
 
-#include <math.h>
-
 #include "solver.h"
-
-double memory_neighbours(int dim, double eta)
-{
-    static const double ball[] = {0, 2, 3.14159265358979, 4.18879020478639};
-    return ball[dim] * pow(eta, dim);
-}
 
 /* Arrays of the particles that a run writes to: the others take no room. */
 static double arrays_of(const struct simulation *simulation)

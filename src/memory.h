@@ -9,7 +9,4 @@ struct scene;
  * of particles (no array of it is read): within a tenth where particles are evenly spaced. */
 double memory_bytes(const struct scene *scene);
 
-/* How many are within h = eta spacings of a particle. */
-double memory_neighbours(int dim, double eta);
-
 #endif

@@ -5,6 +5,12 @@
 
 #include "stamp.h"
 
+double width_neighbours(int dim, double eta)
+{
+    static const double ball[] = {0, 2, 3.14159265358979, 4.18879020478639};
+    return ball[dim] * pow(eta, dim);
+}
+
 double width_of(const struct width_rule *rule, double m, double rho)
 {
     /* no pow: it gives other bits on processors with and without FMA */

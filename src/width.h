@@ -34,6 +34,9 @@ struct width_bracket {
 /* eta (m/rho)^(1/d). */
 double width_of(const struct width_rule *rule, double m, double rho);
 
+/* How many particles at even spacing are within h, eta spacings, of one: volume of a ball. */
+double width_neighbours(int dim, double eta);
+
 /* Starts with the bracket (0, high) around each of len widths; high may be INFINITY. */
 void width_begin(struct width_bracket *bracket, int len, double high);
 

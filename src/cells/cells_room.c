@@ -6,10 +6,10 @@
 
 #include "breakdown.h"
 #include "cells.h"
-#include "memory.h"
 #include "solver.h"
 #include "stamp.h"
 #include "state.h"
+#include "width.h"
 
 enum {
     SORT_EVERY = 32, /* steps: particles that move on apart in memory slow the gathering down */
@@ -182,7 +182,7 @@ static double bytes(const struct simulation *simulation, double n)
     const struct cells_method method = method_of(simulation);
     const double arrays = (double)list_arrays(simulation, &room, of);
     /* the first search goes further, and lists hold who is within the wider of two widths */
-    const double neighbours = memory_neighbours(method.box.dim, simulation->scheme.eta * margin);
+    const double neighbours = width_neighbours(method.box.dim, simulation->scheme.eta * margin);
     return n * (arrays * sizeof(double) + 3) + cells_bytes(&method, n, neighbours);
 }
 

@@ -5,8 +5,6 @@
 
 #include "text.h"
 
-static const double least_s = 600; /* a task shorter than that is a burden to a scheduler */
-
 const struct engine engine_local = {.name = "local", .label = "processes on this machine"};
 
 static const struct engine *const engines[] = {
@@ -25,12 +23,4 @@ const struct engine *engine_find(const char *name, struct error *error)
     }
     text_unknown(error, "--engine", "engine", name, names, ENGINES);
     return NULL;
-}
-
-int engine_tasks(double seconds, size_t count, int jobs)
-{
-    double tasks = seconds / (least_s * jobs);
-    if (tasks > (double)count) tasks = (double)count;
-    if (tasks > ENGINE_TASKS_MAX) tasks = ENGINE_TASKS_MAX;
-    return tasks >= 1 ? (int)tasks : 1;
 }

@@ -34,8 +34,4 @@ struct engine {
 /* The engine called name; NULL with error: there is none. */
 const struct engine *engine_find(const char *name, struct error *error);
 
-/* How many shares a study is divided into: of ten minutes and more each, where jobs processes work
- * on `seconds` of computations, `count` of them; at least 1. */
-int engine_tasks(double seconds, size_t count, int jobs);
-
 #endif

@@ -29,6 +29,7 @@ enum { TRIES = 3, SHOWN = 10, LINE = 400 };
 
 /* seconds */
 static const double first_look = 0.5, last_look = 15, visible = 30, controller_away = 120;
+static const double least_s = 600; /* a task shorter than that is a burden to a scheduler */
 
 static volatile sig_atomic_t interrupted;
 
@@ -154,6 +155,16 @@ static void look(struct array *array)
     array->looked = clock_wall() - began;
 }
 
+/* How many shares a study is divided into: of ten minutes and more each, where jobs processes work
+ * on `seconds` of computations, `count` of them; at least 1. */
+static int tasks_for(double seconds, size_t count, int jobs)
+{
+    double tasks = seconds / (least_s * jobs);
+    if (tasks > (double)count) tasks = (double)count;
+    if (tasks > ENGINE_TASKS_MAX) tasks = ENGINE_TASKS_MAX;
+    return tasks >= 1 ? (int)tasks : 1;
+}
+
 static enum status divide(struct array *array, struct error *error)
 {
     const struct engine_work *work = array->work;
@@ -170,7 +181,7 @@ static enum status divide(struct array *array, struct error *error)
     json_t *state = load(array); /* shares stay what they were */
     array->count = state         ? (int)json_integer_value(json_object_get(state, "tasks"))
                    : work->tasks ? work->tasks
-                                 : engine_tasks(array->whole, lacking, work->jobs);
+                                 : tasks_for(array->whole, lacking, work->jobs);
     array->shares = calloc((size_t)array->count + 1, sizeof *array->shares);
     array->of = calloc(pool->count + 1, sizeof *array->of);
     json_decref(state);

@@ -6,6 +6,7 @@
 #include "allowance.h"
 #include "integrator.h"
 #include "memory.h"
+#include "width.h"
 
 /* The program with its libraries, and what does not grow with n. */
 static const double base = 1.2e7;
@@ -24,7 +25,7 @@ struct estimate estimate_size(const struct scene *scene)
 static double step_ns(const struct scene *scene)
 {
     const struct scheme *scheme = &scene->scheme;
-    const double neighbours = memory_neighbours(scene->dim, scheme->eta);
+    const double neighbours = width_neighbours(scene->dim, scheme->eta);
     const bool slopes =
         scheme->viscosity == VISCOSITY_RECONSTRUCTED || scheme->viscosity == VISCOSITY_PROJECTED ||
         scheme->viscosity == VISCOSITY_CULLEN_DEHNEN || scheme->balsara == BALSARA_ON;
