@@ -108,6 +108,7 @@ static void print_one(const struct judged *judged, const struct table_style *sty
             printf("%-16s %12.6g %12.6g %12.6g %14.6g\n", "azimuthal", r->azimuthal.l1,
                    r->azimuthal.l2, r->azimuthal.linf, r->azimuthal.particle_mean);
     }
+    if (r->problem.problem->fieldless) printf("\n");
     for (size_t k = 0; k < r->functional_count; k++)
         printf("%-24s %.6g (exact %.6g)\n", r->functionals[k].name, r->functionals[k].value,
                r->functionals[k].exact);

@@ -33,7 +33,7 @@ struct judged {
     double transverse;        /* rms of velocities across x, by volume, in the window; NaN in 1D */
     double wrong;             /* worst median error of a field over the range of its exact values */
     enum field wrong_field;
-    bool foreign; /* plainly not this case's solution */
+    bool foreign; /* far from this case's solution */
     char verdict[400];
 };
 
