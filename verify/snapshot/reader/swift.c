@@ -48,7 +48,9 @@ static enum status read(const struct snapshot_source *source,
     file->ratio = ratio.known ? ratio.value : 0;
     hdf5_text(source, "HydroScheme", "Kernel function", file->kernel, sizeof file->kernel);
     hdf5_text(source, "Code", "Git Revision", revision, sizeof revision);
-    snprintf(file->code, sizeof file->code, "SWIFT %.40s", revision);
+    const bool known = revision[0] && strcmp(revision, "unknown") != 0;
+    snprintf(file->code, sizeof file->code, "SWIFT%s%.40s", known ? " " : "",
+             known ? revision : "");
     return STATUS_OK;
 }
 
