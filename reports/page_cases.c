@@ -262,8 +262,13 @@ static bool is_well(const json_t *const *runs, size_t run_count, const json_t *c
                     size_t study_count)
 {
     bool well = true;
-    for (size_t i = 0; i < run_count; i++)
+    for (size_t i = 0; i < run_count; i++) {
+        size_t k;
+        const json_t *gate;
         well = well && !strcmp(value_text(runs[i], "status"), "ok");
+        json_array_foreach(json_object_get(runs[i], "gates"), k, gate) well =
+            well && strcmp(value_text(gate, "status"), "fail") != 0;
+    }
     for (size_t i = 0; i < study_count; i++) {
         const char *status = value_text(studies[i], "status");
         well = well && !*value_text(studies[i], "suspicion") && strcmp(status, "fail") != 0 &&

@@ -336,9 +336,48 @@ static void functional_table(struct buffer *to, const json_t *const *runs, size_
     html_table_end(to);
 }
 
+/* What these runs have to keep; open where one does not. */
+static void gate_table(struct buffer *to, const json_t *const *runs, size_t count)
+{
+    size_t i, gates = 0;
+    const json_t *gate;
+    bool failed = false;
+    for (size_t k = 0; k < count; k++)
+        json_array_foreach(json_object_get(runs[k], "gates"), i, gate)
+        {
+            failed = failed || !strcmp(value_text(gate, "status"), "fail");
+            gates++;
+        }
+    if (!gates) return;
+    buffer_format(to, "<details%s><summary>What these runs have to keep</summary>\n",
+                  failed ? " open=\"open\"" : "");
+    html_table(to, "gates", "scheme|error|#of this run|#allowed|");
+    for (size_t k = 0; k < count; k++)
+        json_array_foreach(json_object_get(runs[k], "gates"), i, gate)
+        {
+            buffer_add(to, "<tr>");
+            html_cell(to, value_text(runs[k], "label"));
+            buffer_add(to, "<td>");
+            html_words(to, value_text(gate, "name"));
+            buffer_add(to, "</td>");
+            html_cell_number(to, value_member(gate, "value"));
+            html_cell_number(to, value_member(gate, "bound"));
+            buffer_add(to, "<td>");
+            html_status(to, value_text(gate, "status"));
+            if (*value_text(gate, "known")) {
+                buffer_add(to, ": ");
+                buffer_escape(to, value_text(gate, "known"));
+            }
+            buffer_add(to, "</td></tr>\n");
+        }
+    html_table_end(to);
+    buffer_add(to, "</details>\n");
+}
+
 void page_cloud_tables(struct buffer *to, const json_t *const *runs, size_t count)
 {
     buffer_add(to, "<h4>Errors, conservation and cost of the runs above</h4>\n");
     run_table(to, runs, count);
     functional_table(to, runs, count);
+    gate_table(to, runs, count);
 }

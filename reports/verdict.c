@@ -102,12 +102,33 @@ static void judge_verify(struct tally *tally, const json_t *verify)
     }
 }
 
+/* What a run alone has to keep: errors below bounds, conservation. */
+static void judge_gate(struct tally *tally, const json_t *run, const json_t *gate)
+{
+    const enum answer answer = answer_of(tally, gate, "none", value_text(run, "case"));
+    tally->gates_passed += answer == PASS;
+    tally->gates_failed += answer == FAIL;
+    if (answer != FAIL) return;
+    struct buffer detail = {0}, name = {0};
+    buffer_format(&name, "%s, %s: %s", value_text(run, "case"), value_text(run, "label"),
+                  value_text(gate, "name"));
+    buffer_add(&detail, "the error of the run, ");
+    html_number(&detail, value_member(gate, "value"));
+    buffer_add(&detail, ", is not <= ");
+    html_number(&detail, value_member(gate, "bound"));
+    if (!name.failed) fail(tally, "gate", name.data, &detail, value_text(run, "reproduce"));
+    buffer_free(&name);
+}
+
 static void judge_run(struct tally *tally, const json_t *run)
 {
     static const char *const words[] = {"ok", "broke_down", NULL};
     char message[VALUE_MESSAGE];
     const int word = value_need_word(run, "status", words, message);
+    size_t i;
+    const json_t *gate;
     tally->runs++;
+    json_array_foreach(json_object_get(run, "gates"), i, gate) judge_gate(tally, run, gate);
     if (word < 0) unreadable(tally, value_text(run, "case"), message);
     if (word != 1) return;
     tally->broke_down++;

@@ -40,6 +40,7 @@ static const struct reading_rule rules[] = {
     {"score", "score", 0, READING_ORDER, 0.05, 0}, /* another sample each night */
     {"score", "*", OUT},
     {"", "status", 0, READING_STATUS, 0, 0},
+    {"gates", "*", OUT}, /* bounds, and errors that are read where they stand */
     {"", "detected", 0, READING_STATUS, 0, 0},
     {"", "suspicion", 0, READING_STATUS, 0, 0},
     {"", "outcome", 0, READING_STATUS, 0, 0},

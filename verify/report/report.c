@@ -11,6 +11,7 @@
 #include "check_registry.h"
 #include "claims.h"
 #include "clock.h"
+#include "gates.h"
 #include "list.h"
 #include "pairing.h"
 #include "pool.h"
@@ -19,6 +20,7 @@
 #include "stress.h"
 #include "study.h"
 #include "suite.h"
+#include "value.h"
 #include "verdict.h"
 
 /* The default scheme, and in 1D the two gradients with all else equal; in 2D and 3D the default
@@ -38,9 +40,6 @@ static const struct scheme_label {
       {"standard gradient", "gradient=standard"},
       {"textbook SPH", "kernel=cubic_spline eta=2.4 gradient=standard viscosity=constant"},
 };
-/* Of the bound on the finest error, for schemes other than the default. */
-static const double compared_bound = 3;
-
 enum { SCHEMES = sizeof line_schemes / sizeof *line_schemes };
 enum { KEYS_MAX = 16, COMMAND_TEXT = 1024 };
 enum { COMPARED = 8000 }; /* particles by day up to which other schemes are compared */
@@ -115,12 +114,9 @@ static enum status add_study(struct report *report, struct reported *of, int s,
                              const struct run_settings *settings, struct error *error)
 {
     struct study *study = &of->studies[s];
-    struct case_file *file = &study->settings.file;
     study->settings = *settings;
     if (sweep_parse(&study->sweep, NULL, error)) return error->status;
-    /* in 2D and 3D gates are the default scheme's: other gradients have other orders */
-    if (s && of->dimension > 1) file->gate_count = 0;
-    for (size_t i = 0; i < file->gate_count && s; i++) file->gates[i].gate.bound *= compared_bound;
+    if (s) gates_compare(&study->settings.file);
     take_ladder(report, of, study);
     study->replicates = study_replicates(settings);
     return study_plan(study, &report->pool, error);
@@ -297,11 +293,25 @@ static void add_trouble(json_t *results, const char *name, const char *message)
     json_array_append_new(list, json_pack("{s:s, s:s}", "name", name, "message", message));
 }
 
+/* In 2D and 3D: what every run conserves, and errors where no ladder is judged. */
+static void add_gates(const struct reported *of, const struct report_piece *piece, json_t *document)
+{
+    struct case_file file = piece->settings.file;
+    json_t *gates = json_array();
+    if (piece->scheme) gates_compare(&file);
+    if (piece->scheme >= of->studied) gates_add_errors(&file, document, gates);
+    gates_add_conserved(document, gates);
+    json_object_set_new(document, "gates", gates);
+}
+
 static json_t *run_document(const struct report *report, const struct report_piece *piece,
                             const struct pool_job *job)
 {
+    const struct reported *of = &report->cases[piece->case_number];
     json_t *document = json_copy(job->document);
-    describe_run(&report->cases[piece->case_number], piece->scheme, document);
+    describe_run(of, piece->scheme, document);
+    if (of->dimension > 1 && strcmp(value_text(document, "status"), "ok") == 0)
+        add_gates(of, piece, document);
     return document;
 }
 

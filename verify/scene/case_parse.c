@@ -35,8 +35,8 @@ enum extra { EXTRA_LIST(EXTRA_SYMBOL) EXTRAS };
 static const struct {
     const char *section, *name;
 } extras[EXTRAS] = {EXTRA_LIST(EXTRA_ENTRY)};
-static const char *const sections[] = {"case", "domain",  "initial",  "scheme",
-                                       "run",  "measure", "converge", "report"};
+static const char *const sections[] = {"case",    "domain",   "initial",  "scheme", "run",
+                                       "measure", "converge", "compared", "report"};
 
 struct parser {
     struct case_file *file;
@@ -44,7 +44,9 @@ struct parser {
     const char *text, *end; /* what is left to read */
     int line;
     char reference[64];
-    int seen_settings[SETTINGS], seen_extras[EXTRAS], seen_gates[CASE_GATES_MAX]; /* lines */
+    /* lines */
+    int seen_settings[SETTINGS], seen_extras[EXTRAS], seen_gates[CASE_GATES_MAX],
+        seen_compared[CASE_GATES_MAX];
     struct error *error;
     bool failed;
 };
@@ -212,28 +214,60 @@ static bool read_gate(const char *value, size_t count, double *numbers, const ch
     for (size_t n = strlen(text); n && text[n - 1] == ' '; n--) text[n - 1] = '\0';
     while (**why == ' ') ++*why;
     return text_reals(text, " \t,", count, numbers) && numbers[count - 1] > 0 &&
-           !(known && !**why) && strlen(*why) < sizeof((struct case_gate *)NULL)->known;
+           !(known && !**why) && strlen(*why) < sizeof((struct case_weakness *)NULL)->why;
+}
+
+/* The number of the gate of a functional, or NULL and of a field's norm; gate_count: there is none.
+ */
+static size_t find_gate(const struct case_file *file, const char *functional, enum field field,
+                        enum norm norm)
+{
+    size_t i = 0;
+    while (i < file->gate_count && (file->gates[i].functional != functional ||
+                                    file->gates[i].field != field || file->gates[i].norm != norm))
+        i++;
+    return i;
 }
 
 static void add_gate(struct parser *parser, const char *name, struct case_gate gate,
                      const char *why)
 {
     struct case_file *file = parser->file;
-    for (size_t i = 0; i < file->gate_count; i++) {
-        const struct case_gate *other = &file->gates[i];
-        if (other->functional == gate.functional && other->field == gate.field &&
-            other->norm == gate.norm) {
-            first_time(parser, &parser->seen_gates[i], name);
-            return;
-        }
+    const size_t there = find_gate(file, gate.functional, gate.field, gate.norm);
+    if (there < file->gate_count) {
+        first_time(parser, &parser->seen_gates[there], name);
+        return;
     }
     if (file->gate_count == CASE_GATES_MAX) {
         fail(parser, "too many gates", "");
         return;
     }
     parser->seen_gates[file->gate_count] = parser->line;
-    snprintf(gate.known, sizeof gate.known, "%s", why);
+    gate.known.bound = INFINITY;
+    snprintf(gate.known.why, sizeof gate.known.why, "%s", why);
     file->gates[file->gate_count++] = gate;
+}
+
+/* What compared schemes are held to at a gate above: `BOUND`, or `BOUND known: WHY`. */
+static void set_compared(struct parser *parser, const char *functional, int field, int norm,
+                         const char *name, const char *value)
+{
+    struct case_file *file = parser->file;
+    const size_t i = find_gate(file, functional, functional ? 0 : (enum field)field,
+                               functional ? 0 : (enum norm)norm);
+    struct case_weakness *compared = &file->gates[i].compared;
+    const char *why;
+    char what[120];
+    if (i == file->gate_count) {
+        snprintf(what, sizeof what, "key %.40s in [compared] has no gate above, in [converge]",
+                 name);
+        fail(parser, what, "");
+    } else if (first_time(parser, &parser->seen_compared[i], name)) {
+        if (!read_gate(value, 1, &compared->bound, &why))
+            fail_value(parser, name, value, "bound of the finest error" KNOWN_FAILURE);
+        else
+            snprintf(compared->why, sizeof compared->why, "%s", why);
+    }
 }
 
 /* Of a functional, or NULL and of a field's norm. */
@@ -287,7 +321,8 @@ static void unknown(struct parser *parser, const char *section, const char *name
         if (strcmp(setting_keys[i].section, section) == 0) names[n++] = setting_keys[i].name;
     for (int i = 0; i < EXTRAS; i++)
         if (strcmp(extras[i].section, section) == 0) names[n++] = extras[i].name;
-    if (strcmp(section, "converge") == 0) names[n++] = "density_l1";
+    if (strcmp(section, "converge") == 0 || strcmp(section, "compared") == 0)
+        names[n++] = "density_l1";
     snprintf(what, sizeof what, "key in [%.20s]", section);
     text_unknown(parser->error, where, what, name, names, n);
 }
@@ -327,6 +362,9 @@ static int take_pair(void *context, const char *section, const char *name, const
         set_gate(parser, NULL, field, norm, name, value);
     } else if (strcmp(section, "converge") == 0 && problem_functional_name(name)) {
         set_gate(parser, problem_functional_name(name), 0, 0, name, value);
+    } else if (strcmp(section, "compared") == 0 &&
+               (gate_name(name, &field, &norm) || problem_functional_name(name))) {
+        set_compared(parser, problem_functional_name(name), field, norm, name, value);
     } else {
         unknown(parser, section, name);
     }

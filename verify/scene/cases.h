@@ -17,13 +17,20 @@ enum { CASE_LADDER_MAX = ORDER_LEVELS_MAX, CASE_GATES_MAX = FIELDS * NORMS + 16 
 /* A gate of [converge]: `density_l1 = LOW HIGH BOUND`; where no order can be asked for, and of
  * functionals (`growth_rate = ORDER BOUND`, of |value - exact|), of the finest error alone: ORDER
  * is then what the bound is raised by where a ladder ends before the case's. With `... known: WHY`
- * of a weakness that is shown and fails nothing. */
+ * of a weakness that is shown and fails nothing. The schemes that a report compares with the
+ * default have a bound thrice as wide, or their own, in a line of the same name in [compared]:
+ * `density_l1 = BOUND`. `density_l1 = BOUND known: WHY`: they are known to fail the gate, but an
+ * error that is a number stays below BOUND. */
+struct case_weakness {
+    double bound;  /* of the finest error, INFINITY: any; 0: nothing is said */
+    char why[160]; /* "" if there is none */
+};
 struct case_gate {
     const char *functional; /* its name, static; NULL: of a field's norm */
     enum field field;
     enum norm norm;
     struct order_gate gate; /* of the error alone: low = ORDER, high = INFINITY */
-    char known[160];        /* why it is expected to fail; "" if it is not */
+    struct case_weakness known, compared;
 };
 
 struct case_file {

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "gates.h"
 #include "measure.h"
 #include "problem_list.h"
 #include "study_read.h"
@@ -95,6 +96,18 @@ static bool passes(const struct case_gate *gate, struct study_order *order)
     return false;
 }
 
+/* Of a gate that fails: does the case know, and of an error as large? */
+static bool is_known(const struct case_file *file, const struct case_gate *gate, size_t n,
+                     struct study_order *order)
+{
+    const double bound = gate->known.bound * gates_raise(file, gate, n);
+    if (!*gate->known.why) return false;
+    if (!(order->fit.finest > bound)) return true;
+    snprintf(order->why, sizeof order->why,
+             "finest error %.3g exceeds %.3g, up to which it is known", order->fit.finest, bound);
+    return false;
+}
+
 static void judge_gates(struct study_result *result, const struct case_file *file)
 {
     const struct study_level *finest = &result->levels[result->level_count - 1];
@@ -108,13 +121,11 @@ static void judge_gates(struct study_result *result, const struct case_file *fil
         struct study_order *order = gated(result, gate);
         if (!order) continue;
         order->gate = gate->gate;
-        if (file->ladder_count) {
-            const double coarser = (double)file->ladder[file->ladder_count - 1] / (double)finest->n;
-            order->gate.bound *= pow(fmax(1, coarser), gate->gate.low / file->dimension);
-        }
+        order->gate.bound *= gates_raise(file, gate, finest->n);
         order->status = passes(gate, order) ? GATE_PASS : GATE_FAIL;
-        order->known = gate->known;
-        if (order->status == GATE_FAIL && *gate->known) order->status = GATE_KNOWN;
+        order->known = gate->known.why;
+        if (order->status == GATE_FAIL && is_known(file, gate, finest->n, order))
+            order->status = GATE_KNOWN;
         if (order->status != GATE_FAIL) continue;
         result->status = STATUS_CHECK_FAILED;
         result->floor_explains |= isfinite(gate->gate.high) &&

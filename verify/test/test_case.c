@@ -56,11 +56,11 @@ static void everything(void **state)
     assert_false(file.bench);
     assert_int_equal(file.gate_count, 2);
     const struct case_gate *a = &file.gates[0], *b = &file.gates[1];
-    assert_true(a->field == FIELD_DENSITY && a->norm == NORM_L1_CUT && !a->known[0]);
+    assert_true(a->field == FIELD_DENSITY && a->norm == NORM_L1_CUT && !a->known.why[0]);
     assert_true(a->gate.low == 0.75 && a->gate.high == 1.25 && a->gate.bound == 2e-3);
     assert_true(b->field == FIELD_VELOCITY && b->norm == NORM_LINF);
     assert_true(b->gate.low == 0.5 && b->gate.high == 1 && b->gate.bound == 3);
-    assert_string_equal(b->known, "it jumps");
+    assert_string_equal(b->known.why, "it jumps");
     /* what is not said */
     if (parse(&file, HEAD, &error)) fail_msg("%s", error.message);
     for (size_t f = 0; f < FIELDS; f++) assert_true(file.fields[f] && !file.exact[f]);
@@ -111,11 +111,11 @@ static void functionals(void **state)
     const struct case_gate *a = &file.gates[0], *b = &file.gates[1], *c = &file.gates[2];
     assert_string_equal(a->functional, "peak_velocity");
     assert_true(a->gate.low == 1 && a->gate.bound == 0.25);
-    assert_string_equal(a->known, "slow");
+    assert_string_equal(a->known.why, "slow");
     assert_true(!b->functional && b->field == FIELD_VELOCITY && b->norm == NORM_L1);
     assert_true(b->gate.low == 0.5 && isinf(b->gate.high) && b->gate.bound == 3);
     assert_string_equal(c->functional, "disc_error");
-    assert_true(c->gate.low == 0 && c->gate.bound == 2e-2 && !c->known[0]);
+    assert_true(c->gate.low == 0 && c->gate.bound == 2e-2 && !c->known.why[0]);
     refused(FLAT "[converge]\ndisc_error = 1 2 3\n",
             AT("13") "disc_error = 1 2 3; allowed: " FUNCTIONAL_GATE);
     refused(FLAT "[converge]\ndisc_error = 1 0\n",
@@ -128,6 +128,32 @@ static void functionals(void **state)
             AT("14") "key plateau and kind = gresho exclude each other");
     refused(HEAD "[converge]\nmean_pressure = 1 1\n",
             AT("13") "key mean_pressure in [converge] and dimension = 1 exclude each other");
+}
+
+/* What schemes that are compared are held to: a bound, or how far they are known to fail. */
+static void compared(void **state)
+{
+    (void)state;
+    struct case_file file;
+    struct error error;
+#define GATES "[converge]\nvelocity_l1 = 0.5 3 0.125\ndisc_error = 0 2e-2\n"
+    if (parse(&file, FLAT GATES "[compared]\ndisc_error = 0.25\nvelocity_l1 = 0.5 known: noise\n",
+              &error))
+        fail_msg("%s", error.message);
+    const struct case_gate *a = &file.gates[0], *b = &file.gates[1];
+    assert_true(a->gate.bound == 0.125 && a->compared.bound == 0.5 && isinf(a->known.bound));
+    assert_string_equal(a->compared.why, "noise");
+    assert_true(b->gate.bound == 2e-2 && b->compared.bound == 0.25 && !*b->compared.why);
+    assert_true(!*a->known.why && !*b->known.why);
+    refused(FLAT GATES "[compared]\npressure_l1 = 1\n",
+            AT("16") "key pressure_l1 in [compared] has no gate above, in [converge]");
+    refused(FLAT GATES "[compared]\ndisc_error = 0 known: x\n",
+            AT("16") "disc_error = 0 known: x; allowed: bound of the finest error; `known: WHY` "
+                     "after them, if it is known to fail");
+    refused(FLAT GATES "[compared]\ndisc_error = 1\ndisc_error = 1\n",
+            AT("17") "key disc_error is given twice, first in line 16");
+    begins(FLAT GATES "[compared]\nn = 1\n", AT("16") "key n stands in the section [run]");
+#undef GATES
 }
 
 static void bad_lines(void **state)
@@ -166,8 +192,9 @@ static void bad_lines(void **state)
            AT("2") "no reference 'rieman'; did you mean 'riemann'? allowed: ");
     refused("title = a\n", AT("1") "a key before the first section; allowed: [case] and the other "
                                    "sections");
-    begins("[cases]\ntitle = a\n", AT("2") "no section 'cases'; did you mean 'case'? allowed: case "
-                                           "domain initial scheme run measure converge report");
+    begins("[cases]\ntitle = a\n",
+           AT("2") "no section 'cases'; did you mean 'case'? allowed: case "
+                   "domain initial scheme run measure converge compared report");
     refused("[run]\neta = 2\n", AT("2") "key eta stands in the section [scheme], not in [run]");
     begins("[run]\nt_ned = 2\n", AT("2") "no key in [run] 't_ned'; did you mean 't_end'? allowed: "
                                          "gamma n t_end skip");
@@ -225,10 +252,8 @@ static void whole_files(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(everything),
-        cmocka_unit_test(functionals),
-        cmocka_unit_test(bad_lines),
-        cmocka_unit_test(whole_files),
+        cmocka_unit_test(everything), cmocka_unit_test(functionals), cmocka_unit_test(compared),
+        cmocka_unit_test(bad_lines),  cmocka_unit_test(whole_files),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

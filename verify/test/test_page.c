@@ -270,6 +270,28 @@ static void known(void **state)
     free(html);
 }
 
+/* What a run in 2D has to keep: shown, and where it does not keep it the case is not well. */
+static void gates(void **state)
+{
+    (void)state;
+    static const char *const statuses[] = {"pass", "known", "fail"};
+    for (size_t k = 0; k < sizeof statuses / sizeof *statuses; k++) {
+        json_t *results = sound(), *run = first(results, "runs");
+        json_object_set_new(run, "dimension", json_integer(2));
+        json_object_set_new(run, "gates",
+                            json_pack("[{s:s, s:f, s:f, s:s, s:s}]", "name", "peak_density",
+                                      "value", 0.375, "bound", 0.25, "status", statuses[k], "known",
+                                      k == 1 ? "smeared <there>" : ""));
+        char *html = page_of(judged(results));
+        assert_non_null(strstr(html, "<td>peak density</td><td class=\"n\">0.375</td>"
+                                     "<td class=\"n\">0.25</td>"));
+        assert_int_equal(!strstr(html, "known</b>: smeared &lt;there&gt;"), k != 1);
+        assert_int_equal(!strstr(html, "<h1>All is well</h1>"), k == 2);
+        assert_int_equal(!strstr(html, "<details class=\"case\" open"), k != 2);
+        free(html);
+    }
+}
+
 /* What was reported a while ago was not last night. */
 static void since(void **state)
 {
@@ -510,6 +532,7 @@ int main(void)
         cmocka_unit_test(good_page),
         cmocka_unit_test(bad_page),
         cmocka_unit_test(known),
+        cmocka_unit_test(gates),
         cmocka_unit_test(folded_cases),
         cmocka_unit_test(in_two_dimensions),
         cmocka_unit_test(overshoots),

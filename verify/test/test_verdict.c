@@ -122,6 +122,11 @@ static void alone(void **state)
         {"{'studies': [{'orders': [{'status': 'none'}]}]}", "fail", "Nothing was checked"},
         {"{'studies': [{'budgets': [{'still_gas': {'status': 'pass'}}]}]}", "pass", "All is well"},
         {"{'runs': [{'status': 'ok'}]}", "pass", "All is well"},
+        {"{'runs': [{'status': 'ok', 'gates': [{'status': 'pass'}, {'status': 'known'}]}]}", "pass",
+         "All is well"},
+        {"{'runs': [{'status': 'ok', 'case': 'c', 'label': 'l', 'gates': [{'status': 'fail', "
+         "'name': 'energy', 'value': 'nan', 'bound': 1}]}]}",
+         "fail", "1 failure: gate c, l: energy"},
         {"{'faults': {'faults': [{'status': 'pass'}]}}", "fail", "Nothing was checked"},
         {"{'runs': [{'status': 'ok'}], 'faults': {}}", "fail", "1 failure: harness faults.json"},
         {"{'trouble': [{'name': 'a', 'message': 'b'}]}", "fail", "1 failure: harness a"},

@@ -1,0 +1,111 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "gates.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "result.h"
+#include "value.h"
+
+static const double compared_bound = 3;
+/* Round-off of sums over particles and steps is some 1e-14. */
+static const double conserved_bound = 1e-12;
+
+double gates_raise(const struct case_file *file, const struct case_gate *gate, size_t n)
+{
+    if (!file->ladder_count) return 1;
+    const double coarser = (double)file->ladder[file->ladder_count - 1] / (double)n;
+    return pow(fmax(1, coarser), gate->gate.low / file->dimension);
+}
+
+void gates_compare(struct case_file *file)
+{
+    for (size_t i = 0; i < file->gate_count; i++) {
+        struct case_gate *gate = &file->gates[i];
+        if (*gate->compared.why) gate->known = gate->compared;
+        if (gate->compared.bound > 0 && !*gate->compared.why)
+            gate->gate.bound = gate->compared.bound;
+        else
+            gate->gate.bound *= compared_bound;
+    }
+}
+
+static void add(json_t *list, const char *name, double value, double bound,
+                const struct case_weakness *known)
+{
+    const bool passed = value <= bound,
+               is_known = !passed && *known->why && !(value > known->bound);
+    json_t *gate = json_pack("{s:s, s:o, s:o, s:s}", "name", name, "value", result_number(value),
+                             "bound", result_number(bound), "status",
+                             passed     ? "pass"
+                             : is_known ? "known"
+                                        : "fail");
+    if (is_known) json_object_set_new(gate, "known", json_string(known->why));
+    json_array_append_new(list, gate);
+}
+
+/* What a gate is of; false: a functional without an exact value. */
+static bool read_error(const struct case_gate *gate, const json_t *run, char name[64],
+                       double *value)
+{
+    const char *field = field_family.members[gate->field]->name,
+               *norm = field_norm_family.members[gate->norm]->name;
+    const json_t *functionals = json_object_get(run, "functionals");
+    if (gate->functional) {
+        const json_t *entry = value_named(functionals, gate->functional);
+        snprintf(name, 64, "%s", gate->functional);
+        *value = fabs(value_member(entry, "value") - value_member(entry, "reference"));
+        return isfinite(value_member(entry, "reference"));
+    }
+    snprintf(name, 64, "%s_%s", field, norm);
+    *value = value_inner(json_object_get(run, "errors"), field, norm);
+    return true;
+}
+
+void gates_add_errors(const struct case_file *file, const json_t *run, json_t *list)
+{
+    const size_t n = (size_t)value_member(run, "n");
+    for (size_t i = 0; i < file->gate_count; i++) {
+        const struct case_gate *gate = &file->gates[i];
+        const double raise = gates_raise(file, gate, n);
+        struct case_weakness known = gate->known;
+        char name[64];
+        double value;
+        known.bound *= raise;
+        if (read_error(gate, run, name, &value))
+            add(list, name, value, raise * gate->gate.bound, &known);
+    }
+}
+
+/* Does one of the settings' words, or of a list of them, say so? */
+static bool says(const json_t *run, const char *key, const char *word)
+{
+    const json_t *value = json_object_get(json_object_get(run, "settings"), key), *entry;
+    size_t i;
+    if (json_is_string(value)) return strcmp(json_string_value(value), word) == 0;
+    json_array_foreach(value, i,
+                       entry) if (json_is_string(entry) &&
+                                  strcmp(json_string_value(entry), word) == 0) return true;
+    return false;
+}
+
+static bool is_heavy(const json_t *run)
+{
+    const json_t *gravity = json_object_get(json_object_get(run, "settings"), "gravity"), *g;
+    size_t i;
+    json_array_foreach(gravity, i, g) if (fabs(json_number_value(g)) > 0) return true;
+    return false;
+}
+
+void gates_add_conserved(const json_t *run, json_t *list)
+{
+    const struct case_weakness none = {.bound = 0};
+    const json_t *conserved = json_object_get(run, "conservation");
+    const bool walls = says(run, "boundary", "reflecting") || says(run, "boundary", "fixed");
+    add(list, "mass", value_member(conserved, "mass"), conserved_bound, &none);
+    if (!walls && !is_heavy(run))
+        add(list, "momentum", value_member(conserved, "momentum"), conserved_bound, &none);
+    if (says(run, "energy", "total") && !is_heavy(run))
+        add(list, "energy", value_member(conserved, "energy"), conserved_bound, &none);
+}

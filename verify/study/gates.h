@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Gates of a case beside its orders: the bound of an error at any number of particles, what schemes
+ * that a report compares with the default are held to, and what one run alone can be judged by. */
+#ifndef SPHPROOF_GATES_H
+#define SPHPROOF_GATES_H
+
+#include <jansson.h>
+
+#include "cases.h"
+
+/* What a gate's bound is multiplied by for a level of n particles: at the case's own finest level
+ * and beyond 1, below as the least order allows. */
+double gates_raise(const struct case_file *file, const struct case_gate *gate, size_t n);
+
+/* The gates for a compared scheme: what [compared] says, else bounds of errors thrice as wide, as
+ * other kernels and gradients have other errors. */
+void gates_compare(struct case_file *file);
+
+/* Adds to list, of a run's document, what its errors have to stay below: {"name", "value", "bound",
+ * "status": pass, fail or known, "known": WHY}. An error that is no number fails. */
+void gates_add_errors(const struct case_file *file, const json_t *run, json_t *list);
+
+/* Likewise what a run in 2D or 3D conserves to round-off: mass, momentum in all directions unless
+ * something pushes from outside, energy where total energy is integrated and nothing falls. */
+void gates_add_conserved(const json_t *run, json_t *list);
+
+#endif

@@ -1,0 +1,136 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Gates of one run, of made documents: what bounds are at n, what compared schemes are held to,
+ * what is conserved and by whom. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "gates.h"
+#include "near.h"
+#include "value.h"
+
+static const char text[] =
+    "[case]\ntitle = A vortex\ndimension = 2\nreference = gresho\n[domain]\nlo = 0\nhi = 1\n"
+    "[initial]\nkind = gresho\n[run]\nt_end = 1\n[converge]\nn = 64 100 144 400\n"
+    "velocity_l1 = 0.5 3 0.125\ndisc_error = 1 0.25\npeak_velocity = 2 0.5 known: slow\n"
+    "[compared]\nvelocity_l1 = 1.5 known: noise\ndisc_error = 0.375\n";
+
+static struct case_file file_of(bool compared)
+{
+    struct case_file file;
+    struct error error;
+    if (case_parse(&file, "vortex.ini", text, strlen(text), &error)) fail_msg("%s", error.message);
+    if (compared) gates_compare(&file);
+    return file;
+}
+
+static json_t *run_of(double velocity, double disc_error, double peak)
+{
+    return json_pack("{s:i, s:{s:{s:f, s:f}}, s:[{s:s, s:f, s:f}, {s:s, s:f, s:f}]}", "n", 100,
+                     "errors", "velocity", "l1", velocity, "l2", 1e-9, "functionals", "name",
+                     "disc_error", "value", disc_error, "reference", 0., "name", "peak_velocity",
+                     "value", peak, "reference", 1.);
+}
+
+static void says(const json_t *list, const char *name, double value, double bound,
+                 const char *status)
+{
+    const json_t *gate = value_named(list, name);
+    assert_non_null(gate);
+    assert_true(fabs(value_member(gate, "value") - value) <= 1e-14);
+    near_relative(value_member(gate, "bound"), bound, 1e-14);
+    assert_string_equal(value_text(gate, "status"), status);
+    assert_int_equal(!json_object_get(gate, "known"), strcmp(status, "known") != 0);
+}
+
+/* At a quarter of the finest number of particles, spacings of twice the length. */
+static void errors(void **state)
+{
+    (void)state;
+    static const struct {
+        bool compared;
+        double velocity, disc_error, peak, bounds[3];
+        const char *status[3];
+    } rows[] = {
+        {false, 0.176, 0.49, -0.9, {0.125 * M_SQRT2, 0.5, 2}, {"pass", "pass", "pass"}},
+        {false, 0.177, 0.51, -1.1, {0.125 * M_SQRT2, 0.5, 2}, {"fail", "fail", "known"}},
+        {true, 0.53, 0.74, -4.9, {0.375 * M_SQRT2, 0.75, 6}, {"pass", "pass", "pass"}},
+        {true, 0.54, 0.76, -5.1, {0.375 * M_SQRT2, 0.75, 6}, {"known", "fail", "known"}},
+        {true, 2.12, 0.76, 1, {0.375 * M_SQRT2, 0.75, 6}, {"known", "fail", "pass"}},
+        {true, 2.13, 0.76, 1, {0.375 * M_SQRT2, 0.75, 6}, {"fail", "fail", "pass"}},
+    };
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        const struct case_file file = file_of(rows[k].compared);
+        json_t *run = run_of(rows[k].velocity, rows[k].disc_error, rows[k].peak),
+               *list = json_array();
+        gates_add_errors(&file, run, list);
+        assert_int_equal(json_array_size(list), 3);
+        says(list, "velocity_l1", rows[k].velocity, rows[k].bounds[0], rows[k].status[0]);
+        says(list, "disc_error", rows[k].disc_error, rows[k].bounds[1], rows[k].status[1]);
+        says(list, "peak_velocity", fabs(rows[k].peak - 1), rows[k].bounds[2], rows[k].status[2]);
+        json_decref(list);
+        json_decref(run);
+    }
+}
+
+/* No number fails; what has no exact value is no gate; beyond the ladder a bound is the case's. */
+static void odd(void **state)
+{
+    (void)state;
+    const struct case_file file = file_of(false);
+    json_t *run = run_of(1, 0.1, 1), *list = json_array();
+    json_object_set_new(json_object_get(json_object_get(run, "errors"), "velocity"), "l1",
+                        json_string("nan"));
+    json_object_set_new(json_array_get(json_object_get(run, "functionals"), 0), "reference",
+                        json_string("nan"));
+    json_object_set_new(run, "n", json_integer(1600));
+    gates_add_errors(&file, run, list);
+    assert_int_equal(json_array_size(list), 2);
+    assert_string_equal(value_text(value_named(list, "velocity_l1"), "status"), "fail");
+    assert_true(value_member(value_named(list, "velocity_l1"), "bound") == 0.125);
+    json_decref(list);
+    json_decref(run);
+}
+
+/* Walls push, gravity pulls, and heat that is integrated alone knows nothing of the rest. */
+static void conserved(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *boundary, *energy;
+        double g, lost;
+        const char *momentum, *kept;
+    } rows[] = {{"periodic", "total", 0, 1e-13, "pass", "pass"},
+                {"periodic", "total", 0, 1e-11, "fail", "fail"},
+                {"open", "internal", 0, 1e-11, "fail", ""},
+                {"reflecting", "total", 0, 1e-13, "", "pass"},
+                {"fixed", "total", 0, 1e-13, "", "pass"},
+                {"periodic", "total", -0.5, 1e-13, "", ""}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        json_t *list = json_array(),
+               *run = json_pack("{s:{s:[s,s], s:[f,f], s:s}, s:{s:f, s:f, s:f}}", "settings",
+                                "boundary", "periodic", rows[k].boundary, "gravity", 0., rows[k].g,
+                                "energy", rows[k].energy, "conservation", "mass", 0., "momentum",
+                                rows[k].lost, "energy", rows[k].lost);
+        gates_add_conserved(run, list);
+        says(list, "mass", 0, 1e-12, "pass");
+        assert_string_equal(value_text(value_named(list, "momentum"), "status"), rows[k].momentum);
+        assert_string_equal(value_text(value_named(list, "energy"), "status"), rows[k].kept);
+        json_decref(list);
+        json_decref(run);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(errors),
+        cmocka_unit_test(odd),
+        cmocka_unit_test(conserved),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
