@@ -94,11 +94,12 @@ enum status particles_grow_ghosts(struct particles *particles, ptrdiff_t ghosts,
 /* Has anybody written here? To read memory that nobody has touched does not make it take room. */
 static bool is_blank(const double *array, ptrdiff_t n)
 {
-    static const double zero[64];
-    ptrdiff_t i = 0;
-    for (; i + 64 <= n; i += 64)
-        if (memcmp(array + i, zero, sizeof zero) != 0) return false;
-    return memcmp(array + i, zero, (size_t)(n - i) * sizeof *array) == 0;
+    static const unsigned char zero[512];
+    const unsigned char *bytes = (const unsigned char *)array;
+    size_t left = (size_t)n * sizeof *array;
+    for (; left >= sizeof zero; left -= sizeof zero, bytes += sizeof zero)
+        if (memcmp(bytes, zero, sizeof zero) != 0) return false;
+    return memcmp(bytes, zero, left) == 0;
 }
 
 void particles_carry(struct particles *particles, struct carrier *carrier)

@@ -242,21 +242,22 @@ double cells_conduction(const struct cells *cells, const struct pairs *pairs)
     return conducted(cells->method.box.dim, cells->method.conductivity, pairs);
 }
 
-CLONES static void approaches(int dim, const struct pairs *pairs, double *restrict found)
+ALWAYS_INLINE void approaches_in(int dim, const struct pairs *pairs, double *restrict found)
 {
     const struct lanes *lanes = pairs->lanes;
     const double *own_v = pairs_own(pairs, FIELD_VELOCITY),
                  *restrict v = pairs_theirs(pairs, FIELD_VELOCITY),
                  *restrict G = lane(lanes, LANE_GX);
-    if (dim == 2) {
 #pragma omp simd
-        for (int k = 0; k < pairs->count; k++)
-            found[k] = approach(2, lanes->stride, k, own_v, v, G);
-    } else {
-#pragma omp simd
-        for (int k = 0; k < pairs->count; k++)
-            found[k] = approach(3, lanes->stride, k, own_v, v, G);
-    }
+    for (int k = 0; k < pairs->count; k++) found[k] = approach(dim, lanes->stride, k, own_v, v, G);
+}
+
+CLONES static void approaches(int dim, const struct pairs *pairs, double *restrict found)
+{
+    if (dim == 2)
+        approaches_in(2, pairs, found);
+    else
+        approaches_in(3, pairs, found);
 }
 
 double cells_divergence(const struct cells *cells, const struct pairs *pairs)

@@ -267,8 +267,9 @@ static double amplitude_of(const struct mode_subject *mode, bool flat, double ph
     double *x = malloc(4 * (size_t)N * sizeof *x), *y = x + N, *vy = y + N, *w = vy + N;
     if (!x) return NAN;
     for (int i = 0; i < N; i++) {
+        const int row = i / SIDE;
         x[i] = (i % SIDE + 0.5) / SIDE;
-        y[i] = ((double)(i / SIDE) + 0.5) / SIDE;
+        y[i] = (row + 0.5) / SIDE;
         w[i] = 1 + 0.5 * (i % 2); /* volumes differ: evenly over the wave */
         const double weight = y[i] < 0.5 ? exp(-4 * M_PI * fabs(y[i] - 0.25)) : 0;
         vy[i] = 0.01 * sin(4 * M_PI * x[i] + phase) * (flat ? 1 : weight);

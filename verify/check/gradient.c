@@ -272,7 +272,7 @@ static void measure_assumption(struct check_run *run, const void *subject)
             const char *name = clouds_name((enum clouds_kind)kind);
             const struct clouds_settings settings =
                 gradient_study_cloud((enum clouds_kind)kind, dim);
-            const struct kernel kernel = kernel_at((size_t)(kind + dim));
+            const struct kernel kernel = kernel_at((size_t)kind + (size_t)dim);
             struct assumption a;
             if (!assumption_of(subject ? subject : &right, &kernel, &settings, &a)) {
                 check_measure(run, (double)NAN, 0, 0, "%dD, %s: no memory", dim, name);

@@ -51,15 +51,16 @@ static void add_kernels(struct check_run *run, int dim, size_t step)
 static void add_turns(struct check_run *run, int dim, size_t step)
 {
     const size_t geometries = hydro_cloud_geometries(), physics = hydro_cloud_physics();
+    const size_t of_mean = geometries / PAIR_WIDTHS; /* those whose width is the mean come first */
     for (size_t g = 0; g < geometries; g += step) {
         struct scheme s = hydro_cloud_scheme(dim);
         hydro_cloud_geometry(&s, g);
         hydro_cloud_physic(&s, g % physics);
         add(run, dim, s);
     }
-    for (size_t p = 0; p < physics; p += step) {
+    for (size_t p = 0; of_mean > 0 && p < physics; p += step) {
         struct scheme s = hydro_cloud_scheme(dim);
-        hydro_cloud_geometry(&s, p * 5 % (geometries / PAIR_WIDTHS)); /* width mean */
+        hydro_cloud_geometry(&s, p * 5 % of_mean);
         hydro_cloud_physic(&s, p);
         add(run, dim, s);
     }

@@ -30,7 +30,7 @@ static void coincident(struct hydro_state *state)
 {
     *state = (struct hydro_state){.n = PARTICLES, .hi = PARTICLES, .gamma = 1.4};
     for (int i = 0; i < PARTICLES; i++) {
-        state->x[i] = i / 2 * 2 + 1;
+        state->x[i] = i - i % 2 + 1;
         state->m[i] = 1;
         state->u[i] = 1;
     }

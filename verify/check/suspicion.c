@@ -60,6 +60,18 @@ static bool between_suspected(const struct suspicion_subject *s, double part)
     return s->swapped(2, names, 2, volume, values, exacts, NULL);
 }
 
+/* A coarse blast: the shock has passed all of the window, gas that should fall is at rest
+ * throughout, and rest is near the small energy of gas that no shock has reached. How much even[0]
+ * and even[1] differ: 0 is a field that is even, and follows nothing. */
+static bool even_suspected(const struct suspicion_subject *s, double difference)
+{
+    static const char *const names[] = {"velocity", "energy"};
+    static const double volume[] = {0.25, 0.75}, v[] = {0, 1}, e[] = {0.5, 0};
+    const double even[] = {0.5 * difference, 0};
+    const double *const values[] = {even, e}, *const exacts[] = {v, e};
+    return s->swapped(2, names, 2, volume, values, exacts, NULL);
+}
+
 static void measure(struct check_run *run, const void *subject)
 {
     static const struct suspicion_subject right = {suspicion_zero, suspicion_repeated,
@@ -90,6 +102,9 @@ static void measure(struct check_run *run, const void *subject)
     expect(run, coarse_suspected(s), false, "an error that points to another field");
     expect(run, between_suspected(s, 0.6666), false, "just over half as far from another field");
     expect(run, between_suspected(s, 0.6667), true, "just under half as far from another field");
+    expect(run, even_suspected(s, 0), false, "an even field near a small one");
+    expect(run, even_suspected(s, 0.249), false, "a field that hardly follows another");
+    expect(run, even_suspected(s, 0.251), true, "a field that follows another");
 }
 
 static bool never_zero(size_t n, const double *error, char *why)
@@ -126,10 +141,10 @@ static bool never_swapped(size_t fields, const char *const *names, size_t n, con
     return false;
 }
 
-static double distance(size_t n, const double *a, const double *b)
+static double distance(size_t n, const double *volume, const double *a, const double *b)
 {
     double sum = 0;
-    for (size_t i = 0; i < n; i++) sum += fabs(a[i] - b[i]);
+    for (size_t i = 0; i < n; i++) sum += volume[i] * fabs(a[i] - b[i]);
     return sum;
 }
 
@@ -138,8 +153,21 @@ static bool any_nearer(size_t fields, const char *const *names, size_t n, const 
 {
     for (size_t f = 0; f < fields; f++)
         for (size_t g = 0; g < fields; g++)
-            if (distance(n, value[f], exact[g]) < distance(n, value[f], exact[f])) return true;
+            if (distance(n, volume, value[f], exact[g]) < distance(n, volume, value[f], exact[f]))
+                return true;
     return suspicion_swapped(fields, names, n, volume, value, exact, why);
+}
+
+static bool twice_nearer(size_t fields, const char *const *names, size_t n, const double *volume,
+                         const double *const *value, const double *const *exact, char *why)
+{
+    (void)names, (void)why;
+    for (size_t f = 0; f < fields; f++)
+        for (size_t g = 0; g < fields; g++)
+            if (2 * distance(n, volume, value[f], exact[g]) <
+                distance(n, volume, value[f], exact[f]))
+                return true;
+    return false;
 }
 
 static const struct suspicion_subject no_zero = {never_zero, suspicion_repeated,
@@ -154,6 +182,8 @@ static const struct suspicion_subject no_swap = {suspicion_zero, suspicion_repea
                                                  suspicion_idle_setting, never_swapped};
 static const struct suspicion_subject near_swap = {suspicion_zero, suspicion_repeated,
                                                    suspicion_idle_setting, any_nearer};
+static const struct suspicion_subject even_swap = {suspicion_zero, suspicion_repeated,
+                                                   suspicion_idle_setting, twice_nearer};
 
 static const struct check_mutant mutants[] = {
     {"suspicion_no_zero", "an error of 0 is welcome", &no_zero},
@@ -162,6 +192,7 @@ static const struct check_mutant mutants[] = {
     {"suspicion_first_error_only", "one equal error makes a setting idle", &one_error},
     {"suspicion_no_swap", "exchanged fields pass", &no_swap},
     {"suspicion_any_nearer", "a coarse run is taken for an exchange", &near_swap},
+    {"suspicion_even", "a field that follows nothing is taken for an exchange", &even_swap},
     {0},
 };
 

@@ -331,11 +331,13 @@ static void join_alike(struct readings *readings)
             if (strcmp(other->path, one->path) != 0) break;
             if (one->kind == READING_NEUTRAL)
                 nobody_knows(readings, one->path, "nothing tells several entries apart");
-            const bool worse = reading_worse(other, one);
-            const struct reading dropped = worse ? *one : *other;
-            if (worse) *one = *other;
-            free(dropped.path);
-            free(dropped.word);
+            if (reading_worse(other, one)) {
+                const struct reading better = *one;
+                *one = *other;
+                *other = better;
+            }
+            free(other->path);
+            free(other->word);
         }
         if (next - i == 1) continue;
         char path[PATH_MAX_LENGTH + 160];

@@ -50,14 +50,26 @@ static double distance(size_t n, const double *volume, const double *a, const do
     return sum;
 }
 
+/* How far a field is from its own mean, as a distance. */
+static double spread(size_t n, const double *volume, const double *a)
+{
+    double whole = 0, mean = 0, sum = 0;
+    for (size_t i = 0; i < n; i++) whole += volume[i], mean += volume[i] * a[i];
+    mean /= whole;
+    for (size_t i = 0; i < n; i++) sum += volume[i] * fabs(a[i] - mean);
+    return sum;
+}
+
 bool suspicion_swapped(size_t fields, const char *const *names, size_t n, const double *volume,
                        const double *const *value, const double *const *exact, char *why)
 {
     for (size_t f = 0; f < fields; f++)
-        for (size_t g = 0; g < fields; g++)
-            if (2 * distance(n, volume, value[f], exact[g]) <
-                distance(n, volume, value[f], exact[f]))
+        for (size_t g = 0; g < fields; g++) {
+            const double near = 2 * distance(n, volume, value[f], exact[g]);
+            if (near < distance(n, volume, value[f], exact[f]) &&
+                near < spread(n, volume, exact[g]))
                 return suspect(why, "%s is nearer the exact %s than its own exact solution",
                                names[f], names[g]);
+        }
     return false;
 }

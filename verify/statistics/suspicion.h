@@ -21,10 +21,11 @@ bool suspicion_repeated(size_t n, const double *error, char *why);
 bool suspicion_idle_setting(const char *setting, size_t n, const double *before,
                             const double *after, char *why);
 
-/* A field that is nearer another field's exact solution than its own, at less than half the distance
- * by the volume-weighted L1 over the n particles of the window. value[f], exact[f]: n numbers of
- * field f. Fields whose exact solutions are the same, or nearer each other than the errors are,
- * cannot be told apart and are not suspected: by the triangle inequality they are not that near. */
+/* A field that is nearer another field's exact solution than its own, at less than half the
+ * distance by the volume-weighted L1 over the n particles of the window, and follows it: at less
+ * than half of its mean deviation, nearer than any constant. value[f], exact[f]: n numbers of field
+ * f. Fields whose exact solutions are the same, or nearer each other than the errors are, cannot be
+ * told apart and are not suspected: by the triangle inequality they are not that near. */
 bool suspicion_swapped(size_t fields, const char *const *names, size_t n, const double *volume,
                        const double *const *value, const double *const *exact, char *why);
 

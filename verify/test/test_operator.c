@@ -158,7 +158,8 @@ static void test_periodic(void **state)
     const struct kernel kernel = kernel_named("cubic_spline");
     double x[16], y[16], V[16], h[16];
     for (size_t i = 0; i < 16; i++) {
-        x[i] = (double)(i % 4) * 0.25, y[i] = (double)(i / 4) * 0.5 - 3;
+        const size_t row = i / 4;
+        x[i] = (double)(i % 4) * 0.25, y[i] = (double)row * 0.5 - 3;
         V[i] = 0.125, h[i] = 1.3;
     }
     const struct cloud cloud = {{2, 16, {x, y}, true, {0, 0}, {1, 2}}, V, h};

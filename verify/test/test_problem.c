@@ -397,8 +397,9 @@ static enum status vortex_fill(const struct prepared *p, const struct settings *
     if (initial_allocate(initial, 2, side * side, error)) return error->status;
     for (size_t i = 0; i < side * side; i++) {
         struct problem_state s;
+        const size_t row = i / side;
         const double x[3] = {p->domain.lo[0] + ((double)(i % side) + 0.5) * dx,
-                             p->domain.lo[1] + ((double)(i / side) + 0.5) * dx};
+                             p->domain.lo[1] + ((double)row + 0.5) * dx};
         vortex_sample(p, x, 0, &s);
         for (int d = 0; d < 2; d++) initial->x[d][i] = x[d], initial->v[d][i] = s.v[d];
         initial->m[i] = dx * dx;

@@ -100,9 +100,9 @@ static void test_shuffled_particles(void **state)
     hydro_disordered(&plain, 500);
     shuffled = plain;
     for (size_t i = 0; i < plain.n; i++) number[i] = i;
-    for (size_t i = plain.n - 1; i > 0; i--) {
-        const size_t j = random_next(&seed) % (i + 1), t = number[i];
-        number[i] = number[j], number[j] = t;
+    for (size_t i = plain.n; i > 1; i--) {
+        const size_t j = random_next(&seed) % i, t = number[i - 1];
+        number[i - 1] = number[j], number[j] = t;
     }
     for (size_t i = 0; i < plain.n; i++) {
         shuffled.x[i] = plain.x[number[i]], shuffled.v[i] = plain.v[number[i]];

@@ -5,6 +5,7 @@
  * same arguments give the same value after all those calls. */
 #include <float.h>
 #include <math.h>
+#include <stdint.h>
 #include <string.h>
 
 #include "places.h"
@@ -131,7 +132,10 @@ void property_between(const struct pieces *pieces, struct property_sink *sink)
 
 static double differs(double now, double then, double scale)
 {
-    return memcmp(&now, &then, sizeof now) ? fmax(fabs(now - then) / scale, DBL_TRUE_MIN) : 0;
+    uint64_t bits[2];
+    memcpy(&bits[0], &now, sizeof now);
+    memcpy(&bits[1], &then, sizeof then);
+    return bits[0] != bits[1] ? fmax(fabs(now - then) / scale, DBL_TRUE_MIN) : 0;
 }
 
 void property_runs(const struct pieces *pieces, struct property_sink *sink)
