@@ -3,12 +3,24 @@
 
 #include <math.h>
 
+#include "solver.h"
 #include "stamp.h"
+
+static const double start_tolerance = 1e-10;
 
 double width_neighbours(int dim, double eta)
 {
     static const double ball[] = {0, 2, 3.14159265358979, 4.18879020478639};
     return ball[dim] * pow(eta, dim);
+}
+
+struct width_rule width_rule_of(const struct simulation *simulation)
+{
+    const struct scheme *scheme = &simulation->scheme;
+    const int dim = simulation->particles.dim;
+    const double tolerance = scheme->h_tolerance;
+    return (struct width_rule){dim, scheme->eta, scheme->kernel.constant[dim],
+                               simulation->dt > 0 ? tolerance : least(tolerance, start_tolerance)};
 }
 
 double width_of(const struct width_rule *rule, double m, double rho)

@@ -21,6 +21,8 @@ struct density_sums {
     double m[BATCH_MAX], m_dh[BATCH_MAX], Z[BATCH_MAX], Z_dh[BATCH_MAX];
 };
 
+struct simulation;
+
 struct width_rule {
     int dim;
     double eta, constant; /* C_d of the kernel */
@@ -30,6 +32,11 @@ struct width_rule {
 struct width_bracket {
     double low[BATCH_MAX], high[BATCH_MAX];
 };
+
+/* That of a simulation at its present step. The start is solved to 1e-10 at least, whatever
+ * h_tolerance says: gas that sleeps keeps its widths, and those awake beside it must not find
+ * better ones later. */
+struct width_rule width_rule_of(const struct simulation *simulation);
 
 /* eta (m/rho)^(1/d). */
 double width_of(const struct width_rule *rule, double m, double rho);

@@ -341,9 +341,7 @@ static enum status find_roots(struct simulation *simulation, struct error *error
 {
     struct room *room = room_of(simulation);
     const struct particles *a = &simulation->particles;
-    const struct scheme *scheme = &simulation->scheme;
-    const struct width_rule rule = {a->dim, scheme->eta, scheme->kernel.constant[a->dim],
-                                    scheme->h_tolerance};
+    const struct width_rule rule = width_rule_of(simulation);
     const double half = half_box(simulation);
     for (int try = 0; try < TRIES_MAX; try++) {
         cells_widths(room->cells, &room->fields, &rule, room->radius, a->h, a->h_inverse,

@@ -13,19 +13,13 @@
  * that has no root. */
 enum { SOLVED = -1, NO_GHOSTS = -2 };
 
-static struct width_rule rule_of(const struct simulation *simulation)
-{
-    const struct scheme *scheme = &simulation->scheme;
-    return (struct width_rule){1, scheme->eta, scheme->kernel.constant[1], scheme->h_tolerance};
-}
-
 /* h = eta m/rho(h) of a range; a particle that has converged keeps its h while the others go on. */
 static ptrdiff_t solve_range(struct simulation *simulation, struct range *range,
                              struct density_sums *sums)
 {
     const struct line *line = line_of(simulation);
     const struct particles *a = &simulation->particles;
-    const struct width_rule rule = rule_of(simulation);
+    const struct width_rule rule = width_rule_of(simulation);
     double *h = a->h + range->first, *h_inverse = a->h_inverse + range->first;
     const double *m = a->m + range->first;
     struct width_bracket bracket;
