@@ -21,13 +21,13 @@
 /* What one particle brings into a pair; a term reads what it needs, and what none reads costs
  * nothing, as everything here is inlined. */
 struct pair_side {
-    double m, Z;         /* mass; what the density sum adds up: m, or U with the energy element */
-    double V;            /* volume Z/y */
-    double h, h_inverse; /* support radius, and 1/h */
-    double P, rho, c;    /* pressure, density of the equation of state, sound speed */
-    double alpha;        /* viscosity of the particle: time_dependent */
-    double b, grad_h;    /* lagrangian: Z P/y^2 and 1 - f */
-    double slope;        /* reconstructed: e . (grad v) e along the pair; in 1D dv/dx */
+    double m, Z;      /* mass; what the density sum adds up: m, or U with the energy element */
+    double V;         /* volume Z/y */
+    double h_inverse; /* 1/h */
+    double P, rho, c; /* pressure, density of the equation of state, sound speed */
+    double alpha;     /* viscosity of the particle: time_dependent */
+    double b, grad_h; /* lagrangian: Z P/y^2 and 1 - f */
+    double slope;     /* reconstructed: e . (grad v) e along the pair; in 1D dv/dx */
 };
 
 struct pair_terms {
@@ -139,27 +139,42 @@ ALWAYS_INLINE struct pair_form pair_form_of(enum viscosity viscosity)
     return (struct pair_form){0};
 }
 
+/* hbar = (h_i + h_j)/4 as a quotient: who has only 1/h needs no division for it. */
+struct pair_mean_width {
+    double over, under;
+};
+
+ALWAYS_INLINE struct pair_mean_width pair_mean_width(double h_i, double h_j)
+{
+    return (struct pair_mean_width){0.25 * (h_i + h_j), 1};
+}
+
+ALWAYS_INLINE struct pair_mean_width pair_mean_width_inverse(double h_inverse_i, double h_inverse_j)
+{
+    return (struct pair_mean_width){h_inverse_i + h_inverse_j, 4 * (h_inverse_i * h_inverse_j)};
+}
+
 /* The term m_i m_j PI G/2 that viscosity adds to a_i and to a_j alike (heat in halves), in the form
  * of Monaghan 1992, CONVENTIONS eqs. 5.6 to 5.8: PI = (-alpha cbar mu + beta mu^2)/rhobar, mu =
  * -hbar closing r/(r^2 + 0.01 hbar^2), hbar = (h_i + h_j)/4, 0 where the pair recedes. G: mean of
  * both gradients. */
 ALWAYS_INLINE double pair_viscous(enum viscosity viscosity, const struct pair_numbers *numbers,
-                                  const struct pair_side *i, const struct pair_side *j, double r,
-                                  double closing, double G)
+                                  const struct pair_side *i, const struct pair_side *j,
+                                  struct pair_mean_width h_bar, double r, double closing, double G)
 {
     const struct pair_form form = pair_form_of(viscosity);
     double scale = 1;
     const double w = form.midpoint
                          ? pair_closing_at_midpoint(i, j, r, closing, numbers->near, &scale)
                          : largest(closing, 0);
-    /* mu = -t/D2; cbar and rhobar are halves of sums: alpha_half goes with the sum of c, and the
-     * 1/2 of the heating with the sum of rho */
-    const double h_bar = 0.25 * (i->h + j->h), c_sum = i->c + j->c;
-    const double t = h_bar * r * w, D2 = (r * r + 0.01 * (h_bar * h_bar)) * scale;
+    /* mu = -t under/D2; cbar and rhobar are halves of sums: alpha_half goes with the sum of c, and
+     * the 1/2 of the heating with the sum of rho */
+    const double over = h_bar.over, under = h_bar.under, c_sum = i->c + j->c;
+    const double t = over * r * w, D2 = (r * r * (under * under) + 0.01 * (over * over)) * scale;
     const double alpha_half = form.varying ? 0.25 * (i->alpha + j->alpha) : 0.5 * numbers->alpha;
     const double beta = form.varying ? 2 * numbers->beta_ratio * alpha_half : numbers->beta;
     const double c_seen = form.fading ? least(c_sum, w * (2 / pair_fade_below)) : c_sum;
-    return i->m * j->m * G * t * (alpha_half * c_seen * D2 + beta * t) /
+    return i->m * j->m * G * t * (alpha_half * c_seen * D2 + beta * t * under) * under /
            (D2 * D2 * (i->rho + j->rho));
 }
 

@@ -123,33 +123,30 @@ ALWAYS_INLINE void viscous_body(enum viscosity viscosity, bool signal_form, int 
     const double *own_v = pairs_own(pairs, FIELD_VELOCITY);
     const double own_m = *pairs_own(pairs, FIELD_WEIGHT),
                  own_h_inverse = *pairs_own(pairs, FIELD_H_INVERSE),
-                 own_h = signal_form ? 0 : 1 / own_h_inverse,
                  own_c = *pairs_own(pairs, FIELD_SOUND), own_rho = *pairs_own(pairs, FIELD_DENSITY),
                  own_alpha = varying ? *pairs_own(pairs, FIELD_ALPHA) : 0,
                  own_factor = method->balsara ? *pairs_own(pairs, FIELD_BALSARA) : 1,
                  half_nu = 0.5 * method->noise;
     double *restrict K = lane(lanes, LANE_K);
-    /* h from 1/h: a division here costs less than a further value of every record */
 #pragma omp simd
     for (int k = 0; k < pairs->count; k++) {
         const struct pair_side i = {.m = own_m,
-                                    .h = own_h,
                                     .h_inverse = own_h_inverse,
                                     .c = own_c,
                                     .rho = own_rho,
                                     .alpha = own_alpha,
                                     .slope = sloped ? slope_i[k] : 0};
         const struct pair_side j = {.m = m[k],
-                                    .h = signal_form ? 0 : 1 / h_inverse[k],
                                     .h_inverse = h_inverse[k],
                                     .c = c[k],
                                     .rho = rho[k],
                                     .alpha = varying ? alpha[k] : 0,
                                     .slope = sloped ? slope_j[k] : 0};
         const double f = 0.5 * (own_factor + factor[k]);
+        const struct pair_mean_width h_bar = pair_mean_width_inverse(own_h_inverse, h_inverse[k]);
         double term = signal_form
                           ? pair_viscous_signal(viscosity, &numbers, &i, &j, r[k], closing[k], 1)
-                          : pair_viscous(viscosity, &numbers, &i, &j, r[k], closing[k], 1);
+                          : pair_viscous(viscosity, &numbers, &i, &j, h_bar, r[k], closing[k], 1);
         term *= projected ? f * f : f;
         if (sloped) term = approach(dim, lanes->stride, k, own_v, v, G) > 0 ? term : 0;
         if (projected) {

@@ -39,7 +39,6 @@ ALWAYS_INLINE struct pair_side side_of(const struct particles *a, const double *
     return (struct pair_side){.m = a->m[k],
                               .Z = Z[k],
                               .V = a->V[k],
-                              .h = a->h[k],
                               .h_inverse = a->h_inverse[k],
                               .P = a->P[k],
                               .rho = a->rho[k],
@@ -64,7 +63,7 @@ ALWAYS_INLINE double pairs_at(ptrdiff_t d, enum formulation formulation, enum vi
     loops->gradient(loops->kernel, particles, o, pairs, d, G, G_j);
 
     const double *restrict x = particles->x[0] + o, *restrict v = particles->v[0] + o,
-                           *restrict V = particles->V + o;
+                           *restrict h = particles->h + o, *restrict V = particles->V + o;
     const double *Z = loops->energy_element ? particles->U : particles->m;
     const struct pair_numbers numbers = loops->numbers;
     const int pair_count = whole_vectors(pairs);
@@ -77,7 +76,9 @@ ALWAYS_INLINE double pairs_at(ptrdiff_t d, enum formulation formulation, enum vi
         if (viscosity != VISCOSITY_NONE) {
             const double G_bar =
                 formulation == FORMULATION_VANILLA_ICE ? G[i] : 0.5 * (G[i] + G_j[i]);
-            const double half = pair_viscous(viscosity, &numbers, &left, &right, r, closing, G_bar);
+            const struct pair_mean_width h_bar = pair_mean_width(h[i], h[i + d]);
+            const double half =
+                pair_viscous(viscosity, &numbers, &left, &right, h_bar, r, closing, G_bar);
             a.i += half;
             a.j += half;
         }
