@@ -14,6 +14,7 @@ enum {
     CHUNK = 1 << 18,   /* entries of lists that a thread asks for at once */
     CELLS_A_POINT = 2, /* at most */
     COPIED = 16,       /* points that are copied at once; arrays of slots are that much longer */
+    AHEAD = 256,       /* entries of lists that are fetched before they are written */
     BEYOND = 16        /* entries that a vector may write after the end of a list */
 };
 

@@ -249,6 +249,12 @@ static bool is_active(const struct grid *grid, uint32_t slot)
     return point < grid->active && !(grid->asleep && grid->asleep[point]);
 }
 
+/* Memory of lists to come: it is far away, and a vector waits until it may be written. */
+static void fetch(const int32_t *slots, int32_t count)
+{
+    for (int32_t k = 0; k < count; k += 16) __builtin_prefetch(slots + k, 1);
+}
+
 /* The lists of a cell's points. Returns the longest one, -1: no memory. */
 static int search_cell(struct grid *grid, const ptrdiff_t c[3], struct candidates *candidates,
                        struct pool *pool)
@@ -290,6 +296,7 @@ static int search_cell(struct grid *grid, const ptrdiff_t c[3], struct candidate
         int32_t end = list->count;
         while (end % GRID_LANES) slots[end++] = (int32_t)grid->n;
         pool->used += (size_t)end;
+        fetch(slots + end + AHEAD, end);
         if (end > longest) longest = end;
     }
     return longest;
