@@ -57,7 +57,9 @@ static void lay_out(struct cells *cells)
     begin_layout(&cells->density, LANES_DISTANCE, dim);
     add_field(&cells->density, FIELD_WEIGHT, 1);
     if (method->energy_element) add_field(&cells->density, FIELD_ENERGY, 1);
-    begin_layout(&cells->matrix, LANES_DIRECTION, dim);
+    begin_layout(&cells->matrix,
+                 method->gradient == GRADIENT_CORRECTED ? LANES_DIRECTION : LANES_DISPLACEMENT,
+                 dim);
     add_field(&cells->matrix, FIELD_WEIGHT, 1);
     if (method->velocity_gradient) add_field(&cells->matrix, FIELD_VELOCITY, dim);
     if (method->gradient == GRADIENT_BLENDED) add_field(&cells->matrix, FIELD_H, 1);

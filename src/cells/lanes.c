@@ -79,6 +79,7 @@ ALWAYS_INLINE void geometry_body(int dim, bool wrapped, enum lanes_geometry geom
         d[k] = a;
         d[y + k] = b;
         if (dim == 3) d[z + k] = c;
+        if (geometry == LANES_DISPLACEMENT) continue;
         const double inverse = r2 > 0 ? 1 / root : 0;
         r_inverse[k] = inverse;
         if (!moving) continue;
@@ -100,6 +101,7 @@ ALWAYS_INLINE void geometry_body(int dim, bool wrapped, enum lanes_geometry geom
             geometry_body(3, false, wanted, count, g);                                             \
     }
 GEOMETRY(find_distances, LANES_DISTANCE)
+GEOMETRY(find_displacements, LANES_DISPLACEMENT)
 GEOMETRY(find_directions, LANES_DIRECTION)
 GEOMETRY(find_closing, LANES_CLOSING)
 #undef GEOMETRY
@@ -122,6 +124,9 @@ static void gather(const struct cells *cells, const struct lanes_layout *layout,
     switch (layout->geometry) {
     case LANES_DISTANCE:
         find_distances(dim, list->wrapped, count, &g);
+        break;
+    case LANES_DISPLACEMENT:
+        find_displacements(dim, list->wrapped, count, &g);
         break;
     case LANES_DIRECTION:
         find_directions(dim, list->wrapped, count, &g);

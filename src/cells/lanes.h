@@ -36,9 +36,10 @@ enum lanes_field {
 
 /* What is found of every pair when its records are gathered. */
 enum lanes_geometry {
-    LANES_DISTANCE,  /* r */
-    LANES_DIRECTION, /* and r_j - r_i, 1/r */
-    LANES_CLOSING    /* and how fast the pair closes */
+    LANES_DISTANCE,     /* r */
+    LANES_DISPLACEMENT, /* and r_j - r_i */
+    LANES_DIRECTION,    /* and 1/r */
+    LANES_CLOSING       /* and how fast the pair closes */
 };
 
 struct lanes_layout {
