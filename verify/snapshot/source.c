@@ -39,6 +39,11 @@ static bool stream_close(stream from)
 {
     return gzclose(from) == Z_OK;
 }
+static enum status refuse_compressed(const struct snapshot_source *source, struct error *error)
+{
+    (void)source, (void)error;
+    return STATUS_OK;
+}
 #else
 typedef FILE *stream;
 static stream stream_open(int file)
@@ -53,6 +58,14 @@ static long stream_read(stream from, void *to, size_t n)
 static bool stream_close(stream from)
 {
     return fclose(from) == 0;
+}
+static enum status refuse_compressed(const struct snapshot_source *source, struct error *error)
+{
+    if (source->size < 2 || source->bytes[0] != 0x1f || source->bytes[1] != 0x8b) return STATUS_OK;
+    return error_set(error, STATUS_BAD_INPUT,
+                     "%.200s: is compressed, which this program was built without: gunzip it, or "
+                     "install zlib1g-dev (Debian) or zlib-devel (Fedora) and build again",
+                     source->path);
 }
 #endif
 
@@ -111,6 +124,7 @@ enum status source_open(struct snapshot_source *source, const char *path, struct
         return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", path);
     }
     enum status status = read_all(source, from, error);
+    if (!status) status = refuse_compressed(source, error);
     if (!stream_close(from) && !status)
         status = error_set(error, STATUS_BAD_INPUT, "%.200s: is cut off", path);
     return status;

@@ -26,11 +26,18 @@ for name in "ASAN_OPTIONS", "TSAN_OPTIONS":
     os.environ[name] = os.environ.get(name, "") + ":allocator_may_return_null=1"
 
 
+def unloads():
+    """musl's dlclose does nothing: what a plug-in does when it is unloaded, it never does."""
+    with open(PROGRAM, "rb") as f:
+        return b"/ld-musl-" not in f.read(4096)
+
+
 def read_table():
     """Its lines, and how many stand before its last part: they take a whole certificate each."""
     with open(TABLE) as f:
         parts = f.read().split("# -- never a value --\n")
-    lines = [[line for line in part.splitlines() if line.strip() and not line.startswith("#")] for part in parts]
+    left_out = ("#",) if unloads() else ("#", "crash_at_unload ")
+    lines = [[line for line in part.splitlines() if line.strip() and not line.startswith(left_out)] for part in parts]
     return [[cell.strip() for cell in line.split("|", 4)] for line in sum(lines, [])], len(lines[0])
 
 
