@@ -7,8 +7,8 @@
 /* As many cells as particles fit in a row. */
 static size_t cells_along(double length, double spacing, size_t most)
 {
-    const double fit = round(length / spacing);
-    return fit >= (double)most ? most : fit >= 1 ? (size_t)fit : 1;
+    const size_t fit = (size_t)fmin(round(length / spacing), (double)most);
+    return fit ? fit : 1;
 }
 
 static void place(struct map *map, const struct domain *domain, const struct snapshot *s, size_t i)
@@ -28,6 +28,11 @@ static void place(struct map *map, const struct domain *domain, const struct sna
     map->seen++;
 }
 
+static void set_centres(double *x, size_t n, double lo, double length)
+{
+    for (size_t k = 0; k < n; k++) x[k] = lo + length * ((double)k + 0.5) / (double)n;
+}
+
 enum status map_create(struct map *map, const struct domain *domain, const struct snapshot *s,
                        size_t most, struct error *error)
 {
@@ -44,18 +49,15 @@ enum status map_create(struct map *map, const struct domain *domain, const struc
     map->nx = cells_along(domain_length(domain, 0), spacing, most);
     map->ny = cells_along(domain_length(domain, 1), spacing, most);
     const size_t cells = map->nx * map->ny;
-    double *centres = map->storage =
-        calloc(map->nx + map->ny + cells + s->n,
-               sizeof(double) > sizeof(size_t) ? sizeof(double) : sizeof(size_t));
+    _Static_assert(sizeof(size_t) <= sizeof(double), "numbers of cells fit");
+    double *centres = map->storage = calloc(map->nx + map->ny + cells + s->n, sizeof(double));
     if (!centres) return error_set(error, STATUS_ENVIRONMENT, "no memory for a map");
     map->x = centres;
     map->y = centres + map->nx;
     map->count = (size_t *)(void *)(centres + map->nx + map->ny);
     map->cell = map->count + cells;
-    for (size_t k = 0; k < map->nx; k++)
-        map->x[k] = map->lo[0] + domain_length(domain, 0) * ((double)k + 0.5) / (double)map->nx;
-    for (size_t k = 0; k < map->ny; k++)
-        map->y[k] = map->lo[1] + domain_length(domain, 1) * ((double)k + 0.5) / (double)map->ny;
+    set_centres(map->y, map->ny, map->lo[1], domain_length(domain, 1));
+    set_centres(map->x, map->nx, map->lo[0], domain_length(domain, 0));
     for (size_t i = 0; i < s->n; i++) place(map, domain, s, i);
     return STATUS_OK;
 }
@@ -66,21 +68,19 @@ void map_free(struct map *map)
     map->storage = NULL;
 }
 
-/* Mean over the cells that hold particles on the square ring around cell (i, j); false: none does.
- */
-static bool ring_mean(const struct map *map, const double *z, ptrdiff_t i, ptrdiff_t j,
-                      ptrdiff_t ring, double *mean)
+/* Mean over the cells that hold particles, of those no farther than `reach` from cell (i, j) in
+ * either direction; NaN: none does. */
+static double mean_around(const struct map *map, const double *z, ptrdiff_t i, ptrdiff_t j,
+                          ptrdiff_t reach)
 {
     double sum = 0, n = 0;
-    for (ptrdiff_t b = j - ring; b <= j + ring; b++)
-        for (ptrdiff_t a = i - ring; a <= i + ring; a++) {
-            if (labs(a - i) < ring && labs(b - j) < ring) continue;
+    for (ptrdiff_t b = j - reach; b <= j + reach; b++)
+        for (ptrdiff_t a = i - reach; a <= i + reach; a++) {
             if (a < 0 || b < 0 || a >= (ptrdiff_t)map->nx || b >= (ptrdiff_t)map->ny) continue;
             const size_t k = (size_t)b * map->nx + (size_t)a;
             if (map->count[k]) sum += z[k], n++;
         }
-    if (n > 0) *mean = sum / n;
-    return n > 0;
+    return sum / n;
 }
 
 void map_mean(const struct map *map, const double *values, double *z)
@@ -92,9 +92,7 @@ void map_mean(const struct map *map, const double *values, double *z)
     for (size_t k = 0; k < cells; k++) {
         if (map->count[k]) continue;
         z[k] = (double)NAN;
-        ptrdiff_t ring = 1;
-        while (ring <= MAP_REACH &&
-               !ring_mean(map, z, (ptrdiff_t)(k % map->nx), (ptrdiff_t)(k / map->nx), ring, &z[k]))
-            ring++;
+        for (ptrdiff_t reach = 0; reach < MAP_REACH && isnan(z[k]);)
+            z[k] = mean_around(map, z, (ptrdiff_t)(k % map->nx), (ptrdiff_t)(k / map->nx), ++reach);
     }
 }

@@ -3,6 +3,9 @@
 
 #include <math.h>
 
+/* The displacement up to which a mode is small, in widths of the layer. */
+static const double small = 0.1;
+
 _Static_assert(sizeof(struct mode_start) <= PROBLEM_OWN_BYTES, "a mode fits");
 
 static const struct mode_start *start_of(const struct prepared *p)
@@ -16,7 +19,7 @@ static void growing_during(const struct prepared *p, double times[2])
     const struct layer_mode *mode = &start->mode;
     const double rate = cimag(mode->omega) / start->length;
     times[0] = log(2) / rate;
-    times[1] = log(0.1 * mode->layer.width / (start->amplitude * mode->displacement)) / rate;
+    times[1] = log(small * mode->layer.width / (start->amplitude * mode->displacement)) / rate;
 }
 
 enum status mode_prepare(struct prepared *p, const struct layer *layer, const double origin[2],
@@ -26,7 +29,6 @@ enum status mode_prepare(struct prepared *p, const struct layer *layer, const do
     struct mode_start *start = (struct mode_start *)p->own.bytes;
     const double amplitude = settings_real(settings, SETTING_amplitude);
     const char *fault = layer_fault(layer);
-    double times[2];
     if (fault) return error_set(error, STATUS_BAD_INPUT, "%s", fault);
     if (!layer_mode_find(layer, &start->mode))
         return error_set(error, STATUS_BAD_INPUT,
@@ -37,18 +39,19 @@ enum status mode_prepare(struct prepared *p, const struct layer *layer, const do
     start->origin[1] = origin[1];
     start->length = length;
     start->amplitude = amplitude * speed;
-    growing_during(p, times);
-    if (amplitude > 0 && times[1] > times[0]) return STATUS_OK;
+    const double most = small * layer->width / (2 * start->mode.displacement * speed);
+    if (amplitude > 0 && amplitude < most) return STATUS_OK;
     return error_set(error, STATUS_BAD_INPUT,
                      "amplitude=%g: more than 0 and less than %.4g is needed, so that the mode can "
                      "grow from twice its start and still be small",
-                     amplitude, 0.05 * layer->width / (start->mode.displacement * speed));
+                     amplitude, most);
 }
 
 /* x in the units of the mode. */
 static void to_mode(const struct mode_start *start, const double x[3], double at[2])
 {
-    for (int d = 0; d < 2; d++) at[d] = (x[d] - start->origin[d]) / start->length;
+    at[0] = (x[0] - start->origin[0]) / start->length;
+    at[1] = (x[1] - start->origin[1]) / start->length;
 }
 
 void mode_sample(const struct prepared *p, const double x[3], double t, struct problem_state *state)
@@ -88,9 +91,8 @@ static void add_particle(struct sums *sums, const struct mode_start *start, cons
 {
     const double complex wave = cexp(-LAYER_I * start->mode.layer.k * at[0]);
     const double complex f = layer_mode_amplitude(&start->mode, at[1]).v;
-    const int bin = part >= 0 && part < 1 ? (int)(part * BINS) : BINS - 1;
-    sums->half[start->mode.layer.periodic && at[1] - floor(at[1] + 0.25) > 0.25] +=
-        volume * vy * conj(f) * wave;
+    const int bin = (int)fmin(fmax(part * BINS, 0), BINS - 1);
+    sums->half[start->mode.layer.periodic && at[1] > 0.25] += volume * vy * conj(f) * wave;
     sums->squares += volume * creal(f * conj(f));
     sums->all += volume * vy * vy;
     sums->measured[bin] += 2 * volume * vy * wave;

@@ -1,0 +1,353 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Problems that start from a growing mode: base state and perturbation in the problem's own units,
+ * and what is measured of the mode in states that are made here, by sums written a second time. */
+#include <complex.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "mode.h"
+#include "near.h"
+#include "problem_list.h"
+#include "problem_prepare.h"
+
+static const struct problem *problem_named(const char *name)
+{
+    return (const struct problem *)family_find(&problem_family, name);
+}
+
+/* A problem in a box of another place and size than the unit one. */
+static enum status make(struct prepared *p, const char *name, int n, char **keys,
+                        struct error *error)
+{
+    struct settings settings;
+    settings_init(&settings);
+    assert_int_equal(settings_apply(&settings, n, keys, error), STATUS_OK);
+    return problem_prepare_as(p, problem_named(name), &settings, 2, error);
+}
+
+static struct prepared made(const char *name, int n, char **keys)
+{
+    struct prepared p;
+    struct error error = {0};
+    if (make(&p, name, n, keys, &error)) fail_msg("%s", error.message);
+    return p;
+}
+
+static char *shear_keys[] = {"kind=kelvin_helmholtz_mode",
+                             "lo=-1 3",
+                             "hi=1 5",
+                             "waves=2",
+                             "amplitude=0.001",
+                             "gamma=1.6",
+                             "boost=0.25 -0.5"};
+static char *heavy_keys[] = {"kind=rayleigh_taylor_mode", "lo=0.5 -2", "hi=2.5 2",        "waves=2",
+                             "amplitude=0.001",           "gamma=1.4", "gravity=0 -0.125"};
+
+static const struct mode_start *start_of(const struct prepared *p)
+{
+    return (const struct mode_start *)p->own.bytes;
+}
+
+/* The layer that a problem stands for, in the units in which the box is 1 high. */
+static void layers_are_those_of_the_keys(void **state)
+{
+    (void)state;
+    const struct prepared shear = made("kelvin_helmholtz_mode", 7, shear_keys),
+                          heavy = made("rayleigh_taylor_mode", 7, heavy_keys);
+    const struct mode_start *s = start_of(&shear), *h = start_of(&heavy);
+    near_relative(s->mode.layer.k, 4 * M_PI, 1e-15);
+    assert_true(s->mode.layer.gamma == 1.6 && s->mode.layer.periodic && s->length == 2);
+    assert_true(s->origin[0] == -1 && s->origin[1] == 3.5);
+    near_relative(s->amplitude, 0.0005, 1e-15); /* of the speed 1/2 */
+    near_relative(h->mode.layer.k, 8 * M_PI, 1e-15);
+    near_relative(h->mode.layer.g, 0.5, 1e-15);
+    assert_true(h->origin[0] == 0.5 && h->origin[1] == 0 && h->length == 4);
+    near_relative(h->amplitude, 0.001 * sqrt(2 * M_PI * 0.5 / (8 * M_PI)), 1e-15);
+    for (int k = 0; k < 2; k++) { /* from e^0 at t = 0; the same rate as a growing mode's */
+        const struct prepared *p = k ? &heavy : &shear;
+        const double rate = cimag(start_of(p)->mode.omega) / start_of(p)->length;
+        double times[2];
+        assert_true(rate > 0.05);
+        near_relative(mode_growing.rate(p), rate, 1e-15);
+        near_relative(mode_amplitude.exact(p, 0.7), start_of(p)->amplitude * exp(0.7 * rate),
+                      1e-14);
+        mode_growing.during(p, times);
+        near_relative(exp(rate * times[0]), 2, 1e-14);
+        /* displaced by a tenth of the layer's width */
+        near_relative(start_of(p)->amplitude * exp(rate * times[1]) *
+                          start_of(p)->mode.displacement,
+                      0.1 * 0.05, 1e-13);
+    }
+}
+
+static void samples_are_base_and_mode(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        const struct prepared p = k ? made("rayleigh_taylor_mode", 7, heavy_keys)
+                                    : made("kelvin_helmholtz_mode", 7, shear_keys);
+        const struct mode_start *start = start_of(&p);
+        for (int i = 0; i < 40; i++) {
+            const double x[3] = {p.domain.lo[0] + 0.0237 * i, p.domain.lo[1] + 0.0471 * i, 7};
+            const double t = 0.05 * i, X = (x[0] - start->origin[0]) / start->length,
+                         Y = (x[1] - start->origin[1]) / start->length;
+            const struct layer_base base = layer_base(&start->mode.layer, Y);
+            const struct layer_amplitude f = layer_mode_amplitude(&start->mode, Y);
+            const double complex wave =
+                start->amplitude *
+                cexp(LAYER_I * (start->mode.layer.k * X - start->mode.omega * t / start->length));
+            struct problem_state s;
+            mode_sample(&p, x, t, &s);
+            const double scale = start->amplitude * exp(mode_growing.rate(&p) * t);
+            assert_true(fabs(s.rho - base.rho - creal(f.rho * wave)) <= 1e-9 * scale + 1e-15);
+            assert_true(fabs(s.v[0] - base.U - creal(f.u * wave)) <= 1e-9 * scale + 1e-15);
+            assert_true(fabs(s.v[1] - creal(f.v * wave)) <= 1e-9 * scale);
+            assert_true(fabs(s.P - base.P - creal(f.p * wave)) <= 1e-9 * scale + 1e-15);
+            near_relative(s.u, s.P / ((p.gamma - 1) * s.rho), 1e-14);
+            assert_true(s.v[2] == 0);
+        }
+    }
+}
+
+enum { N = 700, BINS = 32 };
+
+/* A state of points that lie anywhere, with volumes of their own and a velocity that is not only
+ * the mode; its boost is there, too. Three in a row have no one else in their part of the height.
+ */
+struct made_state {
+    double x[2][N + 1], v[2][N + 1], volume[N + 1]; /* one behind them */
+    struct snapshot snapshot;
+};
+
+static void make_state(struct made_state *made, const struct prepared *p, double scatter)
+{
+    const struct mode_start *start = start_of(p);
+    /* the layer's half ends, as exactly as a number can say it; out of the box */
+    static const double set[] = {0.5 + 1e-8, 0.5 - 1e-8, -0.1, 1, 1.1};
+    for (int i = 0; i <= N; i++) {
+        const double part =
+            i < (start->mode.layer.periodic ? 2 : 5) ? set[i] : fmod(0.7548776662 * i + 0.01, 1);
+        made->x[0][i] =
+            p->domain.lo[0] + fmod(0.6180339887 * i, 1) * (p->domain.hi[0] - p->domain.lo[0]);
+        /* nobody is in the 5th of the 32 parts */
+        made->x[1][i] = p->domain.lo[1] + (part >= 4. / BINS && part < 5. / BINS ? 0.5 : part) *
+                                              (p->domain.hi[1] - p->domain.lo[1]);
+        made->volume[i] = 0.001 * (2 + sin(5 * i));
+        const double X = (made->x[0][i] - start->origin[0]) / start->length,
+                     Y = (made->x[1][i] - start->origin[1]) / start->length;
+        const double complex f = layer_mode_amplitude(&start->mode, Y).v;
+        made->v[0][i] = cos(i) + p->boost[0];
+        made->v[1][i] = creal((0.3 - 0.2 * LAYER_I) * f * cexp(LAYER_I * start->mode.layer.k * X)) +
+                        scatter * sin(12.9898 * i) + p->boost[1];
+    }
+    made->snapshot = (struct snapshot){.n = N,
+                                       .x = {made->x[0], made->x[1]},
+                                       .v = {made->v[0], made->v[1]},
+                                       .volume = made->volume};
+}
+
+/* The four functionals from their definitions. */
+static void measure(const struct prepared *p, const struct made_state *made, double found[4])
+{
+    const struct mode_start *start = start_of(p);
+    double complex up[2] = {0}, measured[BINS] = {0}, mode[BINS] = {0};
+    double ff = 0, vv = 0, volume[BINS] = {0};
+    for (int i = 0; i < N; i++) {
+        const double X = (made->x[0][i] - start->origin[0]) / start->length,
+                     Y = (made->x[1][i] - start->origin[1]) / start->length;
+        const double vy = made->v[1][i] - p->boost[1], V = made->volume[i];
+        const double complex f = layer_mode_amplitude(&start->mode, Y).v,
+                             back = cexp(-LAYER_I * start->mode.layer.k * X);
+        /* the image layer lies at 1/2 */
+        const bool image = start->mode.layer.periodic && Y > 0.25;
+        const double part = (made->x[1][i] - p->domain.lo[1]) / (p->domain.hi[1] - p->domain.lo[1]);
+        const int b = part < 0 ? 0 : part < 1 ? (int)(part * BINS) : BINS - 1;
+        up[image] += V * vy * conj(f) * back;
+        ff += V * creal(f * conj(f));
+        vv += V * vy * vy;
+        measured[b] += 2 * V * vy * back;
+        mode[b] += V * f;
+        volume[b] += V;
+    }
+    const double complex c = 2 * (up[0] + up[1]) / ff;
+    const double square = creal(c * conj(c)), of_mode = square * ff / 2;
+    double off = 0, whole = 0;
+    for (int b = 0; b < BINS; b++) {
+        if (volume[b] == 0) continue;
+        off += pow(cabs(measured[b] - c * mode[b]), 2) / volume[b];
+        whole += pow(cabs(c * mode[b]), 2) / volume[b];
+    }
+    found[0] = sqrt(square);
+    found[1] = sqrt(off / whole);
+    found[2] = sqrt(fabs(vv - of_mode) / of_mode);
+    found[3] = cabs(2 * (up[0] - up[1]) / ff) / sqrt(square);
+}
+
+static void measured_as_defined(void **state)
+{
+    (void)state;
+    static const struct functional *const f[] = {&mode_amplitude, &mode_error, &mode_noise,
+                                                 &mode_other_parity};
+    static struct made_state made_state;
+    for (int k = 0; k < 2; k++) {
+        const struct prepared p = k ? made("rayleigh_taylor_mode", 7, heavy_keys)
+                                    : made("kelvin_helmholtz_mode", 7, shear_keys);
+        for (int scattered = 0; scattered < 2; scattered++) {
+            double want[4];
+            make_state(&made_state, &p, 0.05 * scattered);
+            measure(&p, &made_state, want);
+            near_relative(want[0], hypot(0.3, 0.2), 0.1); /* the state has it */
+            assert_true(want[1] > 0.01 && want[2] > 0.01);
+            for (int i = 0; i < 4; i++)
+                near_relative(f[i]->measure(&p, &made_state.snapshot), want[i], 1e-10);
+            for (int i = 1; i < 4; i++) assert_true(f[i]->exact(&p, 0.5) == 0);
+        }
+    }
+}
+
+/* On a regular grid waves are orthogonal: nothing but the mode is found where nothing else is, and
+ * of a wave of another length all is noise. The other parity is told from the mode's own. */
+static void grid_knows_the_mode_alone(void **state)
+{
+    (void)state;
+    enum { SIDE = 64 };
+    static double x[2][SIDE * SIDE], v[2][SIDE * SIDE], volume[SIDE * SIDE];
+    struct prepared p = made("kelvin_helmholtz_mode", 7, shear_keys);
+    const struct mode_start *start = start_of(&p);
+    const struct snapshot s = {
+        .n = SIDE * SIDE, .x = {x[0], x[1]}, .v = {v[0], v[1]}, .volume = volume};
+    double squares = 0, noise = 0;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        const double X = (i % SIDE + 0.5) / SIDE, Y = (i / SIDE + 0.5) / SIDE - 0.25;
+        const double complex f = layer_mode_amplitude(&start->mode, Y).v;
+        x[0][i] = start->origin[0] + 2 * X;
+        x[1][i] = start->origin[1] + 2 * Y;
+        volume[i] = 1;
+        v[1][i] = p.boost[1] + 3 * creal(f * cexp(LAYER_I * 4 * M_PI * X));
+        squares += 9 * creal(f * conj(f)) / 2;
+    }
+    near_relative(mode_amplitude.measure(&p, &s), 3, 1e-12);
+    near_below(mode_error.measure(&p, &s), 1e-12);
+    near_below(mode_noise.measure(&p, &s), 1e-6);
+    near_below(mode_other_parity.measure(&p, &s), 1e-10);
+    for (int i = 0; i < SIDE * SIDE; i++) { /* of half the mode's length */
+        const double wave = cos(8 * M_PI * (i % SIDE + 0.5) / SIDE);
+        v[1][i] += wave;
+        noise += wave * wave;
+    }
+    near_relative(mode_amplitude.measure(&p, &s), 3, 1e-12);
+    near_below(mode_error.measure(&p, &s), 1e-12);
+    near_relative(mode_noise.measure(&p, &s), sqrt(noise / squares), 1e-10);
+    for (int i = 0; i < SIDE * SIDE; i++) /* one layer only: as much of either parity */
+        if (i / SIDE >= SIDE / 2) v[1][i] = p.boost[1];
+    near_relative(mode_other_parity.measure(&p, &s), 1, 1e-10);
+}
+
+static void what_no_mode_has_is_refused(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *problem, *keys[4], *words;
+    } rows[] = {
+        {"kelvin_helmholtz_mode",
+         {"waves=30"},
+         "waves=30: no mode of 30 waves in the box grows in a layer of width 0.1"},
+        {"kelvin_helmholtz_mode", {"hi=2", "waves=30"}, "in a layer of width 0.15"},
+        {"kelvin_helmholtz_mode", {"amplitude=0"}, "amplitude=0: more than 0 and less than"},
+        {"kelvin_helmholtz_mode", {"hi=1 1.0001"}, "sides of 2 and 2.0001"},
+        {"kelvin_helmholtz_mode", {"hi=1 0.9999"}, "sides of 2 and 1.9999"},
+        {"rayleigh_taylor_mode", {"gravity=0 0.1"}, "gravity=\"0 0.1\""},
+        {"rayleigh_taylor_mode", {"gravity=0 0"}, "gravity=\"0 0\""},
+        {"rayleigh_taylor_mode", {"gravity=0.1 -0.5"}, "gravity=\"0.1 -0.5\""},
+        {"rayleigh_taylor_mode", {"gravity=0 -100"}, "pressure"},
+    };
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        char kind[64], *keys[5] = {kind};
+        struct prepared p;
+        struct error error = {0};
+        int n = 1;
+        snprintf(kind, sizeof kind, "kind=%s", rows[k].problem);
+        for (; rows[k].keys[n - 1]; n++) keys[n] = (char *)rows[k].keys[n - 1];
+        assert_int_equal(make(&p, rows[k].problem, n, keys, &error), STATUS_BAD_INPUT);
+        if (!strstr(error.message, rows[k].words))
+            fail_msg("row %zu: '%s' expected, said: %s", k, rows[k].words, error.message);
+    }
+}
+
+/* From twice the start to a tenth of the layer's width: that amplitude is none yet, a last bit less
+ * is one. */
+static void amplitudes_leave_room_to_grow(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"kelvin_helmholtz_mode", "rayleigh_taylor_mode"};
+    for (int k = 0; k < 2; k++) {
+        char kind[64], amplitude[64], *keys[] = {kind, amplitude};
+        struct error error = {0};
+        snprintf(kind, sizeof kind, "kind=%s", names[k]);
+        snprintf(amplitude, sizeof amplitude, "amplitude=0.001");
+        struct prepared p = made(names[k], 2, keys);
+        const double speed = start_of(&p)->amplitude / 0.001;
+        const double most = 0.1 * 0.05 / (2 * start_of(&p)->mode.displacement * speed);
+        char said[64];
+        snprintf(said, sizeof said, "less than %.4g", most);
+        for (int less = -1; less < 2; less++) {
+            snprintf(amplitude, sizeof amplitude, "amplitude=%.17g", most * (1 - less * 1e-12));
+            assert_int_equal(make(&p, names[k], 2, keys, &error),
+                             less > 0 ? STATUS_OK : STATUS_BAD_INPUT);
+            assert_non_null(strstr(error.message, said));
+        }
+    }
+}
+
+/* Sides of a box that differ by rounding alone are the same. */
+static void layers_need_a_square(void **state)
+{
+    (void)state;
+    char side[64], *keys[] = {"kind=kelvin_helmholtz_mode", "lo=0", side};
+    for (int part = -3; part <= 3; part += 2) {
+        struct prepared p;
+        struct error error = {0};
+        snprintf(side, sizeof side, "hi=2 %.17g", 2 + 2 * 0.5e-12 * part);
+        assert_int_equal(make(&p, "kelvin_helmholtz_mode", 3, keys, &error),
+                         abs(part) > 1 ? STATUS_BAD_INPUT : STATUS_OK);
+    }
+}
+
+/* Sinuous and varicose modes are different ones; gravity that nobody gives is that of the layer. */
+static void keys_choose_the_mode(void **state)
+{
+    (void)state;
+    const struct prepared one = made("kelvin_helmholtz_mode", 2,
+                                     (char *[]){"kind=kelvin_helmholtz_mode", "parity=sinuous"}),
+                          two = made("kelvin_helmholtz_mode", 2,
+                                     (char *[]){"kind=kelvin_helmholtz_mode", "parity=varicose"}),
+                          heavy = made("rayleigh_taylor_mode", 2,
+                                       (char *[]){"kind=rayleigh_taylor_mode", "hi=1 3"});
+    assert_true(start_of(&one)->mode.layer.pressure_node);
+    assert_false(start_of(&two)->mode.layer.pressure_node);
+    assert_true(heavy.gravity[1] == -0.125 && heavy.gravity[0] == 0);
+    assert_true(start_of(&heavy)->mode.layer.g == 0.5);
+    assert_true(heavy.boundary[1] == BOUNDARY_REFLECTING && heavy.boundary[0] == BOUNDARY_PERIODIC);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(layers_are_those_of_the_keys),
+        cmocka_unit_test(samples_are_base_and_mode),
+        cmocka_unit_test(measured_as_defined),
+        cmocka_unit_test(grid_knows_the_mode_alone),
+        cmocka_unit_test(what_no_mode_has_is_refused),
+        cmocka_unit_test(amplitudes_leave_room_to_grow),
+        cmocka_unit_test(layers_need_a_square),
+        cmocka_unit_test(keys_choose_the_mode),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
