@@ -141,19 +141,23 @@ static enum status check_together(const struct prepared *p, const struct setting
     return STATUS_OK;
 }
 
+/* Does the key say how particles are laid? */
+static bool lays_particles(const struct problem *problem, enum setting key)
+{
+    for (size_t k = 0; k < problem->key_count; k++)
+        if (problem->keys[k].key == key) return problem->keys[k].role == ROLE_PARTICLES;
+    return key == SETTING_n || key == SETTING_lattice || key == SETTING_jitter ||
+           key == SETTING_seed;
+}
+
 /* Particles of a file are as they are. */
 static enum status check_file(const struct prepared *p, const struct settings *settings,
                               struct error *error)
 {
-    static const enum setting laid[] = {SETTING_n, SETTING_lattice, SETTING_jitter, SETTING_seed};
-    const struct problem *problem = p->problem;
-    bool of_particles[SETTINGS] = {false};
     if (!settings->file[0]) return STATUS_OK;
-    for (size_t k = 0; k < sizeof laid / sizeof *laid; k++) of_particles[laid[k]] = true;
-    for (size_t k = 0; k < problem->key_count; k++)
-        of_particles[problem->keys[k].key] |= problem->keys[k].role == ROLE_PARTICLES;
     for (int i = 0; i < SETTINGS; i++)
-        if (of_particles[i] && settings->value[i].source == SOURCE_USER)
+        if (settings->value[i].source == SOURCE_USER &&
+            lays_particles(p->problem, (enum setting)i))
             return error_set(error, STATUS_BAD_INPUT,
                              "key %s and file=%.120s exclude each other: its particles are as they "
                              "are",
@@ -196,9 +200,9 @@ static void set_domain(struct prepared *p, const struct settings *settings, int 
         p->domain.lo[d] = p->window.lo[d] = settings_along(settings, SETTING_lo, d);
         p->domain.hi[d] = p->window.hi[d] = settings_along(settings, SETTING_hi, d);
         p->window.centre[d] = 0.5 * (p->domain.lo[d] + p->domain.hi[d]);
-        p->boost[d] = dim > 1 ? settings_along(settings, SETTING_boost, d) : 0;
+        p->boost[d] = settings_along(settings, SETTING_boost, d);
     }
-    p->window.radius = dim > 1 ? settings_real(settings, SETTING_window_radius) : 0;
+    p->window.radius = settings_real(settings, SETTING_window_radius);
     if (settings->value[SETTING_window].automatic) return;
     p->window.lo[0] = settings->value[SETTING_window].real[0];
     p->window.hi[0] = settings->value[SETTING_window].real[1];
