@@ -26,11 +26,11 @@ static enum status fit_orders(const struct study *study, struct study_result *re
                 errors[l] = result->levels[l].errors[f][m];
                 variance[l] = spread * spread / (double)study->replicates;
             }
-            if (order_fit(n, spacing, errors, study->replicates > 1 ? &noise : NULL,
-                          &result->orders[f][m].fit, error))
+            /* of single runs the variance is 0, which is no noise */
+            if (order_fit(n, spacing, errors, &noise, &result->orders[f][m].fit, error))
                 return error->status;
         }
-    const struct regions *regions = result->levels[0].budget.regions;
+    const struct regions *regions = problem_of(&result->settings)->regions;
     for (size_t r = 0; regions && regions->names[r]; r++) {
         bool everywhere = true;
         for (size_t l = 0; l < n; l++) {

@@ -49,7 +49,7 @@ static void read_run(struct study_result *result, struct study_level *level,
 {
     const size_t n = (size_t)value_member(run, "n");
     const double x = log(value_member(run, "spacing"));
-    if (!level->n) level->n = level->n_range[0] = level->n_range[1] = n;
+    if (!level->n) level->n = level->n_range[0] = n;
     if (n < level->n_range[0]) level->n_range[0] = n;
     if (n > level->n_range[1]) level->n_range[1] = n;
     level->spacing += weight * x;
@@ -112,7 +112,7 @@ static void find_spreads(struct study_result *result, const struct moments *mome
                 const double squares = moments[l].yy[f][m] - y * y -
                                        2 * p * (moments[l].xy[f][m] - x * y) +
                                        p * p * (moments[l].xx - x * x);
-                level->spread[f][m] = sqrt(freedom * (squares < 0 ? 0 : squares));
+                level->spread[f][m] = sqrt(freedom * fmax(0, squares));
             }
         }
 }
