@@ -9,6 +9,7 @@
 
 #include <gsl/gsl_qrng.h>
 #include <gsl/gsl_rng.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -23,14 +24,21 @@
 /* A gas that jumps, and is nowhere the same. */
 static double density(const double x[3])
 {
-    return (x[0] < 0.3 ? 3 : 1) + 0.5 * x[1] * x[1] + 0.25 * x[2];
+    return (x[0] < 0.3 ? 3 : 1) + 0.01 * x[0] + 0.5 * x[1] * x[1] + 0.25 * x[2];
+}
+
+static double energy(const double x[3])
+{
+    return 3 + x[1] + 0.1 * x[0];
 }
 
 static void sample(const struct prepared *p, const double x[3], double t, struct problem_state *s)
 {
     (void)p;
-    *s = (struct problem_state){
-        .rho = density(x), .v = {x[0], 2 * x[0] - x[1], 5 + x[2]}, .P = 1 + t, .u = 3 + x[1]};
+    *s = (struct problem_state){.rho = density(x) * (1 + t),
+                                .v = {x[0], 2 * x[0] - x[1] + t, 5 + x[2]},
+                                .P = 1 + t,
+                                .u = energy(x) + t};
 }
 
 static struct settings settings_of(int n, char **keys)
@@ -67,7 +75,7 @@ static void arrays_lie_apart(void **state)
         for (int k = 0; k < count; k++)
             for (int i = 0; i < N; i++) assert_true(arrays[k][i] == 10 * k + i);
         initial_free(&initial);
-        assert_true(!initial.storage && initial.n == 0);
+        assert_true(!initial.storage && initial.n == 0 && initial.dim == 0);
     }
 }
 
@@ -128,7 +136,7 @@ static void lays_and_keeps(void **state)
                 assert_true(initial.x[d][i] == x[d]);
             }
             assert_true(initial.v[0][i] == x[0] && initial.v[1][i] == 2 * x[0] - x[1]);
-            assert_true(initial.u[i] == 3 + x[1] && initial.rho[i] == density(x));
+            assert_true(initial.u[i] == energy(x) && initial.rho[i] == density(x));
             near_relative(initial.m[i], density(x) / (double)n, 1e-15);
         }
         initial.n = n + first; /* the last one is nobody's */
@@ -143,7 +151,7 @@ static void lays_and_keeps(void **state)
                 assert_true(initial.v[d][at] == (d == 0   ? x[0]
                                                  : d == 1 ? 2 * x[0] - x[1]
                                                           : 5 + x[2]));
-            assert_true(initial.u[at] == 3 + x[1] && initial.rho[at] == density(x));
+            assert_true(initial.u[at] == energy(x) && initial.rho[at] == density(x));
             near_relative(initial.m[at], density(x) / (double)n, 1e-15);
             at++;
         }
@@ -204,13 +212,13 @@ static void balls_are_cut_from_lattices(void **state)
 
 /* ---- what the settings do to what a problem has filled ---- */
 
-enum { LINE = 7 };
+enum { LINE = 8 };
 
 static enum status fill_line(const struct prepared *p, const struct settings *settings,
                              struct initial *initial, struct error *error)
 {
-    static const double x[] = {0, 1, 2.5, 3, 4, 5, 6.5}, rho[] = {1, 1, 1, 2, 2, 2, 2},
-                        m[] = {1, 1, 1, 1, 1, 1, 1.5};
+    static const double x[] = {0, 1.5, 2.5, 3, 4, 5, 6.5, 7.5}, rho[] = {1, 1, 2, 2, 2, 2, 2, 2},
+                        m[] = {1, 1, 1, 1, 1.5, 1, 2, 2};
     (void)p, (void)settings;
     if (initial_allocate(initial, 1, LINE, error)) return error->status;
     for (int i = 0; i < LINE; i++) {
@@ -237,13 +245,13 @@ static struct initial created(const struct prepared *p, const struct settings *s
 static void pairs_of_a_line(void **state)
 {
     (void)state;
-    const struct prepared p = {.problem = &line, .domain = {1, {0}, {7}}, .boost = {100}};
+    const struct prepared p = {.problem = &line, .domain = {1, {0}, {8}}, .boost = {100}};
     static const struct {
         char *key;
         double x[LINE];
-    } rows[] = {{"lattice=uniform", {0, 1, 2.5, 3, 4, 5, 6.5}},
-                {"lattice=clustered", {0.45, 0.55, 2.5, 3.45, 3.55, 5, 6.5}},
-                {"lattice=coincident", {0.5, 0.5, 2.5, 3.5, 3.5, 5, 6.5}}};
+    } rows[] = {{"lattice=uniform", {0, 1.5, 2.5, 3, 4, 5, 6.5, 7.5}},
+                {"lattice=clustered", {0.675, 0.825, 2.725, 2.775, 4, 5, 6.95, 7.05}},
+                {"lattice=coincident", {0.75, 0.75, 2.75, 2.75, 4, 5, 7, 7}}};
     for (size_t k = 0; k < 3; k++) {
         char *keys[] = {rows[k].key};
         const struct settings settings = settings_of(1, keys);
@@ -259,7 +267,9 @@ static void pairs_of_a_line(void **state)
 
 enum { CLOUD = 40 };
 
-/* Points near the ends of [-1, 2] in each direction, with room of their own. */
+static const double low[] = {-1, -1.5, -2}, high[] = {2, 2.5, 3};
+
+/* Points near the ends of each direction, with room of their own; two exactly there. */
 static enum status fill_cloud(const struct prepared *p, const struct settings *settings,
                               struct initial *initial, struct error *error)
 {
@@ -269,7 +279,9 @@ static enum status fill_cloud(const struct prepared *p, const struct settings *s
     for (int i = 0; i < CLOUD; i++) {
         for (int d = 0; d < dim; d++) {
             const double away = 0.3 * pow(0.01, 1. / dim) * fmod(0.618 * (i + 1) * (d + 1), 1);
-            initial->x[d][i] = (i >> d) % 2 ? -1 + away : 2 - away - 1e-9;
+            initial->x[d][i] = i < 2          ? (i ? high[d] : low[d])
+                               : (i >> d) % 2 ? low[d] + away
+                                              : high[d] - away - 1e-9;
             initial->v[d][i] = 10 * d + i;
         }
         initial->m[i] = 1 + 0.01 * i;
@@ -290,7 +302,7 @@ static void jitter_moves_all(void **state)
             const struct problem problem = {.sample = sample, .fill = fill_cloud, .smooth = smooth};
             const struct prepared p = {
                 .problem = &problem,
-                .domain = {dim, {-1, -1, -1}, {2, 2, 2}},
+                .domain = {dim, {-1, -1.5, -2}, {2, 2.5, 3}},
                 .boundary = {BOUNDARY_PERIODIC, BOUNDARY_REFLECTING, BOUNDARY_FIXED},
                 .boost = {0.5, -2, 3}};
             const struct settings settings = settings_of(2, keys), none = settings_of(0, NULL);
@@ -302,16 +314,18 @@ static void jitter_moves_all(void **state)
                 double x[3] = {0};
                 const double room = pow(before.m[i] / before.rho[i], 1. / dim);
                 for (int d = 0; d < dim; d++) {
+                    const double lo = low[d], hi = high[d];
                     x[d] = before.x[d][i] + 0.4 * room * (2 * gsl_rng_uniform(random) - 1);
-                    over[d] += x[d] < -1 || x[d] >= 2;
+                    over[d] += x[d] < lo || x[d] >= hi;
                     if (dim == 1)
-                        x[d] = fmin(fmax(x[d], -1), nextafter(2, 0));
+                        x[d] = fmin(fmax(x[d], lo), nextafter(hi, 0));
                     else if (d == 0)
-                        x[d] += x[d] < -1 ? 3 : x[d] >= 2 ? -3 : 0;
+                        x[d] += x[d] < lo ? 3 : x[d] >= hi ? -3 : 0;
                     else
-                        x[d] = x[d] < -1 ? -2 - x[d] : x[d] >= 2 ? 4 - x[d] : x[d];
+                        x[d] = x[d] < lo ? 2 * lo - x[d] : x[d] >= hi ? 2 * hi - x[d] : x[d];
                     near_absolute(after.x[d][i] + 9, x[d] + 9, 1e-14);
-                    assert_true(after.x[d][i] >= -1 && after.x[d][i] < 2);
+                    assert_true(after.x[d][i] >= lo && after.x[d][i] < hi);
+                    if (i == 1) assert_true(before.x[d][i] == hi);
                 }
                 struct problem_state s;
                 for (int d = 0; d < dim; d++) x[d] = after.x[d][i];
@@ -331,6 +345,99 @@ static void jitter_moves_all(void **state)
             initial_free(&before);
             initial_free(&after);
         }
+}
+
+/* A lower end belongs to the box, an upper one is the lower one of the next box. */
+static void ends_of_the_box(void **state)
+{
+    (void)state;
+    static char *keys[] = {"jitter=1e-30"};
+    const struct problem problem = {.sample = sample, .fill = fill_cloud};
+    const struct prepared p = {.problem = &problem,
+                               .domain = {2, {-1, -1.5}, {2, 2.5}},
+                               .boundary = {BOUNDARY_PERIODIC, BOUNDARY_REFLECTING}};
+    const struct settings settings = settings_of(1, keys);
+    struct initial initial = created(&p, &settings);
+    assert_true(initial.x[0][0] == -1 && initial.x[1][0] == -1.5);
+    assert_true(initial.x[0][1] == -1 && initial.x[1][1] == nextafter(2.5, 0));
+    initial_free(&initial);
+}
+
+static enum status fill_nothing(const struct prepared *p, const struct settings *settings,
+                                struct initial *initial, struct error *error)
+{
+    (void)p, (void)settings, (void)initial;
+    return error_set(error, STATUS_BAD_INPUT, "nothing");
+}
+
+static void failures_are_passed_on(void **state)
+{
+    (void)state;
+    const struct problem problem = {.sample = sample, .fill = fill_nothing};
+    const struct prepared p = {.problem = &problem, .domain = {2, {0, 0}, {1, 1}}};
+    const struct settings settings = settings_of(0, NULL);
+    struct initial initial = {.storage = (double *)8}; /* nobody's */
+    struct error error = {0};
+    assert_int_equal(initial_create(&initial, &p, &settings, &error), STATUS_BAD_INPUT);
+    assert_null(initial.storage);
+    static char *few[] = {"n=9", "lattice=glass", "equal_masses=yes"};
+    for (int n = 2; n <= 3; n++) { /* too few for a glass */
+        const struct settings glass = settings_of(n, few);
+        assert_int_equal(initial_fill(&p, &glass, &initial, &error), STATUS_BAD_INPUT);
+        assert_non_null(strstr(error.message, "a glass needs more particles"));
+        initial_free(&initial);
+    }
+    struct lattice_plan plan;
+    assert_int_equal(lattice_plan_make(&plan, &p.domain, LATTICE_FCC, 100, &error),
+                     STATUS_BAD_INPUT);
+    assert_non_null(strstr(error.message, "lattice=fcc has no form in 2 dimensions"));
+}
+
+/* ---- lattices of the whole box ---- */
+
+static void the_whole_box_is_laid(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        static char *keys[] = {"n=64", "lattice=random", "seed=3"};
+        const struct prepared p = {.problem = &plain, .domain = {dim, {-1, 0, 1}, {1, 3, 2}}};
+        for (int random = 0; random < 2; random++) {
+            keys[1] = random ? "lattice=random" : "lattice=hexagonal";
+            const struct settings settings = settings_of(3, keys);
+            struct lattice_plan plan;
+            struct initial initial;
+            struct error error = {0};
+            assert_int_equal(initial_fill(&p, &settings, &initial, &error), STATUS_OK);
+            assert_int_equal(lattice_plan_make(&plan, &p.domain,
+                                               random ? LATTICE_RANDOM : LATTICE_HEXAGONAL, 64,
+                                               &error),
+                             STATUS_OK);
+            double y[3][100], shift[3];
+            double *const x[] = {y[0], y[1], y[2]};
+            assert_true(plan.n == initial.n && plan.n < 100);
+            gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
+            gsl_qrng *sequence = gsl_qrng_alloc(gsl_qrng_sobol, (unsigned)dim);
+            gsl_rng_set(rng, 3);
+            for (int d = 0; d < 3; d++) shift[d] = gsl_rng_uniform(rng);
+            if (!random) assert_int_equal(lattice_points(&plan, 3, x, &error), STATUS_OK);
+            for (size_t i = 0; i < plan.n; i++) {
+                double part[3], place[3] = {0};
+                gsl_qrng_get(sequence, part);
+                for (int d = 0; d < dim; d++) {
+                    part[d] += shift[d];
+                    if (random)
+                        y[d][i] = p.domain.lo[d] +
+                                  (p.domain.hi[d] - p.domain.lo[d]) * (part[d] - floor(part[d]));
+                    near_absolute(initial.x[d][i] + 9, y[d][i] + 9, 1e-14);
+                    place[d] = initial.x[d][i];
+                }
+                near_relative(initial.m[i], 6. / (double)plan.n * density(place), 1e-14);
+            }
+            gsl_qrng_free(sequence);
+            gsl_rng_free(rng);
+            initial_free(&initial);
+        }
+    }
 }
 
 /* ---- equal masses ---- */
@@ -390,6 +497,8 @@ static void equal_masses_follow_the_density(void **state)
 
 /* ---- glasses ---- */
 
+static size_t times_asked;
+
 struct rooms {
     int dim;
     double all;
@@ -399,6 +508,7 @@ struct rooms {
 static double room_at(const void *context, const double x[3])
 {
     const struct rooms *rooms = context;
+    times_asked++;
     return rooms->all / (double)rooms->n * (1 + 0.2 * sin(2 * M_PI * (x[0] + x[1])));
 }
 
@@ -446,8 +556,8 @@ static void glasses_are_pushed_apart(void **state)
     for (int dim = 2; dim <= 3; dim++) {
         enum { MOST = 250 };
         const size_t n = dim == 2 ? 100 : 250;
-        struct rooms rooms = {dim, dim == 2 ? 1 : 1.1, n};
-        const struct relax_room room = {{dim, {-0.5, 2, 0}, {0.5, 3, 1.1}}, room_at, &rooms};
+        struct rooms rooms = {dim, dim == 2 ? 1.2 : 1.32, n};
+        const struct relax_room room = {{dim, {-0.3, 2.1, 0.2}, {0.7, 3.3, 1.3}}, room_at, &rooms};
         double x[3][MOST], y[3][MOST], volume[MOST];
         double *const moved[] = {x[0], x[1], x[2]}, *const direct[] = {y[0], y[1], y[2]};
         struct error error = {0};
@@ -502,6 +612,119 @@ static void glasses_are_pushed_apart(void **state)
     }
 }
 
+/* Measured also in space, of any points. */
+static void quality_of_a_cloud(void **state)
+{
+    (void)state;
+    enum { N = 500 };
+    const struct domain box = {3, {0, 1, 2}, {1, 2, 3}};
+    static double x[3][N], volume[N], h[N];
+    struct kernel kernel;
+    struct regularity found;
+    struct relax_quality quality;
+    struct error error = {0};
+    for (int i = 0; i < N; i++) {
+        for (int d = 0; d < 3; d++)
+            x[d][i] = d + fmod((0.6180339887 + 0.0629 * d * d) * (i + 1), 1);
+        volume[i] = (1 + 0.0001 * i) / N;
+        h[i] = 3.6 * cbrt(volume[i]);
+    }
+    const struct regularity_cloud cloud = {.box = box,
+                                           .periodic = {true, true, true},
+                                           .n = N,
+                                           .x = {x[0], x[1], x[2]},
+                                           .volume = volume,
+                                           .h = h,
+                                           .kernel = &kernel};
+    const double *const places[] = {x[0], x[1], x[2]};
+    assert_int_equal(kernel_select(&kernel, "wendland_c4", 0, &error), STATUS_OK);
+    assert_int_equal(regularity_measure(&cloud, &found, &error), STATUS_OK);
+    assert_int_equal(relax_measure(&box, N, places, volume, &quality, &error), STATUS_OK);
+    near_relative(quality.density, found.density, 1e-12);
+    near_relative(quality.gradient, found.gradient, 1e-12);
+    near_relative(quality.spread, found.spread, 1e-12);
+    volume[0] = 1; /* reaches beyond half of the box */
+    assert_int_equal(relax_measure(&box, 3, places, volume, &quality, &error), STATUS_BAD_INPUT);
+}
+
+/* Masses alike in a glass: the random start, pushed apart with the room that the density leaves. */
+static double room_of_mass(const void *context, const double x[3])
+{
+    return *(const double *)context / density(x);
+}
+
+static void glasses_of_equal_masses(void **state)
+{
+    (void)state;
+    enum { N = 300 };
+    static char *keys[] = {"n=300", "lattice=random", "equal_masses=yes"};
+    const struct prepared p = {.problem = &plain, .domain = {2, {-1, 0}, {1, 2}}};
+    const struct settings random = settings_of(3, keys);
+    keys[1] = "lattice=glass";
+    const struct settings glass = settings_of(3, keys);
+    struct initial one, two;
+    struct error error = {0};
+    assert_int_equal(initial_fill(&p, &random, &one, &error), STATUS_OK);
+    assert_int_equal(initial_fill(&p, &glass, &two, &error), STATUS_OK);
+    const struct relax_room room = {p.domain, room_of_mass, &one.m[0]};
+    assert_int_equal(relax_points(&room, N, one.x, &error), STATUS_OK);
+    for (int i = 0; i < N; i++) {
+        const double x[3] = {two.x[0][i], two.x[1][i]};
+        assert_true(one.x[0][i] == x[0] && one.x[1][i] == x[1]);
+        assert_true(two.m[i] == one.m[i]);
+        near_relative(two.rho[i], density(x), 1e-14);
+    }
+    initial_free(&one);
+    initial_free(&two);
+}
+
+/* Large glasses are kept: read again where all is the same that decides where points end. */
+static void large_glasses_are_kept(void **state)
+{
+    (void)state;
+    enum { N = 1000 };
+    static double x[3][N];
+    char folder[] = "/tmp/sphproof_glass_XXXXXX", command[64];
+    assert_non_null(mkdtemp(folder));
+    const char *old = getenv("XDG_CACHE_HOME");
+    char *before = old ? strdup(old) : NULL;
+    setenv("XDG_CACHE_HOME", folder, 1);
+    double *const places[] = {x[0], x[1], x[2]};
+    static double kept[2][N];
+    static const struct {
+        double lo, hi, first, last, all;
+        bool read;
+    } rows[] = {{0, 1, 0, 0, 1, false},     {0, 1, 0, 0, 1, true},     {0.001, 1, 0, 0, 1, false},
+                {0, 1.001, 0, 0, 1, false}, {0, 1, 1e-9, 0, 1, false}, {0, 1, 0, 1e-9, 1, false},
+                {0, 1, 0, 0, 1.01, false},  {0, 1, 0, 0, 1, true}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        struct rooms rooms = {2, rows[k].all, N};
+        const struct relax_room room = {{2, {0, rows[k].lo}, {1, rows[k].hi}}, room_at, &rooms};
+        struct error error = {0};
+        for (int i = 0; i < N; i++)
+            for (int d = 0; d < 2; d++)
+                x[d][i] = 0.001 + 0.99 * fmod((0.618034 + 0.0629 * d) * (i + 1), 1);
+        x[0][0] += rows[k].first;
+        x[1][N - 1] += rows[k].last;
+        times_asked = 0;
+        assert_int_equal(relax_points(&room, N, places, &error), STATUS_OK);
+        if ((times_asked == N) != rows[k].read)
+            fail_msg("row %zu: asked %zu times", k, times_asked);
+        for (int d = 0; d < 2; d++)
+            if (k == 0)
+                memcpy(kept[d], x[d], sizeof kept[d]);
+            else if (rows[k].read)
+                assert_memory_equal(kept[d], x[d], sizeof kept[d]);
+    }
+    if (before)
+        setenv("XDG_CACHE_HOME", before, 1);
+    else
+        unsetenv("XDG_CACHE_HOME");
+    free(before);
+    snprintf(command, sizeof command, "rm -r %s", folder);
+    assert_int_equal(system(command), 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -512,7 +735,13 @@ int main(void)
         cmocka_unit_test(pairs_of_a_line),
         cmocka_unit_test(jitter_moves_all),
         cmocka_unit_test(equal_masses_follow_the_density),
+        cmocka_unit_test(ends_of_the_box),
+        cmocka_unit_test(failures_are_passed_on),
+        cmocka_unit_test(the_whole_box_is_laid),
         cmocka_unit_test(glasses_are_pushed_apart),
+        cmocka_unit_test(quality_of_a_cloud),
+        cmocka_unit_test(glasses_of_equal_masses),
+        cmocka_unit_test(large_glasses_are_kept),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
