@@ -83,10 +83,10 @@ void particle_file_free(struct particle_file *file)
 /* A box around the particles, a little wider. */
 static void surround(const struct particle_file *file, int a, struct scene *scene)
 {
-    double lo = file->x[a][0], hi = lo;
-    for (size_t i = 1; i < file->csv.rows; i++) {
-        lo = file->x[a][i] < lo ? file->x[a][i] : lo;
-        hi = file->x[a][i] > hi ? file->x[a][i] : hi;
+    double lo = (double)INFINITY, hi = -(double)INFINITY;
+    for (size_t i = 0; i < file->csv.rows; i++) {
+        lo = fmin(lo, file->x[a][i]);
+        hi = fmax(hi, file->x[a][i]);
     }
     const double margin = hi > lo ? 0.01 * (hi - lo) : 1;
     scene->lo[a] = lo - margin;

@@ -47,13 +47,17 @@ static void columns(void **state)
         {"x,vx,m,u\n1,2,3,4\n5,6,7,8\n", 1, ""},
         {"u,m,vx,x\n4,3,2,1\n8,7,6,5\n", 1, ""},
         {"x,vx,m,u,y,vy\n1,2,3,4,9,10\n5,6,7,8,11,12\n", 2, ""},
+        {"P,x,vx,m,u\n9,1,2,3,4\n9,5,6,7,8\n", 1, "P"},
+        {"rho,z,x,vx,m,u,y,vy,vz\n15,13,1,2,3,4,9,10,14\n17,15,5,6,7,8,11,12,16\n", 3, "rho"},
         {"x,vx,m,u,y,vy,z,vz,P,a b,rho\n1,2,3,4,9,10,13,14,0,0,15\n5,6,7,8,11,12,15,16,0,0,17\n", 3,
          "P a b rho"},
     };
     for (size_t k = 0; k < sizeof good / sizeof *good; k++) {
         struct particle_file file;
         struct error error = {0};
+        memset(&file, 0x55, sizeof file);
         if (particle_file_read(written(good[k].text), &file, &error)) fail_msg("%s", error.message);
+        for (int d = good[k].dim; d < 3; d++) assert_true(!file.x[d] && !file.v[d]);
         assert_true(file.dim == good[k].dim && file.csv.rows == 2);
         assert_true(file.x[0][0] == 1 && file.v[0][0] == 2 && file.m[0] == 3 && file.u[0] == 4);
         assert_true(file.x[0][1] == 5 && file.v[0][1] == 6 && file.m[1] == 7 && file.u[1] == 8);
@@ -85,6 +89,14 @@ static void columns(void **state)
          ":1: no column 'y': allowed: x[,y[,z]], vx[,vy[,vz]], m, u, in any order"},
         {"x,vx,m,u,vz\n1,1,1,1,1\n1,1,1,1,1\n",
          ":1: no column 'y': allowed: x[,y[,z]], vx[,vy[,vz]], m, u, in any order"},
+        {"z,x,vx,m,u\n1,1,1,1,1\n1,1,1,1,1\n",
+         ":1: no column 'y': allowed: x[,y[,z]], vx[,vy[,vz]], m, u, in any order"},
+        {"vz,x,vx,m,u\n1,1,1,1,1\n1,1,1,1,1\n",
+         ":1: no column 'y': allowed: x[,y[,z]], vx[,vy[,vz]], m, u, in any order"},
+        {"y,x,vx,m,u\n1,1,1,1,1\n1,1,1,1,1\n",
+         ":1: no column 'vy': allowed: x[,y[,z]], vx[,vy[,vz]], m, u, in any order"},
+        {"vy,x,vx,m,u\n1,1,1,1,1\n1,1,1,1,1\n",
+         ":1: no column 'y': allowed: x[,y[,z]], vx[,vy[,vz]], m, u, in any order"},
         {"x,vx,m,u\n1,1,1,1\n", ": 1 particles: allowed: 2 or more"},
         {"x,vx,m,u\n1,1,1,1\n1,1,0,1\n", ":3: m = 0: allowed: above 0"},
         {"x,vx,m,u\n1,1,-2,0\n1,1,0,1\n", ":2: m = -2: allowed: above 0"},
@@ -94,6 +106,7 @@ static void columns(void **state)
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
         struct particle_file file;
         struct error error = {0};
+        memset(&file, 0x55, sizeof file);
         assert_int_equal(particle_file_read(written(bad[k].text), &file, &error), STATUS_BAD_INPUT);
         says(&error, bad[k].words);
         particle_file_free(&file);
@@ -126,7 +139,7 @@ static void scenes_get_a_box(void **state)
     (void)state;
     struct particle_file file;
     struct error error = {0};
-    const char *text = "x,y,vx,vy,m,u\n1,7,2,1,3,4\n-5,7,6,1,7,8\n3,7,0,0,1,1\n";
+    const char *text = "x,y,vx,vy,m,u\n-5,7,2,1,3,4\n1,7,6,1,7,8\n3,7,0,0,1,1\n";
     assert_int_equal(particle_file_read(written(text), &file, &error), STATUS_OK);
     struct scene scene = {.boundary = {BOUNDARY_OPEN, BOUNDARY_OPEN}};
     assert_int_equal(particle_file_fill(&file, path, &scene, &error), STATUS_OK);
@@ -148,7 +161,15 @@ static void scenes_get_a_box(void **state)
     says(&error, ":2: y = 7: allowed: inside of the box, 7.5 to 9");
     scene = (struct scene){.boundary = {BOUNDARY_PERIODIC, BOUNDARY_OPEN}}; /* none is made */
     assert_int_equal(particle_file_fill(&file, path, &scene, &error), STATUS_BAD_INPUT);
-    says(&error, ":2: x = 1: allowed: inside of the box, 0 to 0");
+    says(&error, ":2: x = -5: allowed: inside of the box, 0 to 0");
+    for (int open = 0; open < 2; open++) { /* one direction has a box, the other one gets it */
+        scene = (struct scene){.boundary = {open ? BOUNDARY_PERIODIC : BOUNDARY_OPEN,
+                                            open ? BOUNDARY_OPEN : BOUNDARY_PERIODIC}};
+        scene.lo[!open] = -9, scene.hi[!open] = 9;
+        assert_int_equal(particle_file_fill(&file, path, &scene, &error), STATUS_OK);
+        near_relative(scene.lo[open], open ? 6 : -5.08, 1e-15);
+        assert_true(scene.lo[!open] == -9 && scene.hi[!open] == 9);
+    }
     particle_file_free(&file);
 }
 
@@ -176,11 +197,12 @@ static void starts_of_runs(void **state)
     struct error error = {0};
     /* what the problem knows, else the file, else the mean */
     for (int kind = 0; kind < 3; kind++) {
-        const char *text = kind < 2 ? PLANE ",rho,P\n1,2,3,4,5,6,7,0\n0,3,8,9,10,11,12,0\n"
+        const char *text = kind < 2 ? PLANE
+                               ",rho,P\n1,2,3,4,5,6,7,0\n0,3,8,9,10,11,12,0\n1,1,1,1,1,1,1,0\n"
                                     : PLANE ",P\n1,2,3,4,5,6,0\n0,3,8,9,10,11,0\n";
         known_density = kind ? 0 : 3;
         if (particle_file_start(written(text), &p, &initial, &error)) fail_msg("%s", error.message);
-        assert_true(initial.dim == 2 && initial.n == 2);
+        assert_true(initial.dim == 2 && initial.n == (kind < 2 ? 3 : 2));
         assert_true(initial.x[0][0] == 1 && initial.x[1][0] == 2 && initial.x[0][1] == 0 &&
                     initial.x[1][1] == 3);
         assert_true(initial.v[0][0] == 3 && initial.v[1][0] == 4 && initial.v[0][1] == 8 &&
@@ -192,6 +214,12 @@ static void starts_of_runs(void **state)
         assert_string_equal(initial.ignored, "P");
         initial_free(&initial);
     }
+    known_density = 0; /* all are read */
+    assert_int_equal(particle_file_start(written(PLANE ",rho\n1,2,3,4,5,6,7\n0,3,8,9,10,11,12\n"),
+                                         &p, &initial, &error),
+                     STATUS_OK);
+    assert_string_equal(initial.ignored, "");
+    initial_free(&initial);
     /* as the settings ask: they move along, nothing shakes them */
     struct settings settings;
     char key[64], *keys[] = {key, "jitter=0.3", "lattice=random"};
@@ -204,6 +232,9 @@ static void starts_of_runs(void **state)
     initial_free(&initial);
     unlink(path);
     assert_int_equal(initial_create(&initial, &p, &settings, &error), STATUS_BAD_INPUT);
+    struct particle_file file;
+    assert_int_equal(particle_file_read(path, &file, &error), STATUS_BAD_INPUT);
+    particle_file_free(&file);
 }
 
 static void starts_that_are_refused(void **state)
@@ -227,6 +258,12 @@ static void starts_that_are_refused(void **state)
         {PLANE "\n1,1,1,1,1,1\n1,1,1,1,1,1\n",
          ":1: no column 'rho': boundary=fixed keeps particles at their density",
          {0, BOUNDARY_FIXED}},
+        {PLANE "\n1,1,1,1,1,1\n1,1,1,1,1,1\n",
+         ":1: no column 'rho': boundary=fixed keeps particles at their density",
+         {BOUNDARY_FIXED, 0}},
+        {PLANE "\n2.5,1,1,1,1,1\n1,1,1,1,1,1\n",
+         ":2: x = 2.5: allowed: inside of the box, 0 to 2",
+         {0, BOUNDARY_OPEN}},
         {PLANE ",rho\n1,1,1,1,1,1,1\n1,1,1,1,1,1,1\n", NULL, {0, BOUNDARY_FIXED}},
         {PLANE ",rho\n1,1,1,1,1,1,1\n1,1,1,1,1,1,0\n", ":3: rho = 0: allowed: above 0", {0, 0}},
         {PLANE ",rho\n1,1,1,1,1,1,-3\n1,1,1,1,1,1,0\n", ":2: rho = -3: allowed: above 0", {0, 0}},
