@@ -5,15 +5,17 @@
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_integration.h>
 #include <math.h>
+#include <stdbool.h>
 
 struct norms norm_errors(size_t n, const double *x, const double window[2], const double *volume,
                          const double *value, const double *exact)
 {
     struct norms norms = {0};
-    double weight = 0, poison = 0;
+    double weight = 0;
+    bool lost = false; /* a particle that is nowhere must not just drop out */
     for (size_t i = 0; i < n; i++) {
         if (!(window[0] <= x[i] && x[i] <= window[1])) {
-            poison += 0 * x[i]; /* a particle that is nowhere must not just drop out */
+            lost |= !isfinite(x[i]);
             continue;
         }
         const double error = fabs(value[i] - exact[i]);
@@ -24,19 +26,20 @@ struct norms norm_errors(size_t n, const double *x, const double window[2], cons
         weight += volume[i];
         norms.n++;
     }
-    poison += 0 * norms.l1; /* fmax ignores a NaN */
-    norms.l1 = norms.l1 / weight + poison;
+    if (lost || !norms.n || !isfinite(norms.l1)) { /* fmax ignores a NaN */
+        norms.l1 = norms.l1_cut = norms.l2 = norms.linf = norms.particle_mean = (double)NAN;
+        return norms;
+    }
+    norms.l1 /= weight;
     norms.l1_cut = norms.l1;
-    norms.l2 = sqrt(norms.l2 / weight) + poison;
-    norms.linf += norms.n ? poison : (double)NAN;
-    norms.particle_mean = norms.particle_mean / (double)norms.n + poison;
+    norms.l2 = sqrt(norms.l2 / weight);
+    norms.particle_mean /= (double)norms.n;
     return norms;
 }
 
 static double overlap(double lo, double hi, const double window[2])
 {
-    const double length = fmin(hi, window[1]) - fmax(lo, window[0]);
-    return length > 0 ? length : 0;
+    return fmax(0, fmin(hi, window[1]) - fmax(lo, window[0]));
 }
 
 double norm_l1_cut(size_t n, const double *x, const double window[2], double period,
@@ -44,7 +47,8 @@ double norm_l1_cut(size_t n, const double *x, const double window[2], double per
 {
     double sum = 0, weight = 0;
     for (size_t i = 0; i < n; i++) {
-        double part = 0 * (x[i] + volume[i]); /* fmin ignores a NaN */
+        double part = 0;
+        if (!isfinite(x[i]) || !isfinite(volume[i])) return (double)NAN; /* fmin ignores it */
         for (int image = -1; image <= 1; image++) {
             const double centre = x[i] + image * period;
             part += overlap(centre - volume[i] / 2, centre + volume[i] / 2, window);

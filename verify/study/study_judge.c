@@ -89,7 +89,7 @@ static struct study_order *gated(struct study_result *result, const struct case_
 static bool passes(const struct case_gate *gate, struct study_order *order)
 {
     if (isfinite(gate->gate.high)) return order_passes(&order->fit, &order->gate, order->why);
-    order->gate.low = -INFINITY;
+    order->gate.low = -(double)INFINITY;
     if (order->fit.finest <= order->gate.bound) return true;
     snprintf(order->why, sizeof order->why, "finest error %.3g exceeds %.3g", order->fit.finest,
              order->gate.bound);
@@ -137,7 +137,7 @@ static void judge_gates(struct study_result *result, const struct case_file *fil
 /* Gas that no wave has reached: noise that was put there is none of its own. */
 static void judge_stillness(struct study_result *result)
 {
-    result->still = NAN;
+    result->still = (double)NAN;
     for (size_t l = 0; l < result->level_count; l++)
         if (result->levels[l].budget.regions)
             result->still = fmax(result->still, result->levels[l].budget.still);

@@ -647,35 +647,61 @@ static void quality_of_a_cloud(void **state)
     assert_int_equal(relax_measure(&box, 3, places, volume, &quality, &error), STATUS_BAD_INPUT);
 }
 
-/* Masses alike in a glass: the random start, pushed apart with the room that the density leaves. */
+/* A glass: the random start, pushed apart with the room that each has; with masses alike as the
+ * density leaves it. */
 static double room_of_mass(const void *context, const double x[3])
 {
     return *(const double *)context / density(x);
 }
 
-static void glasses_of_equal_masses(void **state)
+static double room_of_all(const void *context, const double x[3])
+{
+    (void)x;
+    return *(const double *)context;
+}
+
+static void glasses_of_random_points(void **state)
 {
     (void)state;
     enum { N = 300 };
-    static char *keys[] = {"n=300", "lattice=random", "equal_masses=yes"};
-    const struct prepared p = {.problem = &plain, .domain = {2, {-1, 0}, {1, 2}}};
-    const struct settings random = settings_of(3, keys);
-    keys[1] = "lattice=glass";
-    const struct settings glass = settings_of(3, keys);
-    struct initial one, two;
-    struct error error = {0};
-    assert_int_equal(initial_fill(&p, &random, &one, &error), STATUS_OK);
-    assert_int_equal(initial_fill(&p, &glass, &two, &error), STATUS_OK);
-    const struct relax_room room = {p.domain, room_of_mass, &one.m[0]};
-    assert_int_equal(relax_points(&room, N, one.x, &error), STATUS_OK);
-    for (int i = 0; i < N; i++) {
-        const double x[3] = {two.x[0][i], two.x[1][i]};
-        assert_true(one.x[0][i] == x[0] && one.x[1][i] == x[1]);
-        assert_true(two.m[i] == one.m[i]);
-        near_relative(two.rho[i], density(x), 1e-14);
+    for (int equal = 0; equal < 2; equal++) {
+        static char *keys[] = {"n=300", "lattice=random", "equal_masses=yes"};
+        keys[1] = "lattice=random";
+        keys[2] = equal ? "equal_masses=yes" : "equal_masses=no";
+        const struct prepared p = {.problem = &plain, .domain = {2, {-1, 0}, {1, 2}}};
+        const struct settings random = settings_of(3, keys);
+        keys[1] = "lattice=glass";
+        const struct settings glass = settings_of(3, keys);
+        struct initial one, two;
+        struct error error = {0};
+        assert_int_equal(initial_fill(&p, &random, &one, &error), STATUS_OK);
+        assert_int_equal(initial_fill(&p, &glass, &two, &error), STATUS_OK);
+        const double mass = one.m[0], share = 4. / N;
+        const struct relax_room room = {p.domain, equal ? room_of_mass : room_of_all,
+                                        equal ? &mass : &share};
+        assert_int_equal(relax_points(&room, N, one.x, &error), STATUS_OK);
+        for (int i = 0; i < N; i++) {
+            const double x[3] = {two.x[0][i], two.x[1][i]};
+            near_absolute(one.x[0][i] + 9, x[0] + 9, 1e-11);
+            near_absolute(one.x[1][i] + 9, x[1] + 9, 1e-11);
+            near_relative(two.m[i], equal ? mass : density(x) * share, 1e-14);
+            near_relative(two.rho[i], density(x), 1e-14);
+        }
+        initial_free(&one);
+        initial_free(&two);
     }
-    initial_free(&one);
-    initial_free(&two);
+}
+
+/* The same everywhere, or as much where x or y is 0. */
+struct plain_room {
+    double volume, rise;
+};
+
+static double plain_room_at(const void *context, const double x[3])
+{
+    const struct plain_room *room = context;
+    times_asked++;
+    return room->volume * (1 + room->rise * x[0] * x[1]);
 }
 
 /* Large glasses are kept: read again where all is the same that decides where points end. */
@@ -692,14 +718,19 @@ static void large_glasses_are_kept(void **state)
     double *const places[] = {x[0], x[1], x[2]};
     static double kept[2][N];
     static const struct {
-        double lo, hi, first, last, all;
+        double lo, hi, first, last, volume, rise;
         bool read;
-    } rows[] = {{0, 1, 0, 0, 1, false},     {0, 1, 0, 0, 1, true},     {0.001, 1, 0, 0, 1, false},
-                {0, 1.001, 0, 0, 1, false}, {0, 1, 1e-9, 0, 1, false}, {0, 1, 0, 1e-9, 1, false},
-                {0, 1, 0, 0, 1.01, false},  {0, 1, 0, 0, 1, true}};
+    } rows[] = {
+        {0, 1, 0, 0, 1e-3, 0, false},    {0, 1, 0, 0, 1e-3, 0, true},
+        {-0.5, 1, 0, 0, 1e-3, 0, false}, {0, 1.5, 0, 0, 1e-3, 0, false},
+        {0, 1, 1e-9, 0, 1e-3, 0, false}, {0, 1, 0, 1e-9, 1e-3, 0, false},
+        {0, 1, 0, 0, 1.1e-3, 0, false},  {0, 1, 0, 0, 1e-3, 1e-3, false},
+        {0, 1, 0, 0, 1e-3, 0, true},
+    };
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-        struct rooms rooms = {2, rows[k].all, N};
-        const struct relax_room room = {{2, {0, rows[k].lo}, {1, rows[k].hi}}, room_at, &rooms};
+        const struct plain_room plain_room = {rows[k].volume, rows[k].rise};
+        const struct relax_room room = {
+            {2, {0, rows[k].lo}, {1, rows[k].hi}}, plain_room_at, &plain_room};
         struct error error = {0};
         for (int i = 0; i < N; i++)
             for (int d = 0; d < 2; d++)
@@ -740,7 +771,7 @@ int main(void)
         cmocka_unit_test(the_whole_box_is_laid),
         cmocka_unit_test(glasses_are_pushed_apart),
         cmocka_unit_test(quality_of_a_cloud),
-        cmocka_unit_test(glasses_of_equal_masses),
+        cmocka_unit_test(glasses_of_random_points),
         cmocka_unit_test(large_glasses_are_kept),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -576,9 +576,25 @@ static void test_richardson_against_exact(void **state)
     assert_int_equal(e.class, ORDER_ASYMPTOTIC); /* 1.25e-12, and 1e-13 */
 }
 
+/* A volume that sticks out of one end of a periodic box is seen at the other one. */
+static void volumes_of_images(void **state)
+{
+    (void)state;
+    const double x[] = {0.02, 0.5, 0.97}, volume[] = {0.1, 0.5, 0.08}, exact[] = {0, 0, 0},
+                 value[] = {1, 7, 4};
+    near_relative(norm_l1_cut(3, x, (double[]){0, 0.1}, 1, volume, value, exact),
+                  (0.07 * 1 + 0.01 * 4) / 0.08, 1e-13);
+    near_relative(norm_l1_cut(3, x, (double[]){0.9, 1}, 1, volume, value, exact),
+                  (0.03 * 1 + 0.07 * 4) / 0.1, 1e-13);
+    near_relative(norm_l1_cut(3, x, (double[]){0, 0.1}, 0, volume, value, exact), 1, 1e-13);
+    assert_true(isnan(norm_binned_l1(2, (double[]){NAN, 0.5}, (double[]){0, 1}, volume, value, 1,
+                                     (double[]){3})));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(volumes_of_images),
         cmocka_unit_test(test_order_curvature),
         cmocka_unit_test(test_order_weights),
         cmocka_unit_test(test_gate_edges),

@@ -391,7 +391,7 @@ static void documents_have_it_all(void **state)
         }
         result->functional_errors[0].status = GATE_FAIL;
         result->still_status = (enum study_gate)k;
-        if (k == 2) result->still = NAN;
+        if (k == 2) result->still = (double)NAN;
         if (k == 2) strcpy(study.suspicion, "alpha changes nothing");
         study_add_json(&study, document);
         assert_int_equal(json_integer_value(json_object_get(document, "dimension")),
