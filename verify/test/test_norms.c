@@ -482,7 +482,8 @@ static void test_suspicions(void **state)
     } cases[] = {
         {{{0, 9}, {1, 9}}, {{0, 9}, {3.000002, 9}}, true},
         {{{0, 9}, {1, 9}}, {{0, 9}, {2.999998, 9}}, false},
-        {{{0, 0}, {1e-8, 0}}, {{0, 0}, {1e-7, 0}}, true},
+        {{{0, 1e-7}, {1e-8, 1e-7}}, {{0, 1e-7}, {1e-7, 1e-7}}, true},
+        {{{0, 0}, {1e-8, 0}}, {{0, 0}, {1e-7, 0}}, false}, /* near a constant is near nobody */
         {{{0.9, 9, 5}, {1, 9, 5}}, {{0.9, 9, 7}, {2, 9, 5}}, true},
         {{{1, 0, 5}, {1, 9, 7}}, {{1, 0, 7}, {2, 9, 5}}, false},
         {{{0, 2.5, 5}, {4, 2.5, 7}}, {{0, 2.5, 5}, {4, 0, 5}}, false},
@@ -493,9 +494,10 @@ static void test_suspicions(void **state)
         if (suspicion_swapped(2, names, 2, volume, value, exact, why) != cases[k].suspected)
             fail_msg("case %zu: %s", k, why);
     }
-    const double one[] = {1}, two[] = {2}, far[] = {9};
+    const double one[] = {1, 5}, two[] = {2, 5}, far[] = {9, 5};
     const double *const value[] = {one, two}, *const exact[] = {one, far};
-    assert_true(suspicion_swapped(2, names, 1, volume, value, exact, why));
+    assert_false(suspicion_swapped(2, names, 1, volume, value, exact, why));
+    assert_true(suspicion_swapped(2, names, 2, volume, value, exact, why));
     assert_string_equal(why, "v is nearer the exact u than its own exact solution");
 }
 
