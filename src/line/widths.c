@@ -104,8 +104,7 @@ static enum status too_wide(const struct simulation *simulation, struct error *e
     ptrdiff_t widest = 0;
     for (ptrdiff_t i = 1; i < a->n; i++)
         if (!(a->h_inverse[i] >= a->h_inverse[widest])) widest = i;
-    return breakdown_of(simulation, widest, "smoothing length", 1 / a->h_inverse[widest],
-                                 error);
+    return breakdown_of(simulation, widest, "smoothing length", 1 / a->h_inverse[widest], error);
 }
 
 /* Repeats the pass over ranges that were short of ghosts. */
@@ -126,8 +125,8 @@ enum status widths_find(struct simulation *simulation, bool newton, double ratio
         const struct tally found = pass_all(simulation, pass);
         if (found.without_root < PTRDIFF_MAX)
             return breakdown_of(simulation, found.without_root,
-                                         "smoothing length (no root was found)",
-                                         simulation->particles.h[found.without_root], error);
+                                "smoothing length (no root was found)",
+                                simulation->particles.h[found.without_root], error);
         line->reach = found.reach;
         if (!found.short_of_ghosts) break;
         if ((double)ghosts > most) return too_wide(simulation, error);

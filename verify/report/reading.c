@@ -322,29 +322,27 @@ static int by_path(const void *a, const void *b)
  * compare different things as soon as one is missing. How many there are is a part of the name. */
 static void join_alike(struct readings *readings)
 {
+    struct reading *list = readings->list;
     size_t kept = 0;
     for (size_t i = 0, next; i < readings->count; i = next, kept++) {
-        struct reading *one = &readings->list[kept];
-        *one = readings->list[i];
+        size_t worst = i;
         for (next = i + 1; next < readings->count; next++) {
-            struct reading *other = &readings->list[next];
-            if (strcmp(other->path, one->path) != 0) break;
-            if (one->kind == READING_NEUTRAL)
-                nobody_knows(readings, one->path, "nothing tells several entries apart");
-            if (reading_worse(other, one)) {
-                const struct reading better = *one;
-                *one = *other;
-                *other = better;
-            }
-            free(other->path);
-            free(other->word);
+            if (strcmp(list[next].path, list[i].path) != 0) break;
+            if (list[worst].kind == READING_NEUTRAL)
+                nobody_knows(readings, list[i].path, "nothing tells several entries apart");
+            if (reading_worse(&list[next], &list[worst])) worst = next;
         }
-        if (next - i == 1) continue;
-        char path[PATH_MAX_LENGTH + 160];
-        snprintf(path, sizeof path, "%s (%zu alike)", one->path, next - i);
-        free(one->path);
-        one->path = strdup(path);
-        if (!one->path) readings->failed = true;
+        struct reading one = list[worst];
+        for (size_t k = i; k < next; k++)
+            if (k != worst) free(list[k].path), free(list[k].word);
+        if (next - i > 1) {
+            char path[PATH_MAX_LENGTH + 160];
+            snprintf(path, sizeof path, "%s (%zu alike)", one.path, next - i);
+            free(one.path);
+            one.path = strdup(path);
+            if (!one.path) readings->failed = true;
+        }
+        list[kept] = one;
     }
     readings->count = kept;
 }
