@@ -99,7 +99,8 @@ static bool order_points(struct neighbours *nb, const struct points *points)
     const double scale = extent > 0 && cells / extent <= 1e300 ? (cells - 1) / extent : 0;
     for (size_t i = 0; i < points->n; i++) {
         uint64_t c[3] = {0};
-        for (int a = 0; a < dim; a++) c[a] = (uint64_t)((coordinate(points, a, i) - lo[a]) * scale);
+        for (int a = 0; scale > 0 && a < dim; a++) /* 0: too narrow or too wide for any order */
+            c[a] = (uint64_t)((coordinate(points, a, i) - lo[a]) * scale);
         entries[i] = (struct entry){hilbert_key(dim, bits, c), (uint32_t)i};
     }
     sort(entries, entries + points->n, points->n);
