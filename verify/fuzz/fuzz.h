@@ -34,8 +34,8 @@ void fuzz_plan(const struct run_settings *settings);
 #define FUZZ_PROMISE(holds) ((holds) ? (void)0 : fuzz_broken(__FILE__, __LINE__, #holds))
 _Noreturn void fuzz_broken(const char *file, int line, const char *promise);
 
-/* Becomes 1 when a promise is broken, unless NULL: memory shared with a process that looks after this
- * one (what is printed would not do, an input may hold the same words). */
+/* Becomes 1 when a promise is broken, unless NULL: memory shared with a process that looks after
+ * this one (what is printed would not do, an input may hold the same words). */
 extern volatile int *fuzz_was_broken;
 
 #endif
