@@ -96,13 +96,15 @@ static bool passes(const struct case_gate *gate, struct study_order *order)
     return false;
 }
 
-/* Of a gate that fails: does the case know, and of an error as large? */
+/* Of a gate that fails: does the case know, and of an error as large? What could not be measured
+ * is not what it knows. */
 static bool is_known(const struct case_file *file, const struct case_gate *gate, size_t n,
                      struct study_order *order)
 {
     const double bound = gate->known.bound * gates_raise(file, gate, n);
     if (!*gate->known.why) return false;
-    if (!(order->fit.finest > bound)) return true;
+    if (isfinite(gate->gate.high) && isnan(order->fit.order)) return false;
+    if (order->fit.finest <= bound) return true;
     snprintf(order->why, sizeof order->why,
              "finest error %.3g exceeds %.3g, up to which it is known", order->fit.finest, bound);
     return false;

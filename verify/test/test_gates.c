@@ -77,6 +77,25 @@ static void errors(void **state)
     }
 }
 
+/* What is known is an error of any size, but an error. */
+static void no_number_is_not_known(void **state)
+{
+    (void)state;
+    for (int compared = 0; compared < 2; compared++) {
+        const struct case_file file = file_of(compared);
+        json_t *run = run_of(0.1, 0.1, 1), *list = json_array();
+        json_t *peak = json_array_get(json_object_get(run, "functionals"), 1);
+        json_object_set_new(peak, "value", json_string("nan"));
+        json_object_set_new(json_object_get(json_object_get(run, "errors"), "velocity"), "l1",
+                            json_string("nan"));
+        gates_add_errors(&file, run, list);
+        assert_string_equal(value_text(value_named(list, "velocity_l1"), "status"), "fail");
+        assert_string_equal(value_text(value_named(list, "peak_velocity"), "status"), "fail");
+        json_decref(list);
+        json_decref(run);
+    }
+}
+
 /* No number fails; what has no exact value is no gate; beyond the ladder a bound is the case's. */
 static void odd(void **state)
 {
@@ -129,6 +148,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(errors),
+        cmocka_unit_test(no_number_is_not_known),
         cmocka_unit_test(odd),
         cmocka_unit_test(conserved),
     };

@@ -367,6 +367,12 @@ static void nan_at_one_level(json_t *run, size_t level)
     if (level == 1) set_error(run, "density", "l1_cut", (double)NAN);
 }
 
+static void nan_at_the_finest(json_t *run, size_t level)
+{
+    of_half_order(run, level);
+    if (level == 3) set_error(run, "density", "l1_cut", (double)NAN);
+}
+
 static void zero_at_one_level(json_t *run, size_t level)
 {
     of_first_order(run, level);
@@ -409,6 +415,8 @@ static void judges_see(void **state)
         {"first order, known to fail", of_first_order, STATUS_OK, GATE_PASS, GATE_PASS, ""},
         {"too large", too_large, STATUS_CHECK_FAILED, GATE_FAIL, GATE_PASS, ""},
         {"a NaN", nan_at_one_level, STATUS_CHECK_FAILED, GATE_FAIL, GATE_PASS, ""},
+        {"a NaN, known", nan_at_one_level, STATUS_CHECK_FAILED, GATE_FAIL, GATE_PASS, ""},
+        {"a NaN at last, known", nan_at_the_finest, STATUS_CHECK_FAILED, GATE_FAIL, GATE_PASS, ""},
         {"an error of 0", zero_at_one_level, STATUS_CHECK_FAILED, GATE_PASS, GATE_PASS,
          "velocity: the error at level 3 is exactly 0"},
         {"twice the same", same_at_two_levels, STATUS_CHECK_FAILED, GATE_PASS, GATE_PASS,
