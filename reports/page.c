@@ -45,7 +45,7 @@ static void head(struct buffer *to, const json_t *results, const json_t *verdict
     double runs = value_member(verdict, "runs");
     tile(to, "figures within their bounds", passed,
          passed + value_member(verdict, "figures_failed"), "checks");
-    tile(to, "orders of convergence as expected", gates,
+    tile(to, "orders and errors of runs as expected", gates,
          gates + value_member(verdict, "gates_failed"), "cases");
     tile(to, "runs sound", runs - value_member(verdict, "broke_down"), runs, "cases");
     tile(to, "deliberate faults caught", value_member(verdict, "mutants_detected"),

@@ -51,13 +51,14 @@ char *summary_text(const json_t *results)
     failures(&to, json_object_get(verdict, "failures"));
     double passed = value_member(verdict, "figures_passed");
     double gates = value_member(verdict, "gates_passed");
-    buffer_format(
-        &to,
-        "%.0f of %.0f figures within bounds, %.0f of %.0f orders as expected, %.0f of %.0f "
-        "deliberate faults caught, %.0f runs.\n\n",
-        passed, passed + value_member(verdict, "figures_failed"), gates,
-        gates + value_member(verdict, "gates_failed"), value_member(verdict, "mutants_detected"),
-        value_member(verdict, "mutants"), value_member(verdict, "runs"));
+    buffer_format(&to,
+                  "%.0f of %.0f figures within bounds, %.0f of %.0f orders and errors of runs as "
+                  "expected, %.0f of %.0f "
+                  "deliberate faults caught, %.0f runs.\n\n",
+                  passed, passed + value_member(verdict, "figures_failed"), gates,
+                  gates + value_member(verdict, "gates_failed"),
+                  value_member(verdict, "mutants_detected"), value_member(verdict, "mutants"),
+                  value_member(verdict, "runs"));
     orders(&to, json_object_get(results, "studies"));
     buffer_format(&to, "git %s, %s, %s\n", value_text(results, "git"),
                   value_text(results, "compiler"), value_text(results, "date"));
