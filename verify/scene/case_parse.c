@@ -248,6 +248,20 @@ static void add_gate(struct parser *parser, const char *name, struct case_gate g
     file->gates[file->gate_count++] = gate;
 }
 
+/* `none known: WHY`, of what cannot be measured where a scheme fails: a shock that there is not. */
+static bool read_absence(const char *value, double *bound, const char **why)
+{
+    static const char absent[] = "none ";
+    double one[1];
+    char with_number[256];
+    if (strncmp(value, absent, strlen(absent)) != 0) return false;
+    snprintf(with_number, sizeof with_number, "1 %s", value + strlen(absent));
+    if (!read_gate(with_number, 1, one, why) || !**why) return false;
+    *why = strstr(value, *why);
+    *bound = (double)NAN;
+    return true;
+}
+
 /* What compared schemes are held to at a gate above: `BOUND`, or `BOUND known: WHY`. */
 static void set_compared(struct parser *parser, const char *functional, int field, int norm,
                          const char *name, const char *value)
@@ -263,8 +277,11 @@ static void set_compared(struct parser *parser, const char *functional, int fiel
                  name);
         fail(parser, what, "");
     } else if (first_time(parser, &parser->seen_compared[i], name)) {
-        if (!read_gate(value, 1, &compared->bound, &why))
-            fail_value(parser, name, value, "bound of the finest error" KNOWN_FAILURE);
+        if (!read_absence(value, &compared->bound, &why) &&
+            !read_gate(value, 1, &compared->bound, &why))
+            fail_value(parser, name, value,
+                       "bound of the finest error, or none where there is nothing to be "
+                       "measured" KNOWN_FAILURE);
         else
             snprintf(compared->why, sizeof compared->why, "%s", why);
     }

@@ -22,7 +22,7 @@ enum { CASE_LADDER_MAX = ORDER_LEVELS_MAX, CASE_GATES_MAX = FIELDS * NORMS + 16 
  * `density_l1 = BOUND`. `density_l1 = BOUND known: WHY`: they are known to fail the gate, but an
  * error that is a number stays below BOUND. */
 struct case_weakness {
-    double bound;  /* of the finest error, INFINITY: any; 0: nothing is said */
+    double bound;  /* of the finest error, INFINITY: any, NAN: there is none; 0: nothing is said */
     char why[160]; /* "" if there is none */
 };
 struct case_gate {

@@ -12,6 +12,10 @@
  * and beyond 1, below as the least order allows. */
 double gates_raise(const struct case_file *file, const struct case_gate *gate, size_t n);
 
+/* Is an error that fails a gate the weakness that is known? raise: of its bound, see gates_raise.
+ * An error that is no number is known only where none can be measured. */
+bool gates_know(const struct case_weakness *known, double raise, double error);
+
 /* The gates for a compared scheme: what [compared] says, else bounds of errors thrice as wide, as
  * other kernels and gradients have other errors. */
 void gates_compare(struct case_file *file);

@@ -101,10 +101,10 @@ static bool passes(const struct case_gate *gate, struct study_order *order)
 static bool is_known(const struct case_file *file, const struct case_gate *gate, size_t n,
                      struct study_order *order)
 {
-    const double bound = gate->known.bound * gates_raise(file, gate, n);
+    const double raise = gates_raise(file, gate, n), bound = gate->known.bound * raise;
     if (!*gate->known.why) return false;
     if (isfinite(gate->gate.high) && isnan(order->fit.order)) return false;
-    if (order->fit.finest <= bound) return true;
+    if (gates_know(&gate->known, raise, order->fit.finest)) return true;
     snprintf(order->why, sizeof order->why,
              "finest error %.3g exceeds %.3g, up to which it is known", order->fit.finest, bound);
     return false;

@@ -136,6 +136,10 @@ static void compared(void **state)
     (void)state;
     struct case_file file;
     struct error error;
+#define COMPARED                                                                                   \
+    "bound of the finest error, or none where there is nothing to be measured; `known: WHY` "      \
+    "after "                                                                                       \
+    "them, if it is known to fail"
 #define GATES "[converge]\nvelocity_l1 = 0.5 3 0.125\ndisc_error = 0 2e-2\n"
     if (parse(&file, FLAT GATES "[compared]\ndisc_error = 0.25\nvelocity_l1 = 0.5 known: noise\n",
               &error))
@@ -148,12 +152,20 @@ static void compared(void **state)
     refused(FLAT GATES "[compared]\npressure_l1 = 1\n",
             AT("16") "key pressure_l1 in [compared] has no gate above, in [converge]");
     refused(FLAT GATES "[compared]\ndisc_error = 0 known: x\n",
-            AT("16") "disc_error = 0 known: x; allowed: bound of the finest error; `known: WHY` "
-                     "after them, if it is known to fail");
+            AT("16") "disc_error = 0 known: x; allowed: " COMPARED);
+    refused(FLAT GATES "[compared]\ndisc_error = none\n",
+            AT("16") "disc_error = none; allowed: " COMPARED);
+    refused(FLAT GATES "[compared]\ndisc_error = none known:\n",
+            AT("16") "disc_error = none known:; allowed: " COMPARED);
+    if (parse(&file, FLAT GATES "[compared]\ndisc_error = none known: it is torn\n", &error))
+        fail_msg("%s", error.message);
+    assert_true(isnan(b->compared.bound));
+    assert_string_equal(b->compared.why, "it is torn");
     refused(FLAT GATES "[compared]\ndisc_error = 1\ndisc_error = 1\n",
             AT("17") "key disc_error is given twice, first in line 16");
     begins(FLAT GATES "[compared]\nn = 1\n", AT("16") "key n stands in the section [run]");
 #undef GATES
+#undef COMPARED
 }
 
 static void bad_lines(void **state)

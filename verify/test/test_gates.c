@@ -96,6 +96,18 @@ static void no_number_is_not_known(void **state)
     }
 }
 
+/* Where a scheme leaves nothing to be measured, an error that is measured must pass. */
+static void absence_is_known(void **state)
+{
+    (void)state;
+    const struct case_weakness absent = {(double)NAN, "no shock"}, any = {(double)INFINITY, "slow"},
+                               some = {2, "slow"}, unsaid = {0, ""};
+    assert_true(gates_know(&absent, 1, (double)NAN) && !gates_know(&absent, 1, 1e-9));
+    assert_true(gates_know(&any, 1, 1e300) && !gates_know(&any, 1, (double)NAN));
+    assert_true(gates_know(&some, 1.5, 3) && !gates_know(&some, 1.5, 3.1));
+    assert_true(!gates_know(&some, 1, (double)NAN) && !gates_know(&unsaid, 1, 0));
+}
+
 /* No number fails; what has no exact value is no gate; beyond the ladder a bound is the case's. */
 static void odd(void **state)
 {
@@ -147,9 +159,8 @@ static void conserved(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(errors),
-        cmocka_unit_test(no_number_is_not_known),
-        cmocka_unit_test(odd),
+        cmocka_unit_test(errors),           cmocka_unit_test(no_number_is_not_known),
+        cmocka_unit_test(absence_is_known), cmocka_unit_test(odd),
         cmocka_unit_test(conserved),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
