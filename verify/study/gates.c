@@ -50,7 +50,8 @@ static void add(json_t *list, const char *name, double value, double bound,
     json_array_append_new(list, gate);
 }
 
-/* What a gate is of; false: a functional without an exact value. */
+/* What a gate is of, NaN where the run does not have it; false: a functional without an exact
+ * value. */
 static bool read_error(const struct case_gate *gate, const json_t *run, char name[64],
                        double *value)
 {
@@ -61,7 +62,7 @@ static bool read_error(const struct case_gate *gate, const json_t *run, char nam
         const json_t *entry = value_named(functionals, gate->functional);
         snprintf(name, 64, "%s", gate->functional);
         *value = fabs(value_member(entry, "value") - value_member(entry, "reference"));
-        return isfinite(value_member(entry, "reference"));
+        return !entry || isfinite(value_member(entry, "reference"));
     }
     snprintf(name, 64, "%s_%s", field, norm);
     *value = value_inner(json_object_get(run, "errors"), field, norm);
@@ -89,9 +90,9 @@ static bool says(const json_t *run, const char *key, const char *word)
     const json_t *value = json_object_get(json_object_get(run, "settings"), key), *entry;
     size_t i;
     if (json_is_string(value)) return strcmp(json_string_value(value), word) == 0;
-    json_array_foreach(value, i,
-                       entry) if (json_is_string(entry) &&
-                                  strcmp(json_string_value(entry), word) == 0) return true;
+    json_array_foreach(value, i, entry) {
+        if (json_is_string(entry) && strcmp(json_string_value(entry), word) == 0) return true;
+    }
     return false;
 }
 
@@ -99,7 +100,9 @@ static bool is_heavy(const json_t *run)
 {
     const json_t *gravity = json_object_get(json_object_get(run, "settings"), "gravity"), *g;
     size_t i;
-    json_array_foreach(gravity, i, g) if (fabs(json_number_value(g)) > 0) return true;
+    json_array_foreach(gravity, i, g) {
+        if (fabs(json_number_value(g)) > 0) return true;
+    }
     return false;
 }
 

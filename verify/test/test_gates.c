@@ -96,6 +96,23 @@ static void no_number_is_not_known(void **state)
     }
 }
 
+/* A gate whose figure a run does not have has compared nothing. */
+static void what_is_missing_fails(void **state)
+{
+    (void)state;
+    const struct case_file file = file_of(false);
+    json_t *run = run_of(0.1, 0.1, 1), *list = json_array();
+    json_object_del(json_object_get(run, "errors"), "velocity");
+    json_array_clear(json_object_get(run, "functionals"));
+    gates_add_errors(&file, run, list);
+    assert_int_equal(json_array_size(list), 3);
+    assert_string_equal(value_text(value_named(list, "velocity_l1"), "status"), "fail");
+    assert_string_equal(value_text(value_named(list, "disc_error"), "status"), "fail");
+    assert_string_equal(value_text(value_named(list, "peak_velocity"), "status"), "fail");
+    json_decref(list);
+    json_decref(run);
+}
+
 /* Where a scheme leaves nothing to be measured, an error that is measured must pass. */
 static void absence_is_known(void **state)
 {
@@ -161,7 +178,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(errors),           cmocka_unit_test(no_number_is_not_known),
         cmocka_unit_test(absence_is_known), cmocka_unit_test(odd),
-        cmocka_unit_test(conserved),
+        cmocka_unit_test(conserved),        cmocka_unit_test(what_is_missing_fails),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
