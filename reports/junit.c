@@ -55,10 +55,8 @@ static void runs(struct buffer *to, const json_t *results)
         test_case(&suite, value_text(entry, "case"), value_text(entry, "reproduce"),
                   value_text(entry, "status"), value_text(entry, "message"));
     suite_end(to, "runs", &suite);
-    json_array_foreach(json_object_get(results, "studies"), i, entry)
-    {
-        json_array_foreach(json_object_get(entry, "orders"), j, order)
-        {
+    json_array_foreach(json_object_get(results, "studies"), i, entry) {
+        json_array_foreach(json_object_get(entry, "orders"), j, order) {
             if (!json_is_object(json_object_get(order, "gate"))) continue;
             struct buffer name = {0}, message = {0};
             buffer_format(&name, "%s: %s of %s", value_text(entry, "label"),
@@ -82,8 +80,7 @@ static void checks(struct buffer *to, const json_t *verify)
     size_t i;
     const json_t *entry;
     const char *group = "";
-    json_array_foreach(json_object_get(verify, "checks"), i, entry)
-    {
+    json_array_foreach(json_object_get(verify, "checks"), i, entry) {
         if (strcmp(group, value_text(entry, "group"))) suite_end(to, group, &suite);
         group = value_text(entry, "group");
         struct buffer message = {0};
@@ -111,8 +108,7 @@ static void others(struct buffer *to, const json_t *verdict)
     struct suite_writer suite = {0};
     size_t i;
     const json_t *failure;
-    json_array_foreach(json_object_get(verdict, "failures"), i, failure)
-    {
+    json_array_foreach(json_object_get(verdict, "failures"), i, failure) {
         const char *area = value_text(failure, "area");
         for (size_t k = 0; k < sizeof areas / sizeof *areas; k++)
             if (!strcmp(area, areas[k]))
@@ -127,8 +123,7 @@ static void faults(struct buffer *to, const json_t *faults)
     struct suite_writer suite = {0};
     size_t i;
     const json_t *entry;
-    json_array_foreach(json_object_get(faults, "faults"), i, entry)
-    {
+    json_array_foreach(json_object_get(faults, "faults"), i, entry) {
         const char *status = value_text(entry, "status");
         test_case(&suite, value_text(entry, "part"), value_text(entry, "fault"), status,
                   value_text(entry, strcmp(status, "fail") ? "message" : "detail"));

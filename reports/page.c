@@ -62,8 +62,7 @@ static void failures(struct buffer *to, const json_t *verdict)
     enum { SHOWN = 60 };
     buffer_add(to, "<section id=\"failures\"><h2>What is wrong</h2><ol class=\"failures\">\n");
     size_t i;
-    json_array_foreach(list, i, entry)
-    {
+    json_array_foreach(list, i, entry) {
         if (i == SHOWN) break;
         buffer_add(to, "<li><p><span class=\"area\">");
         buffer_escape(to, value_text(entry, "area"));

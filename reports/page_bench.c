@@ -49,15 +49,13 @@ static size_t read_curves(const json_t *document, struct curve *curves, size_t m
 {
     size_t count = 0, i;
     const json_t *entry;
-    json_array_foreach(json_object_get(document, "schemes"), i, entry)
-    {
+    json_array_foreach(json_object_get(document, "schemes"), i, entry) {
         if (count == most) break;
         struct curve *curve = &curves[count++];
         *curve = (struct curve){.scheme = entry};
         short_name(curve->name, value_text(entry, "scheme"));
     }
-    json_array_foreach(json_object_get(document, "points"), i, entry)
-    {
+    json_array_foreach(json_object_get(document, "points"), i, entry) {
         for (size_t k = 0; k < count; k++) {
             struct curve *curve = &curves[k];
             if (strcmp(value_text(curve->scheme, "scheme"), value_text(entry, "scheme")) ||
@@ -130,8 +128,7 @@ static void cheapest_table(struct buffer *to, const json_t *ways)
     const json_t *way;
     if (!json_array_size(ways)) return;
     html_table(to, "costs", "cheapest way to|#CPU s|scheme");
-    json_array_foreach(ways, i, way)
-    {
+    json_array_foreach(ways, i, way) {
         char name[NAME];
         short_name(name, value_text(way, "scheme"));
         buffer_format(to, "<tr><td>%g %% of the signal</td>", 100 * value_member(way, "target"));
@@ -157,8 +154,7 @@ void page_bench(struct page_writer *writer, const json_t *bench)
                    "flow): the gain compares it with the seed program's corrected method in plain "
                    "C, in 2D and 3D with SPH as textbooks have it. Times are the least of several "
                    "samples, taken in turn.</p>\n");
-    json_array_foreach(bench, i, document)
-    {
+    json_array_foreach(bench, i, document) {
         size_t most = json_array_size(json_object_get(document, "schemes"));
         struct curve *curves = calloc(most + 1, sizeof *curves);
         if (!curves) {

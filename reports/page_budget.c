@@ -56,8 +56,7 @@ void page_budget(struct page_writer *writer, const json_t *const *documents, siz
                    "flow</summary>\n");
     if (columns.data) html_table(to, "budget", columns.data);
     buffer_free(&columns);
-    json_array_foreach(regions, i, region)
-    {
+    json_array_foreach(regions, i, region) {
         buffer_add(to, "<tr>");
         html_cell(to, value_text(region, "region"));
         for (size_t k = 0; k < count; k++)

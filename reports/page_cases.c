@@ -266,8 +266,8 @@ static bool is_well(const json_t *const *runs, size_t run_count, const json_t *c
         size_t k;
         const json_t *gate;
         well = well && !strcmp(value_text(runs[i], "status"), "ok");
-        json_array_foreach(json_object_get(runs[i], "gates"), k, gate) well =
-            well && strcmp(value_text(gate, "status"), "fail") != 0;
+        json_array_foreach(json_object_get(runs[i], "gates"), k, gate)
+            well = well && strcmp(value_text(gate, "status"), "fail") != 0;
     }
     for (size_t i = 0; i < study_count; i++) {
         const char *status = value_text(studies[i], "status");
@@ -320,15 +320,13 @@ static void one_case(struct page_writer *writer, const json_t *results, const ch
     const json_t *runs[PAGE_SCHEMES], *studies[PAGE_SCHEMES], *entry, *title = NULL;
     struct curves curves = {0};
     size_t i, run_count = 0, study_count = 0;
-    json_array_foreach(json_object_get(results, "runs"), i, entry)
-    {
+    json_array_foreach(json_object_get(results, "runs"), i, entry) {
         if (strcmp(value_text(entry, "case"), name) || run_count == PAGE_SCHEMES) continue;
         runs[run_count++] = entry;
         if (dimension_of(entry) == 1) add_curve(&curves, entry);
         if (!title) title = json_object_get(entry, "title");
     }
-    json_array_foreach(json_object_get(results, "studies"), i, entry)
-    {
+    json_array_foreach(json_object_get(results, "studies"), i, entry) {
         if (strcmp(value_text(entry, "case"), name) || study_count == PAGE_SCHEMES) continue;
         studies[study_count++] = entry;
     }
@@ -377,21 +375,20 @@ static void cases_in(struct page_writer *writer, const json_t *results, int dime
     const json_t *runs = json_object_get(results, "runs"), *entry;
     const json_t *studies = json_object_get(results, "studies");
     size_t i, count = 0;
-    json_array_foreach(runs, i, entry) count +=
-        dimension_of(entry) == dimension && !seen_before(runs, i, value_text(entry, "case"));
+    json_array_foreach(runs, i, entry)
+        count +=
+            dimension_of(entry) == dimension && !seen_before(runs, i, value_text(entry, "case"));
     if (folded && count)
         buffer_format(&writer->to,
                       "<details class=\"dimension\" open=\"open\"><summary>In %dD: %zu case%s"
                       "</summary>\n",
                       dimension, count, count == 1 ? "" : "s");
-    json_array_foreach(runs, i, entry)
-    {
+    json_array_foreach(runs, i, entry) {
         const char *name = value_text(entry, "case");
         if (dimension_of(entry) == dimension && !seen_before(runs, i, name))
             one_case(writer, results, name);
     }
-    json_array_foreach(studies, i, entry)
-    {
+    json_array_foreach(studies, i, entry) {
         const char *name = value_text(entry, "case");
         if (dimension_of(entry) == dimension && !seen_before(studies, i, name) &&
             !seen_before(runs, json_array_size(runs), name))

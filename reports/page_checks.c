@@ -160,8 +160,8 @@ void page_detection(struct page_writer *writer, const json_t *verify)
         buffer_add(to, "</section>\n");
         return;
     }
-    json_array_foreach(mutants, i, entry) caught +=
-        json_is_true(json_object_get(entry, "detected"));
+    json_array_foreach(mutants, i, entry)
+        caught += json_is_true(json_object_get(entry, "detected"));
     buffer_format(
         to,
         "<p>A check is worth what it rejects. %.0f deliberate faults, each put before "
@@ -172,8 +172,7 @@ void page_detection(struct page_writer *writer, const json_t *verify)
         value_inner(verify, "summary", "detected"), caught < n ? " open=\"open\"" : "");
     html_table(to, "mutants", "fault|check|#value|#bound|caught");
     for (int round = 0; round < 2; round++) { /* those that slipped through come first */
-        json_array_foreach(mutants, i, entry)
-        {
+        json_array_foreach(mutants, i, entry) {
             bool detected = json_is_true(json_object_get(entry, "detected"));
             if (detected != (round == 1)) continue;
             buffer_add(to, "<tr><td>");

@@ -34,8 +34,7 @@ static size_t read_curves(const json_t *ladders, int dim, struct curve *curves,
 {
     const json_t *ladder;
     size_t i, n = 0;
-    json_array_foreach(ladders, i, ladder)
-    {
+    json_array_foreach(ladders, i, ladder) {
         if (n == KERNELS || (int)value_member(ladder, "dim") != dim) continue;
         struct curve *curve = &curves[n];
         html_words(&curve->label, value_text(ladder, "kernel"));
@@ -150,8 +149,7 @@ static void claim_table(struct buffer *to, const json_t *claim)
     buffer_add(to, "</code></td><td class=\"n\"><code>");
     buffer_escape(to, value_text(claim, "with"));
     buffer_add(to, "</code></td><td></td><td></td></tr>\n");
-    json_array_foreach(json_object_get(claim, "rows"), i, row)
-    {
+    json_array_foreach(json_object_get(claim, "rows"), i, row) {
         buffer_add(to, "<tr>");
         html_cell_code(to, value_text(row, "label"));
         html_cell(to, value_text(row, "figure"));
@@ -173,8 +171,7 @@ void page_claims(struct page_writer *writer, const json_t *claims)
                    "in one key on the same problem. A claim holds in a row if it makes the error "
                    "smaller by a factor of 1.25 at least. By day runs are small; what holds at "
                    "real sizes is in the report of the night.</p>\n");
-    json_array_foreach(claims, i, claim)
-    {
+    json_array_foreach(claims, i, claim) {
         if (json_object_get(claim, "ladders"))
             pairing_table(writer, claim);
         else

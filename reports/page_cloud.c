@@ -165,8 +165,7 @@ static void read_curves(struct curves *curves, const json_t *run)
     size_t i, n;
     curves->x = value_numbers(json_object_get(profile, "x"), &curves->n);
     curves->exact_x = value_numbers(json_object_get(exact, "x"), &curves->exact_n);
-    json_array_foreach(json_object_get(profile, "quantities"), i, name)
-    {
+    json_array_foreach(json_object_get(profile, "quantities"), i, name) {
         const char *word = json_string_value(name);
         if (i == QUANTITIES || !word) break;
         curves->names[i] = word;
@@ -322,8 +321,7 @@ static void functional_table(struct buffer *to, const json_t *const *runs, size_
     if (!json_array_size(json_object_get(runs[0], "functionals"))) return;
     html_table(to, "functionals", "scheme|scalar|#value|#exact or reference");
     for (size_t k = 0; k < count; k++)
-        json_array_foreach(json_object_get(runs[k], "functionals"), i, entry)
-        {
+        json_array_foreach(json_object_get(runs[k], "functionals"), i, entry) {
             buffer_add(to, "<tr>");
             html_cell(to, value_text(runs[k], "label"));
             buffer_add(to, "<td>");
@@ -343,8 +341,7 @@ static void gate_table(struct buffer *to, const json_t *const *runs, size_t coun
     const json_t *gate;
     bool failed = false;
     for (size_t k = 0; k < count; k++)
-        json_array_foreach(json_object_get(runs[k], "gates"), i, gate)
-        {
+        json_array_foreach(json_object_get(runs[k], "gates"), i, gate) {
             failed = failed || !strcmp(value_text(gate, "status"), "fail");
             gates++;
         }
@@ -353,8 +350,7 @@ static void gate_table(struct buffer *to, const json_t *const *runs, size_t coun
                   failed ? " open=\"open\"" : "");
     html_table(to, "gates", "scheme|error|#of this run|#allowed|");
     for (size_t k = 0; k < count; k++)
-        json_array_foreach(json_object_get(runs[k], "gates"), i, gate)
-        {
+        json_array_foreach(json_object_get(runs[k], "gates"), i, gate) {
             buffer_add(to, "<tr>");
             html_cell(to, value_text(runs[k], "label"));
             buffer_add(to, "<td>");

@@ -54,8 +54,7 @@ void page_faults(struct page_writer *writer, const json_t *results)
     buffer_add(to, ".</p>\n");
     for (int round = 0; round < 2; round++) { /* first what went wrong */
         bool open = false;
-        json_array_foreach(list, i, entry)
-        {
+        json_array_foreach(list, i, entry) {
             if (!strcmp(value_text(entry, "status"), "fail") != (round == 0)) continue;
             if (!open) html_table(to, "faults", "fault|answer|ended with|message");
             open = true;
@@ -64,8 +63,7 @@ void page_faults(struct page_writer *writer, const json_t *results)
         if (open) html_table_end(to);
     }
     buffer_add(to, "<details><summary>Try them again, part by part</summary>\n");
-    json_array_foreach(list, i, entry)
-    {
+    json_array_foreach(list, i, entry) {
         if (!strcmp(command, value_text(entry, "command"))) continue;
         command = value_text(entry, "command");
         html_command(to, value_text(entry, "part"), command);

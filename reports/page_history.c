@@ -145,8 +145,7 @@ static const json_t *first_worse(const json_t *figures)
 {
     size_t i;
     const json_t *figure;
-    json_array_foreach(figures, i, figure)
-    {
+    json_array_foreach(figures, i, figure) {
         if (!strcmp(value_text(figure, "verdict"), "worse")) return figure;
     }
     return NULL;
@@ -285,8 +284,7 @@ static void read_marks(struct curves *curves, const json_t *changes, const char 
 {
     size_t i, length = strlen(case_name);
     const json_t *change;
-    json_array_foreach(changes, i, change)
-    {
+    json_array_foreach(changes, i, change) {
         const char *path = value_text(change, "path");
         const double night = value_member(change, "night") + 1;
         bool known = curves->mark_count == MARKS;
@@ -351,8 +349,7 @@ static void plot_trends(struct page_writer *writer, const json_t *history, size_
         return;
     }
     buffer_add(&writer->to, "<div class=\"figures\">\n");
-    json_array_foreach(trends, i, trend)
-    {
+    json_array_foreach(trends, i, trend) {
         const char *own = value_text(trend, "case");
         if (strcmp(own, name)) {
             if (curves->count) plot_trend(writer, name, curves);

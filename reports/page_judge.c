@@ -98,8 +98,7 @@ static void errors(struct buffer *to, const json_t *judged)
     const char *field;
     json_t *of;
     html_table(to, "errors", "field|#L1|#L2|#Linf|#mean over particles");
-    json_object_foreach(json_object_get(judged, "errors"), field, of)
-    {
+    json_object_foreach(json_object_get(judged, "errors"), field, of) {
         if (!json_is_object(of)) continue;
         buffer_add(to, "<tr>");
         html_cell(to, field);
@@ -114,8 +113,7 @@ static void assumptions(struct buffer *to, const json_t *judged)
     const json_t *note;
     size_t k;
     html_table(to, "assumptions", "what|taken for|because");
-    json_array_foreach(json_object_get(judged, "assumptions"), k, note)
-    {
+    json_array_foreach(json_object_get(judged, "assumptions"), k, note) {
         buffer_add(to, "<tr>");
         html_cell(to, value_text(note, "what"));
         html_cell(to, value_text(note, "value"));
@@ -130,8 +128,7 @@ static void candidates(struct buffer *to, const json_t *judged)
     const json_t *kernel = json_object_get(judged, "kernel"), *one;
     size_t k;
     html_table(to, "candidates", "kernel|density as sum of|#support radius/h|#density misses by");
-    json_array_foreach(json_object_get(kernel, "candidates"), k, one)
-    {
+    json_array_foreach(json_object_get(kernel, "candidates"), k, one) {
         buffer_add(to, "<tr>");
         html_cell(to, value_text(one, "name"));
         html_cell(to, value_text(one, "density"));

@@ -13,8 +13,7 @@ static const json_t *find(const json_t *list, const char *case_name, const char 
 {
     size_t i;
     const json_t *entry;
-    json_array_foreach(list, i, entry)
-    {
+    json_array_foreach(list, i, entry) {
         if (!strcmp(value_text(entry, "case"), case_name) &&
             !strcmp(value_text(entry, "label"), label))
             return entry;
@@ -32,8 +31,7 @@ static size_t schemes(const json_t *list, bool clouds, const char **labels)
 {
     size_t n = 0, i;
     const json_t *entry;
-    json_array_foreach(list, i, entry)
-    {
+    json_array_foreach(list, i, entry) {
         const char *label = value_text(entry, "label");
         size_t k = 0;
         if (is_cloud(entry) != clouds) continue;
@@ -155,8 +153,7 @@ static void clouds(struct buffer *to, const json_t *results)
     buffer_add(to, "<h3>In 2D and 3D</h3>\n");
     if (columns.data) html_table(to, "overview", columns.data);
     buffer_free(&columns);
-    json_array_foreach(runs, i, entry)
-    {
+    json_array_foreach(runs, i, entry) {
         if (is_cloud(entry) && !strcmp(value_text(entry, "label"), labels[0]))
             cloud_row(to, results, entry, labels, count);
     }
@@ -182,8 +179,7 @@ static void lines(struct buffer *to, const json_t *results)
     buffer_add(&columns, "|#momentum error|#energy error|");
     if (columns.data) html_table(to, "overview", columns.data);
     buffer_free(&columns);
-    json_array_foreach(studies, i, entry)
-    {
+    json_array_foreach(studies, i, entry) {
         if (!is_cloud(entry) && !strcmp(value_text(entry, "label"), labels[0]))
             row(to, results, entry, labels, count);
     }

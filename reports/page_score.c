@@ -41,8 +41,7 @@ void page_score(struct page_writer *writer, const json_t *score)
     html_table_end(to);
     buffer_add(to, "<details><summary>Survivors</summary>\n");
     html_table(to, "score", "file|line|change|");
-    json_array_foreach(json_object_get(score, "survivors"), i, entry)
-    {
+    json_array_foreach(json_object_get(score, "survivors"), i, entry) {
         buffer_add(to, "<tr>");
         html_cell_code(to, value_text(entry, "file"));
         html_cell_number(to, value_member(entry, "line"));

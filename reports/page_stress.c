@@ -40,8 +40,7 @@ static void plot_growth(struct page_writer *writer, const json_t *atlas, const c
     struct plot_series series[CURVES];
     const json_t *rows = json_object_get(atlas, "rows"), *row;
     size_t i, count = 0;
-    json_array_foreach(rows, i, row)
-    {
+    json_array_foreach(rows, i, row) {
         if (!curves || count == CURVES || strcmp(value_text(row, "gradient"), gradient)) continue;
         struct curve *curve = &curves[count];
         const size_t n = value_reals(json_object_get(atlas, "eta"), curve->x, POINTS);
@@ -91,8 +90,7 @@ static void plot_waves(struct page_writer *writer, const json_t *waves)
     struct plot_series series[2][CURVES];
     size_t i, count = 0;
     const json_t *row;
-    json_array_foreach(waves, i, row)
-    {
+    json_array_foreach(waves, i, row) {
         if (!curves || count == CURVES) break;
         static const char *const what[] = {"frequency", "growth"};
         for (int k = 0; k < 2; k++) {
@@ -203,13 +201,12 @@ static void reasons(struct buffer *to, const char *group, const json_t *cells)
 {
     size_t i, count = 0;
     const json_t *entry;
-    json_array_foreach(cells, i, entry) count +=
-        belongs(entry, group, NULL) && strcmp(value_text(entry, "outcome"), "ok");
+    json_array_foreach(cells, i, entry)
+        count += belongs(entry, group, NULL) && strcmp(value_text(entry, "outcome"), "ok");
     if (!count) return;
     buffer_format(to, "<details><summary>%zu %s</summary>\n", count,
                   count == 1 ? "cell that is not ok" : "cells that are not ok");
-    json_array_foreach(cells, i, entry)
-    {
+    json_array_foreach(cells, i, entry) {
         if (!belongs(entry, group, NULL) || !strcmp(value_text(entry, "outcome"), "ok")) continue;
         buffer_add(to, "<p><b>");
         buffer_escape(to, value_text(entry, "row"));
@@ -238,19 +235,18 @@ static void map(struct buffer *to, const json_t *group, const json_t *cells)
     buffer_add(to, " ↓ ");
     buffer_escape(to, value_text(group, "column_title"));
     buffer_add(to, " →</th>");
-    json_array_foreach(columns, c, column)
-    {
+    json_array_foreach(columns, c, column) {
         buffer_add(to, "<th>");
         buffer_escape(to, json_string_value(column));
         buffer_add(to, "</th>");
     }
     buffer_add(to, "</tr></thead><tbody>\n");
-    json_array_foreach(rows, r, row)
-    {
+    json_array_foreach(rows, r, row) {
         buffer_add(to, "<tr>");
         html_cell(to, json_string_value(row));
-        json_array_foreach(cells, i, entry) if (belongs(entry, name, json_string_value(row)))
-            cell(to, entry, value_member(group, "stable_below"));
+        json_array_foreach(cells, i, entry)
+            if (belongs(entry, name, json_string_value(row)))
+                cell(to, entry, value_member(group, "stable_below"));
         buffer_add(to, "</tr>\n");
     }
     buffer_add(to, "</tbody></table></div>\n");
@@ -295,8 +291,7 @@ void page_stress(struct page_writer *writer, const json_t *stress)
                "its reason and its "
                "command.</p>\n");
     survivors(to, json_object_get(stress, "comparison"));
-    json_array_foreach(json_object_get(stress, "groups"), i, group)
-    {
+    json_array_foreach(json_object_get(stress, "groups"), i, group) {
         map(to, group, json_object_get(stress, "cells"));
     }
     buffer_add(to, "</section>\n");

@@ -32,8 +32,7 @@ const json_t *page_study_order(const json_t *study, const char *field, const cha
 {
     size_t i;
     const json_t *order;
-    json_array_foreach(json_object_get(study, "orders"), i, order)
-    {
+    json_array_foreach(json_object_get(study, "orders"), i, order) {
         if (!strcmp(value_text(order, "field"), field) && !strcmp(value_text(order, "norm"), norm))
             return order;
     }
@@ -54,8 +53,8 @@ static int read_names(const json_t *document, const char *names[PLOTTED])
     const json_t *measured = json_object_get(document, "measured"), *name;
     int n = 0;
     size_t i;
-    json_array_foreach(measured, i, name) if (n < PLOTTED && json_is_string(name)) names[n++] =
-        json_string_value(name);
+    json_array_foreach(measured, i, name)
+        if (n < PLOTTED && json_is_string(name)) names[n++] = json_string_value(name);
     for (int q = 0; q < PLOTTED && !measured; q++) names[n++] = usual[q];
     return n;
 }
@@ -85,13 +84,10 @@ static double error_of(const json_t *document, const char *name, size_t i)
     const double error = value_inner(json_object_get(level, "errors"), name, "l1_cut");
     size_t k;
     if (isfinite(error)) return error;
-    json_array_foreach(
-        json_object_get(document, "functionals"), k,
-        entry) if (!strcmp(value_text(entry, "name"),
-                           name)) return fabs(value_real(json_array_get(json_object_get(entry,
-                                                                                        "values"),
-                                                                        i)) -
-                                              value_member(entry, "exact"));
+    json_array_foreach(json_object_get(document, "functionals"), k, entry)
+        if (!strcmp(value_text(entry, "name"), name))
+            return fabs(value_real(json_array_get(json_object_get(entry, "values"), i)) -
+                        value_member(entry, "exact"));
     return error;
 }
 
@@ -131,8 +127,7 @@ static void read_study(struct study *study, const json_t *document)
     *study = (struct study){.document = document};
     study->dimension = isfinite(dimension) ? (int)dimension : 1;
     study->plotted = read_names(document, study->names);
-    json_array_foreach(json_object_get(document, "levels"), i, level)
-    {
+    json_array_foreach(json_object_get(document, "levels"), i, level) {
         if (study->levels == LEVELS) break;
         for (int q = 0; q < study->plotted; q++)
             study->of[q].error[study->levels] = error_of(document, study->names[q], i);
@@ -320,8 +315,7 @@ static void order_rows(struct buffer *to, const struct study *study)
 {
     size_t i, j;
     const json_t *order, *pair;
-    json_array_foreach(json_object_get(study->document, "orders"), i, order)
-    {
+    json_array_foreach(json_object_get(study->document, "orders"), i, order) {
         const char *status = value_text(order, "status");
         bool gated = json_is_object(json_object_get(order, "gate"));
         bool shown = !strcmp(value_text(order, "norm"), "l1_cut") || is_scalar(order);
@@ -354,8 +348,8 @@ static void order_table(struct buffer *to, const struct study *studies, size_t c
     for (size_t k = 0; k < count; k++) {
         size_t i;
         const json_t *order;
-        json_array_foreach(json_object_get(studies[k].document, "orders"), i, order) failed =
-            failed || !strcmp(value_text(order, "status"), "fail");
+        json_array_foreach(json_object_get(studies[k].document, "orders"), i, order)
+            failed = failed || !strcmp(value_text(order, "status"), "fail");
     }
     buffer_format(to,
                   "<details%s><summary>Orders of all quantities, and what is expected</summary>\n",
@@ -402,8 +396,7 @@ static void functional_table(struct buffer *to, const struct study *studies, siz
                "scheme|scalar|#finest level|#extrapolated|#exact|#order|#GCI, finest|#GCI, "
                "next|convergence");
     for (k = 0; k < count; k++)
-        json_array_foreach(json_object_get(studies[k].document, "functionals"), i, entry)
-        {
+        json_array_foreach(json_object_get(studies[k].document, "functionals"), i, entry) {
             const json_t *values = json_object_get(entry, "values");
             buffer_add(to, "<tr>");
             html_cell(to, value_text(studies[k].document, "label"));

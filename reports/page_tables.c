@@ -42,8 +42,7 @@ static void league_head(struct buffer *to, const json_t *row)
     const char *name;
     const json_t *value;
     struct buffer columns = {0};
-    json_object_foreach((json_t *)row, name, value)
-    {
+    json_object_foreach((json_t *)row, name, value) {
         if (!strcmp(name, "dim")) continue;
         if (columns.size) buffer_add(&columns, "|");
         if (!json_is_string(value) && !is_degree(name)) buffer_add(&columns, "#");
@@ -58,8 +57,7 @@ static void league_row(struct buffer *to, const json_t *row)
     const char *name;
     const json_t *value;
     buffer_add(to, "<tr>");
-    json_object_foreach((json_t *)row, name, value)
-    {
+    json_object_foreach((json_t *)row, name, value) {
         if (!strcmp(name, "dim")) continue;
         if (is_degree(name))
             degree_cell(to, value_real(value));
@@ -77,8 +75,7 @@ static void plot_league(struct page_writer *writer, const json_t *rows)
     double defect[PAGE_SCHEMES][DIMENSIONS], error[PAGE_SCHEMES][DIMENSIONS];
     size_t count = 0, i;
     const json_t *row;
-    json_array_foreach(rows, i, row)
-    {
+    json_array_foreach(rows, i, row) {
         const char *name = value_text(row, "operator");
         size_t k = 0;
         while (k < count && strcmp(series[k].label, name)) k++;
@@ -124,8 +121,7 @@ void page_gradients(struct page_writer *writer, const json_t *gradients)
                "value.</p>\n");
     plot_league(writer, rows);
     double dim = 0;
-    json_array_foreach(rows, i, row)
-    {
+    json_array_foreach(rows, i, row) {
         double now = value_member(row, "dim");
         if (!(now >= dim && now <= dim)) {
             if (i) html_table_end(to);

@@ -10,8 +10,7 @@ static void failures(struct buffer *to, const json_t *list)
     enum { SHOWN = 20 };
     size_t i;
     const json_t *entry;
-    json_array_foreach(list, i, entry)
-    {
+    json_array_foreach(list, i, entry) {
         if (i == SHOWN) {
             buffer_format(to, "- … and %zu more\n", json_array_size(list) - SHOWN);
             break;
@@ -29,8 +28,7 @@ static void orders(struct buffer *to, const json_t *studies)
     if (!json_array_size(studies)) return;
     buffer_add(to, "| case | scheme | error | order | 95 % interval | at the finest level |\n"
                    "|---|---|---|---:|---:|---:|\n");
-    json_array_foreach(studies, i, study)
-    {
+    json_array_foreach(studies, i, study) {
         const json_t *order = page_study_main(study);
         if (!order) continue;
         buffer_format(to, "| %s | %s | ", value_text(study, "case"), value_text(study, "label"));

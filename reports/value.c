@@ -46,8 +46,8 @@ const json_t *value_named(const json_t *list, const char *name)
 {
     size_t i;
     const json_t *entry;
-    json_array_foreach(list, i,
-                       entry) if (strcmp(value_text(entry, "name"), name) == 0) return entry;
+    json_array_foreach(list, i, entry)
+        if (strcmp(value_text(entry, "name"), name) == 0) return entry;
     return NULL;
 }
 
@@ -55,7 +55,8 @@ size_t value_reals(const json_t *array, double *values, size_t most)
 {
     size_t i, n = 0;
     const json_t *value;
-    json_array_foreach(array, i, value) if (n < most) values[n++] = value_real(value);
+    json_array_foreach(array, i, value)
+        if (n < most) values[n++] = value_real(value);
     return n;
 }
 

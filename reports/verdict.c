@@ -85,8 +85,7 @@ static void judge_verify(struct tally *tally, const json_t *verify)
     const json_t *entry;
     json_array_foreach(json_object_get(verify, "checks"), i, entry)
         judge_figure(tally, entry, value_text_or(verify, "reproduce", "sphproof verify"));
-    json_array_foreach(json_object_get(verify, "mutants"), i, entry)
-    {
+    json_array_foreach(json_object_get(verify, "mutants"), i, entry) {
         if (json_is_true(json_object_get(entry, "detected"))) continue;
         struct buffer detail = {0}, command = {0};
         buffer_format(&command, "%s --mutants",
@@ -166,8 +165,7 @@ static void judge_study(struct tally *tally, const json_t *study)
 {
     size_t i;
     const json_t *order;
-    json_array_foreach(json_object_get(study, "orders"), i, order)
-    {
+    json_array_foreach(json_object_get(study, "orders"), i, order) {
         const enum answer answer = answer_of(tally, order, "none", value_text(study, "case"));
         tally->gates_passed += answer == PASS;
         tally->gates_failed += answer == FAIL;
@@ -186,16 +184,14 @@ static void judge_study(struct tally *tally, const json_t *study)
             fail(tally, "convergence", name.data, &detail, value_text(study, "reproduce"));
         buffer_free(&name);
     }
-    json_array_foreach(json_object_get(study, "floors"), i, order)
-    {
+    json_array_foreach(json_object_get(study, "floors"), i, order) {
         if (!*value_text(order, "suspicion")) continue;
         struct buffer detail = {0};
         buffer_format(&detail, "too good to be true: %s", value_text(order, "suspicion"));
         fail(tally, "suspicion", value_text(study, "case"), &detail,
              value_text(study, "reproduce"));
     }
-    json_array_foreach(json_object_get(study, "budgets"), i, order)
-    {
+    json_array_foreach(json_object_get(study, "budgets"), i, order) {
         judge_still_gas(tally, study, json_object_get(order, "still_gas"));
     }
     if (*value_text(study, "suspicion")) {
@@ -285,8 +281,7 @@ json_t *verdict_make(const json_t *results)
     json_array_foreach(json_object_get(results, "studies"), i, entry) judge_study(&tally, entry);
     json_array_foreach(json_object_get(results, "trouble"), i, entry) judge_trouble(&tally, entry);
     judge_verify(&tally, json_object_get(results, "verify"));
-    json_array_foreach(json_object_get(json_object_get(results, "stress"), "failures"), i, entry)
-    {
+    json_array_foreach(json_object_get(json_object_get(results, "stress"), "failures"), i, entry) {
         judge_stress(&tally, entry);
     }
     judge_faults(&tally, json_object_get(results, "faults"));

@@ -58,8 +58,7 @@ static json_t *figures_of(const json_t *results)
     json_t *copy = json_deep_copy(results), *run;
     size_t i;
     json_object_del(copy, "history");
-    json_array_foreach(json_object_get(copy, "runs"), i, run)
-    {
+    json_array_foreach(json_object_get(copy, "runs"), i, run) {
         json_object_del(run, "profile");
         json_object_del(run, "through_time");
     }
@@ -157,7 +156,8 @@ const struct command command_baseline = {
     .synopsis = "[RESULTS.json] [--accept --reason TEXT]",
     .help = "figures as they were accepted: shows old, new, exact; changes only with a reason\n\n"
             "RESULTS.json: any result document (default: reports/out/results.json). Without "
-            "--accept it\nonly compares; exit status 1 if there is a regression, or if less is compared than before.",
+            "--accept it\nonly compares; exit status 1 if there is a regression, or if less is "
+            "compared than before.",
     .run = run,
     .options = own_options,
     .examples = "sphproof baseline\n"

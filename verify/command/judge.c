@@ -127,8 +127,7 @@ static void print_together(const struct judged *judged, size_t n)
     struct trace_drift drift;
     size_t pair[2], k;
     json_t *orders = judge_orders(judged, n), *order;
-    json_array_foreach(orders, k, order)
-    {
+    json_array_foreach(orders, k, order) {
         const json_t *fitted = json_object_get(order, "order"), *one;
         size_t i;
         printf("order of %-16s", json_string_value(json_object_get(order, "field")));

@@ -50,13 +50,12 @@ static void print_group(const json_t *group, const json_t *cells, const struct t
     for (size_t r = 0; r < json_array_size(rows); r++) {
         const char *row = json_string_value(json_array_get(rows, r));
         printf("\n%-24.24s", row);
-        json_array_foreach(cells, i, entry) if (!strcmp(value_text(entry, "group"), name) &&
-                                                !strcmp(value_text(entry, "row"), row))
-            print_cell(entry, style);
+        json_array_foreach(cells, i, entry)
+            if (!strcmp(value_text(entry, "group"), name) && !strcmp(value_text(entry, "row"), row))
+                print_cell(entry, style);
     }
     printf("\n");
-    json_array_foreach(cells, i, entry)
-    {
+    json_array_foreach(cells, i, entry) {
         if (strcmp(value_text(entry, "group"), name) || !strcmp(value_text(entry, "outcome"), "ok"))
             continue;
         if (shown++ == SHOWN) break;
@@ -77,8 +76,8 @@ static void print_all(const json_t *document, size_t wrong, const struct options
     json_array_foreach(groups, i, group)
         print_group(group, json_object_get(document, "cells"), &style);
     printf("\n%sdefault scheme against the seed program's method:%s", style.bold, style.end);
-    json_object_foreach((json_t *)comparison, name, value) if (json_is_integer(value))
-        printf(" %s %lld;", name, (long long)json_integer_value(value));
+    json_object_foreach((json_t *)comparison, name, value)
+        if (json_is_integer(value)) printf(" %s %lld;", name, (long long)json_integer_value(value));
     printf("\n%s%s%s: numbers are errors (density, relative), or measured/predicted limits; ~ is "
            "inaccurate\n",
            wrong ? style.bad : style.good, wrong ? "NOT WELL" : "all as it should be", style.end);

@@ -136,8 +136,7 @@ static void find_faults(const struct guard_verdict *verdict, char *text, size_t 
     size_t k;
     json_t *name;
     text[0] = '\0';
-    json_array_foreach(verdict->reply, k, name)
-    {
+    json_array_foreach(verdict->reply, k, name) {
         const size_t used = strlen(text);
         if (!strstr(text, json_string_value(name)))
             snprintf(text + used, size - used, "%s%s",

@@ -214,7 +214,8 @@ static bool has_points(const json_t *series)
 {
     size_t i;
     const json_t *value;
-    json_array_foreach(series, i, value) if (isfinite(value_real(value))) return true;
+    json_array_foreach(series, i, value)
+        if (isfinite(value_real(value))) return true;
     return false;
 }
 
@@ -226,8 +227,7 @@ static json_t *trend_of(const json_t *nights, const json_t *study)
                  *finest = json_array_get(levels, json_array_size(levels) - 1);
     const double n = value_member(finest, "n");
     size_t i;
-    json_array_foreach(json_object_get(study, "measured"), i, field)
-    {
+    json_array_foreach(json_object_get(study, "measured"), i, field) {
         const char *what = json_string_value(field);
         char path[PATH_LENGTH];
         snprintf(path, sizeof path, "studies[%s, %s].levels[n %.10g].errors.%s.l1_cut", name, label,
@@ -249,8 +249,7 @@ static json_t *trends(const json_t *nights, const json_t *results)
     json_t *list = json_array();
     const json_t *study;
     size_t i;
-    json_array_foreach(json_object_get(results, "studies"), i, study)
-    {
+    json_array_foreach(json_object_get(results, "studies"), i, study) {
         json_t *trend = trend_of(nights, study);
         if (trend) json_array_append_new(list, trend);
     }

@@ -132,8 +132,7 @@ static struct ladder ladder_read(const struct pairing_run *runs, size_t most,
     }
     ladder.first = 0;
     while (ladder.first < ladder.count && !(ladder.paired[ladder.first] > bound)) ladder.first++;
-    json_array_foreach(kernels, i, kernel)
-    {
+    json_array_foreach(kernels, i, kernel) {
         if (strcmp(value_text(kernel, "kernel"), runs->kernel) != 0 ||
             (int)value_member(kernel, "dim") != runs->crowd->dim)
             continue;

@@ -215,8 +215,7 @@ static void add_settings(char name[NAME_MAX_LENGTH], const json_t *settings)
     const char *key, *keys[KEYS_MAX];
     const json_t *value;
     size_t n = 0;
-    json_object_foreach((json_t *)settings, key, value)
-    {
+    json_object_foreach((json_t *)settings, key, value) {
         if (!json_is_string(value) || n == KEYS_MAX) return;
         keys[n++] = key;
     }
@@ -296,8 +295,7 @@ static void walk(struct readings *readings, const struct place *at, const json_t
                                         "date",   "flags",   "computations"};
     const char *key;
     json_t *value;
-    json_object_foreach((json_t *)object, key, value)
-    {
+    json_object_foreach((json_t *)object, key, value) {
         if (one_of(key, closed, LENGTH(closed)) || is_name(key, value)) continue;
         if (!*at->path && one_of(key, heads, LENGTH(heads))) continue;
         if (json_is_array(value)) {

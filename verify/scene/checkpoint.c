@@ -85,10 +85,10 @@ static enum status other_run(const struct checkpoint *checkpoint, const char *th
     json_t *mine = json_object_get(b, "settings"), *value;
     char why[300] = "is of another run";
     const char *key;
-    json_object_foreach(b, key, value) if (!json_equal(value, json_object_get(a, key)))
-        snprintf(why, sizeof why, "is of another run: its '%.40s' differs", key);
-    json_object_foreach(mine, key, value)
-    {
+    json_object_foreach(b, key, value)
+        if (!json_equal(value, json_object_get(a, key)))
+            snprintf(why, sizeof why, "is of another run: its '%.40s' differs", key);
+    json_object_foreach(mine, key, value) {
         const json_t *other = json_object_get(json_object_get(a, "settings"), key);
         if (json_equal(value, other)) continue;
         char *was = json_dumps(other, JSON_ENCODE_ANY), *is = json_dumps(value, JSON_ENCODE_ANY);

@@ -74,8 +74,7 @@ static json_t *seen_json(const struct trace *trace)
         json_t *one = regularity_json(&trace->seen[k]), *value;
         const char *name;
         json_array_append_new(json_object_get(lists, "time"), result_number(trace->looked[k]));
-        json_object_foreach(one, name, value)
-        {
+        json_object_foreach(one, name, value) {
             if (!json_object_get(lists, name)) json_object_set_new(lists, name, json_array());
             json_array_append(json_object_get(lists, name), value);
         }

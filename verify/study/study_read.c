@@ -28,8 +28,7 @@ static void read_functionals(struct study_result *result, struct study_level *le
 {
     const json_t *entry;
     size_t i;
-    json_array_foreach(json_object_get(run, "functionals"), i, entry)
-    {
+    json_array_foreach(json_object_get(run, "functionals"), i, entry) {
         if (i == PROBLEM_FUNCTIONALS_MAX) break;
         result->functional_names[i] = problem_functional_name(value_text(entry, "name"));
         level->functionals[i] += weight * value_member(entry, "value");

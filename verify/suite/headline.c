@@ -168,8 +168,7 @@ void headline_print(const json_t *headlines, FILE *stream, bool color)
 {
     size_t i;
     const json_t *entry;
-    json_array_foreach(headlines, i, entry)
-    {
+    json_array_foreach(headlines, i, entry) {
         const json_t *also = json_object_get(entry, "also");
         const double ratio = value_member(entry, "ratio");
         const size_t others = json_array_size(also);

@@ -42,15 +42,13 @@ static void expect(struct planned *planned, double without, double with, const c
     invent(&planned->pool, (double[]){without, with});
     json_t *judged = claims_judge(&planned->claims, &planned->pool), *claim, *row;
     size_t c, r, rows = 0;
-    json_array_foreach(judged, c, claim)
-    {
+    json_array_foreach(judged, c, claim) {
         assert_string_equal(value_text(claim, "verdict"), strcmp(word, "no difference") == 0
                                                               ? "does not hold"
                                                           : strcmp(word, "nothing to compare") == 0
                                                               ? "not shown: nothing to compare"
                                                               : word);
-        json_array_foreach(json_object_get(claim, "rows"), r, row)
-        {
+        json_array_foreach(json_object_get(claim, "rows"), r, row) {
             assert_string_equal(value_text(row, "verdict"), word);
             if (with < 9) assert_true(fabs(value_member(row, "with") - with) <= 1e-12);
             rows++;

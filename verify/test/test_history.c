@@ -96,8 +96,7 @@ static void since_last_night(void **state)
     near_absolute(number(since, "worse"), 2, 0);
     const json_t *figures = json_object_get(since, "figures"), *figure;
     size_t i, seen = 0;
-    json_array_foreach(figures, i, figure)
-    {
+    json_array_foreach(figures, i, figure) {
         if (strcmp(json_string_value(json_object_get(figure, "path")), error_path)) continue;
         seen++;
         near_relative(number(figure, "old"), 1.0001e-3, 1e-12);

@@ -72,12 +72,10 @@ static void expect(struct planned *planned, double wendland, double others, cons
     json_t *judged = pairing_judge(&planned->pairing, &planned->pool, planned->kernels);
     json_t *one, *ladder;
     size_t c, l, runs = 0;
-    json_array_foreach(judged, c, one)
-    {
+    json_array_foreach(judged, c, one) {
         if (!strstr(value_text(one, "verdict"), claim))
             fail_msg("'%s', not '%s'", value_text(one, "verdict"), claim);
-        json_array_foreach(json_object_get(one, "ladders"), l, ladder)
-        {
+        json_array_foreach(json_object_get(one, "ladders"), l, ladder) {
             const char *wanted =
                 is_wendland(value_text(ladder, "kernel")) ? of_wendland : of_others;
             if (!strstr(value_text(ladder, "verdict"), wanted))
@@ -99,8 +97,9 @@ static void judge_one_broken(struct planned *planned)
     json_t *standard = json_array_get(judged, 0), *ladder;
     size_t l, broken = 0;
     assert_string_equal(value_text(standard, "verdict"), "not shown: runs broke down");
-    json_array_foreach(json_object_get(standard, "ladders"), l, ladder) broken +=
-        !strcmp(value_text(ladder, "verdict"), "no pairs in 4 of 5 runs, others broke down");
+    json_array_foreach(json_object_get(standard, "ladders"), l, ladder)
+        broken +=
+            !strcmp(value_text(ladder, "verdict"), "no pairs in 4 of 5 runs, others broke down");
     assert_int_equal(broken, 1);
     json_decref(judged);
 }
