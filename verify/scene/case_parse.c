@@ -202,19 +202,25 @@ static bool gate_name(const char *name, int *field, int *norm)
 #define ERROR_GATE    "order for shorter ladders, bound of the finest error"
 #define KNOWN_FAILURE "; `known: WHY` after them, if it is known to fail"
 
-/* The numbers of a gate's value and why it is known to fail, "" where it is not; false where the
- * value is none. */
-static bool read_gate(const char *value, size_t count, double *numbers, const char **why)
+/* What stands before `known: WHY` in a gate's value, without blanks at its end, and WHY, "" where
+ * it is not said; false: the mark stands there without a reason, or with one that is too long. */
+static bool read_known(const char *value, char text[256], const char **why)
 {
     static const char mark[] = "known:";
-    char text[256];
     const char *known = strstr(value, mark);
     *why = known ? known + strlen(mark) : "";
-    snprintf(text, sizeof text, "%.*s", known ? (int)(known - value) : 200, value);
+    snprintf(text, 256, "%.*s", known ? (int)(known - value) : 200, value);
     for (size_t n = strlen(text); n && text[n - 1] == ' '; n--) text[n - 1] = '\0';
     while (**why == ' ') ++*why;
-    return text_reals(text, " \t,", count, numbers) && numbers[count - 1] > 0 &&
-           !(known && !**why) && strlen(*why) < sizeof((struct case_weakness *)NULL)->why;
+    return !(known && !**why) && strlen(*why) < sizeof((struct case_weakness *)NULL)->why;
+}
+
+/* The numbers of a gate's value and why it is known to fail; false where the value is none. */
+static bool read_gate(const char *value, size_t count, double *numbers, const char **why)
+{
+    char text[256];
+    return read_known(value, text, why) && text_reals(text, " \t,", count, numbers) &&
+           numbers[count - 1] > 0;
 }
 
 /* The number of the gate of a functional, or NULL and of a field's norm; gate_count: there is none.
@@ -251,15 +257,9 @@ static void add_gate(struct parser *parser, const char *name, struct case_gate g
 /* `none known: WHY`, of what cannot be measured where a scheme fails: a shock that there is not. */
 static bool read_absence(const char *value, double *bound, const char **why)
 {
-    static const char absent[] = "none ";
-    double one[1];
-    char with_number[256];
-    if (strncmp(value, absent, strlen(absent)) != 0) return false;
-    snprintf(with_number, sizeof with_number, "1 %s", value + strlen(absent));
-    if (!read_gate(with_number, 1, one, why) || !**why) return false;
-    *why = strstr(value, *why);
+    char text[256];
     *bound = (double)NAN;
-    return true;
+    return read_known(value, text, why) && **why && strcmp(text, "none") == 0;
 }
 
 /* What compared schemes are held to at a gate above: `BOUND`, or `BOUND known: WHY`. */

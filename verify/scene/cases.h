@@ -19,10 +19,11 @@ enum { CASE_LADDER_MAX = ORDER_LEVELS_MAX, CASE_GATES_MAX = FIELDS * NORMS + 16 
  * is then what the bound is raised by where a ladder ends before the case's. With `... known: WHY`
  * of a weakness that is shown and fails nothing. The schemes that a report compares with the
  * default have a bound thrice as wide, or their own, in a line of the same name in [compared]:
- * `density_l1 = BOUND`. `density_l1 = BOUND known: WHY`: they are known to fail the gate, but an
- * error that is a number stays below BOUND. */
+ * `density_l1 = BOUND`. `density_l1 = BOUND known: WHY`: they are known to fail the gate, but their
+ * error is a number up to BOUND. `density_l1 = none known: WHY`: there is nothing to be measured
+ * (no shock to be found), their error is no number. */
 struct case_weakness {
-    double bound;  /* of the finest error, INFINITY: any, NAN: there is none; 0: nothing is said */
+    double bound;  /* of the finest error; INFINITY: any number, NAN: none at all, 0: unsaid */
     char why[160]; /* "" if there is none */
 };
 struct case_gate {

@@ -105,8 +105,10 @@ static bool is_known(const struct case_file *file, const struct case_gate *gate,
     if (!*gate->known.why) return false;
     if (isfinite(gate->gate.high) && isnan(order->fit.order)) return false;
     if (gates_know(&gate->known, raise, order->fit.finest)) return true;
-    snprintf(order->why, sizeof order->why,
-             "finest error %.3g exceeds %.3g, up to which it is known", order->fit.finest, bound);
+    if (isfinite(bound))
+        snprintf(order->why, sizeof order->why,
+                 "finest error %.3g exceeds %.3g, up to which it is known", order->fit.finest,
+                 bound);
     return false;
 }
 

@@ -157,6 +157,8 @@ static void compared(void **state)
             AT("16") "disc_error = none; allowed: " COMPARED);
     refused(FLAT GATES "[compared]\ndisc_error = none known:\n",
             AT("16") "disc_error = none known:; allowed: " COMPARED);
+    refused(FLAT GATES "[compared]\ndisc_error = some known: x\n",
+            AT("16") "disc_error = some known: x; allowed: " COMPARED);
     if (parse(&file, FLAT GATES "[compared]\ndisc_error = none known: it is torn\n", &error))
         fail_msg("%s", error.message);
     assert_true(isnan(b->compared.bound));
