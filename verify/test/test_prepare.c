@@ -13,32 +13,7 @@
 
 #include "functional.h"
 #include "near.h"
-#include "problem_list.h"
-#include "problem_prepare.h"
-
-enum { KEYS = 8 };
-
-/* keys: separated by |. */
-static enum status make(struct prepared *p, struct settings *settings, int dim, const char *keys,
-                        struct error *error)
-{
-    char text[256], *words[KEYS], *rest = text;
-    int n = 0;
-    *error = (struct error){0};
-    snprintf(text, sizeof text, "%s", keys);
-    for (char *word; (word = strtok_r(rest, "|", &rest));) words[n++] = word;
-    settings_init(settings);
-    if (settings_apply(settings, n, words, error)) fail_msg("%s", error->message);
-    return problem_prepare(p, settings, dim, error);
-}
-
-static struct prepared made(struct settings *settings, int dim, const char *keys)
-{
-    struct prepared p;
-    struct error error;
-    if (make(&p, settings, dim, keys, &error)) fail_msg("%s: %s", keys, error.message);
-    return p;
-}
+#include "prepared.h"
 
 static void what_cannot_be_is_refused(void **state)
 {
@@ -159,7 +134,7 @@ static void what_cannot_be_is_refused(void **state)
         struct prepared p;
         struct settings settings;
         struct error error;
-        const enum status status = make(&p, &settings, rows[k].dim, rows[k].keys, &error);
+        const enum status status = prepared_try(&p, &settings, rows[k].dim, rows[k].keys, &error);
         if (!rows[k].words && status) fail_msg("%s: %s", rows[k].keys, error.message);
         if (!rows[k].words) continue;
         strcat(error.message, "|"); /* its end */
@@ -172,7 +147,8 @@ static void what_is_left_open_is_chosen(void **state)
 {
     (void)state;
     struct settings s;
-    struct prepared p = made(&s, 2, "kind=rest|lo=-1 2|hi=3 4|boost=0.5 -0.25|window_radius=0.75");
+    struct prepared p =
+        prepared_of(&s, 2, "kind=rest|lo=-1 2|hi=3 4|boost=0.5 -0.25|window_radius=0.75");
     assert_true(p.domain.dim == 2 && p.window.dim == 2 && s.dim == 2 &&
                 p.gamma == settings_real(&s, SETTING_gamma));
     assert_true(p.domain.lo[0] == -1 && p.domain.lo[1] == 2 && p.domain.hi[0] == 3 &&
@@ -189,48 +165,48 @@ static void what_is_left_open_is_chosen(void **state)
     assert_true(s.value[SETTING_boundary].given == 1 &&
                 s.value[SETTING_boundary].choices[0] == BOUNDARY_PERIODIC);
 
-    p = made(&s, 1, "window=-0.25 0.5");
+    p = prepared_of(&s, 1, "window=-0.25 0.5");
     assert_true(p.window.lo[0] == -0.25 && p.window.hi[0] == 0.5 && p.window.radius == 0 &&
                 p.boost[0] == 0);
     assert_int_equal(settings_choice(&s, SETTING_lattice), LATTICE_UNIFORM);
-    p = made(&s, 3, "kind=rest|lattice=jittered");
+    p = prepared_of(&s, 3, "kind=rest|lattice=jittered");
     assert_true(settings_real(&s, SETTING_jitter) == 0.2);
-    p = made(&s, 3, "kind=rest|lattice=jittered|jitter=0.1");
+    p = prepared_of(&s, 3, "kind=rest|lattice=jittered|jitter=0.1");
     assert_true(settings_real(&s, SETTING_jitter) == 0.1);
-    p = made(&s, 3, "kind=rest");
+    p = prepared_of(&s, 3, "kind=rest");
     assert_int_equal(settings_choice(&s, SETTING_lattice), LATTICE_CUBIC);
-    p = made(&s, 2, "kind=yee|equal_masses=yes");
+    p = prepared_of(&s, 2, "kind=yee|equal_masses=yes");
     assert_int_equal(settings_choice(&s, SETTING_lattice), LATTICE_GLASS);
-    p = made(&s, 2, "kind=square|equal_masses=yes");
+    p = prepared_of(&s, 2, "kind=square|equal_masses=yes");
     assert_int_equal(settings_choice(&s, SETTING_lattice), LATTICE_SQUARE);
 
     /* ends of each direction; one word where they are alike */
-    p = made(&s, 3, "kind=rest|boundary=fixed periodic reflecting");
+    p = prepared_of(&s, 3, "kind=rest|boundary=fixed periodic reflecting");
     const struct setting_value *ends = &s.value[SETTING_boundary];
     assert_true(p.boundary[0] == BOUNDARY_FIXED && p.boundary[1] == BOUNDARY_PERIODIC &&
                 p.boundary[2] == BOUNDARY_REFLECTING);
     assert_true(ends->given == 3 && ends->choices[0] == BOUNDARY_FIXED &&
                 ends->choices[1] == BOUNDARY_PERIODIC && ends->choices[2] == BOUNDARY_REFLECTING);
-    p = made(&s, 3, "kind=rest|boundary=periodic periodic fixed");
+    p = prepared_of(&s, 3, "kind=rest|boundary=periodic periodic fixed");
     assert_int_equal(ends->given, 3);
-    p = made(&s, 3, "kind=rest|boundary=fixed");
+    p = prepared_of(&s, 3, "kind=rest|boundary=fixed");
     assert_true(ends->given == 1 && p.boundary[2] == BOUNDARY_FIXED);
-    p = made(&s, 2, "kind=particles|file=a.csv|gravity=0.5 -2");
+    p = prepared_of(&s, 2, "kind=particles|file=a.csv|gravity=0.5 -2");
     const struct setting_value *gravity = &s.value[SETTING_gravity];
     assert_true(p.gravity[0] == 0.5 && p.gravity[1] == -2 && p.gravity[2] == 0);
     assert_true(gravity->given == 2 && gravity->real[0] == 0.5 && gravity->real[1] == -2);
-    p = made(&s, 3, "kind=particles|file=a.csv|gravity=0 0 1");
+    p = prepared_of(&s, 3, "kind=particles|file=a.csv|gravity=0 0 1");
     assert_true(gravity->given == 3 && gravity->real[2] == 1 && gravity->real[1] == 0);
-    p = made(&s, 3, "kind=particles|file=a.csv|gravity=0 1 0");
+    p = prepared_of(&s, 3, "kind=particles|file=a.csv|gravity=0 1 0");
     assert_true(gravity->given == 3 && gravity->real[1] == 1);
-    p = made(&s, 3, "kind=particles|file=a.csv|gravity=1 0 0");
+    p = prepared_of(&s, 3, "kind=particles|file=a.csv|gravity=1 0 0");
     assert_true(gravity->given == 3 && gravity->real[0] == 1);
-    p = made(&s, 2, "kind=particles|file=a.csv");
+    p = prepared_of(&s, 2, "kind=particles|file=a.csv");
     assert_true(gravity->given == 1 && gravity->real[0] == 0);
-    p = made(&s, 2, "kind=particles|file=a.csv|gravity=-1.5");
+    p = prepared_of(&s, 2, "kind=particles|file=a.csv|gravity=-1.5");
     assert_true(p.gravity[0] == -1.5 && p.gravity[1] == -1.5 && p.gravity[2] == 0);
     assert_true(gravity->given == 2 && gravity->real[1] == -1.5);
-    p = made(&s, 2, "kind=rest|boundary=fixed");
+    p = prepared_of(&s, 2, "kind=rest|boundary=fixed");
     assert_true(p.boundary[1] == BOUNDARY_FIXED && p.boundary[2] == BOUNDARY_PERIODIC);
 }
 
@@ -240,16 +216,16 @@ static void choices_are_written_back(void **state)
     (void)state;
     struct settings s;
     struct error error;
-    struct prepared p = made(&s, 2, "kind=rayleigh_taylor_mode|hi=1 3");
+    struct prepared p = prepared_of(&s, 2, "kind=rayleigh_taylor_mode|hi=1 3");
     struct setting_value *gravity = &s.value[SETTING_gravity], *ends = &s.value[SETTING_boundary];
     assert_true(gravity->automatic && gravity->given == 2 && gravity->real[0] == 0 &&
                 gravity->real[1] == -0.125);
     assert_true(ends->automatic && ends->given == 2 && ends->choices[0] == BOUNDARY_PERIODIC &&
                 ends->choices[1] == BOUNDARY_REFLECTING);
-    p = made(&s, 2, "kind=noh");
+    p = prepared_of(&s, 2, "kind=noh");
     assert_true(p.window.radius > 0 && s.value[SETTING_window_radius].real[0] == p.window.radius);
     assert_true(s.value[SETTING_window].real[0] == p.window.lo[0] && p.window.lo[0] > -1);
-    made(&s, 2, "kind=rest");
+    prepared_of(&s, 2, "kind=rest");
     gravity->real[0] = gravity->real[1] = 5; /* of another problem before */
     struct problem closed = *(const struct problem *)family_find(&problem_family, "rest");
     closed.ends[0].usual = BOUNDARY_FIXED;
@@ -435,15 +411,15 @@ static void lists(void **state)
         SETTING_boost,         SETTING_viscosity_form, SETTING_balsara,
         SETTING_balsara_floor, SETTING_noise,          SETTING_alpha_u,
         SETTING_window_radius, SETTING_boundary,       SETTING_gravity};
-    made(&s, 1, "");
+    prepared_of(&s, 1, "");
     for (size_t k = 0; k < sizeof plane / sizeof *plane; k++)
         assert_true(problem_foreign(&s, plane[k]));
     assert_false(problem_foreign(&s, SETTING_grade) || problem_foreign(&s, SETTING_grade_ratio));
-    made(&s, 1, "kind=sound_wave");
+    prepared_of(&s, 1, "kind=sound_wave");
     assert_true(problem_foreign(&s, SETTING_direction));
-    made(&s, 2, "");
+    prepared_of(&s, 2, "");
     assert_true(problem_foreign(&s, SETTING_grade) && problem_foreign(&s, SETTING_grade_ratio));
-    made(&s, 2, "kind=sound_wave");
+    prepared_of(&s, 2, "kind=sound_wave");
     assert_false(problem_foreign(&s, SETTING_direction));
     for (size_t k = 0; k < sizeof plane / sizeof *plane; k++)
         assert_false(problem_foreign(&s, plane[k]));
