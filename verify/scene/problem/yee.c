@@ -11,12 +11,11 @@
 
 static const double strength = 5;
 
+/* Its centre is warm for every gamma: T = 1 - 1.72 (gamma - 1)/(2 gamma). */
 static enum status prepare(struct prepared *p, struct settings *settings, struct error *error)
 {
-    (void)settings;
-    if (vortex_yee(0, strength, p->gamma).P > 0) return STATUS_OK;
-    return error_set(error, STATUS_BAD_INPUT,
-                     "gamma=%g: the vortex would be colder than nothing in its centre", p->gamma);
+    (void)p, (void)settings, (void)error;
+    return STATUS_OK;
 }
 
 static void sample(const struct prepared *p, const double x[3], double t,
