@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The gases of a tube that was made of keys, solved, for the tests of tubes. Include after
+ * cmocka.h.
+ */
+#ifndef GASES_H
+#define GASES_H
+
+#include "prepared.h"
+#include "riemann.h"
+
+/* A tube's two gases, solved as it is and the other way round. */
+struct gases {
+    struct riemann_state left, right;
+    struct riemann_solution main, mirror;
+};
+
+static inline struct gases gases_of(double gamma, const struct settings *settings)
+{
+    const double *l = settings->value[SETTING_left].real, *r = settings->value[SETTING_right].real;
+    struct gases gases = {.left = {l[0], l[1], l[2]}, .right = {r[0], r[1], r[2]}};
+    assert_null(riemann_solve(gamma, &gases.left, &gases.right, &gases.main));
+    assert_null(riemann_solve(gamma, &gases.right, &gases.left, &gases.mirror));
+    return gases;
+}
+
+#endif

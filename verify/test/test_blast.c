@@ -1,0 +1,449 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Problems of gas that falls onto a centre or flies away from it: windows, samples, particles, up
+ * to when they hold, and what is measured of them, on states made by hand. Their solutions: the
+ * checks `exact blast` and `exact flow`. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <cmocka.h>
+
+#include "disc.h"
+#include "near.h"
+#include "noh.h"
+#include "prepared.h"
+#include "sedov.h"
+#include "shells.h"
+
+enum { N = 300 }; /* and one behind them, which nobody may count */
+
+/* Particles anywhere in a box, the first of them in its middle. */
+struct cloud {
+    double x[3][N + 1], v[3][N + 1], m[N + 1], volume[N + 1];
+    struct snapshot snapshot;
+};
+
+static void scatter(struct cloud *cloud, const struct prepared *p, double time)
+{
+    for (int i = 0; i <= N; i++) {
+        for (int d = 0; d < 3; d++) {
+            const double lo = p->domain.lo[d],
+                         length = d < p->domain.dim ? domain_length(&p->domain, d) : 1;
+            cloud->x[d][i] = lo + length * fmod((0.6180339887 + 0.1317 * d) * i + 0.5, 1);
+            cloud->v[d][i] = sin(3.3 * i + d);
+        }
+        cloud->m[i] = 1 + 0.2 * cos(2.1 * i);
+        cloud->volume[i] = 0.01 * (1 + 0.4 * sin(4.9 * i));
+    }
+    cloud->snapshot = (struct snapshot){.n = N,
+                                        .x = {cloud->x[0], cloud->x[1], cloud->x[2]},
+                                        .v = {cloud->v[0], cloud->v[1], cloud->v[2]},
+                                        .m = cloud->m,
+                                        .volume = cloud->volume,
+                                        .time = time};
+}
+
+/* Of the same bits, or both unknown. */
+static void same(double a, double b)
+{
+    if (!(a == b || (isnan(a) && isnan(b)))) fail_msg("%.17g is not %.17g", a, b);
+}
+
+static double measured(const struct prepared *p, const char *name, const struct snapshot *s)
+{
+    return prepared_functional(p, name)->measure(p, s);
+}
+
+static double exactly(const struct prepared *p, const char *name, double t)
+{
+    return prepared_functional(p, name)->exact(p, t);
+}
+
+/* Of a place that lies a distance r from the middle, in the direction "2 -1 2" of so many
+ * dimensions, n; nothing of what was in the state is left. */
+static struct problem_state sampled(const struct prepared *p, double r, double t, double n[3])
+{
+    static const double way[3] = {2, -1, 2}, sizes[4] = {1, 2, 2.23606797749979, 3};
+    struct problem_state state = {7, {7, 7, 7}, 7, 7};
+    double x[3] = {9, 9, 9};
+    for (int d = 0; d < 3; d++) {
+        n[d] = d < p->domain.dim ? way[d] / sizes[p->domain.dim] : 0;
+        if (d < p->domain.dim) x[d] = p->window.centre[d] + r * n[d];
+    }
+    p->problem->sample(p, x, t, &state);
+    return state;
+}
+
+/* The last time at which the problem holds, to the last bit. */
+static double last_time(const struct prepared *p)
+{
+    double lo = 0, hi = 100;
+    assert_true(p->problem->holds(p, lo) && !p->problem->holds(p, hi));
+    while (nextafter(lo, hi) < hi) {
+        const double middle = lo + 0.5 * (hi - lo);
+        *(p->problem->holds(p, middle) ? &lo : &hi) = middle;
+    }
+    return lo;
+}
+
+static void lasts_until(const struct prepared *p, double t)
+{
+    assert_true(p->problem->holds(p, t) && !p->problem->holds(p, t * (1 + 1e-14)));
+}
+
+static void refused_late(const struct prepared *p, double t, const char *format, double longest,
+                         double more)
+{
+    struct error error = {0};
+    char words[300];
+    assert_int_equal(problem_check_time(p, t, &error), STATUS_BAD_INPUT);
+    if (more > 0)
+        snprintf(words, sizeof words, format, t, more, longest * (1 - 1e-3));
+    else
+        snprintf(words, sizeof words, format, t, longest * (1 - 1e-3));
+    assert_string_equal(error.message, words);
+}
+
+/* ---- Noh's collision ---- */
+
+static void gas_falls_in_a_ball(void **state)
+{
+    (void)state;
+    for (int dim = 1; dim <= 3; dim++)
+        for (int k = 0; k < 2; k++) {
+            struct settings s;
+            char keys[128];
+            static const char *const boxes[] = {"lo=-1.5|hi=0.5", "lo=-1 -2|hi=1 1",
+                                                "lo=0 0 -1|hi=4 2 2"};
+            snprintf(keys, sizeof keys, "kind=noh|gamma=%s|%s", k ? "3" : "1.6", boxes[dim - 1]);
+            const struct prepared p = prepared_of(&s, dim, keys);
+            const double radius = 0.5, gamma = k ? 3 : 1.6; /* a quarter of the shortest side, 2 */
+            for (int d = 0; d < dim; d++) {
+                near_relative(p.window.hi[d] - p.window.centre[d], 0.15, 1e-14);
+                near_relative(p.window.centre[d] - p.window.lo[d], 0.15, 1e-14);
+            }
+            if (dim > 1)
+                near_relative(p.window.radius, 0.15, 1e-14);
+            else
+                assert_true(p.window.radius == 0);
+            for (int i = 0; i <= 40; i++)
+                for (int j = 0; j < 4; j++) {
+                    const double r = i / 64., t = 0.125 * j;
+                    double n[3];
+                    const struct problem_state have = sampled(&p, r, t, n);
+                    const struct noh_state want = noh_sample(gamma, dim, r, t);
+                    if (dim > 1 &&
+                        (fabs(r - noh_shock(gamma, t)) < 1e-9 || fabs(r + t - radius) < 1e-9))
+                        continue; /* only on a line places are exact */
+                    const bool gas = r < noh_shock(gamma, t) || r + t < radius;
+                    for (int d = 0; d < 3; d++) near_absolute(have.v[d] - want.v * n[d], 0, 1e-14);
+                    if (i == 0) assert_true(have.v[0] == 0);
+                    if (!gas) {
+                        assert_true(have.rho == 0 && have.P == 0 && have.u == 0);
+                        continue;
+                    }
+                    near_relative(have.rho, want.rho, 1e-13);
+                    near_relative(have.P, want.P > 0 ? want.P : 1e-6 * pow(want.rho, gamma), 1e-12);
+                    near_relative(have.u, have.P / ((gamma - 1) * have.rho), 1e-14);
+                }
+        }
+    struct settings s;
+    struct prepared p = prepared_of(&s, 1, "kind=noh|window=-0.125 0.25");
+    assert_true(p.window.lo[0] == -0.125 && p.window.hi[0] == 0.25 && p.window.radius == 0);
+    p = prepared_of(&s, 2, "kind=noh|window_radius=0.25");
+    assert_true(p.window.lo[0] == -1 && p.window.hi[1] == 1 && p.window.radius == 0.25);
+    p = prepared_of(&s, 2, "kind=noh|window=-0.125 0.25");
+    assert_true(p.window.lo[0] == -0.125 && p.window.lo[1] == -1 && p.window.radius == 0);
+    /* particles of the ball alone, as many as asked for */
+    p = prepared_of(&s, 2, "kind=noh|lo=-1 -2|hi=1 2|n=900");
+    struct initial initial = prepared_filled(&p, &s);
+    double farthest = 0;
+    for (size_t i = 0; i < initial.n; i++)
+        farthest = fmax(farthest, hypot(initial.x[0][i], initial.x[1][i]));
+    near_inside(farthest, 0.47, 0.5);
+    near_inside((double)initial.n, 850, 950);
+    free(initial.storage);
+    s.value[SETTING_lattice].choice = LATTICE_FCC;
+    struct error error;
+    assert_int_equal(p.problem->fill(&p, &s, &initial, &error), STATUS_BAD_INPUT);
+}
+
+static void balls_last_until_their_edge_comes(void **state)
+{
+    (void)state;
+    struct settings s;
+    struct prepared p = prepared_of(&s, 1, "kind=noh|gamma=1.6|window=-0.125 0.25");
+    lasts_until(&p, 0.25); /* the far end counts */
+    p = prepared_of(&s, 1, "kind=noh|gamma=1.6|window=-0.375 0.25");
+    lasts_until(&p, 0.125);
+    refused_late(&p, 0.25,
+                 "t_end=%g: the gas is a ball of radius %g, whose edge falls into the window; "
+                 "allowed: t_end <= %.4g, or a smaller window, or a wider box",
+                 0.125, 0.5);
+    p = prepared_of(&s, 3, "kind=noh|gamma=3|window_radius=0.0625"); /* the shock is as fast */
+    lasts_until(&p, 0.25);
+    p = prepared_of(&s, 2, "kind=noh|gamma=1.6|window_radius=0.25");
+    lasts_until(&p, 0.25);
+    for (int d = 0; d < 2; d++) p.window.lo[d] = -0.125 - 0.0625 * d, p.window.hi[d] = 0.0625;
+    p.window.radius = 0.25; /* its corners are nearer, 0.225 from the middle */
+    near_relative(last_time(&p), 0.5 - hypot(0.125, 0.1875), 1e-14);
+    p.window.radius = 0;
+    near_relative(last_time(&p), 0.5 - hypot(0.125, 0.1875), 1e-14);
+}
+
+static void collisions_are_measured(void **state)
+{
+    (void)state;
+    for (int dim = 1; dim <= 3; dim++)
+        for (int k = 0; k < 3; k++) {
+            struct settings s;
+            struct cloud cloud;
+            struct shells shells;
+            const struct prepared p = prepared_of(&s, dim, "kind=noh|gamma=1.5|lo=-0.75|hi=1.25");
+            const double t = k == 2 ? 1e-6 : 0.9 * k, R = 0.25 * t, dense = pow(5, dim);
+            scatter(&cloud, &p, t);
+            near_relative(exactly(&p, "plateau", t), k ? dense : 1, 1e-14);
+            near_relative(exactly(&p, "centre_density", t), k ? dense : 1, 1e-14);
+            if (k)
+                near_relative(exactly(&p, "shock_radius", t), R, 1e-14);
+            else
+                assert_true(exactly(&p, "shock_radius", t) == 0);
+            /* half-way to the gas ahead of the shock, pressed together by its way */
+            const double level = 0.5 * (dense + pow(1 + 1 / 0.25, dim - 1));
+            for (int i = 0; i <= N; i++) { /* which the density falls through on its way outwards */
+                double r = 0;
+                for (int d = 0; d < dim; d++) r = hypot(r, cloud.x[d][i] - 0.25);
+                cloud.m[i] = 2 * level * cloud.volume[i] / (1 + 3 * r);
+            }
+            shells_make(&shells, &p, &cloud.snapshot);
+            assert_true(shells_crossing(&shells, level) > 0);
+            if (k)
+                near_relative(measured(&p, "shock_radius", &cloud.snapshot),
+                              shells_crossing(&shells, level), 1e-9);
+            else
+                assert_true(measured(&p, "shock_radius", &cloud.snapshot) == 0);
+            same(measured(&p, "plateau", &cloud.snapshot),
+                 k ? shells_mean(&p, &cloud.snapshot, 0.25 * R, 0.75 * R) : 1);
+            same(measured(&p, "centre_density", &cloud.snapshot),
+                 k ? shells_mean(&p, &cloud.snapshot, 0, 0.25 * R) : 1);
+            if (k == 1) /* there is somebody */
+                assert_true(measured(&p, "plateau", &cloud.snapshot) > 0);
+            if (k) assert_true(measured(&p, "centre_density", &cloud.snapshot) > 0);
+            if (k != 1) continue;
+            /* four, a millionth of the radius to either side of the limits of the plateau */
+            const double x[] = {0.25 + 0.25 * R * (1 - 5e-7), 0.25 + 0.25 * R * (1 + 5e-7),
+                                0.25 + 0.75 * R * (1 - 5e-7), 0.25 + 0.75 * R * (1 + 5e-7)},
+                         middle[] = {0.25, 0.25, 0.25, 0.25}, m[] = {1, 2, 4, 8},
+                         V[] = {1, 1, 1, 1};
+            const struct snapshot four = {
+                .n = 4, .x = {x, middle, middle}, .m = m, .volume = V, .time = t};
+            assert_true(measured(&p, "plateau", &four) == 3);
+            assert_true(measured(&p, "centre_density", &four) == 1);
+        }
+}
+
+/* ---- Sedov's blast ---- */
+
+static void blasts_start_from_a_hot_spot(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        struct settings s;
+        const struct prepared p =
+            prepared_of(&s, dim,
+                        dim == 2 ? "kind=sedov|gamma=1.6|lo=-1 0|hi=2 2|n=400"
+                                 : "kind=sedov|gamma=1.6|lo=-1 0 0|hi=2 2 2|n=900");
+        const struct initial initial = prepared_filled(&p, &s);
+        const double volume = dim == 2 ? 6 : 12,
+                     spacing = pow(volume / (double)initial.n, 1. / dim);
+        double sum = 0, energy = 0;
+        int hot = 0;
+        for (int pass = 0; pass < 2; pass++)
+            for (size_t i = 0; i < initial.n; i++) {
+                double r = 0;
+                for (int d = 0; d < dim; d++) r = hypot(r, initial.x[d][i] - (d ? 1 : 0.5));
+                const double q = r / (2.5 * spacing), w = q < 1 ? pow(1 - q * q, 2) : 0;
+                if (pass == 0) {
+                    sum += initial.m[i] * w;
+                    continue;
+                }
+                hot += q < 1;
+                near_relative(initial.u[i], 1e-6 / 0.6 + w / sum, 1e-12);
+                near_relative(initial.m[i], volume / (double)initial.n, 1e-13);
+                assert_true(initial.rho[i] == 1 && initial.v[0][i] == 0);
+                energy += initial.m[i] * initial.u[i];
+            }
+        near_relative(energy, 1 + volume * 1e-6 / 0.6, 1e-12);
+        assert_true(hot > 10 && hot < 100);
+        free(initial.storage);
+        struct initial none = {.n = 3}; /* of before */
+        struct error error;
+        s.value[SETTING_n].real[0] = 0x1p53;
+        assert_int_equal(p.problem->fill(&p, &s, &none, &error), STATUS_ENVIRONMENT);
+    }
+}
+
+static void blasts_run_outwards(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        struct settings s;
+        struct sedov blast;
+        const struct prepared p =
+            prepared_of(&s, dim,
+                        dim == 2 ? "kind=sedov|gamma=1.05|lo=-1 0|hi=2 2"
+                                 : "kind=sedov|gamma=1.05|lo=-1 0 0|hi=2 2 2");
+        assert_null(sedov_solve(1.05, dim, 1, 1, &blast));
+        for (int i = 0; i <= 40; i++)
+            for (int j = 0; j < 3; j++) {
+                const double r = i / 40., t = j == 2 ? 5e-7 : 0.2 * j;
+                double n[3];
+                const struct problem_state have = sampled(&p, r, t, n);
+                struct sedov_state want = {1, 0, 0};
+                if (j) want = sedov_sample(&blast, r, t);
+                if (want.rho > 0) {
+                    near_relative(have.rho, want.rho, 1e-10);
+                    near_relative(have.u, have.P / ((p.gamma - 1) * have.rho), 1e-14);
+                } else
+                    assert_true(have.rho == 0 && have.u == 0);
+                near_relative(have.P, fmax(want.P, 1e-6), 1e-11);
+                for (int d = 0; d < 3; d++)
+                    near_absolute(have.v[d] - want.v * n[d], 0, 1e-12 * (1 + fabs(want.v)));
+                if (i == 0) assert_true(have.v[0] == 0);
+                if (i == 0 && j) assert_true(have.rho == 0); /* too thin for a number */
+            }
+        /* as long as the shock is within 9/10 of the way to the nearest end */
+        const double last = last_time(&p);
+        assert_true(sedov_shock(&blast, last) <= 0.9 * 1 &&
+                    sedov_shock(&blast, nextafter(last, 9)) > 0.9 * 1);
+        refused_late(&p, 3,
+                     "t_end=%g: the box is periodic, and the shock comes to its ends (it would be "
+                     "at %.4g); allowed: t_end <= %.4g, or a wider box",
+                     last, sedov_shock(&blast, 3));
+    }
+    prepared_refused(2, "kind=sedov|gamma=2",
+                     "no exact solution: gamma must be no nearer to 2 than 1e-3");
+}
+
+static void blasts_are_measured(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++)
+        for (int k = 0; k < 3; k++) {
+            struct settings s;
+            struct cloud cloud;
+            struct shells shells;
+            struct sedov blast;
+            const double t = k == 2 ? 5e-7 : 0.3 * k;
+            const struct prepared p = prepared_of(&s, dim, "kind=sedov|gamma=1.6|lo=-0.75|hi=1.25");
+            assert_null(sedov_solve(1.6, dim, 1, 1, &blast));
+            scatter(&cloud, &p, t);
+            for (int i = 0; i <= N; i++) cloud.m[i] *= 0.02;
+            shells_make(&shells, &p, &cloud.snapshot);
+            const double top = shells_peak(&shells);
+            near_relative(measured(&p, "peak_density", &cloud.snapshot), top, 1e-15);
+            near_relative(exactly(&p, "peak_density", t), k ? 2.6 / 0.6 : 1, 1e-14);
+            if (k) {
+                assert_true(shells_crossing(&shells, 0.5 * (1 + top)) > 0);
+                same(measured(&p, "shock_radius", &cloud.snapshot),
+                     shells_crossing(&shells, 0.5 * (1 + top)));
+                near_relative(exactly(&p, "shock_radius", t), sedov_shock(&blast, t), 1e-15);
+            } else {
+                assert_true(measured(&p, "shock_radius", &cloud.snapshot) == 0);
+                assert_true(exactly(&p, "shock_radius", t) == 0);
+            }
+        }
+}
+
+/* ---- the spinning disc ---- */
+
+static void discs_fly_apart(void **state)
+{
+    (void)state;
+    struct settings s;
+    struct prepared p = prepared_of(&s, 2, "kind=rotation|gamma=2|lo=-1 0|hi=3 2.5");
+    const double unit = 0.5; /* a fifth of the shorter side */
+    near_relative(p.window.radius, unit, 1e-15);
+    for (int i = 0; i <= 40; i++)
+        for (int j = 0; j < 3; j++) {
+            const double r = 0.0313 * i, t = 0.4 * j;
+            double n[3];
+            const struct problem_state have = sampled(&p, r, t, n);
+            const struct disc_state want = disc_sample(1, 0.25, r / unit, t);
+            assert_true((have.rho > 0) == (r < unit * disc_radius(1, 0.25, t)));
+            near_absolute(have.rho - want.rho, 0, 1e-14);
+            near_absolute(have.P - unit * unit * want.P, 0, 1e-15);
+            near_absolute(have.v[0] - unit * (want.v_out * n[0] - want.v_along * n[1]), 0, 1e-14);
+            near_absolute(have.v[1] - unit * (want.v_out * n[1] + want.v_along * n[0]), 0, 1e-14);
+            assert_true(have.v[2] == 0);
+            if (i == 0) assert_true(have.v[0] == 0 && have.v[1] == 0);
+            if (have.rho > 0)
+                near_relative(have.u, have.P / have.rho, 1e-14);
+            else
+                assert_true(have.P == 0 && have.u == 0);
+        }
+    const double last = last_time(&p);
+    assert_true(disc_radius(1, 0.25, last) <= 2.25 &&
+                disc_radius(1, 0.25, nextafter(last, 9)) > 2.25);
+    refused_late(&p, 3,
+                 "t_end=%g: the box is periodic, and the disc comes to its ends; allowed: t_end <= "
+                 "%.4g, or a wider box",
+                 last, 0);
+    struct initial initial = prepared_filled(&p, &s);
+    for (size_t i = 0; i < initial.n; i++)
+        assert_true(hypot(initial.x[0][i] - 1, initial.x[1][i] - 1.25) <= unit);
+    assert_true(initial.n > 400);
+    free(initial.storage);
+    s.value[SETTING_lattice].choice = LATTICE_FCC;
+    struct error error;
+    assert_int_equal(p.problem->fill(&p, &s, &initial, &error), STATUS_BAD_INPUT);
+
+    p = prepared_of(&s, 2, "kind=rotation|gamma=2|lo=-1 0|hi=1 4");
+    near_relative(p.window.radius, 0.4, 1e-15);
+    p = prepared_of(&s, 2, "kind=rotation|gamma=2|window_radius=0.125");
+    assert_true(p.window.radius == 0.125);
+    p = prepared_of(&s, 2, "kind=rotation|gamma=2|window=-0.5 0.5");
+    assert_true(p.window.radius == 0);
+    p = prepared_of(&s, 2, "kind=rotation|gamma=2.0000000000009");
+    p = prepared_of(&s, 2, "kind=rotation|gamma=1.9999999999991");
+    prepared_refused(2, "kind=rotation|gamma=2.0000000000011",
+                     "gamma=2: the expansion of a spinning disc is known for gamma=2");
+    prepared_refused(2, "kind=rotation|gamma=1.9999999999989", "known for gamma=2");
+}
+
+static void discs_are_measured(void **state)
+{
+    (void)state;
+    struct settings s;
+    struct cloud cloud;
+    const struct prepared p = prepared_of(&s, 2, "kind=rotation|gamma=2|lo=-1 0|hi=3 2.5");
+    scatter(&cloud, &p, 0.5);
+    double mass = 0, inertia = 0, turning = 0;
+    for (int i = 0; i < N; i++) {
+        const double x = cloud.x[0][i] - 1, y = cloud.x[1][i] - 1.25;
+        mass += cloud.m[i];
+        inertia += cloud.m[i] * (x * x + y * y);
+        turning += cloud.m[i] * (x * cloud.v[1][i] - y * cloud.v[0][i]);
+    }
+    near_relative(measured(&p, "disc_radius", &cloud.snapshot), sqrt(2 * inertia / mass), 1e-12);
+    near_relative(measured(&p, "angular_speed", &cloud.snapshot), turning / inertia, 1e-11);
+    near_relative(exactly(&p, "disc_radius", 0.8), 0.5 * sqrt(1 + 1.5 * 0.64), 1e-14);
+    near_relative(exactly(&p, "angular_speed", 0.8), 1 / (1 + 1.5 * 0.64), 1e-14);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(gas_falls_in_a_ball),
+        cmocka_unit_test(balls_last_until_their_edge_comes),
+        cmocka_unit_test(collisions_are_measured),
+        cmocka_unit_test(blasts_start_from_a_hot_spot),
+        cmocka_unit_test(blasts_run_outwards),
+        cmocka_unit_test(blasts_are_measured),
+        cmocka_unit_test(discs_fly_apart),
+        cmocka_unit_test(discs_are_measured),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
