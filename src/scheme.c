@@ -117,7 +117,8 @@ static enum status out_of_range(struct error *error, const char *key, double val
 enum status scheme_check(const struct scheme *scheme, int dim, struct error *error)
 {
     const double least_eta = kernel_least_eta(&scheme->kernel, dim);
-    if (check_members(scheme, dim, error)) return error->status;
+    const enum status members = check_members(scheme, dim, error);
+    if (members) return members;
     if (!(scheme->eta > least_eta) || !isfinite(scheme->eta))
         return error_set(error, STATUS_BAD_INPUT,
                          "eta = %g: h = eta (m/rho)^(1/%d) has no root with the kernel %s unless "

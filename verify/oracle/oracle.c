@@ -218,7 +218,8 @@ static enum status find_state(struct oracle *oracle, struct error *error)
 {
     const bool energy = oracle->scheme.volume_element == VOLUME_ENERGY;
     const bool predicted = oracle->scheme.h_method != H_NEWTON && oracle->last_dt > 0;
-    if (find_primitives(oracle, error)) return error->status;
+    const enum status primitives = find_primitives(oracle, error);
+    if (primitives) return primitives;
     oracle_find_distances(oracle);
     for (size_t i = 0; i < oracle->n; i++) {
         struct oracle_particle *a = &oracle->particles[i];

@@ -10,6 +10,7 @@
 
 #include <math.h>
 
+#include "near.h"
 #include "run.h"
 #include "value.h"
 
@@ -76,11 +77,182 @@ static void on_a_line(void **state)
     run_free(&result);
 }
 
+/* ---- on sums that are made here ---- */
+
+static struct conservation sums_at(double k)
+{
+    return (struct conservation){.mass = 2 - 0.25 * k,
+                                 .momentum = {1 + k, 2, 3},
+                                 .momentum_scale = 100 + k,
+                                 .sound_scale = 7,
+                                 .energy = -4 - k,
+                                 .angular_momentum = {0, 5, 6 - 2 * k},
+                                 .angular_scale = 1000,
+                                 .turning_scale = 9};
+}
+
+/* Every step at first; then every second one, and so on: what is kept is spaced evenly, and has the
+ * start and what came with each time. */
+static void thins_evenly(void **state)
+{
+    static struct trace trace;
+    (void)state;
+    trace = (struct trace){0};
+    assert_true(trace_wants(&trace, 0) && trace_wants(&trace, 7));
+    for (uint64_t step = 0; step <= 5 * TRACE_MAX; step++) {
+        const struct conservation sums = sums_at((double)step);
+        const uint64_t stride = step <= TRACE_MAX       ? 1
+                                : step <= 2 * TRACE_MAX ? 2
+                                : step <= 4 * TRACE_MAX ? 4
+                                                        : 8;
+        if (step) assert_true(trace_wants(&trace, step) == (step % trace.stride == 0));
+        if (!trace_wants(&trace, step)) continue;
+        trace_add(&trace, 0.5 * (double)step, &sums);
+        if (step < TRACE_MAX) assert_true(trace.stride == 1 && trace.count == step + 1);
+        if (step % TRACE_MAX) assert_true(trace.stride == stride);
+        assert_true(trace.count <= TRACE_MAX);
+        for (size_t k = 0; k < trace.count; k++) {
+            const double at = (double)(k * trace.stride);
+            assert_true(trace.time[k] == 0.5 * at && trace.sums[k].mass == sums_at(at).mass &&
+                        trace.sums[k].energy == sums_at(at).energy);
+        }
+    }
+    assert_int_equal(trace.stride, 8);
+    assert_int_equal(trace.count, 5 * TRACE_MAX / 8 + 1);
+}
+
+/* The end replaces an entry of the same time, and no other. */
+static void ends_once(void **state)
+{
+    static struct trace trace;
+    const struct regularity a = {.nearest = 1}, b = {.nearest = 2};
+    (void)state;
+    trace = (struct trace){0};
+    for (int k = 0; k < 3; k++) {
+        const struct conservation sums = sums_at(k);
+        trace_add(&trace, k < 2 ? k : 1, &sums);
+    }
+    assert_int_equal(trace.count, 2);
+    assert_true(trace.time[0] == 0 && trace.time[1] == 1);
+    assert_true(trace.sums[0].mass == 2 && trace.sums[1].mass == 1.5);
+    trace_see(&trace, 0, &a);
+    trace_see(&trace, 1, &a);
+    trace_see(&trace, 1, &b);
+    assert_int_equal(trace.looks, 2);
+    assert_true(trace.looked[0] == 0 && trace.looked[1] == 1);
+    assert_true(trace.seen[0].nearest == 1 && trace.seen[1].nearest == 2);
+}
+
+/* At the start, at the first time at or after each sixteenth, and no more. */
+static void looks_at_even_times(void **state)
+{
+    static struct trace trace;
+    const struct regularity any = {0};
+    (void)state;
+    trace = (struct trace){0};
+    for (size_t k = 0; k <= TRACE_LOOKS; k++) {
+        const double due = 2 * (double)k / TRACE_LOOKS;
+        if (k) assert_false(trace_looks(&trace, nextafter(due, 0), 2));
+        assert_true(trace_looks(&trace, due, 2) && trace_looks(&trace, due + 0.01, 2));
+        trace_see(&trace, due, &any);
+    }
+    assert_false(trace_looks(&trace, 2, 2) || trace_looks(&trace, 100, 2));
+    trace_see(&trace, 3, &any); /* room for the end */
+    assert_int_equal(trace.looks, TRACE_LOOKS + 2);
+}
+
+static void drifts(void **state)
+{
+    struct conservation start = sums_at(0), now = sums_at(1), end = sums_at(2);
+    struct trace_drift drift;
+    (void)state;
+    now.momentum[1] = 4, now.momentum[2] = 5; /* by 1, 2, 2 */
+    now.angular_momentum[0] = 2, now.angular_momentum[1] = 4, now.angular_momentum[2] = 4;
+    drift = trace_drift(&start, &now, &end);
+    near_relative(drift.mass, 0.125, 1e-15);
+    near_relative(drift.momentum, 3 / 102., 1e-15);
+    near_relative(drift.angular_momentum, 3 / 1000., 1e-15);
+    near_relative(drift.energy, 0.25, 1e-15);
+    /* on a line the difference itself, of either sign, however small */
+    for (int sign = -1; sign <= 1; sign += 2) {
+        now.momentum[0] = start.momentum[0] + sign * 0.5;
+        now.momentum[1] = start.momentum[1], now.momentum[2] = start.momentum[2];
+        near_relative(trace_drift(&start, &now, &end).momentum, 0.5 / 102, 1e-15);
+    }
+    start.momentum[0] = 0, now.momentum[0] = 1e-200;
+    near_relative(trace_drift(&start, &now, &end).momentum, 1e-200 / 102, 1e-15);
+    /* the other scale where the first one vanishes beside it */
+    end.momentum_scale = nextafter(1e-12 * end.sound_scale, 1);
+    near_relative(trace_drift(&start, &now, &end).momentum, 1e-200 / 7e-12, 1e-12);
+    end.momentum_scale = 1e-12 * end.sound_scale;
+    near_relative(trace_drift(&start, &now, &end).momentum, 1e-200 / 7, 1e-15);
+    end.angular_scale = 1e-12 * end.turning_scale;
+    near_relative(trace_drift(&start, &now, &end).angular_momentum, 3 / 9., 1e-15);
+}
+
+static void is(const json_t *lists, const char *name, size_t k, double value)
+{
+    const double got = value_real(json_array_get(json_object_get(lists, name), k));
+    if (!(fabs(got - value) <= 1e-14 * fabs(value)))
+        fail_msg("%s %zu: %.17g, not %.17g", name, k, got, value);
+}
+
+static void says_it_all(void **state)
+{
+    static struct trace trace;
+    (void)state;
+    trace = (struct trace){0};
+    for (int k = 0; k < 3; k++) {
+        const struct conservation sums = sums_at(k);
+        trace_add(&trace, 0.25 * k, &sums);
+    }
+    for (int k = 0; k < 2; k++) {
+        const struct regularity seen = {k + 1, k + 2, k + 3, k + 4, k + 5};
+        trace_see(&trace, 0.5 * k, &seen);
+    }
+    json_t *json = trace_json(&trace, 2);
+    const json_t *regularity = json_object_get(json, "regularity");
+    assert_int_equal(json_object_size(json), 6);
+    assert_int_equal(json_object_size(regularity), 6);
+    for (size_t k = 0; k < 3; k++) {
+        const double x = (double)k;
+        is(json, "time", k, 0.25 * x);
+        is(json, "mass", k, 0.125 * x);
+        is(json, "momentum", k, x / 102);
+        is(json, "angular_momentum", k, 2 * x / 1000);
+        is(json, "energy", k, x / 4);
+    }
+    static const char *const names[] = {"nearest", "spread", "paired", "density", "gradient"};
+    for (size_t k = 0; k < 2; k++) {
+        is(regularity, "time", k, 0.5 * (double)k);
+        for (size_t i = 0; i < 5; i++) is(regularity, names[i], k, (double)(k + 1 + i));
+    }
+    static const char *const lists[] = {"time", "mass", "momentum", "angular_momentum", "energy"};
+    for (size_t i = 0; i < 5; i++) {
+        assert_int_equal(json_array_size(json_object_get(json, lists[i])), 3);
+        assert_int_equal(json_array_size(json_object_get(regularity, names[i])), 2);
+    }
+    json_decref(json);
+    json = trace_json(&trace, 1);
+    assert_true(json_is_null(json_object_get(json, "angular_momentum")));
+    json_decref(json);
+    json = trace_json(&trace, 3);
+    assert_true(json_is_array(json_object_get(json, "angular_momentum")));
+    json_decref(json);
+    trace = (struct trace){0};
+    json = trace_json(&trace, 2);
+    assert_int_equal(json_array_size(json_object_get(json, "time")), 0);
+    assert_int_equal(json_object_size(json_object_get(json, "regularity")), 1);
+    json_decref(json);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(ends_with_the_run),
-        cmocka_unit_test(on_a_line),
+        cmocka_unit_test(ends_with_the_run),   cmocka_unit_test(on_a_line),
+        cmocka_unit_test(thins_evenly),        cmocka_unit_test(ends_once),
+        cmocka_unit_test(looks_at_even_times), cmocka_unit_test(drifts),
+        cmocka_unit_test(says_it_all),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,202 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What a case is judged by, in which order, and the one error of a run with the signal it is
+ * compared with, on results that are made here. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "judged.h"
+#include "near.h"
+
+enum { N = 5 };
+static const double x[2][N] = {{0.1, 0.4, 0.5, 0.9, 0.7}, {0.2, 0.3, 0.8, 0.1, 0.6}};
+static const double volume[N] = {0.1, 0.25, 0.3, 0.15, 0.2};
+static const bool inside[N] = {false, true, true, false, true};
+static bool still; /* the exact velocity is the same everywhere */
+
+static void sample(const struct prepared *p, const double at[3], double t, struct problem_state *s)
+{
+    (void)p;
+    *s = (struct problem_state){.rho = 1 + at[0] * at[0] + 2 * at[1],
+                                .v = {still ? 0 : at[0], still ? 3 : at[1] * at[1], 0},
+                                .P = 3 + at[1] + t,
+                                .u = 2};
+}
+
+static struct problem problem; /* of the result; what the case's file names has the names */
+
+/* A result in two dimensions, of particles in a window that three of them are in. */
+static void make(struct run_settings *settings, struct run_result *result, const char *name)
+{
+    struct error error;
+    struct run run;
+    if (run_prepare(settings, name, 0, NULL, &error) || run_resolve(&run, settings, &error))
+        fail_msg("%s", error.message);
+    *result = (struct run_result){.settings = run.settings, .problem = run.problem, .n = N};
+    problem = *run.problem.problem;
+    problem.sample = sample;
+    result->problem.problem = &problem;
+    result->problem.gamma = 1.5;
+    result->problem.window =
+        (struct window){.dim = 2, .lo = {0.3, 0.25}, .hi = {0.8, 0.9}, .centre = {0.55, 0.575}};
+    result->time = 0.5;
+    result->snapshot = (struct snapshot){.n = N, .x = {x[0], x[1]}, .volume = volume, .time = 0.5};
+    for (int f = 0; f < FIELDS; f++)
+        result->errors[f] = (struct norms){.l1 = 0.01 * (f + 1), .l1_cut = 0.1 * (f + 1)};
+    result->azimuthal.l1 = 0.77;
+    result->radial.l1 = 0.88;
+}
+
+static void names_are(const struct case_file *file, size_t count, const char *const *functionals,
+                      const double *exact, size_t n, const char *const *want)
+{
+    const char *names[JUDGED_MAX];
+    assert_int_equal(judged_names(file, count, functionals, exact, names), n);
+    for (size_t i = 0; i < n; i++) assert_string_equal(names[i], want[i]);
+}
+
+/* Parts of a circular flow, fields with a gate, fields without one; functionals where no field is
+ * known, and then those only that have an exact value. */
+static void names(void **state)
+{
+    static const char *const functionals[] = {"growth_rate", "mode_noise", "mode_error"};
+    static const double exact[] = {1.7, (double)NAN, 0};
+    struct run_settings settings;
+    struct run_result result;
+    struct case_file *file = &settings.file;
+    (void)state;
+    make(&settings, &result, "gresho");
+    memset(file->fields, 0, sizeof file->fields);
+    file->fields[FIELD_DENSITY] = file->fields[FIELD_VELOCITY] = true;
+    file->fields[FIELD_INTERNAL_ENERGY] = true;
+    file->gate_count = 3;
+    file->gates[0] = (struct case_gate){.functional = "disc_error", .field = FIELD_DENSITY};
+    file->gates[1] = (struct case_gate){.field = FIELD_INTERNAL_ENERGY, .norm = NORM_L2};
+    file->gates[2] = (struct case_gate){.field = FIELD_PRESSURE};
+    names_are(
+        file, 3, functionals, exact, 5,
+        (const char *const[]){"azimuthal", "radial", "internal_energy", "density", "velocity"});
+    file->gates[3] = (struct case_gate){.field = FIELD_DENSITY}; /* one too many */
+    names_are(
+        file, 0, NULL, NULL, 5,
+        (const char *const[]){"azimuthal", "radial", "internal_energy", "density", "velocity"});
+    file->gate_count = 0;
+    file->dimension = 1;
+    names_are(file, 3, functionals, exact, 3,
+              (const char *const[]){"density", "velocity", "internal_energy"});
+    make(&settings, &result, "noh_2d"); /* to its middle, not round it */
+    memset(file->fields, 0, sizeof file->fields);
+    file->fields[FIELD_PRESSURE] = true;
+    names_are(file, 3, functionals, exact, 1, (const char *const[]){"pressure"});
+    make(&settings, &result, "kelvin_helmholtz_mode");
+    names_are(file, 3, functionals, exact, 2, (const char *const[]){"growth_rate", "mode_error"});
+    names_are(file, 1, functionals, exact, 1, (const char *const[]){"growth_rate"});
+    names_are(file, 0, NULL, NULL, 0, NULL);
+}
+
+/* The mean distance of a field from its mean, by volume, over the particles in the window. */
+static double signal_of(int components, double value[N][2])
+{
+    double mean[2] = {0, 0}, all = 0, sum = 0;
+    for (int i = 0; i < N; i++)
+        for (int d = 0; d < 2 && inside[i]; d++) mean[d] += volume[i] * value[i][d];
+    for (int i = 0; i < N; i++) all += inside[i] ? volume[i] : 0;
+    for (int i = 0; i < N; i++) {
+        const double a = value[i][0] - mean[0] / all, b = value[i][1] - mean[1] / all;
+        sum += inside[i] ? volume[i] * (components > 1 ? hypot(a, b) : fabs(a)) : 0;
+    }
+    return sum / all;
+}
+
+static void judged_is(const struct run_settings *settings, const struct run_result *result,
+                      const char *name, double error, double signal)
+{
+    struct judged judged;
+    judged_of(&settings->file, result, &judged);
+    assert_string_equal(judged.name, name);
+    near_relative(judged.error, error, 1e-15);
+    near_relative(judged.signal, signal, 1e-14);
+}
+
+static void fields(void **state)
+{
+    struct run_settings settings;
+    struct run_result result;
+    double rho[N][2] = {{0}}, v[N][2], P[N][2] = {{0}}, sound = 0, all = 0;
+    (void)state;
+    still = false;
+    make(&settings, &result, "square");
+    memset(settings.file.fields, 0, sizeof settings.file.fields);
+    settings.file.gate_count = 0;
+    for (int i = 0; i < N; i++) {
+        rho[i][0] = 1 + x[0][i] * x[0][i] + 2 * x[1][i];
+        v[i][0] = x[0][i], v[i][1] = x[1][i] * x[1][i];
+        P[i][0] = 3.5 + x[1][i];
+        if (!inside[i]) continue;
+        sound += volume[i] * sqrt(1.5 * P[i][0] / rho[i][0]);
+        all += volume[i];
+    }
+    settings.file.fields[FIELD_PRESSURE] = true;
+    judged_is(&settings, &result, "pressure", 0.03, signal_of(1, P));
+    settings.file.fields[FIELD_VELOCITY] = true;
+    judged_is(&settings, &result, "velocity", 0.02, signal_of(2, v));
+    settings.file.fields[FIELD_DENSITY] = true;
+    judged_is(&settings, &result, "density", 0.01, signal_of(1, rho));
+    /* what is the same everywhere: its size, of a velocity the sound speed, by volume */
+    memset(settings.file.fields, 0, sizeof settings.file.fields);
+    settings.file.fields[FIELD_INTERNAL_ENERGY] = true;
+    judged_is(&settings, &result, "internal_energy", 0.04, 2);
+    settings.file.fields[FIELD_VELOCITY] = still = true;
+    judged_is(&settings, &result, "velocity", 0.02, sound / all);
+    still = false;
+    make(&settings, &result, "gresho");
+    judged_is(&settings, &result, "azimuthal", 0.77, signal_of(2, v));
+    /* on a line the density, cut at the window's edge, and bench knows the signal */
+    struct judged judged;
+    result.problem.domain.dim = 1;
+    judged_of(&settings.file, &result, &judged);
+    assert_string_equal(judged.name, "density");
+    assert_true(judged.error == 0.1 && isnan(judged.signal));
+}
+
+static void functionals(void **state)
+{
+    struct run_settings settings;
+    struct run_result result;
+    struct judged judged;
+    (void)state;
+    make(&settings, &result, "kelvin_helmholtz_mode");
+    result.functionals[0] = (struct run_functional){"mode_noise", 5, (double)NAN};
+    result.functionals[1] = (struct run_functional){"growth_rate", 1.5, -2};
+    result.functionals[2] = (struct run_functional){"mode_error", 7, 6};
+    result.functional_count = 3;
+    judged_is(&settings, &result, "growth_rate", 3.5, 2);
+    result.functionals[1].exact = 2;
+    judged_is(&settings, &result, "growth_rate", 0.5, 2);
+    result.functionals[1].exact = 0;
+    judged_is(&settings, &result, "growth_rate", 1.5, 1);
+    result.functional_count = 1; /* nothing is exact */
+    judged_of(&settings.file, &result, &judged);
+    assert_string_equal(judged.name, "");
+    assert_true(isnan(judged.error) && isnan(judged.signal));
+    /* a field's own error is not a functional's, whatever is called like it */
+    make(&settings, &result, "square");
+    memset(settings.file.fields, 0, sizeof settings.file.fields);
+    settings.file.fields[FIELD_INTERNAL_ENERGY] = true;
+    result.functionals[0] = (struct run_functional){"internal_energy", 9, 4};
+    result.functional_count = 1;
+    judged_is(&settings, &result, "internal_energy", 0.04, 2);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(names),
+        cmocka_unit_test(fields),
+        cmocka_unit_test(functionals),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,611 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * One evaluation in the order of the scene, and rates of others against it: what is said of the
+ * differences, by how much, and what each of them comes from. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "near.h"
+#include "oracle.h"
+#include "rate_check.h"
+#include "settings.h"
+
+enum { MOST = 64, KEYS = 16 };
+
+/* Particles that are not in order, all different. */
+struct gas {
+    double x[3][MOST], v[3][MOST], m[MOST], u[MOST];
+    struct scene scene;
+};
+
+static double noise(unsigned *random)
+{
+    *random = *random * 1664525u + 1013904223u;
+    return (double)(*random >> 8) / (1 << 24);
+}
+
+/* The scheme of words such as "eta=2.4 beta=1"; gamma is a key as well. */
+static void set_scheme(struct scene *scene, const char *words)
+{
+    char text[400], *rest = text, *keys[KEYS], *word;
+    struct settings settings;
+    struct error error;
+    int n = 0;
+    snprintf(text, sizeof text, "%s", words);
+    while ((word = strtok_r(rest, " ", &rest)) && n < KEYS) keys[n++] = word;
+    settings_init(&settings);
+    if (settings_apply(&settings, n, keys, &error) ||
+        settings_scheme(&settings, scene->dim, &scene->scheme, &error))
+        fail_msg("%s: %s", words, error.message);
+    scene->gamma = settings_real(&settings, SETTING_gamma);
+}
+
+/* side^dim particles in the periodic unit box, off a lattice, each step along it another one. */
+static void make(struct gas *gas, int dim, size_t side, const char *words)
+{
+    unsigned random = 2385;
+    size_t n = 1;
+    for (int a = 0; a < dim; a++) n *= side;
+    assert_true(n <= MOST);
+    for (size_t k = 0; k < n; k++) {
+        const size_t i = k * 5 % n; /* in another order than they lie */
+        size_t rest = k;
+        for (int a = 0; a < 3; a++, rest /= side) {
+            gas->x[a][i] =
+                ((double)(rest % side) + 0.5 + 0.3 * (noise(&random) - 0.5)) / (double)side;
+            gas->v[a][i] = noise(&random) - 0.5;
+        }
+        gas->m[i] = (1 + 0.2 * noise(&random)) / (double)n;
+        gas->u[i] = 1 + 0.3 * noise(&random);
+    }
+    gas->scene = (struct scene){.dim = dim,
+                                .hi = {1, 1, 1},
+                                .t_end = 1,
+                                .n = n,
+                                .x = {gas->x[0], gas->x[1], gas->x[2]},
+                                .v = {gas->v[0], gas->v[1], gas->v[2]},
+                                .m = gas->m,
+                                .u = gas->u,
+                                .threads = 1};
+    set_scheme(&gas->scene, words);
+}
+
+#define USUAL                                                                                      \
+    "kernel=cubic_spline eta=2.4 viscosity=constant gradient=standard formulation=vanilla_ice "    \
+    "volume_element=mass viscosity_form=mu alpha=1 beta=3 pair_width=mean balsara=off "            \
+    "h_method=newton h_tolerance=1e-14 gamma=1.5"
+#define SPACE USUAL " eta=1.7"
+#define LINE                                                                                       \
+    "kernel=cubic_spline eta=2.4 viscosity=constant gradient=standard alpha=1 beta=3 "             \
+    "pair_width=mean h_method=newton h_tolerance=1e-14 gamma=1.5"
+
+static const char *const schemes[] = {"", LINE, USUAL, SPACE};
+static const size_t sides[] = {0, 32, 6, 4};
+
+static struct rate_table table_of(const struct scene *scene)
+{
+    struct rate_table table;
+    struct error error;
+    if (rate_table_make(&table, scene, &error)) fail_msg("%s", error.message);
+    return table;
+}
+
+/* ---- the table ---- */
+
+/* Values belong to the particles as the scene has them: whoever comes first. */
+static void in_the_scenes_order(void **state)
+{
+    static struct gas gas, turned;
+    (void)state;
+    for (int dim = 1; dim <= 3; dim++) {
+        char words[400];
+        snprintf(words, sizeof words, "%s gradient=ia", schemes[dim]);
+        make(&gas, dim, sides[dim], words);
+        make(&turned, dim, sides[dim], words);
+        const size_t n = gas.scene.n;
+        for (size_t i = 0; i < n; i++) {
+            for (int a = 0; a < 3; a++) {
+                turned.x[a][i] = gas.x[a][n - 1 - i];
+                turned.v[a][i] = gas.v[a][n - 1 - i];
+            }
+            turned.m[i] = gas.m[n - 1 - i], turned.u[i] = gas.u[n - 1 - i];
+        }
+        struct rate_table a = table_of(&gas.scene), b = table_of(&turned.scene);
+        double condition = 0, force[3] = {0}, power = 0, size = 0;
+        assert_true(a.n == n && a.dim == dim);
+        for (size_t i = 0; i < n; i++) {
+            const size_t j = n - 1 - i;
+            near_relative(b.h[j], a.h[i], 1e-12);
+            near_relative(b.rho[j], a.rho[i], 1e-12);
+            near_relative(a.P[i], 0.5 * a.rho[i] * gas.u[i], 1e-12);
+            near_relative(b.P[j], a.P[i], 1e-12);
+            near_absolute(1 + b.dU[j] - a.dU[i], 1, 1e-10);
+            near_relative(b.described[j].condition, a.described[i].condition, 1e-9);
+            assert_true(b.described[j].neighbours == a.described[i].neighbours);
+            condition = fmax(condition, a.described[i].condition);
+            power += a.dU[i];
+            for (int d = 0; d < dim; d++) {
+                near_absolute(1 + b.force[d][j] - a.force[d][i], 1, 1e-10);
+                force[d] += a.force[d][i];
+                power += gas.v[d][i] * a.force[d][i];
+                size = fmax(size, fabs(a.force[d][i]));
+            }
+            for (int d = dim; d < 3; d++) assert_true(a.force[d][i] == 0);
+        }
+        assert_true(size > 1e-2);
+        near_relative(a.matrix.condition_max, condition, 1e-9);
+        for (int d = 0; d < 3; d++) near_absolute(a.sum_force[d] - force[d], 0, 1e-13);
+        near_absolute(a.power - power, 0, 1e-13);
+        rate_table_free(&a);
+        rate_table_free(&b);
+        assert_true(!a.h && !a.storage && !a.described && !a.n);
+    }
+}
+
+/* dU/dt is the same whichever energy is integrated; with a force from outside sums do not vanish.
+ */
+static void whichever_energy(void **state)
+{
+    static struct gas gas;
+    (void)state;
+    make(&gas, 2, 6, USUAL " energy=internal");
+    gas.scene.gravity[0] = 0.25, gas.scene.gravity[1] = -2;
+    struct rate_table internal = table_of(&gas.scene);
+    set_scheme(&gas.scene, USUAL " energy=total");
+    struct rate_table total = table_of(&gas.scene);
+    double mass = 0, power = 0, size = 0;
+    for (size_t i = 0; i < gas.scene.n; i++) {
+        near_absolute(1 + total.dU[i] - internal.dU[i], 1, 1e-13);
+        size = fmax(size, fabs(internal.dU[i]));
+        mass += gas.m[i];
+        power += gas.m[i] * (0.25 * gas.v[0][i] - 2 * gas.v[1][i]);
+    }
+    assert_true(size > 1e-3 && fabs(power) > 1e-3);
+    const struct rate_table *const both[] = {&internal, &total};
+    for (int k = 0; k < 2; k++) {
+        near_absolute(both[k]->power, power, 1e-13);
+        near_relative(both[k]->sum_force[0], 0.25 * mass, 1e-12);
+        near_relative(both[k]->sum_force[1], -2 * mass, 1e-12);
+        assert_true(both[k]->sum_force[2] == 0);
+    }
+    rate_table_free(&internal);
+    rate_table_free(&total);
+}
+
+static void no_scene_no_table(void **state)
+{
+    static struct gas gas;
+    struct rate_table table;
+    struct error error = {0};
+    (void)state;
+    make(&gas, 2, 6, USUAL);
+    gas.m[7] = -1;
+    assert_int_equal(rate_table_make(&table, &gas.scene, &error), STATUS_BAD_INPUT);
+    assert_true(error.message[0] && !table.storage && !table.described);
+    rate_table_free(&table);
+}
+
+/* ---- the comparison ---- */
+
+static const char *const names[] = {"h", "rho", "P", "ax", "ay", "az", "du"};
+
+static double value(const struct gas *gas, const struct rate_table *table, int column, size_t i)
+{
+    const double of[] = {table->h[i],        table->rho[i],      table->P[i], table->force[0][i],
+                         table->force[1][i], table->force[2][i], table->dU[i]};
+    return of[column] / (column > 2 ? gas->m[i] : 1);
+}
+
+/* Columns (a bit each) of a table, as a file has them. */
+struct file {
+    struct csv csv;
+    double values[7][MOST];
+};
+
+static void write_file(struct file *file, const struct gas *gas, const struct rate_table *table,
+                       unsigned columns)
+{
+    file->csv = (struct csv){.rows = table->n};
+    for (int c = 0; c < 7; c++) {
+        if (!(columns >> c & 1)) continue;
+        for (size_t i = 0; i < table->n; i++) file->values[c][i] = value(gas, table, c, i);
+        file->csv.names[file->csv.columns] = (char *)(uintptr_t)names[c];
+        file->csv.values[file->csv.columns++] = file->values[c];
+    }
+}
+
+static struct rate_check checked(const struct file *file, const struct gas *gas,
+                                 const struct rate_table *ours, double tolerance)
+{
+    struct rate_check check;
+    struct error error;
+    if (rate_check_make(&check, "theirs.csv", &file->csv, &gas->scene, ours, tolerance, &error))
+        fail_msg("%s", error.message);
+    return check;
+}
+
+static void equal_columns(void **state)
+{
+    static struct gas gas;
+    static struct file file;
+    struct error error = {0};
+    (void)state;
+    for (int dim = 1; dim <= 3; dim++) {
+        make(&gas, dim, sides[dim], schemes[dim]);
+        struct rate_table ours = table_of(&gas.scene);
+        write_file(&file, &gas, &ours, 0x7f);
+        struct rate_check check = checked(&file, &gas, &ours, 0);
+        assert_true(check.good);
+        assert_int_equal(check.count,
+                         4 + dim); /* what a file has for other directions is no rate */
+        for (size_t k = 0; k < check.count; k++) {
+            const struct rate_comparison *c = &check.columns[k];
+            assert_string_equal(c->quantity,
+                                names[k + (k == check.count - 1 ? 3 - (size_t)dim : 0)]);
+            assert_true(c->good && c->worst == 0 && c->rms == 0 && c->particle == 0 &&
+                        !c->cause[0]);
+        }
+        write_file(&file, &gas, &ours, dim < 3 ? 0x20 : 0); /* az; nothing */
+        assert_int_equal(
+            rate_check_make(&check, "theirs.csv", &file.csv, &gas.scene, &ours, 0, &error),
+            STATUS_BAD_INPUT);
+        assert_non_null(strstr(error.message, "theirs.csv:1: nothing to compare"));
+        for (int more = -1; more <= 1; more += 2) {
+            write_file(&file, &gas, &ours, 1);
+            file.csv.rows += (size_t)more;
+            assert_int_equal(
+                rate_check_make(&check, "theirs.csv", &file.csv, &gas.scene, &ours, 0, &error),
+                STATUS_BAD_INPUT);
+            assert_non_null(strstr(error.message, "one for each of the"));
+        }
+        rate_table_free(&ours);
+    }
+}
+
+/* The largest acceleration, or rate of heat, of all particles; of h, rho and P the particle's own.
+ */
+static double scale_of(const struct gas *gas, const struct rate_table *t, int column, size_t i)
+{
+    double most = 0;
+    if (column < 3) return fabs(value(gas, t, column, i));
+    for (size_t k = 0; k < t->n; k++)
+        most = fmax(most, column == 6
+                              ? fabs(value(gas, t, 6, k))
+                              : sqrt(pow(value(gas, t, 3, k), 2) + pow(value(gas, t, 4, k), 2) +
+                                     pow(value(gas, t, 5, k), 2)));
+    return most;
+}
+
+/* Two particles are off, the second by more: how far, which one, and what is still good. */
+static void how_far_off(void **state)
+{
+    static struct gas gas;
+    static struct file file;
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        make(&gas, dim, sides[dim], schemes[dim]);
+        struct rate_table ours = table_of(&gas.scene);
+        for (int c = 0; c < 7; c++) {
+            if (dim == 2 && c == 5) continue;
+            write_file(&file, &gas, &ours, 0x7f);
+            const double off[2] = {-0.25 * scale_of(&gas, &ours, c, 3),
+                                   0.5 * scale_of(&gas, &ours, c, 11)};
+            file.values[c][3] += off[0];
+            file.values[c][11] += off[1];
+            struct rate_check check = checked(&file, &gas, &ours, 1e-9);
+            assert_false(check.good);
+            for (size_t k = 0; k < check.count; k++) {
+                const struct rate_comparison *r = &check.columns[k];
+                const bool wrong = strcmp(r->quantity, names[c]) == 0;
+                assert_true(r->good == !wrong);
+                if (!wrong) continue;
+                near_relative(r->worst, 0.5, 1e-12);
+                near_relative(r->rms, sqrt((0.0625 + 0.25) / (double)gas.scene.n), 1e-12);
+                assert_int_equal(r->particle, 11);
+                /* good as far as is asked for, and no further */
+                assert_true(checked(&file, &gas, &ours, r->worst).good);
+                assert_false(checked(&file, &gas, &ours, nextafter(r->worst, 0)).good);
+            }
+            file.values[c][5] = (double)NAN;
+            check = checked(&file, &gas, &ours, 1);
+            assert_false(check.good);
+        }
+        rate_table_free(&ours);
+    }
+}
+
+/* ---- causes ---- */
+
+/* What is said of a quantity; "" for nothing. */
+static const char *cause_of(const struct rate_check *check, const char *quantity)
+{
+    for (size_t k = 0; k < check->count; k++)
+        if (strcmp(check->columns[k].quantity, quantity) == 0) return check->columns[k].cause;
+    fail_msg("no %s", quantity);
+    return NULL;
+}
+
+static void each_choice_is_named(void **state)
+{
+    static const struct {
+        const char *ours, *theirs, *quantity, *cause;
+    } rows[] = {
+        {"", "viscosity=none", "ax", "viscosity: they have none"},
+        {"viscosity=reconstructed", "viscosity=constant", "ax", "viscosity: theirs is constant"},
+        {"", "beta=0", "ax", "viscosity: theirs has no quadratic term (beta = 0)"},
+        {"", "beta=1", "ay", "viscosity: beta = alpha in theirs"},
+        {"", "alpha=2", "ax", "viscosity: alpha is twice ours"},
+        {"", "alpha=0.5", "du", "viscosity: alpha is half of ours"},
+        {"viscosity_form=signal", "viscosity_form=mu", "ax", "viscosity: theirs is of the form mu"},
+        {"", "viscosity_form=signal", "ax", "viscosity: theirs is of the form signal"},
+        {"", "balsara=on", "ax", "viscosity: theirs has a Balsara factor"},
+        {"balsara=on", "balsara=off", "ax", "viscosity: theirs has no Balsara factor"},
+        {"", "pair_width=max", "ax", "pair width: theirs is max(h_i, h_j)"},
+        {"pair_width=max", "pair_width=mean", "ax",
+         "pair width: theirs is the mean of both gradients"},
+        {"", "pair_width=harmonic", "ax", "pair width: theirs is the harmonic mean"},
+        {"gradient=ia", "gradient=standard", "ax", "gradient: theirs is standard"},
+        {"", "gradient=ia", "ax", "gradient: theirs is ia"},
+        {"", "gradient=corrected", "ax", "gradient: theirs is corrected"},
+        {"", "gradient=blended", "ax", "gradient: theirs is blended"},
+        {"formulation=lagrangian", "formulation=vanilla_ice", "ax",
+         "pressure: their formulation is vanilla_ice"},
+        {"", "formulation=lagrangian", "ax",
+         "pressure: their formulation is lagrangian, with grad-h factors"},
+        {"volume_element=energy", "volume_element=mass", "rho", "volume element: theirs is mass"},
+        {"", "volume_element=energy", "rho", "volume element: theirs is energy"},
+        {"", "volume_element=number", "rho", "volume element: theirs is number"},
+        {"alpha_u=1", "alpha_u=0", "du", "conductivity: they have none"},
+        {"", "gamma=1.6666666666666667", "P", "gamma: theirs is 5/3"},
+        {"", "gamma=1.4", "P", "gamma: theirs is 1.4"},
+        {"eta=2.8", "eta=1.4", "h", "eta: theirs is half of ours (h is the support radius here)"},
+        {"eta=1.4", "eta=2.8", "h", "eta: theirs is twice ours (h is the support radius here)"},
+    };
+    static struct gas gas;
+    static struct file file;
+    char words[400];
+    (void)state;
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        snprintf(words, sizeof words, "%s %s", USUAL, rows[k].ours);
+        make(&gas, 2, 7, words);
+        struct rate_table ours = table_of(&gas.scene);
+        struct scene changed = gas.scene;
+        snprintf(words, sizeof words, "%s %s %s", USUAL, rows[k].ours, rows[k].theirs);
+        set_scheme(&changed, words);
+        struct rate_table theirs = table_of(&changed);
+        write_file(&file, &gas, &theirs, 0x5f);
+        const struct rate_check check = checked(&file, &gas, &ours, 1e-9);
+        if (strcmp(cause_of(&check, rows[k].quantity), rows[k].cause) != 0)
+            fail_msg("%s: '%s', not '%s'", rows[k].theirs, cause_of(&check, rows[k].quantity),
+                     rows[k].cause);
+        rate_table_free(&ours);
+        rate_table_free(&theirs);
+    }
+    for (int dim = 1; dim <= 3; dim++) {
+        make(&gas, dim, sides[dim], schemes[dim]);
+        struct rate_table ours = table_of(&gas.scene);
+        struct scene changed = gas.scene;
+        if (dim > 1) {
+            for (int a = 0; a < dim; a++) changed.boundary[a] = BOUNDARY_OPEN;
+            struct rate_table theirs = table_of(&changed);
+            write_file(&file, &gas, &theirs, 0x5f);
+            const struct rate_check check = checked(&file, &gas, &ours, 1e-9);
+            assert_string_equal(cause_of(&check, "rho"), "boundary: theirs is open");
+            rate_table_free(&theirs);
+        }
+        rate_table_free(&ours);
+    }
+}
+
+/* A change explains what becomes a thousand times better, or as good as is asked for. */
+static void better_by_a_thousand(void **state)
+{
+    static struct gas gas;
+    static struct file file;
+    (void)state;
+    make(&gas, 2, 6, USUAL);
+    struct rate_table ours = table_of(&gas.scene);
+    struct scene changed = gas.scene;
+    changed.scheme.viscosity = VISCOSITY_NONE;
+    struct rate_table theirs = table_of(&changed);
+    const double scale = scale_of(&gas, &theirs, 3, 0);
+    write_file(&file, &gas, &theirs, 1 << 3);
+    const struct rate_check plain = checked(&file, &gas, &ours, 1e-9);
+    const double worst = plain.columns[0].worst;
+    const size_t other = plain.columns[0].particle == 2 ? 3 : 2;
+    assert_string_equal(plain.columns[0].cause, "viscosity: they have none");
+    for (int side = -1; side <= 1; side += 2) {
+        const double much = worst * 1e-3 * (1 + side * 4e-7) * scale;
+        file.values[3][other] = value(&gas, &theirs, 3, other) + much;
+        struct rate_check check = checked(&file, &gas, &ours, 1e-9);
+        assert_true(check.columns[0].worst == worst);
+        assert_string_equal(check.columns[0].cause, side < 0 ? "viscosity: they have none" : "");
+        /* asked for less, it is explained, and what is good needs no cause */
+        check = checked(&file, &gas, &ours, 2e-3 * worst);
+        assert_string_equal(check.columns[0].cause, "viscosity: they have none");
+        check = checked(&file, &gas, &ours, worst);
+        assert_string_equal(check.columns[0].cause, "");
+    }
+    rate_table_free(&ours);
+    rate_table_free(&theirs);
+}
+
+/* Differences that no choice of a scheme makes. */
+static void plain_differences(void **state)
+{
+    static struct gas gas;
+    static struct file file;
+    (void)state;
+    for (int dim = 1; dim <= 3; dim++)
+        for (int c = 0; c < 7; c++) {
+            if (c >= 3 && c < 6 && c - 3 >= dim) continue;
+            make(&gas, dim, sides[dim], schemes[dim]);
+            struct rate_table ours = table_of(&gas.scene);
+            const size_t n = gas.scene.n;
+            char text[80];
+            for (int k = 0; k < 2; k++) {
+                static const double factors[] = {0.8125, -3};
+                if (k && c >= 3) continue;
+                write_file(&file, &gas, &ours, 1u << c);
+                for (size_t i = 0; i < n; i++) file.values[c][i] *= factors[k];
+                const struct rate_check check = checked(&file, &gas, &ours, 1e-9);
+                snprintf(text, sizeof text, "theirs is %.9g times ours everywhere", factors[k]);
+                assert_string_equal(check.columns[0].cause, text);
+            }
+            write_file(&file, &gas, &ours, 1u << c);
+            for (size_t i = 0; i < n; i++) file.values[c][i] *= -1;
+            struct rate_check check = checked(&file, &gas, &ours, 1e-9);
+            assert_string_equal(check.columns[0].cause, c < 3 ? "theirs is -1 times ours everywhere"
+                                                              : "the sign is the other one");
+            write_file(&file, &gas, &ours, 1u << c);
+            for (size_t i = 0; i < n; i++) file.values[c][i] *= gas.m[i];
+            check = checked(&file, &gas, &ours, 1e-9);
+            snprintf(text, sizeof text, "they give %s: %s = that over m",
+                     c == 6 ? "dU/dt" : "dp/dt", names[c]);
+            assert_string_equal(check.columns[0].cause, c < 3 ? "" : text);
+            /* cubic spline: W(0) = C/h^d, C = 4/3, 40/(7 pi), 8/pi */
+            static const double C[] = {0, 4 / 3., 40 / (7 * M_PI), 8 / M_PI};
+            write_file(&file, &gas, &ours, 1u << c);
+            for (size_t i = 0; i < n; i++)
+                file.values[c][i] -= gas.m[i] * C[dim] / pow(ours.h[i], dim);
+            check = checked(&file, &gas, &ours, 1e-9);
+            assert_string_equal(check.columns[0].cause,
+                                c == 1 ? "self-contribution: they leave out m W(0)" : "");
+            gas.scene.scheme.volume_element = VOLUME_ENERGY;
+            check = checked(&file, &gas, &ours, 1e-9);
+            assert_null(strstr(check.columns[0].cause, "self"));
+            rate_table_free(&ours);
+        }
+}
+
+/* They explain what they leave a thousand times smaller. */
+static void plainly_enough(void **state)
+{
+    static struct gas gas;
+    static struct file file;
+    static const char *const causes[] = {
+        "theirs is 0.8125", "self-contribution", "", "the sign", "", "", "they give dU/dt"};
+    (void)state;
+    make(&gas, 2, 6, USUAL);
+    struct rate_table ours = table_of(&gas.scene);
+    const double n = (double)gas.scene.n;
+    for (int c = 0; c < 7; c++)
+        for (int side = -1; side <= 1 && causes[c][0]; side += 2) {
+            write_file(&file, &gas, &ours, 1u << c);
+            for (size_t i = 0; i < gas.scene.n; i++) {
+                if (c == 0) file.values[c][i] *= 0.8125;
+                if (c == 1) file.values[c][i] -= gas.m[i] * 40 / (7 * M_PI) / pow(ours.h[i], 2);
+                if (c == 3) file.values[c][i] *= -1;
+                if (c == 6) file.values[c][i] *= gas.m[i];
+            }
+            struct rate_check check = checked(&file, &gas, &ours, 1e-9);
+            const double worst = check.columns[0].worst;
+            const size_t other = check.columns[0].particle == 2 ? 3 : 2;
+            assert_ptr_equal(strstr(check.columns[0].cause, causes[c]), check.columns[0].cause);
+            /* the factor is a mean: it takes its share of one particle's difference */
+            const double share = c == 0 ? 1 - 1 / n : 1;
+            file.values[c][other] +=
+                worst * 1e-3 * (1 + side * 4e-7) / share * scale_of(&gas, &ours, c, other);
+            check = checked(&file, &gas, &ours, 1e-9);
+            near_relative(check.columns[0].worst, worst, 1e-12);
+            assert_true(!strstr(check.columns[0].cause, causes[c]) == (side > 0));
+            check = checked(&file, &gas, &ours, 2e-3 * worst);
+            assert_non_null(strstr(check.columns[0].cause, causes[c]));
+        }
+    rate_table_free(&ours);
+}
+
+/* What is wrong after the first wrong one follows from it; what comes before it does not. */
+static void what_follows(void **state)
+{
+    static struct gas gas;
+    static struct file file;
+    (void)state;
+    make(&gas, 2, 6, USUAL);
+    struct rate_table ours = table_of(&gas.scene);
+    for (int first = 0; first < 7; first++) {
+        if (first == 5) continue;
+        write_file(&file, &gas, &ours, 0x5f);
+        for (int c = first; c < 7; c++)
+            for (size_t i = 0; i < gas.scene.n; i += 3)
+                file.values[c][i] += 0.125 * (double)(i + 1);
+        const struct rate_check check = checked(&file, &gas, &ours, 1e-9);
+        for (int c = 0; c < 7; c++) {
+            char text[80] = "";
+            if (c == 5) continue;
+            if (c > first && c >= 2 && first < 3)
+                snprintf(text, sizeof text, "it follows from %s, or there is more than one",
+                         names[first]);
+            assert_string_equal(cause_of(&check, names[c]), text);
+        }
+    }
+    rate_table_free(&ours);
+}
+
+/* Rates of the lagrangian formulation without its grad-h factors, in a periodic box without forces
+ * from outside: only there the oracle has them. */
+static void no_grad_h(void **state)
+{
+    static const char cause[] = "grad-h: their lagrangian formulation has no grad-h factors";
+    static struct gas gas;
+    static struct file file;
+    (void)state;
+    for (int dim = 1; dim <= 3; dim++) {
+        char words[400];
+        snprintf(words, sizeof words, "%s formulation=lagrangian", schemes[dim]);
+        make(&gas, dim, sides[dim], words);
+        struct rate_table ours = table_of(&gas.scene);
+        struct oracle oracle;
+        const size_t n = gas.scene.n;
+        assert_int_equal(oracle_create(&oracle, &gas.scene, NULL), STATUS_OK);
+        oracle.without_grad_h = true;
+        assert_int_equal(oracle_evaluate(&oracle, NULL), STATUS_OK);
+        write_file(&file, &gas, &ours, 0x7f);
+        for (size_t i = 0; i < n; i++) {
+            for (int a = 0; a < dim; a++)
+                file.values[3 + a][i] = (double)oracle.particles[i].F[a] / gas.m[i];
+            file.values[6][i] = (double)oracle.particles[i].dU / gas.m[i];
+        }
+        oracle_free(&oracle);
+        struct rate_check check = checked(&file, &gas, &ours, 1e-9);
+        for (int a = 0; a < dim; a++) assert_string_equal(cause_of(&check, names[3 + a]), cause);
+        assert_string_equal(cause_of(&check, "du"), cause);
+        for (int a = 0; a < dim && dim > 1; a++) {
+            struct gas other = gas;
+            other.scene.gravity[a] = 1e-3;
+            check = checked(&file, &other, &ours, 1e-9);
+            assert_string_not_equal(cause_of(&check, "ax"), cause);
+            other.scene = gas.scene;
+            other.scene.boundary[a] = BOUNDARY_OPEN;
+            check = checked(&file, &other, &ours, 1e-9);
+            assert_string_not_equal(cause_of(&check, "ax"), cause);
+        }
+        gas.scene.scheme.formulation = FORMULATION_VANILLA_ICE;
+        check = checked(&file, &gas, &ours, 1e-9);
+        assert_string_not_equal(cause_of(&check, "ax"), cause);
+        rate_table_free(&ours);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(in_the_scenes_order),
+        cmocka_unit_test(whichever_energy),
+        cmocka_unit_test(no_scene_no_table),
+        cmocka_unit_test(equal_columns),
+        cmocka_unit_test(how_far_off),
+        cmocka_unit_test(each_choice_is_named),
+        cmocka_unit_test(better_by_a_thousand),
+        cmocka_unit_test(plain_differences),
+        cmocka_unit_test(plainly_enough),
+        cmocka_unit_test(what_follows),
+        cmocka_unit_test(no_grad_h),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
