@@ -1,0 +1,297 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The state of a run in a file: it comes back to the last bit, at the right moments, or is refused
+ * with the reason. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+#include "checkpoint.h"
+#include "clock.h"
+#include "made_simulation.h"
+
+static char folder[] = "checkpoint.XXXXXX", path[64];
+static char build[CHECKPOINT_WORD + 1];
+
+static struct checkpoint usual(void)
+{
+    return (struct checkpoint){
+        .path = path, .build = build, .run = "{\"settings\": {\"n\": 40}}", .snapshot = 0.125};
+}
+
+static int begin(void **state)
+{
+    (void)state;
+    if (!mkdtemp(folder)) return 1;
+    snprintf(path, sizeof path, "%s/state", folder);
+    memset(build, 'b', CHECKPOINT_WORD); /* as long as it may be */
+    return 0;
+}
+
+static int end(void **state)
+{
+    (void)state;
+    unlink(path);
+    return rmdir(folder);
+}
+
+/* So many seconds after the last time, or after the first question. */
+static void when(void **state)
+{
+    struct checkpoint checkpoint = {.every = 1000};
+    (void)state;
+    const double before = clock_wall();
+    assert_false(checkpoint_due(&checkpoint));
+    assert_true(checkpoint.written >= before && checkpoint.written <= clock_wall());
+    checkpoint.written -= 999;
+    const double kept = checkpoint.written;
+    assert_false(checkpoint_due(&checkpoint));
+    assert_true(checkpoint.written == kept);
+    checkpoint.written -= 2;
+    assert_true(checkpoint_due(&checkpoint));
+    assert_true(checkpoint.written >= before && checkpoint.written <= clock_wall());
+    assert_false(checkpoint_due(&checkpoint));
+    checkpoint = (struct checkpoint){.every = 0};
+    assert_true(checkpoint_due(&checkpoint) && checkpoint_due(&checkpoint));
+}
+
+static void saved(struct simulation *simulation)
+{
+    struct checkpoint checkpoint = usual();
+    struct growth growth = {.n = 3, .t = 0.5, .y = 2, .tt = 0.75, .ty = 4};
+    checkpoint_save(&checkpoint, simulation, &growth);
+    if (checkpoint.trouble.status) fail_msg("%s", checkpoint.trouble.message);
+}
+
+/* What a run that begins with the file says. */
+static enum status loaded(struct checkpoint *checkpoint, struct simulation *simulation,
+                          struct error *error)
+{
+    struct growth growth = {0};
+    const enum status status = checkpoint_load(checkpoint, simulation, &growth, error);
+    if (!status && access(path, F_OK) == 0) {
+        assert_true(growth.n == 3 && growth.t == 0.5 && growth.y == 2 && growth.tt == 0.75 &&
+                    growth.ty == 4);
+        assert_true(checkpoint->snapshot == 0.125);
+    }
+    return status;
+}
+
+static void goes_on(void **state)
+{
+    (void)state;
+    struct simulation *self = made_simulation(40), *other = made_simulation(40);
+    struct checkpoint checkpoint = usual();
+    struct error error = {0};
+    unlink(path); /* no file: nothing happens */
+    assert_int_equal(loaded(&checkpoint, other, &error), STATUS_OK);
+    made_run(self, 0.05);
+    saved(self);
+    checkpoint.snapshot = -1;
+    assert_int_equal(loaded(&checkpoint, other, &error), STATUS_OK);
+    assert_true(made_alike(self, other));
+    made_run(self, 0.2);
+    made_run(other, 0.2);
+    assert_true(made_alike(self, other));
+    simulation_destroy(self);
+    simulation_destroy(other);
+}
+
+static size_t read_all(char *bytes, size_t most)
+{
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    const size_t n = fread(bytes, 1, most, file);
+    fclose(file);
+    assert_true(n < most);
+    return n;
+}
+
+static void write_all(const char *bytes, size_t n)
+{
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(bytes, 1, n, file), n);
+    fclose(file);
+}
+
+/* That a run, which is the usual one unless it says otherwise, does not begin with the file. */
+static void refused(struct checkpoint checkpoint, const char *why)
+{
+    struct simulation *simulation = made_simulation(40);
+    struct error error = {0};
+    char text[400];
+    snprintf(text, sizeof text, "--resume '%s': %s", path, why);
+    if (loaded(&checkpoint, simulation, &error) != STATUS_BAD_INPUT)
+        fail_msg("not refused: %s", text);
+    assert_string_equal(error.message, text);
+    simulation_destroy(simulation);
+}
+
+static void damaged(void **state)
+{
+    static char bytes[1 << 16];
+    struct simulation *self = made_simulation(40);
+    char head[200];
+    (void)state;
+    saved(self);
+    simulation_destroy(self);
+    const size_t n = read_all(bytes, sizeof bytes);
+    snprintf(head, sizeof head, "sphproof-checkpoint/1 %s\n%s\n", build, usual().run);
+    assert_memory_equal(bytes, head, strlen(head));
+    const size_t body = strlen(head);
+    /* cut off; the last ones are of the checksum */
+    const size_t lengths[] = {body, body + 8, body + 9, (body + n) / 2, n - 8, n - 1};
+    for (size_t k = 0; k < sizeof lengths / sizeof *lengths; k++) {
+        write_all(bytes, lengths[k]);
+        refused(usual(), "is damaged");
+    }
+    write_all(bytes, body - 1); /* its second line has no end */
+    refused(usual(), "is damaged");
+    const size_t places[] = {body, body + 1, (body + n) / 2, n - 9, n - 8, n - 1};
+    for (size_t k = 0; k < sizeof places / sizeof *places; k++) {
+        bytes[places[k]] = (char)(bytes[places[k]] ^ 4);
+        write_all(bytes, n);
+        refused(usual(), "is damaged");
+        bytes[places[k]] = (char)(bytes[places[k]] ^ 4);
+    }
+    bytes[n] = 0;
+    write_all(bytes, n + 1);
+    refused(usual(), "is damaged");
+    for (size_t k = 0; k < 2; k++) { /* no such first line, or none */
+        write_all(k ? "" : "sphproof-checkpoint/2 bbb\n", k ? 0 : 26);
+        refused(usual(), "is no checkpoint, or of another version");
+    }
+    write_all(bytes, strlen("sphproof-checkpoint/1"));
+    refused(usual(), "is no checkpoint, or of another version");
+    write_all(bytes, n);
+    struct checkpoint again = usual();
+    struct error error = {0};
+    self = made_simulation(40);
+    assert_int_equal(loaded(&again, self, &error), STATUS_OK);
+    simulation_destroy(self);
+}
+
+/* More than what is read at once: a fault in any part of it is seen. */
+static void large_ones(void **state)
+{
+    static char bytes[1 << 23];
+    struct simulation *self = made_simulation(8000);
+    struct checkpoint checkpoint = usual();
+    struct error error = {0};
+    (void)state;
+    made_run(self, 1e-6);
+    saved(self);
+    const size_t n = read_all(bytes, sizeof bytes);
+    assert_true(n > (1 << 20) + 1000);
+    struct simulation *other = made_simulation(8000);
+    assert_int_equal(loaded(&checkpoint, other, &error), STATUS_OK);
+    assert_true(made_alike(self, other));
+    simulation_destroy(self);
+    simulation_destroy(other);
+    for (int k = 0; k < 2; k++) {
+        const size_t at = k ? n - 100 : 1000;
+        bytes[at] = (char)(bytes[at] ^ 1);
+        write_all(bytes, n);
+        refused(usual(), "is damaged");
+        bytes[at] = (char)(bytes[at] ^ 1);
+    }
+}
+
+/* Of another build or run: what differs is said. */
+static void others(void **state)
+{
+    static const struct {
+        const char *run, *why;
+    } rows[] = {
+        {"{\"settings\": {\"n\": 50}}", "n is 40 there, 50 here"},
+        {"{\"settings\": {\"n\": 40, \"eta\": 1.5}}", "eta is nothing there, 1.5 here"},
+        {"{\"case\": 1, \"settings\": {\"n\": 40}}", "its 'case' differs"},
+        {"{\"case\": 1, \"settings\": {\"n\": 41}}", "n is 40 there, 41 here"},
+    };
+    struct simulation *self = made_simulation(40);
+    struct checkpoint checkpoint = usual();
+    char why[200];
+    (void)state;
+    saved(self);
+    simulation_destroy(self);
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        checkpoint.run = rows[k].run;
+        snprintf(why, sizeof why, "is of another run: %s", rows[k].why);
+        refused(checkpoint, why);
+    }
+    checkpoint.run = "{}"; /* that asks for less */
+    refused(checkpoint, "is of another run");
+    checkpoint = usual();
+    for (size_t k = 0; k < 2; k++) {
+        checkpoint.build = k ? "bbb" : "cbb";
+        refused(checkpoint,
+                "was written by another build of the program, or where sin, exp and pow have other "
+                "last bits: only the same one goes on to the last bit");
+    }
+}
+
+/* A description of the run fills its line, and may not be longer. */
+static void long_runs(void **state)
+{
+    enum { MOST = (1 << 16) - 2 }; /* with the line's end and the text's */
+    static char text[MOST + 2];
+    (void)state;
+    for (size_t more = 0; more < 2; more++) {
+        struct simulation *self = made_simulation(40);
+        struct checkpoint checkpoint = usual();
+        struct growth growth = {.n = 3, .t = 0.5, .y = 2, .tt = 0.75, .ty = 4};
+        struct error error = {0};
+        memset(text, ' ', MOST + more);
+        text[0] = '{', text[MOST + more - 1] = '}', text[MOST + more] = '\0';
+        checkpoint.run = text;
+        checkpoint_save(&checkpoint, self, &growth);
+        assert_int_equal(checkpoint.trouble.status, STATUS_OK);
+        if (more)
+            refused(checkpoint, "is damaged");
+        else
+            assert_int_equal(loaded(&checkpoint, self, &error), STATUS_OK);
+        simulation_destroy(self);
+    }
+}
+
+/* Where nothing can be written the trouble says so, until it can; what cannot be opened is refused.
+ */
+static void no_room(void **state)
+{
+    struct simulation *self = made_simulation(40);
+    struct checkpoint checkpoint = usual();
+    struct growth growth = {0};
+    struct error error = {0};
+    char beside[80];
+    (void)state;
+    saved(self);
+    snprintf(beside, sizeof beside, "%s/no/such", folder);
+    checkpoint.path = beside;
+    checkpoint_save(&checkpoint, self, &growth);
+    assert_int_equal(checkpoint.trouble.status, STATUS_ENVIRONMENT);
+    checkpoint.path = path;
+    checkpoint_save(&checkpoint, self, &growth);
+    assert_int_equal(checkpoint.trouble.status, STATUS_OK);
+    assert_string_equal(checkpoint.trouble.message, "");
+    snprintf(beside, sizeof beside, "%s/below", path);
+    checkpoint.path = beside;
+    assert_int_equal(checkpoint_load(&checkpoint, self, &growth, &error), STATUS_BAD_INPUT);
+    assert_non_null(strstr(error.message, "below': Not a directory"));
+    simulation_destroy(self);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(when),    cmocka_unit_test(goes_on),    cmocka_unit_test(damaged),
+        cmocka_unit_test(others),  cmocka_unit_test(large_ones), cmocka_unit_test(long_runs),
+        cmocka_unit_test(no_room),
+    };
+    return cmocka_run_group_tests(tests, begin, end);
+}

@@ -1,0 +1,175 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Snapshots on the way: how many, when, where; what a run keeps to go on from. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "made_simulation.h"
+#include "snapshots.h"
+
+/* From a ten thousandth of the run to all of it, both included. */
+static void intervals(void **state)
+{
+    const double least = 1. / 1024, t_end = SNAPSHOTS_MOST * least;
+    const struct {
+        double every;
+        bool allowed;
+    } rows[] = {{t_end, true}, {nextafter(t_end, HUGE_VAL), false},
+                {least, true}, {least * (1 - 1e-12), false},
+                {1, true},     {0, false},
+                {-1, false},   {(double)NAN, false}};
+    (void)state;
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        const struct snapshots snapshots = {.every = rows[k].every};
+        struct error error = {0};
+        assert_int_equal(snapshots_check(&snapshots, t_end, &error),
+                         rows[k].allowed ? STATUS_OK : STATUS_BAD_INPUT);
+        if (!rows[k].allowed)
+            assert_string_equal(error.message,
+                                "allowed: a time from t_end/10000 to t_end = 9.76562");
+    }
+}
+
+/* One at the start and at each multiple before the end, which has its own: no nearer to it than a
+ * billionth of the run. */
+static void how_many(void **state)
+{
+    const struct snapshots quarter = {.every = 0.25}, third = {.every = 0.3};
+    const double more = 1 + 1e-9;
+    (void)state;
+    assert_int_equal(snapshots_count(&quarter, 1), 4);
+    assert_int_equal(snapshots_count(&third, 1), 4);
+    assert_int_equal(snapshots_count(&quarter, 0.25), 1);
+    assert_int_equal(snapshots_count(&quarter, more * (1 - 5e-16)), 4);
+    assert_int_equal(snapshots_count(&quarter, more * (1 + 5e-16)), 5);
+    assert_true(snapshots_time(&quarter, 0) == 0 && snapshots_time(&quarter, 3) == 0.75);
+}
+
+static void files(void **state)
+{
+    static const struct {
+        const char *path;
+        size_t number;
+        const char *want;
+    } rows[] = {{"a/b.csv", 3, "a/b_0003.csv"},
+                {"a.d/b", 0, "a.d/b_0000"},
+                {"b", 9999, "b_9999"},
+                {"b.c.h5", 12, "b.c_0012.h5"},
+                {".csv", 123, "_0123.csv"},
+                {"a/.csv", 1, "a/_0001.csv"},
+                {"a.d/b.hdf5", 1, "a.d/b_0001.hdf5"}};
+    (void)state;
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        const struct snapshots snapshots = {.path = rows[k].path};
+        char *path = snapshots_path(&snapshots, rows[k].number);
+        assert_string_equal(path, rows[k].want);
+        free(path);
+    }
+}
+
+static void memory(void **state)
+{
+    static const double bytes[] = {0, 180, 350, 480};
+    const struct snapshots csv = {.path = "a.csv"}, hdf5 = {.path = "a.hdf5"};
+    (void)state;
+    for (int dim = 1; dim <= 3; dim++) {
+        assert_true(snapshots_memory(&csv, dim, 1000) == 1000 * bytes[dim]);
+        assert_true(snapshots_memory(&hdf5, dim, 1000) == 1000 * (bytes[dim] + 250));
+    }
+}
+
+/* Those up to now are over, and those that were made before the process began. */
+static void begins(void **state)
+{
+    static const struct {
+        double time, last;
+        size_t next;
+        double made;
+    } rows[] = {{0, -1, 0, -1},      {0.25, -1, 2, 0.25}, {0.24, -1, 1, 0},  {0.5, 0.75, 4, 0.75},
+                {0.5, 0.25, 3, 0.5}, {0.5, 0.8, 4, 0.75}, {1e-300, -1, 1, 0}};
+    struct snapshots tenth = {.every = 0.1};
+    (void)state;
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        struct snapshots snapshots = {.every = 0.25};
+        snapshots_begin(&snapshots, rows[k].time, rows[k].last, 2);
+        assert_int_equal(snapshots.count, 8);
+        assert_int_equal(snapshots.next, rows[k].next);
+        assert_true(snapshots_last(&snapshots) == rows[k].made);
+    }
+    /* 0.3/0.1 is less than 3, and 3 0.1 more than 0.3 */
+    snapshots_begin(&tenth, 3 * 0.1, -1, 1);
+    assert_int_equal(tenth.next, 4);
+    snapshots_begin(&tenth, 0.3, -1, 1);
+    assert_int_equal(tenth.next, 3);
+}
+
+static double step_of(const struct simulation *simulation)
+{
+    struct rates rates;
+    simulation_rates(simulation, &rates);
+    return rates.time_step;
+}
+
+/* The state is kept where one is due within four steps and before the stop, and is put back to the
+ * last bit, as often as anybody asks. */
+static void aside_and_back(void **state)
+{
+    struct simulation *self = made_simulation(40), *other = made_simulation(40);
+    struct snapshots snapshots = {.path = "a.csv", .every = 1};
+    (void)state;
+    made_run(self, 0.05);
+    made_run(other, 0.05);
+    const double reach = 0.05 + 4 * step_of(self);
+    snapshots_begin(&snapshots, 0.05, -1, 10);
+    assert_int_equal(snapshots.next, 1);
+    snapshots.every = nextafter(reach, 1);
+    assert_false(snapshots_keep(&snapshots, self, 0.05, 9));
+    assert_true(snapshots.reach == reach && !snapshots.state);
+    snapshots.every = reach;
+    assert_false(snapshots_keep(&snapshots, self, 0.05, nextafter(reach, 0)));
+    snapshots.count = 1;
+    assert_false(snapshots_keep(&snapshots, self, 0.05, 9));
+    snapshots.count = 2;
+    assert_true(snapshots_keep(&snapshots, self, 0.05, reach));
+    assert_true(snapshots.reach == reach && snapshots.state && snapshots.size > 0);
+    assert_int_equal(snapshots.next, 1);
+    for (int k = 0; k < 2; k++) {
+        made_run(self, 0.08 + 0.01 * k);
+        assert_false(made_alike(self, other));
+        snapshots_return(&snapshots, self);
+        assert_true(made_alike(self, other));
+    }
+    snapshots_go_on(&snapshots);
+    assert_null(snapshots.state);
+    made_run(self, 0.2);
+    made_run(other, 0.2);
+    assert_true(made_alike(self, other));
+    simulation_destroy(self);
+    simulation_destroy(other);
+}
+
+static void first_trouble(void **state)
+{
+    struct snapshots snapshots = {0};
+    const struct error errors[] = {{.status = STATUS_ENVIRONMENT, .message = "no space"},
+                                   {.status = STATUS_BAD_INPUT, .message = "later"}};
+    (void)state;
+    for (int k = 0; k < 2; k++) snapshots_fail(&snapshots, &errors[k]);
+    assert_int_equal(snapshots.trouble.status, STATUS_ENVIRONMENT);
+    assert_string_equal(snapshots.trouble.message, "no space");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(intervals),     cmocka_unit_test(how_many),
+        cmocka_unit_test(files),         cmocka_unit_test(memory),
+        cmocka_unit_test(begins),        cmocka_unit_test(aside_and_back),
+        cmocka_unit_test(first_trouble),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
