@@ -263,11 +263,59 @@ static void whole_files(void **state)
     assert_true(strncmp(file.title, line, 100) == 0);
 }
 
+static void built_in_cases_are_sound(void **state)
+{
+    struct case_file file;
+    struct error error;
+    size_t n = 0;
+    (void)state;
+    for (const struct case_builtin *b = case_builtins; b->name; b++, n++) {
+        assert_int_equal(case_load(&file, b->name, &error), STATUS_OK);
+        assert_string_equal(file.name, b->name);
+        if (file.dimension == 1) assert_true(file.ladder_count >= 4 && file.gate_count >= 1);
+    }
+    assert_true(n >= 6);
+}
+
+/* Damaged case files: never a crash, always OK or a message. */
+static void damaged_cases_are_survived(void **state)
+{
+    static const char noise[] = "\n[]=;:# \t\r0aZ.,-\"";
+    unsigned random = 2385;
+    size_t builtins = 1;
+    (void)state;
+    while (case_builtins[builtins].name) builtins++;
+    for (int round = 0; round < 4000; round++) {
+        const struct case_builtin *builtin = &case_builtins[(size_t)round % builtins];
+        const size_t length = strlen(builtin->text);
+        char *text = strdup(builtin->text);
+        assert_non_null(text);
+        for (int k = 0; k < 1 + round % 5; k++) {
+            random = random * 1664525u + 1013904223u;
+            const size_t at = (random >> 8) % length;
+            text[at] =
+                random >> 30 ? noise[(random >> 4) % (sizeof noise - 1)] : (char)(random >> 5);
+        }
+        struct case_file file;
+        struct error error = {0};
+        const enum status status =
+            case_parse(&file, "damaged.ini", text, length - (size_t)(round % 7 ? 0 : 40), &error);
+        assert_true(status == STATUS_OK || status == STATUS_BAD_INPUT);
+        if (status) assert_ptr_equal(strstr(error.message, "damaged.ini"), error.message);
+        free(text);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(everything), cmocka_unit_test(functionals), cmocka_unit_test(compared),
-        cmocka_unit_test(bad_lines),  cmocka_unit_test(whole_files),
+        cmocka_unit_test(everything),
+        cmocka_unit_test(functionals),
+        cmocka_unit_test(compared),
+        cmocka_unit_test(bad_lines),
+        cmocka_unit_test(whole_files),
+        cmocka_unit_test(built_in_cases_are_sound),
+        cmocka_unit_test(damaged_cases_are_survived),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The table of keys: every key reads what it writes, refuses what is out of range; `auto` stands
- * for what the documentation says; case files in good and bad shape. */
+ * for what the documentation says; what keys are in words and in documents. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -10,12 +10,12 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "cases.h"
 #include "integrator.h"
 #include "near.h"
 #include "problem.h"
 #include "problem_prepare.h"
 #include "settings.h"
+#include "settings_output.h"
 
 static void resolve(struct settings *settings, struct scheme *scheme, int n, ...)
 {
@@ -155,46 +155,285 @@ static void keys_take_their_ends(void **state)
     }
 }
 
-static void built_in_cases_are_sound(void **state)
+/* What a key may be, in words; a list that has no room ends in dots, not in silence. */
+static void keys_say_what_they_allow(void **state)
 {
-    struct case_file file;
-    struct error error;
-    size_t n = 0;
+    static const struct {
+        enum setting key;
+        const char *want;
+    } rows[] = {
+        {SETTING_seed, "an integer from 0 to 4294967295"},
+        {SETTING_n, "an integer, or 64^2, from 4 to 10000000"},
+        {SETTING_jitter, "a number from 0 to 0.49, or auto"},
+        {SETTING_eta, "a number above 0 up to 100, or auto"},
+        {SETTING_gamma, "a number above 1 up to 100"},
+        {SETTING_left, "3 numbers (rho v P) from -1e+30 to 1e+30"},
+        {SETTING_window, "2 numbers (length) from -1e+30 to 1e+30, or auto"},
+        {SETTING_lo, "1, 2 or 3 numbers from -1e+30 to 1e+30"},
+        {SETTING_direction, "1, 2 or 3 numbers from -16 to 16, or auto"},
+        {SETTING_boundary, "1, 2 or 3 of auto periodic open reflecting fixed"},
+        {SETTING_skip, "one of auto none"},
+        {SETTING_parity, "one of sinuous varicose"},
+        {SETTING_h_method, "one of auto newton predicted"},
+        {SETTING_file, "the path of a file, of up to 255 characters; nothing: no file"},
+    };
+    char text[300], cut[32];
     (void)state;
-    for (const struct case_builtin *b = case_builtins; b->name; b++, n++) {
-        assert_int_equal(case_load(&file, b->name, &error), STATUS_OK);
-        assert_string_equal(file.name, b->name);
-        if (file.dimension == 1) assert_true(file.ladder_count >= 4 && file.gate_count >= 1);
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        setting_allowed(&setting_keys[rows[k].key], text, sizeof text);
+        assert_string_equal(text, rows[k].want);
     }
-    assert_true(n >= 6);
+    const char all[] = "one of sinuous varicose"; /* 23 letters */
+    setting_allowed(&setting_keys[SETTING_parity], cut, sizeof all);
+    assert_string_equal(cut, all);
+    setting_allowed(&setting_keys[SETTING_parity], cut, sizeof all - 1);
+    assert_string_equal(cut, "one of sinuous var ...");
+    setting_allowed(&setting_keys[SETTING_parity], cut, 10);
+    assert_string_equal(cut, "one o ...");
+    setting_allowed(&setting_keys[SETTING_parity], cut, 5);
+    assert_string_equal(cut, " ...");
+    setting_allowed(&setting_keys[SETTING_parity], cut, 4); /* no room for dots */
+    assert_string_equal(cut, "one");
 }
 
-/* Damaged case files: never a crash, always OK or a message. */
-static void damaged_cases_are_survived(void **state)
+static void refused(const char *argument, const char *message)
 {
-    static const char noise[] = "\n[]=;:# \t\r0aZ.,-\"";
-    unsigned random = 2385;
-    size_t builtins = 1;
+    struct settings settings;
+    struct error error = {0};
+    char word[600], *arguments[] = {word};
+    snprintf(word, sizeof word, "%s", argument);
+    settings_init(&settings);
+    const struct settings before = settings;
+    assert_int_equal(settings_apply(&settings, 1, arguments, &error), STATUS_BAD_INPUT);
+    if (strncmp(error.message, message, strlen(message)) != 0)
+        fail_msg("'%s', not '%s'", error.message, message);
+    assert_memory_equal(&before, &settings, sizeof before);
+}
+
+static void messages(void **state)
+{
+    char word[400], want[400];
     (void)state;
-    while (case_builtins[builtins].name) builtins++;
-    for (int round = 0; round < 4000; round++) {
-        const struct case_builtin *builtin = &case_builtins[(size_t)round % builtins];
-        const size_t length = strlen(builtin->text);
-        char *text = strdup(builtin->text);
-        assert_non_null(text);
-        for (int k = 0; k < 1 + round % 5; k++) {
-            random = random * 1664525u + 1013904223u;
-            const size_t at = (random >> 8) % length;
-            text[at] =
-                random >> 30 ? noise[(random >> 4) % (sizeof noise - 1)] : (char)(random >> 5);
-        }
-        struct case_file file;
+    refused("eta=~ }\x7f\x1f\x80", "eta=~ }???: allowed: a number above 0 up to 100, or auto");
+    for (int n = 63; n <= 64; n++) { /* of a long word its beginning */
+        snprintf(word, sizeof word, "eta=%.*s", n,
+                 "zyxwvutsrqponmlkjihgfedcbazyxwvutsrqponmlkjihg"
+                 "fedcbazyxwvutsrqponmlkjihgfedcba");
+        snprintf(want, sizeof want, "%.67s: allowed: a number above 0 up to 100, or auto", word);
+        refused(word, want);
+    }
+    refused("eta", "'eta': KEY=VALUE expected (`sphproof list keys` shows the keys)");
+    snprintf(word, sizeof word, "%080d", 0);
+    snprintf(want, sizeof want, "'%060d': KEY=VALUE expected (`sphproof list keys` shows the keys)",
+             0);
+    refused(word, want);
+    refused("eta_=2", "no key 'eta_'; did you mean 'eta'? allowed: lo hi ");
+    refused("boundary=", "boundary=: allowed: 1, 2 or 3 of auto periodic open reflecting fixed");
+    refused("boundary= , ",
+            "boundary= , : allowed: 1, 2 or 3 of auto periodic open reflecting fixed");
+    refused(
+        "boundary=open open open open",
+        "boundary=open open open open: allowed: 1, 2 or 3 of auto periodic open reflecting fixed");
+    refused("lo=1 2 3 4", "lo=1 2 3 4: allowed: 1, 2 or 3 numbers from -1e+30 to 1e+30");
+    refused("lo=1 2e30", "lo=1 2e30: allowed: 1, 2 or 3 numbers from -1e+30 to 1e+30");
+    refused("lo=1 2 -2e30", "lo=1 2 -2e30: allowed: 1, 2 or 3 numbers from -1e+30 to 1e+30");
+    refused("left=1 0 1e31", "left=1 0 1e31: allowed: 3 numbers (rho v P) from -1e+30 to 1e+30");
+    refused("left=1 0", "left=1 0: allowed: 3 numbers (rho v P) from -1e+30 to 1e+30");
+    refused("skip=", "no skip ''; allowed: auto none");
+    /* a list of words that has no room */
+    memset(word, ' ', sizeof word);
+    memcpy(word, "boundary=open", 13);
+    for (int n = SETTING_TEXT_MAX - 1; n <= SETTING_TEXT_MAX; n++) {
+        struct settings settings;
         struct error error = {0};
-        const enum status status =
-            case_parse(&file, "damaged.ini", text, length - (size_t)(round % 7 ? 0 : 40), &error);
-        assert_true(status == STATUS_OK || status == STATUS_BAD_INPUT);
-        if (status) assert_ptr_equal(strstr(error.message, "damaged.ini"), error.message);
-        free(text);
+        char *arguments[] = {word};
+        word[9 + n] = '\0';
+        settings_init(&settings);
+        assert_int_equal(settings_apply(&settings, 1, arguments, &error),
+                         n < SETTING_TEXT_MAX ? STATUS_OK : STATUS_BAD_INPUT);
+        word[9 + n] = ' ';
+    }
+    memset(word, 'f', sizeof word);
+    memcpy(word, "file=", 5);
+    for (int n = SETTING_TEXT_MAX - 1; n <= SETTING_TEXT_MAX; n++) {
+        struct settings settings;
+        struct error error = {0};
+        char *arguments[] = {word};
+        word[5 + n] = '\0';
+        settings_init(&settings);
+        assert_int_equal(settings_apply(&settings, 1, arguments, &error),
+                         n < SETTING_TEXT_MAX ? STATUS_OK : STATUS_BAD_INPUT);
+        assert_string_equal(settings.file, n < SETTING_TEXT_MAX ? word + 5 : "");
+        word[5 + n] = 'f';
+    }
+}
+
+/* One number or word for all directions, or each its own; who said it. */
+static void directions(void **state)
+{
+    char *const one[] = {"gravity=2", "boundary=open"},
+                *const each[] = {"gravity=2,3 4", "boundary=open,fixed reflecting", "lo=5 6"},
+                *const any[] = {"gravity=auto", "boundary=auto", "lattice=auto", "window=auto"};
+    struct settings settings;
+    struct error error;
+    (void)state;
+    settings_init(&settings);
+    assert_int_equal(settings.value[SETTING_gravity].source, SOURCE_FALLBACK);
+    assert_int_equal(settings_apply(&settings, 2, one, &error), STATUS_OK);
+    assert_int_equal(settings.value[SETTING_gravity].source, SOURCE_USER);
+    assert_false(settings.value[SETTING_gravity].automatic);
+    for (int d = 0; d < 3; d++) {
+        assert_true(settings_along(&settings, SETTING_gravity, d) == 2);
+        assert_int_equal(settings_choice_along(&settings, SETTING_boundary, d), BOUNDARY_OPEN);
+    }
+    assert_int_equal(settings_apply(&settings, 3, each, &error), STATUS_OK);
+    static const int ends[] = {BOUNDARY_OPEN, BOUNDARY_FIXED, BOUNDARY_REFLECTING};
+    for (int d = 0; d < 3; d++) {
+        assert_true(settings_along(&settings, SETTING_gravity, d) == 2 + d);
+        assert_int_equal(settings_choice_along(&settings, SETTING_boundary, d), ends[d]);
+    }
+    assert_true(settings_along(&settings, SETTING_lo, 0) == 5 &&
+                settings_along(&settings, SETTING_lo, 1) == 6);
+    assert_int_equal(settings.value[SETTING_lo].given, 2);
+    assert_int_equal(settings.value[SETTING_boundary].given, 3);
+    assert_int_equal(settings_apply(&settings, 4, any, &error), STATUS_OK);
+    assert_true(settings.value[SETTING_gravity].automatic &&
+                settings.value[SETTING_gravity].given == 1);
+    assert_true(settings.value[SETTING_boundary].automatic &&
+                settings.value[SETTING_boundary].given == 1);
+    assert_true(settings.value[SETTING_lattice].automatic &&
+                settings.value[SETTING_lattice].given == 0);
+    assert_true(settings.value[SETTING_window].automatic &&
+                settings.value[SETTING_window].given == 2);
+    assert_int_equal(setting_find("nothing"), -1);
+    assert_int_equal(settings_choice(&settings, SETTING_skip), SKIP_AUTO);
+    assert_false(settings.value[SETTING_skip].automatic); /* a word of its own */
+}
+
+/* Every key of a scheme gets there, and what it leaves open comes back as it is used. */
+static void schemes(void **state)
+{
+    char *const words[] = {"kernel=sinc",
+                           "sinc_n=7",
+                           "gradient=ia",
+                           "formulation=vanilla_ice",
+                           "volume_element=number",
+                           "viscosity=cullen_dehnen",
+                           "viscosity_form=signal",
+                           "balsara=on",
+                           "energy=internal",
+                           "pair_width=harmonic",
+                           "h_method=newton",
+                           "integrator=rk3",
+                           "alpha=0.3",
+                           "beta=0.7",
+                           "alpha_min=0.2",
+                           "alpha_max=2.5",
+                           "balsara_floor=0.01",
+                           "noise=0.6",
+                           "alpha_u=0.9",
+                           "eta=2.9",
+                           "cfl=0.25",
+                           "h_tolerance=1e-7"};
+    static const enum setting open[] = {
+        SETTING_kernel,         SETTING_gradient,   SETTING_volume_element,
+        SETTING_viscosity,      SETTING_balsara,    SETTING_energy,
+        SETTING_viscosity_form, SETTING_pair_width, SETTING_h_method};
+    struct settings settings;
+    struct scheme s;
+    struct error error;
+    (void)state;
+    settings_init(&settings);
+    if (settings_apply(&settings, sizeof words / sizeof *words, words, &error) ||
+        settings_scheme(&settings, 2, &s, &error))
+        fail_msg("%s", error.message);
+    assert_true(strcmp(s.kernel.member.name, "sinc") == 0 && s.gradient == GRADIENT_IA &&
+                s.formulation == FORMULATION_VANILLA_ICE && s.volume_element == VOLUME_NUMBER);
+    assert_true(s.viscosity == VISCOSITY_CULLEN_DEHNEN && s.balsara == BALSARA_ON &&
+                s.viscosity_form == VISCOSITY_FORM_SIGNAL && s.energy == ENERGY_INTERNAL);
+    assert_true(s.pair_width == PAIR_WIDTH_HARMONIC && s.h_method == H_NEWTON &&
+                strcmp(s.integrator->member.name, "rk3") == 0);
+    assert_true(s.alpha == 0.3 && s.beta == 0.7 && s.alpha_min == 0.2 && s.alpha_max == 2.5);
+    assert_true(s.balsara_floor == 0.01 && s.noise == 0.6 && s.alpha_u == 0.9 && s.eta == 2.9);
+    assert_true(s.cfl == 0.25 && s.h_tolerance == 1e-7);
+    struct kernel other;
+    assert_int_equal(kernel_select(&other, "sinc", 7, &error), STATUS_OK);
+    assert_true(s.kernel.constant[2] == other.constant[2]);
+    for (int dim = 1; dim <= 3; dim++) {
+        settings_init(&settings);
+        assert_int_equal(settings_scheme(&settings, dim, &s, &error), STATUS_OK);
+        const int used[] = {kernel_index(s.kernel.member.name),
+                            (int)s.gradient,
+                            (int)s.volume_element,
+                            (int)s.viscosity,
+                            (int)s.balsara,
+                            (int)s.energy,
+                            (int)s.viscosity_form,
+                            (int)s.pair_width,
+                            (int)s.h_method};
+        for (size_t k = 0; k < sizeof open / sizeof *open; k++)
+            assert_int_equal(settings_choice(&settings, open[k]), used[k]);
+        assert_true(settings_real(&settings, SETTING_eta) == s.eta && s.eta > 1 &&
+                    settings_real(&settings, SETTING_alpha) == s.alpha && s.alpha > 0);
+        assert_true(settings_real(&settings, SETTING_beta) == s.beta && s.beta > 0 &&
+                    settings_real(&settings, SETTING_cfl) == s.cfl && s.cfl > 0);
+    }
+}
+
+/* As one types it, and as a document has it. */
+static void written(void **state)
+{
+    static const struct {
+        const char *argument, *text, *json;
+    } rows[] = {
+        {"lo=0.1", "0.1", "0.1"},
+        {"lo=0.1,2", "0.1 2", "[0.1, 2.0]"},
+        {"hi=0.30000000000000004 1e-5 3", "0.30000000000000004 1e-05 3",
+         "[0.30000000000000004, 1e-05, 3.0]"},
+        {"n=64^2", "4096", "4096"},
+        {"seed=4294967295", "4294967295", "4294967295"},
+        {"boundary=open", "open", "\"open\""},
+        {"boundary=open fixed", "open fixed", "[\"open\", \"fixed\"]"},
+        {"file=a b.csv", "a b.csv", "\"a b.csv\""},
+        {"gamma=1.25", "1.25", "1.25"},
+        {"window=1 2", "1 2", "[1.0, 2.0]"},
+        {"kernel=sinc", "sinc", "\"sinc\""},
+    };
+    (void)state;
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        struct settings settings;
+        struct error error;
+        char word[64], text[SETTING_TEXT_MAX], *arguments[] = {word};
+        snprintf(word, sizeof word, "%s", rows[k].argument);
+        settings_init(&settings);
+        if (settings_apply(&settings, 1, arguments, &error)) fail_msg("%s", error.message);
+        *strchr(word, '=') = '\0';
+        settings_text(&settings, (enum setting)setting_find(word), text);
+        assert_string_equal(text, rows[k].text);
+        json_t *json = settings_json(&settings),
+               *want = json_loads(rows[k].json, JSON_DECODE_ANY, NULL);
+        if (!json_equal(json_object_get(json, word), want))
+            fail_msg("%s: not %s", rows[k].argument, rows[k].json);
+        json_decref(json);
+        json_decref(want);
+    }
+}
+
+/* A document has the keys that say something for the problem in so many dimensions. */
+static void documents_have_what_is_read(void **state)
+{
+    struct settings settings;
+    (void)state;
+    for (int dim = 1; dim <= 2; dim++) {
+        settings_init(&settings);
+        settings.dim = dim;
+        json_t *json = settings_json(&settings);
+        assert_null(json_object_get(json, "file"));
+        assert_null(json_object_get(json, "contrast"));
+        assert_true(json_is_array(json_object_get(json, "left")));
+        assert_int_equal(json_object_get(json, "gravity") != NULL, dim > 1);
+        assert_int_equal(json_object_get(json, "grade") != NULL, dim == 1);
+        json_decref(json);
     }
 }
 
@@ -206,8 +445,12 @@ int main(void)
         cmocka_unit_test(keys_read_what_they_write),
         cmocka_unit_test(keys_refuse_the_rest),
         cmocka_unit_test(keys_take_their_ends),
-        cmocka_unit_test(built_in_cases_are_sound),
-        cmocka_unit_test(damaged_cases_are_survived),
+        cmocka_unit_test(keys_say_what_they_allow),
+        cmocka_unit_test(messages),
+        cmocka_unit_test(directions),
+        cmocka_unit_test(schemes),
+        cmocka_unit_test(written),
+        cmocka_unit_test(documents_have_what_is_read),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
