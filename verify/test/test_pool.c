@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Computations side by side and the cache: the same results with any number of processes and from
- * the cache; damaged entries, crashes, kill -9 and two at once. */
+ * Computations side by side: the same results with any number of processes and from the cache, in
+ * which order, how many at once, in whose share; what is said of those that fail. */
 #define _GNU_SOURCE /* nftw */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,112 +9,11 @@
 #include <cmocka.h>
 #include <math.h>
 
-#include <fcntl.h>
-#include <ftw.h>
-#include <signal.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
 #include <time.h>
-#include <sys/stat.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include "pool.h"
-#include "result.h"
-
-enum { JOBS = 7 };
-
-/* One test's folder: the cache, and a file that grows by a byte with each computation. */
-struct place {
-    char folder[64], count[80], cache_folder[80];
-    struct cache cache;
-};
-
-struct task {
-    const struct place *place;
-    int number;
-    enum { SOUND, BROKEN, CRASHES, FAILS, SLOW } kind;
-};
-
-static enum status compute(const void *context, json_t **document, struct error *error)
-{
-    const struct task *task = context;
-    FILE *count = fopen(task->place->count, "a");
-    fputc('.', count);
-    fclose(count);
-    if (task->kind == CRASHES) raise(SIGKILL);
-    if (task->kind == SLOW) sleep(60);
-    if (task->kind == FAILS) return error_set(error, STATUS_ENVIRONMENT, "no luck");
-    *document = json_pack("{s:i, s:o, s:o}", "number", task->number, "third",
-                          result_number(task->number / 3.), "nan", result_number(0 / 0.));
-    /* larger than any pipe's buffer */
-    char *long_text = malloc(300001);
-    memset(long_text, 'a' + task->number, 300000);
-    long_text[300000] = '\0';
-    json_object_set_new(*document, "long", json_string(long_text));
-    free(long_text);
-    return task->kind == BROKEN ? error_set(error, STATUS_BROKE_DOWN, "particle 3") : STATUS_OK;
-}
-
-static void place_make(struct place *place)
-{
-    struct error error = {0};
-    strcpy(place->folder, "pool.XXXXXX");
-    assert_non_null(mkdtemp(place->folder));
-    snprintf(place->count, sizeof place->count, "%s/count", place->folder);
-    snprintf(place->cache_folder, sizeof place->cache_folder, "%s/cache", place->folder);
-    assert_int_equal(cache_open(&place->cache, place->cache_folder, false, &error), STATUS_OK);
-}
-
-static int remove_one(const char *path, const struct stat *is, int type, struct FTW *depth)
-{
-    (void)is, (void)type, (void)depth;
-    return remove(path);
-}
-
-static void place_clear(const struct place *place)
-{
-    nftw(place->cache_folder, remove_one, 8, FTW_DEPTH | FTW_PHYS);
-    unlink(place->count);
-    rmdir(place->folder);
-}
-
-static long computed(const struct place *place)
-{
-    struct stat is;
-    return stat(place->count, &is) ? 0 : (long)is.st_size;
-}
-
-static void fill(struct pool *pool, struct task *tasks, const struct place *place, size_t n)
-{
-    *pool = (struct pool){0};
-    for (size_t i = 0; i < n; i++) {
-        char name[32];
-        tasks[i].place = place;
-        tasks[i].number = (int)i;
-        snprintf(name, sizeof name, "task %zu", i);
-        assert_int_equal(pool_add(pool, name, name, (double)(i % 3), compute, &tasks[i]), i);
-    }
-}
-
-static enum status run(struct pool *pool, const struct cache *cache, int jobs)
-{
-    struct error error = {0};
-    const struct pool_settings settings = {.jobs = jobs, .cache = cache};
-    return pool_run(pool, &settings, &error);
-}
-
-static void same_results(const struct pool *a, const struct pool *b)
-{
-    assert_int_equal(a->count, b->count);
-    for (size_t i = 0; i < a->count; i++) {
-        assert_true(a->jobs[i].done && b->jobs[i].done);
-        assert_true(json_equal(a->jobs[i].document, b->jobs[i].document));
-        assert_int_equal(a->jobs[i].error.status, b->jobs[i].error.status);
-        assert_string_equal(a->jobs[i].error.message, b->jobs[i].error.message);
-    }
-}
+#include "made_jobs.h"
 
 static void any_number_of_processes(void **state)
 {
@@ -248,180 +147,6 @@ static void shares_meet(void **state)
     place_clear(&place);
 }
 
-/* Old entries go when they are asked to, not when somebody else opens the folder. */
-static void pruned(void **state)
-{
-    struct place place;
-    struct cache_census census;
-    struct error error = {0};
-    char path[CACHE_PATH_MAX];
-    (void)state;
-    place_make(&place);
-    json_t *document = json_pack("{s:i}", "value", 1);
-    const struct timespec month[2] = {{.tv_sec = time(NULL) - (time_t)CACHE_MONTH - 60},
-                                      {.tv_sec = time(NULL) - (time_t)CACHE_MONTH - 60}};
-    for (int k = 0; k < 3; k++) {
-        char key[8];
-        snprintf(key, sizeof key, "%d", k);
-        assert_int_equal(cache_store(&place.cache, key, document, &error), STATUS_OK);
-        assert_true(cache_has(&place.cache, key));
-        cache_path(&place.cache, key, path);
-        if (k) assert_int_equal(utimensat(AT_FDCWD, path, month, 0), 0);
-    }
-    json_decref(document);
-    json_decref(cache_load(&place.cache, "2", NULL)); /* used: young again */
-    assert_int_equal(cache_open(&place.cache, place.cache_folder, false, &error), STATUS_OK);
-    assert_int_equal(cache_prune(place.cache_folder, HUGE_VAL, &census, &error), STATUS_OK);
-    assert_true(census.entries == 3 && census.removed == 0 && census.bytes > 0);
-    assert_int_equal(cache_prune(place.cache_folder, CACHE_MONTH, &census, &error), STATUS_OK);
-    assert_true(census.entries == 2 && census.removed == 1);
-    assert_true(cache_has(&place.cache, "0") && !cache_has(&place.cache, "1") &&
-                cache_has(&place.cache, "2"));
-    assert_int_equal(cache_prune("no/such", 1, &census, &error), STATUS_BAD_INPUT);
-    place_clear(&place);
-}
-
-static size_t read_all(const char *path, char *bytes, size_t size)
-{
-    FILE *file = fopen(path, "rb");
-    assert_non_null(file);
-    const size_t n = fread(bytes, 1, size, file);
-    fclose(file);
-    return n;
-}
-
-static void write_all(const char *path, const char *bytes, size_t n)
-{
-    FILE *file = fopen(path, "wb");
-    assert_non_null(file);
-    assert_int_equal(fwrite(bytes, 1, n, file), n);
-    fclose(file);
-}
-
-/* Every truncation and every altered byte counts as missing; so does another key's entry. */
-static void damaged_entries(void **state)
-{
-    (void)state;
-    struct place place;
-    struct error error = {0};
-    char path[CACHE_PATH_MAX], other[CACHE_PATH_MAX], bytes[4096], damaged[4096];
-    place_make(&place);
-    json_t *document = json_pack("{s:f, s:[i, i]}", "value", 0.1, "list", 1, 2);
-    assert_int_equal(cache_store(&place.cache, "key", document, &error), STATUS_OK);
-    json_t *back = cache_load(&place.cache, "key", NULL);
-    assert_true(json_equal(back, document));
-    json_decref(back);
-    cache_path(&place.cache, "key", path);
-    const size_t n = read_all(path, bytes, sizeof bytes);
-    for (size_t i = 0; i < n; i++) {
-        bool seen = false;
-        write_all(path, bytes, i);
-        assert_null(cache_load(&place.cache, "key", &seen));
-        assert_true(seen);
-        memcpy(damaged, bytes, n);
-        damaged[i] = (char)(damaged[i] ^ (1 << (i % 7)));
-        write_all(path, damaged, n);
-        assert_null(cache_load(&place.cache, "key", NULL));
-    }
-    write_all(path, bytes, n);
-    back = cache_load(&place.cache, "key", NULL);
-    assert_non_null(back);
-    json_decref(back);
-    cache_path(&place.cache, "other key", other);
-    *strrchr(other, '/') = '\0';
-    mkdir(other, 0777);
-    other[strlen(other)] = '/';
-    write_all(other, bytes, n);
-    assert_null(cache_load(&place.cache, "other key", NULL));
-    /* another build has entries of its own */
-    struct cache rebuilt = place.cache;
-    rebuilt.build[0] = rebuilt.build[0] == '0' ? '1' : '0';
-    assert_null(cache_load(&rebuilt, "key", NULL));
-    json_decref(document);
-    place_clear(&place);
-}
-
-/* The process is killed in the midst of its third job: the first two are there, whole. */
-static void killed(void **state)
-{
-    (void)state;
-    struct place place;
-    struct pool pool;
-    struct task tasks[JOBS] = {0};
-    place_make(&place);
-    const pid_t child = fork();
-    if (child == 0) {
-        setpgid(0, 0);
-        struct task slow[JOBS] = {[2] = {.kind = SLOW}};
-        pool = (struct pool){0};
-        for (int i = 0; i < JOBS; i++) {
-            char name[32];
-            slow[i].place = &place;
-            slow[i].number = i;
-            snprintf(name, sizeof name, "task %d", i);
-            pool_add(&pool, name, name, JOBS - i, compute, &slow[i]);
-        }
-        run(&pool, &place.cache, 1);
-        _exit(0);
-    }
-    for (int i = 0; i < 1000 && computed(&place) < 3; i++) usleep(10000);
-    assert_int_equal(computed(&place), 3);
-    kill(-child, SIGKILL);
-    waitpid(child, NULL, 0);
-    fill(&pool, tasks, &place, JOBS);
-    assert_int_equal(run(&pool, &place.cache, 2), STATUS_OK);
-    assert_int_equal(pool.found, 2);
-    assert_int_equal(computed(&place), 3 + JOBS - 2);
-    pool_free(&pool);
-    place_clear(&place);
-}
-
-/* Two processes with the same jobs and the same cache: both get all results, the entries are sound.
- */
-static void two_at_once(void **state)
-{
-    (void)state;
-    struct place place;
-    struct pool pool, alone;
-    struct task tasks[JOBS] = {0}, again[JOBS] = {0};
-    pid_t children[2];
-    place_make(&place);
-    for (int c = 0; c < 2; c++)
-        if ((children[c] = fork()) == 0) {
-            bool well = true;
-            for (int round = 0; round < 5; round++) {
-                struct cache cache = place.cache;
-                cache.force = round % 2;
-                pool = (struct pool){0};
-                for (size_t i = 0; i < JOBS; i++) {
-                    char name[32];
-                    tasks[i] = (struct task){.place = &place, .number = (int)i};
-                    snprintf(name, sizeof name, "task %zu", i);
-                    pool_add(&pool, name, name, 1, compute, &tasks[i]);
-                }
-                well = well && run(&pool, &cache, 2) == STATUS_OK && !pool.note[0];
-                for (size_t i = 0; i < JOBS; i++)
-                    well = well && pool.jobs[i].document && !pool.jobs[i].error.status;
-                pool_free(&pool);
-            }
-            _exit(well ? 0 : 1);
-        }
-    for (int c = 0; c < 2; c++) {
-        int status;
-        waitpid(children[c], &status, 0);
-        assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 0);
-    }
-    fill(&pool, tasks, &place, JOBS);
-    fill(&alone, again, &place, JOBS);
-    assert_int_equal(run(&pool, &place.cache, 1), STATUS_OK);
-    assert_int_equal(pool.found, JOBS);
-    assert_int_equal(run(&alone, NULL, 1), STATUS_OK);
-    same_results(&pool, &alone);
-    pool_free(&pool);
-    pool_free(&alone);
-    place_clear(&place);
-}
-
 /* Where nothing can be kept, results are still there, and the pool says why. */
 static void full_disk(void **state)
 {
@@ -440,18 +165,427 @@ static void full_disk(void **state)
     place_clear(&place);
 }
 
+/* ---- how jobs are made ---- */
+
+enum { SLOTS = 160 };
+
+/* What processes tell each other: in memory that they share. */
+struct board {
+    int running, most, count, order[SLOTS];
+};
+static struct board *board;
+
+struct told {
+    int number;
+    enum status status;
+    enum { NOTHING, WITH_DOCUMENT, LEAVES, LEAVES_BADLY } kind;
+    int ms; /* how long it takes */
+};
+
+static enum status tell(const void *context, json_t **document, struct error *error)
+{
+    const struct told *told = context;
+    const int now = __atomic_add_fetch(&board->running, 1, __ATOMIC_SEQ_CST);
+    for (int most = board->most; now > most;)
+        if (__atomic_compare_exchange_n(&board->most, &most, now, false, __ATOMIC_SEQ_CST,
+                                        __ATOMIC_SEQ_CST))
+            break;
+    board->order[__atomic_fetch_add(&board->count, 1, __ATOMIC_SEQ_CST)] = told->number;
+    const struct timespec pause = {told->ms / 1000, told->ms % 1000 * 1000000L};
+    nanosleep(&pause, NULL);
+    __atomic_sub_fetch(&board->running, 1, __ATOMIC_SEQ_CST);
+    if (told->kind == LEAVES) _exit(0);
+    if (told->kind == LEAVES_BADLY) _exit(1);
+    if (told->kind == WITH_DOCUMENT) *document = json_pack("{s:i}", "number", told->number);
+    error_set(error, told->status, "said by %d", told->number);
+    return told->status;
+}
+
+static int share_memory(void **state)
+{
+    (void)state;
+    board = mmap(NULL, sizeof *board, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    return board == MAP_FAILED;
+}
+
+static int clean_board(void **state)
+{
+    (void)state;
+    *board = (struct board){0};
+    return 0;
+}
+
+/* n jobs of these weights. */
+static void add(struct pool *pool, struct told *told, size_t n, const double *weights)
+{
+    *pool = (struct pool){0};
+    for (size_t i = 0; i < n; i++) {
+        char name[32];
+        told[i].number = (int)i;
+        snprintf(name, sizeof name, "job %zu", i);
+        assert_int_equal(pool_add(pool, name, name, weights ? weights[i] : 1, tell, &told[i]), i);
+    }
+}
+
+/* Names, keys and weights as they were given, however many; of a key there is one job. */
+static void many_jobs(void **state)
+{
+    static struct told told[SLOTS];
+    struct pool pool = {0};
+    char name[32] = "none", key[32];
+    (void)state;
+    assert_true(pool_find(&pool, "none") == (size_t)-1);
+    for (size_t i = 0; i < SLOTS; i++) {
+        snprintf(name, sizeof name, "job %zu", i);
+        snprintf(key, sizeof key, "key %zu", i);
+        assert_int_equal(pool_add(&pool, name, i % 5 ? key : NULL, (double)i, tell, &told[i]), i);
+        assert_int_equal(pool.count, i + 1);
+    }
+    for (size_t i = 0; i < SLOTS; i++) {
+        const struct pool_job *job = &pool.jobs[i];
+        snprintf(name, sizeof name, "job %zu", i);
+        snprintf(key, sizeof key, "key %zu", i);
+        assert_string_equal(job->name, name);
+        assert_true(job->weight == (double)i && job->compute == tell && job->context == &told[i]);
+        assert_true(!job->done && !job->cached && !job->crashed && !job->elsewhere);
+        assert_true(pool_find(&pool, key) == (i % 5 ? i : (size_t)-1));
+        if (i % 5) {
+            assert_string_equal(job->key, key);
+            assert_int_equal(pool_add(&pool, "again", key, 7, tell, NULL), i);
+        } else {
+            assert_null(job->key);
+        }
+    }
+    assert_int_equal(pool.count, SLOTS);
+    pool_free(&pool);
+    assert_true(!pool.count && !pool.jobs && !pool.numbers);
+}
+
+/* ---- how they are run ---- */
+
+/* Heavy ones first, equal ones in their order; never more at once than are asked for. */
+static void order_and_number(void **state)
+{
+    enum { N = 9 };
+    static const double weights[N] = {2, 5, 1, 5, 3, 2, 8, 3, 1};
+    static const int order[N] = {6, 1, 3, 4, 7, 0, 5, 2, 8};
+    struct pool pool;
+    (void)state;
+    for (int jobs = 1; jobs <= 3; jobs++) {
+        struct told told[N] = {{0}};
+        *board = (struct board){0};
+        for (int i = 0; i < N; i++) told[i].ms = jobs == 1 ? 0 : 40;
+        add(&pool, told, N, weights);
+        assert_int_equal(run(&pool, NULL, jobs), STATUS_OK);
+        assert_int_equal(board->count, N);
+        assert_int_equal(board->most, jobs);
+        for (int i = 0; i < N && jobs == 1; i++) assert_int_equal(board->order[i], order[i]);
+        for (int i = 0; i < N; i++) assert_true(pool.jobs[i].done && !pool.jobs[i].cached);
+        pool_free(&pool);
+    }
+}
+
+/* A result is kept whatever it says of the computation; bad input and trouble are none. */
+static void what_is_kept(void **state)
+{
+    static const enum status statuses[] = {STATUS_OK, STATUS_CHECK_FAILED, STATUS_BAD_INPUT,
+                                           STATUS_BROKE_DOWN, STATUS_ENVIRONMENT};
+    enum { N = 5 };
+    struct place place;
+    struct pool pool;
+    (void)state;
+    place_make(&place);
+    for (int round = 0; round < 2; round++) {
+        struct told told[N] = {{0}};
+        for (int i = 0; i < N; i++) {
+            told[i].status = statuses[i];
+            told[i].kind = i % 2 ? WITH_DOCUMENT : NOTHING;
+        }
+        add(&pool, told, N, NULL);
+        assert_int_equal(run(&pool, &place.cache, 2), STATUS_OK);
+        assert_int_equal(pool.found, round ? 3 : 0);
+        assert_true(pool.damaged == 0 && !pool.note[0]);
+        for (int i = 0; i < N; i++) {
+            const struct pool_job *job = &pool.jobs[i];
+            char said[32] = "";
+            if (statuses[i]) snprintf(said, sizeof said, "said by %d", i);
+            assert_int_equal(job->error.status, statuses[i]);
+            assert_string_equal(job->error.message, said);
+            assert_true(job->done && !job->crashed && !job->elsewhere);
+            assert_true(job->cached == (round && (i < 2 || i == 3)));
+            assert_int_equal(job->document != NULL, i % 2);
+            if (i % 2)
+                assert_int_equal(json_integer_value(json_object_get(job->document, "number")), i);
+        }
+        assert_int_equal(board->count, round ? N + 2 : N);
+        pool_free(&pool);
+    }
+    place_clear(&place);
+}
+
+/* What has no key is never kept; an entry that is whole but no reply is computed again, and one
+ * that is damaged is counted, too. */
+static void what_is_not_there(void **state)
+{
+    struct place place;
+    struct pool pool;
+    struct error error = {0};
+    struct told told[3] = {{.kind = WITH_DOCUMENT}, {.kind = WITH_DOCUMENT}, {.kind = NOTHING}};
+    char path[CACHE_PATH_MAX];
+    (void)state;
+    place_make(&place);
+    for (int round = 0; round < 3; round++) {
+        add(&pool, told, 2, NULL);
+        assert_int_equal(pool_add(&pool, "no key", NULL, 9, tell, &told[2]), 2);
+        assert_int_equal(run(&pool, &place.cache, 1), STATUS_OK);
+        assert_int_equal(pool.found, round == 0 ? 0 : 1);
+        assert_int_equal(pool.damaged, round == 1);
+        assert_int_equal(board->count, 3 + 2 * round);
+        assert_true(pool.jobs[0].document && pool.jobs[1].document && !pool.jobs[2].document);
+        assert_true(pool.jobs[0].done && pool.jobs[1].done && pool.jobs[2].done);
+        pool_free(&pool);
+        if (round == 0) {
+            cache_path(&place.cache, "job 0", path);
+            assert_int_equal(truncate(path, 20), 0);
+        } else {
+            json_t *other = json_pack("{s:s}", "status", "0");
+            assert_int_equal(cache_store(&place.cache, "job 1", other, &error), STATUS_OK);
+            json_decref(other);
+        }
+    }
+    place_clear(&place);
+}
+
+static void no_result(void **state)
+{
+    struct pool pool;
+    struct told told[3] = {{.kind = LEAVES}, {.kind = LEAVES_BADLY}, {.kind = WITH_DOCUMENT}};
+    struct task task = {.kind = CRASHES};
+    struct place place;
+    (void)state;
+    place_make(&place);
+    task.place = &place;
+    add(&pool, told, 3, NULL);
+    assert_int_equal(pool_add(&pool, "bad one", "bad one", 1, compute, &task), 3);
+    assert_int_equal(run(&pool, &place.cache, 1), STATUS_OK);
+    for (int i = 0; i < 2; i++) {
+        char said[80];
+        snprintf(said, sizeof said, "job %d: its process gave no result: no memory?", i);
+        assert_int_equal(pool.jobs[i].error.status, STATUS_ENVIRONMENT);
+        assert_string_equal(pool.jobs[i].error.message, said);
+        assert_true(pool.jobs[i].done && !pool.jobs[i].crashed && !pool.jobs[i].document);
+    }
+    assert_true(pool.jobs[2].document && !pool.jobs[2].error.status);
+    assert_true(pool.jobs[3].crashed && pool.jobs[3].done && !pool.jobs[2].crashed);
+    assert_int_equal(pool.jobs[3].error.status, STATUS_BROKE_DOWN);
+    assert_string_equal(pool.jobs[3].error.message,
+                        "bad one: its process was ended by signal 9 (Killed)");
+    pool_free(&pool);
+    place_clear(&place);
+}
+
+/* What is running is waited for where no more processes can be started, and nothing is left open.
+ */
+static void no_pipe(void **state)
+{
+    struct pool pool;
+    struct told told[4] = {{0}};
+    struct rlimit usual, few;
+    struct error error = {0};
+    const struct pool_settings settings = {.jobs = 4};
+    (void)state;
+    const int next = dup(0);
+    close(next);
+    assert_int_equal(getrlimit(RLIMIT_NOFILE, &usual), 0);
+    for (int room = 1; room <= 3; room++) { /* one process needs two, and keeps one */
+        few = usual;
+        few.rlim_cur = (rlim_t)(next + room);
+        for (int i = 0; i < 4; i++) told[i].ms = 60;
+        add(&pool, told, 4, NULL);
+        assert_int_equal(setrlimit(RLIMIT_NOFILE, &few), 0);
+        const enum status status = pool_run(&pool, &settings, &error);
+        assert_int_equal(setrlimit(RLIMIT_NOFILE, &usual), 0);
+        assert_int_equal(status, STATUS_ENVIRONMENT);
+        char said[80];
+        snprintf(said, sizeof said, "no pipe for job %d: Too many open files", room - 1);
+        assert_string_equal(error.message, said);
+        for (int i = 0; i < 4; i++) assert_true(pool.jobs[i].done == (i < room - 1));
+        pool_free(&pool);
+        const int after = dup(0);
+        close(after);
+        assert_int_equal(after, next);
+    }
+}
+
+/* ---- what is said meanwhile ---- */
+
+struct seen {
+    size_t calls, done[400], total;
+    char what[400][32];
+    double share[400];
+};
+
+static void see(void *context, const char *what, size_t done, size_t total, double share)
+{
+    struct seen *seen = context;
+    if (seen->calls == 400) return;
+    snprintf(seen->what[seen->calls], sizeof seen->what[0], "%s", what);
+    seen->done[seen->calls] = done;
+    seen->share[seen->calls++] = share;
+    seen->total = total;
+}
+
+/* One after the other: after each the next one's name, how many are done with those that were kept,
+ * and the share by weight of those that were not. */
+static void progress(void **state)
+{
+    enum { N = 5 };
+    static const double weights[N] = {1, 4, 2, 16, 8};
+    static struct seen seen;
+    struct place place;
+    struct pool pool;
+    struct error error = {0};
+    struct told told[N] = {{0}};
+    (void)state;
+    place_make(&place);
+    add(&pool, told, 1, weights);
+    assert_int_equal(run(&pool, &place.cache, 1), STATUS_OK); /* job 0 is kept */
+    pool_free(&pool);
+    const struct pool_settings settings = {
+        .jobs = 1, .cache = &place.cache, .progress = see, .progress_context = &seen};
+    add(&pool, told, N, weights);
+    seen = (struct seen){0};
+    assert_int_equal(pool_run(&pool, &settings, &error), STATUS_OK);
+    static const char *const names[] = {"job 3", "job 4", "job 1", "job 2"};
+    static const double shares_of[] = {0, 16 / 30., 24 / 30., 28 / 30., 1};
+    assert_true(seen.calls >= 4 && seen.total == N);
+    size_t ends = 0;
+    for (size_t k = 0; k < seen.calls; k++) {
+        const size_t done = seen.done[k] - 1;
+        assert_true(done < N && (k == 0 || seen.done[k] >= seen.done[k - 1]));
+        assert_true(seen.share[k] == shares_of[done]);
+        if (k && seen.done[k] > seen.done[k - 1]) {
+            assert_string_equal(seen.what[k], names[done - 1]);
+            ends++;
+        }
+    }
+    assert_true(ends >= 3 && seen.done[seen.calls - 1] == N);
+    pool_free(&pool);
+    /* without weights there is nothing that is not done */
+    static const double none[2] = {0};
+    add(&pool, told, 2, none);
+    pool.jobs[0].key[0] = 'J', pool.jobs[1].key[0] = 'J'; /* new ones */
+    seen = (struct seen){0};
+    assert_int_equal(pool_run(&pool, &settings, &error), STATUS_OK);
+    assert_true(seen.calls >= 2);
+    for (size_t k = 0; k < seen.calls; k++) assert_true(seen.share[k] == 1);
+    pool_free(&pool);
+    /* all is kept: nobody is asked */
+    add(&pool, told, N, weights);
+    seen = (struct seen){0};
+    assert_int_equal(pool_run(&pool, &settings, &error), STATUS_OK);
+    assert_true(pool.found == N && seen.calls == 0);
+    pool_free(&pool);
+    place_clear(&place);
+}
+
+/* While one job takes its time, a few times a second. */
+static void several_times_a_second(void **state)
+{
+    static struct seen seen;
+    struct pool pool;
+    struct error error = {0};
+    struct told told = {.ms = 500};
+    const struct pool_settings settings = {.jobs = 1, .progress = see, .progress_context = &seen};
+    (void)state;
+    add(&pool, &told, 1, NULL);
+    seen = (struct seen){0};
+    assert_int_equal(pool_run(&pool, &settings, &error), STATUS_OK);
+    assert_true(seen.calls >= 2 && seen.calls <= 12);
+    assert_true(seen.done[0] == 0 && seen.share[0] == 0);
+    pool_free(&pool);
+}
+
+/* ---- shares ---- */
+
+/* The heaviest goes where least is, equal ones by their keys, to the first of equal shares. */
+static void shares_by_hand(void **state)
+{
+    static const struct {
+        const char *key;
+        double weight;
+    } rows[] = {{"d", 5}, {"b", 3}, {"a", 3}, {NULL, 9}, {"c", 4}, {"e", 1}, {"f", 1}, {NULL, 3}};
+    enum { N = sizeof rows / sizeof *rows };
+    struct pool pool = {0};
+    struct error error = {0};
+    int got[N];
+    (void)state;
+    for (size_t i = 0; i < N; i++)
+        assert_int_equal(pool_add(&pool, "job", rows[i].key, rows[i].weight, tell, NULL), i);
+    for (int of = 1; of <= 3; of++) {
+        /* written a second time: in the order d c a b e f */
+        static const int order[] = {0, 4, 2, 1, 5, 6};
+        double load[3] = {0};
+        int want[N] = {0};
+        for (size_t k = 0; k < 6; k++) {
+            int least = 0;
+            for (int s = 1; s < of; s++) least = load[s] < load[least] ? s : least;
+            load[least] += rows[order[k]].weight;
+            want[order[k]] = least + 1;
+        }
+        memset(got, 99, sizeof got);
+        assert_int_equal(pool_divide(&pool, of, got, &error), STATUS_OK);
+        assert_memory_equal(got, want, sizeof got);
+    }
+    pool_free(&pool);
+}
+
+/* Each share computes what is in it and leaves the rest as it was. */
+static void a_share_is_its_own(void **state)
+{
+    enum { N = 6 };
+    struct pool pool;
+    struct error error = {0};
+    struct told told[N] = {{0}};
+    static const double weights[N] = {6, 5, 4, 3, 2, 1};
+    (void)state;
+    for (int number = 1; number <= 2; number++) {
+        int of[N + 1];
+        *board = (struct board){0};
+        add(&pool, told, N, weights);
+        assert_int_equal(pool_add(&pool, "no key", NULL, 7, tell, &told[0]), N);
+        assert_int_equal(pool_divide(&pool, 2, of, &error), STATUS_OK);
+        const struct pool_settings settings = {.jobs = 1, .share = {.number = number, .of = 2}};
+        assert_int_equal(pool_run(&pool, &settings, &error), STATUS_OK);
+        int mine = 0;
+        for (int i = 0; i <= N; i++) {
+            assert_true(pool.jobs[i].elsewhere == (of[i] != number));
+            assert_true(pool.jobs[i].done == (of[i] == number));
+            mine += of[i] == number;
+        }
+        assert_int_equal(board->count, mine);
+        pool_free(&pool);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(any_number_of_processes),
         cmocka_unit_test(shares),
         cmocka_unit_test(shares_meet),
-        cmocka_unit_test(pruned),
         cmocka_unit_test(crashes),
-        cmocka_unit_test(damaged_entries),
-        cmocka_unit_test(killed),
-        cmocka_unit_test(two_at_once),
         cmocka_unit_test(full_disk),
+        cmocka_unit_test(many_jobs),
+        cmocka_unit_test_setup(order_and_number, clean_board),
+        cmocka_unit_test_setup(what_is_kept, clean_board),
+        cmocka_unit_test_setup(what_is_not_there, clean_board),
+        cmocka_unit_test_setup(no_result, clean_board),
+        cmocka_unit_test_setup(no_pipe, clean_board),
+        cmocka_unit_test_setup(progress, clean_board),
+        cmocka_unit_test_setup(several_times_a_second, clean_board),
+        cmocka_unit_test(shares_by_hand),
+        cmocka_unit_test_setup(a_share_is_its_own, clean_board),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, share_memory, NULL);
 }

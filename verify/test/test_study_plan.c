@@ -1,0 +1,272 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The runs of a study before any is made: which numbers of particles and seeds, what decides a
+ * run's result and is its key, how long it will take, and what is refused. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+#include "near.h"
+#include "run_job.h"
+#include "settings_output.h"
+#include "study.h"
+#include "value.h"
+
+enum { LEVELS = 4 };
+static const size_t ladder[LEVELS] = {40, 60, 80, 400};
+
+static enum status plan(struct study *study, struct pool *pool, const char *name, const char *keys,
+                        const char *vary, size_t replicates, struct error *error)
+{
+    char text[256], *arguments[8], *rest = text;
+    int n = 0;
+    *error = (struct error){0};
+    *pool = (struct pool){0};
+    *study = (struct study){.level_count = LEVELS, .replicates = replicates};
+    memcpy(study->ladder, ladder, sizeof ladder);
+    snprintf(text, sizeof text, "%s", keys);
+    for (char *word; (word = strtok_r(rest, " ", &rest));) arguments[n++] = word;
+    if (run_prepare(&study->settings, name, n, arguments, error) ||
+        sweep_parse(&study->sweep, vary, error))
+        fail_msg("%s", error->message);
+    return study_plan(study, pool, error);
+}
+
+static double real_of(const struct run *run, enum setting key)
+{
+    return settings_real(&run->settings, key);
+}
+
+/* Combination, level, replicate: each run has its own number, and is a job of that name and key. */
+static void every_run(void **state)
+{
+    struct study study;
+    struct pool pool;
+    struct error error;
+    (void)state;
+    static const double etas[] = {1.5, 2, 0};
+    if (plan(&study, &pool, "sod", "", "eta=1.5,2,0.5", 3, &error)) fail_msg("%s", error.message);
+    assert_int_equal(pool.count, 2 * LEVELS * 3);
+    for (size_t c = 0; c < 2; c++) {
+        assert_false(study.results[c].excluded);
+        assert_true(settings_real(&study.results[c].settings, SETTING_n) == 400);
+        assert_true(study.results[c].scheme.eta == etas[c]);
+        for (size_t l = 0; l < LEVELS; l++)
+            for (size_t r = 0; r < 3; r++) {
+                const size_t k = (c * LEVELS + l) * 3 + r;
+                const struct run *run = &study.runs[k];
+                const struct pool_job *job = &pool.jobs[study.jobs[k]];
+                char name[32], *key = run_job_key(run, "run", &error);
+                assert_true(real_of(run, SETTING_n) == (double)study_neighbour(ladder[l], 3, r));
+                assert_true(real_of(run, SETTING_eta) == etas[c]);
+                assert_true(real_of(run, SETTING_seed) == 1);
+                snprintf(name, sizeof name, "sod, n = %zu", study_neighbour(ladder[l], 3, r));
+                assert_string_equal(job->name, name);
+                assert_string_equal(job->key, key);
+                assert_true(job->weight == run_job_weight(run) && job->context == run);
+                free(key);
+            }
+    }
+    assert_true(study.results[2].excluded);
+    assert_non_null(strstr(study.results[2].message, "eta = 0.5"));
+    study_free(&study);
+    assert_true(!study.results && !study.runs && !study.jobs);
+    pool_free(&pool);
+}
+
+/* Where the start is random, replicates have other seeds, and the level's own number. */
+static void seeds(void **state)
+{
+    struct study study;
+    struct pool pool;
+    struct error error;
+    (void)state;
+    if (plan(&study, &pool, "sod", "jitter=0.1 seed=7", NULL, 3, &error))
+        fail_msg("%s", error.message);
+    for (size_t k = 0; k < LEVELS * 3; k++) {
+        assert_true(real_of(&study.runs[k], SETTING_n) == (double)ladder[k / 3]);
+        assert_true(real_of(&study.runs[k], SETTING_seed) == 7 + (double)(k % 3));
+    }
+    study_free(&study);
+    pool_free(&pool);
+}
+
+/* 5 % of n from the lowest to the highest, by turns above and below; all above where 4 particles
+ * would not be left. */
+static void numbers(void **state)
+{
+    static const struct {
+        size_t n, replicates, of[9];
+    } rows[] = {
+        {400, 9, {400, 403, 397, 406, 394, 409, 391, 412, 388}}, /* 2.5 is rounded up */
+        {390, 9, {390, 392, 388, 394, 386, 396, 384, 398, 382}},
+        {200, 4, {200, 203, 197, 206}},
+        {100, 2, {100, 105}},
+        {8, 9, {8, 9, 7, 10, 6, 11, 5, 12, 4}},
+        {7, 9, {7, 8, 9, 10, 11, 12, 13, 14, 15}},
+        {6, 4, {6, 7, 5, 8}},
+        {5, 4, {5, 6, 7, 8}},
+    };
+    (void)state;
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
+        for (size_t r = 0; r < rows[k].replicates; r++)
+            assert_int_equal(study_neighbour(rows[k].n, rows[k].replicates, r), rows[k].of[r]);
+    assert_int_equal(study_neighbour(200, 1, 0), 200);
+    assert_int_equal(study_neighbour(200, 1, 5), 200);
+}
+
+static void how_many_replicates(void **state)
+{
+    static const struct {
+        const char *name, *key;
+        size_t replicates;
+    } rows[] = {{"sod", "n=100", 9},
+                {"sound_wave", "n=100", 1},
+                {"sod", "jitter=0.1", 3},
+                {"sod_2d", "n=100", 1},
+                {"gresho", "n=100", 1},
+                {"sod_2d", "lattice=glass", 3},
+                {"sound_wave_2d", "jitter=0.1", 3}};
+    (void)state;
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        struct run_settings settings;
+        char key[32], *keys[] = {key};
+        snprintf(key, sizeof key, "%s", rows[k].key);
+        assert_int_equal(run_prepare(&settings, rows[k].name, 1, keys, NULL), STATUS_OK);
+        assert_int_equal(study_replicates(&settings), rows[k].replicates);
+        assert_true(study_is_random(&settings.settings) == (rows[k].replicates == 3));
+    }
+}
+
+static struct run resolved(const char *name, const char *key)
+{
+    struct run_settings settings;
+    struct run run;
+    struct error error;
+    char text[128], *keys[] = {text};
+    snprintf(text, sizeof text, "%s", key);
+    if (run_prepare(&settings, name, *key ? 1 : 0, keys, &error) ||
+        run_resolve(&run, &settings, &error))
+        fail_msg("%s: %s", name, error.message);
+    return run;
+}
+
+static json_t *key_of(const struct run *run, const char *kind)
+{
+    struct error error;
+    char *text = run_job_key(run, kind, &error);
+    assert_non_null(text);
+    json_t *key = json_loads(text, 0, NULL);
+    assert_non_null(key);
+    free(text);
+    return key;
+}
+
+/* All that decides a result, and nothing else: of a file what it holds. */
+static void keys(void **state)
+{
+    (void)state;
+    struct run run = resolved("sod", "eta=2.3849999999999998");
+    for (int any = 0; any < 2; any++) {
+        run.asked.any_window = any;
+        json_t *key = key_of(&run, "other");
+        json_t *want = json_pack("{s:s, s:s, s:s, s:i, s:b, s:o}", "kind", "other", "case", "sod",
+                                 "title", run.asked.file.title, "dimension", 1, "any_window", any,
+                                 "settings", settings_json(&run.settings));
+        assert_true(json_equal(key, want));
+        json_decref(key);
+        json_decref(want);
+    }
+    char folder[] = "study_plan.XXXXXX", path[64];
+    assert_non_null(mkdtemp(folder));
+    snprintf(path, sizeof path, "%s/p.csv", folder);
+    run = resolved("gresho", "");
+    snprintf(run.settings.file, sizeof run.settings.file, "%s", path);
+    char bytes[9000];
+    for (size_t i = 0; i < sizeof bytes; i++) bytes[i] = (char)('0' + i * i % 71);
+    for (size_t n = 0; n <= sizeof bytes; n += 4500) { /* more than is read at once */
+        FILE *file = fopen(path, "wb");
+        assert_non_null(file);
+        assert_int_equal(fwrite(bytes, 1, n, file), n);
+        fclose(file);
+        json_t *key = key_of(&run, "run");
+        assert_int_equal(json_integer_value(json_object_get(key, "content")),
+                         (json_int_t)cache_hash(CACHE_HASH, bytes, n));
+        json_decref(key);
+    }
+    unlink(path);
+    json_t *key = key_of(&run, "run"); /* it is not there */
+    assert_true(json_is_integer(json_object_get(key, "content")));
+    assert_int_equal(json_integer_value(json_object_get(key, "content")), 0);
+    json_decref(key);
+    rmdir(folder);
+}
+
+static void weights(void **state)
+{
+    (void)state;
+    struct run run = resolved("sod", "n=1000");
+    near_relative(run_job_weight(&run), 0.052, 1e-14);
+    run = resolved("gresho", "n=100^2");
+    near_relative(run_job_weight(&run), 0.002 + 10, 1e-14);
+    run = resolved("rest_3d", "n=10^3");
+    near_relative(run_job_weight(&run), 0.002 + 1e-5 * 1e4, 1e-13);
+}
+
+/* A run that is there with its profile is not made again; nor is one of the same key. */
+static void once(void **state)
+{
+    struct error error;
+    struct pool pool = {0};
+    size_t job[3];
+    (void)state;
+    struct run run = resolved("sod", "n=100"), other = resolved("sod", "n=200");
+    char *key = run_job_key(&run, RUN_JOB_PROFILE, &error);
+    assert_int_equal(pool_add(&pool, "another", "another", 1, NULL, NULL), 0);
+    assert_int_equal(pool_add(&pool, "with its profile", key, 1, NULL, NULL), 1);
+    free(key);
+    assert_int_equal(run_job_add(&pool, &run, &job[0], &error), STATUS_OK);
+    for (int k = 1; k < 3; k++)
+        assert_int_equal(run_job_add(&pool, &other, &job[k], &error), STATUS_OK);
+    assert_true(job[0] == 1 && job[1] == 2 && job[2] == 2);
+    assert_int_equal(pool.count, 3);
+    pool_free(&pool);
+}
+
+static void refused(const char *keys_of, const char *vary, const char *why)
+{
+    struct study study;
+    struct pool pool;
+    struct error error;
+    assert_int_equal(plan(&study, &pool, "sod", keys_of, vary, 1, &error), STATUS_BAD_INPUT);
+    if (!strstr(error.message, why)) fail_msg("'%s' lacks '%s'", error.message, why);
+    study_free(&study);
+    pool_free(&pool);
+}
+
+static void what_is_refused(void **state)
+{
+    (void)state;
+    refused("eta=0.5", NULL, "eta = 0.5");
+    refused("", "eta=0.5,0.6", "no combination of --vary is allowed: eta = 0.5");
+    refused("t_end=5", NULL, "mirrored tube");
+    refused("t_end=5", "eta=0.5,1.5", "mirrored tube");
+    /* of one combination what is wrong with it */
+    refused("", "eta=0.5", "eta = 0.5: h = eta");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_run), cmocka_unit_test(seeds),
+        cmocka_unit_test(numbers),   cmocka_unit_test(how_many_replicates),
+        cmocka_unit_test(keys),      cmocka_unit_test(weights),
+        cmocka_unit_test(once),      cmocka_unit_test(what_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
