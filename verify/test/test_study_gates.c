@@ -1,0 +1,267 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The gates of a case on a study: what passes, fails or is known to fail, by how much a bound is
+ * raised, and what the lattice-sum floor explains. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "made_study.h"
+#include "measure.h"
+#include "near.h"
+
+static double factor;
+
+static void times_factor(json_t *run, size_t c, size_t l, size_t r)
+{
+    json_t *norms_of = json_object_get(json_object_get(run, "errors"), "density");
+    (void)c;
+    json_object_set_new(norms_of, "l1", json_real(factor * pow(spacing_of(l, r), 0.5)));
+}
+
+/* A field's gate on order and error; one of the finest error alone; what lattice sums explain. */
+static void gates_are_judged(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name;
+        struct case_gate gate; /* a bound of 0: the finest error itself */
+        double factor;
+        size_t coarse; /* the case's own finest n */
+        enum study_gate outcome;
+        double bound;
+        bool explains;
+    } rows[] = {
+        {"sod",
+         {NULL, FIELD_DENSITY, NORM_L1, {0.4, 0.6, 1}, {0, ""}, {0, ""}},
+         0.01,
+         0,
+         GATE_PASS,
+         1,
+         false},
+        {"sod",
+         {NULL, FIELD_DENSITY, NORM_L1, {0.6, 0.8, 1}, {0, ""}, {0, ""}},
+         0.01,
+         0,
+         GATE_FAIL,
+         1,
+         false},
+        {"sod",
+         {NULL, FIELD_DENSITY, NORM_L1, {0.6, 0.8, 1}, {(double)INFINITY, "why"}, {0, ""}},
+         0.01,
+         0,
+         GATE_KNOWN,
+         1,
+         false},
+        {"sod",
+         {NULL, FIELD_DENSITY, NORM_L1, {0.4, 0.6, 7e-4}, {0, ""}, {0, ""}},
+         0.01,
+         0,
+         GATE_FAIL,
+         7e-4,
+         false},
+        {"sod",
+         {NULL, FIELD_DENSITY, NORM_L1, {0.4, 0.6, 7e-4}, {0, ""}, {0, ""}},
+         0.01,
+         640,
+         GATE_PASS,
+         7e-4 * 1.3195079107728942,
+         false},
+        {"sod",
+         {NULL, FIELD_DENSITY, NORM_L1, {0.4, 0.6, 7e-4}, {0, ""}, {0, ""}},
+         0.01,
+         160,
+         GATE_FAIL,
+         7e-4,
+         false},
+        {"sod",
+         {NULL, FIELD_DENSITY, NORM_L1, {1, (double)INFINITY, 8e-4}, {0, ""}, {0, ""}},
+         0.01,
+         0,
+         GATE_PASS,
+         8e-4,
+         false},
+        {"sod",
+         {NULL, FIELD_DENSITY, NORM_L1, {1, (double)INFINITY, 0}, {0, ""}, {0, ""}},
+         0.01,
+         0,
+         GATE_PASS,
+         0,
+         false},
+        {"sod",
+         {"mean_pressure", FIELD_DENSITY, NORM_L1, {1, (double)INFINITY, 1}, {0, ""}, {0, ""}},
+         0.01,
+         0,
+         GATE_NONE,
+         0,
+         false},
+        {"gresho",
+         {NULL, FIELD_DENSITY, NORM_L1, {1, (double)INFINITY, 1e-12}, {0, ""}, {0, ""}},
+         1e-9,
+         0,
+         GATE_FAIL,
+         1e-12,
+         false},
+        {"gresho",
+         {NULL, FIELD_DENSITY, NORM_L1, {0.4, 0.6, 1e-12}, {0, ""}, {0, ""}},
+         1e-9,
+         0,
+         GATE_FAIL,
+         1e-12,
+         false},
+        {"gresho",
+         {"disc_error", FIELD_DENSITY, NORM_L1, {1, (double)INFINITY, 1.2e-5}, {0, ""}, {0, ""}},
+         0.01,
+         0,
+         GATE_PASS,
+         1.2e-5,
+         false},
+        {"gresho",
+         {"disc_error", FIELD_DENSITY, NORM_L1, {1, (double)INFINITY, 1.1e-5}, {0, ""}, {0, ""}},
+         0.01,
+         0,
+         GATE_FAIL,
+         1.1e-5,
+         false},
+        {"sod",
+         {NULL, FIELD_DENSITY, NORM_L1, {1, (double)INFINITY, 7.9e-4}, {0, ""}, {0, ""}},
+         0.01,
+         0,
+         GATE_FAIL,
+         7.9e-4,
+         false},
+        {"gresho",
+         {NULL, FIELD_DENSITY, NORM_L1, {0.4, 0.6, 7e-4}, {0, ""}, {0, ""}},
+         0.01,
+         640,
+         GATE_PASS,
+         7e-4 * 1.1486983549970351,
+         false},
+        {"gresho",
+         {NULL, FIELD_DENSITY, NORM_L1, {0.6, 0.8, 1}, {0, ""}, {0, ""}},
+         1e-9,
+         0,
+         GATE_FAIL,
+         1,
+         true},
+        {"gresho",
+         {"peak_velocity", FIELD_DENSITY, NORM_L1, {1, (double)INFINITY, 1.2e-5}, {0, ""}, {0, ""}},
+         0.01,
+         0,
+         GATE_PASS,
+         1.2e-5,
+         false},
+        {"gresho",
+         {"peak_velocity", FIELD_DENSITY, NORM_L1, {1, (double)INFINITY, 1.1e-5}, {0, ""}, {0, ""}},
+         0.01,
+         0,
+         GATE_FAIL,
+         1.1e-5,
+         false},
+    };
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        struct study study;
+        struct pool pool;
+        struct error error;
+        factor = rows[k].factor;
+        make(&study, &pool, rows[k].name, NULL, 1, times_factor, &error);
+        struct study_result *result = &study.results[0];
+        struct case_file *file = &study.settings.file;
+        const struct settings settings = result->settings;
+        const struct scheme scheme = result->scheme;
+        *result = (struct study_result){.settings = settings, .scheme = scheme};
+        study.status = STATUS_OK;
+        file->gates[0] = rows[k].gate;
+        const double finest = factor * pow(spacing_of(3, 0), 0.5);
+        if (rows[k].gate.gate.bound == 0) file->gates[0].gate.bound = finest;
+        file->gates[1] = (struct case_gate){
+            NULL, FIELD_VELOCITY, NORM_L2, {.low = -9, .high = 9, .bound = 1e9}, {0, ""}, {0, ""}};
+        file->gate_count = 2;
+        file->ladder[0] = 5, file->ladder[1] = rows[k].coarse;
+        file->ladder_count = rows[k].coarse ? 2 : 0;
+        assert_int_equal(study_judge(&study, &pool, &error), STATUS_OK);
+        const char *functional = rows[k].gate.functional;
+        const struct study_order *order =
+            functional ? &result->functional_errors[strcmp(functional, "disc_error") != 0]
+                       : &result->orders[0][0];
+        if (order->status != rows[k].outcome)
+            fail_msg("row %zu: outcome %d, %s, bound %g, finest %g", k, order->status, order->why,
+                     order->gate.bound, order->fit.finest);
+        assert_int_equal(result->orders[FIELD_VELOCITY][NORM_L2].status, GATE_PASS);
+        if (rows[k].outcome == GATE_NONE) {
+            study_free(&study);
+            pool_free(&pool);
+            continue;
+        }
+        near_relative(order->gate.bound, rows[k].bound > 0 ? rows[k].bound : finest, 1e-9);
+        assert_true(!isfinite(rows[k].gate.gate.high) == !(order->gate.low > -1e300));
+        assert_string_equal(order->known, rows[k].gate.known.why);
+        assert_true(result->floor_explains == rows[k].explains);
+        assert_int_equal(result->status,
+                         rows[k].outcome == GATE_FAIL ? STATUS_CHECK_FAILED : STATUS_OK);
+        assert_int_equal(study.status, result->status);
+        assert_true(!order->why[0] == (rows[k].outcome == GATE_PASS));
+        study_free(&study);
+        pool_free(&pool);
+    }
+}
+
+static double exact_errors[LEVELS];
+
+static void set_errors(json_t *run, size_t c, size_t l, size_t r)
+{
+    (void)c, (void)r;
+    json_object_set_new(json_object_get(json_object_get(run, "errors"), "density"), "l1",
+                        json_real(exact_errors[l]));
+}
+
+/* An order that is missed is explained up to twenty floors: of the density, with the standard
+ * gradient also of that. */
+static void floors_explain_up_to_a_point(void **state)
+{
+    (void)state;
+    for (int standard = 0; standard < 2; standard++)
+        for (int side = -1; side <= 2; side++) {
+            const char *keys = standard ? "kernel=cubic_spline,eta=4.8,gradient=standard"
+                                        : "kernel=cubic_spline,eta=4.8,gradient=ia";
+            struct study study;
+            struct pool pool;
+            struct error error;
+            struct kernel kernel;
+            double density, gradient;
+            assert_int_equal(kernel_select(&kernel, "cubic_spline", 0, &error), STATUS_OK);
+            measure_lattice(&kernel, 1, 4.8, &density, &gradient);
+            assert_true(fabs(gradient) > 2 * fabs(density));
+            const double most = 20 * fabs(standard ? gradient : density);
+            /* side 2: an order that is met by its last bit, and an error that is too large */
+            for (size_t l = 0; l < LEVELS; l++)
+                exact_errors[l] = most * (1 + 1e-9 * (side % 2)) * pow(2, 0.5 * (double)(3 - l));
+            make(&study, &pool, "sod", keys, 1, set_errors, &error);
+            struct study_result *result = &study.results[0];
+            const double order = result->orders[0][0].fit.order;
+            const struct settings settings = result->settings;
+            const struct scheme scheme = result->scheme;
+            *result = (struct study_result){.settings = settings, .scheme = scheme};
+            study.settings.file.gates[0] =
+                (struct case_gate){NULL, FIELD_DENSITY, NORM_L1, {0.6, 0.7, 1}, {0, ""}, {0, ""}};
+            if (side == 2)
+                study.settings.file.gates[0].gate =
+                    (struct order_gate){order, order + 0.1, exact_errors[3] / 2};
+            study.settings.file.gate_count = 1;
+            assert_int_equal(study_judge(&study, &pool, &error), STATUS_OK);
+            assert_int_equal(result->orders[0][0].status, GATE_FAIL);
+            assert_true(result->floor_explains == (side < 1));
+            study_free(&study);
+            pool_free(&pool);
+        }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(gates_are_judged),
+        cmocka_unit_test(floors_explain_up_to_a_point),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
