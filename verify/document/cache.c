@@ -203,11 +203,10 @@ enum status cache_store(const struct cache *cache, const char *key, const json_t
     path[strlen(path)] = '/';
     if (!status) status = output_open(&output, path, error);
     if (!status) {
-        const size_t length = strlen(text);
         char head[HEAD_MAX];
-        head_of(text, length, head);
+        head_of(text, strlen(text), head);
         fputs(head, output.stream);
-        fwrite(text, 1, length, output.stream);
+        fputs(text, output.stream);
         status = output_close(&output, error);
     }
     free(text);

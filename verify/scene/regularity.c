@@ -80,7 +80,6 @@ static void add_slot(struct sums *sums, const struct grid *grid, size_t slot, do
     for (int32_t k = 0; k < list->count; k++) {
         const size_t other = (size_t)list->slots[k];
         double delta[3];
-        if (other == slot || other >= cloud->n) continue;
         for (int d = 0; d < cloud->box.dim; d++) {
             const double side = grid_side(grid, d);
             delta[d] = position[slot][d] - position[other][d];
@@ -141,15 +140,16 @@ static int by_place(const void *a, const void *b)
 
 /* Those on one side of place k, out to its h; at least the next one. */
 static void walk_side(const struct regularity_cloud *cloud, const struct stand *row, size_t k,
-                      int step, struct place *place)
+                      bool right, struct place *place)
 {
     const double side = domain_length(&cloud->box, 0);
     const size_t n = cloud->n;
     for (size_t away = 1; away < n; away++) {
-        const bool wraps = step > 0 ? k + away >= n : away > k;
+        const bool wraps = right ? k + away >= n : away > k;
         if (wraps && !cloud->periodic[0]) return;
-        const size_t other = step > 0 ? (k + away) % n : (k + n - away) % n;
-        const double delta[3] = {row[k].x - row[other].x - (wraps ? step * side : 0)};
+        const size_t other = (right ? k + away : k + n - away) % n;
+        const double image = !wraps ? 0 : right ? side : -side;
+        const double delta[3] = {row[k].x - row[other].x - image};
         see(cloud, place, row[other].i, delta);
         if (!(fabs(delta[0]) < cloud->h[place->i])) return;
     }
@@ -168,8 +168,8 @@ static enum status walk_line(struct sums *sums, double widest, struct error *err
     qsort(row, cloud->n, sizeof *row, by_place);
     for (size_t k = 0; k < cloud->n; k++) {
         struct place place = place_of(cloud, row[k].i, widest);
-        walk_side(cloud, row, k, 1, &place);
-        walk_side(cloud, row, k, -1, &place);
+        walk_side(cloud, row, k, true, &place);
+        walk_side(cloud, row, k, false, &place);
         add(sums, &place);
     }
     free(row);

@@ -102,7 +102,6 @@ static void add_pushes(struct cloud *cloud)
         for (int32_t k = 0; k < lists[slot].count; k++) {
             const int32_t other = lists[slot].slots[k];
             double delta[3];
-            if ((size_t)other == slot || (size_t)other >= cloud->n) continue;
             const double r = step_to(cloud, slot, other, delta);
             const double width = 0.5 * (cloud->width[i] + cloud->width[order[other]]);
             const double part = r > 0 ? push(r / width) / r : 0;

@@ -55,7 +55,7 @@ static void cells_of_a_plane(void **state)
     const struct domain flat = {2, {0, 0}, {4, 0.1}};
     const struct snapshot one = {.n = 1, .x = {x + 6, y}};
     map = made(&flat, &one, MAP_CELLS);
-    assert_true(map.nx == 6 && map.ny == 1);
+    assert_true(map.nx == 6 && map.ny == 1 && map.y[0] == 0.05);
     map_free(&map);
 }
 

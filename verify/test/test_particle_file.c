@@ -148,6 +148,16 @@ static void scenes_get_a_box(void **state)
     near_relative(scene.lo[0], -5.08, 1e-15);
     near_relative(scene.hi[0], 3.08, 1e-15);
     assert_true(scene.lo[1] == 6 && scene.hi[1] == 8);
+    particle_file_free(&file); /* whoever comes first or last may be the outermost */
+    assert_int_equal(
+        particle_file_read(written("x,vx,m,u\n5,0,1,1\n1,0,1,1\n-3,0,1,1\n"), &file, &error),
+        STATUS_OK);
+    scene = (struct scene){.boundary = {BOUNDARY_OPEN}};
+    assert_int_equal(particle_file_fill(&file, path, &scene, &error), STATUS_OK);
+    near_relative(scene.lo[0], -3.08, 1e-15);
+    near_relative(scene.hi[0], 5.08, 1e-15);
+    particle_file_free(&file);
+    assert_int_equal(particle_file_read(written(text), &file, &error), STATUS_OK);
     /* a box that is there stays; both its ends are inside */
     scene = (struct scene){
         .lo = {-5, 6.5}, .hi = {3, 7}, .boundary = {BOUNDARY_OPEN, BOUNDARY_PERIODIC}};
@@ -251,10 +261,13 @@ static void starts_that_are_refused(void **state)
          ":3: x = 2.5: allowed: inside of the box, 0 to 2",
          {0, 0}},
         {PLANE "\n1,1,1,1,1,1\n2.5,1,1,1,1,1\n", NULL, {BOUNDARY_OPEN, BOUNDARY_PERIODIC}},
-        {PLANE "\n1,1,1,1,1,1\n1,-0.5,1,1,1,1\n",
-         ":3: y = -0.5: allowed: inside of the box, 0 to 4",
+        {PLANE "\n1,1,1,1,1,1\n-0.5,1,1,1,1,1\n",
+         ":3: x = -0.5: allowed: inside of the box, 0 to 2",
+         {0, 0}},
+        {PLANE "\n1,1,1,1,1,1\n1,-1.5,1,1,1,1\n",
+         ":3: y = -1.5: allowed: inside of the box, -1 to 4",
          {BOUNDARY_OPEN, BOUNDARY_REFLECTING}},
-        {PLANE "\n0,4,1,1,1,1\n2,0,1,1,1,1\n", NULL, {0, 0}},
+        {PLANE "\n0,4,1,1,1,1\n2,-1,1,1,1,1\n", NULL, {0, 0}},
         {PLANE "\n1,1,1,1,1,1\n1,1,1,1,1,1\n",
          ":1: no column 'rho': boundary=fixed keeps particles at their density",
          {0, BOUNDARY_FIXED}},
@@ -270,7 +283,7 @@ static void starts_that_are_refused(void **state)
     };
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         const struct prepared p = {.problem = &problem,
-                                   .domain = {2, {0, 0}, {2, 4}},
+                                   .domain = {2, {0, -1}, {2, 4}},
                                    .boundary = {rows[k].ends[0], rows[k].ends[1]}};
         struct initial initial = {0};
         struct error error = {0};

@@ -1,0 +1,159 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * How cases are found: built-in ones by name, files by path, and what is no case file at all. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "cases.h"
+
+enum { LARGEST = 65536 };
+
+static char folder[] = "/tmp/sphproof_cases_XXXXXX";
+
+static const char *path_of(const char *name)
+{
+    static char path[128];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    return path;
+}
+
+/* The built-in case of that name, filled up with empty lines to so many bytes. */
+static void write_case(const char *path, const char *name, size_t bytes)
+{
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    for (const struct case_builtin *builtin = case_builtins; builtin->name; builtin++) {
+        if (strcmp(builtin->name, name) != 0) continue;
+        fputs(builtin->text, file);
+        for (size_t i = strlen(builtin->text); i < bytes; i++) fputc('\n', file);
+    }
+    assert_int_equal(fclose(file), 0);
+}
+
+static void built_in(void **state)
+{
+    (void)state;
+    size_t n = 0;
+    for (const struct case_builtin *builtin = case_builtins; builtin->name; builtin++, n++) {
+        struct case_file file;
+        struct error error = {0};
+        if (case_load(&file, builtin->name, &error)) fail_msg("%s", error.message);
+        assert_string_equal(file.name, builtin->name);
+    }
+    assert_true(n > 10);
+}
+
+/* A path is what has a slash or ends in .ini: the file of a name is not looked for. */
+static void paths(void **state)
+{
+    (void)state;
+    struct case_file file;
+    struct error error = {0};
+    write_case(path_of("tube.ini"), "sod", 0);
+    assert_int_equal(case_load(&file, path_of("tube.ini"), &error), STATUS_OK);
+    assert_string_equal(file.name, "tube");
+    write_case(path_of("tube"), "sod", 0);
+    assert_int_equal(case_load(&file, path_of("tube"), &error), STATUS_OK);
+    char *before = getcwd(NULL, 0);
+    assert_int_equal(chdir(folder), 0);
+    const enum status alone = case_load(&file, "tube.ini", &error),
+                      bare = case_load(&file, "tube", &error),
+                      dotted = case_load(&file, "tube.txt", &error);
+    assert_int_equal(chdir(before), 0);
+    free(before);
+    assert_int_equal(alone, STATUS_OK);
+    assert_int_equal(bare, STATUS_BAD_INPUT);
+    assert_int_equal(dotted, STATUS_BAD_INPUT);
+    unlink(path_of("tube"));
+    unlink(path_of("tube.ini"));
+}
+
+static void refused(const char *name, const char *why)
+{
+    struct case_file file;
+    struct error error = {0};
+    char said[512];
+    snprintf(said, sizeof said, "case file '%s': %s", name, why);
+    assert_int_equal(case_load(&file, name, &error), STATUS_BAD_INPUT);
+    assert_string_equal(error.message, said);
+}
+
+static void no_case_files(void **state)
+{
+    (void)state;
+    refused(path_of("none.ini"), "No such file or directory");
+    refused(folder, "Is a directory");
+    assert_int_equal(mkfifo(path_of("pipe.ini"), 0600), 0);
+    refused(path_of("pipe.ini"), "not a regular file"); /* nobody writes to it */
+    unlink(path_of("pipe.ini"));
+    /* no larger than it may be, and by a byte */
+    struct case_file file;
+    struct error error = {0};
+    write_case(path_of("large.ini"), "sod", LARGEST);
+    if (case_load(&file, path_of("large.ini"), &error)) fail_msg("%s", error.message);
+    write_case(path_of("large.ini"), "sod", LARGEST + 1);
+    refused(path_of("large.ini"), "larger than 64 KiB: not a case file");
+    unlink(path_of("large.ini"));
+    /* the system's own files have no size until they are read */
+    struct stat is;
+    if (stat("/proc/kallsyms", &is) == 0 && is.st_size == 0 && access("/proc/kallsyms", R_OK) == 0)
+        refused("/proc/kallsyms", "larger than 64 KiB: not a case file");
+    /* what is in a file is told of it */
+    FILE *bad = fopen(path_of("bad.ini"), "w");
+    assert_non_null(bad);
+    fputs("[case]\nno such line\n", bad);
+    fclose(bad);
+    assert_int_equal(case_load(&file, path_of("bad.ini"), &error), STATUS_BAD_INPUT);
+    assert_memory_equal(error.message, path_of("bad.ini:2"), strlen(path_of("bad.ini:2")));
+    unlink(path_of("bad.ini"));
+}
+
+/* All that there are are named, as far as the message goes. */
+static void unknown_names(void **state)
+{
+    (void)state;
+    struct case_file file;
+    struct error error = {0};
+    char said[256], name[200];
+    snprintf(said, sizeof said, "no case 'no_such_case'; allowed: %s %s ", case_builtins[0].name,
+             case_builtins[1].name);
+    assert_int_equal(case_load(&file, "no_such_case", &error), STATUS_BAD_INPUT);
+    if (strncmp(error.message, said, strlen(said)) != 0) fail_msg("%s", error.message);
+    assert_int_equal(case_load(&file, "sot", &error), STATUS_BAD_INPUT);
+    assert_non_null(strstr(error.message, "no case 'sot'; did you mean 'sod'? allowed: "));
+    memset(name, 'a', sizeof name - 1); /* longer than any path that is made of it */
+    name[sizeof name - 1] = '\0';
+    assert_int_equal(case_load(&file, name, &error), STATUS_BAD_INPUT);
+    assert_memory_equal(error.message, "no case 'aaaa", 13);
+}
+
+static int make_folder(void **state)
+{
+    (void)state;
+    return !mkdtemp(folder);
+}
+
+static int remove_folder(void **state)
+{
+    (void)state;
+    return rmdir(folder);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(built_in),
+        cmocka_unit_test(paths),
+        cmocka_unit_test(no_case_files),
+        cmocka_unit_test(unknown_names),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}

@@ -1,0 +1,121 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Particles of equal masses, worked out a second time. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <gsl/gsl_qrng.h>
+#include <gsl/gsl_rng.h>
+
+#include "equal_masses.h"
+#include "gas.h"
+#include "initial_fill.h"
+#include "near.h"
+
+/* Sobol's sequence, shifted, each point with the density's probability. */
+static void equal_masses_follow_the_density(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        enum { N = 50 };
+        static char *keys[] = {"n=50", "lattice=random", "seed=5", "equal_masses=yes"};
+        const struct settings settings = gas_settings(4, keys);
+        const struct prepared p = {.problem = &gas_problem, .domain = {dim, {-1, 0, 1}, {1, 3, 2}}};
+        const int side = dim == 2 ? 512 : 96;
+        double mass = 0, most = 0, shift[4];
+        for (int k = 0; k < (dim == 2 ? 1 : side); k++)
+            for (int j = 0; j < side; j++)
+                for (int i = 0; i < side; i++) {
+                    const double x[] = {-1 + 2 * (i + 0.5) / side, 3 * (j + 0.5) / side,
+                                        dim == 2 ? 0 : 1 + (k + 0.5) / side};
+                    mass += gas_density(x);
+                    most = fmax(most, gas_density(x));
+                }
+        mass *= 6 / pow(side, dim);
+        most *= 1.01;
+        struct initial initial;
+        struct error error = {0};
+        if (initial_fill(&p, &settings, &initial, &error)) fail_msg("%s", error.message);
+        assert_int_equal(initial.n, N);
+        gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
+        gsl_qrng *sequence = gsl_qrng_alloc(gsl_qrng_sobol, (unsigned)dim + 1);
+        gsl_rng_set(random, 5);
+        for (int d = 0; d < 4; d++) shift[d] = gsl_rng_uniform(random);
+        int refused = 0;
+        for (int i = 0; i < N;) {
+            double part[4], x[3] = {0};
+            gsl_qrng_get(sequence, part);
+            for (int d = 0; d <= dim; d++) part[d] += shift[d], part[d] -= part[d] >= 1;
+            for (int d = 0; d < dim; d++)
+                x[d] = p.domain.lo[d] + (p.domain.hi[d] - p.domain.lo[d]) * part[d];
+            if (part[dim] * most >= gas_density(x)) {
+                refused++;
+                continue;
+            }
+            for (int d = 0; d < dim; d++) near_absolute(initial.x[d][i] + 9, x[d] + 9, 1e-14);
+            near_relative(initial.m[i], mass / N, 1e-11);
+            assert_true(initial.rho[i] == gas_density(x) ||
+                        fabs(initial.rho[i] / gas_density(x) - 1) < 1e-13);
+            i++;
+        }
+        assert_true(refused > 20);
+        gsl_qrng_free(sequence);
+        gsl_rng_free(random);
+        initial_free(&initial);
+    }
+}
+
+static double special[3]; /* a place, and the density there; 1 elsewhere */
+
+static void sample_special(const struct prepared *p, const double x[3], double t,
+                           struct problem_state *s)
+{
+    (void)p, (void)t;
+    *s = (struct problem_state){
+        .rho = x[0] == special[0] && x[1] == special[1] ? special[2] : 1, .P = 1, .u = 1};
+}
+
+/* Who stays is decided by the density over 1.01 times the greatest one, to the last digits. */
+static void points_are_kept_by_their_density(void **state)
+{
+    (void)state;
+    static char *keys[] = {"n=20", "lattice=random", "seed=5", "equal_masses=yes"};
+    const struct settings settings = gas_settings(4, keys);
+    const struct problem problem = {.sample = sample_special};
+    const struct prepared p = {.problem = &problem, .domain = {2, {0, 0}, {1, 1}}};
+    double shift[3], part[3];
+    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
+    gsl_qrng *sequence = gsl_qrng_alloc(gsl_qrng_sobol, 3);
+    gsl_rng_set(random, 5);
+    for (int d = 0; d < 3; d++) shift[d] = gsl_rng_uniform(random);
+    do { /* one that less than all of the gas would keep */
+        gsl_qrng_get(sequence, part);
+        for (int d = 0; d < 3; d++) part[d] = fmod(part[d] + shift[d], 1);
+    } while (!(part[2] > 0.25 && part[2] < 0.75));
+    for (int more = -1; more <= 1; more += 2) {
+        struct initial initial;
+        struct error error = {0};
+        bool kept = false;
+        special[0] = part[0];
+        special[1] = part[1];
+        special[2] = part[2] * 1.01 * (1 + more * 1e-9);
+        if (initial_fill(&p, &settings, &initial, &error)) fail_msg("%s", error.message);
+        for (size_t i = 0; i < initial.n; i++)
+            kept = kept || (initial.x[0][i] == part[0] && initial.x[1][i] == part[1]);
+        assert_true(kept == (more > 0));
+        initial_free(&initial);
+    }
+    gsl_qrng_free(sequence);
+    gsl_rng_free(random);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(equal_masses_follow_the_density),
+        cmocka_unit_test(points_are_kept_by_their_density),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

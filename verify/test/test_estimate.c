@@ -1,0 +1,157 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What a run is thought to take, worked out a second time; the limit of what is allowed. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <stdio.h>
+
+#include "allowance.h"
+#include "estimate.h"
+#include "integrator.h"
+#include "memory.h"
+#include "near.h"
+
+enum { N = 3 };
+
+static const double v[3][N + 1] = {{1, 2, 6, 99}, {0, 4, 2, 99}, {3, 3, 9, 99}},
+                             m[N + 1] = {1, 8, 0.125, 1e-9}, u[N + 1] = {2, 1, 0.5, 1e9},
+                             rho[N + 1] = {1, 1, 4, 1e9};
+
+/* The scheme that costs least: density and force by predicted widths. */
+static struct scene plain_scene(int dim)
+{
+    struct scene scene = {.dim = dim,
+                          .hi = {1, 1, 1},
+                          .gamma = 1.5,
+                          .t_end = 0.75e8,
+                          .n = N,
+                          .v = {v[0], v[1], v[2]},
+                          .m = m,
+                          .u = u,
+                          .rho = rho,
+                          .threads = 1};
+    struct error error;
+    assert_int_equal(kernel_select(&scene.scheme.kernel, "cubic_spline", 0, &error), STATUS_OK);
+    scene.scheme.integrator =
+        (const struct integrator *)family_find(&integrator_family, "leapfrog");
+    assert_non_null(scene.scheme.integrator);
+    scheme_default(&scene.scheme, &(struct scheme_open){0}, dim);
+    scene.scheme.gradient = GRADIENT_STANDARD;
+    scene.scheme.viscosity = VISCOSITY_CONSTANT;
+    scene.scheme.balsara = BALSARA_OFF;
+    scene.scheme.h_method = H_PREDICTED;
+    scene.scheme.eta = 2.5;
+    scene.scheme.cfl = 0.2;
+    return scene;
+}
+
+static void of_particles(void **state)
+{
+    (void)state;
+    static const double ball[] = {0, 2, M_PI, 4 * M_PI / 3};
+    for (int dim = 1; dim <= 3; dim++) {
+        struct scene scene = plain_scene(dim);
+        const double memory = 1.2e7 + memory_bytes(&scene) + 8. * N * (2 * dim + 6);
+        struct estimate found = estimate_size(&scene);
+        near_relative(found.memory, memory, 1e-15);
+        assert_true(found.steps == 0 && found.cpu_s == 0);
+        /* signals: sound, and what motion beside the mean one becomes when it is stopped */
+        double fastest = 0;
+        for (int i = 0; i < N; i++) {
+            double square = 0;
+            for (int d = 0; d < dim; d++)
+                square += pow(v[d][i] - (v[d][0] + v[d][1] + v[d][2]) / 3, 2);
+            const double h = 2.5 * pow(m[i] / rho[i], 1. / dim);
+            fastest = fmax(fastest, 2 * sqrt(1.5 * 0.5 * (u[i] + square / 2)) / h);
+        }
+        const double steps = ceil(0.75e8 * fastest / 0.2), neighbours = ball[dim] * pow(2.5, dim);
+        assert_true(steps > 1e8); /* enough of them to be told apart to 1e-8 */
+        static const struct {
+            enum gradient gradient;
+            enum viscosity viscosity;
+            enum balsara balsara;
+            enum h_method h_method;
+            double pair; /* ns */
+        } rows[] = {
+            {GRADIENT_STANDARD, VISCOSITY_CONSTANT, BALSARA_OFF, H_PREDICTED, 12},
+            {GRADIENT_IA, VISCOSITY_CONSTANT, BALSARA_OFF, H_PREDICTED, 18},
+            {GRADIENT_STANDARD, VISCOSITY_RECONSTRUCTED, BALSARA_OFF, H_PREDICTED, 18},
+            {GRADIENT_STANDARD, VISCOSITY_PROJECTED, BALSARA_OFF, H_PREDICTED, 18},
+            {GRADIENT_STANDARD, VISCOSITY_CULLEN_DEHNEN, BALSARA_OFF, H_PREDICTED, 18},
+            {GRADIENT_STANDARD, VISCOSITY_CONSTANT, BALSARA_ON, H_PREDICTED, 18},
+            {GRADIENT_STANDARD, VISCOSITY_CONSTANT, BALSARA_OFF, H_NEWTON, 24},
+            {GRADIENT_IA, VISCOSITY_PROJECTED, BALSARA_ON, H_NEWTON, 36},
+        };
+        for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+            scene.scheme.gradient = rows[k].gradient;
+            scene.scheme.viscosity = rows[k].viscosity;
+            scene.scheme.balsara = rows[k].balsara;
+            scene.scheme.h_method = rows[k].h_method;
+            const double step = dim == 1 ? 5 + neighbours : 100 + rows[k].pair * neighbours;
+            found = estimate_run(&scene);
+            assert_true(found.steps == steps && found.memory == estimate_size(&scene).memory);
+            near_relative(found.cpu_s,
+                          1e-9 * N * step * (4 + steps * scene.scheme.integrator->evaluations),
+                          1e-14);
+        }
+        scene.n = 1;
+        assert_true(estimate_run(&scene).steps > 1);
+        scene.n = N;
+        scene.rho = NULL;
+        found = estimate_run(&scene);
+        assert_true(found.steps == 0 && found.cpu_s == 0 && found.memory > 1.2e7);
+        scene.rho = rho;
+        scene.n = 0;
+        found = estimate_run(&scene);
+        assert_true(found.steps == 0 && found.cpu_s == 0 && found.memory >= 1.2e7);
+    }
+}
+
+/* Of gas as cold as can be next to nothing is asked; each step takes one evaluation at least. */
+static void of_few_steps(void **state)
+{
+    (void)state;
+    static const double cold[N] = {1e-30, 1e-30, 1e-30}, still[N] = {0};
+    struct scene scene = plain_scene(1);
+    struct integrator lazy = *scene.scheme.integrator;
+    scene.u = cold;
+    scene.v[0] = still;
+    scene.t_end = 1e6;
+    lazy.evaluations = 0;
+    scene.scheme.integrator = &lazy;
+    const struct estimate found = estimate_run(&scene);
+    assert_true(found.steps == 1);
+    near_relative(found.cpu_s, 1e-9 * N * 10 * (4 + 1), 1e-14);
+    lazy.evaluations = 3;
+    near_relative(estimate_run(&scene).cpu_s, 1e-9 * N * 10 * (4 + 3), 1e-14);
+}
+
+/* What is there may be used up. */
+static void more_than_there_is(void **state)
+{
+    (void)state;
+    const double there = allowance_memory("");
+    struct error error;
+    char said[160];
+    assert_true(there > 0 && isfinite(there));
+    assert_int_equal(estimate_check(&(struct estimate){.memory = there}, 7, &error), STATUS_OK);
+    assert_int_equal(estimate_check(&(struct estimate){.memory = 2 * there}, 7, &error),
+                     STATUS_ENVIRONMENT);
+    snprintf(said, sizeof said,
+             "n=7 takes about %.3g GB of memory, more than the %.3g GB that there are",
+             2 * there / 1e9, there / 1e9);
+    assert_string_equal(error.message, said);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(of_particles),
+        cmocka_unit_test(of_few_steps),
+        cmocka_unit_test(more_than_there_is),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,275 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What is said where there is no memory. The linker's --wrap brings every call for some of the
+ * project here first, where the first one fails, then the second one, and so on until all goes
+ * well. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cases.h"
+#include "gas.h"
+#include "headline.h"
+#include "initial_fill.h"
+#include "map.h"
+#include "particle_file.h"
+#include "regularity.h"
+#include "relax.h"
+#include "suite.h"
+#include "suite_output.h"
+
+static atomic_int left = -1; /* calls until one fails; < 0: none does */
+
+static bool fails(void)
+{
+    return left >= 0 && left-- == 0;
+}
+
+/* WRAP(name, parameters, arguments): the name that the linker gives to calls of name. */
+#define WRAP(name, parameters, arguments)                                                          \
+    void *__real_##name parameters;                                                                \
+    void *__wrap_##name parameters;                                                                \
+    void *__wrap_##name parameters                                                                 \
+    {                                                                                              \
+        return fails() ? NULL : __real_##name arguments;                                           \
+    }
+WRAP(malloc, (size_t size), (size))
+WRAP(calloc, (size_t n, size_t size), (n, size))
+WRAP(realloc, (void *memory, size_t size), (memory, size))
+WRAP(aligned_alloc, (size_t alignment, size_t size), (alignment, size))
+WRAP(strdup, (const char *text), (text))
+
+/* Each call for memory of `work` fails once: it says so, and of all it asked for nothing is left.
+ * There are at least so many calls; where what comes after those can do without, not all. */
+static void without_memory(enum status work(struct error *error), int least, bool all)
+{
+    for (int k = 0;; k++) {
+        struct error error = {0};
+        left = k;
+        const enum status status = work(&error);
+        const bool done = left >= 0 || (!all && k >= least);
+        left = -1;
+        if (done) {
+            if (all) assert_int_equal(status, STATUS_OK);
+            assert_true(k >= least);
+            return;
+        }
+        if (status != STATUS_ENVIRONMENT || !strstr(error.message, "no memory"))
+            fail_msg("call %d: status %d: %s", k, status, error.message);
+    }
+}
+
+/* ---- where particles start ---- */
+
+enum { N = 100 };
+
+static double places[3][N], unit[N];
+
+static void make_places(void)
+{
+    for (int i = 0; i < N; i++) {
+        unit[i] = 1;
+        for (int d = 0; d < 3; d++) places[d][i] = 10 * fmod((0.618034 + 0.0629 * d) * (i + 1), 1);
+    }
+}
+
+static enum status fill(struct error *error)
+{
+    char *keys[] = {"n=16", "lattice=square"};
+    const struct prepared p = {.problem = &gas_problem, .domain = {2, {0, 0}, {1, 1}}};
+    const struct settings settings = gas_settings(2, keys);
+    struct initial initial = {0};
+    const enum status status = initial_fill(&p, &settings, &initial, error);
+    initial_free(&initial);
+    return status;
+}
+
+static double room(const void *context, const double x[3])
+{
+    (void)context, (void)x;
+    return 1;
+}
+
+static enum status relaxed(struct error *error)
+{
+    const struct relax_room all = {{2, {0, 0}, {10, 10}}, room, NULL};
+    make_places();
+    return relax_points(&all, N, (double *const[]){places[0], places[1], places[2]}, error);
+}
+
+static enum status relax_measured(struct error *error)
+{
+    const struct domain box = {2, {0, 0}, {10, 10}};
+    struct relax_quality quality;
+    make_places();
+    return relax_measure(&box, N, (const double *const[]){places[0], places[1], places[2]}, unit,
+                         &quality, error);
+}
+
+static enum status regular(struct error *error)
+{
+    struct kernel kernel;
+    struct regularity found;
+    enum status status = kernel_select(&kernel, "cubic_spline", 0, error);
+    make_places();
+    for (int dim = 1; !status && dim <= 2; dim++) {
+        const struct regularity_cloud cloud = {.box = {dim, {0, 0}, {10, 10}},
+                                               .n = N,
+                                               .x = {places[0], places[1]},
+                                               .volume = unit,
+                                               .h = unit,
+                                               .kernel = &kernel};
+        status = regularity_measure(&cloud, &found, error);
+    }
+    return status;
+}
+
+static void places_of_particles(void **state)
+{
+    (void)state;
+    without_memory(fill, 1, true);
+    without_memory(relaxed, 4, true);
+    without_memory(relax_measured, 4, true);
+    without_memory(regular, 4, true);
+}
+
+/* ---- files and maps ---- */
+
+static char path[] = "/tmp/sphproof_memory_XXXXXX.ini";
+
+static enum status mapped(struct error *error)
+{
+    const struct domain domain = {2, {0, 0}, {10, 10}};
+    const struct snapshot s = {.n = N, .x = {places[0], places[1]}};
+    struct map map;
+    make_places();
+    const enum status status = map_create(&map, &domain, &s, 8, error);
+    if (!status) map_free(&map);
+    return status;
+}
+
+static enum status loaded(struct error *error)
+{
+    static struct case_file file;
+    return case_load(&file, path, error);
+}
+
+/* What there is in its stead is listed. */
+static enum status unknown(struct error *error)
+{
+    static struct case_file file;
+    const enum status status = case_load(&file, "no_such_case", error);
+    return status == STATUS_BAD_INPUT ? STATUS_OK : status;
+}
+
+static void files(void **state)
+{
+    (void)state;
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    for (const struct case_builtin *builtin = case_builtins; builtin->name; builtin++)
+        if (strcmp(builtin->name, "sod") == 0) fputs(builtin->text, file);
+    fclose(file);
+    without_memory(mapped, 1, true);
+    without_memory(loaded, 1, false);
+    without_memory(unknown, 5, false);
+}
+
+/* ---- checks ---- */
+
+static void measure(struct check_run *run, const void *subject)
+{
+    static const double x[] = {1, 2};
+    check_measure(run, subject ? 2 : 0.5, 1, 0, "figure");
+    check_skip(run, "not this");
+    check_series(run, "data", 2, x, x);
+}
+
+static void subjects(struct check_run *run)
+{
+    check_subject(run, &unit, sizeof *unit);
+    check_subject(run, &unit, sizeof *unit);
+}
+
+static const struct check_mutant mutants[] = {{"two", "", unit}, {"three", "", unit}, {0}};
+static const struct check check = {.group = "a",
+                                   .name = "check",
+                                   .property = "p",
+                                   .subjects = subjects,
+                                   .measure = measure,
+                                   .mutants = mutants};
+static const struct check *const checks[] = {&check};
+static json_t *kept;
+
+static enum status checked(struct error *error)
+{
+    struct suite suite;
+    const struct suite_choice choice = {.mutants = true};
+    const enum status status = suite_run(&suite, checks, 1, &choice, error);
+    if (status == STATUS_ENVIRONMENT) {
+        assert_null(suite.figures);
+        return status;
+    }
+    assert_int_equal(status, STATUS_CHECK_FAILED);
+    assert_true(suite.figure_count == 4 && suite.failed == 2 && suite.skipped == 2);
+    assert_true(suite.series_count == 2 && suite.outcome_count == 2);
+    if (!kept) kept = suite_keep(&suite);
+    suite_free(&suite);
+    return STATUS_OK;
+}
+
+static enum status joined(struct error *error)
+{
+    struct suite suite;
+    const json_t *const documents[] = {kept};
+    const enum status status = suite_join(&suite, checks, documents, 1, error);
+    if (status == STATUS_ENVIRONMENT) {
+        assert_null(suite.figures);
+        return status;
+    }
+    assert_int_equal(status, STATUS_CHECK_FAILED);
+    assert_true(suite.figure_count == 4 && suite.series_count == 2 && suite.outcome_count == 2);
+    json_t *headlines = headline_list(&suite);
+    suite_free(&suite);
+    if (!headlines) return error_set(error, STATUS_ENVIRONMENT, "no memory");
+    json_decref(headlines);
+    return STATUS_OK;
+}
+
+static void checks_and_suites(void **state)
+{
+    (void)state;
+    without_memory(checked, 10, true);
+    without_memory(joined, 10, true);
+    json_decref(kept);
+}
+
+static int make_file(void **state)
+{
+    (void)state;
+    return close(mkstemps(path, 4));
+}
+
+static int remove_file(void **state)
+{
+    (void)state;
+    return unlink(path);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(places_of_particles),
+        cmocka_unit_test(files),
+        cmocka_unit_test(checks_and_suites),
+    };
+    return cmocka_run_group_tests(tests, make_file, remove_file);
+}

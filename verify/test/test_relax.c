@@ -1,0 +1,294 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Glasses, pushed apart a second time, and how they are kept. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "gas.h"
+#include "initial_fill.h"
+#include "near.h"
+#include "regularity.h"
+#include "relax.h"
+
+static size_t times_asked;
+
+struct rooms {
+    int dim;
+    double all;
+    size_t n;
+};
+
+static double room_at(const void *context, const double x[3])
+{
+    const struct rooms *rooms = context;
+    times_asked++;
+    return rooms->all / (double)rooms->n * (1 + 0.2 * sin(2 * M_PI * (x[0] + x[1])));
+}
+
+/* Sixty sweeps over all pairs of images. */
+static void relax_directly(const struct relax_room *room, size_t n, double *const x[3])
+{
+    const int dim = room->box.dim;
+    double *width = malloc(4 * n * sizeof *width), *to = width + n, step = 0.06;
+    for (int sweep = 0; sweep < 60; sweep++, step *= 0.95) {
+        for (size_t i = 0; i < n; i++) {
+            const double at[3] = {x[0][i], x[1][i], dim > 2 ? x[2][i] : 0};
+            width[i] = 2.5 * pow(room->volume(room->context, at), 1. / dim);
+        }
+        for (size_t i = 0; i < 3 * n; i++) to[i] = 0;
+        for (size_t i = 0; i < n; i++)
+            for (size_t j = 0; j < i; j++) {
+                const double reach = 0.5 * (width[i] + width[j]);
+                double delta[3], square = 0;
+                for (int d = 0; d < dim; d++) {
+                    const double side = room->box.hi[d] - room->box.lo[d];
+                    delta[d] = x[d][i] - x[d][j];
+                    if (delta[d] > side / 2) delta[d] -= side;
+                    if (delta[d] < -side / 2) delta[d] += side;
+                    square += delta[d] * delta[d];
+                }
+                if (square == 0 || square >= reach * reach) continue;
+                const double r = sqrt(square);
+                for (int d = 0; d < dim; d++) {
+                    const double push =
+                        (1 / pow(r / reach + 0.1, 2) - 1 / pow(1.1, 2)) * delta[d] / r;
+                    to[3 * i + (size_t)d] += push;
+                    to[3 * j + (size_t)d] -= push;
+                }
+            }
+        for (size_t i = 0; i < n; i++) {
+            const double *push = to + 3 * i;
+            const double size = sqrt(push[0] * push[0] + push[1] * push[1] + push[2] * push[2]);
+            const double part = width[i] / 2.5 * (step * size < 0.3 ? step : 0.3 / size);
+            for (int d = 0; d < dim; d++) {
+                const double side = room->box.hi[d] - room->box.lo[d];
+                x[d][i] += part * push[d];
+                x[d][i] -= side * floor((x[d][i] - room->box.lo[d]) / side);
+            }
+        }
+    }
+    free(width);
+}
+
+static void glasses_are_pushed_apart(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        enum { MOST = 250 };
+        const size_t n = dim == 2 ? 100 : 250;
+        struct rooms rooms = {dim, dim == 2 ? 1.2 : 1.32, n};
+        const struct relax_room room = {{dim, {-0.3, 2.1, 0.2}, {0.7, 3.3, 1.3}}, room_at, &rooms};
+        double x[3][MOST], y[3][MOST], volume[MOST];
+        double *const moved[] = {x[0], x[1], x[2]}, *const direct[] = {y[0], y[1], y[2]};
+        struct error error = {0};
+        for (size_t i = 0; i < n; i++)
+            for (int d = 0; d < 3; d++)
+                x[d][i] = y[d][i] =
+                    room.box.lo[d] +
+                    (room.box.hi[d] - room.box.lo[d]) *
+                        fmod((0.7548776662 + 0.0629 * d * d) * (double)(i + 1) + 0.1 * d, 1);
+        /* two of them at nearly one place are pushed as far as is allowed; two at one place not */
+        for (int d = 0; d < 3; d++) {
+            x[d][1] = y[d][1] = x[d][0] + 1e-5 * (d + 1);
+            x[d][3] = y[d][3] = x[d][2];
+        }
+        if (relax_points(&room, n, moved, &error)) fail_msg("%s", error.message);
+        relax_directly(&room, n, direct);
+        for (size_t i = 0; i < n; i++)
+            for (int d = 0; d < 3; d++) {
+                near_absolute(x[d][i] + 9, y[d][i] + 9, 1e-9);
+                if (d < dim) assert_true(x[d][i] >= room.box.lo[d] && x[d][i] < room.box.hi[d]);
+            }
+        /* as good as the regularity of a cloud with this width says */
+        struct relax_quality quality;
+        struct regularity found;
+        struct kernel kernel;
+        double h[MOST];
+        for (size_t i = 0; i < n; i++) {
+            volume[i] = (1 + 0.001 * (double)i) / (double)n;
+            h[i] = 3.6 * pow(volume[i], 1. / dim);
+        }
+        const struct regularity_cloud cloud = {.box = room.box,
+                                               .periodic = {true, true, true},
+                                               .n = n,
+                                               .x = {x[0], x[1], x[2]},
+                                               .volume = volume,
+                                               .h = h,
+                                               .kernel = &kernel};
+        assert_int_equal(kernel_select(&kernel, "wendland_c4", 0, &error), STATUS_OK);
+        const double *const places[] = {x[0], x[1], x[2]};
+        if (dim == 2) {
+            assert_int_equal(regularity_measure(&cloud, &found, &error), STATUS_OK);
+            assert_int_equal(relax_measure(&room.box, n, places, volume, &quality, &error),
+                             STATUS_OK);
+            near_relative(quality.density, found.density, 1e-12);
+            near_relative(quality.gradient, found.gradient, 1e-12);
+            near_relative(quality.spread, found.spread, 1e-12);
+            near_below(quality.spread, 0.2);
+        }
+        rooms.n = 4;
+        assert_int_equal(relax_points(&room, 4, moved, &error), STATUS_BAD_INPUT);
+        assert_non_null(strstr(error.message, "n=4: a glass needs more particles"));
+    }
+}
+
+/* Measured also in space, of any points. */
+static void quality_of_a_cloud(void **state)
+{
+    (void)state;
+    enum { N = 500 };
+    const struct domain box = {3, {0, 1, 2}, {1, 2, 3}};
+    static double x[3][N], volume[N], h[N];
+    struct kernel kernel;
+    struct regularity found;
+    struct relax_quality quality;
+    struct error error = {0};
+    for (int i = 0; i < N; i++) {
+        for (int d = 0; d < 3; d++)
+            x[d][i] = d + fmod((0.6180339887 + 0.0629 * d * d) * (i + 1), 1);
+        volume[i] = (1 + 0.0001 * i) / N;
+        h[i] = 3.6 * cbrt(volume[i]);
+    }
+    const struct regularity_cloud cloud = {.box = box,
+                                           .periodic = {true, true, true},
+                                           .n = N,
+                                           .x = {x[0], x[1], x[2]},
+                                           .volume = volume,
+                                           .h = h,
+                                           .kernel = &kernel};
+    const double *const places[] = {x[0], x[1], x[2]};
+    assert_int_equal(kernel_select(&kernel, "wendland_c4", 0, &error), STATUS_OK);
+    assert_int_equal(regularity_measure(&cloud, &found, &error), STATUS_OK);
+    assert_int_equal(relax_measure(&box, N, places, volume, &quality, &error), STATUS_OK);
+    near_relative(quality.density, found.density, 1e-12);
+    near_relative(quality.gradient, found.gradient, 1e-12);
+    near_relative(quality.spread, found.spread, 1e-12);
+    volume[0] = 1; /* reaches beyond half of the box */
+    assert_int_equal(relax_measure(&box, 3, places, volume, &quality, &error), STATUS_BAD_INPUT);
+}
+
+/* A glass: the random start, pushed apart with the room that each has; with masses alike as the
+ * density leaves it. */
+static double room_of_mass(const void *context, const double x[3])
+{
+    return *(const double *)context / gas_density(x);
+}
+
+static double room_of_all(const void *context, const double x[3])
+{
+    (void)x;
+    return *(const double *)context;
+}
+
+static void glasses_of_random_points(void **state)
+{
+    (void)state;
+    enum { N = 300 };
+    for (int equal = 0; equal < 2; equal++) {
+        static char *keys[] = {"n=300", "lattice=random", "equal_masses=yes"};
+        keys[1] = "lattice=random";
+        keys[2] = equal ? "equal_masses=yes" : "equal_masses=no";
+        const struct prepared p = {.problem = &gas_problem, .domain = {2, {-1, 0}, {1, 2}}};
+        const struct settings random = gas_settings(3, keys);
+        keys[1] = "lattice=glass";
+        const struct settings glass = gas_settings(3, keys);
+        struct initial one, two;
+        struct error error = {0};
+        assert_int_equal(initial_fill(&p, &random, &one, &error), STATUS_OK);
+        assert_int_equal(initial_fill(&p, &glass, &two, &error), STATUS_OK);
+        const double mass = one.m[0], share = 4. / N;
+        const struct relax_room room = {p.domain, equal ? room_of_mass : room_of_all,
+                                        equal ? &mass : &share};
+        assert_int_equal(relax_points(&room, N, one.x, &error), STATUS_OK);
+        for (int i = 0; i < N; i++) {
+            const double x[3] = {two.x[0][i], two.x[1][i]};
+            near_absolute(one.x[0][i] + 9, x[0] + 9, 1e-11);
+            near_absolute(one.x[1][i] + 9, x[1] + 9, 1e-11);
+            near_relative(two.m[i], equal ? mass : gas_density(x) * share, 1e-14);
+            near_relative(two.rho[i], gas_density(x), 1e-14);
+        }
+        initial_free(&one);
+        initial_free(&two);
+    }
+}
+
+/* The same everywhere, or as much where x or y is 0. */
+struct plain_room {
+    double volume, rise;
+};
+
+static double plain_room_at(const void *context, const double x[3])
+{
+    const struct plain_room *room = context;
+    times_asked++;
+    return room->volume * (1 + room->rise * x[0] * x[1]);
+}
+
+/* Large glasses are kept: read again where all is the same that decides where points end. */
+static void large_glasses_are_kept(void **state)
+{
+    (void)state;
+    enum { N = 1000 };
+    static double x[3][N];
+    char folder[] = "/tmp/sphproof_glass_XXXXXX", command[64];
+    assert_non_null(mkdtemp(folder));
+    const char *old = getenv("XDG_CACHE_HOME");
+    char *before = old ? strdup(old) : NULL;
+    setenv("XDG_CACHE_HOME", folder, 1);
+    double *const places[] = {x[0], x[1], x[2]};
+    static double kept[2][N];
+    static const struct {
+        double lo, hi, first, last, volume, rise;
+        bool read;
+    } rows[] = {
+        {0, 1, 0, 0, 1e-3, 0, false},    {0, 1, 0, 0, 1e-3, 0, true},
+        {-0.5, 1, 0, 0, 1e-3, 0, false}, {0, 1.5, 0, 0, 1e-3, 0, false},
+        {0, 1, 1e-9, 0, 1e-3, 0, false}, {0, 1, 0, 1e-9, 1e-3, 0, false},
+        {0, 1, 0, 0, 1.1e-3, 0, false},  {0, 1, 0, 0, 1e-3, 1e-3, false},
+        {0, 1, 0, 0, 1e-3, 0, true},
+    };
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        const struct plain_room plain_room = {rows[k].volume, rows[k].rise};
+        const struct relax_room room = {
+            {2, {0, rows[k].lo}, {1, rows[k].hi}}, plain_room_at, &plain_room};
+        struct error error = {0};
+        for (int i = 0; i < N; i++)
+            for (int d = 0; d < 2; d++)
+                x[d][i] = 0.001 + 0.99 * fmod((0.618034 + 0.0629 * d) * (i + 1), 1);
+        x[0][0] += rows[k].first;
+        x[1][N - 1] += rows[k].last;
+        times_asked = 0;
+        assert_int_equal(relax_points(&room, N, places, &error), STATUS_OK);
+        if ((times_asked == N) != rows[k].read)
+            fail_msg("row %zu: asked %zu times", k, times_asked);
+        for (int d = 0; d < 2; d++)
+            if (k == 0)
+                memcpy(kept[d], x[d], sizeof kept[d]);
+            else if (rows[k].read)
+                assert_memory_equal(kept[d], x[d], sizeof kept[d]);
+    }
+    if (before)
+        setenv("XDG_CACHE_HOME", before, 1);
+    else
+        unsetenv("XDG_CACHE_HOME");
+    free(before);
+    snprintf(command, sizeof command, "rm -r %s", folder);
+    assert_int_equal(system(command), 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(glasses_are_pushed_apart),
+        cmocka_unit_test(quality_of_a_cloud),
+        cmocka_unit_test(glasses_of_random_points),
+        cmocka_unit_test(large_glasses_are_kept),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
