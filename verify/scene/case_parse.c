@@ -12,7 +12,6 @@
 #include "list.h"
 #include "problem.h"
 #include "problem_list.h"
-#include "problem_list.h"
 #include "problem_prepare.h"
 #include "text.h"
 

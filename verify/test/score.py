@@ -5,12 +5,14 @@
   score.py SCORE WORK
 
 Exit status 77 (skipped): libclang's Python module is not installed."""
+import importlib.machinery
 import json
 import os
 import re
 import shutil
 import subprocess
 import sys
+import types
 
 TREE = {
     "meson.build": """project('tiny', 'c', default_options: ['c_std=gnu17'])
@@ -139,6 +141,7 @@ def main(score, work):
     parts = [run("--shard", "%d/3" % i)[1]["chosen"] for i in (1, 2, 3)]
     expect("shards are all of it", sum(parts) == first["generated"])
     expect("a sample is no larger than asked for", run("--sample", "7", "--seed", "3")[1]["chosen"] == 7)
+    stable_draw(expect, score)
     expect("a shard that is none is refused", "I/N" in run("--shard", "4/3", code=2)[0])
     hidden = os.path.join(work, "hidden", "clang")
     write(os.path.join(hidden, "__init__.py"), "raise ImportError('hidden')\n")
@@ -152,10 +155,29 @@ def main(score, work):
     return 1 if failures else 0
 
 
+def load(score):
+    """The command as a module: its name has no suffix."""
+    return importlib.machinery.SourceFileLoader("score", score).load_module()
+
+
+def stable_draw(expect, score):
+    """Of hundred mutants twenty; then one line less, and others before it."""
+    choose = load(score).choose
+
+    def drawn(names, seed):
+        found = [types.SimpleNamespace(key=n, file=n) for n in names]
+        asked = types.SimpleNamespace(only="", seed=seed, budget=float("inf"), sample=20)
+        return [m.key for m in choose(found, asked, {})]
+
+    names = ["m%d" % i for i in range(100)]
+    first, gone = drawn(names, 1), drawn(names, 1)[7]
+    less = [n for n in drawn(["new"] + [n for n in reversed(names) if n != gone], 1) if n != "new"]
+    expect("a draw by another seed is another", len(first) == 20 and drawn(names, 2) != first)
+    expect("a draw stands where lines come and go: %s, %s" % (first, less), less[:19] == [n for n in first if n != gone])
+
+
 def in_rounds(expect, score):
     """Cheap tests come first; what they notice is not asked again, and what survives is told once."""
-    import importlib.machinery
-    import types
     import trial
     table = trial.Table.__new__(trial.Table)
     table.build = "/build"
@@ -178,7 +200,7 @@ def in_rounds(expect, score):
             self.key, self.file = key, "f"
 
     mutants = [Mutant(k) for k in ("a", "b", "c")]
-    command = importlib.machinery.SourceFileLoader("score_command", score).load_module()  # its name has no suffix
+    command = load(score)
     command.try_all(mutants, [["a"], ["b"]], judge, lambda: {"f": set()}, {},
                     lambda m, entry: told.append((m.key, entry["outcome"])), 1, lambda: float("inf"))
     expect("what the first round notices is not asked in the second: %s" % asked,
