@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The simple wave against what is known in closed form: its start, its small-amplitude limit, the
  * speed of its crest, its period, its breaking. */
+#include <float.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -92,15 +93,48 @@ static void test_breaking(void **state)
 static void test_faults(void **state)
 {
     (void)state;
-    assert_null(simple_wave_fault(&wave));
-    const double nan = (double)NAN;
-    const struct simple_wave bad[] = {
-        {1, 1, 0, 1, 0.1, 1},     {nan, 1, 0, 1, 0.1, 1},  {1.4, 0, 0, 1, 0.1, 1},
-        {1.4, 1, nan, 1, 0.1, 1}, {1.4, 1, 0, -1, 0.1, 1}, {1.4, 1, 0, 1, 1, 1},
-        {1.4, 1, 0, 1, nan, 1},   {1.4, 1, 0, 1, 0.1, 0},  {1.4, 1, 0, HUGE_VAL, 0.1, 1},
+    static const double nan = (double)NAN, inf = HUGE_VAL;
+    static const char gamma[] = "gamma must be finite and above 1",
+                      rho[] = "rho0 must be finite and above 0",
+                      P[] = "P0 must be finite and above 0",
+                      length[] = "length must be finite and above 0",
+                      amplitude[] = "amplitude must lie between -1 and 1",
+                      v[] = "v0 must be finite";
+    static const struct {
+        struct simple_wave wave;
+        const char *fault; /* NULL: none */
+    } rows[] = {
+        {{1, 1, 0, 1, 0.1, 1}, gamma},       {{1.0000001, 1, 0, 1, 0.1, 1}, NULL},
+        {{nan, 1, 0, 1, 0.1, 1}, gamma},     {{inf, 1, 0, 1, 0.1, 1}, gamma},
+        {{1.4, 0, 0, 1, 0.1, 1}, rho},       {{1.4, 1e-9, 0, 1e-9, 0.1, 1e-9}, NULL},
+        {{1.4, nan, 0, 1, 0.1, 1}, rho},     {{1.4, inf, 0, 1, 0.1, 1}, rho},
+        {{1.4, 1, 0, 0, 0.1, 1}, P},         {{1.4, 1, 0, -1, 0.1, 1}, P},
+        {{1.4, 1, 0, inf, 0.1, 1}, P},       {{1.4, 1, 0, 1, 0.1, 0}, length},
+        {{1.4, 1, 0, 1, 0.1, inf}, length},  {{1.4, 1, 0, 1, 1, 1}, amplitude},
+        {{1.4, 1, 0, 1, -1, 1}, amplitude},  {{1.4, 1, 0, 1, 0.9999999, 1}, NULL},
+        {{1.4, 1, 0, 1, nan, 1}, amplitude}, {{1.4, 1, nan, 1, 0.1, 1}, v},
+        {{1.4, 1, inf, 1, 0.1, 1}, v},
     };
-    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
-        assert_non_null(simple_wave_fault(&bad[i]));
+    assert_null(simple_wave_fault(&wave));
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        const char *fault = simple_wave_fault(&rows[i].wave);
+        if (rows[i].fault)
+            assert_string_equal(fault, rows[i].fault);
+        else
+            assert_null(fault);
+    }
+}
+
+/* Small numbers are none, and late ones neither. */
+static void test_beyond_double(void **state)
+{
+    (void)state;
+    const struct simple_wave fast = {1.4, 1, 1e308, 1, 1e-3, 1};
+    assert_true(isnan(simple_wave_sample(&fast, 0.3, 5).rho)); /* moved: infinitely far */
+    assert_true(isnan(simple_wave_sample(&wave, HUGE_VAL, 0).rho));
+    assert_true(isnan(simple_wave_sample(&wave, 0.3, -DBL_TRUE_MIN).rho));
+    assert_true(isnan(simple_wave_sample(&wave, 0.3, (double)NAN).rho));
+    assert_true(isfinite(simple_wave_sample(&wave, 0.3, 0).rho));
 }
 
 int main(void)
@@ -108,7 +142,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_start),           cmocka_unit_test(test_characteristics),
         cmocka_unit_test(test_small_amplitude), cmocka_unit_test(test_breaking),
-        cmocka_unit_test(test_faults),
+        cmocka_unit_test(test_faults),          cmocka_unit_test(test_beyond_double),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
