@@ -37,6 +37,9 @@ static void scatter(struct cloud *cloud, const struct prepared *p, double time)
         cloud->rho[i] = 1 + 0.3 * sin(1.7 * i);
         cloud->volume[i] = 1 + 0.4 * sin(4.9 * i);
     }
+    /* the one behind them is faster than all, round the middle */
+    cloud->v[0][N] = 50 * (p->window.centre[1] - cloud->x[1][N]);
+    cloud->v[1][N] = 50 * (cloud->x[0][N] - p->window.centre[0]);
     cloud->snapshot = (struct snapshot){.n = N,
                                         .x = {cloud->x[0], cloud->x[1], cloud->x[2]},
                                         .v = {cloud->v[0], cloud->v[1], cloud->v[2]},
@@ -118,7 +121,7 @@ static void vortex_is_measured(void **state)
     (void)state;
     struct settings s;
     struct cloud cloud;
-    const struct prepared p = prepared_of(&s, 2, "kind=gresho|lo=-1|hi=1|boost=0.5 -0.25");
+    const struct prepared p = prepared_of(&s, 2, "kind=gresho|lo=-0.5|hi=1.5|boost=0.5 -0.25");
     scatter(&cloud, &p, 0.7);
     double sum = 0, peak = 0;
     int n = 0;
@@ -141,6 +144,9 @@ static void vortex_is_measured(void **state)
     const struct snapshot two = {.n = 2, .x = {x, y}, .v = {v, w}};
     near_relative(measured(&still, "disc_error", &two), 0.5 + 0.75, 1e-14);
     assert_true(measured(&still, "peak_velocity", &two) == 0);
+    const double up[] = {0.75, 0.25};
+    const struct snapshot first = {.n = 2, .x = {x, y}, .v = {v, up}};
+    assert_true(measured(&still, "peak_velocity", &first) == 0.75);
 }
 
 /* ---- the layers of McNally, Lyra & Passy ---- */
@@ -192,6 +198,10 @@ static void layers_fill_a_square(void **state)
     vast.n = (size_t)1 << 50; /* there is no memory for its copy */
     assert_true(isnan(measured(&p, "mode_amplitude", &vast)));
 
+    /* the side along x is the one that counts */
+    const struct prepared long_side = prepared_of(
+        &s, 2, "kind=kelvin_helmholtz|lo=0|hi=2 2.0000000000019|gamma=1.6666666666666667");
+    assert_true(exactly(&long_side, "mode_amplitude", 2.4) == kelvin_helmholtz_reference(1.2));
     static const struct {
         const char *gamma;
         bool known;
@@ -239,7 +249,9 @@ static void layers_slide_past_each_other(void **state)
         struct cloud cloud;
         snprintf(keys, sizeof keys, "kind=shear|lo=-1|background=1.3 0 0.7|gamma=1.6%s",
                  rows[k].keys);
-        const struct prepared p = prepared_of(&s, rows[k].dim, keys);
+        struct prepared p = prepared_of(&s, rows[k].dim, keys);
+        memset(p.own.bytes, 0x5a, sizeof p.own.bytes); /* of whatever was there before */
+        assert_int_equal(p.problem->prepare(&p, &s, NULL), STATUS_OK);
         scatter(&cloud, &p, 0.4);
         double along = 0, whole = 0;
         for (int i = 0; i < N; i++) {
@@ -254,7 +266,8 @@ static void layers_slide_past_each_other(void **state)
             whole += 0.5 * cloud.volume[i] * sin(phase) * sin(phase);
             const double *middle = p.window.centre;
             const struct problem_state have =
-                sampled(&p, middle[0] + x[0], middle[1] + x[1], middle[2] + x[2], 0.3);
+                sampled(&p, middle[0] + x[0], middle[1] + x[1],
+                        rows[k].dim > 2 ? middle[2] + x[2] : (double)NAN, 0.3);
             for (int d = 0; d < 3; d++)
                 near_absolute(have.v[d] - 0.5 * sin(phase) * rows[k].flow[d], 0, 1e-14);
             assert_true(have.rho == 1.3 && have.P == 0.7);
@@ -347,13 +360,15 @@ static void square_is_half_the_box(void **state)
 static void squares_share_a_lattice(void **state)
 {
     (void)state;
+    /* in 2D 968/16 = 60.5: one less would be a row less */
+    static const int wanted[] = {0, 0, 968, 1100};
     for (int dim = 2; dim <= 3; dim++)
         for (int few = 0; few < 2; few++) {
             char keys[128];
             struct settings s;
             snprintf(keys, sizeof keys, "%s|n=%d",
                      dim == 3 ? square_keys : "kind=square|lo=-1 2|hi=3 4|gamma=1.6|contrast=5",
-                     few ? 4 : 1100);
+                     few ? 4 : wanted[dim]);
             const struct prepared p = prepared_of(&s, dim, keys);
             const struct initial initial = prepared_filled(&p, &s);
             struct domain quarter = p.domain;
@@ -366,7 +381,7 @@ static void squares_share_a_lattice(void **state)
                 volume *= domain_length(&p.domain, d);
                 parts *= 4;
             }
-            const double asked = fmax(1, round((few ? 4 : 1100) / parts));
+            const double asked = fmax(1, round((few ? 4 : wanted[dim]) / parts));
             assert_int_equal(lattice_plan_make(&plan, &quarter,
                                                dim == 2 ? LATTICE_SQUARE : LATTICE_CUBIC,
                                                (size_t)asked, &error),
@@ -447,7 +462,7 @@ static void squares_have_equal_masses(void **state)
                 at++;
             }
             for (size_t i = first; i < at; i++)
-                near_relative(initial.m[i], masses[g] / (double)(at - first), 1e-14);
+                assert_true(initial.m[i] == masses[g] / (double)(at - first));
             for (int d = 0; d < 3; d++) free(x[d]);
         }
         assert_int_equal(at, initial.n);

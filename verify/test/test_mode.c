@@ -62,6 +62,13 @@ static void layers_are_those_of_the_keys(void **state)
     const struct prepared shear = made("kelvin_helmholtz_mode", 7, shear_keys),
                           heavy = made("rayleigh_taylor_mode", 7, heavy_keys);
     const struct mode_start *s = start_of(&shear), *h = start_of(&heavy);
+    const struct layer *shear_layer = &s->mode.layer, *heavy_layer = &h->mode.layer;
+    assert_true(shear_layer->width == 0.05 && shear_layer->rho == 1.5 &&
+                shear_layer->rho_step == 0.5 && shear_layer->U == 0.5 && shear_layer->P == 2.5 &&
+                shear_layer->g == 0);
+    assert_true(heavy_layer->width == 0.05 && heavy_layer->rho == 1.5 &&
+                heavy_layer->rho_step == 0.5 && heavy_layer->U == 0 && heavy_layer->P == 2.5 &&
+                heavy_layer->wall == 0.5 && !heavy_layer->periodic);
     near_relative(s->mode.layer.k, 4 * M_PI, 1e-15);
     assert_true(s->mode.layer.gamma == 1.6 && s->mode.layer.periodic && s->length == 2);
     assert_true(s->origin[0] == -0.9 && s->origin[1] == 3.5);

@@ -143,6 +143,26 @@ static void what_cannot_be_is_refused(void **state)
     }
 }
 
+static void problems_have_their_dimensions(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name;
+        int least, most;
+    } rows[] = {{"gresho", 2, 2},    {"kelvin_helmholtz", 2, 2},
+                {"noh", 1, 3},       {"kelvin_helmholtz_mode", 2, 2},
+                {"particles", 1, 3}, {"rayleigh_taylor_mode", 2, 2},
+                {"rest", 2, 3},      {"riemann", 1, 3},
+                {"rotation", 2, 2},  {"sedov", 2, 3},
+                {"shear", 2, 3},     {"sound_wave", 1, 3},
+                {"square", 2, 3},    {"yee", 2, 2}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        const struct problem *p =
+            (const struct problem *)family_find(&problem_family, rows[k].name);
+        assert_true(p->least_dim == rows[k].least && p->most_dim == rows[k].most);
+    }
+}
+
 static void what_is_left_open_is_chosen(void **state)
 {
     (void)state;
@@ -439,6 +459,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_cannot_be_is_refused),
+        cmocka_unit_test(problems_have_their_dimensions),
         cmocka_unit_test(what_is_left_open_is_chosen),
         cmocka_unit_test(choices_are_written_back),
         cmocka_unit_test(boosts_carry_places),

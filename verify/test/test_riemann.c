@@ -355,6 +355,33 @@ static void test_cold_gas(void **state)
     near_below(riemann_defects_of(&mixed).energy, 1e-14);
 }
 
+/* Hot gas, at rest or moving, beside cold gas: its rarefaction and a strong shock of one pressure
+ * and one velocity, found by bisection. */
+static void test_hot_beside_cold(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 8; k++) {
+        const double gamma = 1.2 + 0.2 * k, rho = k % 2 ? 0.3 : 5, v = 0.5 * (k % 3) - 0.5;
+        const struct riemann_state hot = {1.5, v, 2}, cold = {rho, 0, 0};
+        const struct riemann_solution s = solved(gamma, hot, cold),
+                                      t = solved(gamma, cold, (struct riemann_state){1.5, -v, 2});
+        const double z = (gamma - 1) / (2 * gamma), c = sqrt(gamma * 2 / 1.5);
+        double lo = 0, hi = 1e3; /* more pressure: slower on the left, faster on the right */
+        for (int i = 0; i < 200; i++) {
+            const double p = 0.5 * (lo + hi), behind = sqrt(2 * p / ((gamma + 1) * rho));
+            const double left =
+                p < 2 ? v - 2 * c / (gamma - 1) * (pow(p / 2, z) - 1)
+                      : v - (p - 2) * sqrt(2 / (1.5 * ((gamma + 1) * p + (gamma - 1) * 2)));
+            *(left > behind ? &lo : &hi) = p;
+        }
+        near_relative(s.p_star, lo, 1e-13);
+        near_relative(s.v_star, sqrt(2 * lo / ((gamma + 1) * rho)), 1e-13);
+        near_relative(s.rho_star_right, rho * (gamma + 1) / (gamma - 1), 1e-13);
+        near_relative(s.right_head, s.v_star * (gamma + 1) / 2, 1e-13);
+        assert_true(t.p_star == s.p_star && t.v_star == -s.v_star && t.left_head == -s.right_head);
+    }
+}
+
 static void test_sample_regions(void **state)
 {
     (void)state;
@@ -479,6 +506,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_cold_gas),
         cmocka_unit_test(test_underflow),
         cmocka_unit_test(test_gentle_and_parting),
+        cmocka_unit_test(test_hot_beside_cold),
         cmocka_unit_test(test_sample_regions),
         cmocka_unit_test(test_vacuum_samples),
         cmocka_unit_test(test_bad_input),

@@ -64,7 +64,9 @@ static void samples_are_the_wave(void **state)
         const struct prepared p = made(row, &s);
         const struct simple_wave wave = wave_of(row);
         for (int i = 0; i < 30; i++) {
-            const double x[3] = {-0.7 + 0.21 * i, 0.3 * i, 1 - 0.1 * i}, t = 0.01 * (i % 3);
+            double x[3] = {-0.7 + 0.21 * i, 0.3 * i, 1 - 0.1 * i};
+            const double t = 0.01 * (i % 3);
+            for (int d = row->dim; d < 3; d++) x[d] = (double)NAN; /* there is no such direction */
             const struct simple_wave_state want = simple_wave_sample(&wave, along(row, &p, x), t);
             struct problem_state have;
             p.problem->sample(&p, x, t, &have);

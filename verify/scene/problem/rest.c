@@ -5,29 +5,35 @@
 #include "initial_fill.h"
 #include "problem.h"
 
-static const double *gas_of(const struct prepared *p)
+struct gas {
+    double rho, v, P;
+};
+_Static_assert(sizeof(struct gas) <= PROBLEM_OWN_BYTES, "a gas fits");
+
+static const struct gas *gas_of(const struct prepared *p)
 {
-    return (const double *)p->own.bytes;
+    return (const struct gas *)p->own.bytes;
 }
 
 static enum status prepare(struct prepared *p, struct settings *settings, struct error *error)
 {
-    double *gas = (double *)p->own.bytes;
-    for (int k = 0; k < 3; k++) gas[k] = settings->value[SETTING_background].real[k];
+    struct gas *gas = (struct gas *)p->own.bytes;
+    const double *background = settings->value[SETTING_background].real;
+    *gas = (struct gas){background[0], background[1], background[2]};
     if (problem_check_state(settings, SETTING_background, error)) return error->status;
-    if (gas[1] == 0) return STATUS_OK;
+    if (gas->v == 0) return STATUS_OK;
     return error_set(error, STATUS_BAD_INPUT,
                      "background=\"%g %g %g\": gas at rest has no velocity; `boost` moves it",
-                     gas[0], gas[1], gas[2]);
+                     gas->rho, gas->v, gas->P);
 }
 
 static void sample(const struct prepared *p, const double x[3], double t,
                    struct problem_state *state)
 {
-    const double *gas = gas_of(p);
+    const struct gas *gas = gas_of(p);
     (void)x, (void)t;
-    *state =
-        (struct problem_state){.rho = gas[0], .P = gas[2], .u = gas[2] / ((p->gamma - 1) * gas[0])};
+    *state = (struct problem_state){
+        .rho = gas->rho, .P = gas->P, .u = gas->P / ((p->gamma - 1) * gas->rho)};
 }
 
 static const struct problem_key keys[] = {{SETTING_background, ROLE_NEEDED}};

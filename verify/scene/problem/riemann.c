@@ -204,7 +204,8 @@ static enum status fill(const struct prepared *p, const struct settings *setting
 /* ---- how long the window stays free of the mirrored tube ---- */
 
 /* The greatest of v + mach c over a solution's constant states: no signal that is mach times as
- * fast as sound where it enters overtakes this inside. */
+ * fast as sound where it enters overtakes this inside. (Beyond a vacuum gas flees faster than the
+ * edge of what expands into it.) */
 static double fastest(const struct riemann_solution *s, double mach, double sign)
 {
     const struct riemann_state states[] = {s->left,
@@ -216,8 +217,6 @@ static double fastest(const struct riemann_solution *s, double mach, double sign
         const double c = sqrt(s->gamma * states[i].P / states[i].rho);
         speed = fmax(speed, sign * states[i].v + mach * c);
     }
-    /* an edge of vacuum runs ahead of all */
-    if (s->vacuum) speed = fmax(speed, sign > 0 ? s->right_tail : -s->left_tail);
     return speed;
 }
 
@@ -233,8 +232,8 @@ static double front(const struct prepared *p, double sign, double t)
     const double head = sign > 0 ? mirror->right_head : -mirror->left_head;
     const double ahead = sign > 0 ? -tube->left_head : tube->right_head;
     const double speed = isnan(head) ? sign * gas->v + c : head;
-    const double other = isnan(ahead) ? c - sign * gas->v : ahead;
-    const double meet = speed + other > 0 ? length / (speed + other) : (double)INFINITY;
+    /* in gas without waves nothing is met */
+    const double meet = speed + ahead > 0 ? length / (speed + ahead) : (double)INFINITY;
     if (t <= meet) return speed * t;
     const double mach = fmax(1, (speed - sign * gas->v) / c);
     return speed * meet + fmax(speed, fastest(tube, mach, sign)) * (t - meet);

@@ -4,6 +4,7 @@
  * 2: no particle meets another pressure); with a viscosity nu the wave decays with nu (2 pi/L)^2.
  * Particles of equal masses. */
 #include <math.h>
+#include <string.h>
 
 #include "initial_fill.h"
 #include "problem.h"
@@ -34,7 +35,7 @@ static void turn(const double n[3], double flow[3])
 static enum status prepare(struct prepared *p, struct settings *settings, struct error *error)
 {
     struct layers *layers = (struct layers *)p->own.bytes;
-    for (int k = 0; k < 3; k++) layers->gas[k] = settings->value[SETTING_background].real[k];
+    memcpy(layers->gas, settings->value[SETTING_background].real, sizeof layers->gas);
     if (problem_check_state(settings, SETTING_background, error) ||
         problem_direction(p, settings, layers->n, &layers->length, error))
         return error->status;

@@ -96,25 +96,22 @@ static enum status fill_equal_masses(const struct prepared *p, const struct sett
     return STATUS_OK;
 }
 
-/* One lattice for all, with edges of the square between its planes: four times one for a quarter of
- * the box. */
+/* One lattice for all, with edges of the square between its planes: four times as many cells each
+ * way as one of a quarter of the particles each way has. */
 static enum status fill_equal_spacing(const struct prepared *p, const struct settings *settings,
                                       struct initial *initial, struct error *error)
 {
     const enum lattice kind = (enum lattice)settings_choice(settings, SETTING_lattice);
-    struct domain quarter = p->domain;
+    const int dim = p->domain.dim;
     struct lattice_plan plan;
-    double n = settings_real(settings, SETTING_n);
-    for (int d = 0; d < quarter.dim; d++, n /= 4)
-        quarter.hi[d] = quarter.lo[d] + 0.25 * domain_length(&quarter, d);
-    if (lattice_plan_make(&plan, &quarter, kind, (size_t)fmax(1, round(n)), error))
+    const double n = settings_real(settings, SETTING_n) / (dim == 2 ? 16 : 64);
+    if (lattice_plan_make(&plan, &p->domain, kind, (size_t)fmax(1, round(n)), error))
         return error->status;
-    plan.box = p->domain;
-    for (int d = 0; d < quarter.dim; d++) {
+    for (int d = 0; d < dim; d++) {
         plan.cells[d] *= 4;
         plan.n *= 4;
     }
-    if (initial_allocate(initial, quarter.dim, plan.n, error)) return error->status;
+    if (initial_allocate(initial, dim, plan.n, error)) return error->status;
     return initial_lay(initial, p, &plan, 0, settings, error);
 }
 
