@@ -79,19 +79,27 @@ void check_skip(struct check_run *run, const char *why, ...)
                  .subject = text, .value = nan, .bound = nan, .floor = nan, .status = FIGURE_SKIP});
 }
 
+/* NULL: no memory; of no values it is not NULL either. */
+static double *copy_of(const double *values, size_t n)
+{
+    double *copy = malloc(n * sizeof *copy + 1);
+    if (copy) memcpy(copy, values, n * sizeof *copy);
+    return copy;
+}
+
 void check_series(struct check_run *run, const char *label, size_t n, const double *x,
                   const double *y)
 {
-    struct series series = {.check = run->check, .n = n, .label = strdup(label)};
-    series.x = malloc(n * sizeof *x + 1);
-    series.y = malloc(n * sizeof *y + 1);
+    const struct series series = {.check = run->check,
+                                  .n = n,
+                                  .label = strdup(label),
+                                  .x = copy_of(x, n),
+                                  .y = copy_of(y, n)};
     if (!series.label || !series.x || !series.y ||
         !list_grow(&run->series, run->series_count, sizeof series)) {
         free(series.label), free(series.x), free(series.y);
         run->no_memory = true;
         return;
     }
-    memcpy(series.x, x, n * sizeof *x);
-    memcpy(series.y, y, n * sizeof *y);
     run->series[run->series_count++] = series;
 }

@@ -103,7 +103,7 @@ static json_t *headline(const struct cause *causes, size_t count, size_t first)
     char text[TEXT_LENGTH], part[TEXT_LENGTH / 2], command[TEXT_LENGTH / 4], data[TEXT_LENGTH / 4];
     json_t *also = json_array();
     size_t figures = 0, said = 0;
-    text[0] = '\0';
+    snprintf(text, sizeof text, "%s: ", main->member);
     for (size_t i = first; i < count; i++) {
         const struct cause *cause = &causes[i];
         if (strcmp(cause->member, main->member) != 0) continue;
@@ -115,8 +115,6 @@ static json_t *headline(const struct cause *causes, size_t count, size_t first)
         snprintf(text + used, sizeof text - used, "%s%s", said ? "; " : "", part);
         said++;
     }
-    snprintf(part, sizeof part, "%.*s", (int)sizeof part - 1, text);
-    snprintf(text, sizeof text, "%s: %s", main->member, part);
     snprintf(command, sizeof command, "sphproof verify %s --details%s", check->group,
              check->slow ? " --slow" : "");
     snprintf(data, sizeof data, "%s-%s", check->group, check->name);

@@ -27,25 +27,38 @@
 #include "suite_output.h"
 
 static atomic_int left = -1; /* calls until one fails; < 0: none does */
+static atomic_long held;     /* pieces that nobody has given back */
 
 static bool fails(void)
 {
     return left >= 0 && left-- == 0;
 }
 
-/* WRAP(name, parameters, arguments): the name that the linker gives to calls of name. */
-#define WRAP(name, parameters, arguments)                                                          \
+/* WRAP(name, parameters, arguments, new): the name that the linker gives to calls of name; is it
+ * one piece more? */
+#define WRAP(name, parameters, arguments, new)                                                     \
     void *__real_##name parameters;                                                                \
     void *__wrap_##name parameters;                                                                \
     void *__wrap_##name parameters                                                                 \
     {                                                                                              \
-        return fails() ? NULL : __real_##name arguments;                                           \
+        const bool more = new;                                                                     \
+        void *given = fails() ? NULL : __real_##name arguments;                                    \
+        if (given && more) held++;                                                                 \
+        return given;                                                                              \
     }
-WRAP(malloc, (size_t size), (size))
-WRAP(calloc, (size_t n, size_t size), (n, size))
-WRAP(realloc, (void *memory, size_t size), (memory, size))
-WRAP(aligned_alloc, (size_t alignment, size_t size), (alignment, size))
-WRAP(strdup, (const char *text), (text))
+WRAP(malloc, (size_t size), (size), true)
+WRAP(calloc, (size_t n, size_t size), (n, size), true)
+WRAP(realloc, (void *memory, size_t size), (memory, size), !memory)
+WRAP(aligned_alloc, (size_t alignment, size_t size), (alignment, size), true)
+WRAP(strdup, (const char *text), (text), true)
+
+void __real_free(void *memory);
+void __wrap_free(void *memory);
+void __wrap_free(void *memory)
+{
+    if (memory) held--;
+    __real_free(memory);
+}
 
 /* Each call for memory of `work` fails once: it says so, and of all it asked for nothing is left.
  * There are at least so many calls; where what comes after those can do without, not all. */
@@ -53,10 +66,12 @@ static void without_memory(enum status work(struct error *error), int least, boo
 {
     for (int k = 0;; k++) {
         struct error error = {0};
+        const long before = held;
         left = k;
         const enum status status = work(&error);
         const bool done = left >= 0 || (!all && k >= least);
         left = -1;
+        if (held != before) fail_msg("call %d: %ld pieces are left", k, held - before);
         if (done) {
             if (all) assert_int_equal(status, STATUS_OK);
             assert_true(k >= least);

@@ -13,6 +13,7 @@
 #include <cmocka.h>
 
 #include "check_registry.h"
+#include "made_checks.h"
 #include "near.h"
 #include "suite.h"
 #include "suite_output.h"
@@ -20,43 +21,6 @@
 
 static int group_argument_count;
 static char **group_arguments;
-
-static const double values[] = {0.5, 1, 2, (double)NAN};
-
-/* The figure is the subject's number; bound 1. */
-static void measure(struct check_run *run, const void *subject)
-{
-    const double *value = subject ? subject : &values[0];
-    const double x[] = {1, 2}, y[] = {3, *value};
-    if (*value == 0.25) return;
-    check_measure(run, *value, 1, 0, "value <%g>", *value);
-    check_series(run, "data", 2, x, y);
-}
-
-static const struct check_mutant caught[] = {{"two", "", &values[2]}, {"nan", "", &values[3]}, {0}};
-static const struct check_mutant slipped[] = {
-    {"one", "", &values[1]}, {"two", "", &values[2]}, {0}};
-static const struct check_mutant idle[] = {{"one", "", &values[1]}, {0}};
-
-static void failing_subjects(struct check_run *run)
-{
-    for (size_t i = 1; i < 4; i++) check_subject(run, &values[i], sizeof values[i]);
-}
-
-static const struct check good = {
-    .group = "a", .name = "good", .property = "p", .measure = measure, .mutants = caught};
-static const struct check leaky = {
-    .group = "b", .name = "leaky", .property = "p", .measure = measure, .mutants = slipped};
-static const struct check vacuous = {
-    .group = "b", .name = "vacuous", .property = "p", .measure = measure, .mutants = idle};
-static const struct check bare = {
-    .group = "b", .name = "bare", .property = "p", .measure = measure};
-static const struct check failing = {.group = "a",
-                                     .name = "failing",
-                                     .property = "p",
-                                     .subjects = failing_subjects,
-                                     .measure = measure,
-                                     .mutants = caught};
 
 static struct suite run(const struct check *check, bool mutants, enum status expected)
 {
@@ -310,6 +274,129 @@ static void test_groups_are_listed_once(void **state)
     free(names);
 }
 
+static void two_figures(struct check_run *run, const void *subject)
+{
+    static const double x[] = {1};
+    (void)subject;
+    check_measure(run, 2, 1, 0, "fails");
+    check_measure(run, 0, 1, 0, "passes");
+    check_skip(run, "skipped");
+    check_skip(run, "skipped");
+    check_series(run, "data", 1, x, x);
+}
+
+/* Who asks for the first failure gets no later check, but all of this one. */
+static void test_first_failure(void **state)
+{
+    (void)state;
+    struct check both = bare;
+    both.measure = two_figures;
+    const struct check *const checks[] = {&bare, &both, &bare};
+    for (int first = 0; first < 2; first++) {
+        const struct suite_choice choice = {.first = first};
+        struct suite suite;
+        assert_int_equal(suite_run(&suite, checks, 3, &choice, NULL), STATUS_CHECK_FAILED);
+        assert_int_equal(suite.figure_count, first ? 5 : 6);
+        assert_true(suite.failed == 1 && suite.skipped == 2 && suite.passed == (first ? 2 : 3));
+        assert_int_equal(suite.series_count, 1);
+        near_inside(suite.seconds, 0, 60);
+        for (size_t i = 0; i < suite.figure_count; i++)
+            near_inside(suite.figures[i].seconds, 0, 60);
+        suite_free(&suite);
+    }
+}
+
+static void skips_then_measures(struct check_run *run, const void *subject)
+{
+    (void)subject;
+    check_skip(run, "not this");
+    check_measure(run, 0, 1, 0, "but this");
+}
+
+/* One figure is enough, wherever it stands; the harness' own are 1 against 0. */
+static void test_harness_figures(void **state)
+{
+    (void)state;
+    struct check late = bare;
+    late.measure = skips_then_measures;
+    struct suite suite = run(&late, false, STATUS_OK);
+    assert_true(suite.passed == 1 && suite.skipped == 1);
+    suite_free(&suite);
+    struct check silent = failing, skipping = bare;
+    silent.subjects = no_subjects;
+    skipping.measure = skips;
+    struct check half = failing;
+    half.subjects = something_and_nothing;
+    const struct check *const checks[] = {&silent, &skipping, &half, &vacuous};
+    for (size_t k = 0; k < 4; k++) {
+        suite = run(checks[k], k == 3, STATUS_CHECK_FAILED);
+        const struct figure *last = &suite.figures[suite.figure_count - 1];
+        assert_true(last->value == 1 && last->bound == 0 && last->floor == 0);
+        assert_memory_equal(last->subject, "harness: ", 9);
+        suite_free(&suite);
+    }
+}
+
+static const double zero = 0;
+static const struct check_mutant unharmed[] = {
+    {"none", "", &zero}, {"one", "", &values[1]}, {"two", "", &values[2]}, {0}};
+
+/* A mutant that is within the bound has its figure told, however far. */
+static void test_value_of_a_miss(void **state)
+{
+    (void)state;
+    struct check check = leaky;
+    check.mutants = unharmed;
+    struct suite suite = run(&check, true, STATUS_CHECK_FAILED);
+    for (int i = 0; i < 3; i++)
+        assert_true(suite.outcomes[i].value == i && suite.outcomes[i].bound == 1);
+    suite_free(&suite);
+}
+
+static void test_names_and_costs(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name;
+        bool is;
+    } rows[] = {{"a", true},        {"a/good", true}, {"a/goods", false}, {"a/goo", false},
+                {"b", false},       {"", false},      {"b/good", false},  {"ab", false},
+                {"aa/good", false}, {"a/", false},    {"good", false}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
+        assert_int_equal(suite_names(rows[k].name, &good), rows[k].is);
+    const char *const groups[] = {"c", "a/other", "a/good", "d"};
+    assert_true(suite_chosen(&good, &(struct suite_choice){.groups = groups, .group_count = 4}));
+    assert_false(suite_chosen(&good, &(struct suite_choice){.groups = groups, .group_count = 2}));
+    struct check costly = good;
+    near_relative(suite_cost(&good), 0.03, 1e-15);
+    costly.cost = 0.001;
+    assert_true(suite_cost(&costly) == 0.001);
+    costly.cost = -1;
+    near_relative(suite_cost(&costly), 0.03, 1e-15);
+}
+
+/* As many groups as there are checks. */
+static void test_many_groups(void **state)
+{
+    (void)state;
+    enum { N = 5000 };
+    static char names[N][8];
+    static struct check checks[N];
+    static const struct check *list[N];
+    size_t n;
+    for (int i = 0; i < N; i++) {
+        snprintf(names[i], sizeof names[i], "g%d", i);
+        checks[i].group = names[i];
+        list[i] = &checks[i];
+    }
+    const char **groups = suite_groups(list, N, &n);
+    void *behind = malloc(64);
+    assert_int_equal(n, N);
+    assert_true(groups[0] == names[0] && groups[N - 1] == names[N - 1]);
+    free(behind);
+    free(groups);
+}
+
 static void test_results(void **state)
 {
     (void)state;
@@ -377,68 +464,21 @@ static void test_registry(void **state)
     free(names);
 }
 
-/* Everything that a suite says of its figures and mutants, but for seconds. */
-static json_t *told(const struct suite *suite)
-{
-    json_t *document = suite_keep(suite), *checks = json_object_get(document, "checks");
-    for (size_t i = 0; i < json_array_size(checks); i++)
-        json_object_del(json_array_get(checks, i), "seconds");
-    json_object_del(document, "seconds");
-    return document;
-}
-
-/* Checks that ran one by one, each elsewhere, say what they say together. */
-static void test_joined(void **state)
-{
-    (void)state;
-    enum { PARTS = 4 };
-    const struct check *const checks[PARTS] = {&good, &failing, &leaky, &vacuous};
-    const struct suite_choice choice = {.mutants = true};
-    struct suite suite, joined;
-    struct error error;
-    json_t *documents[PARTS];
-    for (size_t i = 0; i < PARTS; i++) {
-        suite_run(&suite, &checks[i], 1, &choice, NULL);
-        documents[i] = suite_keep(&suite);
-        suite_free(&suite);
-        char *text = json_dumps(documents[i], JSON_REAL_PRECISION(17));
-        json_decref(documents[i]);
-        documents[i] = json_loads(text, 0, NULL);
-        free(text);
-    }
-    const json_t *const *from = (const json_t *const *)documents;
-    assert_int_equal(suite_run(&suite, checks, PARTS, &choice, NULL), STATUS_CHECK_FAILED);
-    assert_int_equal(suite_join(&joined, checks, from, PARTS, &error), STATUS_CHECK_FAILED);
-    json_t *one = told(&suite), *other = told(&joined);
-    assert_true(json_equal(one, other));
-    assert_int_equal(joined.failed, 3);
-    assert_int_equal(joined.series_count, suite.series_count);
-    assert_true(joined.series_count > 0 && joined.series[0].check == &failing);
-    assert_true(isnan(joined.figures[3].value) && joined.figures[3].status == FIGURE_FAIL);
-    suite_free(&joined);
-    assert_int_equal(suite_join(&joined, checks, from, 1, &error), STATUS_OK);
-    suite_free(&joined);
-    assert_int_equal(suite_join(&joined, checks + 1, from, 1, &error), STATUS_ENVIRONMENT);
-    assert_null(joined.figures);
-    json_array_clear(json_object_get(documents[0], "checks")); /* a check that measured nothing */
-    assert_int_equal(suite_join(&joined, checks, from, 1, &error), STATUS_ENVIRONMENT);
-    json_decref(one);
-    json_decref(other);
-    suite_free(&suite);
-    for (size_t i = 0; i < PARTS; i++) json_decref(documents[i]);
-}
-
 int main(int argc, char **argv)
 {
     group_argument_count = argc - 1;
     group_arguments = argv + 1;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_slow_and_progress),
+        cmocka_unit_test(test_first_failure),
+        cmocka_unit_test(test_harness_figures),
+        cmocka_unit_test(test_value_of_a_miss),
+        cmocka_unit_test(test_names_and_costs),
+        cmocka_unit_test(test_many_groups),
         cmocka_unit_test(test_mutants_are_distinct),
         cmocka_unit_test(test_mutant_value),
         cmocka_unit_test(test_groups_are_listed_once),
         cmocka_unit_test(test_good),
-        cmocka_unit_test(test_joined),
         cmocka_unit_test(test_failing),
         cmocka_unit_test(test_undetected_mutant),
         cmocka_unit_test(test_vacuous),

@@ -1,0 +1,127 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What one run of a check collects: figures with the time each took, subjects, series, and whether
+ * a mutant is found out already. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "check_run.h"
+#include "clock.h"
+#include "near.h"
+
+static const struct check check = {.group = "a", .name = "check", .property = "p"};
+
+static void clear(struct check_run *run)
+{
+    for (size_t i = 0; i < run->figure_count; i++) free(run->figures[i].subject);
+    for (size_t i = 0; i < run->subject_count; i++) free(run->subjects[i].copy);
+    for (size_t i = 0; i < run->series_count; i++)
+        free(run->series[i].label), free(run->series[i].x), free(run->series[i].y);
+    free(run->figures);
+    free(run->subjects);
+    free(run->series);
+}
+
+static void figures(void **state)
+{
+    (void)state;
+    struct check_run run = {.check = &check, .began = clock_wall() - 1000};
+    check_measure(&run, 1, 1, 1, "of %d", 3); /* on the bound, and the bound on the floor */
+    check_measure(&run, 1.5, 1, 0, "above");
+    check_measure(&run, 0, 1, 1.5, "floor above");
+    check_measure(&run, (double)NAN, 1, 0, "no number");
+    check_skip(&run, "not %s", "here");
+    assert_int_equal(run.figure_count, 5);
+    static const struct {
+        const char *subject;
+        double value, bound, floor;
+        enum figure_status status;
+    } rows[] = {{"of 3", 1, 1, 1, FIGURE_PASS},
+                {"above", 1.5, 1, 0, FIGURE_FAIL},
+                {"floor above", 0, 1, 1.5, FIGURE_FAIL},
+                {"no number", (double)NAN, 1, 0, FIGURE_FAIL},
+                {"not here", (double)NAN, (double)NAN, (double)NAN, FIGURE_SKIP}};
+    for (int k = 0; k < 5; k++) {
+        const struct figure *f = &run.figures[k];
+        assert_true(f->check == &check && f->status == rows[k].status);
+        assert_string_equal(f->subject, rows[k].subject);
+        assert_true(f->value == rows[k].value || (isnan(f->value) && isnan(rows[k].value)));
+        assert_true(f->bound == rows[k].bound || (isnan(f->bound) && isnan(rows[k].bound)));
+        assert_true(f->floor == rows[k].floor || (isnan(f->floor) && isnan(rows[k].floor)));
+        /* each begins where the one before ended */
+        near_inside(f->seconds, k ? 0 : 1000, k ? 100 : 1100);
+    }
+    clear(&run);
+}
+
+/* A mutant that has failed once is decided; what is right never is. */
+static void decided(void **state)
+{
+    (void)state;
+    for (int mutant = 0; mutant < 2; mutant++) {
+        struct check_run run = {.check = &check, .mutant = mutant};
+        check_measure(&run, 0, 1, 0, "well");
+        assert_false(check_decided(&run));
+        check_measure(&run, 2, 1, 0, "not well");
+        assert_int_equal(check_decided(&run), mutant);
+        check_measure(&run, 0, 1, 0, "well again");
+        check_skip(&run, "skipped");
+        assert_int_equal(check_decided(&run), mutant);
+        clear(&run);
+    }
+}
+
+/* As long as somebody wants them. */
+static void series(void **state)
+{
+    (void)state;
+    enum { N = 5000 };
+    static double x[N], y[N];
+    struct check_run run = {.check = &check};
+    for (int i = 0; i < N; i++) x[i] = i + 0.5, y[i] = -i - 0.25;
+    check_series(&run, "long", N, x, y);
+    check_series(&run, "none", 0, x, y);
+    check_series(&run, "short", 2, y, x);
+    assert_int_equal(run.series_count, 3);
+    const struct series *s = run.series;
+    assert_true(s[0].check == &check && s[0].n == N && s[1].n == 0 && s[2].n == 2);
+    assert_string_equal(s[0].label, "long");
+    assert_string_equal(s[2].label, "short");
+    assert_memory_equal(s[0].x, x, sizeof x);
+    assert_memory_equal(s[0].y, y, sizeof y);
+    assert_memory_equal(s[2].x, y, 2 * sizeof *y);
+    assert_memory_equal(s[2].y, x, 2 * sizeof *x);
+    clear(&run);
+}
+
+/* Of what has a size a copy is kept, else the pointer alone. */
+static void subjects(void **state)
+{
+    (void)state;
+    struct check_run run = {.check = &check};
+    for (int i = 0; i < 100; i++) check_subject(&run, &i, i % 2 ? sizeof i : 0);
+    assert_int_equal(run.subject_count, 100);
+    for (int i = 0; i < 100; i++)
+        if (i % 2)
+            assert_int_equal(*(int *)run.subjects[i].copy, i);
+        else
+            assert_true(!run.subjects[i].copy && run.subjects[i].given);
+    assert_false(run.no_memory);
+    clear(&run);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(figures),
+        cmocka_unit_test(decided),
+        cmocka_unit_test(series),
+        cmocka_unit_test(subjects),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

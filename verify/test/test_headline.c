@@ -1,0 +1,132 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Which of many failing figures is told first, in which words, and of whom. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "headline.h"
+#include "value.h"
+
+enum { MOST = 8 };
+
+static const struct check slope = {.group = "kernels",
+                                   .name = "radial_derivative",
+                                   .property = "p"},
+                          width = {.group = "kernels", .name = "width_derivative", .property = "p"},
+                          one = {.group = "hydro", .name = "one", .property = "p"},
+                          two = {.group = "hydro", .name = "two", .property = "p"};
+
+struct row {
+    const struct check *check;
+    const char *subject;
+    double value, bound;
+};
+
+/* New reference: the headlines of these figures, all of which fail. */
+static json_t *told(size_t n, const struct row *rows)
+{
+    struct figure figures[MOST];
+    const struct suite suite = {.figures = figures, .figure_count = n, .failed = n};
+    for (size_t i = 0; i < n; i++)
+        figures[i] = (struct figure){rows[i].check, (char *)(uintptr_t)rows[i].subject,
+                                     rows[i].value, rows[i].bound,
+                                     1e-3,          0,
+                                     FIGURE_FAIL};
+    json_t *list = headline_list(&suite);
+    assert_non_null(list);
+    return list;
+}
+
+static const char *text_of(const json_t *list, size_t i, const char *name)
+{
+    return value_text(json_array_get(list, i), name);
+}
+
+/* The member is what stands before a comma or a colon, cut where there is no room for it; the place
+ * is the rest. */
+static void members_and_places(void **state)
+{
+    (void)state;
+    for (int length = 62; length <= 66; length++) {
+        char subject[128], member[64], headline[128];
+        memset(subject, 'm', sizeof subject);
+        snprintf(subject + length, sizeof subject - (size_t)length, ", there");
+        snprintf(member, sizeof member, "%.63s", subject);
+        member[length < 63 ? length : 63] = '\0';
+        snprintf(headline, sizeof headline, "%s: one off by 2", member);
+        json_t *list = told(1, &(struct row){&one, subject, 2, 1});
+        assert_string_equal(text_of(list, 0, "member"), member);
+        assert_string_equal(text_of(list, 0, "headline"), headline);
+        assert_string_equal(text_of(list, 0, "place"), "there");
+        json_decref(list);
+    }
+    static const struct {
+        const char *subject, *member, *place;
+    } rows[] = {{"all", "all", ""},           {"a:1D, far off", "a", "1D, far off"},
+                {"a:   q > 1", "a", "q > 1"}, {"a, b: c", "a", "b: c"},
+                {": nobody", "", "nobody"},   {"a,", "a", ""}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        json_t *list = told(1, &(struct row){&one, rows[k].subject, 2, 1});
+        assert_int_equal(json_array_size(list), 1);
+        assert_string_equal(text_of(list, 0, "member"), rows[k].member);
+        assert_string_equal(text_of(list, 0, "place"), rows[k].place);
+        json_decref(list);
+    }
+}
+
+/* Of figures that are as far off the first one is told, also where none is off its bound. */
+static void the_worst_figure(void **state)
+{
+    (void)state;
+    json_t *list = told(4, (const struct row[]){{&one, "a: near", 2, 1},
+                                                {&one, "a: first", 6, 2},
+                                                {&one, "a: second", 9, 3},
+                                                {&one, "a: last", 2.5, 1}});
+    assert_string_equal(text_of(list, 0, "place"), "first");
+    assert_true(value_member(json_array_get(list, 0), "ratio") == 3 &&
+                value_member(json_array_get(list, 0), "figures") == 4);
+    json_decref(list);
+    list = told(1, &(struct row){&one, "a: below its floor", 0, 1e-4});
+    assert_string_equal(text_of(list, 0, "place"), "below its floor");
+    assert_true(value_member(json_array_get(list, 0), "ratio") == 0);
+    json_decref(list);
+}
+
+/* The most elementary check first, then what is farthest off, then what came first. */
+static void the_order(void **state)
+{
+    (void)state;
+    json_t *list = told(6, (const struct row[]){{&two, "early", 4, 2},
+                                                {&one, "near", 3, 2},
+                                                {&one, "far", 9, 2},
+                                                {&one, "late", 2, 1},
+                                                {&width, "kernel", 2, 1},
+                                                {&slope, "kernel", 2, 1}});
+    static const char *const members[] = {"kernel", "far", "early", "late", "near"};
+    assert_int_equal(json_array_size(list), 5);
+    for (size_t i = 0; i < 5; i++) assert_string_equal(text_of(list, i, "member"), members[i]);
+    assert_int_equal(json_array_size(json_object_get(json_array_get(list, 0), "also")), 1);
+    assert_string_equal(
+        text_of(list, 0, "headline"),
+        "kernel: dw is not the derivative of w; dW/dh is not the derivative of W in h");
+    json_decref(list);
+    list = told(0, NULL); /* nothing failed */
+    assert_int_equal(json_array_size(list), 0);
+    json_decref(list);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(members_and_places),
+        cmocka_unit_test(the_worst_figure),
+        cmocka_unit_test(the_order),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,100 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Suites that are put together from checks that ran elsewhere. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "made_checks.h"
+
+/* Everything that a suite says of its figures and mutants, but for seconds. */
+static json_t *told(const struct suite *suite)
+{
+    json_t *document = suite_keep(suite), *checks = json_object_get(document, "checks");
+    for (size_t i = 0; i < json_array_size(checks); i++)
+        json_object_del(json_array_get(checks, i), "seconds");
+    json_object_del(document, "seconds");
+    return document;
+}
+
+/* Checks that ran one by one, each elsewhere, say what they say together. */
+static void test_joined(void **state)
+{
+    (void)state;
+    enum { PARTS = 4 };
+    const struct check *const checks[PARTS] = {&good, &failing, &leaky, &vacuous};
+    const struct suite_choice choice = {.mutants = true};
+    struct suite suite, joined;
+    struct error error;
+    json_t *documents[PARTS];
+    for (size_t i = 0; i < PARTS; i++) {
+        suite_run(&suite, &checks[i], 1, &choice, NULL);
+        documents[i] = suite_keep(&suite);
+        suite_free(&suite);
+        char *text = json_dumps(documents[i], JSON_REAL_PRECISION(17));
+        json_decref(documents[i]);
+        documents[i] = json_loads(text, 0, NULL);
+        free(text);
+    }
+    const json_t *const *from = (const json_t *const *)documents;
+    assert_int_equal(suite_run(&suite, checks, PARTS, &choice, NULL), STATUS_CHECK_FAILED);
+    assert_int_equal(suite_join(&joined, checks, from, PARTS, &error), STATUS_CHECK_FAILED);
+    json_t *one = told(&suite), *other = told(&joined);
+    assert_true(json_equal(one, other));
+    assert_int_equal(joined.failed, 3);
+    assert_int_equal(joined.series_count, suite.series_count);
+    assert_true(joined.series_count > 0 && joined.series[0].check == &failing);
+    assert_true(isnan(joined.figures[3].value) && joined.figures[3].status == FIGURE_FAIL);
+    suite_free(&joined);
+    assert_int_equal(suite_join(&joined, checks, from, 1, &error), STATUS_OK);
+    suite_free(&joined);
+    assert_int_equal(suite_join(&joined, checks + 1, from, 1, &error), STATUS_ENVIRONMENT);
+    assert_null(joined.figures);
+    /* the sum of what each took */
+    for (size_t i = 0; i < PARTS; i++)
+        json_object_set_new(documents[i], "seconds", json_real(1 << i));
+    assert_int_equal(suite_join(&joined, checks, from, PARTS, &error), STATUS_CHECK_FAILED);
+    assert_true(joined.seconds == 15);
+    json_t *again = suite_keep(&joined);
+    assert_true(json_real_value(json_object_get(again, "seconds")) == 15);
+    json_decref(again);
+    suite_free(&joined);
+    /* series as long as they are */
+    const json_t *curve = json_array_get(json_object_get(documents[1], "series"), 0);
+    assert_int_equal(json_array_size(json_object_get(curve, "x")), 2);
+    assert_true(json_real_value(json_array_get(json_object_get(curve, "y"), 0)) == 3);
+    /* words that are none of this program's */
+    static const char *const lists[] = {"checks", "checks", "checks", "mutants", "mutants"},
+                             *const keys[] = {"status", "name", "group", "mutant", "check"};
+    for (size_t k = 0; k < 5; k++) {
+        json_t *entry = json_array_get(json_object_get(documents[0], lists[k]), 0);
+        json_t *right = json_incref(json_object_get(entry, keys[k]));
+        json_object_set_new(entry, keys[k], json_string("other"));
+        assert_int_equal(suite_join(&joined, checks, from, 1, &error), STATUS_ENVIRONMENT);
+        assert_string_equal(error.message, "verify: what is kept of a/good is not of this program, "
+                                           "or there is no memory for it");
+        json_object_set_new(entry, keys[k], right);
+    }
+    struct check harmless = good; /* the same, but its mutants are no longer there */
+    harmless.mutants = NULL;
+    assert_int_equal(suite_join(&joined, (const struct check *const[]){&harmless}, from, 1, &error),
+                     STATUS_ENVIRONMENT);
+    json_array_clear(json_object_get(documents[0], "checks")); /* a check that measured nothing */
+    assert_int_equal(suite_join(&joined, checks, from, 1, &error), STATUS_ENVIRONMENT);
+    json_decref(one);
+    json_decref(other);
+    suite_free(&suite);
+    for (size_t i = 0; i < PARTS; i++) json_decref(documents[i]);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_joined),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
