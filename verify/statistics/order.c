@@ -162,14 +162,14 @@ static double richardson_order(struct richardson *r)
     gsl_function function = {richardson_residual, r};
     gsl_root_fsolver *solver = gsl_root_fsolver_alloc(gsl_root_fsolver_brent);
     double p = NAN;
-    if (gsl_root_fsolver_set(solver, &function, 1e-3, 30) == GSL_SUCCESS)
-        for (int i = 0; i < 100; i++) {
-            if (gsl_root_fsolver_iterate(solver)) break;
+    int state = gsl_root_fsolver_set(solver, &function, 1e-3, 30);
+    if (!state) do {
+            state = gsl_root_fsolver_iterate(solver);
             p = gsl_root_fsolver_root(solver);
-            if (gsl_root_test_interval(gsl_root_fsolver_x_lower(solver),
-                                       gsl_root_fsolver_x_upper(solver), 0, 1e-14) == GSL_SUCCESS)
-                break;
-        }
+        } while (!state && isfinite(p) &&
+                 gsl_root_test_interval(gsl_root_fsolver_x_lower(solver),
+                                        gsl_root_fsolver_x_upper(solver), 0,
+                                        1e-14) == GSL_CONTINUE);
     gsl_root_fsolver_free(solver);
     gsl_set_error_handler(handler);
     return p;

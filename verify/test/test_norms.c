@@ -53,8 +53,9 @@ static void test_bins(void **state)
 {
     (void)state;
     const double window[] = {-0.5, 0.5}, at = 0.0371;
-    double means[NORM_BINS];
+    double means[NORM_BINS + 1] = {[NORM_BINS] = 7};
     norm_bin_means(step, &at, window, NORM_BINS, means);
+    assert_true(means[NORM_BINS] == 7);
     near_relative(means[9], 1, 1e-12);
     near_relative(means[10], 3 - 2 * at / 0.05, 1e-9);
     near_relative(means[11], 3, 1e-12);
@@ -63,6 +64,12 @@ static void test_bins(void **state)
     near_relative(norm_binned_l1(4, x, window, volume, value, NORM_BINS, means),
                   ((2. + 12) / 4 - 1 + 0.5) / 2, 1e-14);
     assert_true(isnan(norm_binned_l1(0, x, window, volume, value, NORM_BINS, means)));
+    /* a place that is no number is none, wherever it stands; what is behind the last one is
+     * nobody's */
+    const double lost[] = {NAN, 0, 0.25, NAN};
+    assert_true(isnan(norm_binned_l1(2, lost, window, volume, value, NORM_BINS, means)));
+    assert_true(isfinite(norm_binned_l1(2, lost + 1, window, volume, value, NORM_BINS, means)));
+    assert_true(isnan(norm_binned_l1(2, lost + 2, window, volume, value, NORM_BINS, means)));
 }
 
 /* The 97.5 % point of Student's t for two degrees of freedom, in closed form. */
@@ -99,6 +106,13 @@ static void test_order_interval(void **state)
                   gsl_cdf_tdist_Pinv(0.975, freedom) * sqrt(0.01 / 5), 1e-12);
     assert_int_equal(order_fit(4, spacing, error, &faint, &replicated, NULL), STATUS_OK);
     near_relative(replicated.high - replicated.low, fit.high - fit.low, 1e-9);
+    /* of so many levels as there are variances, whatever is behind them */
+    const double behind[] = {0.01, 0.01, 0.01, 0.01, NAN};
+    assert_int_equal(
+        order_fit(4, spacing, error, &(struct order_noise){behind, 9}, &replicated, NULL),
+        STATUS_OK);
+    near_relative((replicated.high - replicated.low) / 2,
+                  gsl_cdf_tdist_Pinv(0.975, freedom) * sqrt(0.01 / 5), 1e-12);
     /* replicates all alike: no noise to weigh by */
     const double none[4] = {0};
     assert_int_equal(
@@ -153,6 +167,15 @@ static void test_classes(void **state)
     assert_int_equal(class_of((double[]){16, 8, 4, 2, 1}), ORDER_ASYMPTOTIC);
     assert_int_equal(class_of((double[]){16, 8, 4, 3.6, 3.5}), ORDER_FLOOR_LIMITED);
     assert_int_equal(class_of((double[]){16, 8, 4, 3.6, 3.7}), ORDER_FLOOR_LIMITED);
+    /* the last order is a third of the best to the last bit, and a little less */
+    const double spacing[] = {16, 8, 4, 2, 1};
+    for (int less = 0; less < 2; less++) {
+        struct order_fit fit;
+        assert_int_equal(
+            order_fit(5, spacing, (double[]){32, 4, 2, 1, less ? 0.501 : 0.5}, NULL, &fit, NULL),
+            STATUS_OK);
+        assert_int_equal(fit.class, less ? ORDER_FLOOR_LIMITED : ORDER_ASYMPTOTIC);
+    }
     assert_int_equal(class_of((double[]){16, 4, 8, 1, 2}), ORDER_OSCILLATING);
     assert_int_equal(class_of((double[]){1, 2, 4, 8, 16}), ORDER_DIVERGING);
     assert_int_equal(class_of((double[]){1, 1, 1, 1, 1}), ORDER_FLOOR_LIMITED);
@@ -181,6 +204,11 @@ static void test_richardson_unequal_ratios(void **state)
     for (int i = 0; i < 3; i++) value[i] = 2.385 - 0.7 * pow(spacing[i], p);
     const struct order_extrapolation e = order_extrapolate(spacing, value, NAN);
     near_relative(e.order, p, 1e-11);
+    /* the root of what defines it, to the last digits */
+    const double fine = log(0.06 / 0.025), coarse = log(0.1 / 0.06),
+                 change = (value[1] - value[0]) / (value[2] - value[1]);
+    near_relative(exp(fine * e.order) * expm1(coarse * e.order) / expm1(fine * e.order), change,
+                  1e-14);
     near_relative(e.value, 2.385, 1e-13);
     near_relative(e.gci_fine, 1.25 * (2.385 - value[2]) / value[2], 1e-10);
     near_relative(e.gci_coarse, 1.25 * (2.385 - value[1]) / value[1], 1e-10);
@@ -456,6 +484,24 @@ static void test_bins_of_a_window(void **state)
     near_relative(means[1], 1e-15 * (3 - 2 * at), 1e-9);
 }
 
+/* A field is another one's if it is nearer to that one's exact values than half of what these
+ * spread about their mean; exactly as far is not nearer. */
+static void test_limit_of_swapped(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"one", "two"};
+    static const double volumes[] = {1, 0.5, 1e-9}, far[] = {100, 100}, own[] = {1, 3};
+    for (size_t k = 0; k < 3; k++)
+        for (int nearer = 0; nearer < 2; nearer++) {
+            const double volume[] = {volumes[k], volumes[k]}, value[] = {nearer ? 1.9 : 2, 3};
+            char why[SUSPICION_TEXT] = "";
+            assert_int_equal(suspicion_swapped(2, names, 2, volume,
+                                               (const double *const[]){value, own},
+                                               (const double *const[]){far, own}, why),
+                             nearer);
+        }
+}
+
 /* Messages name what is suspected, and nothing beyond the last element is asked. */
 static void test_suspicions(void **state)
 {
@@ -618,6 +664,7 @@ int main(void)
         cmocka_unit_test(test_richardson_classes),
         cmocka_unit_test(test_norms_at_their_limits),
         cmocka_unit_test(test_bins_of_a_window),
+        cmocka_unit_test(test_limit_of_swapped),
         cmocka_unit_test(test_suspicions),
         cmocka_unit_test(test_class_words),
         cmocka_unit_test(test_richardson_against_exact),

@@ -1,0 +1,259 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What is left of checks that fail: the numbers that gnuplot is given to draw (by a program of that
+ * name that writes them down), files that come and go; and what a table says of one figure. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+#include "suite_output.h"
+
+static char place[] = "/tmp/sphproof_failures_XXXXXX";
+
+static const struct check first = {.group = "a", .name = "first", .property = "one is one"},
+                          second = {.group = "a", .name = "second", .property = "p"},
+                          other = {.group = "b", .name = "other", .property = "p"};
+
+static char *path_of(const char *name)
+{
+    static char path[256];
+    snprintf(path, sizeof path, "%s/%s", place, name);
+    return path;
+}
+
+static const char *text_of(const char *name)
+{
+    static char text[1 << 15];
+    FILE *file = fopen(path_of(name), "r");
+    assert_non_null(file);
+    text[fread(text, 1, sizeof text - 1, file)] = '\0';
+    fclose(file);
+    return text;
+}
+
+#define FIGURE(check, value, bound, status)                                                        \
+    {                                                                                              \
+        check, (char *)(uintptr_t) "figure", value, bound, 0, 0, status                            \
+    }
+
+/* A gnuplot that keeps what it is told and draws always the same. */
+static void make_gnuplot(void)
+{
+    FILE *file = fopen(path_of("gnuplot"), "w");
+    assert_non_null(file);
+    fprintf(file, "#!/bin/sh\ncat > %s/script\necho '<svg>drawn</svg>'\n", place);
+    fclose(file);
+    assert_int_equal(chmod(path_of("gnuplot"), 0700), 0);
+}
+
+/* The numbers of the script, between the lines that begin and end them. */
+static void numbers_are(const char *expected)
+{
+    const char *text = text_of("script"), *begin = strstr(text, "END_OF_DATA\n");
+    assert_non_null(begin);
+    begin += strlen("END_OF_DATA\n");
+    const char *end = strstr(begin, "END_OF_DATA");
+    assert_non_null(end);
+    if (strlen(expected) != (size_t)(end - begin) ||
+        strncmp(begin, expected, strlen(expected)) != 0)
+        fail_msg("'%.*s' is not '%s'", (int)(end - begin), begin, expected);
+}
+
+/* The first check has no curves; of nine of the second one eight are drawn. Figures are drawn
+ * between 1e-6 and 1e12. */
+static void drawings(void **state)
+{
+    (void)state;
+    enum { CURVES = 9 };
+    struct figure figures[] = {
+        FIGURE(&first, 0.5, 1, FIGURE_PASS), FIGURE(&first, 1e-7, 1, FIGURE_PASS),
+        FIGURE(&first, 3, 0.5, FIGURE_FAIL), FIGURE(&first, (double)NAN, 1, FIGURE_FAIL),
+        FIGURE(&first, 2, 1, FIGURE_SKIP),   FIGURE(&second, 3, 1, FIGURE_FAIL),
+        FIGURE(&second, 9, 1, FIGURE_FAIL), /* of another suite */
+    };
+    double x[] = {1, 2, 3}, y[CURVES][3];
+    char label[CURVES][4];
+    struct series series[CURVES + 2] = {{&first, label[0], 3, x, x}};
+    for (int k = 0; k < CURVES; k++) {
+        for (int i = 0; i < 3; i++) y[k][i] = 10 * k + i;
+        snprintf(label[k], sizeof label[k], "c%d", k);
+        series[k + 1] = (struct series){&second, label[k], 2, x, y[k]};
+    }
+    series[CURVES + 1] = series[CURVES];
+    const struct suite suite = {.figures = figures,
+                                .figure_count = 6,
+                                .series = series + 1,
+                                .series_count = CURVES,
+                                .failed = 3};
+    char *before = strdup(getenv("PATH") ? getenv("PATH") : ""), path[4096], told[1024];
+    snprintf(path, sizeof path, "%s:%s", place, before);
+    make_gnuplot();
+    setenv("PATH", path, 1);
+    struct suite one = suite;
+    one.figure_count = 5; /* the first check alone */
+    char out[256];
+    snprintf(out, sizeof out, "%s/out", place);
+    assert_int_equal(suite_output_failures(&one, out, NULL, NULL), STATUS_OK);
+    numbers_are("# x y: pass\n 1 0.5\n 2 1e-06\n 3 NaN\n 4 NaN\n 5 NaN\n\n\n"
+                "# x y: fail\n 1 NaN\n 2 NaN\n 3 6\n 4 1e+12\n 5 NaN\n\n\n");
+    assert_non_null(strstr(text_of("script"), "'one is one'"));
+    assert_non_null(
+        strstr(text_of("script"), "set arrow from graph 0, first 1 to graph 1, first 1"));
+    assert_null(strstr(text_of("script"), "label 'first'"));
+    assert_non_null(strstr(text_of("out/a-first.svg"), "drawn</svg>\n"));
+    struct stat is;
+    const mode_t mask = umask(0);
+    umask(mask);
+    assert_true(stat(out, &is) == 0 && (is.st_mode & 0777) == (0777 & ~mask));
+    /* of the second one, with curves */
+    one.figures += 5, one.figure_count = 1;
+    FILE *stream = fopen(path_of("told"), "w");
+    assert_non_null(stream);
+    assert_int_equal(suite_output_failures(&one, out, stream, NULL), STATUS_OK);
+    fclose(stream);
+    snprintf(told, sizeof told,
+             "figures and data: %s/a-second.json\nplot:             %s/a-second.svg\n", out, out);
+    assert_string_equal(text_of("told"), told);
+    numbers_are("# x y: c0\n 1 0\n 2 1\n\n\n# x y: c1\n 1 10\n 2 11\n\n\n"
+                "# x y: c2\n 1 20\n 2 21\n\n\n# x y: c3\n 1 30\n 2 31\n\n\n"
+                "# x y: c4\n 1 40\n 2 41\n\n\n# x y: c5\n 1 50\n 2 51\n\n\n"
+                "# x y: c6\n 1 60\n 2 61\n\n\n# x y: c7\n 1 70\n 2 71\n\n\n"
+                "# x y: pass\n 1 NaN\n\n\n# x y: fail\n 1 3\n\n\n");
+    assert_non_null(strstr(text_of("script"), "label 'second'"));
+    setenv("PATH", before, 1);
+    free(before);
+    json_t *document = json_load_file(path_of("out/a-second.json"), 0, NULL);
+    const json_t *kept = json_object_get(document, "series");
+    assert_int_equal(json_array_size(kept), CURVES); /* all of them */
+    assert_true(json_real_value(json_array_get(json_object_get(json_array_get(kept, 8), "y"), 1)) ==
+                81);
+    json_decref(document);
+    /* all is well again: nothing stays, not even the folder */
+    for (int k = 0; k < 6; k++) figures[k].status = FIGURE_PASS;
+    one = suite;
+    one.failed = 0;
+    assert_int_equal(suite_output_failures(&one, out, NULL, NULL), STATUS_OK);
+    assert_int_equal(access(out, F_OK), -1);
+}
+
+/* Nowhere to write: the folder that cannot be made is named, and what stands in a file's place. */
+static void nowhere_to_write(void **state)
+{
+    (void)state;
+    struct figure figures[] = {FIGURE(&first, 2, 1, FIGURE_FAIL),
+                               FIGURE(&second, 2, 1, FIGURE_FAIL)};
+    const struct suite suite = {.figures = figures, .figure_count = 2, .failed = 2};
+    struct error error;
+    char said[512], out[256];
+    snprintf(out, sizeof out, "%s/no/folder", place);
+    snprintf(said, sizeof said, "verify: cannot make the folder '%s': No such file or directory",
+             out);
+    assert_int_equal(suite_output_failures(&suite, out, NULL, &error), STATUS_ENVIRONMENT);
+    assert_string_equal(error.message, said);
+    snprintf(out, sizeof out, "%s/made", place);
+    assert_int_equal(mkdir(out, 0777), 0);
+    assert_int_equal(mkdir(path_of("made/a-first.json"), 0777), 0); /* a folder, not a file */
+    FILE *stream = fopen(path_of("told"), "w");
+    assert_non_null(stream);
+    assert_int_equal(suite_output_failures(&suite, out, stream, &error), STATUS_ENVIRONMENT);
+    fclose(stream);
+    assert_string_equal(text_of("told"), ""); /* and nobody goes on after it */
+    assert_int_equal(access(path_of("made/a-second.json"), F_OK), -1);
+}
+
+/* ---- tables ---- */
+
+static const char *table_of(size_t n, struct figure *figures)
+{
+    const struct suite suite = {.figures = figures, .figure_count = n};
+    FILE *stream = fopen(path_of("table"), "w");
+    assert_non_null(stream);
+    suite_output_table(&suite, stream, false, true);
+    fclose(stream);
+    return text_of("table");
+}
+
+static void tables(void **state)
+{
+    (void)state;
+    struct figure exact[] = {FIGURE(&first, 0, 1, FIGURE_PASS),
+                             FIGURE(&first, 0.5, 1, FIGURE_PASS)};
+    const char *text = table_of(1, exact); /* the second one is not of this suite */
+    assert_non_null(strstr(text, "  ok    first                                  0         1 "
+                                 "     exact         0       1    0.00\n"));
+    /* of figures that are as far the first one is told; a margin of 1.005 is not yet 1.01 */
+    struct figure even[] = {FIGURE(&first, 0.25, 0.5, FIGURE_PASS),
+                            FIGURE(&first, 2, 4, FIGURE_PASS)};
+    text = table_of(2, even);
+    assert_non_null(strstr(text, "  ok    first                               0.25       0.5 "
+                                 "        2x         0       2    0.00\n"));
+    struct figure close[] = {FIGURE(&first, 1, 1.0049999, FIGURE_PASS)};
+    assert_non_null(strstr(table_of(1, close), "        1x "));
+}
+
+static void words(void **state)
+{
+    (void)state;
+    assert_int_equal(suite_output_status("pass"), FIGURE_PASS);
+    assert_int_equal(suite_output_status("fail"), FIGURE_FAIL);
+    assert_int_equal(suite_output_status("skip"), FIGURE_SKIP);
+    assert_int_equal(suite_output_status("passed"), -1);
+    assert_int_equal(suite_output_status(""), -1);
+}
+
+/* Each group of a JUnit file has its own counts, wherever they stand. */
+static void groups(void **state)
+{
+    (void)state;
+    static const enum figure_status kinds[] = {FIGURE_PASS, FIGURE_FAIL, FIGURE_SKIP};
+    for (int a = 0; a < 27; a++) {
+        struct figure figures[] = {FIGURE(&first, 2, 1, kinds[a % 3]),
+                                   FIGURE(&second, 2, 1, kinds[a / 3 % 3]),
+                                   FIGURE(&other, 2, 1, kinds[a / 9])};
+        const struct suite suite = {.figures = figures, .figure_count = 3};
+        char line[2][128];
+        for (int k = 0; k < 2; k++) {
+            int failed = 0, skipped = 0;
+            for (int i = k ? 2 : 0; i < (k ? 3 : 2); i++) {
+                failed += figures[i].status == FIGURE_FAIL;
+                skipped += figures[i].status == FIGURE_SKIP;
+            }
+            snprintf(line[k], sizeof line[k],
+                     "<testsuite name=\"%s\" tests=\"%d\" failures=\"%d\" skipped=\"%d\"",
+                     k ? "b" : "a", k ? 1 : 2, failed, skipped);
+        }
+        assert_int_equal(suite_output_junit(&suite, path_of("junit.xml"), NULL), STATUS_OK);
+        const char *text = text_of("junit.xml");
+        if (!strstr(text, line[0]) || !strstr(text, line[1])) fail_msg("%s in %s", line[0], text);
+    }
+}
+
+static int make_place(void **state)
+{
+    (void)state;
+    return !mkdtemp(place);
+}
+
+static int remove_place(void **state)
+{
+    char command[64];
+    (void)state;
+    snprintf(command, sizeof command, "rm -r %s", place);
+    return system(command);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(drawings), cmocka_unit_test(nowhere_to_write), cmocka_unit_test(tables),
+        cmocka_unit_test(words),    cmocka_unit_test(groups),
+    };
+    return cmocka_run_group_tests(tests, make_place, remove_place);
+}
