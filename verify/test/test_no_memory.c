@@ -19,6 +19,7 @@
 #include "gas.h"
 #include "headline.h"
 #include "initial_fill.h"
+#include "junit.h"
 #include "map.h"
 #include "particle_file.h"
 #include "regularity.h"
@@ -259,9 +260,24 @@ static enum status joined(struct error *error)
     return STATUS_OK;
 }
 
+static enum status as_junit(struct error *error)
+{
+    static json_t *results;
+    if (!results)
+        results = json_pack("{s:[{s:s, s:s, s:s}, {s:s, s:s, s:s, s:s}]}", "runs", "status", "ok",
+                            "case", "a", "reproduce", "b", "status", "broke_down", "case", "c",
+                            "reproduce", "d", "message", "e");
+    char *text = junit_text(results);
+    if (!text) return error_set(error, STATUS_ENVIRONMENT, "no memory");
+    assert_non_null(strstr(text, "tests=\"2\" failures=\"1\""));
+    free(text);
+    return STATUS_OK;
+}
+
 static void checks_and_suites(void **state)
 {
     (void)state;
+    without_memory(as_junit, 3, true);
     without_memory(checked, 10, true);
     without_memory(joined, 10, true);
     json_decref(kept);

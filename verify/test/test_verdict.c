@@ -146,6 +146,47 @@ static void alone(void **state)
     }
 }
 
+/* What runs have to keep is counted, and told with the run that does not keep it. */
+static void gates_of_runs(void **state)
+{
+    (void)state;
+    json_t *results = json_pack(
+        "{s:[{s:s, s:s, s:s, s:s, s:[{s:s}, {s:s}, {s:s}, {s:s}, {s:s}, {s:s, s:s, s:f, s:f}, "
+        "{s:s, s:s, s:s, s:f}]}]}",
+        "runs", "status", "ok", "case", "tube", "label", "n=100", "reproduce", "sphproof run tube",
+        "gates", "status", "pass", "status", "pass", "status", "pass", "status", "known", "status",
+        "none", "status", "fail", "name", "energy", "value", 0.5, "bound", 0.25, "status", "fail",
+        "name", "momentum", "value", "nan", "bound", 0.125);
+    json_t *made = verdict_make(results);
+    const json_t *failures = json_object_get(made, "failures");
+    assert_int_equal(json_integer_value(json_object_get(made, "gates_passed")), 3);
+    assert_int_equal(json_integer_value(json_object_get(made, "gates_failed")), 2);
+    assert_int_equal(json_array_size(failures), 2);
+    static const char *const names[] = {"tube, n=100: energy", "tube, n=100: momentum"},
+                             *const details[] = {"the error of the run, 0.5, is not <= 0.25",
+                                                 "the error of the run, nan, is not <= 0.125"};
+    for (size_t k = 0; k < 2; k++) {
+        const json_t *failure = json_array_get(failures, k);
+        assert_string_equal(json_string_value(json_object_get(failure, "name")), names[k]);
+        assert_string_equal(json_string_value(json_object_get(failure, "detail")), details[k]);
+        assert_string_equal(json_string_value(json_object_get(failure, "command")),
+                            "sphproof run tube");
+    }
+    json_decref(made);
+    json_decref(results);
+    /* a word that is none is told with the case that has it */
+    results = json_pack("{s:[{s:s, s:s, s:[{s:s}]}]}", "runs", "status", "ok", "case", "tube",
+                        "gates", "status", "odd");
+    made = verdict_make(results);
+    assert_string_equal(json_string_value(json_object_get(made, "headline")),
+                        "1 failure: harness tube");
+    const json_t *trouble = json_array_get(json_object_get(made, "failures"), 0);
+    assert_non_null(strstr(json_string_value(json_object_get(trouble, "detail")), "none"));
+    assert_int_equal(json_integer_value(json_object_get(made, "gates_failed")), 0);
+    json_decref(made);
+    json_decref(results);
+}
+
 /* A check is told by the figure that is farthest beyond its bound, in units of it; no number is
  * farther than any. And passed, failed and skipped ones are different numbers. */
 static void farthest(void **state)
@@ -216,9 +257,9 @@ static void cut(void **state)
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(verdict),      cmocka_unit_test(junit), cmocka_unit_test(summary),
-        cmocka_unit_test(long_summary), cmocka_unit_test(alone), cmocka_unit_test(cut),
-        cmocka_unit_test(farthest),
+        cmocka_unit_test(verdict),      cmocka_unit_test(junit),         cmocka_unit_test(summary),
+        cmocka_unit_test(long_summary), cmocka_unit_test(alone),         cmocka_unit_test(cut),
+        cmocka_unit_test(farthest),     cmocka_unit_test(gates_of_runs),
     };
     folder = argc > 1 ? argv[1] : "";
     return cmocka_run_group_tests(tests, NULL, NULL);
