@@ -299,7 +299,7 @@ static void test_first_failure(void **state)
         assert_int_equal(suite.figure_count, first ? 5 : 6);
         assert_true(suite.failed == 1 && suite.skipped == 2 && suite.passed == (first ? 2 : 3));
         assert_int_equal(suite.series_count, 1);
-        near_inside(suite.seconds, 0, 60);
+        near_inside(suite.seconds, 1e-12, 60);
         for (size_t i = 0; i < suite.figure_count; i++)
             near_inside(suite.figures[i].seconds, 0, 60);
         suite_free(&suite);
@@ -353,7 +353,7 @@ static void test_value_of_a_miss(void **state)
     suite_free(&suite);
 }
 
-static void test_names_and_costs(void **state)
+static void test_names_ratios_and_costs(void **state)
 {
     (void)state;
     static const struct {
@@ -367,6 +367,10 @@ static void test_names_and_costs(void **state)
     const char *const groups[] = {"c", "a/other", "a/good", "d"};
     assert_true(suite_chosen(&good, &(struct suite_choice){.groups = groups, .group_count = 4}));
     assert_false(suite_chosen(&good, &(struct suite_choice){.groups = groups, .group_count = 2}));
+    assert_true(suite_ratio(0, 0) == 0 && suite_ratio(-1, 0) == 0 && suite_ratio(-1, -1) == 0);
+    assert_true(suite_ratio(1e-7, 1) == 1e-7 && suite_ratio(2, 2) == 1 && suite_ratio(3, 2) == 1.5);
+    assert_true(isinf(suite_ratio(1, 0)) && isinf(suite_ratio(0, -1)) &&
+                isinf(suite_ratio((double)NAN, 1)));
     struct check costly = good;
     near_relative(suite_cost(&good), 0.03, 1e-15);
     costly.cost = 0.001;
@@ -473,7 +477,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_first_failure),
         cmocka_unit_test(test_harness_figures),
         cmocka_unit_test(test_value_of_a_miss),
-        cmocka_unit_test(test_names_and_costs),
+        cmocka_unit_test(test_names_ratios_and_costs),
         cmocka_unit_test(test_many_groups),
         cmocka_unit_test(test_mutants_are_distinct),
         cmocka_unit_test(test_mutant_value),
