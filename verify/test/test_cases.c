@@ -86,6 +86,26 @@ static void refused(const char *name, const char *why)
     assert_string_equal(error.message, said);
 }
 
+/* A file is read, whatever number it gets, and closed. */
+static void descriptors(void **state)
+{
+    (void)state;
+    struct case_file file;
+    struct error error = {0};
+    write_case(path_of("tube.ini"), "sod", 0);
+    const int input = dup(STDIN_FILENO), next = dup(STDIN_FILENO);
+    close(next);
+    assert_int_equal(case_load(&file, path_of("tube.ini"), &error), STATUS_OK);
+    const int after = dup(STDERR_FILENO);
+    close(after);
+    assert_true(next < 0 || after == next);
+    close(STDIN_FILENO);
+    const enum status status = case_load(&file, path_of("tube.ini"), &error);
+    if (input >= 0) dup2(input, STDIN_FILENO), close(input);
+    assert_int_equal(status, STATUS_OK);
+    unlink(path_of("tube.ini"));
+}
+
 static void no_case_files(void **state)
 {
     (void)state;
@@ -106,6 +126,22 @@ static void no_case_files(void **state)
     struct stat is;
     if (stat("/proc/kallsyms", &is) == 0 && is.st_size == 0 && access("/proc/kallsyms", R_OK) == 0)
         refused("/proc/kallsyms", "larger than 64 KiB: not a case file");
+    /* nothing, and next to nothing */
+    char empty[512];
+    for (int n = 0; n < 2; n++) {
+        FILE *file_of = fopen(path_of("short.ini"), "w");
+        assert_non_null(file_of);
+        fputs(n ? "x" : "", file_of);
+        fclose(file_of);
+        char text[] = "x", said[512];
+        case_parse(&file, path_of("short.ini"), text, (size_t)n, &error);
+        snprintf(said, sizeof said, "%s", error.message);
+        assert_int_equal(case_load(&file, path_of("short.ini"), &error), STATUS_BAD_INPUT);
+        assert_string_equal(error.message, said);
+        if (n) assert_string_not_equal(said, empty);
+        snprintf(empty, sizeof empty, "%s", said);
+    }
+    unlink(path_of("short.ini"));
     /* what is in a file is told of it */
     FILE *bad = fopen(path_of("bad.ini"), "w");
     assert_non_null(bad);
@@ -150,9 +186,8 @@ static int remove_folder(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(built_in),
-        cmocka_unit_test(paths),
-        cmocka_unit_test(no_case_files),
+        cmocka_unit_test(built_in),      cmocka_unit_test(paths),
+        cmocka_unit_test(descriptors),   cmocka_unit_test(no_case_files),
         cmocka_unit_test(unknown_names),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

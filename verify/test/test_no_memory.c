@@ -8,6 +8,8 @@
 #include <stdint.h>
 #include <cmocka.h>
 
+#include <gsl/gsl_qrng.h>
+#include <gsl/gsl_rng.h>
 #include <math.h>
 #include <stdatomic.h>
 #include <stdio.h>
@@ -18,6 +20,7 @@
 #include "cases.h"
 #include "gas.h"
 #include "headline.h"
+#include "initial_create.h"
 #include "initial_fill.h"
 #include "junit.h"
 #include "map.h"
@@ -52,6 +55,10 @@ WRAP(calloc, (size_t n, size_t size), (n, size), true)
 WRAP(realloc, (void *memory, size_t size), (memory, size), !memory)
 WRAP(aligned_alloc, (size_t alignment, size_t size), (alignment, size), true)
 WRAP(strdup, (const char *text), (text), true)
+
+/* These are given back elsewhere. */
+WRAP(gsl_rng_alloc, (const gsl_rng_type *type), (type), false)
+WRAP(gsl_qrng_alloc, (const gsl_qrng_type *type, unsigned dim), (type, dim), false)
 
 void __real_free(void *memory);
 void __wrap_free(void *memory);
@@ -108,6 +115,31 @@ static enum status fill(struct error *error)
     return status;
 }
 
+/* Shaken ones, and of equal masses. */
+static enum status created(struct error *error)
+{
+    char *keys[] = {"n=16", "lattice=square", "jitter=0.1"};
+    const struct problem problem = {.sample = gas_sample, .fill = initial_fill};
+    const struct prepared p = {.problem = &problem, .domain = {2, {0, 0}, {1, 1}}};
+    const struct settings settings = gas_settings(3, keys);
+    struct initial initial;
+    const enum status status = initial_create(&initial, &p, &settings, error);
+    assert_true(!status || !initial.storage);
+    initial_free(&initial);
+    return status;
+}
+
+static enum status equal(struct error *error)
+{
+    char *keys[] = {"n=4", "lattice=random", "equal_masses=yes"};
+    const struct prepared p = {.problem = &gas_problem, .domain = {2, {0, 0}, {1, 1}}};
+    const struct settings settings = gas_settings(3, keys);
+    struct initial initial = {0};
+    const enum status status = initial_fill(&p, &settings, &initial, error);
+    initial_free(&initial);
+    return status;
+}
+
 static double room(const void *context, const double x[3])
 {
     (void)context, (void)x;
@@ -152,6 +184,8 @@ static void places_of_particles(void **state)
 {
     (void)state;
     without_memory(fill, 1, true);
+    without_memory(created, 2, true);
+    without_memory(equal, 3, true);
     without_memory(relaxed, 4, true);
     without_memory(relax_measured, 4, true);
     without_memory(regular, 4, true);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Error norms on hand-made data; orders, gates, Richardson extrapolation on known sequences. */
+ * Norms, bins and the worst of many, by hand. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -8,13 +8,10 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include <gsl/gsl_cdf.h>
 #include <gsl/gsl_errno.h>
 
 #include "near.h"
 #include "norm.h"
-#include "order.h"
-#include "suspicion.h"
 #include "worst.h"
 
 static void test_norms_by_hand(void **state)
@@ -64,170 +61,14 @@ static void test_bins(void **state)
     near_relative(norm_binned_l1(4, x, window, volume, value, NORM_BINS, means),
                   ((2. + 12) / 4 - 1 + 0.5) / 2, 1e-14);
     assert_true(isnan(norm_binned_l1(0, x, window, volume, value, NORM_BINS, means)));
+    const double out[] = {-0.46, -0.6, -0.7}; /* one in the window, and lower ones */
+    near_relative(norm_binned_l1(2, out, window, volume, value, NORM_BINS, means), 2 - 1, 1e-14);
     /* a place that is no number is none, wherever it stands; what is behind the last one is
      * nobody's */
     const double lost[] = {NAN, 0, 0.25, NAN};
     assert_true(isnan(norm_binned_l1(2, lost, window, volume, value, NORM_BINS, means)));
     assert_true(isfinite(norm_binned_l1(2, lost + 1, window, volume, value, NORM_BINS, means)));
     assert_true(isnan(norm_binned_l1(2, lost + 2, window, volume, value, NORM_BINS, means)));
-}
-
-/* The 97.5 % point of Student's t for two degrees of freedom, in closed form. */
-static double t_975_2(void)
-{
-    return 0.95 * sqrt(2 / (1 - 0.95 * 0.95));
-}
-
-/* y = 2 + x with residuals +-e in a pattern orthogonal to the line: slope, interval by hand. */
-static void test_order_interval(void **state)
-{
-    (void)state;
-    const double e = 0.02;
-    const double spacing[] = {exp(3), exp(2), exp(1), 1};
-    const double error[] = {exp(5 + e), exp(4 - e), exp(3 - e), exp(2 + e)};
-    struct order_fit fit;
-    assert_int_equal(order_fit(4, spacing, error, NULL, &fit, NULL), STATUS_OK);
-    near_relative(fit.order, 1, 1e-14);
-    /* s^2 = 4 e^2/2, Sxx = 5, t(0.975, 2) in closed form */
-    near_relative((fit.high - fit.low) / 2, t_975_2() * sqrt(2 * e * e / 5), 1e-12);
-    near_relative(fit.pairwise[0], 1 + 2 * e, 1e-12);
-    near_relative(fit.finest, exp(2 + e), 1e-15);
-    assert_int_equal(fit.class, ORDER_ASYMPTOTIC);
-
-    /* Replicates that differ by more than the scatter: s^2/Sxx, Satterthwaite's degrees of freedom
-     * from c_i^2 = (0.3, 0.1, 0.1, 0.3)^2: (0.2)^2 8/(2 0.3^4 + 2 0.1^4). Quieter ones leave the
-     * scatter, which they cannot explain. */
-    const double noisy[] = {0.01, 0.01, 0.01, 0.01}, quiet[] = {1e-9, 1e-9, 1e-9, 1e-9};
-    const struct order_noise loud = {noisy, 9}, faint = {quiet, 9};
-    const double freedom = 0.04 * 8 / (2 * 0.0081 + 2 * 0.0001);
-    struct order_fit replicated;
-    assert_int_equal(order_fit(4, spacing, error, &loud, &replicated, NULL), STATUS_OK);
-    near_relative((replicated.high - replicated.low) / 2,
-                  gsl_cdf_tdist_Pinv(0.975, freedom) * sqrt(0.01 / 5), 1e-12);
-    assert_int_equal(order_fit(4, spacing, error, &faint, &replicated, NULL), STATUS_OK);
-    near_relative(replicated.high - replicated.low, fit.high - fit.low, 1e-9);
-    /* of so many levels as there are variances, whatever is behind them */
-    const double behind[] = {0.01, 0.01, 0.01, 0.01, NAN};
-    assert_int_equal(
-        order_fit(4, spacing, error, &(struct order_noise){behind, 9}, &replicated, NULL),
-        STATUS_OK);
-    near_relative((replicated.high - replicated.low) / 2,
-                  gsl_cdf_tdist_Pinv(0.975, freedom) * sqrt(0.01 / 5), 1e-12);
-    /* replicates all alike: no noise to weigh by */
-    const double none[4] = {0};
-    assert_int_equal(
-        order_fit(4, spacing, error, &(struct order_noise){none, 9}, &replicated, NULL), STATUS_OK);
-    near_relative(replicated.high - replicated.low, fit.high - fit.low, 1e-12);
-}
-
-static void test_order_bad_levels(void **state)
-{
-    (void)state;
-    struct order_fit fit;
-    struct error failure;
-    const double spacing[] = {4, 2, 2, 1}, error[] = {4, 2, 2, 1};
-    assert_int_equal(order_fit(3, spacing, error, NULL, &fit, &failure), STATUS_BAD_INPUT);
-    assert_non_null(strstr(failure.message, "4"));
-    assert_int_equal(order_fit(4, spacing, error, NULL, &fit, &failure), STATUS_BAD_INPUT);
-    assert_non_null(strstr(failure.message, "distinct"));
-}
-
-static void test_gate(void **state)
-{
-    (void)state;
-    char why[ORDER_GATE_TEXT];
-    const struct order_gate gate = {0.9, 1.1, 1e-3};
-    struct order_fit fit = {.order = 1, .low = 0.9, .high = 1.1, .n = 4, .finest = 1e-3};
-    assert_true(order_passes(&fit, &gate, why) && !why[0]);
-    fit.finest = 1.01e-3;
-    assert_true(!order_passes(&fit, &gate, why) && strstr(why, "finest"));
-    fit.finest = NAN;
-    assert_false(order_passes(&fit, &gate, why));
-    fit.finest = 1e-4, fit.low = 0.8, fit.high = 1.2;
-    assert_true(!order_passes(&fit, &gate, why) && strstr(why, "0.2"));
-    fit.low = fit.high = NAN;
-    assert_false(order_passes(&fit, &gate, why));
-    fit.low = fit.high = fit.order = 1.11;
-    assert_true(!order_passes(&fit, &gate, why) && strstr(why, "outside"));
-    fit.low = fit.high = fit.order = NAN;
-    assert_false(order_passes(&fit, &gate, NULL));
-}
-
-static enum order_class class_of(const double *error)
-{
-    const double spacing[] = {1, 0.5, 0.25, 0.125, 0.0625};
-    struct order_fit fit;
-    assert_int_equal(order_fit(5, spacing, error, NULL, &fit, NULL), STATUS_OK);
-    return fit.class;
-}
-
-static void test_classes(void **state)
-{
-    (void)state;
-    assert_int_equal(class_of((double[]){16, 8, 4, 2, 1}), ORDER_ASYMPTOTIC);
-    assert_int_equal(class_of((double[]){16, 8, 4, 3.6, 3.5}), ORDER_FLOOR_LIMITED);
-    assert_int_equal(class_of((double[]){16, 8, 4, 3.6, 3.7}), ORDER_FLOOR_LIMITED);
-    /* the last order is a third of the best to the last bit, and a little less */
-    const double spacing[] = {16, 8, 4, 2, 1};
-    for (int less = 0; less < 2; less++) {
-        struct order_fit fit;
-        assert_int_equal(
-            order_fit(5, spacing, (double[]){32, 4, 2, 1, less ? 0.501 : 0.5}, NULL, &fit, NULL),
-            STATUS_OK);
-        assert_int_equal(fit.class, less ? ORDER_FLOOR_LIMITED : ORDER_ASYMPTOTIC);
-    }
-    assert_int_equal(class_of((double[]){16, 4, 8, 1, 2}), ORDER_OSCILLATING);
-    assert_int_equal(class_of((double[]){1, 2, 4, 8, 16}), ORDER_DIVERGING);
-    assert_int_equal(class_of((double[]){1, 1, 1, 1, 1}), ORDER_FLOOR_LIMITED);
-    assert_int_equal(class_of((double[]){4, 2, 1, 0.5, NAN}), ORDER_DIVERGING);
-    assert_int_equal(class_of((double[]){4, 2, 1, 0.5, 0}), ORDER_DIVERGING);
-}
-
-/* NASA Glenn's worked example (Examining Spatial (Grid) Convergence, NPARC Alliance). */
-static void test_richardson_nasa(void **state)
-{
-    (void)state;
-    const struct order_extrapolation e =
-        order_extrapolate((double[]){4, 2, 1}, (double[]){0.96178, 0.96854, 0.97050}, NAN);
-    assert_int_equal(e.class, ORDER_ASYMPTOTIC);
-    near_absolute(e.order, 1.786170, 5e-7);
-    near_absolute(e.value, 0.9713003, 5e-8);
-    near_absolute(100 * e.gci_fine, 0.103083, 5e-7);
-    near_absolute(100 * e.gci_coarse, 0.356249, 5e-7);
-}
-
-static void test_richardson_unequal_ratios(void **state)
-{
-    (void)state;
-    const double spacing[] = {0.1, 0.06, 0.025}, p = 1.37;
-    double value[3];
-    for (int i = 0; i < 3; i++) value[i] = 2.385 - 0.7 * pow(spacing[i], p);
-    const struct order_extrapolation e = order_extrapolate(spacing, value, NAN);
-    near_relative(e.order, p, 1e-11);
-    /* the root of what defines it, to the last digits */
-    const double fine = log(0.06 / 0.025), coarse = log(0.1 / 0.06),
-                 change = (value[1] - value[0]) / (value[2] - value[1]);
-    near_relative(exp(fine * e.order) * expm1(coarse * e.order) / expm1(fine * e.order), change,
-                  1e-14);
-    near_relative(e.value, 2.385, 1e-13);
-    near_relative(e.gci_fine, 1.25 * (2.385 - value[2]) / value[2], 1e-10);
-    near_relative(e.gci_coarse, 1.25 * (2.385 - value[1]) / value[1], 1e-10);
-}
-
-static void test_richardson_classes(void **state)
-{
-    (void)state;
-    const double spacing[] = {4, 2, 1};
-    struct order_extrapolation e = order_extrapolate(spacing, (double[]){1, 2, 1.5}, NAN);
-    assert_true(e.class == ORDER_OSCILLATING && isnan(e.value));
-    e = order_extrapolate(spacing, (double[]){1, 1, 2}, NAN);
-    assert_true(e.class == ORDER_OSCILLATING && isnan(e.value));
-    e = order_extrapolate(spacing, (double[]){1, 2, 4}, NAN);
-    assert_true(e.class == ORDER_DIVERGING && isnan(e.value));
-    e = order_extrapolate(spacing, (double[]){1, 1, 1}, NAN);
-    assert_true(e.class == ORDER_FLOOR_LIMITED && isnan(e.value));
-    e = order_extrapolate(spacing, (double[]){1, 2, NAN}, NAN);
-    assert_true(e.class == ORDER_DIVERGING && isnan(e.value));
 }
 
 static void test_worst(void **state)
@@ -240,200 +81,6 @@ static void test_worst(void **state)
     worst_keep(&worst, NAN);
     worst_keep(&worst, 3);
     assert_true(isnan(worst));
-}
-
-/* As many levels as there is room for; pairwise orders are those between levels and no more. */
-static void test_order_room(void **state)
-{
-    (void)state;
-    double spacing[ORDER_LEVELS_MAX + 1], error[ORDER_LEVELS_MAX + 1];
-    struct order_fit fit;
-    struct error failure;
-    for (int i = 0; i <= ORDER_LEVELS_MAX; i++) {
-        spacing[i] = pow(0.9, i);
-        error[i] = spacing[i] * spacing[i];
-    }
-    assert_int_equal(order_fit(ORDER_LEVELS_MAX, spacing, error, NULL, &fit, &failure), STATUS_OK);
-    near_relative(fit.order, 2, 1e-12);
-    assert_int_equal(order_fit(ORDER_LEVELS_MAX + 1, spacing, error, NULL, &fit, &failure),
-                     STATUS_BAD_INPUT);
-    assert_int_equal(order_fit(5, spacing, error, NULL, &fit, &failure), STATUS_OK);
-    for (int i = 0; i < 4; i++) near_relative(fit.pairwise[i], 2, 1e-12);
-    for (int i = 4; i < ORDER_LEVELS_MAX - 1; i++) assert_true(fit.pairwise[i] == 0);
-}
-
-/* Errors that grow once, wherever, do not fall from level to level. */
-static void test_one_rise(void **state)
-{
-    (void)state;
-    const double spacing[] = {1, 0.5, 0.25, 0.125, 0.0625, 0.03125};
-    for (int rise = 1; rise < 5; rise++) {
-        double error[6] = {1};
-        for (int i = 1; i < 6; i++) error[i] = error[i - 1] * (i == rise ? 1.25 : 0.5);
-        struct order_fit fit;
-        struct error failure;
-        assert_int_equal(order_fit(6, spacing, error, NULL, &fit, &failure), STATUS_OK);
-        assert_int_equal(fit.class, ORDER_OSCILLATING);
-    }
-}
-
-/* Levels off their line by as much as replicates explain at 1 %, an F test, or just more: then the
- * scatter has the last word. */
-static void test_order_curvature(void **state)
-{
-    (void)state;
-    const double e = 0.02, limit = gsl_cdf_fdist_Qinv(0.01, 2, 4 * 8);
-    const double spacing[] = {exp(3), exp(2), exp(1), 1};
-    const double error[] = {exp(5 + e), exp(4 - e), exp(3 - e), exp(2 + e)};
-    for (int more = 0; more < 2; more++) {
-        /* chi^2/2 = 4 e^2/(2 s^2) */
-        const double s2 = 2 * e * e / (limit * (more ? 1 + 5e-8 : 1 - 5e-8));
-        const double variance[] = {s2, s2, s2, s2};
-        struct order_fit fit;
-        assert_int_equal(
-            order_fit(4, spacing, error, &(struct order_noise){variance, 9}, &fit, NULL),
-            STATUS_OK);
-        const double freedom = 0.04 * 8 / (2 * 0.0081 + 2 * 0.0001);
-        near_relative((fit.high - fit.low) / 2,
-                      more ? t_975_2() * sqrt(2 * e * e / 5)
-                           : gsl_cdf_tdist_Pinv(0.975, freedom) * sqrt(s2 / 5),
-                      1e-9);
-    }
-}
-
-/* Noise that differs from level to level: weights, slope and interval by hand. A level that seems
- * quiet is not believed: its variance is drawn towards the mean of all, by 24 to the replicates' 4.
- */
-static void test_order_weights(void **state)
-{
-    (void)state;
-    const double x[] = {3, 2, 1, 0}, y[] = {3.3, 2.1, 0.7, 0.2};
-    const double variance[] = {0.04, 0.01, 0.09, 0.02};
-    double spacing[4], error[4], w[4], sum = 0, xbar = 0, ybar = 0, xx = 0, xy = 0;
-    double total = 0, parts = 0;
-    for (int i = 0; i < 4; i++) {
-        spacing[i] = exp(x[i]);
-        error[i] = exp(y[i]);
-        w[i] = 28 / (4 * variance[i] + 24 * 0.04);
-        sum += w[i];
-    }
-    for (int i = 0; i < 4; i++) xbar += w[i] * x[i] / sum, ybar += w[i] * y[i] / sum;
-    for (int i = 0; i < 4; i++) {
-        xx += w[i] * (x[i] - xbar) * (x[i] - xbar);
-        xy += w[i] * (x[i] - xbar) * (y[i] - ybar);
-    }
-    for (int i = 0; i < 4; i++) {
-        const double part = pow(w[i] * (x[i] - xbar) / xx, 2) * variance[i];
-        total += part;
-        parts += part * part / 4;
-    }
-    struct order_fit fit;
-    assert_int_equal(order_fit(4, spacing, error, &(struct order_noise){variance, 5}, &fit, NULL),
-                     STATUS_OK);
-    near_relative(fit.order, xy / xx, 1e-12);
-    near_relative((fit.high - fit.low) / 2,
-                  gsl_cdf_tdist_Pinv(0.975, total * total / parts) * sqrt(total), 1e-12);
-}
-
-static void test_gate_edges(void **state)
-{
-    (void)state;
-    const struct order_gate gate = {0, 1, 1};
-    struct order_fit fit = {.order = 0, .low = 0, .high = 2 * ORDER_HALF_WIDTH_MAX, .finest = 1};
-    assert_true(order_passes(&fit, &gate, NULL));
-    fit.order = 1;
-    assert_true(order_passes(&fit, &gate, NULL));
-    fit.high *= 1.001;
-    assert_false(order_passes(&fit, &gate, NULL));
-}
-
-/* Flat is what falls by less than a tenth of an order over all levels; a floor shows where the last
- * order is below a third of the best, wherever that was. */
-static void test_class_limits(void **state)
-{
-    (void)state;
-    static const struct {
-        double order[4];
-        enum order_class class;
-    } cases[] = {
-        {{0.099, 0.099, 0.099, 0.099}, ORDER_FLOOR_LIMITED},
-        {{0.101, 0.101, 0.101, 0.101}, ORDER_ASYMPTOTIC},
-        {{-0.099, -0.099, -0.099, -0.099}, ORDER_FLOOR_LIMITED},
-        {{-0.101, -0.101, -0.101, -0.101}, ORDER_DIVERGING},
-        {{0.5, 0.5, 2, 0.66}, ORDER_FLOOR_LIMITED},
-        {{0.5, 2, 0.5, 0.66}, ORDER_FLOOR_LIMITED},
-        {{2, 0.5, 0.5, 0.66}, ORDER_FLOOR_LIMITED},
-        {{0.5, 2, 0.5, 0.67}, ORDER_ASYMPTOTIC},
-        {{-0.5, 2, 0.5, 0.66}, ORDER_OSCILLATING},
-        {{0.5, 2, -0.5, 0.66}, ORDER_FLOOR_LIMITED},
-    };
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        double error[5] = {1};
-        for (int l = 1; l < 5; l++) error[l] = error[l - 1] / pow(2, cases[i].order[l - 1]);
-        if (class_of(error) != cases[i].class)
-            fail_msg("case %zu: %s", i, order_class_name(class_of(error)));
-    }
-}
-
-/* Orders are looked for from 1e-3 to 30; the library's own handler of errors is there afterwards.
- */
-static void own_handler(const char *reason, const char *file, int line, int code)
-{
-    fail_msg("%s:%d: %s (%d)", file, line, reason, code);
-}
-
-static void test_richardson_range(void **state)
-{
-    (void)state;
-    gsl_error_handler_t *before = gsl_set_error_handler(own_handler);
-    const double orders[] = {2e-3, 0.009, 0.5, 4, 29.9999}, spacing[] = {4, 2, 1};
-    for (size_t i = 0; i < sizeof orders / sizeof *orders; i++) {
-        const double p = orders[i], value[] = {pow(4, p), pow(2, p), 1};
-        const struct order_extrapolation e = order_extrapolate(spacing, value, NAN);
-        assert_int_equal(e.class, ORDER_ASYMPTOTIC);
-        near_relative(e.order, p, 1e-9);
-        near_relative(e.gci_fine, 1.25, 1e-9); /* the value is all error */
-        near_relative(e.gci_coarse, 1.25, 1e-9);
-    }
-    const double beyond[] = {9e-4, -1, 30 * (1 + 5e-7)};
-    for (size_t i = 0; i < 3; i++) {
-        const double p = beyond[i], value[] = {pow(4, p), pow(2, p), 1};
-        assert_int_equal(order_extrapolate(spacing, value, NAN).class, ORDER_DIVERGING);
-    }
-    assert_true(gsl_set_error_handler(before) == own_handler);
-}
-
-/* Values whose exact limit is known: it must lie within the GCI of the finest, or the errors tell.
- */
-static void test_richardson_exact(void **state)
-{
-    (void)state;
-    static const struct {
-        double value[3], exact;
-        enum order_class class;
-    } cases[] = {
-        /* 1 + 0.1 h: the finest is 1.1, its GCI 0.125 */
-        {{1.4, 1.2, 1.1}, 1, ORDER_ASYMPTOTIC},
-        {{1.4, 1.2, 1.1}, 0.976, ORDER_ASYMPTOTIC},
-        {{1.4, 1.2, 1.1}, 0.974, ORDER_PREASYMPTOTIC},
-        {{1.4, 1.2, 1.1}, 1.224, ORDER_ASYMPTOTIC},
-        /* falls on a third of the promised order, or on less */
-        {{1.4, 1.2, 1.1}, 0.716, ORDER_PREASYMPTOTIC},
-        {{1.4, 1.2, 1.1}, 0.714, ORDER_FLOOR_LIMITED},
-        {{-1.4, -1.2, -1.1}, -0.714, ORDER_FLOOR_LIMITED},
-        /* grows apart, and promises nothing; errors 4^0.099, 4^0.101 */
-        {{1, 1.1, 1.3}, 1.5, ORDER_PREASYMPTOTIC},
-        {{1, 1.1, 1.3}, 0.9, ORDER_DIVERGING},
-        {{1, 1.1, 1.3}, 1.2, ORDER_DIVERGING},
-        {{1.1471, 1.1, 1}, 0, ORDER_FLOOR_LIMITED},
-        {{1.1503, 1.1, 1}, 0, ORDER_PREASYMPTOTIC},
-        {{1.01, 1.1503, 1}, 0, ORDER_OSCILLATING},
-    };
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        const struct order_extrapolation e =
-            order_extrapolate((double[]){4, 2, 1}, cases[i].value, cases[i].exact);
-        if (e.class != cases[i].class) fail_msg("case %zu: %s", i, order_class_name(e.class));
-    }
 }
 
 /* What is nowhere makes every norm no number, wherever it stands; what is exact has none but 0;
@@ -484,146 +131,6 @@ static void test_bins_of_a_window(void **state)
     near_relative(means[1], 1e-15 * (3 - 2 * at), 1e-9);
 }
 
-/* A field is another one's if it is nearer to that one's exact values than half of what these
- * spread about their mean; exactly as far is not nearer. */
-static void test_limit_of_swapped(void **state)
-{
-    (void)state;
-    static const char *const names[] = {"one", "two"};
-    static const double volumes[] = {1, 0.5, 1e-9}, far[] = {100, 100}, own[] = {1, 3};
-    for (size_t k = 0; k < 3; k++)
-        for (int nearer = 0; nearer < 2; nearer++) {
-            const double volume[] = {volumes[k], volumes[k]}, value[] = {nearer ? 1.9 : 2, 3};
-            char why[SUSPICION_TEXT] = "";
-            assert_int_equal(suspicion_swapped(2, names, 2, volume,
-                                               (const double *const[]){value, own},
-                                               (const double *const[]){far, own}, why),
-                             nearer);
-        }
-}
-
-/* Messages name what is suspected, and nothing beyond the last element is asked. */
-static void test_suspicions(void **state)
-{
-    (void)state;
-    char why[SUSPICION_TEXT];
-    assert_false(suspicion_zero(2, (double[]){2, 1, 0}, why));
-    assert_true(suspicion_zero(2, (double[]){2, 0, 1}, why) && strstr(why, "level 1 is"));
-    assert_false(suspicion_repeated(2, (double[]){2, 1, 1}, why));
-    assert_false(suspicion_repeated(2, (double[]){1, 1 + 3e-12, 1e9}, why));
-    assert_true(suspicion_repeated(2, (double[]){1, 1 + 5e-13, 1e-9}, why));
-    assert_true(suspicion_repeated(3, (double[]){1, 4, 4, 7}, why));
-    assert_string_equal(why, "levels 1 and 2 have the same error 4: was one not run?");
-    assert_false(suspicion_idle_setting("eta", 2, (double[]){1, 2}, (double[]){3, 2}, why));
-    assert_true(suspicion_idle_setting("eta", 2, (double[]){1, 2, 3}, (double[]){1, 2, 4}, why));
-    assert_true(suspicion_idle_setting("eta", 1, (double[]){1}, (double[]){1}, why));
-    assert_string_equal(why, "changing eta changed nothing: is it read at all?");
-
-    const char *const names[] = {"u", "v", "w"};
-    const double volume[] = {1, 2, 100};
-    /* value, exact of two fields; whether the second is nearer the first's solution than its own */
-    static const struct {
-        double value[2][3], exact[2][3];
-        bool suspected;
-    } cases[] = {
-        {{{0, 9}, {1, 9}}, {{0, 9}, {3.000002, 9}}, true},
-        {{{0, 9}, {1, 9}}, {{0, 9}, {2.999998, 9}}, false},
-        {{{0, 1e-7}, {1e-8, 1e-7}}, {{0, 1e-7}, {1e-7, 1e-7}}, true},
-        {{{0, 0}, {1e-8, 0}}, {{0, 0}, {1e-7, 0}}, false}, /* near a constant is near nobody */
-        {{{0.9, 9, 5}, {1, 9, 5}}, {{0.9, 9, 7}, {2, 9, 5}}, true},
-        {{{1, 0, 5}, {1, 9, 7}}, {{1, 0, 7}, {2, 9, 5}}, false},
-        {{{0, 2.5, 5}, {4, 2.5, 7}}, {{0, 2.5, 5}, {4, 0, 5}}, false},
-    };
-    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        const double *const value[] = {cases[k].value[0], cases[k].value[1]};
-        const double *const exact[] = {cases[k].exact[0], cases[k].exact[1]};
-        if (suspicion_swapped(2, names, 2, volume, value, exact, why) != cases[k].suspected)
-            fail_msg("case %zu: %s", k, why);
-    }
-    const double one[] = {1, 5}, two[] = {2, 5}, far[] = {9, 5};
-    const double *const value[] = {one, two}, *const exact[] = {one, far};
-    assert_false(suspicion_swapped(2, names, 1, volume, value, exact, why));
-    assert_true(suspicion_swapped(2, names, 2, volume, value, exact, why));
-    assert_string_equal(why, "v is nearer the exact u than its own exact solution");
-}
-
-/* The words of the classes, and what decides between them at its limits. */
-static void test_class_words(void **state)
-{
-    (void)state;
-    static const char *const words[] = {"asymptotic", "floor-limited", "pre-asymptotic",
-                                        "oscillating", "diverging"};
-    for (int k = ORDER_ASYMPTOTIC; k <= ORDER_DIVERGING; k++)
-        assert_string_equal(order_class_name((enum order_class)k), words[k]);
-    assert_int_equal(class_of((double[]){16, 8, 8, 4, 2}), ORDER_OSCILLATING);
-    assert_int_equal(class_of((double[]){16, 8, 8, 4, 3.9}), ORDER_OSCILLATING);
-    for (int more = 0; more < 2; more++) /* a third of the best order, but for 5e-7 of it */
-        assert_int_equal(class_of((double[]){512, 64, 8, 1, exp2(-1 - (more - 0.5) * 1e-6)}),
-                         more ? ORDER_ASYMPTOTIC : ORDER_FLOOR_LIMITED);
-    struct order_fit fit;
-    assert_true(log(3) / log(59049) == ORDER_FLAT); /* not less: no floor */
-    assert_int_equal(order_fit(4, (double[]){59049, 2187, 27, 1},
-                               (double[]){3, pow(3, 0.7), pow(3, 0.3), 1}, NULL, &fit, NULL),
-                     STATUS_OK);
-    assert_int_equal(fit.class, ORDER_ASYMPTOTIC);
-    struct error failure;
-    assert_int_equal(
-        order_fit(4, (double[]){3, 2, 1, 0}, (double[]){8, 4, 2, 1}, NULL, &fit, &failure),
-        STATUS_BAD_INPUT);
-    assert_int_equal(
-        order_fit(4, (double[]){4, 2.5, 2.5, 1}, (double[]){8, 4, 2, 1}, NULL, &fit, &failure),
-        STATUS_BAD_INPUT);
-    assert_non_null(strstr(failure.message, "spacing 2 is 2.5"));
-    const struct order_gate gate = {0, 1, 1};
-    fit = (struct order_fit){.high = 2 * ORDER_HALF_WIDTH_MAX * (1 + 5e-7), .finest = 1};
-    assert_false(order_passes(&fit, &gate, NULL));
-}
-
-/* Three values that converge to something else than the exact one, 1, from above or below, by their
- * errors; and what is reached but for round-off. */
-static void test_richardson_against_exact(void **state)
-{
-    (void)state;
-    const double spacing[] = {0.4, 0.2, 0.1}, wider[] = {2, 1, 0.5};
-    const double third = exp2(1. / 3 * (1 - 5e-7)), more = exp2(1. / 3 * (1 + 5e-7));
-    const struct {
-        double error[3];
-        enum order_class class;
-    } cases[] = {
-        {{10, 5, 3}, ORDER_PREASYMPTOTIC},
-        {{3.232, 3.11, 3}, ORDER_FLOOR_LIMITED},
-        {{third + 2 * (third - 1), third, 1}, ORDER_FLOOR_LIMITED},
-        {{more + 2 * (more - 1), more, 1}, ORDER_PREASYMPTOTIC},
-        {{-2, -1, 1}, ORDER_DIVERGING}, /* no order at all, and as far off as before */
-        {{-8, -5, -1}, ORDER_PREASYMPTOTIC},
-    };
-    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++)
-        for (int sign = -1; sign <= 1; sign += 2) {
-            const double *e = cases[k].error;
-            const struct order_extrapolation found =
-                order_extrapolate(sign < 0 ? spacing : wider,
-                                  (double[]){1 + sign * e[0], 1 + sign * e[1], 1 + sign * e[2]}, 1);
-            if (found.class != cases[k].class)
-                fail_msg("case %zu, sign %d: %s", k, sign, order_class_name(found.class));
-        }
-    for (double p = 0.3; p < 4; p += 0.003) {
-        double value[3];
-        for (int i = 0; i < 3; i++) value[i] = 1 + pow(spacing[i], p);
-        const struct order_extrapolation found = order_extrapolate(spacing, value, NAN);
-        near_relative(found.order, p, 1e-11);
-    }
-    struct order_extrapolation e = order_extrapolate(spacing, (double[]){0, 0, 0}, NAN);
-    assert_int_equal(e.class, ORDER_FLOOR_LIMITED);
-    e = order_extrapolate(spacing, (double[]){1000 + 16e-11, 1000 + 4e-11, 1000}, NAN);
-    assert_int_equal(e.class, ORDER_ASYMPTOTIC);
-    e = order_extrapolate(spacing, (double[]){1000 + 8e-11, 1000 + 4e-11, 1000}, NAN);
-    assert_int_equal(e.class, ORDER_FLOOR_LIMITED);
-    e = order_extrapolate(spacing, (double[]){1000 + 1.3e-9, 1000 + 5e-10, 1000}, NAN);
-    assert_int_equal(e.class, ORDER_ASYMPTOTIC);
-    e = order_extrapolate(spacing, (double[]){1 + 3e-12, 1 + 1e-12, 1}, 1 - 1.3e-12);
-    assert_int_equal(e.class, ORDER_ASYMPTOTIC); /* 1.25e-12, and 1e-13 */
-}
-
 /* A volume that sticks out of one end of a periodic box is seen at the other one. */
 static void volumes_of_images(void **state)
 {
@@ -642,32 +149,13 @@ static void volumes_of_images(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(volumes_of_images),
-        cmocka_unit_test(test_order_curvature),
-        cmocka_unit_test(test_order_weights),
-        cmocka_unit_test(test_gate_edges),
-        cmocka_unit_test(test_class_limits),
-        cmocka_unit_test(test_richardson_range),
-        cmocka_unit_test(test_richardson_exact),
-        cmocka_unit_test(test_order_room),
-        cmocka_unit_test(test_one_rise),
-        cmocka_unit_test(test_worst),
         cmocka_unit_test(test_norms_by_hand),
         cmocka_unit_test(test_norms_of_nothing_and_nan),
         cmocka_unit_test(test_bins),
-        cmocka_unit_test(test_order_interval),
-        cmocka_unit_test(test_order_bad_levels),
-        cmocka_unit_test(test_gate),
-        cmocka_unit_test(test_classes),
-        cmocka_unit_test(test_richardson_nasa),
-        cmocka_unit_test(test_richardson_unequal_ratios),
-        cmocka_unit_test(test_richardson_classes),
+        cmocka_unit_test(test_worst),
         cmocka_unit_test(test_norms_at_their_limits),
         cmocka_unit_test(test_bins_of_a_window),
-        cmocka_unit_test(test_limit_of_swapped),
-        cmocka_unit_test(test_suspicions),
-        cmocka_unit_test(test_class_words),
-        cmocka_unit_test(test_richardson_against_exact),
+        cmocka_unit_test(volumes_of_images),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What looks as if nothing had been compared. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "near.h"
+#include "suspicion.h"
+
+/* A field is another one's if it is nearer to that one's exact values than half of what these
+ * spread about their mean; exactly as far is not nearer. */
+static void test_limit_of_swapped(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"one", "two"};
+    static const double volumes[] = {1, 0.5, 1e-9}, far[] = {100, 100}, own[] = {1, 3};
+    for (size_t k = 0; k < 3; k++)
+        for (int nearer = 0; nearer < 2; nearer++) {
+            const double volume[] = {volumes[k], volumes[k]}, value[] = {nearer ? 1.9 : 2, 3};
+            char why[SUSPICION_TEXT] = "";
+            assert_int_equal(suspicion_swapped(2, names, 2, volume,
+                                               (const double *const[]){value, own},
+                                               (const double *const[]){far, own}, why),
+                             nearer);
+        }
+}
+
+/* Messages name what is suspected, and nothing beyond the last element is asked. */
+static void test_suspicions(void **state)
+{
+    (void)state;
+    char why[SUSPICION_TEXT];
+    assert_false(suspicion_zero(2, (double[]){2, 1, 0}, why));
+    assert_true(suspicion_zero(2, (double[]){2, 0, 1}, why) && strstr(why, "level 1 is"));
+    assert_false(suspicion_repeated(2, (double[]){2, 1, 1}, why));
+    assert_false(suspicion_repeated(2, (double[]){1, 1 + 3e-12, 1e9}, why));
+    assert_true(suspicion_repeated(2, (double[]){1, 1 + 5e-13, 1e-9}, why));
+    assert_true(suspicion_repeated(3, (double[]){1, 4, 4, 7}, why));
+    assert_string_equal(why, "levels 1 and 2 have the same error 4: was one not run?");
+    assert_false(suspicion_idle_setting("eta", 2, (double[]){1, 2}, (double[]){3, 2}, why));
+    assert_true(suspicion_idle_setting("eta", 2, (double[]){1, 2, 3}, (double[]){1, 2, 4}, why));
+    assert_true(suspicion_idle_setting("eta", 1, (double[]){1}, (double[]){1}, why));
+    assert_string_equal(why, "changing eta changed nothing: is it read at all?");
+
+    const char *const names[] = {"u", "v", "w"};
+    const double volume[] = {1, 2, 100};
+    /* value, exact of two fields; whether the second is nearer the first's solution than its own */
+    static const struct {
+        double value[2][3], exact[2][3];
+        bool suspected;
+    } cases[] = {
+        {{{0, 9}, {1, 9}}, {{0, 9}, {3.000002, 9}}, true},
+        {{{0, 9}, {1, 9}}, {{0, 9}, {2.999998, 9}}, false},
+        {{{0, 1e-7}, {1e-8, 1e-7}}, {{0, 1e-7}, {1e-7, 1e-7}}, true},
+        {{{0, 0}, {1e-8, 0}}, {{0, 0}, {1e-7, 0}}, false}, /* near a constant is near nobody */
+        {{{0.9, 9, 5}, {1, 9, 5}}, {{0.9, 9, 7}, {2, 9, 5}}, true},
+        {{{1, 0, 5}, {1, 9, 7}}, {{1, 0, 7}, {2, 9, 5}}, false},
+        {{{0, 2.5, 5}, {4, 2.5, 7}}, {{0, 2.5, 5}, {4, 0, 5}}, false},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        const double *const value[] = {cases[k].value[0], cases[k].value[1]};
+        const double *const exact[] = {cases[k].exact[0], cases[k].exact[1]};
+        if (suspicion_swapped(2, names, 2, volume, value, exact, why) != cases[k].suspected)
+            fail_msg("case %zu: %s", k, why);
+    }
+    const double one[] = {1, 5}, two[] = {2, 5}, far[] = {9, 5};
+    const double *const value[] = {one, two}, *const exact[] = {one, far};
+    assert_false(suspicion_swapped(2, names, 1, volume, value, exact, why));
+    assert_true(suspicion_swapped(2, names, 2, volume, value, exact, why));
+    assert_string_equal(why, "v is nearer the exact u than its own exact solution");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_limit_of_swapped),
+        cmocka_unit_test(test_suspicions),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
