@@ -96,10 +96,12 @@ static double energy_density(double x, void *parameters)
            behind * s.P / (gamma - 1);
 }
 
+/* Surfaces of the unit sphere. */
+static const double spheres[] = {0, 2, 2 * M_PI, 4 * M_PI};
+
 /* E = S_d R^d rho D^2 integral dx/d, S_d the unit sphere, D = 2 R/((d + 2) t). */
 static double find_xi0(double gamma, int d)
 {
-    static const double spheres[] = {0, 2, 2 * M_PI, 4 * M_PI};
     struct place place = {gamma, d, 0};
     gsl_function f = {energy_density, &place};
     gsl_integration_workspace *room = gsl_integration_workspace_alloc(200);
@@ -142,4 +144,42 @@ struct sedov_state sedov_sample(const struct sedov *sedov, double r, double t)
     const struct profile s = profile_of(gamma, sedov->d, r / R);
     return (struct sedov_state){sedov->rho * (gamma + 1) / (gamma - 1) * s.rho,
                                 behind * speed * s.v, behind * sedov->rho * speed * speed * s.P};
+}
+
+struct integrand {
+    const struct sedov *sedov;
+    double t;
+    double (*of)(double r, const struct sedov_state *state);
+};
+
+/* By x = r^d/d: r^(d - 1) dr = dx. */
+static double integrand_at(double x, void *parameters)
+{
+    const struct integrand *in = parameters;
+    const double r = pow(x * in->sedov->d, 1. / in->sedov->d);
+    const struct sedov_state state = sedov_sample(in->sedov, r, in->t);
+    return in->of(r, &state);
+}
+
+double sedov_integral(const struct sedov *sedov, double r, double t,
+                      double (*of)(double r, const struct sedov_state *state))
+{
+    struct integrand in = {sedov, t, of};
+    gsl_function f = {integrand_at, &in};
+    gsl_integration_workspace *room = gsl_integration_workspace_alloc(200);
+    if (!room) return NAN;
+    gsl_error_handler_t *const handler = gsl_set_error_handler_off();
+    const double front = sedov_shock(sedov, t);
+    const double ends[] = {0, fmin(r, front), r};
+    double sum = 0;
+    for (int k = 0; k < 2 && ends[k] < r; k++) { /* either side of the shock */
+        double part, error;
+        const int status = gsl_integration_qag(&f, pow(ends[k], sedov->d) / sedov->d,
+                                               pow(ends[k + 1], sedov->d) / sedov->d, 0, 1e-10, 200,
+                                               GSL_INTEG_GAUSS31, room, &part, &error);
+        sum += status && status != GSL_EROUND ? (double)NAN : part;
+    }
+    gsl_set_error_handler(handler);
+    gsl_integration_workspace_free(room);
+    return spheres[sedov->d] * sum;
 }

@@ -231,6 +231,16 @@ static enum status arrange(struct simulation *simulation, struct error *error)
                        : error_set(error, STATUS_ENVIRONMENT, "no memory for %td particles", a->n);
 }
 
+/* Beyond half of the narrowest periodic side pairs have no single nearest image. */
+static double half_box(const struct simulation *simulation)
+{
+    double half = HUGE_VAL;
+    for (int k = 0; k < simulation->plan.dim; k++)
+        if (simulation->boundary[k] == BOUNDARY_PERIODIC)
+            half = least(half, 0.5 * simulation->particles.period[k]);
+    return half;
+}
+
 /* Finds neighbours within the radii. What is too wide for the box is bad input at the start and a
  * breakdown later. */
 static enum status search(struct simulation *simulation, struct error *error)
@@ -243,7 +253,11 @@ static enum status search(struct simulation *simulation, struct error *error)
     ptrdiff_t widest = 0;
     for (ptrdiff_t i = 1; i < a->n; i++)
         if (!(room->radius[i] <= room->radius[widest])) widest = i;
-    return breakdown_of(simulation, widest, "smoothing length", room->radius[widest], error);
+    struct error where;
+    breakdown_of(simulation, widest, "smoothing length", room->radius[widest], &where);
+    return error_set(error, STATUS_BROKE_DOWN,
+                     "%.400s, beyond half the box (%g): more particles or a smaller eta are needed",
+                     where.message, half_box(simulation));
 }
 
 static void permute(struct particles *particles, double *array)
@@ -324,16 +338,6 @@ static void close_all(struct simulation *simulation, bool predicted)
         for (int i = 0; number && simulation->plan.grad_h && i < len; i++)
             a->b[first + i] *= a->m[first + i];
     }
-}
-
-/* Beyond half of the narrowest periodic side pairs have no single nearest image. */
-static double half_box(const struct simulation *simulation)
-{
-    double half = HUGE_VAL;
-    for (int k = 0; k < simulation->plan.dim; k++)
-        if (simulation->boundary[k] == BOUNDARY_PERIODIC)
-            half = least(half, 0.5 * simulation->particles.period[k]);
-    return half;
 }
 
 /* Looks for the roots of all particles that are open, searching further where one lies beyond. */

@@ -240,6 +240,45 @@ static void measure_primakoff(struct check_run *run, const struct blast_subject 
     check_measure(run, worst, 1e-5, 1e-7, "sedov, gamma 7, d 3: Primakoff's blast");
 }
 
+static double mass_at(double r, const struct sedov_state *s)
+{
+    (void)r;
+    return s->rho;
+}
+
+static double kinetic_at(double r, const struct sedov_state *s)
+{
+    (void)r;
+    return 0.5 * s->rho * s->v * s->v;
+}
+
+static double pressure_at(double r, const struct sedov_state *s)
+{
+    (void)r;
+    return s->P;
+}
+
+/* Of balls inside and outside of the front: all energy; and mass, which is (1 - v R/(r D)) times
+ * what the density at the edge would fill, as the ball that grows with the shock keeps its share.
+ */
+static void measure_integrals(struct check_run *run, const struct radial *flow)
+{
+    const struct sedov *sedov = &flow->sedov;
+    const double t = 0.4, R = sedov_shock(sedov, t), D = 2 * R / ((flow->d + 2) * t);
+    const double unit = flow->d == 1 ? 2 : flow->d == 2 ? M_PI : 4 * M_PI / 3;
+    const double energy = sedov_integral(sedov, 1.5 * R, t, kinetic_at) +
+                          sedov_integral(sedov, 1.5 * R, t, pressure_at) / (flow->gamma - 1);
+    double worst = fabs(energy / sedov->E - 1);
+    for (int k = 1; k <= 3; k++) {
+        const double r = 0.6 * k * R;
+        const struct sedov_state edge = sedov_sample(sedov, r, t);
+        const double mass = unit * pow(r, flow->d) * edge.rho * (1 - edge.v * R / (r * D));
+        worst_keep(&worst, fabs(sedov_integral(sedov, r, t, mass_at) / mass - 1));
+    }
+    check_measure(run, worst, 1e-9, 1e-13, "sedov, gamma %.4g, d %d: energy and mass of balls",
+                  flow->gamma, flow->d);
+}
+
 static void measure_blast(struct check_run *run, const void *of)
 {
     static const double gammas[] = {1.4, 5. / 3, 3};
@@ -260,7 +299,10 @@ static void measure_blast(struct check_run *run, const void *of)
                                        .at = noh_at,
                                        .shock = noh_front};
             if (sedov_solve(gammas[k], d, 1.3, 0.7, &sedov.sedov)) sedov.sedov.xi0 = NAN;
-            if (concerns(subject, "sedov")) measure_radial(run, &sedov, subject);
+            if (concerns(subject, "sedov")) {
+                measure_radial(run, &sedov, subject);
+                measure_integrals(run, &sedov);
+            }
             if (concerns(subject, "noh")) measure_radial(run, &noh, subject);
         }
     for (size_t k = 0; concerns(subject, "disc") && k < sizeof discs / sizeof *discs; k++) {

@@ -57,7 +57,8 @@ struct functional {
     const char *name;                          /* no other of the problem has it */
     bool (*present)(const struct prepared *p); /* NULL: with all settings */
     double (*measure)(const struct prepared *p, const struct snapshot *s);
-    double (*exact)(const struct prepared *p, double t); /* or from a reference; NULL: unknown */
+    double (*exact)(const struct prepared *p,
+                    double t); /* or from a reference; NULL, NaN: unknown */
 };
 
 /* An amplitude that grows like exp(rate t): the rate is measured through the run, and is one more
@@ -99,8 +100,9 @@ struct problem {
     bool heavy;     /* it takes gravity: any other has no solution in it */
     bool smooth;    /* neither jumps nor shocks, for as long as it is solved */
     struct problem_ends ends[3];
-    bool singular; /* energy starts in a point, which the sample at t = 0 does not show; later u has
-                      no bound there */
+    /* NULL, but where energy starts in the middle of the window: the sample at t = 0 does not show
+     * it, and later u has no bound there. Energy over mass of the ball of radius r round it. */
+    double (*mean_energy)(const struct prepared *p, double r, double t);
     const struct problem_key *keys; /* its own, beside those of every run */
     size_t key_count;
     /* Checks its own keys, gives those that are automatic a value, fills p->own; domain, boost,

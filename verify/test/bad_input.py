@@ -153,6 +153,7 @@ BAD = [
     ("run rest_2d n=9 lattice=glass", 2, "n=9", "a glass", "half"),
     ("run sod lattice=glass", 2, "lattice=glass", "1 dimension"),
     ("run sod kind=particles", 2, "kind particles", "file = PARTICLES.csv"),
+    ("run sedov_3d n=8^3", 3, "broke down", "smoothing length", "beyond half the box (0.5)", "more particles"),
     ("run sod kernal=cubic_spline", 2, "kernal", "did you mean 'kernel'"),
     ("run sod kernel=cubic", 2, "cubic", "did you mean 'cubic_spline'", "wendland_c2"),
     ("run sod kernel=", 2, "kernel", "allowed"),

@@ -109,7 +109,7 @@ static bool particles_are_samples(struct walk *walk)
         if (!(initial->m[i] > 0 && s.rho > 0 && s.u > 0))
             return fault(walk, "particle %zu is not positive", i);
         if (differ(initial->rho[i], s.rho, 0) ||
-            (!walk->problem->singular && differ(initial->u[i], s.u, 0)) ||
+            (!walk->problem->mean_energy && differ(initial->u[i], s.u, 0)) ||
             differ(s.P, (p->gamma - 1) * s.rho * s.u, 0))
             return fault(walk, "particle %zu has another state than the sample", i);
         for (int d = 0; d < initial->dim; d++)
@@ -167,7 +167,7 @@ static bool particles_carry_the_integrals(struct walk *walk)
         add_sums(have, initial->m[i], v, initial->u[i]);
     }
     const double momentum = sqrt(want[MASS] * want[ENERGY]);
-    for (int k = 0; k < (walk->problem->singular ? ENERGY : SUMS); k++) {
+    for (int k = 0; k < (walk->problem->mean_energy ? ENERGY : SUMS); k++) {
         const double scale = k == MASS || k == ENERGY ? fabs(want[k]) : momentum;
         if (!(fabs(have[k] - want[k]) <= walk->sums * scale))
             return fault(walk, "%s of the particles %.17g, of the sample %.17g", names[k], have[k],
@@ -246,6 +246,7 @@ static bool start_is_measured(struct walk *walk)
     for (const struct functional *const *f = walk->problem->functionals; *f; f++) {
         if (((*f)->present && !(*f)->present(p)) || !(*f)->exact) continue;
         const double exact = (*f)->exact(p, 0), value = (*f)->measure(p, &s);
+        if (isnan(exact)) continue; /* of this start nothing is known */
         if (!(fabs(value - exact) <= (exact == 0 ? widest : fmax(0.05, walk->sums) * fabs(exact))))
             fault(walk, "functional %s: %g of the particles, %g exactly", (*f)->name, value, exact);
     }

@@ -6,6 +6,7 @@
 
 #include <math.h>
 
+#include "initial.h"
 #include "initial_fill.h"
 #include "problem.h"
 #include "shells.h"
@@ -16,16 +17,32 @@ static const double cold = 1e-6;
 /* Radius of the hot spot in mean distances of particles. */
 static const double hot_spacings = 2.5;
 
+struct blast {
+    struct sedov sedov;
+    bool even; /* directions are alike, and both ways along each */
+};
+_Static_assert(sizeof(struct blast) <= PROBLEM_OWN_BYTES, "a blast fits");
+
 static const struct sedov *sedov_of(const struct prepared *p)
 {
-    return (const struct sedov *)p->own.bytes;
+    return &((const struct blast *)p->own.bytes)->sedov;
+}
+
+static bool starts_even(const struct prepared *p, const struct settings *settings)
+{
+    const int lattice = settings_choice(settings, SETTING_lattice);
+    bool even = (lattice == LATTICE_SQUARE || lattice == LATTICE_CUBIC) &&
+                !initial_is_shaken(settings) && !settings_choice(settings, SETTING_equal_masses);
+    for (int d = 1; d < p->domain.dim; d++)
+        even = even && domain_length(&p->domain, d) == domain_length(&p->domain, 0);
+    return even;
 }
 
 static enum status prepare(struct prepared *p, struct settings *settings, struct error *error)
 {
-    (void)settings;
-    const char *fault =
-        sedov_solve(p->gamma, p->domain.dim, density, energy, (struct sedov *)p->own.bytes);
+    struct blast *blast = (struct blast *)p->own.bytes;
+    const char *fault = sedov_solve(p->gamma, p->domain.dim, density, energy, &blast->sedov);
+    blast->even = starts_even(p, settings);
     return fault ? error_set(error, STATUS_BAD_INPUT, "no exact solution: %s", fault) : STATUS_OK;
 }
 
@@ -112,8 +129,147 @@ static double peak_exact(const struct prepared *p, double t)
     return t > 0 ? density * (p->gamma + 1) / (p->gamma - 1) : density;
 }
 
+/* ---- sums over all gas, which scatter less than what single shells show ---- */
+
+static double kinetic_at(double r, const struct sedov_state *s)
+{
+    (void)r;
+    return 0.5 * s->rho * s->v * s->v;
+}
+
+static double momentum_at(double r, const struct sedov_state *s)
+{
+    (void)r;
+    return s->rho * s->v;
+}
+
+static double mass_at(double r, const struct sedov_state *s)
+{
+    (void)r;
+    return s->rho;
+}
+
+static double pressure_at(double r, const struct sedov_state *s)
+{
+    (void)r;
+    return s->P;
+}
+
+static double spread_at(double r, const struct sedov_state *s)
+{
+    return s->P * r;
+}
+
+/* Of all gas behind the shock. */
+static double behind(const struct prepared *p, double t,
+                     double (*of)(double r, const struct sedov_state *s))
+{
+    return sedov_integral(sedov_of(p), sedov_shock(sedov_of(p), t), t, of);
+}
+
+static double kinetic_measured(const struct prepared *p, const struct snapshot *s)
+{
+    double sum = 0;
+    for (size_t i = 0; i < s->n; i++)
+        for (int d = 0; d < p->domain.dim; d++) sum += 0.5 * s->m[i] * s->v[d][i] * s->v[d][i];
+    return sum;
+}
+
+static double kinetic_exact(const struct prepared *p, double t)
+{
+    return behind(p, t, kinetic_at);
+}
+
+/* Momentum away from the centre, of all directions together. */
+static double outward_measured(const struct prepared *p, const struct snapshot *s)
+{
+    double sum = 0;
+    for (size_t i = 0; i < s->n; i++) {
+        double x[3], v[3], along, outward;
+        problem_place(p, s, i, x);
+        problem_velocity(p, s, i, v);
+        problem_circular(p, x, v, &along, &outward);
+        sum += s->m[i] * outward;
+    }
+    return sum;
+}
+
+static double outward_exact(const struct prepared *p, double t)
+{
+    return behind(p, t, momentum_at);
+}
+
+/* How far from the centre the internal energy is, in the mean. */
+static double thermal_measured(const struct prepared *p, const struct snapshot *s)
+{
+    double sum = 0, energies = 0;
+    for (size_t i = 0; i < s->n; i++) {
+        double x[3];
+        problem_place(p, s, i, x);
+        sum += s->m[i] * s->u[i] * problem_radius(p, x);
+        energies += s->m[i] * s->u[i];
+    }
+    return sum / energies;
+}
+
+static double thermal_exact(const struct prepared *p, double t)
+{
+    return t > 0 ? behind(p, t, spread_at) / behind(p, t, pressure_at) : 0;
+}
+
+/* sum m v_a x_b is the same number for a = b and 0 beside; sum m v^2 x_a is 0: how far they are
+ * from that, over sums of what is positive. Gas in the planes between has no weight. */
+static double asymmetry_measured(const struct prepared *p, const struct snapshot *s)
+{
+    const int dim = p->domain.dim;
+    double moments[3][3] = {{0}}, first[3] = {0}, trace = 0, sizes = 0, worst = 0;
+    for (size_t i = 0; i < s->n; i++) {
+        double x[3], v[3], squares = 0;
+        problem_place(p, s, i, x);
+        problem_velocity(p, s, i, v);
+        for (int d = 0; d < dim; d++) {
+            x[d] -= p->window.centre[d];
+            squares += v[d] * v[d];
+        }
+        for (int a = 0; a < dim; a++) {
+            for (int b = 0; b < dim; b++) moments[a][b] += s->m[i] * v[a] * x[b];
+            trace += s->m[i] * v[a] * x[a] / dim;
+            first[a] += s->m[i] * squares * x[a];
+            sizes += s->m[i] * squares * fabs(x[a]);
+        }
+    }
+    if (!(s->time > 0)) return 0;
+    for (int a = 0; a < dim; a++) {
+        worst = fmax(worst, fabs(first[a]) / sizes);
+        for (int b = 0; b < dim; b++)
+            worst = fmax(worst, fabs(moments[a][b] - (a == b) * trace) / trace);
+    }
+    return worst;
+}
+
+/* Of a start that prefers one direction nothing is known. */
+static double asymmetry_exact(const struct prepared *p, double t)
+{
+    (void)t;
+    return ((const struct blast *)p->own.bytes)->even ? 0 : (double)NAN;
+}
+
+/* Where r is 0 the energy a mass has is without bound; what a ball round the centre has is not. */
+static double mean_energy(const struct prepared *p, double r, double t)
+{
+    const struct sedov *sedov = sedov_of(p);
+    return t > 0 ? sedov_integral(sedov, r, t, pressure_at) / (p->gamma - 1) /
+                       sedov_integral(sedov, r, t, mass_at)
+                 : cold / (p->gamma - 1) / density;
+}
+
 static const struct functional shock_radius = {"shock_radius", NULL, shock_measured, shock_exact},
-                               peak = {"peak_density", NULL, peak_measured, peak_exact};
+                               peak = {"peak_density", NULL, peak_measured, peak_exact},
+                               kinetic = {"kinetic_energy", NULL, kinetic_measured, kinetic_exact},
+                               outward = {"outward_momentum", NULL, outward_measured,
+                                          outward_exact},
+                               thermal = {"thermal_radius", NULL, thermal_measured, thermal_exact},
+                               asymmetry = {"asymmetry", NULL, asymmetry_measured, asymmetry_exact};
 
 const struct problem problem_sedov = {
     .member = {"sedov", "the blast of a point-like explosion", "Sedov 1959"},
@@ -121,12 +277,12 @@ const struct problem problem_sedov = {
     .least_dim = 2,
     .most_dim = 3,
     .circular = CIRCULAR_RADIAL,
-    .singular = true,
+    .mean_energy = mean_energy,
     .prepare = prepare,
     .sample = sample,
     .fill = fill,
     .holds = holds,
     .refuse = refuse,
     .random = initial_is_shaken,
-    .functionals = {&shock_radius, &peak},
+    .functionals = {&shock_radius, &peak, &kinetic, &outward, &thermal, &asymmetry},
 };
