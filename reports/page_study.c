@@ -286,6 +286,7 @@ static void gate_words(struct buffer *to, const json_t *gate)
     buffer_add(to, "<td>");
     if (json_is_object(gate)) {
         double low = value_member(gate, "low"), bound = value_member(gate, "bound");
+        const double least = value_member(gate, "least");
         if (isfinite(low)) { /* else any order will do */
             html_number(to, low);
             buffer_add(to, " to ");
@@ -294,6 +295,10 @@ static void gate_words(struct buffer *to, const json_t *gate)
         if (isfinite(bound)) {
             buffer_add(to, isfinite(low) ? ", finest ≤ " : "finest ≤ ");
             html_number(to, bound);
+        }
+        if (isfinite(least)) {
+            buffer_add(to, ", not below ");
+            html_number(to, least);
         }
     }
     buffer_add(to, "</td>");

@@ -43,8 +43,9 @@ static void print_gate(const struct study_result *result, const struct study_ord
     if (order->status == GATE_NONE) return;
     printf("    gate: ");
     if (isfinite(order->gate.low)) printf("order in [%g, %g], ", order->gate.low, order->gate.high);
-    printf("error at n = %zu at most %.3g: %s%s%s%s%s\n", result->levels[result->level_count - 1].n,
-           order->gate.bound, good ? style->good : style->bad,
+    printf("error at n = %zu ", result->levels[result->level_count - 1].n);
+    if (order->least > 0) printf("at least %.3g, ", order->least);
+    printf("at most %.3g: %s%s%s%s%s\n", order->gate.bound, good ? style->good : style->bad,
            good    ? "pass"
            : known ? "known to fail"
                    : "FAIL",

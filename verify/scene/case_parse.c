@@ -199,6 +199,7 @@ static bool gate_name(const char *name, int *field, int *norm)
 
 #define ORDER_GATE    "least order, greatest order, bound of the finest error; or "
 #define ERROR_GATE    "order for shorter ladders, bound of the finest error"
+#define SMOOTH_GATE   "; or order, least and greatest error"
 #define KNOWN_FAILURE "; `known: WHY` after them, if it is known to fail"
 
 /* What stands before `known: WHY` in a gate's value, without blanks at its end, and WHY, "" where
@@ -296,11 +297,15 @@ static void set_gate(struct parser *parser, const char *functional, int field, i
     if (!functional) gate.field = (enum field)field, gate.norm = (enum norm)norm;
     if (!functional && read_gate(value, 3, numbers, &why) && numbers[0] < numbers[1])
         gate.gate = (struct order_gate){numbers[0], numbers[1], numbers[2]};
+    else if (functional && read_gate(value, 3, numbers, &why) && numbers[0] >= 0 &&
+             numbers[1] > 0 && numbers[1] < numbers[2])
+        gate.gate = (struct order_gate){numbers[0], INFINITY, numbers[2]}, gate.least = numbers[1];
     else if (read_gate(value, 2, numbers, &why) && numbers[0] >= 0)
         gate.gate = (struct order_gate){numbers[0], INFINITY, numbers[1]};
     else {
         fail_value(parser, name, value,
-                   functional ? ERROR_GATE KNOWN_FAILURE : ORDER_GATE ERROR_GATE KNOWN_FAILURE);
+                   functional ? ERROR_GATE SMOOTH_GATE KNOWN_FAILURE
+                              : ORDER_GATE ERROR_GATE KNOWN_FAILURE);
         return;
     }
     add_gate(parser, name, gate, why);

@@ -45,6 +45,7 @@ struct study_order {
     struct order_fit fit;
     enum study_gate status;
     struct order_gate gate;    /* bound: at the ladder's finest level; see study_judge */
+    double least;              /* of the error there, see cases.h; 0: none */
     char why[ORDER_GATE_TEXT]; /* the condition that fails */
     const char *known;         /* why it is known to fail, "" if it is not; the case's */
 };

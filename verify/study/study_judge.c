@@ -86,13 +86,23 @@ static struct study_order *gated(struct study_result *result, const struct case_
     return NULL;
 }
 
+/* Is it the case as it stands, on its own ladder? */
+static bool is_untouched(const struct study_result *result, const struct case_file *file)
+{
+    const size_t finest = result->levels[result->level_count - 1].n;
+    for (int i = 0; i < SETTINGS; i++)
+        if (i != SETTING_n && result->settings.value[i].source == SOURCE_USER) return false;
+    return file->ladder_count && finest == file->ladder[file->ladder_count - 1];
+}
+
 static bool passes(const struct case_gate *gate, struct study_order *order)
 {
     if (isfinite(gate->gate.high)) return order_passes(&order->fit, &order->gate, order->why);
     order->gate.low = -(double)INFINITY;
-    if (order->fit.finest <= order->gate.bound) return true;
-    snprintf(order->why, sizeof order->why, "finest error %.3g exceeds %.3g", order->fit.finest,
-             order->gate.bound);
+    const bool small = order->fit.finest < order->least;
+    if (order->fit.finest <= order->gate.bound && !small) return true;
+    snprintf(order->why, sizeof order->why, "finest error %.3g %s %.3g", order->fit.finest,
+             small ? "is strangely below" : "exceeds", small ? order->least : order->gate.bound);
     return false;
 }
 
@@ -126,6 +136,7 @@ static void judge_gates(struct study_result *result, const struct case_file *fil
         if (!order) continue;
         order->gate = gate->gate;
         order->gate.bound *= gates_raise(file, gate, finest->n);
+        order->least = is_untouched(result, file) ? gate->least : 0;
         order->status = passes(gate, order) ? GATE_PASS : GATE_FAIL;
         order->known = gate->known.why;
         if (order->status == GATE_FAIL && is_known(file, gate, finest->n, order))

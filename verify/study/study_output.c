@@ -64,6 +64,8 @@ static json_t *order_json(const struct study_order *order, const char *what, con
         gate =
             json_pack("{s:o, s:o, s:o}", "low", result_number(order->gate.low), "high",
                       result_number(order->gate.high), "bound", result_number(order->gate.bound));
+    if (order->status != GATE_NONE && order->least > 0)
+        json_object_set_new(gate, "least", result_number(order->least));
     json_t *item = json_pack("{s:s, s:s, s:o, s:o, s:o, s:o, s:s, s:o, s:s}", "field", what, "norm",
                              norm, "order", result_number(order->fit.order), "low",
                              result_number(order->fit.low), "high", result_number(order->fit.high),

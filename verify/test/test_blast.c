@@ -371,6 +371,103 @@ static void blasts_are_measured(void **state)
         }
 }
 
+/* Of what r^(d - 1) times the integrand is, by midpoints in (r/R)^(1/2), which resolve the front.
+ */
+static double behind(const struct sedov *blast, int what, double t)
+{
+    const double R = sedov_shock(blast, t), unit = blast->d == 2 ? 2 * M_PI : 4 * M_PI;
+    double sum = 0;
+    for (int i = 0; i < 4000; i++) {
+        const double y = (i + 0.5) / 4000, r = R * sqrt(y);
+        const struct sedov_state s = sedov_sample(blast, r, t);
+        const double of[] = {0.5 * s.rho * s.v * s.v, s.rho * s.v, s.P, s.P * r};
+        sum += unit * of[what] * pow(r, blast->d - 2) * R * R / 2 / 4000;
+    }
+    return sum;
+}
+
+/* Sums over all gas: energy of motion, momentum outwards, where the heat is, what is not alike in
+ * all directions. */
+static void blasts_are_summed(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        struct settings s;
+        struct cloud cloud;
+        struct sedov blast;
+        const struct prepared p = prepared_of(&s, dim, "kind=sedov|gamma=1.6|lo=-0.75|hi=1.25");
+        const double t = 0.3, centre = 0.25;
+        assert_null(sedov_solve(1.6, dim, 1, 1, &blast));
+        scatter(&cloud, &p, t);
+        cloud.snapshot.u = cloud.volume;
+        double kinetic = 0, outward = 0, heat = 0, spread = 0, flow[3][3] = {{0}}, first[3] = {0};
+        double trace = 0, sizes = 0, worst = 0;
+        for (int i = 0; i < N; i++) {
+            double r = 0, squares = 0, along = 0;
+            for (int a = 0; a < dim; a++) {
+                const double x = cloud.x[a][i] - centre, v = cloud.v[a][i];
+                r = hypot(r, x), squares += v * v, along += v * x;
+                for (int b = 0; b < dim; b++)
+                    flow[a][b] += cloud.m[i] * v * (cloud.x[b][i] - centre);
+            }
+            for (int a = 0; a < dim; a++) {
+                first[a] += cloud.m[i] * squares * (cloud.x[a][i] - centre);
+                sizes += cloud.m[i] * squares * fabs(cloud.x[a][i] - centre);
+            }
+            kinetic += cloud.m[i] * squares / 2;
+            outward += r > 0 ? cloud.m[i] * along / r : 0;
+            trace += cloud.m[i] * along / dim;
+            heat += cloud.m[i] * cloud.volume[i], spread += r * cloud.m[i] * cloud.volume[i];
+        }
+        for (int a = 0; a < dim; a++) {
+            worst = fmax(worst, fabs(first[a] / sizes));
+            for (int b = 0; b < dim; b++)
+                worst = fmax(worst, fabs(flow[a][b] / trace - (a == b ? 1 : 0)));
+        }
+        near_relative(measured(&p, "kinetic_energy", &cloud.snapshot), kinetic, 1e-13);
+        near_relative(measured(&p, "outward_momentum", &cloud.snapshot), outward, 1e-12);
+        near_relative(measured(&p, "thermal_radius", &cloud.snapshot), spread / heat, 1e-13);
+        near_relative(measured(&p, "asymmetry", &cloud.snapshot), worst, 1e-11);
+        cloud.snapshot.time = 0;
+        assert_true(measured(&p, "asymmetry", &cloud.snapshot) == 0);
+        near_relative(exactly(&p, "kinetic_energy", t), behind(&blast, 0, t), 1e-5);
+        near_relative(exactly(&p, "outward_momentum", t), behind(&blast, 1, t), 1e-5);
+        near_relative(exactly(&p, "thermal_radius", t), behind(&blast, 3, t) / behind(&blast, 2, t),
+                      1e-5);
+        assert_true(exactly(&p, "kinetic_energy", 0) == 0 &&
+                    exactly(&p, "outward_momentum", 0) == 0 &&
+                    exactly(&p, "thermal_radius", 0) == 0);
+    }
+}
+
+/* Where a start prefers no direction none may come. */
+static void symmetry_is_known(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *words;
+        int dim;
+        bool known;
+    } rows[] = {{"", 2, true},
+                {"", 3, true},
+                {"lattice=cubic", 3, true},
+                {"lattice=square|jitter=0.1", 2, false},
+                {"lattice=jittered", 3, false},
+                {"lattice=fcc", 3, false},
+                {"lattice=hexagonal", 2, false},
+                {"lattice=glass", 2, false},
+                {"lo=-0.5,-0.5|hi=0.5,0.6", 2, false},
+                {"lo=-0.5,-0.5,-0.5|hi=0.5,0.5,0.6", 3, false}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        struct settings s;
+        char words[120];
+        snprintf(words, sizeof words, "kind=sedov|gamma=1.6%s%s", *rows[k].words ? "|" : "",
+                 rows[k].words);
+        const struct prepared p = prepared_of(&s, rows[k].dim, words);
+        same(exactly(&p, "asymmetry", 0.1), rows[k].known ? 0 : (double)NAN);
+    }
+}
+
 /* ---- the spinning disc ---- */
 
 static void discs_fly_apart(void **state)
@@ -456,6 +553,8 @@ int main(void)
         cmocka_unit_test(blasts_start_from_a_hot_spot),
         cmocka_unit_test(blasts_run_outwards),
         cmocka_unit_test(blasts_are_measured),
+        cmocka_unit_test(blasts_are_summed),
+        cmocka_unit_test(symmetry_is_known),
         cmocka_unit_test(discs_fly_apart),
         cmocka_unit_test(discs_are_measured),
     };

@@ -91,10 +91,11 @@ static void begins(const char *text, const char *message)
 #define FLAT                                                                                       \
     "[case]\ntitle = A vortex\ndimension = 2\nreference = gresho\n[domain]\nlo = 0\nhi = 1\n"      \
     "[initial]\nkind = gresho\n[run]\nt_end = 1\n"
+#define ERROR_GATE "order for shorter ladders, bound of the finest error"
+#define KNOWN      "; `known: WHY` after them, if it is known to fail"
 #define FUNCTIONAL_GATE                                                                            \
-    "order for shorter ladders, bound of the finest error; `known: WHY` after them, if it is "     \
-    "known to fail"
-#define GATE "least order, greatest order, bound of the finest error; or " FUNCTIONAL_GATE
+    ERROR_GATE "; or order, least and greatest error" KNOWN
+#define GATE "least order, greatest order, bound of the finest error; or " ERROR_GATE KNOWN
 
 /* A gate of a functional: the order that raises its bound, and the bound. */
 static void functionals(void **state)
@@ -116,8 +117,17 @@ static void functionals(void **state)
     assert_true(b->gate.low == 0.5 && isinf(b->gate.high) && b->gate.bound == 3);
     assert_string_equal(c->functional, "disc_error");
     assert_true(c->gate.low == 0 && c->gate.bound == 2e-2 && !c->known.why[0]);
-    refused(FLAT "[converge]\ndisc_error = 1 2 3\n",
-            AT("13") "disc_error = 1 2 3; allowed: " FUNCTIONAL_GATE);
+    assert_true(a->least == 0 && b->least == 0 && c->least == 0);
+    if (parse(&file, FLAT "[converge]\ndisc_error = 0 2 3 known: slow\n", &error))
+        fail_msg("%s", error.message);
+    assert_true(a->gate.low == 0 && isinf(a->gate.high) && a->gate.bound == 3 && a->least == 2);
+    assert_string_equal(a->known.why, "slow");
+    refused(FLAT "[converge]\ndisc_error = 1 3 3\n",
+            AT("13") "disc_error = 1 3 3; allowed: " FUNCTIONAL_GATE);
+    refused(FLAT "[converge]\ndisc_error = 1 0 3\n",
+            AT("13") "disc_error = 1 0 3; allowed: " FUNCTIONAL_GATE);
+    refused(FLAT "[converge]\ndisc_error = -1 1 3\n",
+            AT("13") "disc_error = -1 1 3; allowed: " FUNCTIONAL_GATE);
     refused(FLAT "[converge]\ndisc_error = 1 0\n",
             AT("13") "disc_error = 1 0; allowed: " FUNCTIONAL_GATE);
     refused(FLAT "[converge]\ndisc_error = -1 1\n",

@@ -34,126 +34,138 @@ static void gates_are_judged(void **state)
         bool explains;
     } rows[] = {
         {"sod",
-         {NULL, FIELD_DENSITY, NORM_L1, {0.4, 0.6, 1}, {0, ""}, {0, ""}},
+         {NULL, FIELD_DENSITY, NORM_L1, {0.4, 0.6, 1}, {0, ""}, {0, ""}, 0},
          0.01,
          0,
          GATE_PASS,
          1,
          false},
         {"sod",
-         {NULL, FIELD_DENSITY, NORM_L1, {0.6, 0.8, 1}, {0, ""}, {0, ""}},
+         {NULL, FIELD_DENSITY, NORM_L1, {0.6, 0.8, 1}, {0, ""}, {0, ""}, 0},
          0.01,
          0,
          GATE_FAIL,
          1,
          false},
         {"sod",
-         {NULL, FIELD_DENSITY, NORM_L1, {0.6, 0.8, 1}, {(double)INFINITY, "why"}, {0, ""}},
+         {NULL, FIELD_DENSITY, NORM_L1, {0.6, 0.8, 1}, {(double)INFINITY, "why"}, {0, ""}, 0},
          0.01,
          0,
          GATE_KNOWN,
          1,
          false},
         {"sod",
-         {NULL, FIELD_DENSITY, NORM_L1, {0.4, 0.6, 7e-4}, {0, ""}, {0, ""}},
+         {NULL, FIELD_DENSITY, NORM_L1, {0.4, 0.6, 7e-4}, {0, ""}, {0, ""}, 0},
          0.01,
          0,
          GATE_FAIL,
          7e-4,
          false},
         {"sod",
-         {NULL, FIELD_DENSITY, NORM_L1, {0.4, 0.6, 7e-4}, {0, ""}, {0, ""}},
+         {NULL, FIELD_DENSITY, NORM_L1, {0.4, 0.6, 7e-4}, {0, ""}, {0, ""}, 0},
          0.01,
          640,
          GATE_PASS,
          7e-4 * 1.3195079107728942,
          false},
         {"sod",
-         {NULL, FIELD_DENSITY, NORM_L1, {0.4, 0.6, 7e-4}, {0, ""}, {0, ""}},
+         {NULL, FIELD_DENSITY, NORM_L1, {0.4, 0.6, 7e-4}, {0, ""}, {0, ""}, 0},
          0.01,
          160,
          GATE_FAIL,
          7e-4,
          false},
         {"sod",
-         {NULL, FIELD_DENSITY, NORM_L1, {1, (double)INFINITY, 8e-4}, {0, ""}, {0, ""}},
+         {NULL, FIELD_DENSITY, NORM_L1, {1, (double)INFINITY, 8e-4}, {0, ""}, {0, ""}, 0},
          0.01,
          0,
          GATE_PASS,
          8e-4,
          false},
         {"sod",
-         {NULL, FIELD_DENSITY, NORM_L1, {1, (double)INFINITY, 0}, {0, ""}, {0, ""}},
+         {NULL, FIELD_DENSITY, NORM_L1, {1, (double)INFINITY, 0}, {0, ""}, {0, ""}, 0},
          0.01,
          0,
          GATE_PASS,
          0,
          false},
         {"sod",
-         {"mean_pressure", FIELD_DENSITY, NORM_L1, {1, (double)INFINITY, 1}, {0, ""}, {0, ""}},
+         {"mean_pressure", FIELD_DENSITY, NORM_L1, {1, (double)INFINITY, 1}, {0, ""}, {0, ""}, 0},
          0.01,
          0,
          GATE_NONE,
          0,
          false},
         {"gresho",
-         {NULL, FIELD_DENSITY, NORM_L1, {1, (double)INFINITY, 1e-12}, {0, ""}, {0, ""}},
+         {NULL, FIELD_DENSITY, NORM_L1, {1, (double)INFINITY, 1e-12}, {0, ""}, {0, ""}, 0},
          1e-9,
          0,
          GATE_FAIL,
          1e-12,
          false},
         {"gresho",
-         {NULL, FIELD_DENSITY, NORM_L1, {0.4, 0.6, 1e-12}, {0, ""}, {0, ""}},
+         {NULL, FIELD_DENSITY, NORM_L1, {0.4, 0.6, 1e-12}, {0, ""}, {0, ""}, 0},
          1e-9,
          0,
          GATE_FAIL,
          1e-12,
          false},
         {"gresho",
-         {"disc_error", FIELD_DENSITY, NORM_L1, {1, (double)INFINITY, 1.2e-5}, {0, ""}, {0, ""}},
+         {"disc_error", FIELD_DENSITY, NORM_L1, {1, (double)INFINITY, 1.2e-5}, {0, ""}, {0, ""}, 0},
          0.01,
          0,
          GATE_PASS,
          1.2e-5,
          false},
         {"gresho",
-         {"disc_error", FIELD_DENSITY, NORM_L1, {1, (double)INFINITY, 1.1e-5}, {0, ""}, {0, ""}},
+         {"disc_error", FIELD_DENSITY, NORM_L1, {1, (double)INFINITY, 1.1e-5}, {0, ""}, {0, ""}, 0},
          0.01,
          0,
          GATE_FAIL,
          1.1e-5,
          false},
         {"sod",
-         {NULL, FIELD_DENSITY, NORM_L1, {1, (double)INFINITY, 7.9e-4}, {0, ""}, {0, ""}},
+         {NULL, FIELD_DENSITY, NORM_L1, {1, (double)INFINITY, 7.9e-4}, {0, ""}, {0, ""}, 0},
          0.01,
          0,
          GATE_FAIL,
          7.9e-4,
          false},
         {"gresho",
-         {NULL, FIELD_DENSITY, NORM_L1, {0.4, 0.6, 7e-4}, {0, ""}, {0, ""}},
+         {NULL, FIELD_DENSITY, NORM_L1, {0.4, 0.6, 7e-4}, {0, ""}, {0, ""}, 0},
          0.01,
          640,
          GATE_PASS,
          7e-4 * 1.1486983549970351,
          false},
         {"gresho",
-         {NULL, FIELD_DENSITY, NORM_L1, {0.6, 0.8, 1}, {0, ""}, {0, ""}},
+         {NULL, FIELD_DENSITY, NORM_L1, {0.6, 0.8, 1}, {0, ""}, {0, ""}, 0},
          1e-9,
          0,
          GATE_FAIL,
          1,
          true},
         {"gresho",
-         {"peak_velocity", FIELD_DENSITY, NORM_L1, {1, (double)INFINITY, 1.2e-5}, {0, ""}, {0, ""}},
+         {"peak_velocity",
+          FIELD_DENSITY,
+          NORM_L1,
+          {1, (double)INFINITY, 1.2e-5},
+          {0, ""},
+          {0, ""},
+          0},
          0.01,
          0,
          GATE_PASS,
          1.2e-5,
          false},
         {"gresho",
-         {"peak_velocity", FIELD_DENSITY, NORM_L1, {1, (double)INFINITY, 1.1e-5}, {0, ""}, {0, ""}},
+         {"peak_velocity",
+          FIELD_DENSITY,
+          NORM_L1,
+          {1, (double)INFINITY, 1.1e-5},
+          {0, ""},
+          {0, ""},
+          0},
          0.01,
          0,
          GATE_FAIL,
@@ -176,7 +188,8 @@ static void gates_are_judged(void **state)
         const double finest = factor * pow(spacing_of(3, 0), 0.5);
         if (rows[k].gate.gate.bound == 0) file->gates[0].gate.bound = finest;
         file->gates[1] = (struct case_gate){
-            NULL, FIELD_VELOCITY, NORM_L2, {.low = -9, .high = 9, .bound = 1e9}, {0, ""}, {0, ""}};
+            NULL,    FIELD_VELOCITY, NORM_L2, {.low = -9, .high = 9, .bound = 1e9},
+            {0, ""}, {0, ""},        0};
         file->gate_count = 2;
         file->ladder[0] = 5, file->ladder[1] = rows[k].coarse;
         file->ladder_count = rows[k].coarse ? 2 : 0;
@@ -202,6 +215,58 @@ static void gates_are_judged(void **state)
                          rows[k].outcome == GATE_FAIL ? STATUS_CHECK_FAILED : STATUS_OK);
         assert_int_equal(study.status, result->status);
         assert_true(!order->why[0] == (rows[k].outcome == GATE_PASS));
+        study_free(&study);
+        pool_free(&pool);
+    }
+}
+
+/* An error that is too small to be believed is one of the case's own ladder and settings. */
+static void small_errors_are_strange(void **state)
+{
+    (void)state;
+    static const struct {
+        double least; /* over the finest error */
+        size_t coarse;
+        enum setting key; /* that a user has set; n: always */
+        bool known;
+        enum study_gate outcome;
+    } rows[] = {
+        {0.99, 320, SETTING_n, false, GATE_PASS}, {1.01, 320, SETTING_n, false, GATE_FAIL},
+        {1.01, 320, SETTING_n, true, GATE_KNOWN}, {1.01, 320, SETTING_eta, false, GATE_PASS},
+        {1.01, 640, SETTING_n, false, GATE_PASS}, {1.01, 160, SETTING_n, false, GATE_PASS}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        struct study study;
+        struct pool pool;
+        struct error error;
+        factor = 0.01;
+        make(&study, &pool, "sod", NULL, 1, times_factor, &error);
+        struct study_result *result = &study.results[0];
+        struct case_file *file = &study.settings.file;
+        const struct settings settings = result->settings;
+        const struct scheme scheme = result->scheme;
+        const double finest = factor * pow(spacing_of(3, 0), 0.5);
+        *result = (struct study_result){.settings = settings, .scheme = scheme};
+        for (int i = 0; i < SETTINGS; i++) result->settings.value[i].source = SOURCE_CASE;
+        result->settings.value[SETTING_n].source = SOURCE_USER;
+        result->settings.value[rows[k].key].source = SOURCE_USER;
+        file->gates[0] = (struct case_gate){
+            .gate = {.low = 1, .high = (double)INFINITY, .bound = 2 * finest},
+            .field = FIELD_DENSITY,
+            .norm = NORM_L1,
+            .known = {.bound = (double)INFINITY},
+            .least = rows[k].least * finest,
+        };
+        if (rows[k].known) strcpy(file->gates[0].known.why, "too good");
+        file->gate_count = 1;
+        file->ladder[0] = 5, file->ladder[1] = rows[k].coarse;
+        file->ladder_count = 2;
+        study.status = STATUS_OK;
+        assert_int_equal(study_judge(&study, &pool, &error), STATUS_OK);
+        const struct study_order *order = &result->orders[0][0];
+        assert_int_equal(order->status, rows[k].outcome);
+        const bool own = rows[k].coarse == 320 && rows[k].key == SETTING_n;
+        assert_true(order->least == (own ? rows[k].least * finest : 0));
+        assert_true(!strstr(order->why, "strangely below") == (rows[k].outcome == GATE_PASS));
         study_free(&study);
         pool_free(&pool);
     }
@@ -243,8 +308,8 @@ static void floors_explain_up_to_a_point(void **state)
             const struct settings settings = result->settings;
             const struct scheme scheme = result->scheme;
             *result = (struct study_result){.settings = settings, .scheme = scheme};
-            study.settings.file.gates[0] =
-                (struct case_gate){NULL, FIELD_DENSITY, NORM_L1, {0.6, 0.7, 1}, {0, ""}, {0, ""}};
+            study.settings.file.gates[0] = (struct case_gate){
+                NULL, FIELD_DENSITY, NORM_L1, {0.6, 0.7, 1}, {0, ""}, {0, ""}, 0};
             if (side == 2)
                 study.settings.file.gates[0].gate =
                     (struct order_gate){order, order + 0.1, exact_errors[3] / 2};
@@ -261,6 +326,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(gates_are_judged),
+        cmocka_unit_test(small_errors_are_strange),
         cmocka_unit_test(floors_explain_up_to_a_point),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

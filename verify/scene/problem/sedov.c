@@ -31,8 +31,8 @@ static const struct sedov *sedov_of(const struct prepared *p)
 static bool starts_even(const struct prepared *p, const struct settings *settings)
 {
     const int lattice = settings_choice(settings, SETTING_lattice);
-    bool even = (lattice == LATTICE_SQUARE || lattice == LATTICE_CUBIC) &&
-                !initial_is_shaken(settings) && !settings_choice(settings, SETTING_equal_masses);
+    bool even =
+        (lattice == LATTICE_SQUARE || lattice == LATTICE_CUBIC) && !initial_is_shaken(settings);
     for (int d = 1; d < p->domain.dim; d++)
         even = even && domain_length(&p->domain, d) == domain_length(&p->domain, 0);
     return even;
@@ -242,7 +242,7 @@ static double asymmetry_measured(const struct prepared *p, const struct snapshot
     for (int a = 0; a < dim; a++) {
         worst = fmax(worst, fabs(first[a]) / sizes);
         for (int b = 0; b < dim; b++)
-            worst = fmax(worst, fabs(moments[a][b] - (a == b) * trace) / trace);
+            worst = fmax(worst, fabs(moments[a][b] - (a == b ? trace : 0)) / fabs(trace));
     }
     return worst;
 }
