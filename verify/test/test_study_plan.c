@@ -146,7 +146,7 @@ static void how_many_replicates(void **state)
 static struct run resolved(const char *name, const char *key)
 {
     struct run_settings settings;
-    struct run run;
+    struct run run = {0};
     struct error error;
     char text[128], *keys[] = {text};
     snprintf(text, sizeof text, "%s", key);
