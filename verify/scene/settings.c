@@ -173,6 +173,26 @@ static enum status read_choice(enum setting which, const char *text, const char 
                        : STATUS_OK;
 }
 
+/* Of a vector as many as there are. */
+static bool read_numbers(const struct setting_key *key, const char *text,
+                         struct setting_value *value)
+{
+    switch (key->type) {
+    case SETTING_COUNT:
+        return text_count(text, &value->real[0]);
+    case SETTING_INTEGER:
+        return text_integer(text, &value->real[0]);
+    case SETTING_REAL:
+        return text_real(text, &value->real[0]);
+    case SETTING_REALS:
+        return text_reals(text, " \t,", (size_t)key->count, value->real);
+    default:
+        for (value->given = 1; value->given <= key->count; value->given++)
+            if (text_reals(text, " \t,", (size_t)value->given, value->real)) return true;
+        return false;
+    }
+}
+
 enum status settings_set(struct settings *settings, enum setting which, const char *text,
                          enum setting_source source, const char *where, struct error *error)
 {
@@ -199,24 +219,8 @@ enum status settings_set(struct settings *settings, enum setting which, const ch
         if (read_choices(key, text, where, &value, error)) return error->status;
         good = value.given > 0;
         break;
-    case SETTING_COUNT:
-        good = text_count(text, &value.real[0]);
-        break;
-    case SETTING_INTEGER:
-        good = text_integer(text, &value.real[0]);
-        break;
-    case SETTING_REAL:
-        good = text_real(text, &value.real[0]);
-        break;
-    case SETTING_REALS:
-        good = text_reals(text, " \t,", (size_t)key->count, value.real);
-        break;
-    case SETTING_VECTOR:
-        for (value.given = 0; !good && value.given < key->count;)
-            good = text_reals(text, " \t,", (size_t)++value.given, value.real);
-        break;
     default:
-        break;
+        good = read_numbers(key, text, &value);
     }
     for (int i = 0; i < value.given && good && !key->family; i++)
         good = in_range(key, value.real[i]);

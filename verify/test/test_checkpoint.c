@@ -11,6 +11,7 @@
 #include <unistd.h>
 #include <cmocka.h>
 
+#include "cache.h"
 #include "checkpoint.h"
 #include "clock.h"
 #include "made_simulation.h"
@@ -177,6 +178,39 @@ static void damaged(void **state)
     simulation_destroy(self);
 }
 
+/* Files whose checksum is right, and which are too short, or begin otherwise. */
+static void forged(void **state)
+{
+    enum { LINE = (1 << 16) - 1 };
+    static char bytes[1 << 18];
+    struct simulation *self = made_simulation(40);
+    char head[200];
+    (void)state;
+    saved(self);
+    const size_t n = read_all(bytes, sizeof bytes);
+    snprintf(head, sizeof head, "sphproof-checkpoint/1 %s\n%s\n", build, usual().run);
+    const size_t length = strlen(head), first = strcspn(head, "\n") + 1;
+    /* nothing, a letter, half a state */
+    const size_t bodies[] = {0, 1, (n - length) / 2};
+    for (size_t k = 0; k < 3; k++) {
+        const uint64_t sum = cache_hash(CACHE_HASH, bytes + length, bodies[k]);
+        char kept[8];
+        memcpy(kept, bytes + length + bodies[k], 8);
+        memcpy(bytes + length + bodies[k], &sum, 8);
+        write_all(bytes, length + bodies[k] + 8);
+        refused(usual(), k ? "is damaged, or too large" : "is damaged");
+        memcpy(bytes + length + bodies[k], kept, 8);
+    }
+    write_all(bytes, first); /* no second line */
+    refused(usual(), "is damaged");
+    /* a sound state after a second line that is longer than any */
+    memmove(bytes + first + LINE, bytes + length, n - length);
+    memset(bytes + first, ' ', LINE);
+    write_all(bytes, first + LINE + n - length);
+    refused(usual(), "is damaged");
+    simulation_destroy(self);
+}
+
 /* More than what is read at once: a fault in any part of it is seen. */
 static void large_ones(void **state)
 {
@@ -225,6 +259,17 @@ static void others(void **state)
         snprintf(why, sizeof why, "is of another run: %s", rows[k].why);
         refused(checkpoint, why);
     }
+    /* of a key that is given twice the last value counts */
+    checkpoint.run = "{\"settings\": {\"n\": 1, \"n\": 50}}";
+    refused(checkpoint, "is of another run: n is 40 there, 50 here");
+    self = made_simulation(40);
+    checkpoint_save(&checkpoint, self, &(struct growth){0});
+    simulation_destroy(self);
+    checkpoint.run = usual().run;
+    refused(checkpoint, "is of another run: n is 50 there, 40 here");
+    self = made_simulation(40);
+    saved(self);
+    simulation_destroy(self);
     checkpoint.run = "{}"; /* that asks for less */
     refused(checkpoint, "is of another run");
     checkpoint = usual();
@@ -289,9 +334,9 @@ static void no_room(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(when),    cmocka_unit_test(goes_on),    cmocka_unit_test(damaged),
-        cmocka_unit_test(others),  cmocka_unit_test(large_ones), cmocka_unit_test(long_runs),
-        cmocka_unit_test(no_room),
+        cmocka_unit_test(when),      cmocka_unit_test(goes_on), cmocka_unit_test(damaged),
+        cmocka_unit_test(forged),    cmocka_unit_test(others),  cmocka_unit_test(large_ones),
+        cmocka_unit_test(long_runs), cmocka_unit_test(no_room),
     };
     return cmocka_run_group_tests(tests, begin, end);
 }

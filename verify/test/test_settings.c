@@ -10,6 +10,7 @@
 #include <string.h>
 #include <cmocka.h>
 
+#include "guest.h"
 #include "integrator.h"
 #include "near.h"
 #include "problem.h"
@@ -177,23 +178,26 @@ static void keys_say_what_they_allow(void **state)
         {SETTING_h_method, "one of auto newton predicted"},
         {SETTING_file, "the path of a file, of up to 255 characters; nothing: no file"},
     };
-    char text[300], cut[32];
+    char text[300], cut[64];
     (void)state;
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         setting_allowed(&setting_keys[rows[k].key], text, sizeof text);
         assert_string_equal(text, rows[k].want);
     }
-    const char all[] = "one of sinuous varicose"; /* 23 letters */
-    setting_allowed(&setting_keys[SETTING_parity], cut, sizeof all);
-    assert_string_equal(cut, all);
-    setting_allowed(&setting_keys[SETTING_parity], cut, sizeof all - 1);
-    assert_string_equal(cut, "one of sinuous var ...");
-    setting_allowed(&setting_keys[SETTING_parity], cut, 10);
-    assert_string_equal(cut, "one o ...");
-    setting_allowed(&setting_keys[SETTING_parity], cut, 5);
-    assert_string_equal(cut, " ...");
-    setting_allowed(&setting_keys[SETTING_parity], cut, 4); /* no room for dots */
-    assert_string_equal(cut, "one");
+    static const struct {
+        size_t size;
+        const char *want;
+    } cuts[] = {{24, "one of sinuous varicose"},
+                {23, "one of sinuous var ..."},
+                {10, "one o ..."},
+                {5, " ..."},
+                {4, "one"}}; /* no room for dots */
+    for (size_t k = 0; k < sizeof cuts / sizeof *cuts; k++) {
+        memset(cut, '!', sizeof cut);
+        setting_allowed(&setting_keys[SETTING_parity], cut, cuts[k].size);
+        assert_string_equal(cut, cuts[k].want);
+        for (size_t i = cuts[k].size; i < sizeof cut; i++) assert_int_equal(cut[i], '!');
+    }
 }
 
 static void refused(const char *argument, const char *message)
@@ -222,6 +226,13 @@ static void messages(void **state)
         snprintf(want, sizeof want, "%.67s: allowed: a number above 0 up to 100, or auto", word);
         refused(word, want);
     }
+    refused("eta=\xc3\xa9", "eta=??: allowed: a number above 0"); /* an e with an accent */
+    refused("eta=2 ", "eta=2 : allowed: a number above 0 up to 100, or auto");
+    refused("seed=1.5", "seed=1.5: allowed: an integer from 0");
+    refused("n=64.5", "n=64.5: allowed: an integer, or 64^2,");
+    refused("boundary=foo", "no boundary 'foo'; allowed: ");
+    refused("energy=./x.so", "no energy './x.so'; allowed: ");
+    refused("kernel=./no/such.so", "kernel './no/such.so': ");
     refused("eta", "'eta': KEY=VALUE expected (`sphproof list keys` shows the keys)");
     snprintf(word, sizeof word, "%080d", 0);
     snprintf(want, sizeof want, "'%060d': KEY=VALUE expected (`sphproof list keys` shows the keys)",
@@ -273,12 +284,22 @@ static void directions(void **state)
 {
     char *const one[] = {"gravity=2", "boundary=open"},
                 *const each[] = {"gravity=2,3 4", "boundary=open,fixed reflecting", "lo=5 6"},
+                *const two[] = {"boundary=open,fixed", "energy=total"},
                 *const any[] = {"gravity=auto", "boundary=auto", "lattice=auto", "window=auto"};
     struct settings settings;
     struct error error;
     (void)state;
+    memset(&settings, 0xff, sizeof settings);
     settings_init(&settings);
+    assert_true(settings.dim == 0 && !settings.file[0]);
     assert_int_equal(settings.value[SETTING_gravity].source, SOURCE_FALLBACK);
+    /* whoever says where opens the message */
+    assert_int_equal(settings_set(&settings, SETTING_kernel, "./no.so", SOURCE_CASE, "f:7", &error),
+                     STATUS_BAD_INPUT);
+    assert_ptr_equal(strstr(error.message, "f:7: kernel './no.so'"), error.message);
+    assert_int_equal(settings_set(&settings, SETTING_boundary, "no", SOURCE_CASE, "f:7", &error),
+                     STATUS_BAD_INPUT);
+    assert_ptr_equal(strstr(error.message, "f:7: no boundary 'no'"), error.message);
     assert_int_equal(settings_apply(&settings, 2, one, &error), STATUS_OK);
     assert_int_equal(settings.value[SETTING_gravity].source, SOURCE_USER);
     assert_false(settings.value[SETTING_gravity].automatic);
@@ -296,6 +317,10 @@ static void directions(void **state)
                 settings_along(&settings, SETTING_lo, 1) == 6);
     assert_int_equal(settings.value[SETTING_lo].given, 2);
     assert_int_equal(settings.value[SETTING_boundary].given, 3);
+    assert_int_equal(settings_apply(&settings, 2, two, &error), STATUS_OK);
+    for (int d = 0; d < 2; d++)
+        assert_int_equal(settings_choice_along(&settings, SETTING_boundary, d), ends[d]);
+    assert_int_equal(settings.value[SETTING_energy].given, 0);
     assert_int_equal(settings_apply(&settings, 4, any, &error), STATUS_OK);
     assert_true(settings.value[SETTING_gravity].automatic &&
                 settings.value[SETTING_gravity].given == 1);
@@ -314,7 +339,7 @@ static void directions(void **state)
 static void schemes(void **state)
 {
     char *const words[] = {"kernel=sinc",
-                           "sinc_n=7",
+                           "sinc_n=6",
                            "gradient=ia",
                            "formulation=vanilla_ice",
                            "volume_element=number",
@@ -357,8 +382,17 @@ static void schemes(void **state)
     assert_true(s.balsara_floor == 0.01 && s.noise == 0.6 && s.alpha_u == 0.9 && s.eta == 2.9);
     assert_true(s.cfl == 0.25 && s.h_tolerance == 1e-7);
     struct kernel other;
-    assert_int_equal(kernel_select(&other, "sinc", 7, &error), STATUS_OK);
+    assert_int_equal(kernel_select(&other, "sinc", 6, &error), STATUS_OK);
     assert_true(s.kernel.constant[2] == other.constant[2]);
+    char *const bad[] = {"eta=0.5"};
+    settings_init(&settings);
+    assert_int_equal(settings_apply(&settings, 1, bad, &error), STATUS_OK);
+    assert_int_equal(settings_scheme(&settings, 1, &s, &error), STATUS_BAD_INPUT);
+    settings_init(&settings);
+    settings.value[SETTING_sinc_n].real[0] = 99;
+    settings.value[SETTING_kernel] =
+        (struct setting_value){.choice = family_index(&kernel_family, "sinc")};
+    assert_int_equal(settings_scheme(&settings, 1, &s, &error), STATUS_BAD_INPUT);
     for (int dim = 1; dim <= 3; dim++) {
         settings_init(&settings);
         assert_int_equal(settings_scheme(&settings, dim, &s, &error), STATUS_OK);
@@ -391,6 +425,9 @@ static void written(void **state)
         {"hi=0.30000000000000004 1e-5 3", "0.30000000000000004 1e-05 3",
          "[0.30000000000000004, 1e-05, 3.0]"},
         {"n=64^2", "4096", "4096"},
+        {"n=100000", "100000", "100000"},
+        {"n=1e6", "1e+06", "1000000"},
+        {"file=a", "a", "\"a\""},
         {"seed=4294967295", "4294967295", "4294967295"},
         {"boundary=open", "open", "\"open\""},
         {"boundary=open fixed", "open fixed", "[\"open\", \"fixed\"]"},
@@ -452,5 +489,6 @@ int main(void)
         cmocka_unit_test(written),
         cmocka_unit_test(documents_have_what_is_read),
     };
+    guest_allow(false);
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

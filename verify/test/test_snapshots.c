@@ -100,6 +100,9 @@ static void begins(void **state)
         assert_int_equal(snapshots.next, rows[k].next);
         assert_true(snapshots_last(&snapshots) == rows[k].made);
     }
+    struct snapshots four = {.every = 4};
+    snapshots_begin(&four, 9, -1, 20);
+    assert_int_equal(four.next, 3);
     /* 0.3/0.1 is less than 3, and 3 0.1 more than 0.3 */
     snapshots_begin(&tenth, 3 * 0.1, -1, 1);
     assert_int_equal(tenth.next, 4);

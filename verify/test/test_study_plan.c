@@ -116,6 +116,8 @@ static void numbers(void **state)
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
         for (size_t r = 0; r < rows[k].replicates; r++)
             assert_int_equal(study_neighbour(rows[k].n, rows[k].replicates, r), rows[k].of[r]);
+    /* 5000 and just below a half */
+    assert_int_equal(study_neighbour(6300629, 64, 1), 6300629 + 5000);
     assert_int_equal(study_neighbour(200, 1, 0), 200);
     assert_int_equal(study_neighbour(200, 1, 5), 200);
 }
@@ -158,11 +160,15 @@ static struct run resolved(const char *name, const char *key)
 
 static json_t *key_of(const struct run *run, const char *kind)
 {
-    struct error error;
+    struct error error = {0};
     char *text = run_job_key(run, kind, &error);
     assert_non_null(text);
+    assert_int_equal(error.status, STATUS_OK);
     json_t *key = json_loads(text, 0, NULL);
     assert_non_null(key);
+    char *again = json_dumps(key, JSON_COMPACT | JSON_SORT_KEYS | JSON_REAL_PRECISION(17));
+    assert_string_equal(text, again); /* in one form, whoever wrote it */
+    free(again);
     free(text);
     return key;
 }
@@ -189,7 +195,9 @@ static void keys(void **state)
     snprintf(run.settings.file, sizeof run.settings.file, "%s", path);
     char bytes[9000];
     for (size_t i = 0; i < sizeof bytes; i++) bytes[i] = (char)('0' + i * i % 71);
-    for (size_t n = 0; n <= sizeof bytes; n += 4500) { /* more than is read at once */
+    static const size_t lengths[] = {0, 1, 4097, sizeof bytes}; /* 4096 are read at once */
+    for (size_t k = 0; k < 4; k++) {
+        const size_t n = lengths[k];
         FILE *file = fopen(path, "wb");
         assert_non_null(file);
         assert_int_equal(fwrite(bytes, 1, n, file), n);
@@ -200,6 +208,7 @@ static void keys(void **state)
         json_decref(key);
     }
     unlink(path);
+    strcpy(run.settings.file, "p");
     json_t *key = key_of(&run, "run"); /* it is not there */
     assert_true(json_is_integer(json_object_get(key, "content")));
     assert_int_equal(json_integer_value(json_object_get(key, "content")), 0);
@@ -238,13 +247,31 @@ static void once(void **state)
     pool_free(&pool);
 }
 
+/* A value that a key does not take any more. */
+static void changed_values(void **state)
+{
+    struct study study;
+    struct pool pool;
+    struct error error;
+    (void)state;
+    if (plan(&study, &pool, "sod", "", "eta=1.5,2", 1, &error)) fail_msg("%s", error.message);
+    pool_free(&pool);
+    study_free(&study);
+    strcpy(study.sweep.keys[0].values[1], "wide");
+    assert_int_equal(study_plan(&study, &pool, &error), STATUS_BAD_INPUT);
+    assert_non_null(strstr(error.message, "wide"));
+    pool_free(&pool);
+    study_free(&study);
+}
+
 static void refused(const char *keys_of, const char *vary, const char *why)
 {
     struct study study;
     struct pool pool;
     struct error error;
     assert_int_equal(plan(&study, &pool, "sod", keys_of, vary, 1, &error), STATUS_BAD_INPUT);
-    if (!strstr(error.message, why)) fail_msg("'%s' lacks '%s'", error.message, why);
+    if (strncmp(error.message, why, strlen(why)) != 0)
+        fail_msg("'%s', not '%s'", error.message, why);
     study_free(&study);
     pool_free(&pool);
 }
@@ -254,8 +281,8 @@ static void what_is_refused(void **state)
     (void)state;
     refused("eta=0.5", NULL, "eta = 0.5");
     refused("", "eta=0.5,0.6", "no combination of --vary is allowed: eta = 0.5");
-    refused("t_end=5", NULL, "mirrored tube");
-    refused("t_end=5", "eta=0.5,1.5", "mirrored tube");
+    refused("t_end=5", NULL, "t_end=5: ");
+    refused("t_end=5", "eta=0.5,1.5", "t_end=5: ");
     /* of one combination what is wrong with it */
     refused("", "eta=0.5", "eta = 0.5: h = eta");
 }
@@ -263,10 +290,11 @@ static void what_is_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_run), cmocka_unit_test(seeds),
-        cmocka_unit_test(numbers),   cmocka_unit_test(how_many_replicates),
-        cmocka_unit_test(keys),      cmocka_unit_test(weights),
-        cmocka_unit_test(once),      cmocka_unit_test(what_is_refused),
+        cmocka_unit_test(every_run),      cmocka_unit_test(seeds),
+        cmocka_unit_test(numbers),        cmocka_unit_test(how_many_replicates),
+        cmocka_unit_test(keys),           cmocka_unit_test(weights),
+        cmocka_unit_test(once),           cmocka_unit_test(what_is_refused),
+        cmocka_unit_test(changed_values),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

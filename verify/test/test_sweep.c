@@ -85,6 +85,23 @@ static void words_and_keys(void **state)
     says(&sweep, 0, 0, one, one);
 }
 
+/* The first key of all, a value of no letters, and one that is kept as it was written. */
+static void any_key(void **state)
+{
+    (void)state;
+    struct sweep sweep;
+    struct error error = {0};
+    static const char *const lo[] = {"lo"};
+    assert_int_equal(sweep_parse(&sweep, "lo=-1,-2", &error), STATUS_OK);
+    says(&sweep, 1, 1, lo, (const char *const[]){"-2"});
+    assert_int_equal(sweep_parse(&sweep, "file=", &error), STATUS_OK);
+    assert_true(sweep.count == 1 && sweep.keys[0].count == 1 && !sweep.keys[0].values[0][0]);
+    char label[SWEEP_LABEL];
+    assert_int_equal(sweep_parse(&sweep, "eta=2.0,2", &error), STATUS_OK);
+    sweep_label(&sweep, 0, label);
+    assert_string_equal(label, "eta=2.0");
+}
+
 static void refused(const char *text, const char *why)
 {
     struct sweep sweep;
@@ -103,6 +120,10 @@ static void what_is_refused(void **state)
     refused("n=100,200", "--n");
     refused("eta=2,alpha=1,eta=3", "key eta is given twice");
     refused("eta=2,3,2", "eta=2 is given twice");
+    refused("eta=2,alpha=1,alpha=3", "key alpha is given twice");
+    refused("eta=2,3,3", "eta=3 is given twice");
+    refused("eta=2,alphq=1", "did you mean 'alpha'?");
+    refused("kernel=sinc,lo", "--vary lo: a number's values are needed: --vary lo=VALUE,VALUE");
     refused("eta=2,,3", "allowed: KEY");
     refused("", "allowed: KEY");
     refused("eta=2,", "allowed: KEY");
@@ -212,8 +233,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_combination), cmocka_unit_test(words_and_keys),
-        cmocka_unit_test(what_is_refused),   cmocka_unit_test(applied),
-        cmocka_unit_test(long_labels),       cmocka_unit_test(ladders),
+        cmocka_unit_test(any_key),           cmocka_unit_test(what_is_refused),
+        cmocka_unit_test(applied),           cmocka_unit_test(long_labels),
+        cmocka_unit_test(ladders),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

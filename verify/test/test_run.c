@@ -1,0 +1,400 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What a run is given and what it keeps: the scene, the particles at the end in the order in which
+ * they have started, what conservation is of, who is told on the way; states of other codes. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+#include "initial.h"
+#include "initial_create.h"
+#include "near.h"
+#include "run.h"
+
+enum { KEYS = 8 };
+
+static struct run resolved(const char *name, const char *words)
+{
+    struct run_settings settings;
+    struct run run = {0};
+    struct error error;
+    char text[256], *keys[KEYS], *rest = text;
+    int n = 0;
+    snprintf(text, sizeof text, "%s", words);
+    for (char *word; n < KEYS && (word = strtok_r(rest, " ", &rest));) keys[n++] = word;
+    if (run_prepare(&settings, name, n, keys, &error) || run_resolve(&run, &settings, &error))
+        fail_msg("%s %s: %s", name, words, error.message);
+    assert_int_equal(settings.threads, 1);
+    return run;
+}
+
+static struct run_result executed(const struct run *run)
+{
+    struct run_result result = {0};
+    struct error error;
+    if (run_execute(run, &result, &error)) fail_msg("%s", error.message);
+    return result;
+}
+
+/* ---- before ---- */
+
+static void scenes(void **state)
+{
+    static const char *const cases[] = {"sod", "rayleigh_taylor_mode", "rest_3d"};
+    static const char *const keys[] = {"n=40 t_end=0.01 skip=none", "n=16^2 t_end=0.01 skip=auto",
+                                       "n=4^3 skip=auto"};
+    (void)state;
+    for (int k = 0; k < 3; k++) {
+        struct run run = resolved(cases[k], keys[k]);
+        double arrays[9][1];
+        const struct initial initial = {.n = 5,
+                                        .x = {arrays[0], arrays[1], arrays[2]},
+                                        .v = {arrays[3], arrays[4], arrays[5]},
+                                        .m = arrays[6],
+                                        .u = arrays[7],
+                                        .rho = arrays[8]};
+        run.asked.threads = 3;
+        run.asked.unstamped = k == 1;
+        const struct scene scene = run_scene(&run, &initial);
+        assert_true(scene.dim == run.problem.domain.dim && scene.n == 5 && scene.threads == 3);
+        for (int d = 0; d < 3; d++) {
+            assert_true(scene.lo[d] == run.problem.domain.lo[d] &&
+                        scene.hi[d] == run.problem.domain.hi[d]);
+            assert_true(scene.boundary[d] == run.problem.boundary[d] &&
+                        scene.gravity[d] == run.problem.gravity[d]);
+            assert_true(scene.x[d] == arrays[d] && scene.v[d] == arrays[3 + d]);
+        }
+        assert_true(scene.m == arrays[6] && scene.u == arrays[7] && scene.rho == arrays[8]);
+        assert_true(scene.gamma == run.problem.gamma && scene.skip == (k > 0) &&
+                    scene.unstamped == (k == 1));
+        assert_true(scene.t_end == settings_real(&run.settings, SETTING_t_end));
+        assert_true(scene.scheme.eta == run.scheme.eta);
+    }
+    assert_true(resolved(cases[1], keys[1]).problem.gravity[1] != 0);
+}
+
+static struct run_result explained(const struct run *run)
+{
+    struct run_result result;
+    struct error error;
+    if (run_explain(run, &result, &error)) fail_msg("%s", error.message);
+    return result;
+}
+
+/* Snapshots on the way take memory, too; a glass says how good it is, where a box is periodic. */
+static void explanations(void **state)
+{
+    struct snapshots snapshots = {.path = "a.csv", .every = 0.1};
+    (void)state;
+    struct run run = resolved("rest_2d", "n=10^2 lattice=glass");
+    struct run_result plain = explained(&run);
+    run.asked.snapshots = &snapshots;
+    struct run_result with = explained(&run);
+    assert_int_equal(plain.n, 100);
+    assert_true(with.estimate.memory ==
+                plain.estimate.memory + snapshots_memory(&snapshots, 2, 100));
+    assert_true(plain.plan_count > 3 && plain.plan_count <= RUN_PLAN_MAX);
+    assert_int_equal(plain.crossed, 0);
+    struct initial initial;
+    struct error error;
+    struct relax_quality want;
+    assert_int_equal(initial_create(&initial, &run.problem, &run.settings, &error), STATUS_OK);
+    double volume[100];
+    for (size_t i = 0; i < 100; i++) volume[i] = initial.m[i] / initial.rho[i];
+    const double *const x[3] = {initial.x[0], initial.x[1], initial.x[2]};
+    assert_int_equal(relax_measure(&run.problem.domain, 100, x, volume, &want, &error), STATUS_OK);
+    initial_free(&initial);
+    assert_true(plain.start.density == want.density && plain.start.gradient == want.gradient &&
+                plain.start.spread == want.spread && want.spread > 0);
+    static const char *const none[] = {"n=10^2", "n=10^2 lattice=glass boundary=reflecting",
+                                       "n=10^2 lattice=glass boundary=periodic,reflecting"};
+    for (int k = 0; k < 3; k++) {
+        run = resolved("rest_2d", none[k]);
+        plain = explained(&run);
+        assert_true(isnan(plain.start.density) && isnan(plain.start.gradient) &&
+                    isnan(plain.start.spread));
+    }
+}
+
+/* What is larger than the memory that there is is refused before there is an array of its size. */
+static void too_large(void **state)
+{
+    struct run_result result;
+    struct error error = {0};
+    struct rlimit usual, few;
+    (void)state;
+    const struct run run = resolved("rest_3d", "n=215^3");
+    assert_int_equal(getrlimit(RLIMIT_AS, &usual), 0);
+    few = usual;
+    few.rlim_cur = (rlim_t)1 << 31;
+    assert_int_equal(setrlimit(RLIMIT_AS, &few), 0);
+    const enum status status = run_explain(&run, &result, &error);
+    assert_int_equal(setrlimit(RLIMIT_AS, &usual), 0);
+    assert_int_equal(status, STATUS_ENVIRONMENT);
+    assert_non_null(strstr(error.message, "9938375"));
+}
+
+/* Of a file: as many particles as it has, and what of it is not read. */
+static void from_a_file(void **state)
+{
+    char folder[] = "run.XXXXXX", path[64], words[128];
+    struct run_result result;
+    (void)state;
+    assert_non_null(mkdtemp(folder));
+    snprintf(path, sizeof path, "%s/p.csv", folder);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs("x,y,vx,vy,m,u,colour,age\n", file);
+    for (int i = 0; i < 64; i++)
+        fprintf(file, "%g,%g,0,0,0.015625,1,3,4\n", (i % 8 + 0.5) / 8, (i / 8 + 0.5) / 8);
+    fclose(file);
+    snprintf(words, sizeof words, "file=%s kernel=cubic_spline eta=2.3 gradient=standard",
+             path);
+    const struct run run = resolved("rest_2d", words);
+    result = explained(&run);
+    assert_int_equal(result.n, 64);
+    assert_true(settings_real(&result.settings, SETTING_n) == 64);
+    snprintf(words, sizeof words, "columns of %s that are not read: colour age", path);
+    const char *said = strstr(result.warnings, "columns of");
+    assert_non_null(said);
+    if (said != result.warnings) assert_memory_equal(said - 2, "; ", 2);
+    unlink(path);
+    rmdir(folder);
+}
+
+/* ---- states of other codes ---- */
+
+enum { N = 8 };
+
+/* On a line the positions rise, whoever was carried through the end; it is said how many neighbours
+ * are no longer next to each other. */
+static void a_line_rises(void **state)
+{
+    static const double x[2][N] = {{-0.2, 0, 0.3, 0.6, 0.9, -0.9, -0.7, -0.5},
+                                   {-0.9, -0.7, -0.5, -0.2, 0, 0.3, 0.6, 0.9}};
+    static const size_t id[3][N] = {
+        {0, 1, 2, 3, 4, 5, 6, 7}, {3, 4, 5, 6, 7, 0, 1, 2}, {0, 2, 1, 3, 4, 5, 6, 7}};
+    static const size_t crossed[] = {0, 0, 3};
+    static double v[N], m[N], rho[N], u[N], P[N], h[N], volume[N];
+    const struct run run = resolved("sod", "t_end=0.1");
+    struct error error;
+    (void)state;
+    for (int i = 0; i < N; i++) {
+        v[i] = 1 + i, m[i] = 2 + i, rho[i] = 3 + i, u[i] = 4 + i, P[i] = 5 + i, h[i] = 6 + i;
+        volume[i] = 0.25;
+    }
+    for (int k = 0; k < 6; k++) {
+        const bool turned = k < 3;
+        const struct snapshot s = {.n = N,
+                                   .x = {x[!turned]},
+                                   .v = {v},
+                                   .m = m,
+                                   .rho = rho,
+                                   .u = u,
+                                   .P = P,
+                                   .h = h,
+                                   .volume = volume,
+                                   .id = id[k % 3],
+                                   .time = 0.1};
+        struct run_result result;
+        assert_int_equal(run_judge(&run, &s, &result, &error), STATUS_OK);
+        const struct snapshot *kept = &result.snapshot;
+        assert_true(result.n == N && kept->n == N && result.time == 0.1 && kept->time == 0.1);
+        assert_true(result.spacing == 0.25);
+        assert_int_equal(result.crossed, crossed[k % 3]);
+        for (int i = 0; i < N; i++) {
+            const int from = turned ? (i + 5) % N : i;
+            assert_true(kept->x[0][i] == x[1][i] && kept->v[0][i] == v[from] &&
+                        kept->m[i] == m[from] && kept->rho[i] == rho[from]);
+            assert_true(kept->u[i] == u[from] && kept->P[i] == P[from] && kept->h[i] == h[from] &&
+                        kept->volume[i] == 0.25);
+        }
+        assert_true(isnan(result.matrix.condition_max) && isnan(result.matrix.angle_mean) &&
+                    result.matrix.fallen_back == 0);
+        run_free(&result);
+        assert_true(!result.storage && !result.snapshot.n && !result.snapshot.x[0]);
+    }
+}
+
+/* In 2D and 3D by their numbers; errors are those of the particles in the window, by volume. */
+static void clouds_by_number(void **state)
+{
+    static const size_t id[N] = {3, 0, 7, 1, 2, 6, 5, 4};
+    static double x[3][N], v[3][N], rest[6][N];
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        const struct run run = resolved(dim == 2 ? "gresho" : "rest_3d",
+                                        dim == 2 ? "t_end=0.1 boost=0.5" : "t_end=0.1");
+        struct run_result result;
+        struct error error;
+        double azimuthal = 0, radial = 0, all = 0, jump = 0, density = 0;
+        for (int i = 0; i < N; i++) {
+            for (int d = 0; d < 3; d++) x[d][i] = 0.1 + 0.1 * ((i * (3 + 2 * d)) % N);
+            for (int d = 0; d < 3; d++) v[d][i] = 0.1 * i - 0.2 * d;
+            for (int k = 0; k < 6; k++) rest[k][i] = 1 + k + 0.125 * i;
+        }
+        const struct snapshot s = {.n = N,
+                                   .x = {x[0], x[1], x[2]},
+                                   .v = {v[0], v[1], v[2]},
+                                   .m = rest[0],
+                                   .rho = rest[1],
+                                   .u = rest[2],
+                                   .P = rest[3],
+                                   .h = rest[4],
+                                   .volume = rest[5],
+                                   .id = id,
+                                   .time = 0.1};
+        assert_int_equal(run_judge(&run, &s, &result, &error), STATUS_OK);
+        const struct snapshot *kept = &result.snapshot;
+        for (int i = 0; i < N; i++) {
+            for (int d = 0; d < dim; d++)
+                assert_true(kept->x[d][id[i]] == x[d][i] && kept->v[d][id[i]] == v[d][i]);
+            assert_true(kept->m[id[i]] == rest[0][i] && kept->rho[id[i]] == rest[1][i] &&
+                        kept->u[id[i]] == rest[2][i] && kept->P[id[i]] == rest[3][i] &&
+                        kept->h[id[i]] == rest[4][i] && kept->volume[id[i]] == rest[5][i]);
+            /* by hand: against the exact state where the particle is */
+            struct problem_state exact;
+            double place[3] = {x[0][i], x[1][i], dim > 2 ? x[2][i] : 0}, squares = 0;
+            problem_sample(&run.problem, place, 0.1, &exact);
+            for (int d = 0; d < dim; d++) squares += pow(v[d][i] - exact.v[d], 2);
+            const double V = rest[5][i];
+            all += V;
+            jump += V * sqrt(squares);
+            density += V * fabs(rest[1][i] - exact.rho);
+            if (dim > 2) continue;
+            double dx = x[0][i] - 0.5 * 0.1 - 0.5, dy = x[1][i] - 0.5 * 0.1 - 0.5;
+            dx -= round(dx), dy -= round(dy);
+            const double R = hypot(dx, dy), ex = exact.v[0] - v[0][i], ey = exact.v[1] - v[1][i];
+            azimuthal += V * fabs(dx * ey - dy * ex) / R;
+            radial += V * fabs(dx * ex + dy * ey) / R;
+        }
+        assert_int_equal(result.crossed, 0);
+        near_relative(result.spacing, pow(1. / N, 1. / dim), 1e-14);
+        near_relative(result.errors[FIELD_DENSITY].l1, density / all, 1e-13);
+        near_relative(result.errors[FIELD_VELOCITY].l1, jump / all, 1e-13);
+        assert_int_equal(result.errors[FIELD_VELOCITY].n, N);
+        assert_true(isnan(result.binned_density_l1));
+        if (dim == 2) {
+            near_relative(result.azimuthal.l1, azimuthal / all, 1e-12);
+            near_relative(result.radial.l1, radial / all, 1e-12);
+        } else {
+            assert_true(isnan(result.azimuthal.l1) && isnan(result.radial.l1));
+        }
+        run_free(&result);
+    }
+}
+
+/* A state later than the exact solution holds is none that can be judged. */
+static void too_late(void **state)
+{
+    const struct run run = resolved("sod", "t_end=0.1");
+    const double x[2] = {-0.5, 0.5}, one[2] = {1, 1};
+    const struct snapshot s = {.n = 2,
+                               .x = {x},
+                               .v = {one},
+                               .m = one,
+                               .rho = one,
+                               .u = one,
+                               .P = one,
+                               .h = one,
+                               .volume = one,
+                               .time = 5};
+    struct run_result result;
+    struct error error = {0};
+    (void)state;
+    assert_int_equal(run_judge(&run, &s, &result, &error), STATUS_BAD_INPUT);
+    assert_true(!result.storage && !result.snapshot.n);
+}
+
+/* ---- on the way ---- */
+
+struct told {
+    size_t calls;
+    uint64_t steps[1000], stop;
+    double time[1000];
+};
+
+static bool tell(void *context, double time, uint64_t steps)
+{
+    struct told *told = context;
+    assert_true(told->calls < 1000);
+    told->time[told->calls] = time;
+    told->steps[told->calls++] = steps;
+    return steps < told->stop;
+}
+
+static void who_is_told(void **state)
+{
+    static struct told told;
+    struct run run = resolved("sod", "n=400 t_end=0.2");
+    (void)state;
+    run.asked.progress = tell;
+    run.asked.progress_context = &told;
+    for (int each = 0; each < 2; each++) {
+        told = (struct told){.stop = 1000};
+        run.asked.each_step = each;
+        struct run_result result = executed(&run);
+        const uint64_t stride = each ? 1 : 32;
+        assert_true(result.cost.steps > 64 && result.cost.steps % 32 && result.time == 0.2);
+        assert_int_equal(told.calls, result.cost.steps / stride);
+        for (size_t k = 0; k < told.calls; k++) {
+            assert_int_equal(told.steps[k], (k + 1) * stride);
+            assert_true(k == 0 || told.time[k] > told.time[k - 1]);
+        }
+        run_free(&result);
+    }
+    told = (struct told){.stop = 5}; /* who says no stops it */
+    struct run_result result = executed(&run);
+    assert_true(result.cost.steps == 5 && result.time < 0.2 && result.time == told.time[4]);
+    run_free(&result);
+}
+
+/* Momentum is not kept along directions where walls push, and is along others. */
+static void walls_push(void **state)
+{
+    static const struct {
+        const char *boundary;
+        bool pushed[2];
+    } rows[] = {{"periodic", {false, false}},
+                {"reflecting,periodic", {true, false}},
+                {"periodic,reflecting", {false, true}},
+                {"reflecting", {true, true}}};
+    (void)state;
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        char words[128];
+        snprintf(words, sizeof words, "n=10^2 t_end=0.05 jitter=0.2 boundary=%s", rows[k].boundary);
+        const struct run run = resolved("rest_2d", words);
+        struct run_result result = executed(&run);
+        const struct snapshot *s = &result.snapshot;
+        double p[2] = {0, 0};
+        for (size_t i = 0; i < s->n; i++)
+            for (int d = 0; d < 2; d++) p[d] += s->m[i] * s->v[d][i];
+        for (int d = 0; d < 2; d++) {
+            if (rows[k].pushed[d])
+                assert_true(fabs(p[d]) > 1e-8);
+            else
+                near_below(fabs(p[d]), 1e-14);
+        }
+        near_below(result.momentum, 1e-11);
+        near_below(result.mass, 1e-13);
+        run_free(&result);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(scenes),       cmocka_unit_test(explanations),
+        cmocka_unit_test(too_large),    cmocka_unit_test(from_a_file),
+        cmocka_unit_test(a_line_rises), cmocka_unit_test(clouds_by_number),
+        cmocka_unit_test(too_late),     cmocka_unit_test(who_is_told),
+        cmocka_unit_test(walls_push),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
