@@ -48,14 +48,13 @@ static double relative(double difference, double scale)
     return difference == 0 ? 0 : difference / scale;
 }
 
-/* Fills all but the cause. */
+/* Fills all but the cause; particle, where nothing differs, stays 0. */
 static void compare(struct rate_comparison *c, const double *theirs, const struct rate_table *ours,
                     const double *m, int column)
 {
     const double common = column < 3 ? 0 : scale_of(ours, m, column, 0);
     double sum = 0;
     c->worst = 0;
-    c->particle = 0;
     for (size_t i = 0; i < ours->n; i++) {
         const double scale = column < 3 ? scale_of(ours, m, column, i) : common;
         const double d = relative(fabs(theirs[i] - value(ours, m, column, i)), scale);

@@ -13,7 +13,7 @@
 #include "study.h"
 
 enum { LEVELS = 4 };
-static const size_t ladder[LEVELS] = {40, 80, 160, 320};
+static size_t ladder[CASE_LADDER_MAX] = {40, 80, 160, 320}, level_count = LEVELS;
 
 /* What a run of a level and replicate says. */
 static inline double spacing_of(size_t l, size_t r)
@@ -85,13 +85,13 @@ static inline enum status make(struct study *study, struct pool *pool, const cha
                                const char *vary, size_t replicates, tamper *tampering,
                                struct error *error)
 {
-    *study = (struct study){.level_count = LEVELS, .replicates = replicates};
+    *study = (struct study){.level_count = level_count, .replicates = replicates};
     memcpy(study->ladder, ladder, sizeof ladder);
     if (run_prepare(&study->settings, name, 0, NULL, error) ||
         sweep_parse(&study->sweep, vary, error))
         fail_msg("%s", error->message);
     study->settings.file.ladder_count = 0; /* bounds are those of the gates */
-    const size_t runs = study->sweep.count * LEVELS * replicates;
+    const size_t runs = study->sweep.count * level_count * replicates;
     study->results = calloc(study->sweep.count, sizeof *study->results);
     study->runs = calloc(runs, sizeof *study->runs);
     study->jobs = calloc(runs, sizeof *study->jobs);
@@ -104,9 +104,9 @@ static inline enum status make(struct study *study, struct pool *pool, const cha
         if (study->results[c].excluded) continue;
         study->results[c].settings = run.settings;
         study->results[c].scheme = run.scheme;
-        for (size_t l = 0; l < LEVELS; l++)
+        for (size_t l = 0; l < level_count; l++)
             for (size_t r = 0; r < replicates; r++) {
-                const size_t k = (c * LEVELS + l) * replicates + r, job = runs - 1 - k;
+                const size_t k = (c * level_count + l) * replicates + r, job = runs - 1 - k;
                 study->jobs[k] = job; /* in any order */
                 pool->jobs[job] = (struct pool_job){
                     .name = strdup("run"), .done = true, .document = run_document(study, l, r)};

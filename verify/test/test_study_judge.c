@@ -358,6 +358,126 @@ static void idle_settings_are_suspected(void **state)
     }
 }
 
+/* ---- as many as there may be ---- */
+
+/* A ladder of the most levels that there may be. */
+static void the_most_levels(void **state)
+{
+    static const char *const cases[] = {"sod", "gresho"};
+    size_t kept[LEVELS];
+    (void)state;
+    memcpy(kept, ladder, sizeof kept);
+    level_count = CASE_LADDER_MAX;
+    for (size_t l = 0; l < CASE_LADDER_MAX; l++) ladder[l] = 40 + 5 * l;
+    for (int k = 0; k < 2; k++) {
+        struct study study = made(cases[k], NULL, 1, NULL);
+        const struct study_result *result = &study.results[0];
+        double spacing[CASE_LADDER_MAX], errors[CASE_LADDER_MAX];
+        struct order_fit want;
+        assert_int_equal(result->level_count, CASE_LADDER_MAX);
+        for (int f = 0; f < FIELDS; f++)
+            for (int m = 0; m < NORMS; m++) {
+                for (size_t l = 0; l < CASE_LADDER_MAX; l++) {
+                    spacing[l] = spacing_of(l, 0);
+                    errors[l] = error_at(f, m, l, 0);
+                }
+                assert_int_equal(order_fit(CASE_LADDER_MAX, spacing, errors, NULL, &want, NULL),
+                                 STATUS_OK);
+                near_relative(result->orders[f][m].fit.order, want.order, 1e-12);
+                assert_true(result->orders[f][m].fit.finest == errors[CASE_LADDER_MAX - 1]);
+            }
+        study_free(&study);
+    }
+    level_count = LEVELS;
+    memcpy(ladder, kept, sizeof kept);
+}
+
+static void many_functionals(json_t *run, size_t c, size_t l, size_t r)
+{
+    json_t *list = json_object_get(run, "functionals");
+    (void)c, (void)l, (void)r;
+    while (json_array_size(list) < PROBLEM_FUNCTIONALS_MAX + 4)
+        json_array_append_new(list, json_pack("{s:s, s:f, s:f}", "name", "mean_pressure", "value",
+                                              1e300, "reference", 1.));
+}
+
+/* Of a document that has more functionals than there is room for the first ones are read. */
+static void too_many_functionals(void **state)
+{
+    (void)state;
+    struct study study = made("sod", NULL, 1, many_functionals);
+    const struct study_result *result = &study.results[0];
+    assert_int_equal(result->functional_count, PROBLEM_FUNCTIONALS_MAX);
+    near_relative(result->levels[2].errors[3][4], error_at(3, 4, 2, 0), 1e-14);
+    assert_true(result->levels[1].n == ladder[1] && result->levels[3].n == ladder[3]);
+    study_free(&study);
+}
+
+static void no_error(json_t *run, size_t c, size_t l, size_t r)
+{
+    (void)c, (void)r;
+    if (l == 0)
+        json_object_set_new(json_object_get(json_object_get(run, "errors"), "density"), "l1",
+                            json_real(0));
+}
+
+/* Where a ladder has no slope the scatter is that of the errors themselves. */
+static void scatter_without_slope(void **state)
+{
+    (void)state;
+    struct study study = made("sod", NULL, 2, no_error);
+    const struct study_result *result = &study.results[0];
+    for (size_t l = 1; l < LEVELS; l++)
+        near_relative(result->levels[l].spread[0][0],
+                      fabs(log(error_at(0, 0, l, 0) / error_at(0, 0, l, 1))) / sqrt(2), 1e-9);
+    study_free(&study);
+}
+
+static void same_spacing(json_t *run, size_t c, size_t l, size_t r)
+{
+    (void)c, (void)r;
+    if (l == 2) json_object_set_new(run, "spacing", json_real(spacing_of(1, 0)));
+}
+
+/* Two levels of one spacing have no order between them. */
+static void levels_that_are_one(void **state)
+{
+    struct study study;
+    struct pool pool;
+    struct error error;
+    (void)state;
+    assert_int_equal(make(&study, &pool, "sod", NULL, 1, same_spacing, &error), STATUS_BAD_INPUT);
+    assert_non_null(strstr(error.message, "resolutions must be distinct"));
+    pool_free(&pool);
+    study_free(&study);
+}
+
+static void suspected_already(json_t *run, size_t c, size_t l, size_t r)
+{
+    too_good(run, c, l, r);
+    if (l == 1) json_object_set_new(run, "suspicion", json_string("x"));
+}
+
+static void same_bins(json_t *run, size_t c, size_t l, size_t r)
+{
+    (void)c, (void)l, (void)r;
+    json_object_set_new(json_object_get(run, "errors"), "binned_density_l1", json_real(0.125));
+}
+
+/* What a run says of itself comes first; of means over bins nothing is suspected. */
+static void what_is_suspected(void **state)
+{
+    (void)state;
+    fault_kind = fault_field = 0;
+    struct study study = made("sod", NULL, 1, suspected_already);
+    assert_string_equal(study.results[0].suspicion, "x");
+    assert_int_equal(study.results[0].status, STATUS_CHECK_FAILED);
+    study_free(&study);
+    study = made("sod", NULL, 1, same_bins);
+    assert_string_equal(study.results[0].suspicion, "");
+    study_free(&study);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -368,6 +488,11 @@ int main(void)
         cmocka_unit_test(errors_that_are_too_good),
         cmocka_unit_test(same_at_all_levels),
         cmocka_unit_test(idle_settings_are_suspected),
+        cmocka_unit_test(the_most_levels),
+        cmocka_unit_test(too_many_functionals),
+        cmocka_unit_test(scatter_without_slope),
+        cmocka_unit_test(levels_that_are_one),
+        cmocka_unit_test(what_is_suspected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

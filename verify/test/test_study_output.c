@@ -237,11 +237,41 @@ static void combinations_are_told_apart(void **state)
     study_free(&study);
 }
 
+/* What a case is judged by is what the first combination has; nothing beyond a list's end is said.
+ */
+static void the_first_combination_counts(void **state)
+{
+    (void)state;
+    struct study study = made("kelvin_helmholtz_mode", "eta=2.2,0.5", 1, NULL);
+    struct study_result *result = &study.results[0];
+    assert_true(!result->excluded && study.results[1].excluded);
+    json_t *document = json_object(), *want = json_array();
+    const size_t n = result->functional_count;
+    assert_true(n > 1 && n < PROBLEM_FUNCTIONALS_MAX);
+    result->functional_names[n] = "none";
+    result->functional_exact[n] = 1;
+    result->functional_errors[n].fit.n = 4;
+    for (size_t i = 0; i < n; i++)
+        if (isfinite(result->functional_exact[i]))
+            json_array_append_new(want, json_string(result->functional_names[i]));
+    study_add_json(&study, document);
+    assert_true(json_array_size(want) > 0);
+    assert_true(json_equal(json_object_get(document, "measured"), want));
+    assert_int_equal(json_array_size(json_object_get(document, "functionals")), n);
+    char *text = json_dumps(json_object_get(document, "orders"), 0);
+    assert_null(strstr(text, "none\", \"norm\": \"error\""));
+    free(text);
+    json_decref(want);
+    json_decref(document);
+    study_free(&study);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(documents_have_it_all),
         cmocka_unit_test(combinations_are_told_apart),
+        cmocka_unit_test(the_first_combination_counts),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
