@@ -9,11 +9,16 @@
 #include <cmocka.h>
 #include <math.h>
 
+#ifdef __linux__
+#include <malloc.h>
+#endif
 #include <sys/mman.h>
 #include <sys/resource.h>
+#include <sys/wait.h>
 #include <time.h>
 
 #include "made_jobs.h"
+#include "near.h"
 
 static void any_number_of_processes(void **state)
 {
@@ -178,7 +183,7 @@ static struct board *board;
 struct told {
     int number;
     enum status status;
-    enum { NOTHING, WITH_DOCUMENT, LEAVES, LEAVES_BADLY } kind;
+    enum { NOTHING, WITH_DOCUMENT, LEAVES, LEAVES_BADLY, FLUSHES } kind;
     int ms; /* how long it takes */
 };
 
@@ -195,6 +200,7 @@ static enum status tell(const void *context, json_t **document, struct error *er
     nanosleep(&pause, NULL);
     __atomic_sub_fetch(&board->running, 1, __ATOMIC_SEQ_CST);
     if (told->kind == LEAVES) _exit(0);
+    if (told->kind == FLUSHES) fflush(NULL);
     if (told->kind == LEAVES_BADLY) _exit(1);
     if (told->kind == WITH_DOCUMENT) *document = json_pack("{s:i}", "number", told->number);
     error_set(error, told->status, "said by %d", told->number);
@@ -227,6 +233,16 @@ static void add(struct pool *pool, struct told *told, size_t n, const double *we
     }
 }
 
+/* Of malloc's; 0 where nobody knows. */
+static size_t bytes_in_use(void)
+{
+#if defined(__GLIBC__) && (__GLIBC__ > 2 || __GLIBC_MINOR__ >= 33)
+    return mallinfo2().uordblks;
+#else
+    return 0;
+#endif
+}
+
 /* Names, keys and weights as they were given, however many; of a key there is one job. */
 static void many_jobs(void **state)
 {
@@ -234,6 +250,7 @@ static void many_jobs(void **state)
     struct pool pool = {0};
     char name[32] = "none", key[32];
     (void)state;
+    const size_t before = bytes_in_use();
     assert_true(pool_find(&pool, "none") == (size_t)-1);
     for (size_t i = 0; i < SLOTS; i++) {
         snprintf(name, sizeof name, "job %zu", i);
@@ -256,9 +273,12 @@ static void many_jobs(void **state)
             assert_null(job->key);
         }
     }
+    /* a key that is no text cannot be found again */
+    assert_true(pool_add(&pool, "job", "\xff", 1, tell, NULL) == (size_t)-1);
     assert_int_equal(pool.count, SLOTS);
     pool_free(&pool);
     assert_true(!pool.count && !pool.jobs && !pool.numbers);
+    near_below((double)bytes_in_use() - (double)before, 3000); /* of 160 names and keys none */
 }
 
 /* ---- how they are run ---- */
@@ -382,6 +402,46 @@ static void no_result(void **state)
                         "bad one: its process was ended by signal 9 (Killed)");
     pool_free(&pool);
     place_clear(&place);
+}
+
+/* What was written before, and has not left this process yet, leaves it once. */
+static void nothing_twice(void **state)
+{
+    struct pool pool;
+    struct told told[2] = {{.kind = FLUSHES}, {.kind = FLUSHES}};
+    char folder[] = "pool.XXXXXX", path[64], text[16];
+    (void)state;
+    assert_non_null(mkdtemp(folder));
+    snprintf(path, sizeof path, "%s/text", folder);
+    FILE *file = fopen(path, "w+");
+    assert_non_null(file);
+    fputs("once", file);
+    add(&pool, told, 2, NULL);
+    assert_int_equal(run(&pool, NULL, 1), STATUS_OK);
+    pool_free(&pool);
+    rewind(file);
+    const size_t n = fread(text, 1, sizeof text, file);
+    fclose(file);
+    assert_int_equal(n, 4);
+    unlink(path);
+    rmdir(folder);
+}
+
+/* Who runs jobs goes on afterwards; this test is the first one: its process may be gone. */
+static void comes_back(void **state)
+{
+    (void)state;
+    const pid_t child = fork();
+    if (child == 0) {
+        struct pool pool;
+        struct told told = {0};
+        add(&pool, &told, 1, NULL);
+        run(&pool, NULL, 1);
+        _exit(42);
+    }
+    int status = 0;
+    assert_int_equal(waitpid(child, &status, 0), child);
+    assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 42);
 }
 
 /* What is running is waited for where no more processes can be started, and nothing is left open.
@@ -571,6 +631,8 @@ static void a_share_is_its_own(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(comes_back),
+        cmocka_unit_test_setup(nothing_twice, clean_board),
         cmocka_unit_test(any_number_of_processes),
         cmocka_unit_test(shares),
         cmocka_unit_test(shares_meet),

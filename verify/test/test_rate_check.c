@@ -433,6 +433,17 @@ static void better_by_a_thousand(void **state)
         struct rate_check check = checked(&file, &gas, &ours, 1e-9);
         assert_true(check.columns[0].worst == worst);
         assert_string_equal(check.columns[0].cause, side < 0 ? "viscosity: they have none" : "");
+        /* by as much as is asked for, and no more */
+        check = checked(&file, &gas, &ours, 1e-9);
+        struct gas without = gas;
+        without.scene = changed;
+        const double left = checked(&file, &without, &theirs, 1).columns[0].worst;
+        if (side > 0) {
+            check = checked(&file, &gas, &ours, left);
+            assert_string_equal(check.columns[0].cause, "viscosity: they have none");
+            check = checked(&file, &gas, &ours, nextafter(left, 0));
+            assert_string_equal(check.columns[0].cause, "");
+        }
         /* asked for less, it is explained, and what is good needs no cause */
         check = checked(&file, &gas, &ours, 2e-3 * worst);
         assert_string_equal(check.columns[0].cause, "viscosity: they have none");
@@ -580,7 +591,12 @@ static void no_grad_h(void **state)
             file.values[6][i] = (double)oracle.particles[i].dU / gas.m[i];
         }
         oracle_free(&oracle);
+        static double before[4][MOST];
+        const double *const rates[4] = {ours.force[0], ours.force[1], ours.force[2], ours.dU};
+        for (int k = 0; k < 4; k++) memcpy(before[k], rates[k], n * sizeof(double));
         struct rate_check check = checked(&file, &gas, &ours, 1e-9);
+        for (int k = 0; k < 4; k++) /* ours stay as they are */
+            assert_memory_equal(before[k], rates[k], n * sizeof(double));
         for (int a = 0; a < dim; a++) assert_string_equal(cause_of(&check, names[3 + a]), cause);
         assert_string_equal(cause_of(&check, "du"), cause);
         for (int a = 0; a < dim && dim > 1; a++) {

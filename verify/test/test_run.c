@@ -31,6 +31,8 @@ static struct run resolved(const char *name, const char *words)
     if (run_prepare(&settings, name, n, keys, &error) || run_resolve(&run, &settings, &error))
         fail_msg("%s %s: %s", name, words, error.message);
     assert_int_equal(settings.threads, 1);
+    assert_int_equal(run.asked.threads, 1);
+    assert_string_equal(run.asked.file.name, settings.file.name);
     return run;
 }
 
@@ -48,7 +50,7 @@ static void scenes(void **state)
 {
     static const char *const cases[] = {"sod", "rayleigh_taylor_mode", "rest_3d"};
     static const char *const keys[] = {"n=40 t_end=0.01 skip=none", "n=16^2 t_end=0.01 skip=auto",
-                                       "n=4^3 skip=auto"};
+                                       "n=4^3 skip=auto boundary=periodic,periodic,reflecting"};
     (void)state;
     for (int k = 0; k < 3; k++) {
         struct run run = resolved(cases[k], keys[k]);
@@ -77,6 +79,11 @@ static void scenes(void **state)
         assert_true(scene.scheme.eta == run.scheme.eta);
     }
     assert_true(resolved(cases[1], keys[1]).problem.gravity[1] != 0);
+    assert_int_equal(resolved(cases[2], keys[2]).problem.boundary[2], BOUNDARY_REFLECTING);
+    struct run_settings settings;
+    struct error error = {0};
+    assert_int_equal(run_prepare(&settings, "no_such", 0, NULL, &error), STATUS_BAD_INPUT);
+    assert_non_null(strstr(error.message, "no_such"));
 }
 
 static struct run_result explained(const struct run *run)
@@ -92,34 +99,56 @@ static void explanations(void **state)
 {
     struct snapshots snapshots = {.path = "a.csv", .every = 0.1};
     (void)state;
-    struct run run = resolved("rest_2d", "n=10^2 lattice=glass");
-    struct run_result plain = explained(&run);
-    run.asked.snapshots = &snapshots;
-    struct run_result with = explained(&run);
-    assert_int_equal(plain.n, 100);
-    assert_true(with.estimate.memory ==
-                plain.estimate.memory + snapshots_memory(&snapshots, 2, 100));
-    assert_true(plain.plan_count > 3 && plain.plan_count <= RUN_PLAN_MAX);
-    assert_int_equal(plain.crossed, 0);
-    struct initial initial;
-    struct error error;
-    struct relax_quality want;
-    assert_int_equal(initial_create(&initial, &run.problem, &run.settings, &error), STATUS_OK);
-    double volume[100];
-    for (size_t i = 0; i < 100; i++) volume[i] = initial.m[i] / initial.rho[i];
-    const double *const x[3] = {initial.x[0], initial.x[1], initial.x[2]};
-    assert_int_equal(relax_measure(&run.problem.domain, 100, x, volume, &want, &error), STATUS_OK);
-    initial_free(&initial);
-    assert_true(plain.start.density == want.density && plain.start.gradient == want.gradient &&
-                plain.start.spread == want.spread && want.spread > 0);
+    for (int dim = 2; dim <= 3; dim++) {
+        struct run run = dim == 2
+                             ? resolved("rest_2d", "n=10^2 lattice=glass background=4,0,1")
+                             : resolved("rest_3d", "n=6^3 lattice=glass background=4,0,1 "
+                                                   "kernel=cubic_spline eta=1.9 gradient=standard");
+        const size_t n = dim == 2 ? 100 : 512;
+        const struct run_result plain = explained(&run);
+        run.asked.snapshots = &snapshots;
+        const struct run_result with = explained(&run);
+        assert_int_equal(plain.n, n);
+        assert_true(with.estimate.memory ==
+                    plain.estimate.memory + snapshots_memory(&snapshots, dim, (double)n));
+        assert_true(plain.estimate.memory > 0 && plain.estimate.steps > 0);
+        assert_true(plain.plan_count > 3 && plain.plan_count <= RUN_PLAN_MAX);
+        assert_int_equal(plain.crossed, 0);
+        struct initial initial;
+        struct error error;
+        struct relax_quality want;
+        assert_int_equal(initial_create(&initial, &run.problem, &run.settings, &error), STATUS_OK);
+        double volume[512];
+        for (size_t i = 0; i < n; i++) volume[i] = initial.m[i] / initial.rho[i];
+        const double *const x[3] = {initial.x[0], initial.x[1], initial.x[2]};
+        assert_int_equal(relax_measure(&run.problem.domain, n, x, volume, &want, &error),
+                         STATUS_OK);
+        initial_free(&initial);
+        assert_true(plain.start.density == want.density && plain.start.gradient == want.gradient &&
+                    plain.start.spread == want.spread && want.spread > 0);
+    }
     static const char *const none[] = {"n=10^2", "n=10^2 lattice=glass boundary=reflecting",
-                                       "n=10^2 lattice=glass boundary=periodic,reflecting"};
-    for (int k = 0; k < 3; k++) {
-        run = resolved("rest_2d", none[k]);
-        plain = explained(&run);
+                                       "n=10^2 lattice=glass boundary=periodic,reflecting",
+                                       "n=10^2 lattice=glass boundary=reflecting,periodic"};
+    for (int k = 0; k < 4; k++) {
+        const struct run run = resolved("rest_2d", none[k]);
+        const struct run_result plain = explained(&run);
         assert_true(isnan(plain.start.density) && isnan(plain.start.gradient) &&
                     isnan(plain.start.spread));
     }
+}
+
+/* The exact solution shall hold up to the end, unless somebody says that any window will do. */
+static void any_window(void **state)
+{
+    struct run run = resolved("sod", "n=40 t_end=5");
+    struct run_result result;
+    struct error error = {0};
+    (void)state;
+    assert_int_equal(run_explain(&run, &result, &error), STATUS_BAD_INPUT);
+    assert_non_null(strstr(error.message, "mirrored tube"));
+    run.asked.any_window = true;
+    assert_int_equal(run_explain(&run, &result, &error), STATUS_OK);
 }
 
 /* What is larger than the memory that there is is refused before there is an array of its size. */
@@ -143,27 +172,38 @@ static void too_large(void **state)
 /* Of a file: as many particles as it has, and what of it is not read. */
 static void from_a_file(void **state)
 {
-    char folder[] = "run.XXXXXX", path[64], words[128];
+    char folder[] = "run.XXXXXX", path[64], words[192];
     struct run_result result;
     (void)state;
     assert_non_null(mkdtemp(folder));
     snprintf(path, sizeof path, "%s/p.csv", folder);
-    FILE *file = fopen(path, "w");
-    assert_non_null(file);
-    fputs("x,y,vx,vy,m,u,colour,age\n", file);
-    for (int i = 0; i < 64; i++)
-        fprintf(file, "%g,%g,0,0,0.015625,1,3,4\n", (i % 8 + 0.5) / 8, (i / 8 + 0.5) / 8);
-    fclose(file);
-    snprintf(words, sizeof words, "file=%s kernel=cubic_spline eta=2.3 gradient=standard",
-             path);
-    const struct run run = resolved("rest_2d", words);
-    result = explained(&run);
-    assert_int_equal(result.n, 64);
-    assert_true(settings_real(&result.settings, SETTING_n) == 64);
-    snprintf(words, sizeof words, "columns of %s that are not read: colour age", path);
-    const char *said = strstr(result.warnings, "columns of");
-    assert_non_null(said);
-    if (said != result.warnings) assert_memory_equal(said - 2, "; ", 2);
+    /* beside other warnings, or alone; of a column of one letter */
+    static const char *const more[] = {"colour,age", "q,q2", "q"}, *const ignored[] = {"colour age",
+                                                                                       "q q2", "q"};
+    static const char *const keys[] = {"", "energy=total viscosity=none", ""};
+    size_t warned = 0;
+    for (int k = 0; k < 3; k++) {
+        FILE *file = fopen(path, "w");
+        assert_non_null(file);
+        fprintf(file, "x,y,vx,vy,m,u,%s\n", more[k]);
+        for (int i = 0; i < 64; i++)
+            fprintf(file, "%g,%g,0,0,0.015625,1,3%s\n", (i % 8 + 0.5) / 8, (i / 8 + 0.5) / 8,
+                    k < 2 ? ",4" : "");
+        fclose(file);
+        snprintf(words, sizeof words, "file=%s kernel=cubic_spline eta=2.3 gradient=standard %s",
+                 path, keys[k]);
+        const struct run run = resolved("rest_2d", words);
+        result = explained(&run);
+        assert_int_equal(result.n, 64);
+        assert_true(settings_real(&result.settings, SETTING_n) == 64);
+        snprintf(words, sizeof words, "columns of %s that are not read: %s", path, ignored[k]);
+        const char *said = strstr(result.warnings, "columns of");
+        assert_non_null(said);
+        assert_string_equal(said, words);
+        if (said != result.warnings) assert_memory_equal(said - 2, "; ", 2);
+        warned += said != result.warnings;
+    }
+    assert_int_equal(warned, 1);
     unlink(path);
     rmdir(folder);
 }
@@ -176,8 +216,10 @@ enum { N = 8 };
  * are no longer next to each other. */
 static void a_line_rises(void **state)
 {
-    static const double x[2][N] = {{-0.2, 0, 0.3, 0.6, 0.9, -0.9, -0.7, -0.5},
-                                   {-0.9, -0.7, -0.5, -0.2, 0, 0.3, 0.6, 0.9}};
+    /* two at one place; the first ones of the order have come through the end */
+    static const double rising[N] = {-0.9, -0.7, -0.5, -0.2, 0, 0.3, 0.3, 0.9};
+    static const int through[] = {0, 1, 5};
+    double x[N];
     static const size_t id[3][N] = {
         {0, 1, 2, 3, 4, 5, 6, 7}, {3, 4, 5, 6, 7, 0, 1, 2}, {0, 2, 1, 3, 4, 5, 6, 7}};
     static const size_t crossed[] = {0, 0, 3};
@@ -189,10 +231,11 @@ static void a_line_rises(void **state)
         v[i] = 1 + i, m[i] = 2 + i, rho[i] = 3 + i, u[i] = 4 + i, P[i] = 5 + i, h[i] = 6 + i;
         volume[i] = 0.25;
     }
-    for (int k = 0; k < 6; k++) {
-        const bool turned = k < 3;
+    for (int k = 0; k < 9; k++) {
+        const int turn = through[k / 3];
+        for (int i = 0; i < N; i++) x[(i + turn) % N] = rising[i];
         const struct snapshot s = {.n = N,
-                                   .x = {x[!turned]},
+                                   .x = {x},
                                    .v = {v},
                                    .m = m,
                                    .rho = rho,
@@ -209,8 +252,8 @@ static void a_line_rises(void **state)
         assert_true(result.spacing == 0.25);
         assert_int_equal(result.crossed, crossed[k % 3]);
         for (int i = 0; i < N; i++) {
-            const int from = turned ? (i + 5) % N : i;
-            assert_true(kept->x[0][i] == x[1][i] && kept->v[0][i] == v[from] &&
+            const int from = (i + turn) % N;
+            assert_true(kept->x[0][i] == rising[i] && kept->v[0][i] == v[from] &&
                         kept->m[i] == m[from] && kept->rho[i] == rho[from]);
             assert_true(kept->u[i] == u[from] && kept->P[i] == P[from] && kept->h[i] == h[from] &&
                         kept->volume[i] == 0.25);
@@ -355,6 +398,20 @@ static void who_is_told(void **state)
     run_free(&result);
 }
 
+/* The most memory that the process has had so far. */
+static void peaks(void **state)
+{
+    struct rusage before, after;
+    (void)state;
+    const struct run run = resolved("sod", "n=40 t_end=0.01");
+    getrusage(RUSAGE_SELF, &before);
+    struct run_result result = executed(&run);
+    getrusage(RUSAGE_SELF, &after);
+    near_inside(result.peak_rss, 1024. * (double)before.ru_maxrss, 1024. * (double)after.ru_maxrss);
+    assert_true(fmod(result.peak_rss, 1024) == 0);
+    run_free(&result);
+}
+
 /* Momentum is not kept along directions where walls push, and is along others. */
 static void walls_push(void **state)
 {
@@ -390,11 +447,17 @@ static void walls_push(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(scenes),       cmocka_unit_test(explanations),
-        cmocka_unit_test(too_large),    cmocka_unit_test(from_a_file),
-        cmocka_unit_test(a_line_rises), cmocka_unit_test(clouds_by_number),
-        cmocka_unit_test(too_late),     cmocka_unit_test(who_is_told),
+        cmocka_unit_test(scenes),
+        cmocka_unit_test(explanations),
+        cmocka_unit_test(too_large),
+        cmocka_unit_test(any_window),
+        cmocka_unit_test(from_a_file),
+        cmocka_unit_test(a_line_rises),
+        cmocka_unit_test(clouds_by_number),
+        cmocka_unit_test(too_late),
+        cmocka_unit_test(who_is_told),
         cmocka_unit_test(walls_push),
+        cmocka_unit_test(peaks),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -322,12 +322,38 @@ static void floors_explain_up_to_a_point(void **state)
         }
 }
 
+/* A floor that is nothing explains nothing, however small the error. */
+static void no_floor(void **state)
+{
+    (void)state;
+    struct study study;
+    struct pool pool;
+    struct error error;
+    for (size_t l = 0; l < LEVELS; l++) exact_errors[l] = 1e-8 * pow(2, 0.5 * (double)(3 - l));
+    make(&study, &pool, "sod", "kernel=quadratic_spline,eta=1.5,gradient=ia", 1, set_errors,
+         &error);
+    struct study_result *result = &study.results[0];
+    assert_true(fabs(result->floor_density) < 1e-10);
+    const struct settings settings = result->settings;
+    const struct scheme scheme = result->scheme;
+    *result = (struct study_result){.settings = settings, .scheme = scheme};
+    study.settings.file.gates[0] =
+        (struct case_gate){NULL, FIELD_DENSITY, NORM_L1, {0.6, 0.7, 1}, {0, ""}, {0, ""}};
+    study.settings.file.gate_count = 1;
+    assert_int_equal(study_judge(&study, &pool, &error), STATUS_OK);
+    assert_int_equal(result->orders[0][0].status, GATE_FAIL);
+    assert_false(result->floor_explains);
+    study_free(&study);
+    pool_free(&pool);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(gates_are_judged),
         cmocka_unit_test(small_errors_are_strange),
         cmocka_unit_test(floors_explain_up_to_a_point),
+        cmocka_unit_test(no_floor),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
