@@ -1,0 +1,260 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Runs on their way: what they conserve, how they break down, snapshots and checkpoints that change
+ * nothing, amplitudes that grow. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+#include "initial.h"
+#include "initial_create.h"
+#include "near.h"
+#include "run.h"
+
+static char folder[] = "run_way.XXXXXX";
+
+static int begin(void **state)
+{
+    (void)state;
+    return !mkdtemp(folder);
+}
+
+static int end(void **state)
+{
+    (void)state;
+    return rmdir(folder);
+}
+
+static struct run resolved(const char *name, const char *words)
+{
+    struct run_settings settings;
+    struct run run = {0};
+    struct error error;
+    char text[256], *keys[8], *rest = text;
+    int n = 0;
+    snprintf(text, sizeof text, "%s", words);
+    for (char *word; n < 8 && (word = strtok_r(rest, " ", &rest));) keys[n++] = word;
+    if (run_prepare(&settings, name, n, keys, &error) || run_resolve(&run, &settings, &error))
+        fail_msg("%s %s: %s", name, words, error.message);
+    return run;
+}
+
+static struct run_result executed(const struct run *run)
+{
+    struct run_result result = {0};
+    struct error error;
+    if (run_execute(run, &result, &error)) fail_msg("%s", error.message);
+    return result;
+}
+
+/* Sums of the start and of the end, by hand; errors are measured, and so are functionals. */
+static void what_is_conserved(void **state)
+{
+    (void)state;
+    for (int plain = 0; plain < 2; plain++) {
+        struct run run = resolved("sod", "n=60 t_end=0.1 energy=internal gradient=ia "
+                                         "integrator=leapfrog kernel=cubic_spline");
+        struct initial initial;
+        struct error error;
+        run.asked.plain = plain;
+        assert_int_equal(initial_create(&initial, &run.problem, &run.settings, &error), STATUS_OK);
+        double energy[2] = {0}, momentum[2] = {0}, size = 0;
+        for (size_t i = 0; i < initial.n; i++) {
+            const double v = initial.v[0][i];
+            energy[0] += initial.m[i] * (initial.u[i] + 0.5 * v * v);
+            momentum[0] += initial.m[i] * v;
+        }
+        initial_free(&initial);
+        if (plain) {
+            /* the plain solver knows one scheme, and says so of others */
+            struct run_result none = {0};
+            assert_int_equal(run_execute(&run, &none, &error), STATUS_BAD_INPUT);
+            assert_ptr_equal(strstr(error.message, "plain: only"), error.message);
+            assert_null(none.storage);
+            run =
+                resolved("sod", "n=60 t_end=0.1 integrator=modified_leapfrog kernel=cubic_spline");
+            run.asked.plain = true;
+        }
+        struct run_result result = {0};
+        if (run_execute(&run, &result, &error)) fail_msg("%s", error.message);
+        const struct snapshot *s = &result.snapshot;
+        for (size_t i = 0; i < s->n; i++) {
+            energy[1] += s->m[i] * (s->u[i] + 0.5 * s->v[0][i] * s->v[0][i]);
+            momentum[1] += s->m[i] * s->v[0][i];
+            size += s->m[i] * fabs(s->v[0][i]);
+        }
+        near_absolute(1 + result.energy, 1 + fabs(energy[1] - energy[0]) / energy[0], 1e-12);
+        near_absolute(1 + result.momentum, 1 + fabs(momentum[1] - momentum[0]) / size, 1e-12);
+        near_below(result.mass, 1e-13);
+        if (!plain) assert_true(result.energy > 1e-9);
+        assert_true(result.status == STATUS_OK && !result.message[0]);
+        assert_true(result.time == 0.1 && result.cost.steps > 5 && result.functional_count > 0);
+        assert_true(result.errors[FIELD_DENSITY].l1 > 0 && result.peak_rss > 1e6);
+        if (!plain) assert_true(result.matrix.condition_max >= 1);
+        assert_true(result.regularity.nearest > 0);
+        run_free(&result);
+    }
+}
+
+/* What breaks down says so, in the result and as an error, and leaves its last sound state. */
+static void breakdowns(void **state)
+{
+    const struct run run = resolved("two_rarefactions", "n=40 cfl=50");
+    struct run_result result = {0};
+    struct error error = {0};
+    (void)state;
+    assert_int_equal(run_execute(&run, &result, &error), STATUS_BROKE_DOWN);
+    assert_int_equal(result.status, STATUS_BROKE_DOWN);
+    assert_true(result.message[0] && result.snapshot.n == 40);
+    assert_string_equal(error.message, result.message);
+    assert_int_equal(error.status, STATUS_BROKE_DOWN);
+    assert_true(isnan(result.matrix.condition_max));
+    run_free(&result);
+}
+
+static size_t text_of(const char *path, char *text, size_t most)
+{
+    FILE *file = fopen(path, "r");
+    if (!file) return 0;
+    const size_t n = fread(text, 1, most, file);
+    fclose(file);
+    return n;
+}
+
+/* As many as there are; each is what a run to its time leaves, and the run itself is as without. */
+static void snapshots_change_nothing(void **state)
+{
+    static char here[1 << 16], there[1 << 16];
+    char path[64], alone[64];
+    struct snapshots snapshots = {.path = path, .every = 0.025};
+    struct run run = resolved("sod", "n=60 t_end=0.1 energy=internal");
+    struct error error = {0};
+    (void)state;
+    snprintf(path, sizeof path, "%s/s.csv", folder);
+    snprintf(alone, sizeof alone, "%s/alone.csv", folder);
+    struct run_result usual = executed(&run);
+    run.asked.snapshots = &snapshots;
+    struct run_result with = executed(&run);
+    assert_int_equal(snapshots.trouble.status, STATUS_OK);
+    assert_true(with.cost.steps == usual.cost.steps && with.energy == usual.energy);
+    for (size_t i = 0; i < usual.snapshot.n; i++)
+        assert_true(with.snapshot.x[0][i] == usual.snapshot.x[0][i] &&
+                    with.snapshot.u[i] == usual.snapshot.u[i]);
+    run_free(&with);
+    run_free(&usual);
+    static const char *const ends[] = {"t_end=0", "t_end=0.025", "t_end=0.05", "t_end=0.075"};
+    for (size_t k = 0; k < 5; k++) {
+        char *file = snapshots_path(&snapshots, k), words[64];
+        const size_t n = text_of(file, here, sizeof here);
+        unlink(file);
+        free(file);
+        assert_true((n > 0) == (k < 4));
+        if (k == 4) break;
+        snprintf(words, sizeof words, "n=60 energy=internal %s", ends[k]);
+        const struct run shorter = resolved("sod", words);
+        struct run_result result = executed(&shorter);
+        assert_int_equal(run_write_snapshot(&result, alone, &error), STATUS_OK);
+        run_free(&result);
+        const size_t lines = text_of(alone, there, sizeof there);
+        unlink(alone);
+        assert_true(n > 1000 && lines > 1000);
+        if (k < 2) { /* the steps to the first are those of the run that ends there */
+            assert_int_equal(n, lines);
+            assert_memory_equal(here, there, n);
+        }
+    }
+}
+
+static bool stop_at_ten(void *context, double time, uint64_t steps)
+{
+    (void)context, (void)time;
+    return steps < 10;
+}
+
+/* A run that is interrupted goes on from its last checkpoint to the same last bit, also what has
+ * grown until then. */
+static void goes_on(void **state)
+{
+    static const char *const cases[] = {"sod", "kelvin_helmholtz_mode"};
+    static const char *const keys[] = {"n=60 t_end=0.1", "n=12^2 t_end=1.2"};
+    char path[64];
+    (void)state;
+    snprintf(path, sizeof path, "%s/state", folder);
+    for (int k = 0; k < 2; k++) {
+        struct run run = resolved(cases[k], keys[k]);
+        struct run_result usual = executed(&run);
+        struct checkpoint checkpoint = {.path = path, .build = "b", .run = "{}", .snapshot = 7};
+        run.asked.checkpoint = &checkpoint;
+        run.asked.progress = stop_at_ten;
+        run.asked.each_step = true;
+        struct run_result part = executed(&run);
+        assert_true(part.cost.steps == 10 && part.time < usual.time);
+        assert_int_equal(checkpoint.trouble.status, STATUS_OK);
+        assert_true(checkpoint.snapshot == -1); /* there are none on the way */
+        run_free(&part);
+        run.asked.progress = NULL;
+        checkpoint.resume = true;
+        struct run_result again = executed(&run);
+        assert_true(again.cost.steps == usual.cost.steps && again.time == usual.time);
+        assert_true(again.energy == usual.energy && again.momentum == usual.momentum);
+        assert_int_equal(again.functional_count, usual.functional_count);
+        for (size_t i = 0; i < usual.functional_count; i++)
+            assert_memory_equal(&again.functionals[i].value, &usual.functionals[i].value,
+                                sizeof(double));
+        for (size_t i = 0; i < usual.snapshot.n; i++)
+            assert_true(again.snapshot.x[0][i] == usual.snapshot.x[0][i] &&
+                        again.snapshot.u[i] == usual.snapshot.u[i]);
+        run_free(&again);
+        checkpoint.build = "c"; /* of another build: nothing is run */
+        struct error error = {0};
+        assert_int_equal(run_execute(&run, &again, &error), STATUS_BAD_INPUT);
+        assert_non_null(strstr(error.message, "another build"));
+        run_free(&usual);
+        unlink(path);
+    }
+}
+
+/* While it grows the amplitude is seen 17 times, no more often than the run lasts. */
+static void growth(void **state)
+{
+    (void)state;
+    struct run run = resolved("kelvin_helmholtz_mode", "n=12^2 t_end=1.84");
+    double times[2];
+    run.problem.problem->growing->during(&run.problem, times);
+    assert_true(times[0] > 0 && times[1] < 1.84 + 1e-2 && times[0] < times[1]);
+    for (int parts = 4; parts <= 16; parts += 6) {
+        char words[64];
+        /* between two stops */
+        snprintf(words, sizeof words, "n=12^2 t_end=%.17g",
+                 times[0] + (times[1] - times[0]) * (parts - 0.5) / 16);
+        run = resolved("kelvin_helmholtz_mode", words);
+        struct run_result result = executed(&run);
+        double t = 0, tt = 0;
+        for (int i = 0; i < parts; i++) {
+            const double stop = times[0] + (times[1] - times[0]) * i / 16;
+            t += stop, tt += stop * stop;
+        }
+        assert_int_equal(result.growth.n, parts);
+        near_relative(result.growth.t, t, 1e-13);
+        near_relative(result.growth.tt, tt, 1e-13);
+        assert_true(isfinite(result.growth.y) && isfinite(result.growth.ty));
+        run_free(&result);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_is_conserved),
+        cmocka_unit_test(breakdowns),
+        cmocka_unit_test(snapshots_change_nothing),
+        cmocka_unit_test(goes_on),
+        cmocka_unit_test(growth),
+    };
+    return cmocka_run_group_tests(tests, begin, end);
+}
