@@ -338,7 +338,7 @@ static void no_floor(void **state)
     const struct scheme scheme = result->scheme;
     *result = (struct study_result){.settings = settings, .scheme = scheme};
     study.settings.file.gates[0] =
-        (struct case_gate){NULL, FIELD_DENSITY, NORM_L1, {0.6, 0.7, 1}, {0, ""}, {0, ""}};
+        (struct case_gate){.field = FIELD_DENSITY, .norm = NORM_L1, .gate = {0.6, 0.7, 1}};
     study.settings.file.gate_count = 1;
     assert_int_equal(study_judge(&study, &pool, &error), STATUS_OK);
     assert_int_equal(result->orders[0][0].status, GATE_FAIL);
