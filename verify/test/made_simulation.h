@@ -11,7 +11,7 @@
 #include "simulation.h"
 
 /* Of n particles on [0, 1]; simulation_destroy it. */
-static struct simulation *made_simulation(size_t n)
+static inline struct simulation *made_simulation(size_t n)
 {
     double *storage = malloc(4 * n * sizeof *storage);
     double *x = storage, *v = x + n, *m = v + n, *u = m + n;
@@ -43,14 +43,14 @@ static struct simulation *made_simulation(size_t n)
     return simulation;
 }
 
-static void made_run(struct simulation *simulation, double t_end)
+static inline void made_run(struct simulation *simulation, double t_end)
 {
     struct error error;
     if (simulation_run(simulation, t_end, NULL, NULL, &error)) fail_msg("%s", error.message);
 }
 
 /* Are both in the same state, to the last bit? */
-static bool made_alike(const struct simulation *a, const struct simulation *b)
+static inline bool made_alike(const struct simulation *a, const struct simulation *b)
 {
     struct snapshot s, t;
     simulation_snapshot(a, &s);

@@ -1,0 +1,656 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What stands around the sums in 1D, on scenes drawn at random: order, images at the ends, reach,
+ * who sleeps, each against a plain count over all particles. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include <float.h>
+
+#include "line/line.h"
+#include "made_simulation.h"
+#include "near.h"
+
+enum { GHOSTS = 256, SCENES = 40 };
+
+static uint64_t drawn = 1;
+
+static double draw(double low, double high)
+{
+    drawn = drawn * 6364136223846793005u + 1442695040888963407u;
+    return low + (high - low) * ldexp((double)((drawn ^ drawn >> 29) >> 11), -53);
+}
+
+static int draw_count(int low, int high)
+{
+    return low + (int)draw(0, high - low + 1);
+}
+
+/* A simulation that nobody steps: n particles in order on a period of 2, nothing else. */
+static void made(struct simulation *simulation, int n)
+{
+    struct error error;
+    memset(simulation, 0, sizeof *simulation);
+    simulation->team.size = simulation->team.most = 1;
+    if (particles_create(&simulation->particles, 1, n, GHOSTS, &error))
+        fail_msg("%s", error.message);
+    struct particles *a = &simulation->particles;
+    struct line *line = simulation->room = calloc(1, sizeof *line);
+    assert_non_null(line);
+    a->period[0] = 2;
+    double x = 0.1;
+    for (int i = 0; i < n; i++) {
+        a->x[0][i] = x;
+        x += draw(0.2, 1.8) * 1.99 / (1.8 * n);
+        a->x_old[0][i] = a->x[0][i] - 0.01;
+        a->id[i] = (size_t)i;
+        a->m[i] = 100 + i;
+        a->h[i] = draw(0.5, 6) * 2 / n;
+        a->h_inverse[i] = 1 / a->h[i];
+    }
+    line->range_count = (n + BATCH_MAX - 1) / BATCH_MAX;
+    line->ranges = calloc((size_t)(n / GROUP + 2), sizeof *line->ranges);
+    for (int b = 0; b < line->range_count; b++)
+        line->ranges[b] = (struct range){.first = (ptrdiff_t)b * BATCH_MAX, .reach = 1};
+    for (int b = 0; b < line->range_count; b++)
+        line->ranges[b].len = b + 1 < line->range_count ? BATCH_MAX : n - b * BATCH_MAX;
+}
+
+static void unmade(struct simulation *simulation)
+{
+    line_sums.free(simulation);
+    particles_destroy(&simulation->particles);
+    free(simulation->sleep.spans);
+}
+
+/* --- order ------------------------------------------------------------------------------------ */
+
+static void sorted_across_the_ends(void **state)
+{
+    (void)state;
+    for (int scene = 0; scene < SCENES; scene++) {
+        struct simulation s;
+        const int n = draw_count(2, 90);
+        made(&s, n);
+        struct particles *a = &s.particles;
+        for (int i = 0; i < n; i++) {
+            a->x[0][i] = draw(-7, 9);
+            a->x_old[0][i] = a->x[0][i] - 0.01 - 0.001 * i;
+        }
+        const double first = a->x[0][0];
+        double before[90];
+        memcpy(before, a->x[0], (size_t)n * sizeof *before);
+        assert_true(order_sort(a));
+        for (int i = 0; i < n; i++) {
+            const int id = (int)a->id[i];
+            assert_true(a->m[i] == 100 + id);
+            near_absolute(remainder(a->x[0][i] - before[id], 2), 0., 1e-14);
+            near_relative(a->x[0][i] - a->x_old[0][i], 0.01 + 0.001 * id, 1e-12);
+            near_inside(a->x[0][i], first, first + 2);
+            assert_true(i == 0 || a->x[0][i] >= a->x[0][i - 1]);
+        }
+        assert_true(a->x[0][0] == first);
+        unmade(&s);
+    }
+}
+
+static void no_order_of_what_is_no_position(void **state)
+{
+    (void)state;
+    static const double bad[] = {NAN, INFINITY, -INFINITY};
+    for (int k = 0; k < 3; k++)
+        for (int at = 0; at < 3; at++) {
+            struct simulation s;
+            struct error error;
+            made(&s, 70);
+            struct particles *a = &s.particles;
+            const int i = at == 0 ? 0 : at == 1 ? 64 : 69;
+            a->x[0][5] = a->x[0][9];
+            a->x[0][i] = bad[k];
+            const double kept = a->x[0][30];
+            assert_true(!order_sort(a) && a->x[0][30] == kept && a->id[30] == 30);
+            assert_int_equal(order_arrange(&s, &error), STATUS_BROKE_DOWN);
+            char name[64];
+            snprintf(name, sizeof name, "position of particle %d ", i);
+            assert_non_null(strstr(error.message, name));
+            unmade(&s);
+        }
+}
+
+static void crossings_are_counted(void **state)
+{
+    (void)state;
+    for (int scene = 0; scene < SCENES; scene++) {
+        struct simulation s;
+        const int n = draw_count(3, 200);
+        made(&s, n);
+        double *x = s.particles.x[0];
+        for (int i = 0; i < n; i++)
+            if (draw(0, 1) < 0.2) x[i] = draw(0, 2);
+        if (scene % 3 == 0) x[n / 2] = NAN;
+        const int first = draw_count(0, n - 2), len = draw_count(1, n - 1 - first);
+        int count = 0;
+        for (int i = first; i < first + len; i++) count += !(x[i] <= x[i + 1]);
+        assert_int_equal((int)order_crossings(&s.particles, first, len), count);
+        unmade(&s);
+    }
+}
+
+/* One pair out of order, or the last one beyond the first one's image, is seen wherever it is; what
+ * sleeps at rest is not looked at. */
+static void arranged_where_it_is_needed(void **state)
+{
+    (void)state;
+    struct error error;
+    for (int at = 0; at < 150; at++) {
+        struct simulation s;
+        made(&s, 150);
+        double *x = s.particles.x[0];
+        struct line *line = line_of(&s);
+        if (at < 149) {
+            const double kept = x[at];
+            x[at] = x[at + 1], x[at + 1] = kept;
+        } else {
+            x[149] = x[0] + 2.001;
+        }
+        line->ghosts_filled = 7;
+        assert_int_equal(order_arrange(&s, &error), STATUS_OK);
+        assert_int_equal(line->ghosts_filled, 0);
+        int moved = 0;
+        for (int i = 0; i < 150; i++) moved += (int)s.particles.id[i] != i;
+        assert_int_equal(moved, at % 149 ? 2 : 149); /* the period starts at the first one */
+        line->ghosts_filled = 7;
+        x[149] = x[0] + 2; /* at the image's place: in order */
+        assert_int_equal(order_arrange(&s, &error), STATUS_OK);
+        assert_int_equal(line->ghosts_filled, 7);
+        unmade(&s);
+    }
+}
+
+/* A kernel's own term alone exceeds what `count` particles at one place allow: they are laid around
+ * it, a thousandth of a spacing apart, or evenly in half of the room to the nearer neighbour. */
+static void coincident_ones_are_moved_apart(void **state)
+{
+    (void)state;
+    enum { MEMBERS = 12 };
+    const struct kernel *kernel =
+        (const struct kernel *)kernel_family.members[kernel_index("cubic_spline")];
+    const double least = kernel_least_eta(kernel, 1);
+    int binding = 0;
+    for (int count = 1; count <= 5; count++)
+        for (int first = 0; first + count <= MEMBERS; first++)
+            for (int wide = 0; wide < 4; wide++) {
+                struct simulation s;
+                made(&s, MEMBERS);
+                struct particles *a = &s.particles;
+                s.scheme.eta = wide == 3 ? 0.5 * least : 2;
+                s.scheme.kernel = *kernel;
+                const double at = a->x[0][first];
+                for (int i = 0; i < count; i++) a->x[0][first + i] = at;
+                for (int i = 0; i < MEMBERS; i++) {
+                    a->h[i] = (wide == 1 ? 3000 : wide == 2 ? 100 : 0.3) * (1 + 0.01 * i);
+                    a->x_old[0][i] = a->x[0][i];
+                }
+                const double below = first ? a->x[0][first - 1] : a->x[0][MEMBERS - 1] - 2;
+                const double above =
+                    first + count < MEMBERS ? a->x[0][first + count] : a->x[0][0] + 2;
+                const double even = 0.5 * fmin(at - below, above - at) / count;
+                const double gap = fmin(1e-3 * a->h[first] / s.scheme.eta, even);
+                const bool apart = count > 1 && count * least >= s.scheme.eta;
+                binding += apart && gap == even;
+                order_begin(&s);
+                for (int i = 0; i < count; i++)
+                    near_absolute(a->x[0][first + i],
+                                  at + (apart ? gap * (i - 0.5 * (count - 1)) : 0), 1e-15);
+                for (int i = 0; i < MEMBERS; i++) assert_true(a->x_old[0][i] == a->x[0][i]);
+                assert_true(order_crossings(a, 0, MEMBERS - 1) == 0);
+                unmade(&s);
+            }
+    assert_true(binding > 20);
+}
+
+/* While some sleep: who is at rest is not looked at, who drifts is; where the order has changed all
+ * wake. */
+static void sleepers_in_order(void **state)
+{
+    (void)state;
+    struct error error;
+    for (int at_rest = 0; at_rest < 2; at_rest++)
+        for (int at = -1; at < 149; at++) {
+            struct simulation s;
+            made(&s, 150);
+            double *x = s.particles.x[0];
+            struct groups *groups = &line_of(&s)->groups;
+            s.plan.sleep = false;
+            assert_int_equal(groups_begin(&s, &error), STATUS_OK);
+            s.sleep.on = true, s.sleep.at_rest = at_rest;
+            groups->awake[3] = 0;
+            line_of(&s)->range_count = 1;
+            line_of(&s)->ranges[0] = (struct range){.first = 64, .len = 16};
+            if (at >= 0) {
+                const double kept = x[at];
+                x[at] = x[at + 1], x[at + 1] = kept;
+            }
+            assert_int_equal(order_arrange(&s, &error), STATUS_OK);
+            const bool seen = at >= 0 && (!at_rest || (at >= 63 && at < 80));
+            assert_int_equal(groups->awake[3], seen);
+            assert_int_equal(s.sleep.on, !seen);
+            assert_int_equal(s.particles.id[at < 0 ? 0 : at],
+                             !seen || !at ? (at < 0 ? 0 : at) : at + 1);
+            unmade(&s);
+        }
+}
+
+/* --- images and reach ------------------------------------------------------------------------- */
+
+static void images_of_images(void **state)
+{
+    (void)state;
+    for (int n = 2; n < 40; n++) {
+        struct simulation s;
+        made(&s, n);
+        const struct particles *a = &s.particles;
+        for (int count = 0; count <= 3 * n; count++) {
+            for (int k = 1; k <= 3 * n + 2; k++) a->x[0][-k] = a->x[0][n - 1 + k] = 77;
+            ghosts_fill(a, a->x[0], count, 2);
+            for (int k = 1; k <= count; k++) {
+                near_relative(a->x[0][-k] + 10,
+                              a->x[0][(n - k % n) % n] + 10 - 2 * ((k - 1) / n + 1), 1e-14);
+                near_relative(a->x[0][n - 1 + k], a->x[0][(k - 1) % n] + 2 * ((k - 1) / n + 1),
+                              1e-14);
+            }
+            assert_true(a->x[0][-count - 1] == 77 && a->x[0][n + count] == 77);
+        }
+        unmade(&s);
+    }
+}
+
+/* What density reads: positions, masses where there are more than before, energies where they are
+ * summed; memory grows with a reserve. */
+static void images_for_density(void **state)
+{
+    (void)state;
+    struct error error;
+    for (int energy_sum = 0; energy_sum < 2; energy_sum++)
+        for (int count = 1; count < 4 * GHOSTS; count += 13)
+            for (int filled = count - 1; filled <= count + 1; filled++) {
+                struct simulation s;
+                made(&s, 30);
+                struct particles *a = &s.particles;
+                s.plan.energy_sum = energy_sum;
+                line_of(&s)->ghosts_filled = filled;
+                for (int i = 0; i < 30; i++) a->U[i] = 5 + i;
+                a->m[-1] = a->m[30] = 77, a->U[-1] = a->U[30] = 77;
+                assert_int_equal(ghosts_of_density(&s, count, &error), STATUS_OK);
+                const bool grown = count + 8 > GHOSTS;
+                assert_int_equal(a->ghosts, !grown ? GHOSTS : (count + count / 2 + 8 + 7) / 8 * 8);
+                assert_int_equal(line_of(&s)->ghosts_filled, count);
+                const bool masses = count > filled;
+                const double blank = grown ? 0 : 77;
+                assert_true(a->m[-1] == (masses ? a->m[29] : blank));
+                assert_true(a->m[30] == (masses ? a->m[0] : blank));
+                assert_true(a->U[-1] == (energy_sum ? 34 : blank));
+                assert_true(a->U[30] == (energy_sum ? 5 : blank));
+                near_relative(a->x[0][-1], a->x[0][29] - 2, 1e-14);
+                near_relative(a->x[0][30 + count - 1],
+                              a->x[0][(count - 1) % 30] + 2 * ((count - 1) / 30 + 1), 1e-14);
+                unmade(&s);
+            }
+}
+
+/* What pairs read, as far as they reach and one more; the rest only where the plan asks for it. */
+static void images_for_pairs(void **state)
+{
+    (void)state;
+    for (int plan = 0; plan < 8; plan++) {
+        struct simulation s;
+        made(&s, 30);
+        const struct particles *a = &s.particles;
+        s.plan.own_gradient = plan & 1;
+        s.plan.viscosity = plan & 2;
+        s.plan.grad_h = plan & 4;
+        line_of(&s)->reach = 6;
+        double *const arrays[] = {a->v[0], a->h,   a->h_inverse, a->V, a->P,     a->c,
+                                  a->g,    a->rho, a->alpha,     a->b, a->grad_h};
+        const bool read[] = {true,     true,     true,     true,     true,    true,
+                             plan & 1, plan & 2, plan & 2, plan & 4, plan & 4};
+        for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
+            for (int i = -GHOSTS; i < 30 + GHOSTS; i++)
+                arrays[k][i] = i < 0 || i >= 30 ? 77 : 100 * (double)k + i;
+        ghosts_of_pairs(&s);
+        for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
+            for (int d = 1; d <= 8; d++) {
+                const bool filled = read[k] && d <= 7;
+                assert_true(arrays[k][-d] == (filled ? arrays[k][30 - d] : 77));
+                assert_true(arrays[k][29 + d] == (filled ? arrays[k][d - 1] : 77));
+            }
+        unmade(&s);
+    }
+}
+
+/* A room is divided into ranges that are full but for the last one. */
+static void a_room_is_divided(void **state)
+{
+    (void)state;
+    for (size_t n = 20; n<330; n += n % 64> 61 || n % 64 < 3 ? 1 : 7) {
+        struct simulation *s = made_simulation(n);
+        const struct line *line = line_of(s);
+        assert_true(line->range_count * BATCH_MAX >= (ptrdiff_t)n);
+        assert_true((line->range_count - 1) * BATCH_MAX < (ptrdiff_t)n);
+        for (ptrdiff_t b = 0; b < line->range_count; b++) {
+            const bool last = b == line->range_count - 1;
+            assert_int_equal(line->ranges[b].first, BATCH_MAX * b);
+            assert_int_equal(line->ranges[b].len, last ? (ptrdiff_t)n - BATCH_MAX * b : BATCH_MAX);
+        }
+        assert_true(s->particles.ghosts == 64 && s->particles.n == (ptrdiff_t)n);
+        assert_true(line_sums.bytes(s, 1000) == 125. * sizeof(struct range));
+        simulation_destroy(s);
+    }
+    struct simulation none = {0};
+    line_sums.free(&none); /* of a room that there is not */
+}
+
+/* The largest offset within the particles' own widths. */
+static int farthest(const struct particles *a, const struct range *range)
+{
+    int most = 0;
+    for (ptrdiff_t i = range->first; i < range->first + range->len; i++)
+        for (int d = 1; d < GHOSTS - 8; d++)
+            if ((a->x[0][i + d] - a->x[0][i]) * a->h_inverse[i] < 1 ||
+                (a->x[0][i] - a->x[0][i - d]) * a->h_inverse[i] < 1)
+                if (d > most) most = d;
+    return most;
+}
+
+static void reach_is_what_widths_ask_for(void **state)
+{
+    (void)state;
+    for (int scene = 0; scene < SCENES; scene++) {
+        struct simulation s;
+        made(&s, draw_count(20, 300));
+        const struct particles *a = &s.particles;
+        struct line *line = line_of(&s);
+        ghosts_fill(a, a->x[0], GHOSTS - 8, 2);
+        for (ptrdiff_t b = 0; b < line->range_count; b++) {
+            struct range *range = &line->ranges[b];
+            const int most = farthest(a, range);
+            for (int d = 1; d < 12; d++) {
+                int count = 0;
+                for (ptrdiff_t i = range->first; i < range->first + range->len; i++)
+                    count += (a->x[0][i + d] - a->x[0][i]) * a->h_inverse[i] < 1 ||
+                             (a->x[0][i] - a->x[0][i - d]) * a->h_inverse[i] < 1;
+                assert_int_equal((int)reach_inside(a, range->first, range->len, d), count);
+            }
+            /* raised as far as is needed, where images suffice for one more to be looked at */
+            const int needed = most < 1 ? 1 : most;
+            range->reach = draw_count(0, 1);
+            line->ghosts_filled = needed + 1;
+            assert_true(reach_cover(&s, range));
+            assert_int_equal(range->reach, needed);
+            range->reach = 1;
+            line->ghosts_filled = needed;
+            assert_false(reach_cover(&s, range));
+            range->reach = needed + draw_count(0, 3);
+            reach_tighten(&s, range);
+            assert_int_equal(range->reach, needed);
+        }
+        unmade(&s);
+    }
+}
+
+/* The widest reach among ranges that lie closer than it, on either side: as close as the shorter of
+ * the ranges between. */
+static void pairs_reach_as_far_as_the_wider_one(void **state)
+{
+    (void)state;
+    for (int scene = 0; scene < 10 * SCENES; scene++) {
+        struct simulation s;
+        made(&s, draw_count(40, 700));
+        struct line *line = line_of(&s);
+        const ptrdiff_t count = line->range_count;
+        for (ptrdiff_t b = 0; b < count; b++) {
+            struct range *range = &line->ranges[b];
+            if (scene % 2) range->len = draw_count(1, range->len); /* of spans that end anywhere */
+            range->reach = draw(0, 1) < 0.3 ? draw_count(1, 150) : draw_count(1, 4);
+            if (range->reach > line->reach) line->reach = range->reach;
+        }
+        for (ptrdiff_t b = 0; b < count; b++) {
+            ptrdiff_t most = line->ranges[b].reach, between = 0;
+            for (ptrdiff_t k = 1; k < count; k++) {
+                const struct range *sides[] = {&line->ranges[(b + k) % count],
+                                               &line->ranges[(b + count - k) % count]};
+                for (int side = 0; side < 2; side++)
+                    if (between < sides[side]->reach && sides[side]->reach > most)
+                        most = sides[side]->reach;
+                between += sides[0]->len < sides[1]->len ? sides[0]->len : sides[1]->len;
+            }
+            assert_int_equal(reach_of_pairs(&s, &line->ranges[b]), most);
+        }
+        unmade(&s);
+    }
+}
+
+static double counted;
+
+static void see(void *context, size_t i, const struct description *of)
+{
+    const struct particles *a = context;
+    int count = 0;
+    for (int j = -GHOSTS + 8; j < a->n + GHOSTS - 8; j++)
+        count += fabs(a->x[0][j] - a->x[0][i]) * a->h_inverse[i] < 1;
+    assert_true(of->neighbours == count);
+    assert_true(isnan(of->condition) && isnan(of->angle));
+    counted++;
+}
+
+static void neighbours_are_described(void **state)
+{
+    (void)state;
+    for (int scene = 0; scene < SCENES; scene++) {
+        struct simulation s;
+        made(&s, draw_count(20, 100));
+        ghosts_fill(&s.particles, s.particles.x[0], GHOSTS, 2);
+        counted = 0;
+        line_sums.describe(&s, see, &s.particles);
+        assert_true(counted == (double)s.particles.n);
+        unmade(&s);
+    }
+}
+
+/* --- sleep ------------------------------------------------------------------------------------ */
+
+/* Each limit exactly, and the next number beyond it, in d dimensions. */
+static void disturbed_beyond_a_limit(void **state)
+{
+    (void)state;
+    for (int dim = 1; dim <= 3; dim++)
+        for (int n = 10; n < 9000; n += 1700)
+            for (int what = 0; what < 3; what++)
+                for (int beyond = 0; beyond < 2; beyond++)
+                    for (int at = 2; at < 8; at++) {
+                        struct simulation s = {.plan.alpha = what == 2};
+                        struct error error;
+                        struct particles *a = &s.particles;
+                        if (particles_create(a, dim, n, 0, &error)) fail_msg("%s", error.message);
+                        const double limit = fmax(1e-11, 30 * DBL_EPSILON * n);
+                        for (int i = 0; i < 9; i++) {
+                            a->P[i] = 3 + i, a->c[i] = 2 + i, a->h[i] = 0.25 + 0.125 * i;
+                            a->v[0][i] = -4;
+                            const double area = dim == 1   ? 1
+                                                : dim == 2 ? a->h[i]
+                                                           : a->h[i] * a->h[i];
+                            double *of = what == 0   ? &a->F[0][i]
+                                         : what == 1 ? &a->de[i]
+                                                     : &a->dalpha[i];
+                            *of = what == 0   ? limit * a->P[i] * area
+                                  : what == 1 ? limit * a->P[i] * (a->c[i] + 4) * area
+                                              : limit * a->c[i] / a->h[i];
+                            if (what == 2) *of *= 1 - 4 * DBL_EPSILON;
+                            if (beyond && i == at) *of *= 1 + (what == 2 ? 8 : 1) * DBL_EPSILON;
+                            if (i % 2) *of = -*of;
+                        }
+                        const bool disturbed = sleep_disturbed(&s, 3, 4);
+                        assert_int_equal(disturbed, beyond && at >= 3 && at < 7);
+                        if (what == 2) {
+                            s.plan.alpha = false;
+                            assert_false(sleep_disturbed(&s, 3, 4));
+                        }
+                        a->P[5] = NAN;
+                        assert_true(sleep_disturbed(&s, 3, 4));
+                        particles_destroy(a);
+                    }
+}
+
+/* A scene in which all can sleep, at speed v, but those groups that are given: dp/dt is not 0 in
+ * one particle of theirs. */
+static void at_rest(struct simulation *s, const bool *disturbed, double v)
+{
+    struct particles *a = &s->particles;
+    s->plan.sleep = true;
+    for (ptrdiff_t i = -GHOSTS; i < a->n + GHOSTS; i++)
+        a->P[i] = a->c[i] = 1, a->v[0][i] = v, a->p[0][i] = v;
+    ghosts_fill(a, a->x[0], GHOSTS - 8, 2);
+    ghosts_fill(a, a->h_inverse, GHOSTS - 8, 0);
+    for (ptrdiff_t i = 0; i < a->n; i++) {
+        a->F[0][i] = 1e-12, a->de[i] = -1e-12;
+        if (disturbed[i / GROUP] && (i % GROUP == (i / GROUP) % GROUP || i == a->n - 1))
+            a->F[0][i] = -1e-10;
+    }
+}
+
+/* Who is awake, and in what spans and ranges, against the groups that should be. */
+static void sleeps(const struct simulation *s, const bool *awake)
+{
+    const struct line *line = line_of(s);
+    const ptrdiff_t n = s->particles.n, groups = (n + GROUP - 1) / GROUP;
+    ptrdiff_t spans = 0, ranges = 0, count = 0;
+    double rate = 0;
+    for (ptrdiff_t g = 0; g < groups; g++) {
+        assert_int_equal(line->groups.awake[g] != 0, awake[g]);
+        assert_true(awake[g] ? line->groups.rate[g] == 0 : line->groups.rate[g] > 0);
+        rate = fmax(rate, line->groups.rate[g]);
+        for (ptrdiff_t i = g * GROUP; !awake[g] && i < n && i < (g + 1) * GROUP; i++)
+            assert_true(s->particles.F[0][i] == 0 && s->particles.de[i] == 0);
+    }
+    for (ptrdiff_t g = 0, end; g < groups; g = end) {
+        for (end = g + 1; end < groups && awake[end] == awake[g];) end++;
+        if (!awake[g]) continue;
+        const ptrdiff_t first = g * GROUP, last = end * GROUP < n ? end * GROUP : n;
+        assert_true(spans < s->sleep.span_count);
+        assert_int_equal(s->sleep.spans[spans].first, first);
+        assert_int_equal(s->sleep.spans[spans].len, last - first);
+        for (ptrdiff_t at = first; at < last; at += BATCH_MAX) {
+            assert_true(ranges < line->range_count);
+            assert_int_equal(line->ranges[ranges].first, at);
+            assert_int_equal(line->ranges[ranges].len,
+                             last - at < BATCH_MAX ? last - at : BATCH_MAX);
+            assert_int_equal(line->ranges[ranges].reach, 1);
+            ranges++;
+        }
+        spans++;
+        count += last - first;
+    }
+    assert_int_equal(s->sleep.span_count, spans);
+    assert_int_equal(line->range_count, ranges);
+    assert_int_equal(s->sleep.awake_count, count);
+    assert_true(s->sleep.on == (count < n) && s->sleep.rate == rate);
+}
+
+static void wake_around(bool *awake, ptrdiff_t groups, ptrdiff_t g, ptrdiff_t margin)
+{
+    for (ptrdiff_t k = -margin; k <= margin; k++)
+        awake[((g + k) % groups + groups) % groups] = true;
+}
+
+static ptrdiff_t margin_of(ptrdiff_t reach)
+{
+    ptrdiff_t margin = 0;
+    while (margin * GROUP < 2 * reach + 2) margin++;
+    return margin;
+}
+
+/* Who falls asleep at the start, and who wakes when a signal comes near the end of a span. */
+static void groups_sleep_and_wake(void **state)
+{
+    (void)state;
+    enum { MOST = 100 };
+    for (int scene = 0; scene < 10 * SCENES; scene++) {
+        struct simulation s;
+        struct error error;
+        const int n = scene % 4 ? draw_count(16, MOST * GROUP) : GROUP * draw_count(2, MOST);
+        const ptrdiff_t groups = (n + GROUP - 1) / GROUP;
+        bool disturbed[MOST] = {false}, awake[MOST] = {false};
+        made(&s, n);
+        struct line *line = line_of(&s);
+        ptrdiff_t reach = 0;
+        for (ptrdiff_t b = 0; b < line->range_count; b++) {
+            line->ranges[b].force_reach = draw_count(1, 12);
+            if (line->ranges[b].force_reach > reach) reach = line->ranges[b].force_reach;
+        }
+        for (ptrdiff_t g = 0; g < groups; g++) disturbed[g] = draw(0, 1) < 0.06;
+        at_rest(&s, disturbed, scene % 3 ? 0 : 0.1);
+        for (ptrdiff_t g = 0; g < groups; g++)
+            if (disturbed[g]) wake_around(awake, groups, g, margin_of(reach));
+        assert_int_equal(groups_begin(&s, &error), STATUS_OK);
+        sleeps(&s, awake);
+        assert_true(s.sleep.at_rest == (scene % 3 != 0 || !s.sleep.on));
+
+        /* of the disturbed ones in a span, the outermost two are looked for, no further inside
+         * than the margin */
+        bool later[MOST];
+        memcpy(later, awake, sizeof later);
+        for (ptrdiff_t i = 0; i < n; i++)
+            s.particles.F[0][i] = awake[i / GROUP] && draw(0, 1) < 0.02 ? 1 : 0;
+        for (ptrdiff_t b = 0; b < line->range_count; b++)
+            line->ranges[b].force_reach = draw_count(1, 12);
+        for (ptrdiff_t k = 0, b = 0; k < s.sleep.span_count; k++) {
+            const struct span *span = &s.sleep.spans[k];
+            const ptrdiff_t first = span->first / GROUP,
+                            last = (span->first + span->len - 1) / GROUP,
+                            from = margin_of(line->ranges[b].force_reach);
+            b += (span->len + BATCH_MAX - 1) / BATCH_MAX;
+            const ptrdiff_t to = margin_of(line->ranges[b - 1].force_reach);
+            bool moved[MOST] = {false};
+            for (ptrdiff_t i = 0; i < n; i++) moved[i / GROUP] |= s.particles.F[0][i] > 0;
+            ptrdiff_t g = first;
+            while (g <= last && g < first + from && !moved[g]) g++;
+            if (g <= last && g < first + from) wake_around(later, groups, g, from);
+            for (g = last; g >= first && g > last - to && !moved[g];) g--;
+            if (g >= first && g > last - to) wake_around(later, groups, g, to);
+        }
+        groups_update(&s);
+        sleeps(&s, later);
+        groups_wake_all(&s);
+        for (ptrdiff_t g = 0; g < groups; g++) later[g] = true;
+        sleeps(&s, later);
+        unmade(&s);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(sorted_across_the_ends),
+        cmocka_unit_test(no_order_of_what_is_no_position),
+        cmocka_unit_test(crossings_are_counted),
+        cmocka_unit_test(arranged_where_it_is_needed),
+        cmocka_unit_test(coincident_ones_are_moved_apart),
+        cmocka_unit_test(images_of_images),
+        cmocka_unit_test(reach_is_what_widths_ask_for),
+        cmocka_unit_test(pairs_reach_as_far_as_the_wider_one),
+        cmocka_unit_test(neighbours_are_described),
+        cmocka_unit_test(sleepers_in_order),
+        cmocka_unit_test(images_for_density),
+        cmocka_unit_test(images_for_pairs),
+        cmocka_unit_test(a_room_is_divided),
+        cmocka_unit_test(disturbed_beyond_a_limit),
+        cmocka_unit_test(groups_sleep_and_wake),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
