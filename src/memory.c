@@ -8,10 +8,11 @@ static double arrays_of(const struct simulation *simulation)
 {
     const struct plan *plan = &simulation->plan;
     const bool line = plan->dim == 1;
-    enum { VECTORS = 5, SCALARS = 15, ORDERS = 3 }; /* x x_old p v F; id, order, spare */
+    enum { VECTORS = 5, SCALARS = 13, ORDERS = 3 }; /* x x_old p v F; id, order, spare */
     double count = VECTORS * plan->dim + SCALARS + ORDERS;
     if (simulation->scheme.integrator->keeps_start) count += plan->dim + 2;
     if (plan->grad_h) count += 2;
+    if (line || plan->alpha || plan->jump) count += 2; /* alpha alpha_old */
     if (plan->alpha) count += 2;
     if (line || plan->own_gradient) count++;
     if (line && plan->slope) count++;

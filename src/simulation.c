@@ -97,6 +97,7 @@ static void set_particles(struct simulation *simulation, const struct scene *sce
     struct particles *a = &simulation->particles;
     const struct scheme *scheme = &simulation->scheme;
     const struct width_rule rule = {.dim = a->dim, .eta = scheme->eta};
+    const bool varies = simulation->plan.alpha || simulation->plan.jump;
     double mass = 0, volume = 1;
     for (ptrdiff_t i = 0; i < a->n; i++) mass += scene->m[i];
     for (int k = 0; k < a->dim; k++) volume *= a->period[k];
@@ -113,8 +114,9 @@ static void set_particles(struct simulation *simulation, const struct scene *sce
             a->p[k][i] = m * v;
             if (scheme->energy == ENERGY_TOTAL) a->e[i] += 0.5 * m * v * v;
         }
-        a->alpha[i] = a->alpha_old[i] =
-            simulation->plan.alpha || simulation->plan.jump ? scheme->alpha_min : scheme->alpha;
+        /* what is not written to takes no room */
+        if (varies || a->dim == 1)
+            a->alpha[i] = a->alpha_old[i] = varies ? scheme->alpha_min : scheme->alpha;
         a->h[i] = width_of(&rule, m, rho);
     }
 }

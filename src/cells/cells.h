@@ -58,13 +58,12 @@ struct cells_fields {
     const double *P, *c, *rho, *V; /* of the equation of state, V = Z/y */
     const double *b, *grad_h;      /* lagrangian */
     /* found: without the factor C/h^d */
-    double *sum_m, *sum_m_dh;        /* sum m w and sum m (d w + q w'), number: m = 1 */
-    double *sum_Z, *sum_Z_dh;        /* energy element */
-    double *matrix[CELLS_SYMMETRIC]; /* C h^-d times C of eq. ia: gradient = matrix x w(q) */
-    double *condition;               /* of the moment matrix */
-    double *steep;                   /* blended: the standard gradient's share */
-    double *slope[CELLS_SQUARE];     /* (grad v): d v_a/d x_b at a dim + b */
-    double *projector[CELLS_SYMMETRIC];
+    double *sum_m, *sum_m_dh;           /* sum m w and sum m (d w + q w'), number: m = 1 */
+    double *sum_Z, *sum_Z_dh;           /* energy element */
+    double *matrix[CELLS_SYMMETRIC];    /* C h^-d times C of eq. ia: gradient = matrix x w(q) */
+    double *condition;                  /* of the moment matrix */
+    double *steep;                      /* blended: the standard gradient's share */
+    double *slope[CELLS_SQUARE];        /* (grad v): d v_a/d x_b at a dim + b */
     double *alpha_local, *decay;        /* of the switch */
     double *F[3], *de, *div_v, *signal; /* signal: largest speed of the particle's pairs */
 };
@@ -104,7 +103,7 @@ void cells_widths(struct cells *cells, const struct cells_fields *fields,
                   const struct width_rule *rule, const double *radius, double *h, double *h_inverse,
                   unsigned char *outcome);
 
-/* matrix, condition, slope, projector, as the method needs them; slopes of a particle whose matrix
+/* matrix, condition, slope, as the method needs them; slopes of a particle whose matrix
  * is not to be used are 0. Returns how many particles have no matrix for their gradient. */
 size_t cells_matrix(struct cells *cells, const struct cells_fields *fields);
 

@@ -28,6 +28,12 @@ ALWAYS_INLINE void fill_matrices(int dim, int mirrored, const struct cells *cell
                                  const struct cells_fields *fields, size_t i, double *record)
 {
     const int *at = cells->force.offset;
+    double projector[CELLS_SYMMETRIC] = {0};
+    if (at[FIELD_PROJECTOR] >= 0) {
+        double L[CELLS_SQUARE];
+        for (int k = 0; k < dim * dim; k++) L[k] = fields->slope[k][i];
+        cells_project(dim, L, projector);
+    }
     for (int a = 0; a < dim; a++)
         for (int b = 0; b < dim; b++) {
             const double sign = lanes_sign(mirrored, a) * lanes_sign(mirrored, b);
@@ -36,8 +42,7 @@ ALWAYS_INLINE void fill_matrices(int dim, int mirrored, const struct cells *cell
                 record[at[FIELD_SLOPE] + full] = sign * fields->slope[full][i];
             if (b < a) continue;
             if (at[FIELD_MATRIX] >= 0) record[at[FIELD_MATRIX] + ab] = sign * fields->matrix[ab][i];
-            if (at[FIELD_PROJECTOR] >= 0)
-                record[at[FIELD_PROJECTOR] + ab] = sign * fields->projector[ab][i];
+            if (at[FIELD_PROJECTOR] >= 0) record[at[FIELD_PROJECTOR] + ab] = sign * projector[ab];
         }
 }
 

@@ -6,6 +6,7 @@
 #include <math.h>
 
 #include "moments.h"
+#include "pairs.h"
 #include "stamp.h"
 
 static void fill_records(struct cells *cells, const struct cells_fields *fields)
@@ -66,7 +67,7 @@ ALWAYS_INLINE void project_body(int dim, const double L[CELLS_SQUARE],
             projector[symmetric_at(dim, a, b)] = trace2 > 0 ? kappa * M2[a * dim + b] / trace2 : 0;
 }
 
-static void project(int dim, const double L[CELLS_SQUARE], double projector[CELLS_SYMMETRIC])
+void cells_project(int dim, const double L[CELLS_SQUARE], double projector[CELLS_SYMMETRIC])
 {
     if (dim == 2)
         project_body(2, L, projector);
@@ -87,10 +88,6 @@ static void velocity_gradient(struct cells *cells, const struct cells_fields *fi
             dim, count, lanes, weight, inverse, lane_of(lanes, layout, FIELD_VELOCITY),
             cells->records + (ptrdiff_t)slot * layout->size + layout->offset[FIELD_VELOCITY], L);
     for (int k = 0; k < dim * dim; k++) fields->slope[k][i] = L[k];
-    if (!cells->method.projected) return;
-    double projector[CELLS_SYMMETRIC] = {0};
-    project(dim, L, projector);
-    for (int k = 0; k < dim * (dim + 1) / 2; k++) fields->projector[k][i] = projector[k];
 }
 
 /* The standard gradient's share, CONVENTIONS eq. 4.8: smoothstep((|grad h| - 0.05)/0.1), grad h by

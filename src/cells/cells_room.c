@@ -93,7 +93,7 @@ static struct cells_method method_of(const struct simulation *simulation)
 
 /* --- memory ----------------------------------------------------------------------------------- */
 
-enum { ARRAYS_MAX = 12 + 2 * CELLS_SYMMETRIC + CELLS_SQUARE };
+enum { ARRAYS_MAX = 12 + CELLS_SYMMETRIC + CELLS_SQUARE };
 
 /* The arrays that a room has for the scheme. */
 static size_t list_arrays(const struct simulation *simulation, struct room *room,
@@ -101,7 +101,6 @@ static size_t list_arrays(const struct simulation *simulation, struct room *room
 {
     const struct plan *plan = &simulation->plan;
     const size_t dim = (size_t)plan->dim, symmetric = dim * (dim + 1) / 2;
-    const bool projected = simulation->scheme.viscosity == VISCOSITY_PROJECTED;
     size_t count = 0;
     of[count++] = &room->radius;
     of[count++] = &room->kept;
@@ -113,7 +112,6 @@ static size_t list_arrays(const struct simulation *simulation, struct room *room
     if (simulation->scheme.gradient == GRADIENT_BLENDED) of[count++] = &room->fields.steep;
     for (size_t k = 0; plan->matrix && k < symmetric; k++) of[count++] = &room->fields.matrix[k];
     for (size_t k = 0; plan->slope && k < dim * dim; k++) of[count++] = &room->fields.slope[k];
-    for (size_t k = 0; projected && k < symmetric; k++) of[count++] = &room->fields.projector[k];
     if (plan->jump) of[count++] = &room->fields.alpha_local, of[count++] = &room->fields.decay;
     return count;
 }
@@ -544,8 +542,9 @@ static enum status begin_sleep(struct simulation *simulation, struct error *erro
     memset(asleep, 1, n);
     grid_wake(cells_grid(room->cells), room->disturbed, WAKE_LAYERS, asleep);
     for (ptrdiff_t i = 0; i < a->n; i++) {
+        if (!asleep[i]) continue;
         room->kept[i] = a->h_inverse[i];
-        if (asleep[i]) sleep_begin(simulation, i, 1);
+        sleep_begin(simulation, i, 1);
     }
     sleep->awake_count = count_awake(room, a->n);
     return STATUS_OK;

@@ -32,6 +32,10 @@ void cells_pair_gradients(const struct cells *cells, const struct pairs *pairs);
 /* K of every pair: what viscosity adds to a_i and a_j alike. */
 void cells_viscosity(const struct cells *cells, const struct pairs *pairs);
 
+/* P of `projected` from a velocity gradient, the matrix that takes noise along resolved shear out.
+ */
+void cells_project(int dim, const double L[CELLS_SQUARE], double projector[CELLS_SYMMETRIC]);
+
 /* Heat that is conducted to the particle. */
 double cells_conduction(const struct cells *cells, const struct pairs *pairs);
 

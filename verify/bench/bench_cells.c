@@ -60,12 +60,11 @@ static bool allocate(struct bench_cells *bench, size_t n, struct arrays *of)
     enum { READ = sizeof read / sizeof *read, FOUND = sizeof found / sizeof *found };
     const size_t stride = n + 16; /* whole vectors read a little beyond */
     double *next = bench->storage =
-        calloc((READ + FOUND + 2 * CELLS_SYMMETRIC + CELLS_SQUARE) * stride, sizeof *next);
+        calloc((READ + FOUND + CELLS_SYMMETRIC + CELLS_SQUARE) * stride, sizeof *next);
     if (!next) return false;
     for (size_t k = 0; k < READ; k++, next += stride) *read[k] = next;
     for (size_t k = 0; k < FOUND; k++, next += stride) *found[k] = next;
-    for (size_t k = 0; k < CELLS_SYMMETRIC; k++, next += 2 * stride)
-        f->matrix[k] = next, f->projector[k] = next + stride;
+    for (size_t k = 0; k < CELLS_SYMMETRIC; k++, next += stride) f->matrix[k] = next;
     for (size_t k = 0; k < CELLS_SQUARE; k++, next += stride) f->slope[k] = next;
     f->n = n;
     for (int a = 0; a < 3; a++) f->x[a] = of->x[a], f->v[a] = of->v[a];
