@@ -79,7 +79,8 @@ double cells_bytes(const struct cells_method *method, double n, double neighbour
 {
     struct cells cells = {.method = *method};
     lay_out(&cells);
-    return n * lanes_longest_record(&cells) * (double)sizeof(double) + grid_bytes(n, neighbours);
+    return n * lanes_longest_record(&cells) * (double)sizeof(double) +
+           grid_bytes(method->box.dim, n, neighbours);
 }
 
 static bool reserve_records(struct cells *cells, size_t n)
@@ -115,7 +116,10 @@ struct cells *cells_create(const struct cells_method *method, size_t n)
 void cells_destroy(struct cells *cells)
 {
     if (!cells) return;
-    for (int t = 0; cells->lanes && t < cells->method.threads; t++) free(cells->lanes[t].block);
+    for (int t = 0; cells->lanes && t < cells->method.threads; t++) {
+        free(cells->lanes[t].block);
+        grid_reader_free(&cells->lanes[t].reader);
+    }
     free(cells->lanes);
     free(cells->records);
     free(cells->images.source);
@@ -259,12 +263,14 @@ static struct description describe(const struct cells *cells, const struct cells
 {
     const int dim = cells->method.box.dim;
     const struct grid_list *list = &cells->lists[slot];
+    const int32_t *slots =
+        grid_neighbours(cells->grid, &cells->lanes[0].reader, cells->lists, slot);
     double C[CELLS_SQUARE], cotangent = HUGE_VAL;
     struct description of = {.neighbours = 1, .condition = condition_of(cells, fields, i, C)};
     const bool used = of.condition <= cells->method.worst_condition;
     for (int32_t k = 0; k < list->count; k++) {
         double x[3], Cx[3];
-        const double r2 = separate(cells, slot, (size_t)list->slots[k], x);
+        const double r2 = separate(cells, slot, (size_t)slots[k], x);
         if (!(sqrt(r2) * fields->h_inverse[i] < 1)) continue;
         of.neighbours++;
         if (!used) continue;

@@ -49,7 +49,7 @@ void grid_destroy(struct grid *grid)
         for (size_t c = 0; grid->pools && c < grid->pools[t].count; c++)
             free(grid->pools[t].chunks[c]);
         if (grid->pools) free(grid->pools[t].chunks), free(grid->pools[t].sizes);
-        if (grid->candidates) free(grid->candidates[t].slot);
+        if (grid->candidates) free(grid->candidates[t].x[0]);
     }
     free(grid->pools);
     free(grid->candidates);
@@ -246,8 +246,9 @@ static void find_reaches(struct grid *grid)
         most = widest > most ? widest : most;
     }
     bool same = true;
-    for (int a = 0; a < grid->box.dim; a++)
+    for (int a = 0; a < 3; a++)
         same &= grid_cells_within(grid, a, least) == grid_cells_within(grid, a, most);
+    for (int a = 0; a < 3; a++) grid->within[a] = same ? grid_cells_within(grid, a, most) : -1;
     if (same) {
         for (size_t c = 0; c < grid->cell_count; c++) grid->reach[c] = most;
         return;
@@ -299,6 +300,7 @@ struct grid *grid_create(const struct grid_box *box, size_t n, int threads)
     grid->box = *box;
     grid->threads = grid->team = threads;
     grid->find = grid_find_choose();
+    grid->read = grid_read_choose();
     grid->pools = calloc((size_t)threads, sizeof *grid->pools);
     grid->candidates = calloc((size_t)threads, sizeof *grid->candidates);
     if (grid->pools && grid->candidates && reserve_points(grid, n)) return grid;
@@ -406,11 +408,14 @@ size_t grid_parts(const struct grid *grid, const uint32_t **begin)
     return grid->parts;
 }
 
-double grid_bytes(double n, double neighbours)
+double grid_bytes(int dim, double n, double neighbours)
 {
     /* cell_of, order; position; radius, radius2 and place; list */
     const double point =
         2 * sizeof(uint32_t) + 4 * sizeof(double) + 5 * sizeof(float) + sizeof(struct grid_list);
-    /* lists end in half a vector of fillings, and at the end of a chunk half a list is left */
-    return n * (point + (neighbours + 0.5 * GRID_LANES) * sizeof(int32_t));
+    /* 2D: lists end in half a vector of fillings; 3D: a mark for each point of 3 x 3 x 3 cells as
+     * wide as the radius, of which a ball has 4 pi/3 */
+    const double list = dim == 2 ? (neighbours + 0.5 * GRID_LANES) * sizeof(int32_t)
+                                 : (neighbours * 27 / 4.19 + COPIED) / 8;
+    return n * (point + list);
 }

@@ -13,8 +13,8 @@
 
 #include "status.h"
 
-/* A list holds whole vectors; the rest of the last one is filled with the sentinel, a slot of its
- * own at the end of every array in slot order. */
+/* A list is read in whole vectors; the rest of the last one is filled with the sentinel, a slot of
+ * its own at the end of every array in slot order. */
 enum { GRID_LANES = 8 };
 
 struct grid_box {
@@ -23,10 +23,23 @@ struct grid_box {
     bool periodic[3];
 };
 
+/* Lists are kept as slots in 2D; in 3D, where they are what takes the most memory, as marks of
+ * those who are near among the points of the cells around: a bit each, and six of them for a
+ * neighbour. */
 struct grid_list {
-    const int32_t *slots; /* count of them, then sentinels up to whole vectors */
+    const void *kept; /* NULL: not active */
     int32_t count;
     bool wrapped; /* differences of positions need the nearest image */
+    bool marked;  /* kept are marks, else slots */
+};
+
+/* What one thread reads lists with, zero at first. */
+struct grid_reader {
+    size_t room, longest;    /* candidates and entries of lists that there is room for */
+    size_t cell, begin, end; /* whose candidates are there, and its slots; end 0: none yet */
+    ptrdiff_t at[3];         /* the cell's place */
+    size_t slot, count;      /* whose list is there; candidates */
+    int32_t *candidates, *slots;
 };
 
 struct grid; /* private to grid.c but for what the functions below give */
@@ -50,7 +63,7 @@ enum status grid_search(struct grid *grid, size_t n, size_t active, const double
  * n. position: slot -> {x, y, z (0 in 2D), 0}, wrapped into the box on periodic axes. */
 const uint32_t *grid_order(const struct grid *grid); /* slot -> point, n of them */
 const double (*grid_positions(const struct grid *grid))[4];
-const struct grid_list *grid_lists(const struct grid *grid); /* of each slot; count 0: not active */
+const struct grid_list *grid_lists(const struct grid *grid); /* of each slot */
 double grid_side(const struct grid *grid, int axis);         /* period, 0: open */
 /* Wakes whoever is in a cell that comes within `layers` reaches of a cell with a disturbed point:
  * clears their flag. n of each flag. */
@@ -58,11 +71,26 @@ void grid_wake(const struct grid *grid, const unsigned char *disturbed, int laye
                unsigned char *asleep);
 int grid_longest(const struct grid *grid); /* list, in whole vectors */
 
+/* Makes room for the lists of the last search, half as much again as they need; needed after every
+ * search. false: no memory. */
+bool grid_reader_reserve(const struct grid *grid, struct grid_reader *reader);
+void grid_reader_free(struct grid_reader *reader);
+
+/* The list of an active slot, of grid_lists: its count of slots, then sentinels up to whole
+ * vectors. Until the reader reads another one; slots of a cell are fastest one after the other. */
+const int32_t *grid_read(const struct grid *grid, struct grid_reader *reader, size_t slot);
+
+static inline const int32_t *grid_neighbours(const struct grid *grid, struct grid_reader *reader,
+                                             const struct grid_list *lists, size_t slot)
+{
+    return lists[slot].marked ? grid_read(grid, reader, slot) : lists[slot].kept;
+}
+
 /* Parts of the slots for threads to share: at most 256 slots each, independent of the number of
  * threads. begin: parts + 1 slots. */
 size_t grid_parts(const struct grid *grid, const uint32_t **begin);
 
 /* Bytes that a grid of n points with lists of `neighbours` each comes to use. */
-double grid_bytes(double n, double neighbours);
+double grid_bytes(int dim, double n, double neighbours);
 
 #endif

@@ -11,10 +11,10 @@ enum {
     TILE = 8,          /* columns of a tile, each way */
     PART = 256,        /* slots of a part at most, but for a cell that holds more */
     SAMPLE = 1000,     /* radii that choose the size of the cells */
-    CHUNK = 1 << 18,   /* entries of lists that a thread asks for at once */
+    CHUNK = 1 << 18,   /* words of lists that a thread asks for at once */
     CELLS_A_POINT = 2, /* at most */
     COPIED = 16,       /* points that are copied at once; arrays of slots are that much longer */
-    AHEAD = 256,       /* entries of lists that are fetched before they are written */
+    AHEAD = 256,       /* words of lists that are fetched before they are written */
     BEYOND = 16        /* entries that a vector may write after the end of a list */
 };
 
@@ -22,21 +22,25 @@ enum {
 struct pool {
     int32_t **chunks;
     size_t *sizes;
-    size_t count, used_chunks, used; /* chunks there are; in use; entries used of the last one */
+    size_t count, used_chunks, used; /* chunks there are; in use; words used of the last one */
 };
 
 /* What one thread needs for the cell that it works on: candidates of its points. */
 struct candidates {
-    size_t capacity;
+    size_t capacity, most; /* most: that a cell has had in this search */
     float *x[3], *radius2;
-    int32_t *slot;
     uint8_t *near;
+    uint16_t *marks;
+    int32_t *slots; /* in 2D */
 };
 
-/* The slots of the candidates that are near a point but s itself. Returns how many; the list has
- * room for all and BEYOND. */
+/* Marks the candidates that are near a point. Returns how many. */
 typedef int32_t find_loop(int dim, const struct candidates *candidates, size_t count,
-                          const float at[3], float radius2, int32_t s, int32_t *list);
+                          const float at[3], float radius2, uint16_t *marks);
+
+/* The slots of the marked candidates; the list has room for all and BEYOND. Returns how many. */
+typedef int32_t read_loop(const int32_t *candidates, const uint16_t *marks, size_t count,
+                          int32_t *list);
 
 struct grid {
     struct grid_box box;
@@ -52,6 +56,7 @@ struct grid {
     uint32_t *cell_of;    /* of each point */
     float *widest;        /* largest radius of the cell's points; in units, as all floats here */
     float *reach;         /* how far its points and those of others reach across it */
+    ptrdiff_t within[3];  /* cells that every reach covers; -1: not all the same */
     unsigned char *marks; /* two of each cell, for grid_wake */
     uint32_t *order;
     double (*position)[4];
@@ -61,11 +66,13 @@ struct grid {
     uint32_t *part_begin, *part_cell;
     size_t parts;
     int longest;
+    size_t candidates_most;      /* of a cell */
     size_t active;               /* points that may have lists */
     const unsigned char *asleep; /* of the last search */
     struct pool *pools;
     struct candidates *candidates;
     find_loop *find;
+    read_loop *read;
 };
 
 static inline bool grid_wraps(const struct grid *grid, int axis)
@@ -106,7 +113,8 @@ struct look {
 static inline struct look grid_look_along(const struct grid *grid, int axis, ptrdiff_t at,
                                           double radius)
 {
-    const ptrdiff_t k = grid_cells_within(grid, axis, radius), cells = grid->cells[axis];
+    const ptrdiff_t within = grid->within[axis], cells = grid->cells[axis],
+                    k = within >= 0 ? within : grid_cells_within(grid, axis, radius);
     struct look look = {at - k, 2 * k + 1, false, false};
     if (grid_wraps(grid, axis)) {
         look.all = look.count >= cells;
@@ -127,8 +135,9 @@ static inline ptrdiff_t grid_folded(const struct grid *grid, int axis, ptrdiff_t
 
 /* --- grid_lists.c ----------------------------------------------------------------------------- */
 
-/* The fastest loop that this processor runs. */
+/* The fastest loops that this processor runs. */
 find_loop *grid_find_choose(void);
+read_loop *grid_read_choose(void);
 
 /* Lists of all active points, from the cells. STATUS_ENVIRONMENT: no memory. */
 enum status grid_make_lists(struct grid *grid, struct error *error);

@@ -44,25 +44,23 @@ static bool reserve_candidates(struct candidates *candidates, size_t count, size
 {
     if (count + n <= candidates->capacity) return true;
     const size_t capacity = (2 * (count + n) + 127) / 64 * 64;
-    char *block = aligned_alloc(64, capacity * (5 * 4 + 4));
-    if (!block) return false;
-    struct candidates grown = {.capacity = capacity, .slot = (int32_t *)(void *)block};
-    float *next = (float *)(void *)(block + 4 * capacity);
+    float *next = aligned_alloc(64, capacity * (5 * sizeof *next + 4));
+    if (!next) return false;
+    struct candidates grown = {.capacity = capacity};
     for (int a = 0; a < 3; a++, next += capacity) grown.x[a] = next;
     grown.radius2 = next;
-    grown.near = (uint8_t *)(void *)(next + capacity);
+    grown.slots = (int32_t *)(void *)(next += capacity);
+    grown.marks = (uint16_t *)(void *)(next += capacity);
+    grown.near = (uint8_t *)(void *)(next + capacity / 2);
     for (int a = 0; a < 3 && count; a++)
         memcpy(grown.x[a], candidates->x[a], count * sizeof(float));
-    if (count) {
-        memcpy(grown.radius2, candidates->radius2, count * sizeof(float));
-        memcpy(grown.slot, candidates->slot, count * sizeof *grown.slot);
-    }
-    free(candidates->slot);
+    if (count) memcpy(grown.radius2, candidates->radius2, count * sizeof(float));
+    free(candidates->x[0]);
     *candidates = grown;
     return true;
 }
 
-/* Which candidates are near the point at x? `near` gets 0 or 1; count in whole 64s. */
+/* Which candidates are near the point at x? `near` gets 0 or 1; count in whole 16s. */
 #define NEAR(name, dim)                                                                            \
     CLONES static void name(size_t count, const float at[3], float radius2,                        \
                             const float *restrict x, const float *restrict y,                      \
@@ -105,12 +103,8 @@ static void copy_cell(const struct grid *grid, struct candidates *to, size_t cou
     const size_t n = grid->start[cell + 1] - begin;
     for (int a = 0; a < grid->box.dim; a++)
         shift(n, grid->place[a] + begin, moved[a], to->x[a] + count);
-    for (size_t from = 0; from < n; from += COPIED) {
+    for (size_t from = 0; from < n; from += COPIED)
         memcpy(to->radius2 + count + from, grid->radius2 + begin + from, COPIED * sizeof(float));
-        const int32_t first = (int32_t)(begin + from);
-        int32_t *slot = to->slot + count + from;
-        for (int k = 0; k < COPIED; k++) slot[k] = first + k;
-    }
 }
 
 struct region {
@@ -118,13 +112,27 @@ struct region {
     bool across, all; /* images matter; a pair's image must be found for each pair */
 };
 
-/* Gathers the candidates of the cell at c. Returns how many, in whole 64s the last of which never
- * match; SIZE_MAX: no memory. */
+/* The cells that the points of the cell at c look through. */
+static struct region find_region(const struct grid *grid, const ptrdiff_t c[3], size_t cell)
+{
+    struct region region = {0};
+    for (int a = 0; a < 3; a++) {
+        region.along[a] = grid_look_along(grid, a, c[a], grid->reach[cell]);
+        region.across |= region.along[a].across;
+        region.all |= region.along[a].all;
+    }
+    return region;
+}
+
+/* Gathers the candidates of the cell at c; own: the first of its own points among them. Returns how
+ * many, in whole 16s the last of which never match; SIZE_MAX: no memory. */
 static size_t find_candidates(const struct grid *grid, const ptrdiff_t c[3],
-                              const struct region *region, struct candidates *candidates)
+                              const struct region *region, struct candidates *candidates,
+                              size_t *own)
 {
     const struct look *l = region->along;
     const double scale = 1 / grid->unit;
+    const size_t at = grid_cell_at(grid, c);
     size_t count = 0;
     for (ptrdiff_t kz = 0; kz < l[2].count; kz++)
         for (ptrdiff_t ky = 0; ky < l[1].count; ky++) {
@@ -139,17 +147,48 @@ static size_t find_candidates(const struct grid *grid, const ptrdiff_t c[3],
                 if (!reserve_candidates(candidates, count, n + 64)) return SIZE_MAX;
                 moved[0] = (float)((double)(l[0].from + kx - c[0]) * grid->size[0] * scale);
                 copy_cell(grid, candidates, count, cell, moved);
+                if (cell == at) *own = count;
                 count += n;
             }
         }
-    const size_t whole = (count + 63) / 64 * 64;
+    const size_t whole = (count + COPIED - 1) / COPIED * COPIED;
     for (size_t k = count; k < whole; k++) {
         candidates->x[0][k] = 1e18f;
         candidates->x[1][k] = candidates->x[2][k] = 0;
         candidates->radius2[k] = 0;
-        candidates->slot[k] = 0;
     }
     return whole;
+}
+
+/* n numbers from first on, in whole vectors. */
+CLONES static void count_up(size_t n, int32_t first, int32_t *restrict to)
+{
+    for (size_t from = 0; from < n; from += COPIED)
+#pragma omp simd
+        for (int k = 0; k < COPIED; k++) to[from + (size_t)k] = first + (int32_t)from + k;
+}
+
+/* Their slots, in the same order; the list has room for COPIED more. Returns how many. */
+static size_t find_slots(const struct grid *grid, const struct region *region, int32_t *slots)
+{
+    const struct look *l = region->along;
+    /* cells of a row are numbered one after the other, and so are their points */
+    const bool runs = l[0].from >= 0 && l[0].from + l[0].count <= grid->cells[0];
+    const ptrdiff_t cells = runs ? l[0].count : 1;
+    size_t count = 0;
+    for (ptrdiff_t kz = 0; kz < l[2].count; kz++)
+        for (ptrdiff_t ky = 0; ky < l[1].count; ky++) {
+            const size_t row =
+                grid_cell_at(grid, (ptrdiff_t[3]){0, grid_folded(grid, 1, l[1].from + ky),
+                                                  grid_folded(grid, 2, l[2].from + kz)});
+            for (ptrdiff_t kx = 0; kx < l[0].count; kx += cells) {
+                const size_t cell = row + (size_t)grid_folded(grid, 0, l[0].from + kx);
+                const uint32_t begin = grid->start[cell], end = grid->start[cell + (size_t)cells];
+                count_up(end - begin, (int32_t)begin, slots + count);
+                count += end - begin;
+            }
+        }
+    return count;
 }
 
 /* The same in a box hardly wider than the radii: of all images the nearest one; side: period in
@@ -171,45 +210,54 @@ CLONES static void near_images(int dim, size_t count, const float at[3], float r
     }
 }
 
-/* Slots of the marked candidates but s itself. Returns how many. */
-static int32_t collect(const uint8_t *near, size_t count, const int32_t *slot, int32_t s,
-                       int32_t *list)
+/* Bytes of 0 and 1 as bits. Returns how many are 1. */
+static int32_t pack(const uint8_t *near, size_t count, uint16_t *marks)
+{
+    const uint64_t to_top = 0x0102040810204080u, sum = 0x0101010101010101u;
+    uint64_t found = 0;
+    for (size_t k = 0; k < count; k += 16) {
+        uint64_t half[2];
+        memcpy(half, near + k, sizeof half);
+        const uint64_t low = half[0] * to_top >> 56, high = half[1] * to_top >> 56;
+        marks[k / 16] = (uint16_t)(low | high << 8);
+        found += (half[0] + half[1]) * sum >> 56;
+    }
+    return (int32_t)found;
+}
+
+static int32_t find_plainly(int dim, const struct candidates *candidates, size_t count,
+                            const float at[3], float radius2, uint16_t *marks)
+{
+    (dim == 2 ? near_2 : near_3)(count, at, radius2, candidates->x[0], candidates->x[1],
+                                 candidates->x[2], candidates->radius2, candidates->near);
+    return pack(candidates->near, count, marks);
+}
+
+/* Four marks at once: loops that end are what costs. */
+static int32_t read_plainly(const int32_t *candidates, const uint16_t *marks, size_t count,
+                            int32_t *list)
 {
     int32_t found = 0;
-    for (size_t k = 0; k < count; k += 8) {
-        uint64_t marks;
-        memcpy(&marks, near + k, 8);
-        while (marks) {
-            const int32_t j = slot[k + (size_t)__builtin_ctzll(marks) / 8];
-            marks &= marks - 1;
-            list[found] = j;
-            found += j != s;
-        }
+    for (size_t k = 0; k < count; k += 64) {
+        uint64_t left = 0;
+        for (size_t m = k; m < k + 64 && m < count; m += 16)
+            left |= (uint64_t)marks[m / 16] << (m - k);
+        for (; left; left &= left - 1)
+            list[found++] = candidates[k + (size_t)__builtin_ctzll(left)];
     }
     return found;
 }
 
-static int32_t find_plainly(int dim, const struct candidates *candidates, size_t count,
-                            const float at[3], float radius2, int32_t s, int32_t *list)
-{
-    (dim == 2 ? near_2 : near_3)(count, at, radius2, candidates->x[0], candidates->x[1],
-                                 candidates->x[2], candidates->radius2, candidates->near);
-    return collect(candidates->near, count, candidates->slot, s, list);
-}
-
 #if SPHPROOF_CLONES && defined __x86_64__
 
-/* The same list: lanes that match are moved together in a register. */
 __attribute__((target("avx512f,popcnt"))) static int32_t
-find_by_compressing(int dim, const struct candidates *candidates, size_t count, const float at[3],
-                    float radius2, int32_t s, int32_t *list)
+find_in_vectors(int dim, const struct candidates *candidates, size_t count, const float at[3],
+                float radius2, uint16_t *marks)
 {
     const __m512 x0 = _mm512_set1_ps(at[0]), y0 = _mm512_set1_ps(at[1]), z0 = _mm512_set1_ps(at[2]),
                  own = _mm512_set1_ps(radius2);
-    const __m512i self = _mm512_set1_epi32(s);
     const float *const x = candidates->x[0], *const y = candidates->x[1],
                        *const z = candidates->x[2], *const radius2_of = candidates->radius2;
-    const int32_t *const slots = candidates->slot;
     int32_t found = 0;
     for (size_t k = 0; k < count; k += 16) {
         const __m512 dx = _mm512_sub_ps(_mm512_loadu_ps(x + k), x0),
@@ -220,9 +268,21 @@ find_by_compressing(int dim, const struct candidates *candidates, size_t count, 
             r2 = _mm512_add_ps(r2, _mm512_mul_ps(dz, dz));
         }
         const __m512 most = _mm512_max_ps(_mm512_loadu_ps(radius2_of + k), own);
-        const __m512i slot = _mm512_loadu_si512(slots + k);
-        const __mmask16 near =
-            _mm512_cmp_ps_mask(r2, most, _CMP_LT_OQ) & _mm512_cmpneq_epi32_mask(slot, self);
+        const __mmask16 near = _mm512_cmp_ps_mask(r2, most, _CMP_LT_OQ);
+        marks[k / 16] = near;
+        found += _mm_popcnt_u32(near);
+    }
+    return found;
+}
+
+/* Lanes that are marked are moved together in a register. */
+__attribute__((target("avx512f,popcnt"))) static int32_t
+read_by_compressing(const int32_t *candidates, const uint16_t *marks, size_t count, int32_t *list)
+{
+    int32_t found = 0;
+    for (size_t k = 0; k < count; k += 16) {
+        const __mmask16 near = marks[k / 16];
+        const __m512i slot = _mm512_loadu_si512(candidates + k);
         _mm512_storeu_si512(list + found, _mm512_maskz_compress_epi32(near, slot));
         found += _mm_popcnt_u32(near);
     }
@@ -231,7 +291,12 @@ find_by_compressing(int dim, const struct candidates *candidates, size_t count, 
 
 find_loop *grid_find_choose(void)
 {
-    return __builtin_cpu_supports("avx512f") ? find_by_compressing : find_plainly;
+    return __builtin_cpu_supports("avx512f") ? find_in_vectors : find_plainly;
+}
+
+read_loop *grid_read_choose(void)
+{
+    return __builtin_cpu_supports("avx512f") ? read_by_compressing : read_plainly;
 }
 
 #else
@@ -239,6 +304,11 @@ find_loop *grid_find_choose(void)
 find_loop *grid_find_choose(void)
 {
     return find_plainly;
+}
+
+read_loop *grid_read_choose(void)
+{
+    return read_plainly;
 }
 
 #endif
@@ -250,9 +320,17 @@ static bool is_active(const struct grid *grid, uint32_t slot)
 }
 
 /* Memory of lists to come: it is far away, and a vector waits until it may be written. */
-static void fetch(const int32_t *slots, int32_t count)
+static void fetch(const int32_t *words, size_t count)
 {
-    for (int32_t k = 0; k < count; k += 16) __builtin_prefetch(slots + k, 1);
+    for (size_t k = 0; k < count; k += 16) __builtin_prefetch(words + k, 1);
+}
+
+/* The slots of the marked candidates, then sentinels up to whole vectors. */
+static void read_list(const struct grid *grid, const int32_t *candidates, const uint16_t *marks,
+                      size_t count, int32_t *list)
+{
+    const int32_t end = grid->read(candidates, marks, count, list);
+    for (int k = 0; k < GRID_LANES; k++) list[end + k] = (int32_t)grid->n;
 }
 
 /* The lists of a cell's points. Returns the longest one, -1: no memory. */
@@ -261,44 +339,49 @@ static int search_cell(struct grid *grid, const ptrdiff_t c[3], struct candidate
 {
     const size_t cell = grid_cell_at(grid, c);
     if (grid->start[cell] == grid->start[cell + 1]) return 0;
-    struct region region = {0};
-    for (int a = 0; a < 3; a++) {
-        region.along[a] = grid_look_along(grid, a, c[a], grid->reach[cell]);
-        region.across |= region.along[a].across;
-        region.all |= region.along[a].all;
-    }
+    const struct region region = find_region(grid, c, cell);
+    const bool marked = grid->box.dim == 3;
     bool any = false;
     for (uint32_t s = grid->start[cell]; s < grid->start[cell + 1]; s++) {
-        grid->lists[s] = (struct grid_list){NULL, 0, region.across};
+        grid->lists[s] = (struct grid_list){NULL, 0, region.across, marked};
         any |= is_active(grid, s);
     }
     if (!any) return 0;
     float side[3];
+    size_t own = 0;
     for (int a = 0; a < 3; a++)
         side[a] = grid_wraps(grid, a) ? (float)(grid->side[a] / grid->unit) : HUGE_VALF;
-    const size_t count = find_candidates(grid, c, &region, candidates);
+    const size_t count = find_candidates(grid, c, &region, candidates, &own);
     if (count == SIZE_MAX) return -1;
+    if (!marked) find_slots(grid, &region, candidates->slots);
     int longest = 0;
-    for (uint32_t s = grid->start[cell]; s < grid->start[cell + 1]; s++) {
+    for (uint32_t s = grid->start[cell]; s < grid->start[cell + 1]; s++, own++) {
         struct grid_list *list = &grid->lists[s];
         if (!is_active(grid, s)) continue;
-        int32_t *slots = pool_take(pool, count + BEYOND);
-        if (!slots) return -1;
-        list->slots = slots;
+        int32_t *kept = pool_take(pool, marked ? (count + 31) / 32 : count + BEYOND);
+        if (!kept) return -1;
+        uint16_t *marks = marked ? (uint16_t *)(void *)kept : candidates->marks;
         const float at[3] = {grid->place[0][s], grid->place[1][s], grid->place[2][s]};
         if (region.all) {
             near_images(grid->box.dim, count, at, grid->radius2[s], side, candidates);
-            list->count = collect(candidates->near, count, candidates->slot, (int32_t)s, slots);
+            list->count = pack(candidates->near, count, marks);
         } else {
-            list->count = grid->find(grid->box.dim, candidates, count, at, grid->radius2[s],
-                                     (int32_t)s, slots);
+            list->count = grid->find(grid->box.dim, candidates, count, at, grid->radius2[s], marks);
         }
-        int32_t end = list->count;
-        while (end % GRID_LANES) slots[end++] = (int32_t)grid->n;
-        pool->used += (size_t)end;
-        fetch(slots + end + AHEAD, end);
-        if (end > longest) longest = end;
+        const uint16_t self = (uint16_t)(1u << own % 16);
+        list->count -= (marks[own / 16] & self) != 0;
+        marks[own / 16] &= (uint16_t)~self;
+        list->kept = kept;
+        size_t words = (count + 31) / 32;
+        if (!marked) {
+            read_list(grid, candidates->slots, marks, count, kept);
+            words = ((size_t)list->count + GRID_LANES - 1) / GRID_LANES * GRID_LANES;
+            fetch(kept + words + AHEAD, words);
+        }
+        pool->used += words;
+        if (list->count > longest) longest = list->count;
     }
+    if (count > candidates->most) candidates->most = count;
     return longest;
 }
 
@@ -313,7 +396,11 @@ static int thread_number(void)
 
 enum status grid_make_lists(struct grid *grid, struct error *error)
 {
-    for (int t = 0; t < grid->threads; t++) grid->pools[t].used_chunks = grid->pools[t].used = 0;
+    for (int t = 0; t < grid->threads; t++) {
+        grid->pools[t].used_chunks = grid->pools[t].used = 0;
+        grid->candidates[t].most = 0;
+    }
+    grid->candidates_most = 0;
     int longest = 0;
     bool enough = true;
 #pragma omp parallel for num_threads(grid->team) schedule(dynamic) reduction(max : longest) \
@@ -328,6 +415,65 @@ enum status grid_make_lists(struct grid *grid, struct error *error)
             longest = found > longest ? found : longest;
         }
     }
-    grid->longest = longest;
+    grid->longest = (longest + GRID_LANES - 1) / GRID_LANES * GRID_LANES;
+    for (int t = 0; t < grid->threads; t++)
+        if (grid->candidates[t].most > grid->candidates_most)
+            grid->candidates_most = grid->candidates[t].most;
     return enough ? STATUS_OK : error_set(error, STATUS_ENVIRONMENT, "no memory for neighbours");
+}
+
+/* --- reading ---------------------------------------------------------------------------------- */
+
+bool grid_reader_reserve(const struct grid *grid, struct grid_reader *reader)
+{
+    const size_t candidates = grid->candidates_most + COPIED,
+                 longest = (size_t)grid->longest + BEYOND;
+    reader->begin = reader->end = 0;
+    reader->slot = SIZE_MAX;
+    if (candidates > reader->room) {
+        free(reader->candidates);
+        reader->room = candidates + candidates / 2;
+        reader->candidates = malloc(reader->room * sizeof *reader->candidates);
+        if (!reader->candidates) reader->room = 0;
+    }
+    if (longest > reader->longest) {
+        free(reader->slots);
+        reader->longest = longest + longest / 2;
+        reader->slots = malloc(reader->longest * sizeof *reader->slots);
+        if (!reader->slots) reader->longest = 0;
+    }
+    return reader->candidates && reader->slots;
+}
+
+void grid_reader_free(struct grid_reader *reader)
+{
+    free(reader->candidates);
+    free(reader->slots);
+    *reader = (struct grid_reader){0};
+}
+
+/* The candidates of the cell of a slot. Mostly it is the next one along x. */
+static void enter_cell(const struct grid *grid, struct grid_reader *reader, size_t slot)
+{
+    size_t cell = reader->cell + 1;
+    if (slot == reader->end && slot > 0 && ++reader->at[0] < grid->cells[0] &&
+        grid->start[cell + 1] > slot) {
+        reader->cell = cell;
+    } else {
+        reader->cell = cell = grid->cell_of[grid->order[slot]];
+        grid_cell_coordinates(grid, cell, reader->at);
+    }
+    const struct region region = find_region(grid, reader->at, cell);
+    reader->count = find_slots(grid, &region, reader->candidates);
+    reader->begin = grid->start[cell];
+    reader->end = grid->start[cell + 1];
+}
+
+const int32_t *grid_read(const struct grid *grid, struct grid_reader *reader, size_t slot)
+{
+    if (slot == reader->slot) return reader->slots;
+    if (slot < reader->begin || slot >= reader->end) enter_cell(grid, reader, slot);
+    read_list(grid, reader->candidates, grid->lists[slot].kept, reader->count, reader->slots);
+    reader->slot = slot;
+    return reader->slots;
 }

@@ -25,6 +25,7 @@ bool lanes_reserve(struct cells *cells)
     const ptrdiff_t stride = 8 * ((grid_longest(cells->grid) / 8 + 1) | 1);
     for (int t = 0; t < cells->method.threads; t++) {
         struct lanes *lanes = &cells->lanes[t];
+        if (!grid_reader_reserve(cells->grid, &lanes->reader)) return false;
         if (lanes->block && stride <= lanes->stride) continue;
         free(lanes->block);
         /* half as much again, so that steps need not ask for more */
@@ -107,9 +108,10 @@ GEOMETRY(find_closing, LANES_CLOSING)
 #undef GEOMETRY
 
 static void gather(const struct cells *cells, const struct lanes_layout *layout, size_t slot,
-                   int from, int count, const struct lanes *lanes)
+                   int from, int count, struct lanes *lanes)
 {
-    const struct grid_list *list = &cells->lists[slot];
+    const bool wrapped = cells->lists[slot].wrapped;
+    const int32_t *slots = grid_neighbours(cells->grid, &lanes->reader, cells->lists, slot);
     const int dim = cells->method.box.dim;
     struct geometry g = {.at = cells->place[slot],
                          .side = cells->side,
@@ -119,28 +121,28 @@ static void gather(const struct cells *cells, const struct lanes_layout *layout,
                          .r_inverse = lane(lanes, LANE_R_INVERSE),
                          .closing = lane(lanes, LANE_CLOSING),
                          .stride = lanes->stride};
-    layout->gather(cells->records, layout->size, list->slots + from, count, lane(lanes, LANES_OWN),
+    layout->gather(cells->records, layout->size, slots + from, count, lane(lanes, LANES_OWN),
                    lanes->stride);
     switch (layout->geometry) {
     case LANES_DISTANCE:
-        find_distances(dim, list->wrapped, count, &g);
+        find_distances(dim, wrapped, count, &g);
         break;
     case LANES_DISPLACEMENT:
-        find_displacements(dim, list->wrapped, count, &g);
+        find_displacements(dim, wrapped, count, &g);
         break;
     case LANES_DIRECTION:
-        find_directions(dim, list->wrapped, count, &g);
+        find_directions(dim, wrapped, count, &g);
         break;
     case LANES_CLOSING:
         g.v = lane_of(lanes, layout, FIELD_VELOCITY);
         g.own_v = cells->records + (ptrdiff_t)slot * layout->size + layout->offset[FIELD_VELOCITY];
-        find_closing(dim, list->wrapped, count, &g);
+        find_closing(dim, wrapped, count, &g);
         break;
     }
 }
 
 int lanes_gather(const struct cells *cells, const struct lanes_layout *layout, size_t slot,
-                 const struct lanes *lanes)
+                 struct lanes *lanes)
 {
     const int count = whole_vectors(cells->lists[slot].count);
     gather(cells, layout, slot, 0, count, lanes);
@@ -151,7 +153,7 @@ int lanes_gather(const struct cells *cells, const struct lanes_layout *layout, s
 enum { LANES_BYTES = 24 << 10 };
 
 int lanes_gather_part(const struct cells *cells, const struct lanes_layout *layout, size_t slot,
-                      int from, const struct lanes *lanes)
+                      int from, struct lanes *lanes)
 {
     const int most = LANES_BYTES / (int)sizeof(double) / (LANES_OWN + layout->size);
     const int whole = whole_vectors(cells->lists[slot].count);
@@ -174,7 +176,7 @@ void lanes_all(struct cells *cells, const struct cells_fields *fields, lanes_pas
         struct lanes *lanes = &cells->lanes[0];
 #endif
         for (size_t slot = begin[p]; slot < begin[p + 1]; slot++)
-            if (cells->lists[slot].slots) pass(cells, fields, slot, lanes);
+            if (cells->lists[slot].kept) pass(cells, fields, slot, lanes);
     }
 }
 

@@ -82,6 +82,7 @@ struct lanes {
     double *block; /* LANES_OWN arrays and those of the longest record, stride each */
     ptrdiff_t stride;
     int64_t pairs;
+    struct grid_reader reader;
 };
 
 /* A search for widths: what each thread reads of it. */
@@ -155,12 +156,12 @@ static inline double *lanes_record(const struct cells *cells, const struct lanes
 /* Gathers the records of a slot's list and finds the geometry of its pairs. Returns the number of
  * lanes, a multiple of GRID_LANES. */
 int lanes_gather(const struct cells *cells, const struct lanes_layout *layout, size_t slot,
-                 const struct lanes *lanes);
+                 struct lanes *lanes);
 
 /* The same for a part of the list, from its lane `from` on, that stays in the first-level cache
  * with all its lanes; parts depend on the list and the layout alone. Returns its lanes. */
 int lanes_gather_part(const struct cells *cells, const struct lanes_layout *layout, size_t slot,
-                      int from, const struct lanes *lanes);
+                      int from, struct lanes *lanes);
 
 /* Doubles of the longest record of all layouts. */
 int lanes_longest_record(const struct cells *cells);

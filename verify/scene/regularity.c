@@ -71,14 +71,16 @@ static void add(struct sums *sums, const struct place *place)
 
 /* ---- neighbours in 2D and 3D ---- */
 
-static void add_slot(struct sums *sums, const struct grid *grid, size_t slot, double widest)
+static void add_slot(struct sums *sums, const struct grid *grid, struct grid_reader *reader,
+                     size_t slot, double widest)
 {
     const struct regularity_cloud *cloud = sums->cloud;
-    const struct grid_list *list = &grid_lists(grid)[slot];
+    const struct grid_list *lists = grid_lists(grid);
+    const int32_t count = lists[slot].count, *slots = grid_neighbours(grid, reader, lists, slot);
     const double(*position)[4] = grid_positions(grid);
     struct place place = place_of(cloud, grid_order(grid)[slot], widest);
-    for (int32_t k = 0; k < list->count; k++) {
-        const size_t other = (size_t)list->slots[k];
+    for (int32_t k = 0; k < count; k++) {
+        const size_t other = (size_t)slots[k];
         double delta[3];
         for (int d = 0; d < cloud->box.dim; d++) {
             const double side = grid_side(grid, d);
@@ -96,13 +98,17 @@ static enum status walk_blocks(struct sums *sums, struct grid *grid, unsigned ch
 {
     enum { BLOCK = 65536 };
     const struct regularity_cloud *cloud = sums->cloud;
+    struct grid_reader reader = {0};
     enum status status = STATUS_OK;
     for (size_t first = 0; !status && first < cloud->n; first += BLOCK) {
         for (size_t i = 0; i < cloud->n; i++) asleep[i] = i < first || i - first >= BLOCK;
         status = grid_search(grid, cloud->n, cloud->n, cloud->x, cloud->h, asleep, error);
+        if (!status && !grid_reader_reserve(grid, &reader))
+            status = error_set(error, STATUS_ENVIRONMENT, "no memory for %zu points", cloud->n);
         for (size_t slot = 0; !status && slot < cloud->n; slot++)
-            if (!asleep[grid_order(grid)[slot]]) add_slot(sums, grid, slot, widest);
+            if (!asleep[grid_order(grid)[slot]]) add_slot(sums, grid, &reader, slot, widest);
     }
+    grid_reader_free(&reader);
     return status;
 }
 

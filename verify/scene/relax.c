@@ -28,6 +28,7 @@ struct cloud {
     double *to[3]; /* n each: sums over neighbours of push times direction */
     double *storage;
     struct grid *grid;
+    struct grid_reader reader;
 };
 
 static enum status cloud_make(struct cloud *cloud, const struct domain *box, size_t n,
@@ -52,6 +53,7 @@ static enum status cloud_make(struct cloud *cloud, const struct domain *box, siz
 static void cloud_free(struct cloud *cloud)
 {
     grid_destroy(cloud->grid);
+    grid_reader_free(&cloud->reader);
     free(cloud->storage);
 }
 
@@ -59,8 +61,11 @@ static enum status find(struct cloud *cloud, struct error *error)
 {
     const double *const x[3] = {cloud->x[0], cloud->x[1], cloud->x[2]};
     struct error reason = {0};
-    if (!grid_search(cloud->grid, cloud->n, cloud->n, x, cloud->width, NULL, &reason))
-        return STATUS_OK;
+    if (!grid_search(cloud->grid, cloud->n, cloud->n, x, cloud->width, NULL, &reason)) {
+        if (grid_reader_reserve(cloud->grid, &cloud->reader)) return STATUS_OK;
+        return error_set(error, STATUS_ENVIRONMENT, "no memory for a glass of %zu points",
+                         cloud->n);
+    }
     if (reason.status != STATUS_BAD_INPUT) {
         *error = reason;
         return reason.status;
@@ -98,9 +103,10 @@ static void add_pushes(struct cloud *cloud)
     const uint32_t *order = grid_order(cloud->grid);
     for (size_t slot = 0; slot < cloud->n; slot++) {
         const uint32_t i = order[slot];
+        const int32_t *slots = grid_neighbours(cloud->grid, &cloud->reader, lists, slot);
         double sum[3] = {0};
         for (int32_t k = 0; k < lists[slot].count; k++) {
-            const int32_t other = lists[slot].slots[k];
+            const int32_t other = slots[k];
             double delta[3];
             const double r = step_to(cloud, slot, other, delta);
             const double width = 0.5 * (cloud->width[i] + cloud->width[order[other]]);

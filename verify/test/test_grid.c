@@ -70,27 +70,43 @@ static double distance2(const struct points *p, size_t i, size_t j)
     return r2;
 }
 
+/* A reader that comes from anywhere finds what a new one does. */
+static void read_again(const struct grid *grid, struct grid_reader *reader, size_t s)
+{
+    const struct grid_list *lists = grid_lists(grid);
+    struct grid_reader other = {0};
+    if (!lists[s].kept) return;
+    assert_true(grid_reader_reserve(grid, &other));
+    const size_t bytes = (size_t)lists[s].count * sizeof(int32_t);
+    assert_memory_equal(grid_neighbours(grid, reader, lists, s),
+                        grid_neighbours(grid, &other, lists, s), bytes);
+    grid_reader_free(&other);
+}
+
 /* Pairs that are within the wider radius, and in the list or not. */
 static void compare(const struct points *p, const struct grid *grid, size_t active,
                     size_t *compared)
 {
+    struct grid_reader reader = {0};
     const uint32_t *order = grid_order(grid);
     char listed[POINTS_MAX];
+    assert_true(grid_reader_reserve(grid, &reader));
     for (size_t s = 0; s < p->n; s++) {
         const size_t i = order[s];
         const struct grid_list *list = &grid_lists(grid)[s];
         if (i >= active) {
-            assert_null(list->slots);
+            assert_null(list->kept);
             continue;
         }
+        const int32_t *slots = grid_neighbours(grid, &reader, grid_lists(grid), s);
         memset(listed, 0, sizeof listed);
         for (int32_t k = 0; k < list->count; k++) {
-            const size_t j = order[list->slots[k]];
+            const size_t j = order[slots[k]];
             assert_false(listed[j]); /* once */
             assert_int_not_equal(j, i);
             listed[j] = 1;
         }
-        for (int32_t k = list->count; k % GRID_LANES; k++) assert_int_equal(list->slots[k], p->n);
+        for (int32_t k = list->count; k % GRID_LANES; k++) assert_int_equal(slots[k], p->n);
         for (size_t j = 0; j < p->n; j++) {
             if (j == i) continue;
             const double r = sqrt(distance2(p, i, j)), reach = fmax(p->radius[i], p->radius[j]);
@@ -99,6 +115,8 @@ static void compare(const struct points *p, const struct grid *grid, size_t acti
             *compared += listed[j] != 0;
         }
     }
+    for (size_t s = p->n; s-- > 0;) read_again(grid, &reader, s);
+    grid_reader_free(&reader);
 }
 
 static void lists_hold_every_pair(void **state)
