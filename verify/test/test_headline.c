@@ -121,12 +121,35 @@ static void the_order(void **state)
     json_decref(list);
 }
 
+/* Mutants that were missed come after all figures, each of them. */
+static void missed_mutants(void **state)
+{
+    (void)state;
+    static const struct check_mutant sign = {"sign", "a sign", NULL}, power = {"power", "", NULL};
+    struct mutant_outcome outcomes[] = {
+        {&one, &sign, 0.5, 1, false}, {&one, &power, 2, 1, true}, {&two, &power, 0.25, 1, false}};
+    struct figure figure = {&two, (char *)(uintptr_t) "a", 2, 1, 0, 0, FIGURE_FAIL};
+    const struct suite suite = {.figures = &figure,
+                                .figure_count = 1,
+                                .failed = 1,
+                                .outcomes = outcomes,
+                                .outcome_count = 3};
+    json_t *list = headline_list(&suite);
+    static const char *const texts[] = {"a: two off by 2",
+                                        "the check one does not notice the fault sign (a sign)",
+                                        "the check two does not notice the fault power ()"};
+    assert_int_equal(json_array_size(list), 3);
+    for (size_t i = 0; i < 3; i++) assert_string_equal(text_of(list, i, "headline"), texts[i]);
+    json_decref(list);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(members_and_places),
         cmocka_unit_test(the_worst_figure),
         cmocka_unit_test(the_order),
+        cmocka_unit_test(missed_mutants),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
