@@ -8,6 +8,7 @@
 
 #include <gsl/gsl_qrng.h>
 #include <gsl/gsl_rng.h>
+#include <stdlib.h>
 
 #include "gas.h"
 #include "initial_fill.h"
@@ -59,10 +60,107 @@ static void the_whole_box_is_laid(void **state)
     }
 }
 
+/* In a box of their own shape each point has as many others at the smallest distance as it should,
+ * which the density gives; no cell is another one's. */
+static void crystals(void **state)
+{
+    (void)state;
+    static const struct {
+        enum lattice kind;
+        int dim, nearest;
+        size_t n, cells[3];
+        double side[3], distance; /* of the box; of neighbours, n and volume being what they are */
+    } rows[] = {
+        {LATTICE_UNIFORM, 1, 2, 5, {5, 1, 1}, {5}, 1},
+        {LATTICE_SQUARE, 2, 4, 12, {4, 3, 1}, {4, 3}, 1},
+        {LATTICE_CUBIC, 3, 6, 60, {3, 4, 5}, {3, 4, 5}, 1},
+        {LATTICE_JITTERED, 3, 6, 60, {3, 4, 5}, {3, 4, 5}, 1},
+        {LATTICE_HEXAGONAL, 2, 6, 30, {5, 3, 1}, {5, 5.196152422706632}, 1},
+        {LATTICE_HEXAGONAL, 3, 12, 144, {4, 3, 3}, {4, 5.196152422706632, 4.898979485566356}, 1},
+        {LATTICE_FCC, 3, 12, 144, {3, 4, 3}, {3, 4, 3}, M_SQRT1_2},
+        {LATTICE_BCC, 3, 8, 72, {3, 4, 3}, {3, 4, 3}, 0.8660254037844386},
+    };
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        enum { MOST = 200 };
+        const int dim = rows[k].dim;
+        struct domain box = {dim, {-1, 2, 0.5}, {0}};
+        struct lattice_plan plan;
+        struct error error = {0};
+        double y[3][MOST];
+        double *const x[] = {y[0], y[1], y[2]};
+        for (int d = 0; d < 3; d++) box.hi[d] = box.lo[d] + rows[k].side[d];
+        assert_int_equal(lattice_plan_make(&plan, &box, rows[k].kind, rows[k].n, &error),
+                         STATUS_OK);
+        assert_int_equal(plan.n, rows[k].n);
+        for (int d = 0; d < 3; d++) assert_int_equal(plan.cells[d], rows[k].cells[d]);
+        assert_int_equal(lattice_points(&plan, 1, x, &error), STATUS_OK);
+        for (size_t i = 0; i < plan.n; i++) {
+            int nearest = 0;
+            for (int d = 0; d < dim; d++) assert_true(y[d][i] > box.lo[d] && y[d][i] < box.hi[d]);
+            for (size_t j = 0; j < plan.n; j++) {
+                double square = 0;
+                for (int d = 0; d < dim; d++)
+                    square += pow(remainder(y[d][i] - y[d][j], rows[k].side[d]), 2);
+                if (j == i) continue;
+                const double away = sqrt(square) / rows[k].distance;
+                assert_true(away > 1 - 1e-12);
+                nearest += away < 1 + 1e-12;
+            }
+            assert_int_equal(nearest, rows[k].nearest);
+        }
+        /* the first cell stands in the corner, a half or a quarter in */
+        const double part =
+            rows[k].n == rows[k].cells[0] * rows[k].cells[1] * rows[k].cells[2] ? 0.5 : 0.25;
+        for (int d = 0; d < dim; d++)
+            near_relative(y[d][0] - box.lo[d], part * rows[k].side[d] / (double)rows[k].cells[d],
+                          1e-14);
+    }
+}
+
+/* As many cells as fit best: 2.5 of them, and a little more or less. */
+static void cells_that_fit(void **state)
+{
+    (void)state;
+    for (int more = -1; more <= 1; more += 2) {
+        const double fit = 2.5 * (1 + more * 2e-7);
+        const struct domain box = {2, {0, 0}, {1, 10 / (fit * fit)}};
+        struct lattice_plan plan;
+        struct error error;
+        assert_int_equal(lattice_plan_make(&plan, &box, LATTICE_SQUARE, 10, &error), STATUS_OK);
+        assert_int_equal(plan.cells[0], more > 0 ? 3 : 2);
+        assert_int_equal(plan.cells[1], 4);
+    }
+}
+
+/* So many quasi-random points that some come as near to an end as to a millionth: all are in. */
+static void sobol_points_stay_inside(void **state)
+{
+    (void)state;
+    enum { N = (1 << 20) + 1 };
+    const struct domain box = {2, {-1, 3}, {1, 4}};
+    struct lattice_plan plan;
+    struct error error;
+    double *y = malloc(2 * N * sizeof *y);
+    double *const x[] = {y, y + N, NULL};
+    assert_int_equal(lattice_plan_make(&plan, &box, LATTICE_RANDOM, N, &error), STATUS_OK);
+    assert_int_equal(lattice_points(&plan, 7, x, &error), STATUS_OK);
+    for (int d = 0; d < 2; d++) {
+        double lo = HUGE_VAL, hi = -HUGE_VAL;
+        for (int i = 0; i < N; i++) lo = fmin(lo, x[d][i]), hi = fmax(hi, x[d][i]);
+        const double side = box.hi[d] - box.lo[d];
+        assert_true(lo >= box.lo[d] && lo < box.lo[d] + 1e-6 * side);
+        assert_true(hi < box.hi[d] && hi > box.hi[d] - 1e-6 * side);
+    }
+    free(y);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_whole_box_is_laid),
+        cmocka_unit_test(crystals),
+        cmocka_unit_test(cells_that_fit),
+        cmocka_unit_test(sobol_points_stay_inside),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
