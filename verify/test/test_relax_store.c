@@ -1,0 +1,164 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Glasses that are kept: in which folder, how many points, and that they come back to the last bit.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "relax_store.h"
+
+enum { N = RELAX_STORE_LEAST };
+
+static char place[] = "/tmp/sphproof_store_XXXXXX";
+static double points[3][N + 1];
+
+static const char *path_of(const char *name)
+{
+    static char path[256];
+    snprintf(path, sizeof path, "%s/%s", place, name);
+    return path;
+}
+
+static bool is_there(const char *name)
+{
+    return access(path_of(name), F_OK) == 0;
+}
+
+/* NULL: not set. */
+static void set(const char *name, const char *value)
+{
+    if (value)
+        setenv(name, value, 1);
+    else
+        unsetenv(name);
+}
+
+static double *const all[] = {points[0], points[1], points[2]};
+
+static void they_come_back(void **state)
+{
+    (void)state;
+    double kept[3][N + 1];
+    set("XDG_CACHE_HOME", path_of("xdg"));
+    set("HOME", path_of("home"));
+    for (int dim = 2; dim <= 3; dim++) {
+        for (int d = 0; d < 3; d++)
+            for (int i = 0; i <= N; i++) points[d][i] = (i + 1) / (3. + d) + 1e-13 * dim;
+        memcpy(kept, points, sizeof kept);
+        assert_false(relax_store_find(7, dim, N, all));
+        relax_store_keep(7, dim, N, all);
+        memset(points, 0, sizeof points);
+        /* another content, another number of points, another dimension */
+        assert_false(relax_store_find(8, dim, N, all));
+        assert_false(relax_store_find(7, dim, N + 1, all));
+        assert_int_equal(relax_store_find(7, 5 - dim, N, all), dim == 3);
+        for (int i = 0; i <= N; i++) points[dim % 3][i] = -5; /* one direction too many in 2D */
+        for (int d = 0; d < 3; d++) points[d][N] = -7;        /* and one point */
+        assert_true(relax_store_find(7, dim, N, all));
+        for (int d = 0; d < dim; d++) {
+            assert_memory_equal(points[d], kept[d], N * sizeof(double));
+            assert_true(points[d][N] == -7);
+        }
+        if (dim == 2)
+            for (int i = 0; i < N; i++) assert_true(points[2][i] == -5);
+    }
+    assert_true(is_there("xdg/sphproof/glass") && !is_there("home"));
+}
+
+/* The folder for caches, if it is a whole path, else that of the user's own folder, else none. */
+static void folders(void **state)
+{
+    (void)state;
+    char home[256];
+    snprintf(home, sizeof home, "%s", path_of("own"));
+    static const struct {
+        const char *cached;
+        bool home, kept;
+    } rows[] = {{NULL, true, true},
+                {"", true, true},
+                {"xdg2", true, true},
+                {NULL, false, false},
+                {"xdg2", false, false}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        set("XDG_CACHE_HOME", rows[k].cached);
+        set("HOME", rows[k].home ? home : k == 3 ? NULL : "own2");
+        relax_store_keep(k, 2, N, all);
+        assert_int_equal(relax_store_find(k, 2, N, all), rows[k].kept);
+    }
+    assert_true(is_there("own/.cache/sphproof/glass"));
+    assert_false(access("xdg2", F_OK) == 0 || access("own2", F_OK) == 0);
+}
+
+/* Few are not worth it, and too many take too much: there is no folder for them. */
+static void numbers(void **state)
+{
+    (void)state;
+    static const struct {
+        size_t n;
+        bool kept;
+    } rows[] = {{RELAX_STORE_LEAST - 1, false},
+                {RELAX_STORE_LEAST, true},
+                {RELAX_STORE_MOST, true},
+                {RELAX_STORE_MOST + 1, false}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        char name[32], folder[64];
+        snprintf(name, sizeof name, "number%zu", k);
+        snprintf(folder, sizeof folder, "%s/sphproof/glass", name);
+        set("XDG_CACHE_HOME", path_of(name));
+        assert_false(relax_store_find(1, 2, rows[k].n, all));
+        assert_int_equal(is_there(folder), rows[k].kept);
+    }
+}
+
+/* What nobody has used for a month goes when another one comes. */
+static void old_ones_go(void **state)
+{
+    (void)state;
+    static const char old[] = "old/sphproof/glass/00/1.entry";
+    const time_t now = time(NULL);
+    const struct timespec times[2] = {{.tv_sec = now - 31 * 24 * 3600},
+                                      {.tv_sec = now - 31 * 24 * 3600}};
+    set("XDG_CACHE_HOME", path_of("old"));
+    relax_store_keep(1, 2, N, all);
+    mkdir(path_of("old/sphproof/glass/00"), 0777);
+    fclose(fopen(path_of(old), "w"));
+    assert_int_equal(utimensat(AT_FDCWD, path_of(old), times, 0), 0);
+    assert_true(relax_store_find(1, 2, N, all) && is_there(old));
+    relax_store_keep(2, 2, N, all);
+    assert_true(relax_store_find(1, 2, N, all) && !is_there(old));
+}
+
+static int make_place(void **state)
+{
+    (void)state;
+    return !mkdtemp(place);
+}
+
+static int remove_place(void **state)
+{
+    char command[64];
+    (void)state;
+    snprintf(command, sizeof command, "rm -r %s", place);
+    return system(command);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(they_come_back),
+        cmocka_unit_test(folders),
+        cmocka_unit_test(numbers),
+        cmocka_unit_test(old_ones_go),
+    };
+    return cmocka_run_group_tests(tests, make_place, remove_place);
+}
