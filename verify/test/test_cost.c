@@ -1,0 +1,89 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What a run says that it has done, on lattices whose neighbours can be counted on paper. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <cmocka.h>
+
+#include "settings.h"
+#include "simulation.h"
+
+enum { SIDE = 16, MOST = SIDE * SIDE * SIDE };
+
+/* Gas at rest on a square or cubic lattice of the periodic unit box. */
+static struct simulation *lattice(int dim, int threads, bool sleep)
+{
+    static double x[3][MOST], v[MOST], m[MOST], u[MOST];
+    const size_t n = dim == 2 ? SIDE * SIDE : MOST;
+    struct settings settings;
+    struct simulation *simulation = NULL;
+    struct error error = {0};
+    for (size_t i = 0; i < n; i++) {
+        size_t rest = i;
+        for (int a = 0; a < dim; a++, rest /= SIDE) x[a][i] = ((double)(rest % SIDE) + 0.5) / SIDE;
+        m[i] = 1. / (double)n, u[i] = 1;
+    }
+    struct scene scene = {.dim = dim,
+                          .hi = {1, 1, 1},
+                          .gamma = 1.4,
+                          .t_end = 1,
+                          .n = n,
+                          .m = m,
+                          .u = u,
+                          .skip = sleep,
+                          .threads = threads};
+    for (int a = 0; a < dim; a++) scene.x[a] = x[a], scene.v[a] = v;
+    settings_init(&settings);
+    char *keys[] = {"kernel=cubic_spline", "eta=2.4", "gradient=standard"};
+    if (settings_apply(&settings, 3, keys, &error) ||
+        settings_scheme(&settings, dim, &scene.scheme, &error) ||
+        simulation_create(&scene, &simulation, &error))
+        fail_msg("%s", error.message);
+    return simulation;
+}
+
+/* Points of the lattice within 2.4 spacings of one, but itself. */
+static uint64_t neighbours(int dim)
+{
+    uint64_t count = 0;
+    for (int i = -2; i <= 2; i++)
+        for (int j = -2; j <= 2; j++)
+            for (int k = dim == 3 ? -2 : 0; k <= (dim == 3 ? 2 : 0); k++)
+                count += i * i + j * j + k * k < 2.4 * 2.4;
+    return count - 1;
+}
+
+/* Each pair once an evaluation, whatever the number of threads; where all sleep, none but those of
+ * the start. */
+static void pairs_and_updates(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++)
+        for (int threads = 1; threads <= 2; threads++)
+            for (int sleep = 0; sleep < 2; sleep++) {
+                struct simulation *simulation = lattice(dim, threads, sleep);
+                const uint64_t n = dim == 2 ? SIDE * SIDE : MOST, pairs = n * neighbours(dim) / 2;
+                struct simulation_cost start, end;
+                struct error error;
+                simulation_cost(simulation, &start);
+                assert_int_equal(start.pair_interactions, pairs);
+                assert_int_equal(start.steps + start.particle_updates, 0);
+                if (simulation_run(simulation, 0.02, NULL, NULL, &error))
+                    fail_msg("%s", error.message);
+                simulation_cost(simulation, &end);
+                assert_true(end.steps > 0);
+                assert_int_equal(end.particle_updates, sleep ? 0 : n * end.steps);
+                assert_int_equal(end.skipped_particle_updates, sleep ? n * end.steps : 0);
+                assert_int_equal(end.pair_interactions, pairs * (sleep ? 1 : 1 + end.steps));
+                simulation_destroy(simulation);
+            }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(pairs_and_updates)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
