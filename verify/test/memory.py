@@ -11,7 +11,7 @@ import tempfile
 PROGRAM = os.path.abspath(sys.argv[1])
 WITHIN = 0.2
 RUNS = [["gresho", "n=120^2", "t_end=0.0005"],
-        ["sound_wave_3d", "n=20^3", "t_end=0.001", "kernel=wendland_c4", "eta=3.6", "gradient=standard",
+        ["sound_wave_3d", "n=40^3", "t_end=0.0001", "kernel=wendland_c4", "eta=3.6", "gradient=standard",
          "viscosity=constant"]]
 
 AWAY = ["--snapshot", "end.csv", "--snapshot-every", "0.0003"]
