@@ -25,8 +25,11 @@
 #include "junit.h"
 #include "map.h"
 #include "particle_file.h"
+#include "pool.h"
+#include "rate_table.h"
 #include "regularity.h"
 #include "relax.h"
+#include "snapshots.h"
 #include "suite.h"
 #include "suite_output.h"
 
@@ -317,6 +320,115 @@ static void checks_and_suites(void **state)
     json_decref(kept);
 }
 
+/* ---- jobs, tables of rates, snapshots on the way ---- */
+
+static enum status say_nothing(const void *context, json_t **document, struct error *error)
+{
+    (void)context, (void)document, (void)error;
+    return STATUS_OK;
+}
+
+static enum status add_jobs(struct pool *pool, size_t n, struct error *error)
+{
+    for (size_t i = 0; i < n; i++) {
+        char key[16];
+        snprintf(key, sizeof key, "%zu", i);
+        if (pool_add(pool, "job", key, 1, say_nothing, NULL) != i)
+            return error_set(error, STATUS_ENVIRONMENT, "no memory for a job");
+    }
+    return STATUS_OK;
+}
+
+/* More than there is room for at first. */
+static enum status divided(struct error *error)
+{
+    struct pool pool = {0};
+    int shares[70];
+    enum status status = add_jobs(&pool, 70, error);
+    if (!status) status = pool_divide(&pool, 2, shares, error);
+    pool_free(&pool);
+    return status;
+}
+
+static enum status computed(struct error *error)
+{
+    struct pool pool = {0};
+    const struct pool_settings settings = {.jobs = 1, .share = {1, 2}};
+    enum status status = add_jobs(&pool, 2, error);
+    if (!status) status = pool_run(&pool, &settings, error);
+    if (!status && pool.jobs[0].error.status) { /* its reply was not received */
+        *error = pool.jobs[0].error;
+        status = error->status;
+    }
+    pool_free(&pool);
+    return status;
+}
+
+/* Eight particles on a line. */
+static struct scene line_scene(double arrays[4][8])
+{
+    struct settings settings;
+    struct scene scene = {.dim = 1,
+                          .hi = {1, 1, 1},
+                          .gamma = 1.4,
+                          .t_end = 1,
+                          .n = 8,
+                          .x = {arrays[0]},
+                          .v = {arrays[1]},
+                          .m = arrays[2],
+                          .u = arrays[3],
+                          .threads = 1};
+    for (int i = 0; i < 8; i++) {
+        arrays[0][i] = (i + 0.5) / 8;
+        arrays[1][i] = 0;
+        arrays[2][i] = 0.125, arrays[3][i] = 1;
+    }
+    settings_init(&settings);
+    assert_int_equal(settings_scheme(&settings, 1, &scene.scheme, NULL), STATUS_OK);
+    return scene;
+}
+
+static enum status rated(struct error *error)
+{
+    double arrays[4][8];
+    const struct scene scene = line_scene(arrays);
+    struct rate_table table;
+    const enum status status = rate_table_make(&table, &scene, error);
+    rate_table_free(&table);
+    return status;
+}
+
+/* The one that is due is left out: the next one is tried again. */
+static enum status set_aside(struct error *error)
+{
+    double arrays[4][8];
+    const struct scene scene = line_scene(arrays);
+    struct simulation *simulation;
+    struct snapshots snapshots = {.path = "a.csv", .every = 0.5};
+    enum status status = simulation_create(&scene, &simulation, error);
+    if (status) return status;
+    snapshots_begin(&snapshots, 0, -1, 1);
+    const bool aside = snapshots_keep(&snapshots, simulation, 0, 1);
+    assert_true(aside == (snapshots.trouble.status == STATUS_OK));
+    assert_int_equal(snapshots.next, aside ? 0 : 1);
+    if (!aside) *error = snapshots.trouble;
+    snapshots_go_on(&snapshots);
+    simulation_destroy(simulation);
+    char *name = aside ? snapshots_path(&snapshots, 1) : NULL;
+    if (aside && !name) error_set(error, STATUS_ENVIRONMENT, "no memory for a path");
+    free(name);
+    return error->status;
+}
+
+static void jobs_and_tables(void **state)
+{
+    (void)state;
+    without_memory(divided, 100, true);
+    without_memory(computed, 9, true);
+    without_memory(rated, 3, true);
+    without_memory(set_aside, 3, true);
+}
+
 static int make_file(void **state)
 {
     (void)state;
@@ -335,6 +447,7 @@ int main(void)
         cmocka_unit_test(places_of_particles),
         cmocka_unit_test(files),
         cmocka_unit_test(checks_and_suites),
+        cmocka_unit_test(jobs_and_tables),
     };
     return cmocka_run_group_tests(tests, make_file, remove_file);
 }
