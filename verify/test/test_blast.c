@@ -191,8 +191,8 @@ static void balls_last_until_their_edge_comes(void **state)
     near_relative(last_time(&p), 0.5 - hypot(0.125, 0.1875), 1e-14);
     p.window.radius = 0;
     near_relative(last_time(&p), 0.5 - hypot(0.125, 0.1875), 1e-14);
-    p = prepared_of(&s, 3, "kind=noh|gamma=1.6|lo=9|hi=11"); /* off the origin */
-    for (int d = 0; d < 3; d++) p.window.lo[d] = 9.875, p.window.hi[d] = 10.125;
+    p = prepared_of(&s, 3, "kind=noh|gamma=1.6|lo=9 19 29|hi=11 21 31"); /* off the origin */
+    for (int d = 0; d < 3; d++) p.window.lo[d] = 9.875 + 10 * d, p.window.hi[d] = 10.125 + 10 * d;
     p.window.radius = 0;
     near_relative(last_time(&p), 0.5 - 0.125 * sqrt(3), 1e-14);
 }
@@ -304,7 +304,7 @@ static void blasts_run_outwards(void **state)
         struct sedov blast;
         const struct prepared p =
             prepared_of(&s, dim,
-                        dim == 2 ? "kind=sedov|gamma=1.05|lo=-1 0|hi=2 2"
+                        dim == 2 ? "kind=sedov|gamma=1.05|lo=-1 0|hi=2 1.5"
                                  : "kind=sedov|gamma=1.05|lo=0 -1 0|hi=2 2 3");
         assert_null(sedov_solve(1.05, dim, 1, 1, &blast));
         for (int i = 0; i <= 40; i++)
@@ -327,8 +327,9 @@ static void blasts_run_outwards(void **state)
             }
         /* as long as the shock is within 9/10 of the way to the nearest end */
         const double last = last_time(&p);
-        assert_true(sedov_shock(&blast, last) <= 0.9 * 1 &&
-                    sedov_shock(&blast, nextafter(last, 9)) > 0.9 * 1);
+        const double half = dim == 2 ? 0.75 : 1;
+        assert_true(sedov_shock(&blast, last) <= 0.9 * half &&
+                    sedov_shock(&blast, nextafter(last, 9)) > 0.9 * half);
         refused_late(&p, 3,
                      "t_end=%g: the box is periodic, and the shock comes to its ends (it would be "
                      "at %.4g); allowed: t_end <= %.4g, or a wider box",

@@ -177,6 +177,8 @@ static void layers_fill_a_square(void **state)
         assert_int_equal(prepared_try(&q, &s, 2, keys, &error),
                          abs(part) > 1 ? STATUS_BAD_INPUT : STATUS_OK);
     }
+    /* by 1e-12 of a side exactly, which few doubles can */
+    prepared_of(&s, 2, "kind=kelvin_helmholtz|lo=0|hi=1.000088900582341 1.000088900583341");
     prepared_refused(2, "kind=kelvin_helmholtz|lo=0|hi=2 2.5",
                      "the layers lie in a square box, and this one has sides of 2 and 2.5");
 

@@ -325,6 +325,9 @@ static void layers_need_a_square(void **state)
         assert_int_equal(make(&p, "kelvin_helmholtz_mode", 3, keys, &error),
                          abs(part) > 1 ? STATUS_BAD_INPUT : STATUS_OK);
     }
+    /* by 1e-12 of a side exactly, which few doubles can */
+    snprintf(side, sizeof side, "hi=1.000088900582341 1.000088900583341");
+    made("kelvin_helmholtz_mode", 3, keys);
 }
 
 /* Sinuous and varicose modes are different ones; gravity that nobody gives is that of the layer. */

@@ -143,6 +143,23 @@ static void particles_carry_the_mass(void **state)
     }
 }
 
+/* Without a wave they stand where uniform gas has its mass, to the last bit. */
+static void uniform_gas_is_laid_exactly(void **state)
+{
+    (void)state;
+    struct settings s;
+    const struct prepared p =
+        prepared_of(&s, 1, "kind=sound_wave|lo=-1|hi=2|background=1.3 0 1|n=37|amplitude=0");
+    const struct initial initial = prepared_filled(&p, &s);
+    const double mass = 1.3 * 3 / 37;
+    assert_int_equal(initial.n, 37);
+    for (int i = 0; i < 37; i++) {
+        assert_true(initial.m[i] == mass);
+        assert_true(initial.x[0][i] == -1 + (i + 0.5) * mass / 1.3);
+    }
+    free(initial.storage);
+}
+
 static void what_cannot_be_laid_is_said(void **state)
 {
     (void)state;
@@ -249,6 +266,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(samples_are_the_wave),
         cmocka_unit_test(particles_carry_the_mass),
+        cmocka_unit_test(uniform_gas_is_laid_exactly),
         cmocka_unit_test(what_cannot_be_laid_is_said),
         cmocka_unit_test(what_is_no_wave_is_refused),
         cmocka_unit_test(modes_are_sums),
