@@ -90,6 +90,31 @@ static void test_breaking(void **state)
     near_inside(steepest / start, 15, 25);
 }
 
+/* The steepest place is sought: 1/t is the greatest of
+ * (gamma + 1)/2 c0 k A (1 + A s)^((gamma - 3)/2) sqrt(1 - s^2). */
+static void test_breaking_times(void **state)
+{
+    (void)state;
+    static const double gammas[] = {1.1, 1.4, 2.2, 3, 5}, amplitudes[] = {1e-3, 0.25, -0.6, 0.95};
+    for (int k = 0; k < 20; k++) {
+        const double gamma = gammas[k % 5], A = fabs(amplitudes[k / 5]),
+                     golden = 0.6180339887498949;
+        const struct simple_wave w = {gamma, 2.385, -0.3, 0.7, amplitudes[k / 5], 1.7};
+        double lo = -1, hi = 1, steepest = 0;
+        for (int i = 0; i < 80; i++) {
+            const double s[2] = {hi - golden * (hi - lo), lo + golden * (hi - lo)};
+            double slope[2];
+            for (int j = 0; j < 2; j++) {
+                slope[j] = pow(1 + A * s[j], (gamma - 3) / 2) * sqrt(1 - s[j] * s[j]);
+                steepest = fmax(steepest, slope[j]);
+            }
+            *(slope[0] < slope[1] ? &lo : &hi) = slope[0] < slope[1] ? s[0] : s[1];
+        }
+        near_relative(simple_wave_breaking_time(&w),
+                      1 / ((gamma + 1) / 2 * sound(&w) * 2 * M_PI / 1.7 * A * steepest), 1e-12);
+    }
+}
+
 static void test_faults(void **state)
 {
     (void)state;
@@ -142,7 +167,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_start),           cmocka_unit_test(test_characteristics),
         cmocka_unit_test(test_small_amplitude), cmocka_unit_test(test_breaking),
-        cmocka_unit_test(test_faults),          cmocka_unit_test(test_beyond_double),
+        cmocka_unit_test(test_breaking_times),  cmocka_unit_test(test_faults),
+        cmocka_unit_test(test_beyond_double),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
