@@ -121,7 +121,8 @@ static void vortex_is_measured(void **state)
     (void)state;
     struct settings s;
     struct cloud cloud;
-    const struct prepared p = prepared_of(&s, 2, "kind=gresho|lo=-0.5|hi=1.5|boost=0.5 -0.25");
+    const struct prepared p =
+        prepared_of(&s, 2, "kind=gresho|lo=-0.5 1.5|hi=1.5 3.5|boost=0.5 -0.25");
     scatter(&cloud, &p, 0.7);
     double sum = 0, peak = 0;
     int n = 0;
