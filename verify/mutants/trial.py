@@ -5,6 +5,7 @@ when to stop. Part of verify/mutants/score.
 A unit is a test of the quick suite or one of its checks. Its key says what it runs: what is known of a
 unit (reach.json) and what it did not notice (the record) holds as long as the key does."""
 import collections
+import concurrent.futures
 import glob
 import hashlib
 import json
@@ -146,11 +147,10 @@ def copy_build(build, copy):
 
 
 def in_threads(function, workers):
-    threads = [threading.Thread(target=function, args=(i,)) for i in range(workers)]
-    for t in threads:
-        t.start()
-    for t in threads:
-        t.join()
+    """What goes wrong in a thread goes wrong here, once all of them have ended."""
+    with concurrent.futures.ThreadPoolExecutor(workers) as threads:
+        for done in [threads.submit(function, i) for i in range(workers)]:
+            done.result()
 
 
 class Table:

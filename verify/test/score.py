@@ -138,10 +138,17 @@ def main(score, work):
     os.remove(os.path.join(tree, "verify/mutants/equivalent.txt"))
 
     in_rounds(expect, score)
+    with open(os.path.join(tree, "meson.build"), "a") as f:
+        f.write("test('never', executable('test_never', 'test_never.c', link_with: tiny, include_directories: 'src'), suite: 'quick')\n")
+    write(os.path.join(tree, "test_never.c"), '#include "tiny.h"\nint main(void) { return tiny_never(5, 2) != 3; }\n')
+    said, more = run("--tests", "tiny|never", "--again", "survived")
+    expect("a test that is new notices what survived before: " + said,
+           "a - b -> +" not in {s["change"] for s in more["survivors"]})
     parts = [run("--shard", "%d/3" % i)[1]["chosen"] for i in (1, 2, 3)]
     expect("shards are all of it", sum(parts) == first["generated"])
     expect("a sample is no larger than asked for", run("--sample", "7", "--seed", "3")[1]["chosen"] == 7)
     stable_draw(expect, score)
+    failing_thread(expect)
     expect("a shard that is none is refused", "I/N" in run("--shard", "4/3", code=2)[0])
     hidden = os.path.join(work, "hidden", "clang")
     write(os.path.join(hidden, "__init__.py"), "raise ImportError('hidden')\n")
@@ -174,6 +181,21 @@ def stable_draw(expect, score):
     less = [n for n in drawn(["new"] + [n for n in reversed(names) if n != gone], 1) if n != "new"]
     expect("a draw by another seed is another", len(first) == 20 and drawn(names, 2) != first)
     expect("a draw stands where lines come and go: %s, %s" % (first, less), less[:19] == [n for n in first if n != gone])
+
+
+def failing_thread(expect):
+    import trial
+
+    def fail_at(worker):
+        if worker == 1:
+            raise OSError("gone")
+
+    try:
+        trial.in_threads(fail_at, 2)
+        failed = False
+    except OSError:
+        failed = True
+    expect("what goes wrong in a thread is told", failed)
 
 
 def in_rounds(expect, score):
