@@ -207,13 +207,6 @@ static enum status tell(const void *context, json_t **document, struct error *er
     return told->status;
 }
 
-static int share_memory(void **state)
-{
-    (void)state;
-    board = mmap(NULL, sizeof *board, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-    return board == MAP_FAILED;
-}
-
 static int clean_board(void **state)
 {
     (void)state;
@@ -231,6 +224,26 @@ static void add(struct pool *pool, struct told *told, size_t n, const double *we
         snprintf(name, sizeof name, "job %zu", i);
         assert_int_equal(pool_add(pool, name, name, weights ? weights[i] : 1, tell, &told[i]), i);
     }
+}
+
+/* Before all tests: who runs jobs goes on afterwards. Where not, this process would be gone, too,
+ * in the midst of a test and without a word. */
+static int begin(void **state)
+{
+    (void)state;
+    board = mmap(NULL, sizeof *board, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (board == MAP_FAILED) return 1;
+    const pid_t child = fork();
+    if (child == 0) {
+        struct pool pool;
+        struct told told = {0};
+        add(&pool, &told, 1, NULL);
+        run(&pool, NULL, 1);
+        _exit(42);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    return !WIFEXITED(status) || WEXITSTATUS(status) != 42;
 }
 
 /* Of malloc's; 0 where nobody knows. */
@@ -427,23 +440,6 @@ static void nothing_twice(void **state)
     rmdir(folder);
 }
 
-/* Who runs jobs goes on afterwards; this test is the first one: its process may be gone. */
-static void comes_back(void **state)
-{
-    (void)state;
-    const pid_t child = fork();
-    if (child == 0) {
-        struct pool pool;
-        struct told told = {0};
-        add(&pool, &told, 1, NULL);
-        run(&pool, NULL, 1);
-        _exit(42);
-    }
-    int status = 0;
-    assert_int_equal(waitpid(child, &status, 0), child);
-    assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 42);
-}
-
 /* What is running is waited for where no more processes can be started, and nothing is left open.
  */
 static void no_pipe(void **state)
@@ -631,7 +627,6 @@ static void a_share_is_its_own(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(comes_back),
         cmocka_unit_test_setup(nothing_twice, clean_board),
         cmocka_unit_test(any_number_of_processes),
         cmocka_unit_test(shares),
@@ -649,5 +644,5 @@ int main(void)
         cmocka_unit_test(shares_by_hand),
         cmocka_unit_test_setup(a_share_is_its_own, clean_board),
     };
-    return cmocka_run_group_tests(tests, share_memory, NULL);
+    return cmocka_run_group_tests(tests, begin, NULL);
 }
