@@ -22,7 +22,6 @@ static double arrays_of(const struct simulation *simulation)
 double memory_bytes(const struct scene *scene)
 {
     struct simulation simulation = {.scheme = scene->scheme, .plan = plan_of_scene(scene)};
-    simulation.team.most = scene->threads > 1 ? scene->threads : 1;
     const double n = (double)scene->n;
     return sizeof(double) * n * arrays_of(&simulation) +
            simulation.plan.sums->bytes(&simulation, n);

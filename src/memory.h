@@ -5,8 +5,8 @@
 
 struct scene;
 
-/* Bytes that a simulation of the scene comes to use, by its scheme, dimension, threads and number
- * of particles (no array of it is read): within a tenth where particles are evenly spaced. */
+/* Bytes that a simulation of the scene comes to use, by its scheme, dimension and number of
+ * particles (no array of it is read): within a tenth where particles are evenly spaced. */
 double memory_bytes(const struct scene *scene);
 
 #endif

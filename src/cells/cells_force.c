@@ -14,8 +14,7 @@ static void fill_sentinel(struct cells *cells)
 {
     const struct lanes_layout *layout = &cells->force;
     const int *at = layout->offset;
-    double *record = lanes_record(cells, layout, cells->points);
-    for (int f = cells->method.box.dim; f < layout->size; f++) record[f] = 0;
+    double *record = lanes_sentinel(cells, layout);
     /* far beyond its own width, too; a density keeps quotients finite, and its matrix is as good as
      * any */
     record[at[FIELD_H_INVERSE]] = 16 / (record[0] > 0 ? record[0] : 1);

@@ -15,16 +15,16 @@ static void fill_records(struct cells *cells, const struct cells_fields *fields)
     const int dim = cells->method.box.dim, weight = layout->offset[FIELD_WEIGHT],
               velocity = layout->offset[FIELD_VELOCITY], width = layout->offset[FIELD_H];
 #pragma omp parallel for num_threads(cells->team) if (cells->team > 1)
-    for (size_t s = 0; s <= cells->points; s++) {
+    for (size_t s = 0; s < cells->points; s++) {
         double *record = lanes_record(cells, layout, s);
-        const bool sentinel = s == cells->points;
-        int mirrored = 0;
-        const size_t i = sentinel ? 0 : lanes_source(cells, fields->n, s, &mirrored);
-        record[weight] = sentinel ? 0 : fields->V[i];
-        if (width >= 0) record[width] = sentinel ? 0 : 1 / fields->h_inverse[i];
+        int mirrored;
+        const size_t i = lanes_source(cells, fields->n, s, &mirrored);
+        record[weight] = fields->V[i];
+        if (width >= 0) record[width] = 1 / fields->h_inverse[i];
         for (int a = 0; velocity >= 0 && a < dim; a++)
-            record[velocity + a] = sentinel ? 0 : lanes_sign(mirrored, a) * fields->v[a][i];
+            record[velocity + a] = lanes_sign(mirrored, a) * fields->v[a][i];
     }
+    lanes_sentinel(cells, layout);
 }
 
 /* q = r/h. */
@@ -35,36 +35,44 @@ CLONES static void scale(int count, const double *restrict r, double h_inverse, 
 }
 
 /* V times -w'(q)/q, the weight of gradient=corrected; 0 where points coincide. */
-CLONES static void slope_weight(int count, double h, const double *restrict r_inverse,
-                                const double *restrict V, const double *restrict dw,
-                                double *restrict weight)
+CLONES static void slope_weight(int count, double h, const struct lanes *lanes,
+                                const double *restrict V)
 {
+    const double *restrict r_inverse = lane(lanes, LANE_R_INVERSE), *restrict dw =
+                                                                        lane(lanes, LANE_W);
+    double *restrict weight = lane(lanes, LANE_W_J);
 #pragma omp simd
     for (int k = 0; k < count; k++) weight[k] = V[k] * (-dw[k] * (r_inverse[k] * h));
 }
 
+/* A A^T. */
+ALWAYS_INLINE void times_transposed(int dim, const double A[CELLS_SQUARE],
+                                    double product[CELLS_SQUARE])
+{
+    for (int a = 0; a < dim; a++)
+        for (int b = 0; b < dim; b++) {
+            double sum = 0;
+            for (int c = 0; c < dim; c++) sum += A[a * dim + c] * A[b * dim + c];
+            product[a * dim + b] = sum;
+        }
+}
+
 /* P = kappa M^2/tr M^2 with M = L L^T and kappa = smoothstep((s - 0.7)/0.25),
- * s = 2 tr M^2/(tr M)^2 - 1: 1 for simple shear, 0 for rotation. */
+ * s = 2 tr M^2/(tr M)^2 - 1: 1 for simple shear, 0 for rotation. Where M is 0 so is P. */
 ALWAYS_INLINE void project_body(int dim, const double L[CELLS_SQUARE],
                                 double projector[CELLS_SYMMETRIC])
 {
     double M[CELLS_SQUARE], M2[CELLS_SQUARE], trace = 0, trace2 = 0;
-    for (int a = 0; a < dim; a++)
-        for (int b = 0; b < dim; b++) {
-            M[a * dim + b] = 0;
-            for (int c = 0; c < dim; c++) M[a * dim + b] += L[a * dim + c] * L[b * dim + c];
-        }
-    for (int a = 0; a < dim; a++)
-        for (int b = 0; b < dim; b++) {
-            M2[a * dim + b] = 0;
-            for (int c = 0; c < dim; c++) M2[a * dim + b] += M[a * dim + c] * M[c * dim + b];
-        }
+    times_transposed(dim, L, M);
+    times_transposed(dim, M, M2);
     for (int a = 0; a < dim; a++) trace += M[a * dim + a], trace2 += M2[a * dim + a];
-    const double s = trace2 > 0 ? 2 * trace2 / (trace * trace) - 1 : 0;
+    for (int k = 0; k < CELLS_SYMMETRIC; k++) projector[k] = 0;
+    if (!(trace2 > 0)) return;
+    const double s = 2 * trace2 / (trace * trace) - 1;
     const double t = least(1, largest(0, (s - 0.7) / 0.25)), kappa = t * t * (3 - 2 * t);
+    int k = 0;
     for (int a = 0; a < dim; a++)
-        for (int b = a; b < dim; b++)
-            projector[symmetric_at(dim, a, b)] = trace2 > 0 ? kappa * M2[a * dim + b] / trace2 : 0;
+        for (int b = a; b < dim; b++) projector[k++] = kappa * M2[a * dim + b] / trace2;
 }
 
 void cells_project(int dim, const double L[CELLS_SQUARE], double projector[CELLS_SYMMETRIC])
@@ -114,7 +122,7 @@ static void matrix_pass(struct cells *cells, const struct cells_fields *fields, 
     const double *V = lane_of(lanes, &cells->matrix, FIELD_WEIGHT),
                  h_inverse = fields->h_inverse[i];
     double *dw = lane(lanes, LANE_W), *weight = lane(lanes, LANE_W_J);
-    double inverse[CELLS_SQUARE], condition = 0;
+    double inverse[CELLS_SQUARE], condition;
     const bool blended = method->gradient == GRADIENT_BLENDED,
                by_w = blended || method->gradient == GRADIENT_IA;
     bool sound = false;
@@ -130,13 +138,14 @@ static void matrix_pass(struct cells *cells, const struct cells_fields *fields, 
         double *q = lane(lanes, LANE_Q);
         scale(count, lane(lanes, LANE_R), h_inverse, q);
         cells->shapes.dw(method->kernel, (size_t)count, q, dw);
-        slope_weight(count, 1 / h_inverse, lane(lanes, LANE_R_INVERSE), V, dw, weight);
+        slope_weight(count, 1 / h_inverse, lanes, V);
         sound = moments_invert(method, count, lanes, weight, inverse, &condition);
     }
     fields->condition[i] = condition;
+    int k = 0;
     for (int a = 0; a < dim; a++)
         for (int b = a; b < dim; b++)
-            fields->matrix[symmetric_at(dim, a, b)][i] =
+            fields->matrix[k++][i] =
                 sound ? 0.5 * (inverse[a * dim + b] + inverse[b * dim + a]) : 0;
 }
 

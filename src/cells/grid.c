@@ -33,8 +33,8 @@ static bool reserve_points(struct grid *grid, size_t n)
     for (int a = 0; a < 3; a++)
         floats &= (grid->place[a] = calloc(capacity + COPIED, sizeof(float))) != NULL;
     grid->lists = malloc(capacity * sizeof *grid->lists);
-    grid->part_begin = malloc((capacity + 1) * sizeof *grid->part_begin);
-    grid->part_cell = malloc((capacity + 1) * sizeof *grid->part_cell);
+    grid->part_begin = malloc(capacity * sizeof *grid->part_begin);
+    grid->part_cell = malloc(capacity * sizeof *grid->part_cell);
     if (floats && grid->cell_of && grid->order && grid->position && grid->radius && grid->lists &&
         grid->part_begin && grid->part_cell)
         return true;
@@ -285,7 +285,6 @@ static void cut_parts(struct grid *grid)
     for (size_t c = 0; c < grid->cell_count; c++) {
         const uint32_t end = grid->start[c + 1];
         if (end - begun < PART / 2 && c + 1 < grid->cell_count) continue;
-        if (end == begun && c + 1 < grid->cell_count) continue;
         parts++;
         grid->part_begin[parts] = begun = end;
         grid->part_cell[parts] = (uint32_t)(c + 1);

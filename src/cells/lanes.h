@@ -153,6 +153,14 @@ static inline double *lanes_record(const struct cells *cells, const struct lanes
     return record;
 }
 
+/* The record of the sentinel: its place, and all else 0. */
+static inline double *lanes_sentinel(const struct cells *cells, const struct lanes_layout *layout)
+{
+    double *record = lanes_record(cells, layout, cells->points);
+    for (int f = cells->method.box.dim; f < layout->size; f++) record[f] = 0;
+    return record;
+}
+
 /* Gathers the records of a slot's list and finds the geometry of its pairs. Returns the number of
  * lanes, a multiple of GRID_LANES. */
 int lanes_gather(const struct cells *cells, const struct lanes_layout *layout, size_t slot,

@@ -96,7 +96,7 @@ static bool order_points(struct neighbours *nb, const struct points *points)
         if (hi - lo[a] > extent) extent = hi - lo[a];
     }
     const double cells = (double)((uint64_t)1 << (bits < 52 ? bits : 52));
-    const double scale = extent > 0 && cells / extent <= 1e300 ? (cells - 1) / extent : 0;
+    const double scale = cells / extent <= 1e300 ? (cells - 1) / extent : 0;
     for (size_t i = 0; i < points->n; i++) {
         uint64_t c[3] = {0};
         for (int a = 0; scale > 0 && a < dim; a++) /* 0: too narrow or too wide for any order */

@@ -85,6 +85,12 @@ static void work_free(struct work *work)
     free(work->memory), free(work->list), free(work->j);
 }
 
+/* How far outside of an interval a coordinate lies. */
+ALWAYS_INLINE double gap(double lo, double hi, double at)
+{
+    return largest(largest(lo - at, at - hi), 0);
+}
+
 /* Squares of the distances from a point to the boxes of candidate blocks. */
 ALWAYS_INLINE void box_distances(int dim, const struct candidates *c, const double *at,
                                  double *restrict distance2)
@@ -94,17 +100,9 @@ ALWAYS_INLINE void box_distances(int dim, const struct candidates *c, const doub
     const double *restrict hx = c->hi[0], *restrict hy = c->hi[1], *restrict hz = c->hi[2];
 #pragma omp simd
     for (size_t b = 0; b < blocks; b++) {
-        const double x = largest(largest(lx[b] - at[0], at[0] - hx[b]), 0);
-        double sum = x * x;
-        if (dim > 1) {
-            const double y = largest(largest(ly[b] - at[1], at[1] - hy[b]), 0);
-            sum += y * y;
-        }
-        if (dim > 2) {
-            const double z = largest(largest(lz[b] - at[2], at[2] - hz[b]), 0);
-            sum += z * z;
-        }
-        distance2[b] = sum;
+        const double x = gap(lx[b], hx[b], at[0]), y = dim > 1 ? gap(ly[b], hy[b], at[1]) : 0,
+                     z = dim > 2 ? gap(lz[b], hz[b], at[2]) : 0;
+        distance2[b] = x * x + y * y + z * z;
     }
 }
 
@@ -141,27 +139,28 @@ ALWAYS_INLINE size_t list_neighbours(int dim, struct work *work, const double *a
     return n;
 }
 
-/* Fills j, x, q, v with the neighbours of a point; returns their number with the filling. *inside:
- * those with r < h. */
-ALWAYS_INLINE size_t select_neighbours(int dim, const struct task *task, struct work *work,
-                                       const double *at, double h, uint32_t self, uint32_t *inside)
+struct selection {
+    size_t n; /* neighbours with the filling */
+    uint32_t inside;
+};
+
+/* Fills j, x, q, v with the neighbours of a point. inside: those with r < h. */
+ALWAYS_INLINE struct selection select_neighbours(int dim, const struct task *task,
+                                                 struct work *work, const double *at, double h,
+                                                 uint32_t self)
 {
     const struct candidates *c = &work->candidates;
-    const double *restrict cx = c->x[0], *restrict cy = c->x[1], *restrict cz = c->x[2];
     const double *restrict distance2 = work->distance2;
     const uint32_t *restrict list = work->list;
     /* finite, so that the fillings stay outside */
     size_t n = list_neighbours(dim, work, at, fmin(h * h * (1 + 1e-12), DBL_MAX));
     const double inverse = 1 / h;
     const double *restrict volume = task->volume;
-    double *restrict wx = work->x[0], *restrict wy = work->x[1], *restrict wz = work->x[2],
-                     *restrict q = work->q, *restrict v = work->v;
+    double *restrict q = work->q, *restrict v = work->v;
     uint32_t *restrict j = work->j, count = 0;
     for (size_t m = 0; m < n; m++) {
         const uint32_t k = list[m];
-        wx[m] = (cx[k] - at[0]) * inverse;
-        if (dim > 1) wy[m] = (cy[k] - at[1]) * inverse;
-        if (dim > 2) wz[m] = (cz[k] - at[2]) * inverse;
+        for (int a = 0; a < dim; a++) work->x[a][m] = (c->x[a][k] - at[a]) * inverse;
         j[m] = c->j[k];
         v[m] = volume[j[m]];
     }
@@ -171,12 +170,11 @@ ALWAYS_INLINE size_t select_neighbours(int dim, const struct task *task, struct 
         q[m] = r * inverse;
         count += r < h ? 1u : 0u;
     }
-    *inside = count;
     for (; n % (size_t)LANES; n++) {
         for (int a = 0; a < dim; a++) work->x[a][n] = 0;
         q[n] = 1, v[n] = 0, j[n] = self;
     }
-    return n;
+    return (struct selection){n, count};
 }
 
 /* sum a_m b_m */
@@ -261,11 +259,12 @@ ALWAYS_INLINE uint32_t point_gradient(int dim, const struct task *task, struct w
     const struct neighbours *nb = task->neighbours;
     const struct operator_form *form = task->settings->form;
     const struct kernel *kernel = task->settings->kernel;
-    const double h = task->h[s],
-                 at[3] = {nb->x[0][s], dim > 1 ? nb->x[1][s] : 0, dim > 2 ? nb->x[2][s] : 0};
+    const double h = task->h[s];
     const bool diagnosed = task->point != NULL;
-    uint32_t inside;
-    const size_t n = select_neighbours(dim, task, work, at, h, (uint32_t)s, &inside);
+    double at[3];
+    for (int a = 0; a < dim; a++) at[a] = nb->x[a][s];
+    const struct selection found = select_neighbours(dim, task, work, at, h, (uint32_t)s);
+    const size_t n = found.n;
     double matrix[9], inverse[9] = {0};
 
     if (form->pair_vector != VECTOR_GRADIENT || diagnosed)
@@ -309,16 +308,16 @@ ALWAYS_INLINE uint32_t point_gradient(int dim, const struct task *task, struct w
     }
     if (diagnosed) {
         struct operator_point *point = &task->point[i];
-        point->neighbours = inside;
+        point->neighbours = found.inside;
         point->condition = matrix_condition(dim, matrix);
         if (!form->corrected) invertible = matrix_invert(dim, matrix, inverse);
-        point->state = inside < (uint32_t)dim + 1                      ? OPERATOR_TOO_FEW_NEIGHBOURS
+        point->state = found.inside < (uint32_t)dim + 1                ? OPERATOR_TOO_FEW_NEIGHBOURS
                        : !invertible                                   ? OPERATOR_SINGULAR
                        : !(point->condition <= OPERATOR_CONDITION_MAX) ? OPERATOR_ILL_CONDITIONED
                        : !finite                                       ? OPERATOR_OVERFLOW
                                                                        : OPERATOR_OK;
     }
-    return inside;
+    return found.inside;
 }
 
 ALWAYS_INLINE uint64_t block_gradients(int dim, const struct task *task, struct work *work,
@@ -348,8 +347,7 @@ static enum status gradients_of_block(const struct task *task, struct work *work
     const size_t first = block * NEIGHBOURS_BLOCK;
     const size_t end = first + NEIGHBOURS_BLOCK < nb->n ? first + NEIGHBOURS_BLOCK : nb->n;
     double radius = 0;
-    for (size_t s = first; s < end; s++)
-        if (task->h[s] > radius) radius = task->h[s];
+    for (size_t s = first; s < end; s++) radius = largest(radius, task->h[s]);
     const enum status status = neighbours_gather(nb, block, radius, &work->candidates, error);
     if (status) return status;
     if (!work_reserve(work))
@@ -472,7 +470,7 @@ static enum status apply_in_units(const struct operator_settings *settings,
         for (int a = 0; a < dim; a++)
             give_back(n, e[2 + k] + (bare ? e[1] - (dim + 1) * e[0] : -e[0]),
                       gradient[k * (size_t)dim + (size_t)a], point);
-    if (sound) units_points_free(&copy.points);
+    units_points_free(&copy.points);
     return status;
 }
 

@@ -12,6 +12,7 @@
 #include <cmocka.h>
 
 #include "integrator.h"
+#include "plan.h"
 #include "run.h"
 #include "value.h"
 
@@ -40,6 +41,14 @@ static void is_true(const struct run *run, const struct plan_line *line)
         if (strcmp(text, value) != 0 && !strstr(text, value))
             fail_msg("%s: %s=%s is said, it is %s", line->pass, word, value, text);
     }
+    if (strcmp(line->pass, "density sum") == 0)
+        assert_string_equal(line->why, run->scheme.h_method == H_NEWTON
+                                           ? "inside the Newton iteration"
+                                           : "one a step");
+    if (strcmp(line->pass, "pair forces") == 0)
+        assert_string_equal(line->why, run->asked.file.dimension == 1
+                                           ? "half loop, antisymmetric fluxes"
+                                           : "each pair from both sides, opposite to the last bit");
     if (strstr(line->why, "alpha_u > 0")) assert_true(run->scheme.alpha_u > 0);
     if (strstr(line->why, "alpha is constant"))
         assert_true(run->scheme.viscosity != VISCOSITY_TIME_DEPENDENT &&
@@ -183,11 +192,127 @@ static void warnings(void **state)
     warns("gresho", "n=8^2 kernel=cubic_spline eta=5 gradient=ia", "");
 }
 
+/* A scene of a scheme alone: 1D, cubic spline, no viscosity, energy of its own. */
+static struct scene scene_of(double eta, enum gradient gradient)
+{
+    struct scene scene = {.dim = 1, .threads = 1};
+    scene.scheme.eta = eta;
+    scene.scheme.gradient = gradient;
+    scene.scheme.viscosity = VISCOSITY_CONSTANT;
+    scene.scheme.integrator = (const struct integrator *)integrator_family.members[0];
+    assert_int_equal(kernel_select(&scene.scheme.kernel, "cubic_spline", 5, NULL), STATUS_OK);
+    return scene;
+}
+
+static size_t explained(const struct scene *scene, char *warnings, size_t size)
+{
+    struct plan_line lines[PASSES];
+    return plan_explain(scene, lines, PASSES, warnings, size);
+}
+
+/* What has room is written, and no more; how many lines there are is said all the same. */
+static void room(void **state)
+{
+    (void)state;
+    const struct scene scene = scene_of(5, GRADIENT_IA);
+    struct plan_line all[PASSES], some[PASSES];
+    const size_t count = plan_explain(&scene, all, PASSES, NULL, 0);
+    assert_int_equal(count, PASSES - 4);
+    for (size_t most = 0; most <= count; most++) {
+        memset(some, 'x', sizeof some);
+        assert_int_equal(plan_explain(&scene, some, most, NULL, 9), count);
+        for (size_t k = 0; k < most; k++) {
+            assert_string_equal(some[k].pass, all[k].pass);
+            assert_string_equal(some[k].why, all[k].why);
+        }
+        for (size_t k = 0; k < sizeof *some; k++)
+            if (most < count) assert_int_equal(((char *)&some[most])[k], 'x');
+    }
+    char text[512], less[512];
+    explained(&scene, text, sizeof text);
+    const size_t length = strlen(text), second = (size_t)(strstr(text, "; eta") - text);
+    assert_string_equal(text + second,
+                        "; eta = 5 is beyond 4, where cubic_spline with gradient=ia "
+                        "turns linearly unstable: noise grows unless viscosity hides it");
+    assert_null(strstr(text + second + 2, "; "));
+    for (size_t size = 0; size <= length + 1; size++) {
+        memset(less, 'x', sizeof less);
+        explained(&scene, less, size);
+        for (size_t k = size; k < sizeof less; k++) assert_int_equal(less[k], 'x');
+        if (size == 0) continue;
+        const size_t room_for = size <= 2 ? 0 : size <= second + 2 ? second : length;
+        assert_int_equal(strlen(less), size - 1 < room_for ? size - 1 : room_for);
+        assert_int_equal(strncmp(less, text, strlen(less)), 0);
+    }
+    assert_string_equal(less, text);
+}
+
+/* Three per cent, exactly the limit, less than one width, and half way between two. */
+static void limits(void **state)
+{
+    (void)state;
+    static const struct {
+        double eta;
+        enum gradient gradient;
+        bool off, beyond;
+    } cases[] = {
+        {2, GRADIENT_IA, false, false},
+        {2 / 0.9700001, GRADIENT_IA, false, false},
+        {2 / 0.9699999, GRADIENT_IA, true, false},
+        {2 / 1.0299999, GRADIENT_IA, false, false},
+        {2 / 1.0300001, GRADIENT_IA, true, false},
+        {1.2, GRADIENT_IA, true, false},
+        {4, GRADIENT_IA, false, false},
+        {4.000001, GRADIENT_IA, false, true},
+        {4.999, GRADIENT_STANDARD, true, false},
+        {5.001, GRADIENT_STANDARD, true, false},
+        {4 / 0.9699999, GRADIENT_STANDARD, true, false},
+        {6, GRADIENT_STANDARD, false, false},
+        {6, GRADIENT_IA, false, true},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        struct scene scene = scene_of(cases[k].eta, cases[k].gradient);
+        char text[512] = "old";
+        explained(&scene, text, sizeof text);
+        if ((strstr(text, "off the partition") != NULL) != cases[k].off ||
+            (strstr(text, "is beyond 4") != NULL) != cases[k].beyond)
+            fail_msg("eta = %g: '%s'", cases[k].eta, text);
+        scene.dim = 2;
+        explained(&scene, text, sizeof text);
+        assert_string_equal(text, "");
+    }
+}
+
+/* Gravity in any direction is gravity, and wakes everybody. */
+static void gravity(void **state)
+{
+    (void)state;
+    for (int axis = 0; axis < 4; axis++)
+        for (int dim = 2; dim <= 3; dim++)
+            for (int skip = 0; skip < 2; skip++) {
+                struct scene scene = scene_of(2, GRADIENT_IA);
+                scene.dim = dim, scene.skip = skip;
+                if (axis < 3) scene.gravity[axis] = -0.1;
+                const struct plan plan = plan_of_scene(&scene);
+                assert_int_equal(plan.gravity, axis < dim);
+                assert_int_equal(plan.sleep, skip && axis >= dim);
+                for (int wall = 0; wall < 4; wall++) {
+                    struct plan_line lines[PASSES];
+                    if (wall < 3) scene.boundary[wall] = BOUNDARY_REFLECTING;
+                    plan_explain(&scene, lines, PASSES, NULL, 0);
+                    for (size_t k = 0; k < PASSES - 2; k++)
+                        if (strcmp(lines[k].pass, "mirror images") == 0)
+                            assert_int_equal(lines[k].runs, wall < dim);
+                    if (wall < 3) scene.boundary[wall] = BOUNDARY_PERIODIC;
+                }
+            }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(plans),
-        cmocka_unit_test(warnings),
+        cmocka_unit_test(plans),  cmocka_unit_test(warnings), cmocka_unit_test(room),
+        cmocka_unit_test(limits), cmocka_unit_test(gravity),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

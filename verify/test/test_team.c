@@ -5,9 +5,11 @@
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #include <cmocka.h>
 
+#include "near.h"
 #include "team.h"
 
 /* A second of steps of `pace` seconds each; more threads take `ratio` times as long as one. Returns
@@ -77,12 +79,105 @@ static void pauses_count_for_nobody(void **state)
     assert_true(together > 3600);
 }
 
+/* Steps of a stretch, of one pace each, until the size or the purpose changes. */
+static int stretch(struct team *team, double *now, double step)
+{
+    const struct team before = *team;
+    int steps = 0;
+    do {
+        assert_true(team->stretch == before.stretch);
+        *now += step;
+        team_step(team, *now);
+        steps++;
+        assert_int_equal(team->steps, team->begun == *now ? 0 : steps);
+    } while (team->size == before.size && team->trying == before.trying);
+    assert_true(team->begun == *now);
+    near_relative(team->pace[before.size > 1], step, 1e-8);
+    return steps;
+}
+
+/* Trials of 4 ms; stretches between them of 16 to 256 times that, in time and in steps, twice as
+ * long each time that nothing has changed; a change only where it saves 5 %. */
+static void stretches_are_as_long_as_said(void **state)
+{
+    (void)state;
+    static const double exact[] = {0x1p-20, 0x1p-14, 0x1p-10, 0x1p-8, 0x1p-7, 0.25};
+    for (size_t k = 0; k < sizeof exact / sizeof *exact; k++) {
+        const double pace = exact[k];
+        const int trial = (int)ceil(4e-3 / pace);
+        struct team team;
+        double now = 1;
+        team_begin(&team, 4);
+        assert_true(team.most == 4 && team.size == 4 && team.trying && team.stretch == 16);
+        assert_true(team.begun == 0 && team.steps == 0 && team.pace[0] == 0 && team.pace[1] == 0);
+        team_step(&team, now); /* the first one is nobody's */
+        assert_true(team.begun == now && team.steps == 0 && team.size == 4 && team.trying);
+        assert_int_equal(stretch(&team, &now, pace), trial);
+        assert_true(team.size == 1 && team.trying);
+        for (int times = 32; times <= 1024; times *= 2) {
+            const int expected = times < 256 ? times : 256;
+            assert_int_equal(stretch(&team, &now, pace), trial);
+            assert_true(team.size == 4 && !team.trying && team.stretch == expected);
+            const double least = ceil(expected * 4e-3 / pace);
+            assert_int_equal(stretch(&team, &now, pace), (int)fmax(expected, least));
+            assert_true(team.size == 1 && team.trying);
+        }
+        /* not enough; enough, and from the start again; and back */
+        assert_int_equal(stretch(&team, &now, pace * 0.9500001),
+                         (int)ceil(4e-3 / (pace * 0.9500001)));
+        assert_true(team.size == 4 && !team.trying && team.stretch == 256);
+        stretch(&team, &now, pace);
+        stretch(&team, &now, pace * 0.9499999);
+        assert_true(team.size == 1 && !team.trying && team.stretch == 16);
+        stretch(&team, &now, pace * 0.9499999);
+        assert_true(team.size == 4 && team.trying && team.stretch == 16);
+        stretch(&team, &now, pace);
+        assert_true(team.size == 1 && !team.trying && team.stretch == 32);
+        stretch(&team, &now, pace);
+        stretch(&team, &now, 0.9 * pace);
+        assert_true(team.size == 4 && !team.trying && team.stretch == 16);
+        /* slower than it was, but not by half; then by more: tried again at once */
+        const double least = ceil(16 * 4e-3 / (1.3 * pace));
+        assert_int_equal(stretch(&team, &now, 1.3 * pace), (int)fmax(16, least));
+        assert_true(team.size == 1 && team.trying);
+        stretch(&team, &now, 3 * pace);
+        assert_true(team.size == 4 && !team.trying);
+        const double slow = 1.3 * 1.5000001 * pace;
+        assert_int_equal(stretch(&team, &now, slow), (int)ceil(4e-3 / slow));
+        stretch(&team, &now, 9 * pace);
+        const double quick = slow * 1.4999999;
+        assert_int_equal(stretch(&team, &now, quick),
+                         (int)fmax(team.stretch, ceil(team.stretch * 4e-3 / quick)));
+        const uint64_t steps = team.steps;
+        team_pause(&team);
+        assert_true(team.begun == 0 && team.steps == steps);
+        now += 100;
+        team_step(&team, now);
+        assert_true(team.begun == now && team.steps == 0 && team.size == 1 && team.trying);
+    }
+}
+
+/* A trial that lasts exactly as long as it should is over. */
+static void four_milliseconds(void **state)
+{
+    (void)state;
+    struct team team;
+    team_begin(&team, 2);
+    team_step(&team, 4e-3);
+    team_step(&team, 7.9e-3);
+    assert_int_equal(team.size, 2);
+    team_step(&team, 8e-3);
+    assert_int_equal(team.size, 1);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(stay_near_the_better_choice),
         cmocka_unit_test(alone_there_is_no_choice),
         cmocka_unit_test(pauses_count_for_nobody),
+        cmocka_unit_test(stretches_are_as_long_as_said),
+        cmocka_unit_test(four_milliseconds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,153 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Which numbers need other units, which units those are, and copies in them; loops of kernels by
+ * the kernel they were made for. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "near.h"
+#include "shapes.h"
+#include "units.h"
+
+static void test_ordinary(void **state)
+{
+    (void)state;
+    static const struct {
+        double value;
+        bool ordinary;
+    } cases[] = {{0, true},
+                 {-0.0, true},
+                 {1, true},
+                 {0x1p128, true},
+                 {-0x1p128, true},
+                 {0x1.0000000000001p128, false},
+                 {-0x1.0000000000001p128, false},
+                 {0x1p-128, true},
+                 {-0x1p-128, true},
+                 {0x1.fffffffffffffp-129, false},
+                 {-0x1.fffffffffffffp-129, false},
+                 {0x1p-1074, false},
+                 {HUGE_VAL, false}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++)
+        for (size_t n = 1; n < 4; n++)
+            for (size_t at = 0; at < n; at++) {
+                double values[4] = {1, 1, 1, 0x1p200}; /* those beyond n are nobody's */
+                for (size_t i = n; i < 4; i++) values[i] = 0x1p200;
+                values[at] = cases[k].value;
+                assert_int_equal(units_ordinary(n, values), cases[k].ordinary);
+            }
+    assert_true(units_ordinary(0, (double[]){0x1p200}));
+}
+
+static void test_exponents(void **state)
+{
+    (void)state;
+    for (int e = -1073; e <= 1024; e++) {
+        const double largest = ldexp(e < -1021 ? 0.5 : 0.7, e);
+        assert_int_equal(units_exponent(3, (double[]){0, -largest, largest / 2, 1e308}), e);
+        assert_int_equal(units_exponent(4, (double[]){HUGE_VAL, (double)NAN, -HUGE_VAL, largest}),
+                         e);
+        assert_int_equal(units_exponent(1, (double[]){largest}), e);
+    }
+    assert_int_equal(units_exponent(2, (double[]){0, 0, 5}), 0);
+    assert_int_equal(units_exponent(0, (double[]){5}), 0);
+    assert_int_equal(units_exponent(1, (double[]){0.5}), 0);
+    assert_int_equal(units_exponent(1, (double[]){1}), 1);
+}
+
+static void test_copies(void **state)
+{
+    (void)state;
+    const double x[] = {3, -0.1, 0x1p900, 0}, y[] = {5, 7, -0x1p901, 1};
+    struct points copy, points = {2, 4, {x, y}, true, {-2, 3}, {4, 5}};
+    double *values = units_copy(4, x, 17);
+    for (int i = 0; i < 4; i++) assert_true(values[i] == ldexp(x[i], -17));
+    free(values);
+    assert_non_null(values = units_copy(0, x, 3));
+    free(values);
+    for (int e = -20; e <= 900; e += 230) {
+        assert_true(units_points(&points, e, &copy));
+        assert_true(copy.dim == 2 && copy.n == 4 && copy.periodic);
+        for (int i = 0; i < 4; i++)
+            assert_true(copy.x[0][i] == ldexp(x[i], -e) && copy.x[1][i] == ldexp(y[i], -e));
+        for (int a = 0; a < 2; a++)
+            assert_true(copy.lo[a] == ldexp(points.lo[a], -e) &&
+                        copy.hi[a] == ldexp(points.hi[a], -e));
+        units_points_free(&copy);
+        assert_true(!copy.x[0] && !copy.x[1]);
+    }
+}
+
+/* Loops of a kernel, its own or those of any: its shape functions at every place. */
+static void test_loops(void **state)
+{
+    (void)state;
+    enum { COUNT = 24 };
+    for (size_t k = 0; k < kernel_family.n; k++)
+        for (int dim = 1; dim <= 3; dim++)
+            for (int stamped = 0; stamped < 2; stamped++) {
+                struct kernel kernel;
+                double q[COUNT], r[COUNT], m[COUNT], theirs[COUNT], w[COUNT + 1], other[COUNT + 1];
+                long double sums[2] = {0};
+                double found[2];
+                const double inverse = 0.73;
+                assert_int_equal(kernel_select(&kernel, kernel_family.members[k]->name, 5, NULL),
+                                 STATUS_OK);
+                const struct shapes shapes = shapes_of(&kernel, dim, stamped);
+                for (int i = 0; i < COUNT; i++) {
+                    q[i] = 1.1 * i / COUNT, r[i] = q[i] / inverse;
+                    m[i] = 0.3 + sin(i), theirs[i] = inverse * (1 + 0.1 * (i % 3));
+                }
+                w[COUNT] = other[COUNT] = 5;
+                shapes.w(&kernel, COUNT, q, w);
+                shapes.dw(&kernel, COUNT, q, other);
+                for (int i = 0; i < COUNT; i++) {
+                    near_below(fabs(w[i] - kernel.w(&kernel, q[i], dim)), 1e-15);
+                    near_below(fabs(other[i] - kernel.dw(&kernel, q[i], dim)), 1e-14);
+                }
+                if (dim == 1) continue;
+                shapes.weights(&kernel, COUNT, r, inverse, m, w, other);
+                for (int i = 0; i < COUNT; i++) {
+                    const double at = r[i] * inverse, shape = kernel.w(&kernel, at, dim);
+                    near_below(fabs(w[i] - shape), 1e-15);
+                    near_below(fabs(other[i] - m[i] * shape), 1e-15);
+                    sums[0] += (long double)m[i] * shape;
+                    sums[1] += m[i] * ((long double)dim * shape +
+                                       (long double)at * kernel.dw(&kernel, at, dim));
+                }
+                shapes.sums(&kernel, COUNT, r, inverse, m, found);
+                for (int i = 0; i < 2; i++) near_below((double)fabsl(found[i] - sums[i]), 2e-14);
+                shapes.pair_w(&kernel, COUNT, r, inverse, theirs, w, other);
+                for (int i = 0; i < COUNT; i++) {
+                    near_below(fabs(w[i] - kernel.w(&kernel, r[i] * inverse, dim)), 1e-15);
+                    near_below(fabs(other[i] - kernel.w(&kernel, r[i] * theirs[i], dim)), 1e-15);
+                }
+                shapes.pair_dw(&kernel, COUNT, r, inverse, theirs, w, other);
+                for (int i = 0; i < COUNT; i++) {
+                    near_below(fabs(w[i] - kernel.dw(&kernel, r[i] * inverse, dim)), 1e-14);
+                    near_below(fabs(other[i] - kernel.dw(&kernel, r[i] * theirs[i], dim)), 1e-14);
+                }
+                assert_true(w[COUNT] == 5 && other[COUNT] == 5);
+                /* a stranger with this one's function, or slope, alone has loops of no kernel */
+                struct kernel half = kernel;
+                half.dw = half.w;
+                assert_true(shapes_of(&half, dim, true).w == shapes_of(&kernel, dim, false).w);
+                assert_true((shapes_of(&kernel, dim, true).w == shapes_of(&kernel, dim, false).w) ==
+                            (kernel_stamp(&kernel) < 0));
+            }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_ordinary),
+        cmocka_unit_test(test_exponents),
+        cmocka_unit_test(test_copies),
+        cmocka_unit_test(test_loops),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,311 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The searches and sums on clouds with memory that is watched: nothing is read before it was
+ * written, no end overrun, all given back, and whatever call finds no memory, that is what is said.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "grid.h"
+#include "integrator.h"
+#include "operator.h"
+#include "shapes.h"
+#include "simulation.h"
+#include "summation.h"
+#include "watched.h"
+
+enum { POINTS_MAX = 3000 };
+
+static uint64_t state_of_draws = 1;
+
+static double draw(double low, double high)
+{
+    state_of_draws = state_of_draws * 6364136223846793005u + 1442695040888963407u;
+    return low + (high - low) * ldexp((double)((state_of_draws ^ state_of_draws >> 29) >> 11), -53);
+}
+
+static double place[3][POINTS_MAX], field[POINTS_MAX], volume[POINTS_MAX], width[POINTS_MAX],
+    out[3][POINTS_MAX];
+
+/* n points in a box of side 1, in units of `unit`. */
+static void make(size_t n, double h, double unit)
+{
+    for (size_t i = 0; i < n; i++) {
+        for (int a = 0; a < 3; a++) place[a][i] = unit * draw(0, 1);
+        field[i] = draw(-1, 1), volume[i] = draw(0.5, 1) / (double)n, width[i] = unit * h;
+    }
+}
+
+static struct points points_of(int dim, size_t n, bool periodic)
+{
+    return (struct points){dim, n, {place[0], place[1], place[2]}, periodic, {0}, {1, 1, 1}};
+}
+
+static struct kernel kernel;
+
+/* What works with memory; n points in dim dimensions. */
+typedef enum status work(int dim, size_t n, struct error *error);
+
+static enum status find(int dim, size_t n, struct error *error)
+{
+    const struct points points = points_of(dim, n, true);
+    struct neighbours *nb;
+    struct candidates c = {0};
+    enum status status = neighbours_create(&points, &nb, error);
+    if (status) assert_null(nb);
+    for (size_t b = 0; !status && b < nb->blocks; b++)
+        status = neighbours_gather(nb, b, width[0] + (double)b * 1e-3, &c, error);
+    neighbours_candidates_free(&c);
+    neighbours_destroy(nb);
+    return status;
+}
+
+static enum status differentiate(int dim, size_t n, struct error *error)
+{
+    const struct cloud cloud = {points_of(dim, n, false), volume, width};
+    const double *f[] = {field};
+    double *gradient[] = {out[0], out[1], out[2]};
+    uint64_t pairs;
+    enum status status = STATUS_OK;
+    for (size_t o = n < 100 ? 0 : operator_family.n - 1; !status && o < operator_family.n; o++) {
+        const struct operator_settings settings = {
+            (const struct operator_form *)operator_family.members[o], &kernel, false, 1};
+        status = operator_apply(&settings, &cloud, 1, f, gradient, NULL, &pairs, error);
+        for (int a = 0; !status && settings.form->corrected == false && a < dim; a++)
+            for (size_t i = 0; i < n; i++) assert_true(isfinite(gradient[a][i]));
+    }
+    return status;
+}
+
+/* Few neighbours, then many, then few. */
+static enum status differentiate_clump(int dim, size_t n, struct error *error)
+{
+    for (size_t i = 0; i < n; i++) {
+        const bool clumped = i > n / 4 && i < n - n / 4;
+        for (int a = 0; a < 3; a++)
+            place[a][i] = clumped ? 400 + draw(0, 1) : (double)i * (i < n / 2 ? 1 : 10);
+        width[i] = clumped ? 3 : 1.5;
+    }
+    return differentiate(dim, n, error);
+}
+
+/* In other units, of which copies are made. */
+static enum status far_away(int dim, size_t n, struct error *error)
+{
+    make(n, 0.3, 1e90);
+    const enum status status = differentiate(dim, n, error);
+    make(n, 0.3, 1);
+    return status;
+}
+
+/* All within reach of all. */
+static enum status differentiate_all(int dim, size_t n, struct error *error)
+{
+    for (size_t i = 0; i < n; i++) width[i] = 2;
+    return differentiate(dim, n, error);
+}
+
+static enum status weigh(int dim, size_t n, struct error *error)
+{
+    const struct summation sum = {points_of(dim, n, false), &kernel, volume, 1.6, 1e-8, 1};
+    return summation_solve(&sum, out[0], out[1], error);
+}
+
+static enum status list(int dim, size_t n, struct error *error)
+{
+    const struct grid_box box = {dim, {0}, {1, 1, 1}, {true, false, true}};
+    const double *const x[] = {place[0], place[1], place[2]};
+    struct grid *grid = grid_create(&box, n / 3, 1);
+    if (!grid) return error_set(error, STATUS_ENVIRONMENT, "no memory");
+    enum status status = STATUS_OK;
+    for (int more = 3; !status && more > 0; more--) /* room for more each time */
+        status = grid_search(grid, n / (size_t)more, n / (size_t)more, x, width, NULL, error);
+    const long calls = watched_calls;
+    for (int again = 0; !status && again < 9; again++) /* and none the next time */
+        status = grid_search(grid, n, n, x, width, NULL, error);
+    if (!status) assert_int_equal(watched_calls, calls);
+    if (status == STATUS_ENVIRONMENT) { /* what was lacking is there the next time */
+        struct error later;
+        assert_int_equal(grid_search(grid, n, n, x, width, NULL, &later), STATUS_OK);
+    }
+    grid_destroy(grid);
+    return status;
+}
+
+/* A simulation's first steps, by a scheme that needs every array, or few. */
+static enum status flow(int dim, size_t n, const struct scheme *scheme, enum boundary ends,
+                        struct error *error)
+{
+    static double m[POINTS_MAX], u[POINTS_MAX];
+    struct scene scene = {.dim = dim,
+                          .hi = {1, 1, 1},
+                          .boundary = {BOUNDARY_PERIODIC, ends},
+                          .gamma = 1.4,
+                          .t_end = 1,
+                          .n = n,
+                          .m = m,
+                          .u = u,
+                          .scheme = *scheme,
+                          .skip = true,
+                          .threads = 1};
+    const size_t side = (size_t)lround(pow((double)n, 1. / dim));
+    for (size_t i = 0, at = 0; i < n; at = ++i) {
+        m[i] = 1. / (double)n, u[i] = 1;
+        for (int a = 0; a < dim; a++, at /= side) {
+            place[a][i] = ((double)(at % side) + 0.5) / (double)side;
+            out[a][i] = i == 0 ? 0.01 : 0;
+        }
+    }
+    for (int a = 0; a < dim; a++) scene.x[a] = place[a], scene.v[a] = out[a];
+    struct simulation *simulation;
+    enum status status = simulation_create(&scene, &simulation, error);
+    if (status) return status;
+    status = simulation_run(simulation, 0.02, NULL, NULL, error);
+    struct conservation sums;
+    simulation_conservation(simulation, &sums);
+    if (!status) assert_true(isfinite(sums.energy) && sums.energy > 0);
+    simulation_destroy(simulation);
+    return status;
+}
+
+static struct scheme scheme_of(void)
+{
+    return (struct scheme){
+        .kernel = kernel,
+        .h_method = H_NEWTON,
+        .integrator = (const struct integrator *)family_find(&integrator_family, "leapfrog"),
+        .alpha = 1,
+        .beta = 2,
+        .alpha_min = 0.1,
+        .alpha_max = 1.5,
+        .noise = 0.4,
+        .eta = 2,
+        .cfl = 0.2,
+        .h_tolerance = 1e-10};
+}
+
+static enum status flow_of_all(int dim, size_t n, struct error *error)
+{
+    struct scheme scheme = scheme_of();
+    scheme.gradient = GRADIENT_BLENDED;
+    scheme.viscosity = VISCOSITY_CULLEN_DEHNEN;
+    scheme.balsara = BALSARA_ON;
+    scheme.volume_element = VOLUME_ENERGY;
+    scheme.formulation = FORMULATION_LAGRANGIAN;
+    scheme.energy = ENERGY_TOTAL;
+    return flow(dim, dim == 3 ? 216 : n, &scheme, BOUNDARY_FIXED, error);
+}
+
+static enum status flow_of_little(int dim, size_t n, struct error *error)
+{
+    struct scheme scheme = scheme_of();
+    scheme.gradient = GRADIENT_STANDARD;
+    scheme.viscosity = VISCOSITY_PROJECTED;
+    return flow(dim, dim == 3 ? 216 : n, &scheme, BOUNDARY_REFLECTING, error);
+}
+
+/* With every call refused in turn, until all are answered. Returns how many there are. */
+static long refused_in_turn(work *doing, int dim, size_t n)
+{
+    for (long refuse = 1;; refuse++) {
+        struct error error = {0};
+        watched_begin(refuse);
+        const enum status status = doing(dim, n, &error);
+        const long live = watched_live, broken = watched_broken, calls = watched_calls;
+        if (live || broken)
+            fail_msg("call %ld in %d dimensions refused: %ld blocks kept, %ld overrun", refuse, dim,
+                     live, broken);
+        if (calls < refuse) {
+            if (status) fail_msg("%s", error.message);
+            return calls;
+        }
+        if (status != STATUS_ENVIRONMENT)
+            fail_msg("call %ld in %d dimensions: '%s'", refuse, dim, error.message);
+        assert_non_null(strstr(error.message, "no memory"));
+    }
+}
+
+static void test_every_call(void **state)
+{
+    (void)state;
+    static const struct {
+        work *doing;
+        int least_dim;
+        size_t n;
+        long least, most; /* calls: no more where there is room already */
+    } all[] = {{find, 1, 90, 8, 45},
+               {differentiate, 1, 60, 105, 130},
+               {differentiate_clump, 1, 200, 25, 45},
+               {differentiate_all, 1, 128, 24, 26},
+               {far_away, 1, 60, 130, 170},
+               {weigh, 1, 60, 15, 25},
+               {flow_of_all, 2, 64, 20, 99},
+               {flow_of_little, 2, 64, 20, 99},
+               {list, 2, 90, 20, 30}};
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++)
+        for (int dim = all[k].least_dim; dim <= 3; dim++) {
+            make(POINTS_MAX, 0.3, 1);
+            const long calls = refused_in_turn(all[k].doing, dim, all[k].n);
+            if (calls < all[k].least || calls > all[k].most)
+                fail_msg("%zu in %d dimensions: %ld calls", k, dim, calls);
+        }
+}
+
+/* Of every number of points, from none on: the ends of all arrays. */
+static void test_ends(void **state)
+{
+    (void)state;
+    static work *const all[] = {find, differentiate, differentiate_all, weigh, list};
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++)
+        for (int dim = all[k] == list ? 2 : 1; dim <= 3; dim++)
+            for (size_t n = all[k] == list ? 3 : 0; n < 140; n = n < 20 ? n + 1 : n + 12) {
+                struct error error = {0};
+                make(n, 0.45, 1);
+                watched_begin(0);
+                const enum status status = all[k](dim, n, &error);
+                if (status && !(all[k] == weigh && status == STATUS_BROKE_DOWN))
+                    fail_msg("%s", error.message);
+                assert_int_equal(watched_live, 0);
+                assert_int_equal(watched_broken, 0);
+            }
+}
+
+/* Who asks for loops that are not stamped gets them: the oracle of those that are. */
+static bool stamped_asked;
+struct shapes __real_shapes_of(const struct kernel *of, int dim, bool stamped);
+struct shapes __wrap_shapes_of(const struct kernel *of, int dim, bool stamped);
+struct shapes __wrap_shapes_of(const struct kernel *of, int dim, bool stamped)
+{
+    stamped_asked = stamped;
+    return __real_shapes_of(of, dim, stamped);
+}
+
+static void test_unstamped(void **state)
+{
+    (void)state;
+    const struct cloud cloud = {points_of(2, 30, false), volume, width};
+    make(30, 0.45, 1);
+    for (int unstamped = 0; unstamped < 2; unstamped++) {
+        const struct operator_settings settings = {
+            (const struct operator_form *)operator_family.members[0], &kernel, unstamped, 1};
+        assert_int_equal(operator_apply(&settings, &cloud, 0, NULL, NULL, NULL, NULL, NULL),
+                         STATUS_OK);
+        assert_int_equal(stamped_asked, !unstamped);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_every_call),
+        cmocka_unit_test(test_ends),
+        cmocka_unit_test(test_unstamped),
+    };
+    if (kernel_select(&kernel, "cubic_spline", 5, NULL)) return 1;
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
