@@ -149,6 +149,7 @@ def main(score, work):
     expect("a sample is no larger than asked for", run("--sample", "7", "--seed", "3")[1]["chosen"] == 7)
     stable_draw(expect, score)
     failing_thread(expect)
+    sound_without(expect)
     expect("a shard that is none is refused", "I/N" in run("--shard", "4/3", code=2)[0])
     hidden = os.path.join(work, "hidden", "clang")
     write(os.path.join(hidden, "__init__.py"), "raise ImportError('hidden')\n")
@@ -196,6 +197,24 @@ def failing_thread(expect):
     except OSError:
         failed = True
     expect("what goes wrong in a thread is told", failed)
+
+
+def sound_without(expect):
+    """A constant is compiled in place: whether a test that notices it is sound, a copy made before tells."""
+    import trial
+    asked = []
+    table = types.SimpleNamespace(build="/build", units={"t": {"seconds": 1, "failed": "", "reached": [], "differs": []}},
+                                  place=lambda worker: (("/build", "/copy"), "/scratch"),
+                                  sound=lambda unit, place, scratch: asked.append(place) or True)
+    judge = trial.Judge(table, {}, 9)
+    judge.admit([types.SimpleNamespace(name="t", key="k", command=[])])
+    judge.built = lambda unit: True
+    usual, trial.run_unit = trial.run_unit, lambda *_: ("exit status 1", 0)
+    m = types.SimpleNamespace(number=0, constant=True, key="m", file="f", line=1, change="1 -> 2")
+    entry = judge.judge(m, {"t"}, None, 0)
+    trial.run_unit = usual
+    expect("a constant that a test notices is killed: %s" % entry, entry["outcome"] == "killed")
+    expect("its test is sound without it: %s" % asked, asked == [("/build", "/copy")])
 
 
 def in_rounds(expect, score):
