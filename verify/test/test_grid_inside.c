@@ -176,7 +176,7 @@ static void check_points(const struct grid *grid)
                     continue;
                 }
                 const double k = (at[s][a] - grid->lo[a]) * grid->cell_inverse[a];
-                assert_true(c[a] == (ptrdiff_t)k || (c[a] == grid->cells[a] - 1 && c[a] < k));
+                assert_true(c[a] == (ptrdiff_t)k || (c[a] == grid->cells[a] - 1 && (double)c[a] < k));
                 const double middle = grid->lo[a] + ((double)c[a] + 0.5) * grid->size[a];
                 near_below(fabs((at[s][a] - middle) / grid->unit - (double)grid->place[a][s]),
                            1e-7 * fmax(1, grid->size[a] / grid->unit));

@@ -331,7 +331,7 @@ static enum status say_nothing(const void *context, json_t **document, struct er
 static enum status add_jobs(struct pool *pool, size_t n, struct error *error)
 {
     for (size_t i = 0; i < n; i++) {
-        char key[16];
+        char key[24];
         snprintf(key, sizeof key, "%zu", i);
         if (pool_add(pool, "job", key, 1, say_nothing, NULL) != i)
             return error_set(error, STATUS_ENVIRONMENT, "no memory for a job");

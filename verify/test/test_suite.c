@@ -384,7 +384,7 @@ static void test_many_groups(void **state)
 {
     (void)state;
     enum { N = 5000 };
-    static char names[N][8];
+    static char names[N][16];
     static struct check checks[N];
     static const struct check *list[N];
     size_t n;

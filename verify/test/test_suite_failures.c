@@ -79,7 +79,7 @@ static void drawings(void **state)
         FIGURE(&second, 9, 1, FIGURE_FAIL), /* of another suite */
     };
     double x[] = {1, 2, 3}, y[CURVES][3];
-    char label[CURVES][4];
+    char label[CURVES][16];
     struct series series[CURVES + 2] = {{&first, label[0], 3, x, x}};
     for (int k = 0; k < CURVES; k++) {
         for (int i = 0; i < 3; i++) y[k][i] = 10 * k + i;
