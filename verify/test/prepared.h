@@ -23,16 +23,19 @@ const char *__tsan_default_options(void)
     return "allocator_may_return_null=1";
 }
 
-/* keys: up to 8, separated by |. */
+/* keys: up to 16, separated by |. */
 static inline enum status prepared_try(struct prepared *p, struct settings *settings, int dim,
                                        const char *keys, struct error *error)
 {
-    enum { KEYS = 8 };
+    enum { KEYS = 16 };
     char text[256], *words[KEYS], *rest = text;
     int n = 0;
     *error = (struct error){0};
     snprintf(text, sizeof text, "%s", keys);
-    for (char *word; (word = strtok_r(rest, "|", &rest));) words[n++] = word;
+    for (char *word; (word = strtok_r(rest, "|", &rest));) {
+        assert_true(n < KEYS);
+        words[n++] = word;
+    }
     settings_init(settings);
     if (settings_apply(settings, n, words, error)) fail_msg("%s", error->message);
     return problem_prepare(p, settings, dim, error);
