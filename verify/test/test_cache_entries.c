@@ -18,9 +18,8 @@
 #include <unistd.h>
 
 #include "cache.h"
+#include "made_place.h"
 #include "version.h"
-
-static char place[] = "/tmp/sphproof_cache_XXXXXX";
 
 /* Fowler, Noll and Vo's own test vectors. */
 static void hashes(void **state)
@@ -311,20 +310,6 @@ static void what_is_old_goes(void **state)
         if (room == 3) assert_string_equal(error.message, "the path of the cache is too long");
         folder[CACHE_PATH_MAX - room] = '/';
     }
-}
-
-static int make_place(void **state)
-{
-    (void)state;
-    return !mkdtemp(place);
-}
-
-static int remove_place(void **state)
-{
-    char command[64];
-    (void)state;
-    snprintf(command, sizeof command, "rm -r %s", place);
-    return system(command);
 }
 
 int main(void)

@@ -15,19 +15,12 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "made_place.h"
 #include "relax_store.h"
 
 enum { N = RELAX_STORE_LEAST };
 
-static char place[] = "/tmp/sphproof_store_XXXXXX";
 static double points[3][N + 1];
-
-static const char *path_of(const char *name)
-{
-    static char path[256];
-    snprintf(path, sizeof path, "%s/%s", place, name);
-    return path;
-}
 
 static bool is_there(const char *name)
 {
@@ -136,20 +129,6 @@ static void old_ones_go(void **state)
     assert_true(relax_store_find(1, 2, N, all) && is_there(old));
     relax_store_keep(2, 2, N, all);
     assert_true(relax_store_find(1, 2, N, all) && !is_there(old));
-}
-
-static int make_place(void **state)
-{
-    (void)state;
-    return !mkdtemp(place);
-}
-
-static int remove_place(void **state)
-{
-    char command[64];
-    (void)state;
-    snprintf(command, sizeof command, "rm -r %s", place);
-    return system(command);
 }
 
 int main(void)

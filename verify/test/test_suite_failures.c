@@ -13,20 +13,12 @@
 #include <unistd.h>
 #include <cmocka.h>
 
+#include "made_place.h"
 #include "suite_output.h"
-
-static char place[] = "/tmp/sphproof_failures_XXXXXX";
 
 static const struct check first = {.group = "a", .name = "first", .property = "one is one"},
                           second = {.group = "a", .name = "second", .property = "p"},
                           other = {.group = "b", .name = "other", .property = "p"};
-
-static char *path_of(const char *name)
-{
-    static char path[256];
-    snprintf(path, sizeof path, "%s/%s", place, name);
-    return path;
-}
 
 static const char *text_of(const char *name)
 {
@@ -234,20 +226,6 @@ static void groups(void **state)
         const char *text = text_of("junit.xml");
         if (!strstr(text, line[0]) || !strstr(text, line[1])) fail_msg("%s in %s", line[0], text);
     }
-}
-
-static int make_place(void **state)
-{
-    (void)state;
-    return !mkdtemp(place);
-}
-
-static int remove_place(void **state)
-{
-    char command[64];
-    (void)state;
-    snprintf(command, sizeof command, "rm -r %s", place);
-    return system(command);
 }
 
 int main(void)

@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * A folder of a test's own, as fixtures of a group: cmocka_run_group_tests(tests, make_place,
+ * remove_place). Include after cmocka.h. */
+#ifndef MADE_PLACE_H
+#define MADE_PLACE_H
+
+#include <stdio.h>
+#include <stdlib.h>
+
+static char place[] = "/tmp/sphproof_place_XXXXXX";
+
+static inline int make_place(void **state)
+{
+    (void)state;
+    return !mkdtemp(place);
+}
+
+/* With all that has been left in it. */
+static inline int remove_place(void **state)
+{
+    char command[64];
+    (void)state;
+    snprintf(command, sizeof command, "rm -r %s", place);
+    return system(command);
+}
+
+/* A file there; the next call overwrites it. */
+static inline char *path_of(const char *name)
+{
+    static char path[256];
+    snprintf(path, sizeof path, "%s/%s", place, name);
+    return path;
+}
+
+#endif
