@@ -132,7 +132,7 @@ def main(score, work):
            listed["files"][0]["survived"] == entry["survived"] - 1)
     write(os.path.join(tree, "verify/mutants/equivalent.txt"), LISTED.replace("sum > 5 ->", "sum > 6 ->"))
     said, listed = run()
-    expect("a listed one that does not apply is said", "does not apply any more" in said)
+    expect("a listed one that does not apply is said", "does not apply any more" in said and "there 0 times" in said)
     write(os.path.join(tree, "verify/mutants/equivalent.txt"), LISTED.replace("reason: ", "because: "))
     expect("a broken list is refused by its line", "equivalent.txt:4" in run(code=2)[0])
     os.remove(os.path.join(tree, "verify/mutants/equivalent.txt"))
@@ -148,6 +148,7 @@ def main(score, work):
     expect("shards are all of it", sum(parts) == first["generated"])
     expect("a sample is no larger than asked for", run("--sample", "7", "--seed", "3")[1]["chosen"] == 7)
     stable_draw(expect, score)
+    as_often_as_listed(expect, score)
     failing_thread(expect)
     sound_without(expect)
     expect("a shard that is none is refused", "I/N" in run("--shard", "4/3", code=2)[0])
@@ -182,6 +183,18 @@ def stable_draw(expect, score):
     less = [n for n in drawn(["new"] + [n for n in reversed(names) if n != gone], 1) if n != "new"]
     expect("a draw by another seed is another", len(first) == 20 and drawn(names, 2) != first)
     expect("a draw stands where lines come and go: %s, %s" % (first, less), less[:19] == [n for n in first if n != gone])
+
+
+def as_often_as_listed(expect, score):
+    """A line that comes a second time is not excused by the entry of the first."""
+    def said(times, there):
+        found = [types.SimpleNamespace(file="a.c", text="x = 1;", change="1 -> 2")] * there
+        entry = {"file": "a.c", "line": "x = 1;", "change": "1 -> 2", "times": times, "reason": "none"}
+        return list(load(score).not_applying([entry], found))
+
+    for times, there in ("1", 0), ("1", 2), ("2", 1), ("3", 2):
+        expect("listed %s times, there %d times, is said" % (times, there), len(said(times, there)) == 1)
+    expect("as often as listed is well", not said("1", 1) and not said("2", 2))
 
 
 def failing_thread(expect):
