@@ -199,7 +199,6 @@ void output_prepare_process(void)
 enum status output_finish_process(struct error *error)
 {
     errno = 0;
-    errno = 0;
     if (!fflush(stdout) && !ferror(stdout)) return STATUS_OK;
     const int reason = stdout_reason(errno);
     return reason == EPIPE ? STATUS_OK : cannot_write("standard output", reason, error);

@@ -123,15 +123,16 @@ static enum status check_head(const struct checkpoint *checkpoint, FILE *file, s
     return status;
 }
 
-/* Are the bytes from here on those that were written? */
-static bool is_whole(FILE *file)
+/* Are the bytes from here on those that were written? STATUS_OK; else it says why not. */
+static enum status check_bytes(const struct checkpoint *checkpoint, FILE *file, struct error *error)
 {
     enum { PART = 1 << 20 };
     struct stream stream = {.file = file, .sum = CACHE_HASH};
     uint64_t sum;
     const long begin = ftell(file);
+    if (begin < 0 || fseek(file, 0, SEEK_END)) return refuse(checkpoint, "is damaged", error);
     char *part = malloc(PART);
-    if (!part || begin < 0 || fseek(file, 0, SEEK_END)) return free(part), false;
+    if (!part) return error_set(error, STATUS_ENVIRONMENT, "no memory to resume");
     long left = ftell(file) - begin - (long)sizeof sum;
     bool sound = left > 0 && !fseek(file, begin, SEEK_SET);
     while (sound && left > 0) {
@@ -141,7 +142,8 @@ static bool is_whole(FILE *file)
     }
     sound = sound && fread(&sum, sizeof sum, 1, file) == 1 && sum == stream.sum;
     free(part);
-    return sound && !fseek(file, begin, SEEK_SET);
+    sound = sound && !fseek(file, begin, SEEK_SET);
+    return sound ? STATUS_OK : refuse(checkpoint, "is damaged", error);
 }
 
 enum status checkpoint_load(struct checkpoint *checkpoint, struct simulation *simulation,
@@ -151,7 +153,7 @@ enum status checkpoint_load(struct checkpoint *checkpoint, struct simulation *si
     if (!file && errno == ENOENT) return STATUS_OK;
     if (!file) return refuse(checkpoint, strerror(errno), error);
     enum status status = check_head(checkpoint, file, error);
-    if (!status && !is_whole(file)) status = refuse(checkpoint, "is damaged", error);
+    if (!status) status = check_bytes(checkpoint, file, error);
     struct stream stream = {.file = file, .sum = CACHE_HASH};
     struct carrier carrier = {.bytes = get, .context = &stream, .back = true};
     if (!status) {

@@ -18,6 +18,7 @@
 #include <unistd.h>
 
 #include "cases.h"
+#include "checkpoint.h"
 #include "gas.h"
 #include "headline.h"
 #include "initial_create.h"
@@ -420,9 +421,33 @@ static enum status set_aside(struct error *error)
     return error->status;
 }
 
+static struct simulation *to_resume;
+static struct checkpoint checkpoint = {.path = path, .build = "one", .run = "a run"};
+
+static enum status resumed(struct error *error)
+{
+    struct growth growth;
+    return checkpoint_load(&checkpoint, to_resume, &growth, error);
+}
+
+/* A file that is sound is not called damaged. */
+static void resume(void)
+{
+    double arrays[4][8];
+    const struct scene scene = line_scene(arrays);
+    struct growth growth = {0};
+    struct error error;
+    assert_int_equal(simulation_create(&scene, &to_resume, &error), STATUS_OK);
+    checkpoint_save(&checkpoint, to_resume, &growth);
+    assert_int_equal(checkpoint.trouble.status, STATUS_OK);
+    without_memory(resumed, 2, true);
+    simulation_destroy(to_resume);
+}
+
 static void jobs_and_tables(void **state)
 {
     (void)state;
+    resume();
     without_memory(divided, 100, true);
     without_memory(computed, 9, true);
     without_memory(rated, 3, true);
