@@ -134,12 +134,10 @@ static enum status allocate(struct simulation *simulation, ptrdiff_t n, struct e
                  : error_set(error, STATUS_ENVIRONMENT, "no memory for %td particles", n);
 }
 
-/* From the state of the scene to the rates of its first step. */
-static enum status start(struct simulation *simulation, const struct scene *scene,
-                         struct error *error)
+/* The state of the scene. */
+static enum status copy_scene(struct simulation *simulation, const struct scene *scene,
+                              struct error *error)
 {
-    const struct sums *sums = simulation->plan.sums;
-    struct conservation sum;
     for (int k = 0; k < scene->dim; k++) {
         simulation->lo[k] = scene->lo[k];
         simulation->boundary[k] = scene->boundary[k];
@@ -147,19 +145,11 @@ static enum status start(struct simulation *simulation, const struct scene *scen
         simulation->particles.period[k] = scene->hi[k] - scene->lo[k];
     }
     set_particles(simulation, scene);
-    enum status status = hold_begin(simulation, error);
-    if (status) return status;
-    sums->begin(simulation);
-    status = evaluate_rates(simulation, error);
-    if (status) return status;
-    simulation_conservation(simulation, &sum);
-    simulation->start_energy = sum.energy;
-    status = sums->reserve(simulation, error);
-    return status ? status : sums->sleep_begin(simulation, error);
+    return hold_begin(simulation, error);
 }
 
-enum status simulation_create(const struct scene *scene, struct simulation **result,
-                              struct error *error)
+enum status simulation_take(const struct scene *scene, struct simulation **result,
+                            struct error *error)
 {
     *result = NULL;
     enum status status = check_scene(scene, error);
@@ -173,12 +163,43 @@ enum status simulation_create(const struct scene *scene, struct simulation **res
     simulation->gamma = scene->gamma;
     team_begin(&simulation->team, scene->threads > 1 ? scene->threads : 1);
     status = allocate(simulation, (ptrdiff_t)scene->n, error);
-    if (!status) status = start(simulation, scene, error);
+    if (!status) status = copy_scene(simulation, scene, error);
     if (status)
         simulation_destroy(simulation);
     else
         *result = simulation;
     return status;
+}
+
+/* From the state to the rates of its first step. */
+enum status simulation_begin(struct simulation *simulation, struct error *error)
+{
+    const struct sums *sums = simulation->plan.sums;
+    struct conservation sum;
+    sums->begin(simulation);
+    enum status status = evaluate_rates(simulation, error);
+    if (status) return status;
+    simulation_conservation(simulation, &sum);
+    simulation->start_energy = sum.energy;
+    status = sums->reserve(simulation, error);
+    return status ? status : sums->sleep_begin(simulation, error);
+}
+
+enum status simulation_create(const struct scene *scene, struct simulation **simulation,
+                              struct error *error)
+{
+    enum status status = simulation_take(scene, simulation, error);
+    if (!status) status = simulation_begin(*simulation, error);
+    if (!status) return STATUS_OK;
+    simulation_destroy(*simulation);
+    *simulation = NULL;
+    return status;
+}
+
+void simulation_end(struct simulation *simulation)
+{
+    const struct sums *sums = simulation->plan.sums;
+    if (sums->end) sums->end(simulation);
 }
 
 void simulation_destroy(struct simulation *simulation)

@@ -11,7 +11,8 @@
 #include "scheme.h"
 #include "status.h"
 
-/* What is to be computed. Arrays belong to the caller and are copied by simulation_create. */
+/* What is to be computed. Arrays belong to the caller and are copied by simulation_create and
+ * simulation_take. */
 struct scene {
     int dim;                   /* 1, 2 or 3 */
     double lo[3], hi[3];       /* box */
@@ -81,6 +82,12 @@ struct simulation;
  * times as far apart in the order of positions as they are at the start. */
 enum status simulation_create(const struct scene *scene, struct simulation **simulation,
                               struct error *error);
+/* The same in two parts, for who has no use for the scene's arrays after the first one: what they
+ * take is then there for the neighbours. Without success in the second part only
+ * simulation_destroy is allowed. */
+enum status simulation_take(const struct scene *scene, struct simulation **simulation,
+                            struct error *error);
+enum status simulation_begin(struct simulation *simulation, struct error *error);
 /* Called after each step with the current time; return false to stop (STATUS_OK, time < t_end). */
 typedef bool simulation_progress(void *context, double time, uint64_t steps);
 
@@ -97,6 +104,8 @@ void simulation_snapshot(const struct simulation *simulation, struct snapshot *s
 void simulation_rates(const struct simulation *simulation, struct rates *rates);
 void simulation_conservation(const struct simulation *simulation, struct conservation *sums);
 void simulation_cost(const struct simulation *simulation, struct simulation_cost *cost);
+/* No step is to follow, and nobody will ask for descriptions: frees the neighbours. */
+void simulation_end(struct simulation *simulation);
 void simulation_destroy(struct simulation *simulation);
 
 #endif

@@ -60,6 +60,9 @@ struct sums {
     enum status (*sleep_begin)(struct simulation *simulation, struct error *error);
     void (*sleep_update)(struct simulation *simulation);
 
+    /* No evaluation is to follow: frees what is as large as lists. NULL: there is nothing. */
+    void (*end)(struct simulation *simulation);
+
     /* What the room keeps from one step to the next. */
     void (*carry)(struct simulation *simulation, struct carrier *carrier);
 };

@@ -201,6 +201,13 @@ static void begin(struct simulation *simulation)
     connect_fields(simulation);
 }
 
+static void end(struct simulation *simulation)
+{
+    struct room *room = room_of(simulation);
+    cells_destroy(room->cells);
+    room->cells = NULL;
+}
+
 static enum status reserve(struct simulation *simulation, struct error *error)
 {
     (void)simulation;
@@ -588,5 +595,6 @@ const struct sums cells_sums = {
     .describe = describe,
     .sleep_begin = begin_sleep,
     .sleep_update = update_sleep,
+    .end = end,
     .carry = carry_room,
 };

@@ -16,8 +16,9 @@ enum { START = 4 }; /* evaluations: the first widths are looked for */
 struct estimate estimate_size(const struct scene *scene)
 {
     const double n = (double)scene->n;
-    const int kept =
-        2 * scene->dim + 6; /* arrays of the snapshot; more than particles start with */
+    /* arrays of the snapshot, more than particles start with; in 2D and 3D the solver gives them
+     * the memory of the neighbours, of which there is more */
+    const int kept = scene->dim == 1 ? 2 * scene->dim + 6 : 0;
     return (struct estimate){.memory = base + memory_bytes(scene) + 8 * n * kept};
 }
 

@@ -396,8 +396,10 @@ static enum status simulate(const struct run *run, struct run_result *result,
     struct simulation *simulation = NULL;
     struct outcome outcome = {0};
     const struct scene scene = run_scene(run, initial);
-    enum status status = simulation_create(&scene, &simulation, &outcome.reason);
+    enum status status = simulation_take(&scene, &simulation, &outcome.reason);
     initial_free(initial); /* the solver has copied it */
+    if (!status) status = simulation_begin(simulation, &outcome.reason);
+    if (status) simulation_destroy(simulation);
     if (status == STATUS_BROKE_DOWN) return broke_down_at_start(result, &outcome.reason);
     if (status) {
         *error = outcome.reason;
@@ -422,6 +424,7 @@ static enum status simulate(const struct run *run, struct run_result *result,
     outcome.status = steps(&watch, simulation, result, scene.t_end, &outcome.reason);
     simulation_cost(simulation, &result->cost);
     if (!outcome.status) result->matrix = description_sum(simulation);
+    simulation_end(simulation); /* its neighbours' memory serves for the snapshot */
     take_sums(run, simulation, &outcome.end);
     simulation_snapshot(simulation, &outcome.snapshot);
     if (asked->trace) {
