@@ -16,8 +16,8 @@ static double arrays_of(const struct simulation *simulation)
     if (plan->alpha) count += 2;
     if (line || plan->own_gradient) count++;
     if (line && plan->slope) count++;
-    if (!line) count++; /* signal */
-    return count + plan->dim + 1; /* those of a snapshot */
+    if (!line) count++;       /* signal */
+    return count + plan->dim; /* those of a snapshot */
 }
 
 double memory_bytes(const struct scene *scene)

@@ -57,7 +57,7 @@ struct particles {
 #undef VECTOR
     size_t *id;    /* index in the scene */
     double *block; /* what the arrays live in */
-    double *spare; /* one array, for permutations */
+    double *spare; /* one array, for permutations and snapshots */
     size_t *order; /* likewise: where the particle that belongs at place i stands */
 };
 

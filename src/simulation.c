@@ -126,8 +126,7 @@ static enum status allocate(struct simulation *simulation, ptrdiff_t n, struct e
     const struct integrator *integrator = simulation->scheme.integrator;
     enum status status = simulation->plan.sums->create(simulation, n, error);
     if (status) return status;
-    bool there = (simulation->specific_energy = malloc((size_t)n * sizeof(double)));
-    there &= (simulation->integrator_state = calloc(1, integrator->keeps + 1)) != NULL;
+    bool there = (simulation->integrator_state = calloc(1, integrator->keeps + 1));
     for (int k = 0; k < simulation->plan.dim; k++)
         there &= (simulation->wrapped[k] = malloc((size_t)n * sizeof(double))) != NULL;
     return there ? STATUS_OK
@@ -211,7 +210,6 @@ void simulation_destroy(struct simulation *simulation)
     hold_free(simulation);
     free(simulation->sleep.spans);
     for (int k = 0; k < simulation->plan.dim; k++) free(simulation->wrapped[k]);
-    free(simulation->specific_energy);
     free(simulation);
 }
 
@@ -362,14 +360,15 @@ void simulation_snapshot(const struct simulation *simulation, struct snapshot *s
             simulation->wrapped[k][i] = lo + (wrapped < period ? wrapped : 0);
         }
     }
-    for (ptrdiff_t i = 0; i < a->n; i++) simulation->specific_energy[i] = a->U[i] * a->m_inverse[i];
+    double *specific_energy = a->spare;
+    for (ptrdiff_t i = 0; i < a->n; i++) specific_energy[i] = a->U[i] * a->m_inverse[i];
     *snapshot = (struct snapshot){
         .n = (size_t)a->n,
         .x = {simulation->wrapped[0], simulation->wrapped[1], simulation->wrapped[2]},
         .v = {a->v[0], a->v[1], a->v[2]},
         .m = a->m,
         .rho = a->rho,
-        .u = simulation->specific_energy,
+        .u = specific_energy,
         .P = a->P,
         .h = a->h,
         .volume = a->V,

@@ -30,11 +30,11 @@ struct simulation {
     double dt, dt_before; /* of the step in progress or the last one, and the one before; 0: none */
     double largest_dt;    /* of all steps */
     double start_energy;  /* total */
-    struct team team; /* threads that work together */
+    struct team team;     /* threads that work together */
     struct sleep sleep;
     struct simulation_cost cost;
     double wall_start, cpu_start;
-    double *wrapped[3], *specific_energy; /* of the snapshot, n each */
+    double *wrapped[3]; /* positions of the snapshot, n each */
 };
 
 /* --- the evaluation (evaluate.c) ---------------------------------------------------------------

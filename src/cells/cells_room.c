@@ -29,7 +29,7 @@ struct room {
     unsigned char *outcome;
     unsigned char *disturbed;
     unsigned char *asleep; /* of each particle; NULL: nobody ever sleeps */
-    double *kept;          /* 1/h of those who sleep */
+    double *kept;          /* 1/h of those who sleep; likewise */
     uint64_t sorted_at;    /* steps */
     bool sorted;
 };
@@ -93,7 +93,7 @@ static struct cells_method method_of(const struct simulation *simulation)
 
 /* --- memory ----------------------------------------------------------------------------------- */
 
-enum { ARRAYS_MAX = 12 + CELLS_SYMMETRIC + CELLS_SQUARE };
+enum { ARRAYS_MAX = 11 + CELLS_SYMMETRIC + CELLS_SQUARE };
 
 /* The arrays that a room has for the scheme. */
 static size_t list_arrays(const struct simulation *simulation, struct room *room,
@@ -103,7 +103,6 @@ static size_t list_arrays(const struct simulation *simulation, struct room *room
     const size_t dim = (size_t)plan->dim, symmetric = dim * (dim + 1) / 2;
     size_t count = 0;
     of[count++] = &room->radius;
-    of[count++] = &room->kept;
     of[count++] = &room->sum_m;
     of[count++] = &room->sum_m_dh;
     if (plan->energy_sum) of[count++] = &room->sum_Z, of[count++] = &room->sum_Z_dh;
@@ -181,7 +180,18 @@ static double bytes(const struct simulation *simulation, double n)
     const double arrays = (double)list_arrays(simulation, &room, of);
     /* the first search goes further, and lists hold who is within the wider of two widths */
     const double neighbours = width_neighbours(method.box.dim, simulation->scheme.eta * margin);
-    return n * (arrays * sizeof(double) + 3) + cells_bytes(&method, n, neighbours);
+    /* outcome; where somebody sleeps, kept, asleep and disturbed */
+    const double sleepers = simulation->plan.sleep ? sizeof(double) + 2 : 0;
+    return n * (arrays * sizeof(double) + 1 + sleepers) + cells_bytes(&method, n, neighbours);
+}
+
+static void forget_sleep(struct room *room)
+{
+    free(room->asleep);
+    free(room->disturbed);
+    free(room->kept);
+    room->asleep = room->disturbed = NULL;
+    room->kept = NULL;
 }
 
 static void free_room(struct simulation *simulation)
@@ -191,8 +201,7 @@ static void free_room(struct simulation *simulation)
     cells_destroy(room->cells);
     free(room->block);
     free(room->outcome);
-    free(room->asleep);
-    free(room->disturbed);
+    forget_sleep(room);
     free(room);
 }
 
@@ -285,9 +294,11 @@ static void sort_memory(struct simulation *simulation)
         if (order[slot] < (size_t)a->n) a->order[place++] = order[slot];
     /* those who sleep keep what the last sums over them left */
     for (size_t k = 0; k < room->arrays; k++) permute(a, room->block + k * room->stride);
-    for (ptrdiff_t i = 0; room->asleep && i < a->n; i++)
-        room->outcome[i] = room->asleep[a->order[i]];
-    if (room->asleep) memcpy(room->asleep, room->outcome, (size_t)a->n);
+    if (room->asleep) {
+        permute(a, room->kept);
+        for (ptrdiff_t i = 0; i < a->n; i++) room->outcome[i] = room->asleep[a->order[i]];
+        memcpy(room->asleep, room->outcome, (size_t)a->n);
+    }
     particles_permute(a);
     room->sorted = true;
     room->sorted_at = simulation->cost.steps;
@@ -540,7 +551,8 @@ static enum status begin_sleep(struct simulation *simulation, struct error *erro
     if (!simulation->plan.sleep) return STATUS_OK;
     unsigned char *asleep = calloc(n, 1);
     room->disturbed = calloc(n, 1);
-    if (!asleep || !room->disturbed) {
+    room->kept = calloc(n, sizeof *room->kept);
+    if (!asleep || !room->disturbed || !room->kept) {
         free(asleep);
         return error_set(error, STATUS_ENVIRONMENT, "no memory for %zu particles", n);
     }
@@ -554,6 +566,7 @@ static enum status begin_sleep(struct simulation *simulation, struct error *erro
         sleep_begin(simulation, i, 1);
     }
     sleep->awake_count = count_awake(room, a->n);
+    if (sleep->awake_count == a->n) forget_sleep(room); /* nobody falls asleep later */
     return STATUS_OK;
 }
 
@@ -571,7 +584,11 @@ static void carry_room(struct simulation *simulation, struct carrier *carrier)
 {
     struct room *room = room_of(simulation);
     carry(carrier, room->block, room->arrays * room->stride * sizeof *room->block);
-    if (room->asleep) carry(carrier, room->asleep, (size_t)simulation->particles.n);
+    if (room->asleep) {
+        const size_t n = (size_t)simulation->particles.n;
+        carry(carrier, room->asleep, n);
+        carry(carrier, room->kept, n * sizeof *room->kept);
+    }
     CARRY(carrier, room->sorted_at);
     CARRY(carrier, room->sorted);
 }

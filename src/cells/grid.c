@@ -10,7 +10,6 @@ static void free_all(struct grid *grid)
     free(grid->cell_of);
     free(grid->order);
     free(grid->position);
-    free(grid->radius);
     free(grid->radius2);
     for (int a = 0; a < 3; a++) free(grid->place[a]);
     free(grid->lists);
@@ -27,7 +26,6 @@ static bool reserve_points(struct grid *grid, size_t n)
     grid->cell_of = malloc(capacity * sizeof *grid->cell_of);
     grid->order = malloc(capacity * sizeof *grid->order);
     grid->position = aligned_alloc(64, (capacity * sizeof *grid->position + 63) / 64 * 64);
-    grid->radius = malloc(capacity * sizeof *grid->radius);
     /* copied in whole vectors, also those of the last cell */
     bool floats = (grid->radius2 = calloc(capacity + COPIED, sizeof(float)));
     for (int a = 0; a < 3; a++)
@@ -35,7 +33,7 @@ static bool reserve_points(struct grid *grid, size_t n)
     grid->lists = malloc(capacity * sizeof *grid->lists);
     grid->part_begin = malloc(capacity * sizeof *grid->part_begin);
     grid->part_cell = malloc(capacity * sizeof *grid->part_cell);
-    if (floats && grid->cell_of && grid->order && grid->position && grid->radius && grid->lists &&
+    if (floats && grid->cell_of && grid->order && grid->position && grid->lists &&
         grid->part_begin && grid->part_cell)
         return true;
     grid->capacity = 0;
@@ -211,6 +209,7 @@ static void sort_points(struct grid *grid, size_t n, const double *const x[], co
     for (size_t i = 0; i < n; i++) grid->order[grid->start[grid->cell_of[i]]++] = (uint32_t)i;
     memmove(grid->start + 1, grid->start, grid->cell_count * sizeof *grid->start);
     grid->start[0] = 0;
+    for (size_t c = 0; c < grid->cell_count; c++) grid->widest[c] = 0;
     for (size_t s = 0; s < n; s++) {
         const size_t i = grid->order[s];
         for (int a = 0; a < 3; a++)
@@ -218,9 +217,10 @@ static void sort_points(struct grid *grid, size_t n, const double *const x[], co
                                    : grid->box.periodic[a]
                                        ? wrapped(x[a][i], grid->lo[a], grid->side[a])
                                        : x[a][i];
-        grid->position[s][3] = 0;
-        grid->radius[s] = (float)(radius[i] / grid->unit * (1 + 1e-5));
-        grid->radius2[s] = grid->radius[s] * grid->radius[s];
+        const float reach = (float)(radius[i] / grid->unit * (1 + 1e-5));
+        float *widest = &grid->widest[grid->cell_of[i]];
+        grid->radius2[s] = reach * reach;
+        *widest = reach > *widest ? reach : *widest;
     }
     place_in_cells(grid);
     /* the sentinel: far from everything, at any image */
@@ -229,7 +229,6 @@ static void sort_points(struct grid *grid, size_t n, const double *const x[], co
     for (int a = 0; a < dim; a++) far = fmax(far, fabs(grid->lo[a]) + grid->side[a]);
     for (size_t i = 0; i < n; i++) far = fmax(far, radius[i]);
     grid->position[n][0] = 64 * far;
-    grid->position[n][3] = 0;
 }
 
 /* A cell's reach: the largest radius among its own points and those of the cells whose points reach
@@ -238,10 +237,7 @@ static void find_reaches(struct grid *grid)
 {
     float least = INFINITY, most = 0;
     for (size_t c = 0; c < grid->cell_count; c++) {
-        float widest = 0;
-        for (uint32_t s = grid->start[c]; s < grid->start[c + 1]; s++)
-            widest = grid->radius[s] > widest ? grid->radius[s] : widest;
-        grid->widest[c] = grid->reach[c] = widest;
+        const float widest = grid->reach[c] = grid->widest[c];
         if (widest > 0 && widest < least) least = widest;
         most = widest > most ? widest : most;
     }
@@ -381,9 +377,9 @@ const uint32_t *grid_order(const struct grid *grid)
     return grid->order;
 }
 
-const double (*grid_positions(const struct grid *grid))[4]
+const double (*grid_positions(const struct grid *grid))[3]
 {
-    return (const double(*)[4])grid->position;
+    return (const double(*)[3])grid->position;
 }
 
 const struct grid_list *grid_lists(const struct grid *grid)
@@ -409,9 +405,9 @@ size_t grid_parts(const struct grid *grid, const uint32_t **begin)
 
 double grid_bytes(int dim, double n, double neighbours)
 {
-    /* cell_of, order; position; radius, radius2 and place; list */
+    /* cell_of, order; position; radius2 and place; list */
     const double point =
-        2 * sizeof(uint32_t) + 4 * sizeof(double) + 5 * sizeof(float) + sizeof(struct grid_list);
+        2 * sizeof(uint32_t) + 3 * sizeof(double) + 4 * sizeof(float) + sizeof(struct grid_list);
     /* 2D: lists end in half a vector of fillings; 3D: a mark for each point of 3 x 3 x 3 cells as
      * wide as the radius, of which a ball has 4 pi/3 */
     const double list = dim == 2 ? (neighbours + 0.5 * GRID_LANES) * sizeof(int32_t)

@@ -60,9 +60,9 @@ enum status grid_search(struct grid *grid, size_t n, size_t active, const double
                         const double *radius, const unsigned char *asleep, struct error *error);
 
 /* Of the last search. Slots run over the points in the order of their cells; the sentinel is slot
- * n. position: slot -> {x, y, z (0 in 2D), 0}, wrapped into the box on periodic axes. */
+ * n. position: slot -> {x, y, z (0 in 2D)}, wrapped into the box on periodic axes. */
 const uint32_t *grid_order(const struct grid *grid); /* slot -> point, n of them */
-const double (*grid_positions(const struct grid *grid))[4];
+const double (*grid_positions(const struct grid *grid))[3];
 const struct grid_list *grid_lists(const struct grid *grid); /* of each slot */
 double grid_side(const struct grid *grid, int axis);         /* period, 0: open */
 /* Wakes whoever is in a cell that comes within `layers` reaches of a cell with a disturbed point:

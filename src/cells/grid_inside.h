@@ -59,8 +59,7 @@ struct grid {
     ptrdiff_t within[3];  /* cells that every reach covers; -1: not all the same */
     unsigned char *marks; /* two of each cell, for grid_wake */
     uint32_t *order;
-    double (*position)[4];
-    float *radius;             /* of each slot */
+    double (*position)[3];
     float *place[3], *radius2; /* of each slot: from the middle of its cell; radius squared */
     struct grid_list *lists;
     uint32_t *part_begin, *part_cell;

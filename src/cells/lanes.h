@@ -102,7 +102,7 @@ struct cells {
     size_t points; /* particles and their mirror images: slots run over both */
     /* of the grid's last search */
     const struct grid_list *lists;
-    const double (*place)[4];
+    const double (*place)[3];
     const uint32_t *order;
     double side[3]; /* periods; HUGE_VAL: open */
     struct cells_images {

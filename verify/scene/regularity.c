@@ -77,7 +77,7 @@ static void add_slot(struct sums *sums, const struct grid *grid, struct grid_rea
     const struct regularity_cloud *cloud = sums->cloud;
     const struct grid_list *lists = grid_lists(grid);
     const int32_t count = lists[slot].count, *slots = grid_neighbours(grid, reader, lists, slot);
-    const double(*position)[4] = grid_positions(grid);
+    const double(*position)[3] = grid_positions(grid);
     struct place place = place_of(cloud, grid_order(grid)[slot], widest);
     for (int32_t k = 0; k < count; k++) {
         const size_t other = (size_t)slots[k];

@@ -79,7 +79,7 @@ static enum status find(struct cloud *cloud, struct error *error)
 /* From the point of a slot to another one, the nearest image. */
 static double step_to(const struct cloud *cloud, size_t slot, int32_t other, double delta[3])
 {
-    const double(*position)[4] = grid_positions(cloud->grid);
+    const double(*position)[3] = grid_positions(cloud->grid);
     double square = 0;
     for (int d = 0; d < cloud->dim; d++) {
         const double side = grid_side(cloud->grid, d);

@@ -151,12 +151,18 @@ static void check_order_of_cells(const struct grid *grid)
     }
 }
 
+/* The search radius of a slot, in units, a little more. */
+static float reach_of(const struct grid *grid, size_t slot)
+{
+    return (float)(scene.radius[grid->order[slot]] / grid->unit * (1 + 1e-5));
+}
+
 /* Every point once, in its cell, where it came before others with higher numbers. */
 static void check_points(const struct grid *grid)
 {
     char met[POINTS_MAX] = {0};
     const uint32_t *order = grid_order(grid);
-    const double(*at)[4] = grid_positions(grid);
+    const double(*at)[3] = grid_positions(grid);
     assert_int_equal(grid->start[0], 0);
     assert_int_equal(grid->start[grid->cell_count], scene.n);
     double far = 0;
@@ -169,14 +175,14 @@ static void check_points(const struct grid *grid)
             assert_false(met[i]++);
             assert_int_equal(grid->cell_of[i], cell);
             if (s > grid->start[cell]) assert_true(order[s - 1] < i);
-            assert_true(at[s][3] == 0);
             for (int a = 0; a < 3; a++) {
                 if (a >= grid->box.dim) {
                     assert_true(at[s][a] == 0 && grid->place[a][s] == 0);
                     continue;
                 }
                 const double k = (at[s][a] - grid->lo[a]) * grid->cell_inverse[a];
-                assert_true(c[a] == (ptrdiff_t)k || (c[a] == grid->cells[a] - 1 && (double)c[a] < k));
+                assert_true(c[a] == (ptrdiff_t)k ||
+                            (c[a] == grid->cells[a] - 1 && (double)c[a] < k));
                 const double middle = grid->lo[a] + ((double)c[a] + 0.5) * grid->size[a];
                 near_below(fabs((at[s][a] - middle) / grid->unit - (double)grid->place[a][s]),
                            1e-7 * fmax(1, grid->size[a] / grid->unit));
@@ -186,15 +192,15 @@ static void check_points(const struct grid *grid)
                 const double turns = (scene.x[a][i] - at[s][a]) / fmax(grid->side[a], 1e-300);
                 near_below(fabs(turns - round(turns)), 1e-14);
             }
-            assert_true(grid->radius[s] == (float)(scene.radius[i] / grid->unit * (1 + 1e-5)));
-            assert_true(grid->radius2[s] == grid->radius[s] * grid->radius[s]);
+            const float reach = reach_of(grid, s);
+            assert_true(grid->radius2[s] == reach * reach);
         }
     }
     /* the sentinel is further away than anybody sees, also by way of images */
     for (int a = 0; a < grid->box.dim; a++) far = fmax(far, fabs(grid->lo[a]) + grid->side[a]);
     for (size_t i = 0; i < scene.n; i++) far = fmax(far, scene.radius[i]);
     assert_true(at[scene.n][0] == 64 * far);
-    for (int a = 1; a < 4; a++) assert_true(at[scene.n][a] == 0);
+    for (int a = 1; a < 3; a++) assert_true(at[scene.n][a] == 0);
 }
 
 /* Cells that lie within a radius, in units, of any point of a cell, along one axis. */
@@ -223,7 +229,7 @@ static void check_reaches(const struct grid *grid)
     for (size_t cell = 0; cell < grid->cell_count; cell++) {
         float widest = 0;
         for (uint32_t s = grid->start[cell]; s < grid->start[cell + 1]; s++)
-            widest = fmaxf(widest, grid->radius[s]);
+            widest = fmaxf(widest, reach_of(grid, s));
         assert_true(grid->widest[cell] == widest);
         most = fmaxf(most, widest);
         if (widest > 0) least = fminf(least, widest);
