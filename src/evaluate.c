@@ -11,7 +11,7 @@ static enum status find_primitives(struct simulation *simulation, struct error *
 {
     const struct particles *a = &simulation->particles;
     const double kinetic = simulation->scheme.energy == ENERGY_TOTAL ? 0.5 : 0;
-    if (state_primitives(a, 0, a->n, kinetic) <= 0) return STATUS_OK;
+    if (state_primitives(a, kinetic) <= 0) return STATUS_OK;
     ptrdiff_t i = 0;
     while (a->U[i] > 0) i++;
     return breakdown_of(simulation, i, "internal energy", a->U[i], error);

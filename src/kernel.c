@@ -103,7 +103,7 @@ enum status kernel_select(struct kernel *kernel, const char *name, int sinc_orde
                              sinc_order, SINC_ORDER_MIN, SINC_ORDER_MAX);
         kernel->order = sinc_order;
         /* below n = 5 the cut at q = 1 spoils the lattice sums at n/2 */
-        kernel->default_eta = sinc_order < 5 ? 2.5 : 0.5 * sinc_order;
+        kernel->default_eta = fmax(2.5, 0.5 * sinc_order);
         /* declared for n = 5 */
         if (sinc_order != 5) kernel->stable_eta[0] = kernel->stable_eta[1] = 0;
         for (int dim = 1; dim <= KERNEL_DIM_MAX; dim++) kernel->smoothness[dim] = sinc_order - 1;

@@ -9,18 +9,16 @@
 /* Stamped functions are static here, and the public ones call them: clang 14 gives the dispatched
  * symbol a name of its own, so that another file would not find it. */
 
-ALWAYS_INLINE double primitives(const struct particles *particles, ptrdiff_t first, ptrdiff_t len,
-                                double kinetic, int dim)
+ALWAYS_INLINE double primitives(const struct particles *particles, double kinetic, int dim)
 {
-    const double *restrict e = particles->e + first, *restrict m_inverse =
-                                                         particles->m_inverse + first;
-    double *restrict U = particles->U + first;
+    const double *restrict e = particles->e, *restrict m_inverse = particles->m_inverse;
+    double *restrict U = particles->U;
     const double *restrict p[3];
     double *restrict v[3];
-    for (int k = 0; k < dim; k++) p[k] = particles->p[k] + first, v[k] = particles->v[k] + first;
+    for (int k = 0; k < dim; k++) p[k] = particles->p[k], v[k] = particles->v[k];
     double unsound = 0;
 #pragma omp simd reduction(+ : unsound)
-    for (ptrdiff_t i = 0; i < len; i++) {
+    for (ptrdiff_t i = 0; i < particles->n; i++) {
         double internal = e[i];
         for (int k = 0; k < dim; k++) {
             const double v_k = p[k][i] * m_inverse[i];
@@ -34,22 +32,20 @@ ALWAYS_INLINE double primitives(const struct particles *particles, ptrdiff_t fir
 }
 
 #define BODY(dim)                                                                                  \
-    CLONES static double primitives_##dim(const struct particles *particles, ptrdiff_t first,      \
-                                          ptrdiff_t len, double kinetic)                           \
+    CLONES static double primitives_##dim(const struct particles *particles, double kinetic)       \
     {                                                                                              \
-        return primitives(particles, first, len, kinetic, dim);                                    \
+        return primitives(particles, kinetic, dim);                                                \
     }
 BODY(1)
 BODY(2)
 BODY(3)
 #undef BODY
 
-double state_primitives(const struct particles *particles, ptrdiff_t first, ptrdiff_t len,
-                        double kinetic)
+double state_primitives(const struct particles *particles, double kinetic)
 {
     return (particles->dim == 1   ? primitives_1
             : particles->dim == 2 ? primitives_2
-                                  : primitives_3)(particles, first, len, kinetic);
+                                  : primitives_3)(particles, kinetic);
 }
 
 /* x^d and x^(1/d). */

@@ -8,10 +8,9 @@
 #include "plan.h"
 #include "width.h"
 
-/* v = p/m and U = e (- p^2/2m where kinetic = 1/2; 0 where e is U already). Returns how many of the
- * len particles from first have no positive U (NaN counts). */
-double state_primitives(const struct particles *particles, ptrdiff_t first, ptrdiff_t len,
-                        double kinetic);
+/* v = p/m and U = e (- p^2/2m where kinetic = 1/2; 0 where e is U already) of all particles.
+ * Returns how many have no positive U (NaN counts). */
+double state_primitives(const struct particles *particles, double kinetic);
 
 /* The numbers of the equation of state: constant = C_d of the kernel; follow = how strongly the
  * pressure follows a volume that was predicted too small or too large (integrator.h). */

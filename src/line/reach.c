@@ -50,9 +50,9 @@ ptrdiff_t reach_of_pairs(const struct simulation *simulation, const struct range
 {
     const struct line *line = line_of(simulation);
     const struct range *ranges = line->ranges;
-    const ptrdiff_t count = line->range_count, n = simulation->particles.n, b = range - ranges;
+    const ptrdiff_t count = line->range_count, b = range - ranges;
     ptrdiff_t reach = range->reach, gap = 0; /* particles between the two ranges */
-    for (ptrdiff_t k = 1; k < count && gap < line->reach && gap < n; k++) {
+    for (ptrdiff_t k = 1; k < count && gap < line->reach; k++) {
         const struct range *right = &ranges[(b + k) % count],
                            *left = &ranges[(b - k + count) % count];
         if (gap < right->reach && right->reach > reach) reach = right->reach;
