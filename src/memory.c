@@ -8,15 +8,16 @@ static double arrays_of(const struct simulation *simulation)
 {
     const struct plan *plan = &simulation->plan;
     const bool line = plan->dim == 1;
-    enum { VECTORS = 5, SCALARS = 13, ORDERS = 3 }; /* x x_old p v F; id, order, spare */
+    enum { VECTORS = 5, SCALARS = 12, ORDERS = 3 }; /* x x_old p v F; id, order, spare */
     double count = VECTORS * plan->dim + SCALARS + ORDERS;
-    if (simulation->scheme.integrator->keeps_start) count += plan->dim + 2;
-    if (plan->grad_h) count += 2;
-    if (line || plan->alpha || plan->jump) count += 2; /* alpha alpha_old */
-    if (plan->alpha) count += 2;
-    if (line || plan->own_gradient) count++;
-    if (line && plan->slope) count++;
-    if (!line) count++;       /* signal */
+    if (!plan->newton) count++;                                             /* h_inverse_old */
+    if (simulation->scheme.integrator->keeps_start) count += plan->dim + 1; /* p_old e_old */
+    if (plan->grad_h) count += 2;                                           /* grad_h b */
+    if (line || plan->alpha || plan->jump) count += 2;                      /* alpha alpha_old */
+    if (plan->alpha) count += 2;                                            /* dalpha div_v */
+    if (plan->own_gradient || (line && plan->matrix)) count++;              /* g */
+    if (line && plan->slope) count++;                                       /* dv */
+    if (!line || plan->signal_pass || plan->sleep) count++;                 /* signal */
     return count + plan->dim; /* those of a snapshot */
 }
 

@@ -1,13 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What integrators say of themselves: those that keep the start of a step, and no others, write to
- * the arrays that an estimate of memory counts for them. */
+ * the arrays that an estimate of memory counts for them, as every scheme does to its own; none
+ * writes beyond the particles; what they leave without internal energy is named. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
 
 #include <cmocka.h>
 
 #include "hydro_scene.h"
+#include "memory.h"
+#include "settings.h"
 #include "solver.h"
 
 static bool is_used(const double *array, ptrdiff_t n)
@@ -40,8 +46,174 @@ static void test_start_of_a_step(void **state)
     assert_in_range(keep, 1, integrator_family.n - 1);
 }
 
+enum { SIDE = 12, N = SIDE * SIDE, ARRAYS_MOST = 64 };
+
+/* Disordered gas in a periodic box, on a line or in a plane, by these keys. */
+static struct scene disordered(int dim, int count, char *const *keys)
+{
+    static double x[3][N], v[3][N], m[N], u[N];
+    struct settings settings;
+    struct error error;
+    struct scene scene = {.dim = dim,
+                          .hi = {1, 1, 1},
+                          .gamma = 1.4,
+                          .t_end = 1,
+                          .n = N,
+                          .m = m,
+                          .u = u,
+                          .threads = 1};
+    const int side = dim == 1 ? N : SIDE;
+    for (int i = 0; i < N; i++) {
+        for (int k = 0, rest = i; k < dim; k++, rest /= side) {
+            x[k][i] = (rest % side + 0.5 + 0.2 * sin(i * (i + k))) / side;
+            v[k][i] = 0.3 * sin(5 * i + k);
+        }
+        m[i] = 1. / N, u[i] = 1 + 0.2 * sin(3 * i);
+    }
+    for (int k = 0; k < dim; k++) scene.x[k] = x[k], scene.v[k] = v[k];
+    settings_init(&settings);
+    if (settings_apply(&settings, count, keys, &error) ||
+        settings_scheme(&settings, dim, &scene.scheme, &error))
+        fail_msg("%s", error.message);
+    return scene;
+}
+
+/* Gas at rest on a lattice of a line but for a few particles: most of it sleeps. */
+static void lie_still(struct scene *scene)
+{
+    static double x[N], v[N], u[N];
+    for (int i = 0; i < N; i++) x[i] = (i + 0.5) / N, v[i] = i % N < 9 ? 1e-3 * i : 0, u[i] = 1;
+    scene->x[0] = x, scene->v[0] = v, scene->u = u, scene->skip = true;
+}
+
+static struct simulation *created(const struct scene *scene)
+{
+    struct simulation *simulation = NULL;
+    struct error error;
+    if (simulation_create(scene, &simulation, &error)) fail_msg("%s", error.message);
+    return simulation;
+}
+
+static size_t list(const struct particles *a, double *arrays[ARRAYS_MOST])
+{
+    size_t count = 0;
+#define SCALAR(name, meaning) arrays[count++] = a->name;
+#define VECTOR(name, meaning)                                                                      \
+    for (int k = 0; k < a->dim; k++) arrays[count++] = a->name[k];
+    PARTICLE_FIELDS(SCALAR, VECTOR)
+#undef SCALAR
+#undef VECTOR
+    return count;
+}
+
+static struct scene scene_of(size_t integrator, int dim, const char *viscosity, const char *energy)
+{
+    char of_time[64], of_viscosity[64], of_energy[64];
+    char *keys[] = {of_time, of_viscosity, of_energy};
+    snprintf(of_time, sizeof of_time, "integrator=%s", integrator_family.members[integrator]->name);
+    snprintf(of_viscosity, sizeof of_viscosity, "viscosity=%s", viscosity);
+    snprintf(of_energy, sizeof of_energy, "energy=%s", energy);
+    return disordered(dim, 3, keys);
+}
+
+/* In a plane there are no images: what stands behind the last particle is nobody's. */
+static void test_nothing_beyond(void **state)
+{
+    (void)state;
+    static const char *const viscosities[] = {"time_dependent", "cullen_dehnen"};
+    for (size_t k = 0; k < integrator_family.n; k++)
+        for (int v = 0; v < 2; v++) {
+            const struct scene scene = scene_of(k, 2, viscosities[v], "internal");
+            struct simulation *simulation = created(&scene);
+            const struct particles *a = &simulation->particles;
+            double *arrays[ARRAYS_MOST];
+            struct error error;
+            const size_t count = list(a, arrays);
+            for (size_t i = 0; i < count; i++) arrays[i][N] = 77;
+            assert_int_equal(simulation_run(simulation, 1e-2, NULL, NULL, &error), STATUS_OK);
+            for (size_t i = 0; i < count; i++)
+                if (arrays[i][N] != 77)
+                    fail_msg("%s: array %zu", integrator_family.members[k]->name, i);
+            simulation_destroy(simulation);
+        }
+}
+
+/* A particle that loses its last energy in a step is named with what is left of it. */
+static void test_without_energy(void **state)
+{
+    (void)state;
+    static const char *const energies[] = {"internal", "total"};
+    for (int total = 0; total < 2; total++)
+        for (int dim = 1; dim <= 2; dim++) {
+            size_t k = 0;
+            while (strcmp(integrator_family.members[k]->name, "predicted_midpoint") != 0) k++;
+            const struct scene scene = scene_of(k, dim, "none", energies[total]);
+            struct simulation *simulation = created(&scene);
+            const struct particles *a = &simulation->particles;
+            struct error error;
+            char said[80];
+            a->e[100] = a->e[77] = -0.5;
+            a->p[0][77] = 0.03; /* a share of its energy that can be told */
+            assert_int_equal(simulation_run(simulation, 1, NULL, NULL, &error), STATUS_BROKE_DOWN);
+            double U = a->e[77];
+            for (int d = 0; d < dim && total; d++) U -= 0.5 * a->p[d][77] * a->p[d][77] / a->m[77];
+            snprintf(said, sizeof said, "internal energy of particle %zu at x = ", a->id[77]);
+            assert_non_null(strstr(error.message, said));
+            snprintf(said, sizeof said, " is %.9g", U);
+            assert_string_equal(error.message + strlen(error.message) - strlen(said), said);
+            simulation_destroy(simulation);
+        }
+}
+
+/* The estimate counts the arrays that are written to, the snapshot's and three more; no others. */
+static void test_arrays_that_are_counted(void **state)
+{
+    (void)state;
+    static char *const schemes[][3] = {
+        {"viscosity=constant", "gradient=standard", "formulation=vanilla_ice"},
+        {"viscosity=time_dependent", "gradient=standard", "formulation=vanilla_ice"},
+        {"viscosity=reconstructed", "gradient=standard", "formulation=vanilla_ice"},
+        {"viscosity=constant", "gradient=ia", "formulation=vanilla_ice"},
+        {"viscosity=constant", "gradient=standard", "formulation=lagrangian"},
+        {"viscosity=time_dependent", "gradient=ia", "formulation=lagrangian"},
+        {"viscosity=cullen_dehnen", "gradient=standard", "formulation=vanilla_ice"},
+        {"viscosity=cullen_dehnen", "gradient=ia", "formulation=lagrangian"},
+    };
+    for (int way = 0; way < 3; way++)
+        for (size_t k = 0; k < sizeof schemes / sizeof *schemes; k++)
+            for (size_t integrator = 0; integrator < integrator_family.n; integrator++) {
+                const int dim = way < 2 ? 1 : 2;
+                const bool still = way == 1;
+                char of_time[64], *keys[] = {schemes[k][0], schemes[k][1], schemes[k][2], of_time};
+                if (dim == 1 && strcmp(keys[0], "viscosity=cullen_dehnen") == 0) continue;
+                snprintf(of_time, sizeof of_time, "integrator=%s",
+                         integrator_family.members[integrator]->name);
+                struct scene scene = disordered(dim, 4, keys);
+                if (still) lie_still(&scene);
+                struct simulation *simulation = created(&scene),
+                                  bare = {.scheme = scene.scheme, .plan = plan_of_scene(&scene)};
+                double *arrays[ARRAYS_MOST];
+                struct error error;
+                assert_int_equal(simulation_run(simulation, 5e-3, NULL, NULL, &error), STATUS_OK);
+                const size_t count = list(&simulation->particles, arrays);
+                size_t used = 3 + (size_t)dim;
+                for (size_t i = 0; i < count; i++) used += is_used(arrays[i], N);
+                const double room = bare.plan.sums->bytes(&bare, N);
+                if (memory_bytes(&scene) - room != 8. * N * (double)used)
+                    fail_msg("%dD %s %s %s %s%s: %g arrays, not %zu", dim, keys[0], keys[1],
+                             keys[2], keys[3], still ? ", sleeping" : "",
+                             (memory_bytes(&scene) - room) / (8 * N), used);
+                simulation_destroy(simulation);
+            }
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_start_of_a_step)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_start_of_a_step),
+        cmocka_unit_test(test_nothing_beyond),
+        cmocka_unit_test(test_without_energy),
+        cmocka_unit_test(test_arrays_that_are_counted),
+    };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
