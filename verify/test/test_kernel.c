@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The kernels against data/kernels.csv (W, dW/dq, dW/dh at h = 1, 20 digits, computed with exact
  * rational arithmetic from the definitions, independently of this code), scaled to several h; and
- * kernel_select. */
+ * kernel_select; what descriptors say, against the shapes. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -14,7 +14,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <gsl/gsl_integration.h>
+
 #include "kernel.h"
+#include "near.h"
 
 static const char *table_path;
 
@@ -200,6 +203,136 @@ static void test_edges(void **state)
         }
 }
 
+/* What each kernel is: the B-spline M_n, whose knots lie at 1 - 2k/n, or Wendland's of a class C^k.
+ */
+static const struct {
+    const char *name;
+    int n, class;
+} kinds[] = {
+    {"quadratic_spline", 3, 1}, {"cubic_spline", 4, 2}, {"quartic_spline", 5, 3},
+    {"quintic_spline", 6, 4},   {"wendland_c2", 0, 2},  {"wendland_c4", 0, 4},
+    {"wendland_c6", 0, 6},      {"sinc", 0, 4},
+};
+enum { KINDS = sizeof kinds / sizeof *kinds };
+
+/* S_d times the integral of q^(d-1) w, piece by piece, by a rule that is exact for these. */
+static double normalisation(const struct kernel *kernel, int dim)
+{
+    static const double sphere[] = {0, 2, 2 * M_PI, 4 * M_PI};
+    gsl_integration_glfixed_table *rule = gsl_integration_glfixed_table_alloc(24);
+    assert_non_null(rule);
+    double sum = 0;
+    for (int piece = 0; piece <= kernel->knot_count; piece++)
+        for (size_t i = 0; i < 24; i++) {
+            double q, weight;
+            gsl_integration_glfixed_point(piece ? kernel->knots[piece - 1] : 0,
+                                          piece < kernel->knot_count ? kernel->knots[piece] : 1, i,
+                                          &q, &weight, rule);
+            sum += weight * pow(q, dim - 1) * kernel->w(kernel, q, dim);
+        }
+    gsl_integration_glfixed_table_free(rule);
+    return sphere[dim] * kernel->constant[dim] * sum;
+}
+
+/* What a kernel says of itself: its constants are those of its shape, its knots and its class those
+ * of its kind; lattice sums of a spline are exact from n/2 on, those of the others never. */
+static void test_descriptors(void **state)
+{
+    (void)state;
+    assert_int_equal(kernel_family.n, KINDS);
+    for (int k = 0; k < KINDS; k++) {
+        struct kernel kernel;
+        const int n = kinds[k].n, knots = n ? (n - 1) / 2 : 0;
+        assert_int_equal(kernel_select(&kernel, kinds[k].name, 5, NULL), STATUS_OK);
+        assert_int_equal(kernel.knot_count, knots);
+        for (int i = 0; i < knots; i++)
+            near_absolute(kernel.knots[i], (double)((n - 1) % 2 + 1 + 2 * i) / n, 1e-15);
+        for (int dim = 1; dim <= KERNEL_DIM_MAX; dim++) {
+            assert_int_equal(kernel.smoothness[dim], kinds[k].class);
+            near_relative(normalisation(&kernel, dim), 1, 4e-14);
+        }
+        assert_true(kernel.unity_width == n / 2.);
+        for (int shift = 0; n && shift < 5; shift++) {
+            double sum = 0;
+            for (int j = -9; j <= 9; j++)
+                sum += kernel_value(&kernel, fabs(j + 0.2 * shift), n / 2., 1);
+            near_relative(sum, 1, 1e-14);
+        }
+        for (int g = 0; g < GRADIENTS; g++) /* declared to three digits behind the point */
+            near_below(fabs(1000 * kernel.stable_eta[g] - round(1000 * kernel.stable_eta[g])),
+                       1e-11);
+    }
+}
+
+/* Each kernel has the stamps of its own shape; no other pair of functions has any. */
+static void test_stamps(void **state)
+{
+    (void)state;
+    for (int k = 0; k < KINDS; k++) {
+        struct kernel kernel, other;
+        assert_int_equal(kernel_select(&kernel, kinds[k].name, 5, NULL), STATUS_OK);
+        assert_int_equal(kernel_select(&other, kinds[(k + 1) % KINDS].name, 5, NULL), STATUS_OK);
+        assert_int_equal(kernel_stamp(&kernel), kernel_index(kinds[k].name));
+        other.w = kernel.w;
+        assert_int_equal(kernel_stamp(&other), -1);
+        kernel.w = NULL;
+        assert_int_equal(kernel_stamp(&kernel), -1);
+    }
+    assert_int_equal(kernel_index("cubic"), -1);
+}
+
+static double one(double q, int dim)
+{
+    (void)dim;
+    return q < 1 ? 1 : 0;
+}
+
+static double guest_shape(const struct kernel *kernel, double q, int dim)
+{
+    return kernel->plugin_w(q, dim);
+}
+
+static double guest_dh(double r, double h, int dim)
+{
+    return 100 * r + 10 * h + dim;
+}
+
+/* As many as there is room for are found by name behind the others, as they are: constants are the
+ * guest's, also where it has none. The last test: who has come stays. */
+static void test_guests(void **state)
+{
+    (void)state;
+    static struct kernel guests[KERNEL_GUESTS_MAX + 1];
+    static char names[KERNEL_GUESTS_MAX + 1][24];
+    for (int k = 0; k <= KERNEL_GUESTS_MAX; k++) {
+        snprintf(names[k], sizeof names[k], "guest_%d", k);
+        guests[k] = (struct kernel){.member = {names[k], "", ""},
+                                    .w = guest_shape,
+                                    .plugin_w = one,
+                                    .plugin_dw_dh = k ? guest_dh : NULL,
+                                    .constant = {0, 0, 1 / M_PI}};
+        assert_int_equal(kernel_add(&guests[k]), k < KERNEL_GUESTS_MAX ? KINDS + k : -1);
+    }
+    for (int k = 0; k <= KERNEL_GUESTS_MAX; k++) {
+        struct kernel kernel;
+        const bool in = k < KERNEL_GUESTS_MAX;
+        assert_int_equal(kernel_index(names[k]), in ? KINDS + k : -1);
+        assert_int_equal(kernel_select(&kernel, names[k], 5, NULL), in ? 0 : STATUS_BAD_INPUT);
+        if (!in) continue;
+        assert_true(kernel.constant[1] == 0 && kernel.constant[2] == 1 / M_PI);
+        assert_int_equal(kernel_stamp(&kernel), -1);
+        if (k) assert_true(kernel_dh(&kernel, 2, 3, 1) == 231);
+    }
+    assert_int_equal(kernel_family.n, KINDS);
+    char said[256] = "no kernel 'cubic'; there are ";
+    struct kernel kernel;
+    struct error error;
+    for (int k = 0; k < KINDS; k++)
+        sprintf(said + strlen(said), "%s%s", k ? ", " : "", kernel_family.members[k]->name);
+    assert_int_equal(kernel_select(&kernel, "cubic", 5, &error), STATUS_BAD_INPUT);
+    assert_string_equal(error.message, said);
+}
+
 int main(int argc, char **argv)
 {
     if (argc != 2) return 2;
@@ -207,7 +340,8 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_table),       cmocka_unit_test(test_sinc_constants),
         cmocka_unit_test(test_sinc_limits), cmocka_unit_test(test_select),
-        cmocka_unit_test(test_edges),
+        cmocka_unit_test(test_edges),       cmocka_unit_test(test_descriptors),
+        cmocka_unit_test(test_stamps),      cmocka_unit_test(test_guests),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

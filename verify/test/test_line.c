@@ -185,11 +185,14 @@ static void coincident_ones_are_moved_apart(void **state)
     int binding = 0;
     for (int count = 1; count <= 5; count++)
         for (int first = 0; first + count <= MEMBERS; first++)
-            for (int wide = 0; wide < 4; wide++) {
+            for (int wide = 0; wide < 6; wide++) {
                 struct simulation s;
                 made(&s, MEMBERS);
                 struct particles *a = &s.particles;
-                s.scheme.eta = wide == 3 ? 0.5 * least : 2;
+                s.scheme.eta = wide == 3   ? 0.5 * least
+                               : wide == 4 ? count * least /* as many as is too many */
+                               : wide == 5 ? nextafter(count * least, 9)
+                                           : 2;
                 s.scheme.kernel = *kernel;
                 const double at = a->x[0][first];
                 for (int i = 0; i < count; i++) a->x[0][first + i] = at;

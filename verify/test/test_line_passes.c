@@ -1,0 +1,305 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Passes over the ranges of a line: every range once, by as many threads as there are, and what
+ * they find; widths that have a root or none; how room is made; what the force loop reads beyond a
+ * range and writes to its scratch. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdatomic.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "line/line.h"
+#include "line/pass.h"
+#include "made_simulation.h"
+#include "near.h"
+
+/* --- passes ------------------------------------------------------------------------------------
+ */
+
+enum { RANGES_MOST = 80 };
+
+static atomic_int visits[RANGES_MOST], by_thread[4];
+
+static void visit(struct simulation *simulation, struct range *range, struct tally *tally)
+{
+    const ptrdiff_t b = range - line_of(simulation)->ranges;
+    visits[b]++;
+    by_thread[tally->thread]++;
+    if (range->first < tally->without_root) tally->without_root = range->first;
+    if (range->reach > tally->reach) tally->reach = range->reach;
+    tally->short_of_ghosts |= range->len == 63;
+    tally->crossings += 1;
+    tally->rate = fmax(tally->rate, (double)range->reach / 8);
+    tally->pairs += (uint64_t)range->reach;
+}
+
+/* With fewer than 32 ranges, or one thread at work, one does it all. What is found is the same. */
+static void every_range_once(void **state)
+{
+    (void)state;
+    for (int size = 1; size <= 3; size++)
+        for (ptrdiff_t count = 1; count <= RANGES_MOST;
+             count += count == 31 || count == 32 ? 1 : 10)
+            for (int last = 0; last < 2; last++) {
+                struct range ranges[RANGES_MOST];
+                struct line line = {.ranges = ranges, .range_count = count};
+                struct simulation s = {.room = &line, .team = {.size = size, .most = 3}};
+                uint64_t pairs = 0;
+                for (ptrdiff_t b = 0; b < count; b++) {
+                    visits[b] = 0;
+                    ranges[b] = (struct range){.first = 1000 - (last ? b : -b), .len = 64};
+                    ranges[b].reach = 1 + (7 * b) % 11;
+                    pairs += (uint64_t)ranges[b].reach;
+                }
+                ranges[last ? count - 1 : 0].len = 63, ranges[last ? 0 : count - 1].reach = 50;
+                pairs = 0;
+                for (ptrdiff_t b = 0; b < count; b++) pairs += (uint64_t)ranges[b].reach;
+                for (int t = 0; t < 4; t++) by_thread[t] = 0;
+                const struct tally found = pass_all(&s, visit);
+                for (ptrdiff_t b = 0; b < count; b++) assert_int_equal(visits[b], 1);
+                assert_int_equal(found.without_root, last ? 1001 - count : 1000);
+                assert_true(found.reach == 50 && found.short_of_ghosts && found.pairs == pairs);
+                assert_true(found.crossings == (double)count && found.rate == 50. / 8);
+#ifdef _OPENMP
+                const int workers = count >= 32 ? size : 1;
+#else
+                const int workers = 1;
+#endif
+                for (int t = 0; t < 4; t++) assert_int_equal(by_thread[t] > 0, t < workers);
+                ranges[last ? count - 1 : 0].len = 64;
+                assert_false(pass_all(&s, visit).short_of_ghosts);
+            }
+}
+
+/* --- widths ------------------------------------------------------------------------------------
+ */
+
+static struct range *range_of(const struct simulation *simulation, ptrdiff_t i)
+{
+    struct range *range = line_of(simulation)->ranges;
+    while (i >= range->first + range->len) range++;
+    return range;
+}
+
+/* Puts particle i + 1 to the place of particle i: with this kernel neither has a root then. */
+static void coincide(struct simulation *s, ptrdiff_t i)
+{
+    s->particles.x[0][i + 1] = s->particles.x[0][i];
+}
+
+/* The first particle without a root is named, whoever finds it. */
+static void the_first_without_a_root(void **state)
+{
+    (void)state;
+    static const ptrdiff_t places[][2] = {{0, 0},   {62, 62},   {64, 64},   {2559, 2559},
+                                          {70, 68}, {2200, 67}, {67, 2200}, {1300, 1200}};
+    for (size_t k = 0; k < sizeof places / sizeof *places; k++)
+        for (int size = 1; size <= 2; size++) {
+            struct simulation *s = made_simulation(2561);
+            struct error error;
+            char said[64];
+            s->team.size = s->team.most = size;
+            coincide(s, places[k][0]);
+            coincide(s, places[k][1]);
+            const ptrdiff_t first = places[k][0] < places[k][1] ? places[k][0] : places[k][1];
+            assert_int_equal(widths_find(s, true, 0, &error), STATUS_BROKE_DOWN);
+            snprintf(said, sizeof said, "smoothing length (no root was found) of particle %zu at",
+                     s->particles.id[first]);
+            assert_non_null(strstr(error.message, said));
+            simulation_destroy(s);
+        }
+}
+
+/* In every eighth step a reach that has become too large is lowered, by Newton and where widths are
+ * predicted; one that is too small is raised at once. */
+static void reaches_are_lowered_now_and_then(void **state)
+{
+    (void)state;
+    for (int newton = 0; newton < 2; newton++)
+        for (uint64_t step = 0; step < 18; step++) {
+            struct simulation *s = made_simulation(200);
+            struct error error;
+            struct line *line = line_of(s);
+            ptrdiff_t needed[4];
+            s->cost.steps = 8;
+            assert_int_equal(widths_find(s, newton, 0, &error), STATUS_OK);
+            for (int b = 0; b < 4; b++) needed[b] = line->ranges[b].reach;
+            const ptrdiff_t most = line->reach;
+            s->cost.steps = step;
+            line->ranges[0].reach += 3, line->ranges[2].reach = 0;
+            assert_int_equal(widths_find(s, newton, 0, &error), STATUS_OK);
+            for (int b = 0; b < 4; b++)
+                assert_int_equal(line->ranges[b].reach, needed[b] + (b == 0 && step % 8 ? 3 : 0));
+            assert_int_equal(line->reach, step % 8 ? needed[0] + 3 : most);
+            simulation_destroy(s);
+        }
+}
+
+/* A box whose widths reach over many images: as many ghosts as it takes, no more passes over ranges
+ * that are done; a predicted width beyond all bounds is named. */
+static void ghosts_as_many_as_it_takes(void **state)
+{
+    (void)state;
+    struct simulation *s = made_simulation(20);
+    struct error error;
+    char said[120];
+    const uint64_t passes = line_of(s)->density_passes;
+    for (ptrdiff_t i = 0; i < 20; i++) s->particles.h_inverse_found[i] = 1 / 0.2;
+    s->particles.h_inverse_found[3] = s->particles.h_inverse_old[3] = 1 / 2.02;
+    assert_int_equal(widths_find(s, false, 0, &error), STATUS_OK);
+    assert_int_equal(line_of(s)->density_passes, passes + 1);
+    assert_in_range(line_of(s)->reach, 40, 45);
+    assert_int_equal(range_of(s, 3)->done, passes + 1);
+    s->particles.h_inverse_found[3] = s->particles.h_inverse_old[3] = 1e-9;
+    assert_int_equal(widths_find(s, false, 0, &error), STATUS_BROKE_DOWN);
+    snprintf(said, sizeof said, "smoothing length of particle %zu at x = %.9g is 1e+09",
+             s->particles.id[3], s->particles.x[0][3]);
+    assert_non_null(strstr(error.message, said));
+    simulation_destroy(s);
+}
+
+/* --- room --------------------------------------------------------------------------------------
+ */
+
+/* Room for eight times the reach, and 8 more to read; ghosts that it moves are filled again. */
+static void room_for_eight_times_the_reach(void **state)
+{
+    (void)state;
+    for (ptrdiff_t reach = 5; reach < 12; reach++) {
+        struct simulation *s = made_simulation(100);
+        struct error error;
+        struct line *line = line_of(s);
+        assert_true(s->particles.ghosts == 64 && line->reach < 5);
+        const ptrdiff_t filled = line->ghosts_filled;
+        line->reach = reach;
+        s->particles.x[0][-reach] = s->particles.P[-reach] = 77;
+        assert_int_equal(line_sums.reserve(s, &error), STATUS_OK);
+        const bool grown = 8 * reach + 8 > 64;
+        assert_int_equal(s->particles.ghosts, grown ? 8 * reach + 8 : 64);
+        assert_int_equal(line->ghosts_filled, grown ? reach + 2 : filled);
+        const struct particles *a = &s->particles;
+        for (ptrdiff_t k = 1; grown && k <= reach + 1; k++) {
+            near_relative(a->x[0][-k], a->x[0][100 - k] - 1, 1e-14);
+            assert_true(a->m[-k] == a->m[100 - k] && a->m[99 + k] == a->m[k - 1]);
+            assert_true(a->P[-k] == a->P[100 - k] && a->P[99 + k] == a->P[k - 1]);
+        }
+        if (!grown) assert_true(a->x[0][-reach] == 77 && a->P[-reach] == 77);
+        assert_true(line->scratch_size >= loop_force_scratch(8 * reach));
+        simulation_destroy(s);
+    }
+}
+
+/* Scratch is kept while it suffices, and twice as long as was asked for where it does not. */
+static void scratch_is_made_rarely(void **state)
+{
+    (void)state;
+    struct simulation *s = made_simulation(100);
+    struct error error;
+    struct line *line = line_of(s);
+    const size_t size = line->scratch_size;
+    ptrdiff_t most = 1;
+    while (loop_force_scratch(most + 1) <= size) most++;
+    const double *kept = line->scratch;
+    assert_int_equal(forces_reserve_scratch(s, most, &error), STATUS_OK);
+    assert_true(line->scratch == kept && line->scratch_size == size);
+    assert_int_equal(forces_reserve_scratch(s, most + 1, &error), STATUS_OK);
+    assert_int_equal(line->scratch_size, 2 * loop_force_scratch(most + 1));
+    simulation_destroy(s);
+}
+
+/* --- the force loop ----------------------------------------------------------------------------
+ */
+
+static struct simulation *with(size_t n, int count, char *const *keys)
+{
+    static double x[256], v[256], m[256], u[256];
+    struct settings settings;
+    struct simulation *simulation = NULL;
+    struct error error;
+    struct scene scene = {.dim = 1,
+                          .hi = {1},
+                          .gamma = 1.4,
+                          .t_end = 1,
+                          .n = n,
+                          .x = {x},
+                          .v = {v},
+                          .m = m,
+                          .u = u,
+                          .threads = 1};
+    for (size_t i = 0; i < n; i++) {
+        x[i] = ((double)i + 0.5 + 0.2 * sin((double)(i * i))) / (double)n;
+        v[i] = sin((double)(3 * i)), m[i] = 1 / (double)n, u[i] = 1 + 0.5 * sin((double)(7 * i));
+    }
+    settings_init(&settings);
+    if (settings_apply(&settings, count, keys, &error) ||
+        settings_scheme(&settings, 1, &scene.scheme, &error) ||
+        simulation_create(&scene, &simulation, &error))
+        fail_msg("%s", error.message);
+    return simulation;
+}
+
+static char *const schemes[][3] = {
+    {"kernel=cubic_spline", "eta=6", "formulation=lagrangian"},
+    {"kernel=cubic_spline", "eta=6", "viscosity=time_dependent"},
+    {"kernel=quadratic_spline", "eta=1.5", "viscosity=none"},
+    {"kernel=cubic_spline", "eta=4", "gradient=ia"},
+};
+enum { SCHEMES = sizeof schemes / sizeof *schemes };
+
+/* The loop finds the largest signal speed / h of its pairs, and 2c/h of their left sides, wherever
+ * else gas is hotter; and writes
+ * to no more scratch than it says. */
+static void rates_and_scratch_of_a_range(void **state)
+{
+    (void)state;
+    for (int k = 0; k < SCHEMES; k++)
+        for (ptrdiff_t first = 0; first < 30; first += 6)
+            for (int len = 1; len <= 64; len += 9) {
+                struct simulation *s = with(200, 3, schemes[k]);
+                struct particles *a = &s->particles;
+                const struct line *line = line_of(s);
+                const ptrdiff_t D = line->reach;
+                const size_t size = loop_force_scratch(D);
+                double *scratch = malloc((size + 16) * sizeof *scratch);
+                assert_non_null(scratch);
+                for (size_t i = 0; i < size + 16; i++) scratch[i] = 1e9;
+                /* beyond what the range can feel */
+                for (ptrdiff_t i = first + len; i < first + len + D + 8; i++)
+                    a->x[0][i] += 100, a->c[i] = 1e6;
+                double rate = 0;
+                for (ptrdiff_t d = 1; d <= D; d++)
+                    for (ptrdiff_t i = first - d; i < first + len; i++) {
+                        const double r = a->x[0][i + d] - a->x[0][i],
+                                     least = fmin(a->h_inverse[i], a->h_inverse[i + d]),
+                                     most = fmax(a->h_inverse[i], a->h_inverse[i + d]),
+                                     closing = a->v[0][i] - a->v[0][i + d],
+                                     speed = (a->c[i] + a->c[i + d]) + 3 * fmax(closing, 0);
+                        rate = fmax(rate, 2 * a->c[i] * a->h_inverse[i]);
+                        if (r * least < 1) rate = fmax(rate, most * speed);
+                    }
+                const double got = line->loops.force(&line->loops, a, first, len, D, scratch);
+                near_relative(got, rate, 1e-14);
+                for (size_t i = size; i < size + 16; i++) assert_true(scratch[i] == 1e9);
+                free(scratch);
+                simulation_destroy(s);
+            }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_range_once),
+        cmocka_unit_test(the_first_without_a_root),
+        cmocka_unit_test(reaches_are_lowered_now_and_then),
+        cmocka_unit_test(ghosts_as_many_as_it_takes),
+        cmocka_unit_test(room_for_eight_times_the_reach),
+        cmocka_unit_test(scratch_is_made_rarely),
+        cmocka_unit_test(rates_and_scratch_of_a_range),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,332 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What a simulation does around its steps, with an integrator and sums that do nothing, so that
+ * every number is known: what is called, when a run stops or has broken down, what its clocks show
+ * and what is kept and restored. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "made_simulation.h"
+#include "near.h"
+#include "solver.h"
+
+/* --- steps -------------------------------------------------------------------------------------
+ */
+
+static struct {
+    int steps, synchronised, signals, switched, widths, looked;
+    double dt, switch_dt, time;
+    bool fail, stop;
+} seen;
+
+static enum status still_step(struct simulation *simulation, double dt, struct error *error)
+{
+    (void)simulation;
+    seen.steps++;
+    seen.dt = dt;
+    return seen.fail ? error_set(error, STATUS_BROKE_DOWN, "as was wished") : STATUS_OK;
+}
+
+static void still_synchronise(struct simulation *simulation)
+{
+    (void)simulation;
+    seen.synchronised++;
+}
+
+static double still_signal(struct simulation *simulation)
+{
+    seen.signals++;
+    for (ptrdiff_t i = 0; i < simulation->particles.n; i++)
+        simulation->particles.signal[i] = i == 7 ? 1e6 : 1;
+    return simulation->scheme.cfl / 0.125;
+}
+
+static void still_switch(struct simulation *simulation, double dt)
+{
+    (void)simulation;
+    seen.switched++;
+    seen.switch_dt = dt;
+}
+
+static enum status still_widths(struct simulation *simulation, bool newton, double ratio,
+                                struct error *error)
+{
+    (void)simulation, (void)ratio, (void)error;
+    assert_true(newton);
+    seen.widths++;
+    return STATUS_OK;
+}
+
+static bool look(void *context, double time, uint64_t steps)
+{
+    struct simulation *simulation = context;
+    seen.looked++;
+    seen.time = time;
+    assert_true(time == simulation->time && steps == simulation->cost.steps);
+    return !seen.stop;
+}
+
+static const struct integrator still = {
+    .step = still_step, .synchronise = still_synchronise, .ends_evaluated = true};
+static struct sums still_sums;
+
+/* A simulation whose steps do nothing: eighths of a time unit, to 1. */
+static struct simulation *standing(void)
+{
+    struct simulation *s = made_simulation(40);
+    still_sums = *s->plan.sums;
+    still_sums.signal = still_signal;
+    still_sums.apply_switch = still_switch;
+    still_sums.widths = still_widths;
+    s->plan.sums = &still_sums;
+    s->scheme.integrator = &still;
+    s->dt = s->time_step = s->largest_dt = 0.125;
+    s->dt_before = 0.0625;
+    memset(&seen, 0, sizeof seen);
+    return s;
+}
+
+static void what_a_run_calls(void **state)
+{
+    (void)state;
+    struct error error;
+    for (int way = 0; way < 16; way++) {
+        struct simulation *s = standing();
+        struct integrator integrator = still;
+        struct simulation_cost cost;
+        s->plan.jump = way & 1, s->plan.signal_pass = way & 2;
+        integrator.ends_evaluated = way & 4;
+        if (way & 8) integrator.synchronise = NULL;
+        s->scheme.integrator = &integrator;
+        s->sleep.awake_count = 31;
+        s->wall_start -= 1000, s->cpu_start -= 2000;
+        assert_int_equal(simulation_run(s, 1, way & 8 ? NULL : look, s, &error), STATUS_OK);
+        assert_true(s->time == 1 && s->dt == 0.125 && s->dt_before == 0.125 && seen.dt == 0.125);
+        assert_int_equal(seen.steps, 8);
+        assert_int_equal(seen.switched, way & 1 ? 8 : 0);
+        assert_true(seen.switch_dt == (way & 1 ? 0.125 : 0));
+        assert_int_equal(seen.signals, way & 2 ? 7 : 0);
+        assert_int_equal(seen.widths, way & 4 ? 0 : 1);
+        assert_int_equal(seen.synchronised, way & 8 ? 0 : 1);
+        assert_int_equal(seen.looked, way & 8 ? 0 : 8);
+        simulation_cost(s, &cost);
+        assert_true(cost.steps == 8 && cost.particle_updates == 8 * 31);
+        assert_int_equal(cost.skipped_particle_updates, 8 * 9);
+        near_inside(cost.wall_s, 1000, 1100);
+        near_inside(cost.cpu_s, 2000, 2100);
+        simulation_destroy(s);
+    }
+}
+
+/* Stopped from outside, or by a step that fails: synchronised, and no further. */
+static void a_run_that_stops(void **state)
+{
+    (void)state;
+    struct error error;
+    for (int fail = 0; fail < 2; fail++) {
+        struct simulation *s = standing();
+        struct integrator integrator = still;
+        integrator.ends_evaluated = false;
+        s->scheme.integrator = &integrator;
+        seen.fail = fail, seen.stop = !fail;
+        s->team.begun = 5;
+        assert_int_equal(simulation_run(s, 1, look, s, &error),
+                         fail ? STATUS_BROKE_DOWN : STATUS_OK);
+        assert_true(s->team.begun == 0); /* no pause counts for a team */
+        assert_true(s->time == (fail ? 0 : 0.125) && s->dt_before == 0.125 && s->dt == 0.125);
+        assert_int_equal(seen.steps, 1);
+        assert_int_equal(seen.looked, !fail);
+        assert_int_equal(seen.synchronised, 1);
+        assert_int_equal(seen.widths, !fail);
+        assert_int_equal(s->cost.steps, !fail);
+        simulation_destroy(s);
+    }
+}
+
+/* --- breaking down -----------------------------------------------------------------------------
+ */
+
+/* A billionth of the longest step is too short, and one that time does not notice; not the last. */
+static void steps_that_collapse(void **state)
+{
+    (void)state;
+    static const struct {
+        double time, dt, longest, end;
+        bool broken;
+    } rows[] = {
+        {0, 0.125, 1.2499e8, 1, false},
+        {0, 0.125, 1.2501e8, 1, true},
+        {0, 0.125, 1.25e8, 1, true},
+        {0, 0.125, 1.2501e8, 0.125, false},
+        {0x1p53, 0.125, 1, 0x1.8p53, true},
+        {0x1p40, 0.125, 1, 0x1p40 + 1, false},
+        {0, NAN, 1, 1, true},
+    };
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        struct simulation *s = standing();
+        struct error error = {0};
+        char said[200];
+        s->time = rows[k].time, s->time_step = rows[k].dt, s->largest_dt = rows[k].longest;
+        s->particles.h[7] = 2 * s->particles.h[6];
+        for (ptrdiff_t i = 0; i < s->particles.n; i++) s->particles.signal[i] = i == 3 ? 1e9 : 1;
+        const enum status status = simulation_run(s, rows[k].end, NULL, NULL, &error);
+        assert_int_equal(status, rows[k].broken ? STATUS_BROKE_DOWN : STATUS_OK);
+        assert_int_equal(seen.signals, rows[k].broken);
+        assert_true(rows[k].broken ? seen.steps == 0 : seen.steps > 0);
+        if (rows[k].broken) {
+            snprintf(said, sizeof said,
+                     "broke down at t = %.9g: collapsed time step of particle %zu at x = %.9g is "
+                     "%.9g",
+                     rows[k].time, s->particles.id[7], s->particles.x[0][7], rows[k].dt);
+            assert_string_equal(error.message, said);
+        }
+        simulation_destroy(s);
+    }
+}
+
+/* The particle that limits a step has the least h/signal. */
+static void who_limits(void **state)
+{
+    (void)state;
+    for (int last = 0; last < 40; last++) {
+        struct simulation *s = standing();
+        struct error error;
+        char name[40];
+        s->largest_dt = 1e12;
+        for (ptrdiff_t i = 0; i < 40; i++) s->particles.h[i] = 1 + (double)i / 64;
+        s->particles.h[last] = last == 7 ? 1e5 : 1e-7;
+        assert_int_equal(simulation_run(s, 1, NULL, NULL, &error), STATUS_BROKE_DOWN);
+        snprintf(name, sizeof name, "particle %zu ", s->particles.id[last]);
+        assert_non_null(strstr(error.message, name));
+        simulation_destroy(s);
+    }
+}
+
+/* More pairs than 1e5 + 100 n a particle for each of the longest steps to the end. */
+static void too_much_work(void **state)
+{
+    (void)state;
+    for (int beyond = 0; beyond < 2; beyond++) {
+        struct simulation *s = standing();
+        struct error error;
+        const uint64_t most = (100000 + 100 * 40) * 40 * (uint64_t)(1 + 1 / 0.125);
+        s->cost.pair_interactions = most + (uint64_t)beyond;
+        assert_int_equal(simulation_run(s, 1, NULL, NULL, &error),
+                         beyond ? STATUS_BROKE_DOWN : STATUS_OK);
+        assert_int_equal(s->cost.steps, beyond ? 1 : 8);
+        if (beyond)
+            assert_string_equal(error.message,
+                                "broke down at t = 0.125: more than 104000 pair interactions a "
+                                "particle for each of the longest steps (0.125) to t_end");
+        simulation_destroy(s);
+    }
+}
+
+/* Half of the energy has come or gone: seen at the end, and after every 128 steps where energy is
+ * not what is integrated. */
+static void runaway_energy(void **state)
+{
+    (void)state;
+    for (int total = 0; total < 2; total++)
+        for (int k = 0; k < 4; k++) {
+            struct simulation *s = standing();
+            struct error error;
+            struct conservation sums;
+            s->scheme.energy = total ? ENERGY_TOTAL : ENERGY_INTERNAL;
+            simulation_conservation(s, &sums);
+            s->start_energy = sums.energy / (k == 0   ? 1.5000001
+                                             : k == 1 ? 1.4999999
+                                             : k == 2 ? 0.5000001
+                                                      : 0.4999999);
+            const bool broken = k == 0 || k == 3;
+            s->cost.steps = 125;
+            assert_int_equal(simulation_run(s, 1, NULL, NULL, &error),
+                             broken ? STATUS_BROKE_DOWN : STATUS_OK);
+            assert_int_equal(s->cost.steps, broken && !total ? 128 : 133);
+            if (broken) {
+                char said[200];
+                snprintf(said, sizeof said,
+                         "broke down at t = %s: total energy is %.9g, at the start it was %.9g",
+                         total ? "1" : "0.375", sums.energy, s->start_energy);
+                assert_string_equal(error.message, said);
+            }
+            simulation_destroy(s);
+        }
+}
+
+/* --- kept and restored -------------------------------------------------------------------------
+ */
+
+struct bag {
+    unsigned char bytes[1 << 20];
+    size_t used, read;
+};
+
+static bool put(void *context, void *bytes, size_t n)
+{
+    struct bag *bag = context;
+    if (bag->used + n > sizeof bag->bytes) return false;
+    memcpy(bag->bytes + bag->used, bytes, n);
+    bag->used += n;
+    return true;
+}
+
+static bool take(void *context, void *bytes, size_t n)
+{
+    struct bag *bag = context;
+    if (bag->read + n > bag->used) return false;
+    memcpy(bytes, bag->bytes + bag->read, n);
+    bag->read += n;
+    return true;
+}
+
+/* The clocks of a simulation that is restored go on from where the other's stood. */
+static void clocks_go_on(void **state)
+{
+    (void)state;
+    static struct bag bag;
+    struct simulation *kept = made_simulation(40), *restored = made_simulation(40);
+    struct carrier out = {.bytes = put, .context = &bag},
+                   back = {.bytes = take, .context = &bag, .back = true};
+    made_run(kept, 0.02);
+    kept->wall_start -= 1e6, kept->cpu_start -= 2e6;
+    const double wall = kept->wall_start, cpu = kept->cpu_start;
+    simulation_carry(kept, &out);
+    assert_false(out.failed);
+    assert_true(kept->wall_start == wall && kept->cpu_start == cpu);
+    near_inside(kept->cost.wall_s, 1e6, 1e6 + 100);
+    near_inside(kept->cost.cpu_s, 2e6, 2e6 + 100);
+    simulation_carry(restored, &back);
+    assert_false(back.failed);
+    assert_int_equal(bag.read, bag.used);
+    assert_true(restored->cost.wall_s == kept->cost.wall_s);
+    made_run(kept, 0.04);
+    made_run(restored, 0.04);
+    assert_true(made_alike(kept, restored));
+    near_inside(restored->cost.wall_s, 1e6, 1e6 + 100);
+    near_inside(restored->cost.cpu_s, 2e6, 2e6 + 100);
+    assert_int_equal(restored->cost.steps, kept->cost.steps);
+    assert_true(restored->largest_dt == kept->largest_dt && restored->dt == kept->dt &&
+                restored->dt_before == kept->dt_before &&
+                restored->start_energy == kept->start_energy);
+    simulation_destroy(kept);
+    simulation_destroy(restored);
+    simulation_destroy(NULL);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_a_run_calls),    cmocka_unit_test(a_run_that_stops),
+        cmocka_unit_test(steps_that_collapse), cmocka_unit_test(who_limits),
+        cmocka_unit_test(too_much_work),       cmocka_unit_test(runaway_energy),
+        cmocka_unit_test(clocks_go_on),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

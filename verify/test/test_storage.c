@@ -1,0 +1,252 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The arrays of particles: each has its own room, ghosts included, whatever the numbers; values
+ * stay where room grows, are carried out and back with their ghosts, and follow a new order. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "near.h"
+#include "particles.h"
+
+enum { ARRAYS_MOST = 64, LINE = 8 };
+
+static size_t list(const struct particles *a, double *arrays[ARRAYS_MOST])
+{
+    size_t count = 0;
+#define SCALAR(name, meaning) arrays[count++] = a->name;
+#define VECTOR(name, meaning)                                                                      \
+    for (int k = 0; k < 3; k++)                                                                    \
+        if (a->name[k]) arrays[count++] = a->name[k];
+    PARTICLE_FIELDS(SCALAR, VECTOR)
+#undef SCALAR
+#undef VECTOR
+    assert_true(count < ARRAYS_MOST);
+    return count;
+}
+
+static struct particles made(int dim, ptrdiff_t n, ptrdiff_t ghosts)
+{
+    struct particles a;
+    struct error error;
+    if (particles_create(&a, dim, n, ghosts, &error)) fail_msg("%s", error.message);
+    return a;
+}
+
+/* A value of its own for every place of every array. */
+static double value(size_t k, ptrdiff_t i)
+{
+    return 1e4 * (double)(k + 1) + (double)i;
+}
+
+static void fill(const struct particles *a, ptrdiff_t ghosts)
+{
+    double *arrays[ARRAYS_MOST];
+    const size_t count = list(a, arrays);
+    for (size_t k = 0; k < count; k++)
+        for (ptrdiff_t i = -ghosts; i < a->n + ghosts; i++) arrays[k][i] = value(k, i);
+}
+
+/* Filled to the given number of ghosts, and zero beyond. */
+static void filled(const struct particles *a, ptrdiff_t ghosts)
+{
+    double *arrays[ARRAYS_MOST];
+    const size_t count = list(a, arrays);
+    for (size_t k = 0; k < count; k++)
+        for (ptrdiff_t i = -a->ghosts; i < a->n + a->ghosts; i++) {
+            const bool inside = i >= -ghosts && i < a->n + ghosts;
+            assert_true(arrays[k][i] == (inside ? value(k, i) : 0));
+        }
+}
+
+static void every_array_has_its_room(void **state)
+{
+    (void)state;
+    for (int dim = 1; dim <= 3; dim++)
+        for (ptrdiff_t n = 2; n < 40; n += 1 + n / 12)
+            for (ptrdiff_t ghosts = 0; ghosts < 30; ghosts += 7) {
+                struct particles a = made(dim, n, ghosts);
+                double *arrays[ARRAYS_MOST];
+                const size_t count = list(&a, arrays);
+                assert_int_equal(count, 6 * dim + 23);
+                assert_true(a.n == n && a.dim == dim);
+                assert_true(a.ghosts == (ghosts + LINE - 1) / LINE * LINE);
+                filled(&a, -n); /* all zero */
+                fill(&a, a.ghosts);
+                for (ptrdiff_t i = 0; i < n; i++) a.spare[i] = -1, a.id[i] = a.order[i] = 7;
+                filled(&a, a.ghosts);
+                for (size_t k = 0; k < count; k++) /* whole cache lines, an odd number of them */
+                    assert_int_equal((uintptr_t)arrays[k] % (LINE * sizeof(double)), 0);
+                const ptrdiff_t apart = arrays[1] - arrays[0];
+                assert_int_equal(apart / LINE % 2, 1);
+                assert_true(apart >= n + 2 * a.ghosts + LINE &&
+                            apart < n + 2 * a.ghosts + 4 * LINE);
+                particles_destroy(&a);
+                assert_true(!a.block && !a.id && !a.order && a.n == 0);
+            }
+}
+
+static void room_for_more_ghosts(void **state)
+{
+    (void)state;
+    for (ptrdiff_t ghosts = 8; ghosts < 60; ghosts += 9) {
+        struct particles a = made(1, 21, 8);
+        struct error error;
+        fill(&a, 0);
+        assert_int_equal(particles_grow_ghosts(&a, ghosts, &error), STATUS_OK);
+        assert_int_equal(a.ghosts, (ghosts + LINE - 1) / LINE * LINE);
+        filled(&a, 0);
+        particles_destroy(&a);
+    }
+}
+
+/* --- carried -----------------------------------------------------------------------------------
+ */
+
+struct bag {
+    unsigned char bytes[1 << 17];
+    size_t used, read;
+};
+
+static bool put(void *context, void *bytes, size_t n)
+{
+    struct bag *bag = context;
+    assert_true(bag->used + n <= sizeof bag->bytes);
+    memcpy(bag->bytes + bag->used, bytes, n);
+    bag->used += n;
+    return true;
+}
+
+static bool take(void *context, void *bytes, size_t n)
+{
+    struct bag *bag = context;
+    assert_true(bag->read + n <= bag->used);
+    memcpy(bytes, bag->bytes + bag->read, n);
+    bag->read += n;
+    return true;
+}
+
+/* Those arrays that somebody has written to, wherever that was; the others take no room, and become
+ * blank where they were not. */
+static void carried_with_ghosts(void **state)
+{
+    (void)state;
+    static struct bag bag;
+    for (int dim = 1; dim <= 3; dim++)
+        for (ptrdiff_t n = 3; n < 300; n += 59)
+            for (int at = 0; at < 4; at++) {
+                struct particles a = made(dim, n, 16), b = made(dim, n, 8);
+                double *from[ARRAYS_MOST], *to[ARRAYS_MOST];
+                size_t written = 0;
+                const size_t count = list(&a, from);
+                const ptrdiff_t place = at == 0 ? -16 : at == 1 ? 0 : at == 2 ? n / 2 : n + 15;
+                for (size_t k = 0; k < count; k++)
+                    if (k % 3 != 1) from[k][place] = value(k, at), written++;
+                for (ptrdiff_t i = 0; i < n; i++) a.id[i] = (size_t)(2 * i + 1);
+                fill(&b, 8);
+                struct carrier out = {.bytes = put, .context = &bag},
+                               back = {.bytes = take, .context = &bag, .back = true};
+                bag.used = bag.read = 0;
+                particles_carry(&a, &out);
+                assert_false(out.failed);
+                assert_int_equal(bag.used, sizeof(ptrdiff_t) + count * sizeof(bool) +
+                                               8 * written * (size_t)(n + 32) +
+                                               (size_t)n * sizeof(size_t));
+                particles_carry(&b, &back);
+                assert_false(back.failed);
+                assert_int_equal(bag.read, bag.used);
+                assert_int_equal(b.ghosts, 16);
+                list(&b, to);
+                for (size_t k = 0; k < count; k++)
+                    for (ptrdiff_t i = -16; i < n + 16; i++)
+                        assert_true(to[k][i] == from[k][i] &&
+                                    (to[k][i] == 0 || (i == place && k % 3 != 1)));
+                for (ptrdiff_t i = 0; i < n; i++) assert_int_equal(b.id[i], 2 * i + 1);
+                particles_destroy(&a);
+                particles_destroy(&b);
+            }
+}
+
+static bool nothing(void *context, void *bytes, size_t n)
+{
+    (void)bytes, (void)n;
+    return --*(int *)context > 0;
+}
+
+/* What cannot be carried leaves the rest as it is. */
+static void failed_to_carry(void **state)
+{
+    (void)state;
+    struct particles a = made(1, 9, 8);
+    fill(&a, 8);
+    for (int calls = 1; calls < 5; calls++) {
+        int left = calls;
+        struct carrier back = {.bytes = nothing, .context = &left, .back = true};
+        particles_carry(&a, &back);
+        assert_true(back.failed && left == 0);
+        filled(&a, 8);
+    }
+    particles_destroy(&a);
+}
+
+/* --- order --------------------------------------------------------------------------------------
+ */
+
+static void a_new_order(void **state)
+{
+    (void)state;
+    for (int dim = 1; dim <= 3; dim++)
+        for (ptrdiff_t n = 2; n < 200; n += 1 + n / 2) {
+            struct particles a = made(dim, n, 8);
+            double *arrays[ARRAYS_MOST];
+            const size_t count = list(&a, arrays);
+            fill(&a, 8);
+            for (ptrdiff_t i = -8; i < n + 8; i++) a.P[i] = i < 0 || i >= n ? 3 : 0; /* blank */
+            for (ptrdiff_t i = 0; i < n; i++)
+                a.order[i] = (size_t)(n - 1 - i), a.id[i] = (size_t)(10 + i);
+            a.order[0] = (size_t)(n - 2), a.order[1] = (size_t)(n - 1);
+            size_t order[200];
+            memcpy(order, a.order, (size_t)n * sizeof *order);
+            particles_permute(&a);
+            for (size_t k = 0; k < count; k++)
+                for (ptrdiff_t i = -8; i < n + 8; i++) {
+                    const bool ghost = i < 0 || i >= n;
+                    const double of = value(k, ghost ? i : (ptrdiff_t)order[i]);
+                    assert_true(arrays[k][i] == (arrays[k] == a.P ? (ghost ? 3 : 0) : of));
+                }
+            for (ptrdiff_t i = 0; i < n; i++) assert_int_equal(a.id[i], 10 + order[i]);
+            particles_destroy(&a);
+        }
+}
+
+static void sizes_of_vectors(void **state)
+{
+    (void)state;
+    for (int dim = 1; dim <= 3; dim++) {
+        struct particles a = made(dim, 9, 0);
+        for (int k = 0; k < dim; k++)
+            for (ptrdiff_t i = 0; i < 9; i++) a.v[k][i] = (k == 1 ? -2 : 1) * (double)(i + k - 3);
+        for (ptrdiff_t i = 0; i < 9; i++) {
+            const double y = dim > 1 ? -2 * (double)(i - 2) : 0, z = dim > 2 ? (double)(i - 1) : 0;
+            const double x = (double)(i - 3), size = particles_norm(&a, a.v, i);
+            assert_true(dim == 1 ? size == fabs(x) : size == sqrt(x * x + y * y + z * z));
+        }
+        particles_destroy(&a);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_array_has_its_room),
+        cmocka_unit_test(room_for_more_ghosts),
+        cmocka_unit_test(carried_with_ghosts),
+        cmocka_unit_test(failed_to_carry),
+        cmocka_unit_test(a_new_order),
+        cmocka_unit_test(sizes_of_vectors),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
