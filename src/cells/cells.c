@@ -7,6 +7,7 @@
 
 #include "lanes.h"
 #include "matrix.h"
+#include "stamp.h"
 
 static void add_field(struct lanes_layout *layout, enum lanes_field field, int values)
 {
@@ -199,13 +200,13 @@ static bool find_images(struct cells *cells, const struct cells_fields *fields,
     double reach = 0;
     images->count = 0;
     if (!reserve_images(images, n)) return false;
+    for (size_t i = 0; i < n; i++) {
+        images->radius[i] = radius[i];
+        reach = largest(reach, radius[i]);
+    }
     for (int a = 0; a < 3; a++)
         for (size_t i = 0; i < n; i++)
             images->x[a][i] = a < cells->method.box.dim ? fields->x[a][i] : 0;
-    for (size_t i = 0; i < n; i++) {
-        images->radius[i] = radius[i];
-        reach = radius[i] > reach ? radius[i] : reach;
-    }
     for (int a = 0; a < cells->method.box.dim; a++)
         if (cells->method.wall[a] && !mirror(cells, n, a, reach)) return false;
     return true;

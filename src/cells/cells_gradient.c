@@ -156,17 +156,13 @@ CLONES static void by_matrix(int dim, bool both, int count, const struct lanes *
         matrix_body(3, false, count, lanes, own, theirs);
 }
 
-/* Are all matrices to be used? Their first entry is positive then, and 0 where one is not. */
-CLONES static bool all_sound(int count, double own, const double *restrict theirs)
+/* How many of them are positive. */
+CLONES static int positive(int count, const double *restrict values)
 {
-    double first[GRID_LANES];
-    for (int l = 0; l < GRID_LANES; l++) first[l] = own;
-    for (int k = 0; k < count; k += GRID_LANES)
-#pragma omp simd
-        for (int l = 0; l < GRID_LANES; l++) first[l] = least(first[l], theirs[k + l]);
-    double smallest = own;
-    for (int l = 0; l < GRID_LANES; l++) smallest = least(smallest, first[l]);
-    return smallest > 0;
+    int found = 0;
+#pragma omp simd reduction(+ : found)
+    for (int k = 0; k < count; k++) found += values[k] > 0 ? 1 : 0;
+    return found;
 }
 
 CLONES static void mean(int count, const double *restrict a, const double *restrict b,
@@ -195,19 +191,6 @@ CLONES static void blend(int count, const double *restrict part, const double *r
 {
 #pragma omp simd
     for (int k = 0; k < count; k++) G[k] = (1 - part[k]) * G[k] + part[k] * (s[k] * x[k]);
-}
-
-/* Is there no share of the standard gradient? */
-CLONES static bool none_steep(int count, double own, const double *restrict theirs)
-{
-    double most[GRID_LANES];
-    for (int l = 0; l < GRID_LANES; l++) most[l] = own;
-    for (int k = 0; k < count; k += GRID_LANES)
-#pragma omp simd
-        for (int l = 0; l < GRID_LANES; l++) most[l] = largest(most[l], theirs[k + l]);
-    double steepest = own;
-    for (int l = 0; l < GRID_LANES; l++) steepest = largest(steepest, most[l]);
-    return !(steepest > 0);
 }
 
 /* w(q) or, of the gradients that have w' in them, w'(q) at both widths. */
@@ -311,8 +294,10 @@ void cells_pair_gradients(const struct cells *cells, const struct pairs *pairs)
     const bool blended = method->gradient == GRADIENT_BLENDED;
     const double own_share = blended ? *pairs_own(pairs, FIELD_STEEP) : 0,
                  *shares = blended ? pairs_theirs(pairs, FIELD_STEEP) : NULL;
-    if (all_sound(count, own[0], theirs) && (!blended || none_steep(count, own_share, shares)))
-        return;
+    /* the first entry of a matrix is positive, or 0 where it is not to be used */
+    const bool all_sound = own[0] > 0 && positive(count, theirs) == count,
+               any_steep = blended && (own_share > 0 || positive(count, shares) > 0);
+    if (all_sound && !any_steep) return;
     double *part = lane(lanes, LANE_K);
     standard_shares(count, own[0], theirs, own_share, shares, part);
     standard_pair(cells, pairs);

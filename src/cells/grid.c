@@ -253,7 +253,6 @@ static void find_reaches(struct grid *grid)
         for (ptrdiff_t y = 0; y < grid->cells[1]; y++)
             for (ptrdiff_t x = 0; x < grid->cells[0]; x++) {
                 const float widest = grid->widest[grid_cell_at(grid, (ptrdiff_t[3]){x, y, z})];
-                if (!(widest > 0)) continue;
                 const struct look lx = grid_look_along(grid, 0, x, widest),
                                   ly = grid_look_along(grid, 1, y, widest),
                                   lz = grid_look_along(grid, 2, z, widest);
