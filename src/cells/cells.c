@@ -264,8 +264,9 @@ static struct description describe(const struct cells *cells, const struct cells
 {
     const int dim = cells->method.box.dim;
     const struct grid_list *list = &cells->lists[slot];
-    const int32_t *slots =
-        grid_neighbours(cells->grid, &cells->lanes[0].reader, cells->lists, slot);
+    const int32_t *slots = /* who sleeps has no list */
+        list->kept ? grid_neighbours(cells->grid, &cells->lanes[0].reader, cells->lists, slot)
+                   : NULL;
     double C[CELLS_SQUARE], cotangent = HUGE_VAL;
     struct description of = {.neighbours = 1, .condition = condition_of(cells, fields, i, C)};
     const bool used = of.condition <= cells->method.worst_condition;

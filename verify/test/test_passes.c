@@ -287,13 +287,88 @@ static void check_switch(const struct gas *gas, int i, int *between)
     *between += alpha > method->alpha_min;
 }
 
-static void check(enum scene scene, int dim, enum gradient gradient, bool walls,
+/* Who has been described, and how. */
+struct described {
+    struct gas *gas;
+    int times[N];
+    struct description of[N];
+};
+
+static void keep(void *context, size_t particle, const struct description *of)
+{
+    struct described *described = context;
+    described->times[particle]++;
+    described->of[particle] = *of;
+}
+
+/* Neighbours within h, and the largest angle between C x and x. */
+struct around {
+    int neighbours;
+    real angle;
+};
+
+static void look(const struct gas *gas, int i, const struct other *o, void *context)
+{
+    struct around *around = context;
+    const int dim = gas->method.box.dim;
+    real Cx[3] = {0}, dot = 0, cross2 = 0;
+    if (!(o->r < gas->h[i])) return;
+    around->neighbours++;
+    for (int a = 0; a < dim; a++) {
+        for (int b = 0; b < dim; b++)
+            Cx[a] += gas->fields.matrix[place[dim - 2][a][b]][i] * o->x[b];
+        dot += Cx[a] * o->x[a];
+        for (int b = 0; b < a; b++) {
+            const real turn = Cx[a] * o->x[b] - Cx[b] * o->x[a];
+            cross2 += turn * turn;
+        }
+    }
+    around->angle = fmaxl(around->angle, atan2l(sqrtl(cross2), dot) * (180 / acosl(-1)));
+}
+
+/* Those who sleep have lost their neighbours. Returns how many others have used their matrices. */
+static int check_described(const struct cells *cells, struct gas *gas, const unsigned char *asleep)
+{
+    struct described described = {.gas = gas};
+    const int dim = gas->method.box.dim;
+    int all = 0;
+    cells_describe(cells, &gas->fields, keep, &described);
+    for (int i = 0; i < gas->n; i++) {
+        const struct description *of = &described.of[i];
+        struct around around = {.neighbours = 1};
+        double C[9];
+        assert_int_equal(described.times[i], 1);
+        if (!asleep || !asleep[i]) visit(gas, i, look, &around);
+        assert_true(of->neighbours == around.neighbours);
+        if (gas->method.gradient == GRADIENT_STANDARD) {
+            assert_true(isnan(of->condition) && isnan(of->angle));
+            continue;
+        }
+        const bool used = gas->fields.condition[i] <= gas->method.worst_condition;
+        for (int a = 0; a < dim; a++)
+            for (int b = 0; b < dim; b++)
+                C[a * dim + b] = gas->fields.matrix[place[dim - 2][a][b]][i];
+        assert_true(of->condition == (used ? matrix_condition(dim, C) : gas->fields.condition[i]));
+        if (used && around.neighbours > 1)
+            near_below(fabs(of->angle - (double)around.angle), 1e-6);
+        else
+            assert_true(isnan(of->angle));
+        all += used && around.neighbours > 1;
+    }
+    return all;
+}
+
+/* Where there are walls: along x, with periodic ends along y, or along the last axis alone. */
+enum walls { NO_WALLS, WALLS_FIRST, WALLS_LAST };
+
+static void check(enum scene scene, int dim, enum gradient gradient, enum walls walls,
                   bool velocity_gradient, bool projected, int threads, int *between)
 {
     static struct gas gas;
     gas.method = (struct cells_method){
-        .box = {.dim = dim, .hi = {1, 1, 1}, .periodic = {false, walls, false}},
-        .wall = {walls, false, false},
+        .box = {.dim = dim, .hi = {1, 1, 1}, .periodic = {false, walls == WALLS_FIRST, false}},
+        .wall = {walls == WALLS_FIRST, walls == WALLS_LAST && dim == 2,
+                 walls == WALLS_LAST && dim == 3},
         .kernel = &gas.kernel,
         .stamped = true,
         .gradient = gradient,
@@ -311,11 +386,17 @@ static void check(enum scene scene, int dim, enum gradient gradient, bool walls,
     struct cells *cells = cells_create(&gas.method, (size_t)gas.n);
     assert_non_null(cells);
     struct error error = {0};
+    /* few images at first, then many */
+    for (int i = 0; i < gas.n; i++) gas.radius[i] *= 0.1;
+    if (cells_arrange(cells, &gas.fields, gas.radius, NULL, &error)) fail_msg("%s", error.message);
+    for (int i = 0; i < gas.n; i++) gas.radius[i] *= 10;
     if (cells_arrange(cells, &gas.fields, gas.radius, NULL, &error)) fail_msg("%s", error.message);
     size_t fallen_back = 0;
     const size_t told = cells_matrix(cells, &gas.fields);
     for (int i = 0; i < gas.n; i++) check_matrix(&gas, i, &fallen_back);
     assert_int_equal(told, fallen_back);
+    const int described = check_described(cells, &gas, NULL);
+    assert_true(described > gas.n / 4 || gradient == GRADIENT_STANDARD);
     if (gradient == GRADIENT_STANDARD) assert_true(gas.fields.condition[3] == 1234);
     if (!velocity_gradient) {
         assert_true(gas.fields.slope[0][3] == 1234);
@@ -338,6 +419,7 @@ static void check(enum scene scene, int dim, enum gradient gradient, bool walls,
                         gas.fields.decay[i] == 0);
         else
             check_switch(&gas, i, &none);
+    check_described(cells, &gas, gas.asleep);
     cells_destroy(cells);
 }
 
@@ -347,20 +429,20 @@ static void test_passes(void **state)
     static const enum gradient gradients[] = {GRADIENT_STANDARD, GRADIENT_IA, GRADIENT_CORRECTED};
     int between = 0;
     for (int round = 0; round < 12; round++)
-        check(ANYHOW, 2 + round % 2, gradients[round % 3], round / 2 % 2, true, round % 4 < 2,
-              1 + round % 3, &between);
+        check(ANYHOW, 2 + round % 2, gradients[round % 3], (enum walls)(round / 2 % 3), true,
+              round % 4 < 2, 1 + round % 3, &between);
     for (int dim = 2; dim <= 3; dim++) {
-        check(LATTICE, dim, GRADIENT_IA, false, true, true, 1, &between);
-        check(TOGETHER, dim, GRADIENT_CORRECTED, false, true, false, 1, &between);
+        check(LATTICE, dim, GRADIENT_IA, NO_WALLS, true, true, 1, &between);
+        check(TOGETHER, dim, GRADIENT_CORRECTED, NO_WALLS, true, false, 1, &between);
         for (int g = 0; g < 3; g++)
-            check(ANYHOW, dim, gradients[g], false, false, false, 1, &between);
+            check(ANYHOW, dim, gradients[g], NO_WALLS, false, false, 1, &between);
     }
     assert_true(between > 100);
     int moving = 0;
     for (int dim = 2; dim <= 3; dim++) {
-        check(STILL, dim, GRADIENT_IA, true, true, true, 1, &moving);
-        check(APART, dim, GRADIENT_IA, false, true, true, 1, &moving);
-        check(HARDLY, dim, GRADIENT_IA, false, true, true, 1, &moving);
+        check(STILL, dim, GRADIENT_IA, WALLS_FIRST, true, true, 1, &moving);
+        check(APART, dim, GRADIENT_IA, NO_WALLS, true, true, 1, &moving);
+        check(HARDLY, dim, GRADIENT_IA, NO_WALLS, true, true, 1, &moving);
     }
     assert_int_equal(moving, 0);
 }

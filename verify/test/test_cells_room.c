@@ -1,0 +1,383 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What stands between a simulation and its sums in 2D and 3D: memory in the order of cells, and for
+ * how long; first guesses of widths; what cannot be searched, said as a refusal or a breakdown;
+ * room, in bytes, by the scheme. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "near.h"
+#include "solver.h"
+#include "width.h"
+
+#include "cells/grid.h"
+
+enum { N = 1024 };
+
+static double x[3][N], v[3][N], m[N], u[N], guess[N];
+
+static struct scheme scheme_of(void)
+{
+    struct scheme scheme = {
+        .gradient = GRADIENT_STANDARD,
+        .viscosity = VISCOSITY_CONSTANT,
+        .h_method = H_NEWTON,
+        .integrator = (const struct integrator *)family_find(&integrator_family, "leapfrog"),
+        .alpha = 1,
+        .beta = 2,
+        .alpha_min = 0.1,
+        .alpha_max = 1.5,
+        .eta = 2,
+        .cfl = 0.2,
+        .h_tolerance = 1e-12};
+    assert_int_equal(kernel_select(&scheme.kernel, "cubic_spline", 5, NULL), STATUS_OK);
+    return scheme;
+}
+
+/* A displaced lattice of so many particles each way in a periodic box of side 1, at rest. */
+static struct scene scene_of(int dim, size_t side, const struct scheme *scheme)
+{
+    struct scene scene = {.dim = dim,
+                          .hi = {1, 1, 1},
+                          .gamma = 1.4,
+                          .t_end = 1,
+                          .n = dim == 2 ? side * side : side * side * side,
+                          .m = m,
+                          .u = u,
+                          .scheme = *scheme,
+                          .threads = 1};
+    assert_true(scene.n <= N);
+    for (size_t i = 0, at = 0; i < scene.n; at = ++i) {
+        m[i] = (1 + 0.1 * sin(2. * (double)i)) / (double)scene.n, u[i] = 1;
+        for (int a = 0; a < dim; a++, at /= side) {
+            x[a][i] = ((double)(at % side) + 0.5 + 0.2 * sin(7. * (double)i + a)) / (double)side;
+            v[a][i] = 0;
+        }
+    }
+    for (int a = 0; a < dim; a++) scene.x[a] = x[a], scene.v[a] = v[a];
+    return scene;
+}
+
+static struct simulation *created(const struct scene *scene)
+{
+    struct simulation *simulation = NULL;
+    struct error error = {0};
+    if (simulation_create(scene, &simulation, &error)) fail_msg("%s", error.message);
+    return simulation;
+}
+
+/* When particles have changed places in memory. */
+struct sorting {
+    struct simulation *simulation;
+    size_t id[N];
+    uint64_t at[4];
+    int times;
+};
+
+static bool watch(void *context, double time, uint64_t steps)
+{
+    struct sorting *sorting = context;
+    struct snapshot s;
+    (void)time;
+    simulation_snapshot(sorting->simulation, &s);
+    if (steps > 0 && memcmp(sorting->id, s.id, s.n * sizeof *s.id) && sorting->times < 4)
+        sorting->at[sorting->times++] = steps;
+    memcpy(sorting->id, s.id, s.n * sizeof *s.id);
+    return steps < 70;
+}
+
+/* In the order of cells from the start on, and again every 32 steps: where cells are wider than all
+ * that happens in one, along x first. */
+static void test_order_in_memory(void **state)
+{
+    (void)state;
+    struct sorting sorting = {0};
+    struct scheme scheme = scheme_of();
+    struct scene scene = scene_of(2, 16, &scheme);
+    for (size_t i = 0; i < scene.n; i++) v[0][i] = 1.5, v[1][i] = 0.7;
+    sorting.simulation = created(&scene);
+    watch(&sorting, 0, 0);
+    size_t moved = 0;
+    for (size_t i = 0; i < scene.n; i++) moved += sorting.id[i] != i;
+    assert_true(moved > scene.n / 2);
+    assert_int_equal(simulation_run(sorting.simulation, 1, watch, &sorting, NULL), STATUS_OK);
+    assert_int_equal(sorting.times, 2);
+    assert_true(sorting.at[0] == 33 && sorting.at[1] == 65);
+    simulation_destroy(sorting.simulation);
+}
+
+/* Whatever is in memory beside each other belongs together, also those who sleep. */
+static void test_everybody_moves_whole(void **state)
+{
+    (void)state;
+    for (int skip = 0; skip < 2; skip++) {
+        struct scheme scheme = scheme_of();
+        struct scene scene = scene_of(3, 7, &scheme);
+        scene.skip = skip;
+        for (size_t i = 0; i < scene.n; i++) m[i] = (1 + 1e-3 * (double)i) / (double)scene.n;
+        struct simulation *simulation = created(&scene);
+        struct snapshot s;
+        simulation_snapshot(simulation, &s);
+        for (size_t i = 0; i < s.n; i++) {
+            assert_true(s.m[i] == m[s.id[i]]);
+            for (int a = 0; a < 3; a++) near_below(fabs(s.x[a][i] - x[a][s.id[i]]), 1e-15);
+        }
+        simulation_destroy(simulation);
+    }
+}
+
+/* A first guess of the density may be anything: the widths are the same. */
+static void test_first_guess(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        double h[N];
+        const struct scheme scheme = scheme_of();
+        for (int k = 0; k < 5; k++) {
+            static const double factors[] = {1, 1e-9, 0.3, 8, 1e9};
+            struct scene scene = scene_of(dim, dim == 2 ? 16 : 8, &scheme);
+            for (size_t i = 0; i < scene.n; i++) guess[i] = factors[k] * (i % 3 ? 1 : 0.7);
+            scene.rho = guess;
+            struct simulation *simulation = created(&scene);
+            struct snapshot s;
+            simulation_snapshot(simulation, &s);
+            for (size_t i = 0; i < s.n; i++) {
+                near_relative(s.h[i], scheme.eta * pow(s.m[i] / s.rho[i], 1. / dim), 1e-10);
+                if (k == 0)
+                    h[s.id[i]] = s.h[i];
+                else
+                    near_relative(s.h[i], h[s.id[i]], 1e-9);
+            }
+            simulation_destroy(simulation);
+        }
+    }
+}
+
+/* Rates of alpha of every particle, in whole batches and not. */
+static void test_alpha(void **state)
+{
+    (void)state;
+    struct scheme scheme = scheme_of();
+    scheme.viscosity = VISCOSITY_TIME_DEPENDENT;
+    for (size_t side = 8; side <= 12; side += 2) { /* 64, 100, 144 */
+        struct scene scene = scene_of(2, side, &scheme);
+        for (size_t i = 0; i < scene.n; i++) v[0][i] = sin(2 * M_PI * x[0][i]);
+        struct simulation *simulation = created(&scene);
+        const struct particles *a = &simulation->particles;
+        struct rates rates;
+        simulation_rates(simulation, &rates);
+        size_t growing = 0;
+        double rate = 0;
+        for (size_t i = 0; i < scene.n; i++) {
+            const double growth = fmax(0, -a->div_v[i]) * fmax(0, scheme.alpha_max - a->alpha[i]);
+            near_below(fabs(rates.alpha[i] - growth +
+                            (a->alpha[i] - scheme.alpha_min) * 0.2 * a->c[i] / a->h[i]),
+                       1e-13 * (1 + growth));
+            growing += growth > 0;
+            rate = fmax(rate, a->signal[i] / a->h[i]);
+        }
+        assert_true(growing > scene.n / 4 && growing < scene.n);
+        near_relative(rates.time_step, scheme.cfl / rate, 1e-12);
+        simulation_destroy(simulation);
+    }
+}
+
+static void count_neighbours(void *context, size_t particle, const struct description *of)
+{
+    size_t *counts = context;
+    (void)particle;
+    counts[of->neighbours > 1]++;
+    assert_true(isnan(of->angle) == (of->neighbours <= 1));
+    assert_true(of->condition >= 1 && of->condition < 5);
+}
+
+/* What is described of those who sleep, in a box whose far end has heard nothing. */
+static void test_described_asleep(void **state)
+{
+    (void)state;
+    struct scheme scheme = scheme_of();
+    scheme.gradient = GRADIENT_IA;
+    for (int dim = 2; dim <= 3; dim++) {
+        const size_t side = dim == 2 ? 8 : 5;
+        struct scene scene = scene_of(dim, side, &scheme);
+        scene.n = dim == 2 ? 128 * side : 40 * side * side;
+        scene.skip = true;
+        scene.hi[dim - 1] = (double)scene.n / pow((double)side, dim);
+        for (size_t i = 0, at = 0; i < scene.n; at = ++i) {
+            m[i] = pow((double)side, -dim), u[i] = i == 0 ? 2 : 1;
+            for (int a = 0; a < dim; a++, at /= side) {
+                const size_t k = a < dim - 1 ? at % side : at;
+                x[a][i] = ((double)k + 0.5) / (double)side, v[a][i] = 0;
+            }
+        }
+        struct simulation *simulation = created(&scene);
+        assert_int_equal(simulation_run(simulation, 0.05, NULL, NULL, NULL), STATUS_OK);
+        size_t counts[2] = {0};
+        description_each(simulation, count_neighbours, counts);
+        assert_true(counts[0] > scene.n / 6 && counts[1] > scene.n / 6);
+        assert_int_equal(counts[1], simulation->sleep.awake_count);
+        const struct description_sums sums = description_sum(simulation);
+        assert_true(sums.angle_max >= sums.angle_mean && sums.condition_max >= 1);
+        simulation_destroy(simulation);
+    }
+}
+
+/* Too wide for the box: bad input at the start. */
+static void test_too_wide(void **state)
+{
+    (void)state;
+    struct simulation *simulation = NULL;
+    struct error error;
+    for (int dim = 2; dim <= 3; dim++) {
+        struct scheme scheme = scheme_of();
+        struct scene scene = scene_of(dim, 4, &scheme);
+        scene.scheme.eta = 2.4;
+        assert_int_equal(simulation_create(&scene, &simulation, &error), STATUS_BAD_INPUT);
+        assert_non_null(strstr(error.message, "particle "));
+        assert_non_null(strstr(error.message, "beyond half the box (0.5): more particles or a "
+                                              "smaller eta are needed"));
+        assert_null(simulation);
+        /* the narrowest of all periodic sides counts, and only those */
+        scene.hi[1] = 4;
+        for (size_t i = 0; i < scene.n; i++) x[1][i] *= 4;
+        scene.boundary[0] = scene.boundary[2] = BOUNDARY_REFLECTING;
+        simulation = created(&scene);
+        simulation_destroy(simulation);
+        simulation = NULL;
+    }
+}
+
+/* Later a breakdown, of the particle that reaches furthest. */
+static void test_grown_too_wide(void **state)
+{
+    (void)state;
+    for (int predicted = 0; predicted < 2; predicted++) {
+        struct scheme scheme = scheme_of();
+        if (predicted) {
+            scheme.integrator =
+                (const struct integrator *)family_find(&integrator_family, "predicted_midpoint");
+            scheme.h_method = H_PREDICTED;
+        }
+        struct scene scene = scene_of(2, 6, &scheme);
+        scene.scheme.eta = 2.2;
+        for (size_t i = 0; i < scene.n; i++) {
+            u[i] = 1e-3;
+            for (int a = 0; a < 2; a++) v[a][i] = sin(2 * M_PI * x[a][i]);
+        }
+        struct simulation *simulation = created(&scene);
+        struct error error = {0};
+        assert_int_equal(simulation_run(simulation, 1, NULL, NULL, &error), STATUS_BROKE_DOWN);
+        struct snapshot s;
+        struct simulation_cost cost;
+        simulation_snapshot(simulation, &s);
+        simulation_cost(simulation, &cost);
+        assert_true(cost.steps > 0);
+        size_t particle = N, widest = 0;
+        double time, at[2], radius;
+        char rest[200];
+        if (sscanf(error.message,
+                   "broke down at t = %lf: smoothing length of particle %zu at x = %lf, y = %lf is "
+                   "%lf, %199[^\n]",
+                   &time, &particle, &at[0], &at[1], &radius, rest) != 6)
+            fail_msg("%s", error.message);
+        assert_string_equal(
+            rest, "beyond half the box (0.5): more particles or a smaller eta are needed");
+        assert_true(radius > 0.5);
+        near_relative(time, s.time, 1e-8);
+        for (size_t i = 0; i < s.n; i++)
+            if (s.h[i] > s.h[widest]) widest = i;
+        assert_int_equal(particle, s.id[widest]);
+        simulation_destroy(simulation);
+    }
+}
+
+/* A position that is no number is told with its particle and its value. */
+static void test_no_position(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++)
+        for (int a = 0; a < dim; a++)
+            for (int last = 0; last < 2; last++) {
+                const struct scheme scheme = scheme_of();
+                const struct scene scene = scene_of(dim, 5, &scheme);
+                struct simulation *simulation = created(&scene);
+                struct particles *p = &simulation->particles;
+                const size_t i = last ? scene.n - 1 : 0;
+                struct error error = {0};
+                char text[64];
+                p->x[a][i] = last ? -HUGE_VAL : HUGE_VAL;
+                assert_int_equal(cells_sums.arrange(simulation, &error), STATUS_BROKE_DOWN);
+                snprintf(text, sizeof text, "position of particle %zu at", p->id[i]);
+                assert_non_null(strstr(error.message, text));
+                snprintf(text, sizeof text, " is %sinf", last ? "-" : "");
+                assert_non_null(strstr(error.message, text));
+                simulation_destroy(simulation);
+            }
+}
+
+/* Numbers of a particle: the room's own arrays, and a record of its longest pass in whole fours.
+ */
+static void expect_bytes(int dim, const struct scheme *scheme, int arrays, int record)
+{
+    struct scene scene = {.dim = dim, .scheme = *scheme, .n = 1000, .threads = 1};
+    struct simulation simulation = {.scheme = *scheme, .plan = plan_of_scene(&scene)};
+    const double lists = grid_bytes(dim, 1, width_neighbours(dim, scheme->eta * 1.1));
+    const double found = cells_sums.bytes(&simulation, 1000) / 1000 - lists;
+    near_absolute(found, 8. * arrays + 3 + 8. * record, 1e-9);
+}
+
+/* The room's: radius and 1/h of sleepers, two sums; two of U; condition, matrix, slope, switch,
+ * share, factor. Records: place, v, 1/h, V, P, c; and more. */
+static void test_bytes(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        const bool plane = dim == 2;
+        struct scheme scheme = scheme_of();
+        scheme.viscosity = VISCOSITY_NONE;
+        expect_bytes(dim, &scheme, 4, plane ? 8 : 12); /* 8, 10 */
+        scheme.viscosity = VISCOSITY_CONSTANT;
+        expect_bytes(dim, &scheme, 4, 12); /* m, rho: 10, 12 */
+        scheme.volume_element = VOLUME_ENERGY;
+        expect_bytes(dim, &scheme, 6, 12);
+        scheme.formulation = FORMULATION_LAGRANGIAN;
+        expect_bytes(dim, &scheme, 6, 16); /* b, grad_h, Z: 13, 15 */
+        scheme.alpha_u = 1;
+        expect_bytes(dim, &scheme, 6, 16); /* u: 14, 16 */
+        scheme.viscosity = VISCOSITY_TIME_DEPENDENT;
+        expect_bytes(dim, &scheme, 6, plane ? 16 : 20); /* alpha: 15, 17 */
+        scheme.gradient = GRADIENT_IA;
+        expect_bytes(dim, &scheme, plane ? 10 : 13, plane ? 20 : 24); /* matrix: 18, 23 */
+        scheme.viscosity = VISCOSITY_CULLEN_DEHNEN;
+        expect_bytes(dim, &scheme, plane ? 16 : 24, plane ? 20 : 24);
+        scheme.gradient = GRADIENT_BLENDED;
+        expect_bytes(dim, &scheme, plane ? 17 : 25, plane ? 20 : 24); /* share: 19, 24 */
+        scheme.balsara = BALSARA_ON;
+        expect_bytes(dim, &scheme, plane ? 18 : 26, plane ? 20 : 28); /* factor: 20, 25 */
+        scheme.viscosity = VISCOSITY_PROJECTED;
+        expect_bytes(dim, &scheme, plane ? 16 : 24, plane ? 28 : 40); /* slope, P: 26, 39 */
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_order_in_memory),
+        cmocka_unit_test(test_everybody_moves_whole),
+        cmocka_unit_test(test_first_guess),
+        cmocka_unit_test(test_alpha),
+        cmocka_unit_test(test_described_asleep),
+        cmocka_unit_test(test_too_wide),
+        cmocka_unit_test(test_grown_too_wide),
+        cmocka_unit_test(test_no_position),
+        cmocka_unit_test(test_bytes),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
