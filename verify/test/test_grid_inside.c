@@ -496,6 +496,30 @@ static void test_long_lists(void **state)
     grid_destroy(grid);
 }
 
+/* A second search has as many cells as its own radii ask for, whatever size they had before. */
+static void test_searched_again(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        struct grid *grid = spread_over(dim, 100, 10.5, 1.5, false);
+        const double *const x[] = {scene.x[0], scene.x[1], scene.x[2]};
+        for (int k = 0; k < 3; k++) {
+            static const double radii[] = {0.3, 0.7, 0.1};
+            for (size_t i = 0; i < scene.n; i++)
+                scene.radius[i] = radii[k] * (1 + 0.1 * (i % 7 == 0));
+            assert_int_equal(grid_search(grid, scene.n, scene.active, x, scene.radius, NULL, NULL),
+                             STATUS_OK);
+            check_cells(grid);
+            check_order_of_cells(grid);
+            check_points(grid);
+            check_reaches(grid);
+            assert_true(check_lists(grid) > 0);
+            check_waking(grid, 2);
+        }
+        grid_destroy(grid);
+    }
+}
+
 static void refused(struct grid *grid, size_t n, const char *message)
 {
     struct error error;
@@ -552,8 +576,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_scenes),      cmocka_unit_test(test_number_of_cells),
         cmocka_unit_test(test_wide),        cmocka_unit_test(test_long_lists),
-        cmocka_unit_test(test_nobody_near), cmocka_unit_test(test_refused),
-        cmocka_unit_test(test_bytes),
+        cmocka_unit_test(test_nobody_near), cmocka_unit_test(test_searched_again),
+        cmocka_unit_test(test_refused),     cmocka_unit_test(test_bytes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

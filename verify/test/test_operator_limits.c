@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Gradient operators at the limits of numbers: clouds in any units, one quantity extreme and the
  * others not, what leaves the range of double, what cannot be computed, distances that differ from
- * h in the last digits, and what is refused word for word. */
+ * h in the last digits, what is refused word for word, and promises that are kept. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -406,6 +406,62 @@ static void test_moment(void **state)
         }
 }
 
+/* (0.3 + sum c_a (x_a - 0.4))^degree and its slope, c = 1, 2, -1. */
+static double polynomial(int degree, size_t i, double slope[3])
+{
+    static const double c[] = {1, 2, -1};
+    double base = 0.3;
+    for (int a = 0; a < one.cloud.points.dim; a++) base += c[a] * (one.x[a][i] - 0.4);
+    for (int a = 0; a < 3; a++) slope[a] = degree * c[a] * pow(base, degree < 2 ? 0 : degree - 1);
+    return pow(base, degree);
+}
+
+/* The largest error of these points' gradients of a polynomial. */
+static double error_of(const struct operator_form *form, int degree, size_t first, size_t end)
+{
+    const int dim = one.cloud.points.dim;
+    double worst = 0, slope[3];
+    for (size_t i = 0; i < one.cloud.points.n; i++)
+        one.f[0][i] = polynomial(degree, i, slope), one.f[1][i] = 0;
+    apply_well(&one, form);
+    for (size_t i = first; i < end; i++) {
+        polynomial(degree, i, slope);
+        for (int a = 0; one.point[i].condition < 1e3 && a < dim; a++)
+            worst = fmax(worst, fabs(one.gradient[a][i] - slope[a]));
+    }
+    return worst;
+}
+
+/* An operator promises what it keeps, no more and no less: polynomials that are exact everywhere,
+ * and on a lattice (where, by symmetry, squares are as exact as constants). */
+static void test_promises(void **state)
+{
+    (void)state;
+    for (int dim = 1; dim <= 3; dim++)
+        for (size_t o = 0; o < operator_family.n; o++) {
+            const struct operator_form *form = form_at(o);
+            fill(&one, dim, 70, false);
+            for (int degree = 0; degree <= 2; degree++) {
+                const double error = error_of(form, degree, 0, 70);
+                assert_int_equal(error < 1e-10, degree < form->exact);
+                assert_true(error < 1e-10 || error > 1e-3);
+            }
+            const size_t side = dim == 3 ? 5 : 7, n = (size_t)lround(pow((double)side, dim));
+            connect(&one, dim, n, false);
+            for (size_t i = 0, at = 0; i < n; at = ++i) {
+                for (int a = 0; a < dim; a++, at /= side)
+                    one.x[a][i] = ((double)(at % side) + 0.5) / (double)side;
+                one.V[i] = pow((double)side, -dim), one.h[i] = 2.4 / (double)side;
+            }
+            for (int degree = 0; degree <= 1; degree++) {
+                const double error = error_of(form, degree, n / 2, n / 2 + 1);
+                assert_int_equal(error < 1e-10, degree < form->exact_on_lattice);
+                assert_true(error < 1e-10 || error > 1e-3);
+            }
+            assert_true(form->exact_on_lattice <= 2);
+        }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -414,6 +470,7 @@ int main(void)
         cmocka_unit_test(test_edge),         cmocka_unit_test(test_no_number),
         cmocka_unit_test(test_limit),        cmocka_unit_test(test_last_block),
         cmocka_unit_test(test_refused),      cmocka_unit_test(test_moment),
+        cmocka_unit_test(test_promises),
     };
     if (kernel_select(&kernel, "wendland_c4", 5, NULL)) return 1;
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -18,7 +18,11 @@ typedef long double real;
 
 enum { COUNT = 24, STRIDE = 40, RECORD_MAX = 64 };
 
-static const double untouched = 1234;
+/* What stands in an array before anything is written to it. */
+static double untouched(int array)
+{
+    return 1234 + 0.5 * array;
+}
 
 static uint64_t state_of_draws = 1;
 
@@ -61,7 +65,8 @@ static void draw_matrix(int dim, double *first, ptrdiff_t stride, bool sound)
 static void draw_pairs(int unsound, int steep)
 {
     const int dim = drawn.method.box.dim;
-    for (int k = 0; k < (LANES_OWN + RECORD_MAX) * STRIDE; k++) drawn.block[k] = untouched;
+    for (int k = 0; k < (LANES_OWN + RECORD_MAX) * STRIDE; k++)
+        drawn.block[k] = untouched(k / STRIDE);
     drawn.lanes = (struct lanes){.block = drawn.block, .stride = STRIDE};
     drawn.pairs = (struct pairs){COUNT, &drawn.lanes, &drawn.cells->force, drawn.record};
     *own(FIELD_H_INVERSE) = draw(0.8, 1.5);
@@ -154,17 +159,29 @@ static void check_pair(int k)
     }
 }
 
-/* Nothing is written behind the pairs, and no lanes but those that are wanted. */
-static void check_rest(void)
+static bool is_untouched(int array)
 {
-    const bool both = drawn.method.formulation == FORMULATION_LAGRANGIAN;
-    const double *block = drawn.block;
+    bool all = true;
+    for (int k = 0; k < COUNT; k++) all &= drawn.block[array * STRIDE + k] == untouched(array);
+    return all;
+}
+
+/* Nothing is written behind the pairs, and no arrays but those that are wanted: standard gradients
+ * are not made where all matrices are used alone, nor one by one where their means are enough. */
+static void check_rest(int unsound, int steep)
+{
+    const struct cells_method *method = &drawn.method;
+    const bool both = method->formulation == FORMULATION_LAGRANGIAN,
+               standard = method->gradient == GRADIENT_STANDARD;
     for (int f = 0; f < LANES_OWN + RECORD_MAX; f++)
-        for (int k = COUNT; k < STRIDE; k++) assert_true(block[f * STRIDE + k] == untouched);
-    for (int f = LANE_GX_I; f < LANES_OWN && !both; f++)
-        for (int k = 0; k < COUNT; k++) assert_true(block[f * STRIDE + k] == untouched);
-    for (int a = drawn.method.box.dim; a < 3; a++)
-        for (int k = 0; k < COUNT; k++) assert_true(block[(LANE_GX + a) * STRIDE + k] == untouched);
+        for (int k = COUNT; k < STRIDE; k++)
+            assert_true(drawn.block[f * STRIDE + k] == untouched(f));
+    for (int f = LANE_GX_I; f < LANES_OWN && !both; f++) assert_true(is_untouched(f));
+    for (int a = method->box.dim; a < 3; a++) assert_true(is_untouched(LANE_GX + a));
+    const bool single = standard ? both || method->pair_width != PAIR_WIDTH_MEAN
+                                 : unsound != SOUND || steep != NONE_STEEP;
+    assert_int_equal(is_untouched(LANE_SPARE), !single);
+    assert_int_equal(is_untouched(LANE_K), standard || !single);
 }
 
 static void check(int unsound, int steep)
@@ -172,7 +189,7 @@ static void check(int unsound, int steep)
     draw_pairs(unsound, steep);
     cells_pair_gradients(drawn.cells, &drawn.pairs);
     for (int k = 0; k < COUNT; k++) check_pair(k);
-    check_rest();
+    check_rest(unsound, steep);
 }
 
 static void make(int dim, enum gradient gradient, enum pair_width width,
