@@ -34,12 +34,12 @@ double kelvin_helmholtz_amplitude(unsigned long n, const double *x, const double
 }
 
 static const double times[] = {
-#define ROW(t, M, gci) t,
+#define ROW(t, M) t,
 #include "kelvin_helmholtz.def"
 #undef ROW
 };
 static const double amplitudes[] = {
-#define ROW(t, M, gci) M,
+#define ROW(t, M) M,
 #include "kelvin_helmholtz.def"
 #undef ROW
 };

@@ -87,7 +87,7 @@ static double complex mismatch(const struct layer *layer, double complex omega, 
     if (!shoot(&shot, LAST, xi, p)) return (double)NAN;
     const double complex below[2] = {xi[MIDDLE], p[MIDDLE]};
     if (!shoot(&shot, 0, xi, p)) return (double)NAN;
-    const double complex ratio = cabs(below[0]) > 0 ? xi[MIDDLE] / below[0] : p[MIDDLE] / below[1];
+    const double complex ratio = xi[MIDDLE] / below[0]; /* what grows displaces the layer */
     const double complex defect = below[0] * p[MIDDLE] - below[1] * xi[MIDDLE];
     for (int j = MIDDLE + 1; j <= LAST; j++) {
         xi[j] *= ratio;

@@ -69,18 +69,18 @@ static struct profile profile_of(double gamma, int d, double lambda)
 {
     struct place place = {gamma, d, log(fmax(lambda, 1e-12))};
     gsl_function f = {miss, &place};
-    double low = 2 * place.log_lambda / -exponents_of(gamma, d).a2 - 10, high = 0, unused;
+    const double low = 2 * place.log_lambda / -exponents_of(gamma, d).a2 - 10, high = 0;
+    double unused;
     if (!(miss(high, &place) > 0 && miss(low, &place) < 0)) return (struct profile){1, 1, 1, 1};
     gsl_root_fsolver *solver = gsl_root_fsolver_alloc(gsl_root_fsolver_brent);
     struct profile profile = {(double)NAN, (double)NAN, (double)NAN, (double)NAN};
     if (!solver) return profile;
     if (gsl_root_fsolver_set(solver, &f, low, high) == GSL_SUCCESS)
-        for (int i = 0; i < 200; i++) {
-            if (gsl_root_fsolver_iterate(solver) != GSL_SUCCESS) break;
-            low = gsl_root_fsolver_x_lower(solver);
-            high = gsl_root_fsolver_x_upper(solver);
+        while (gsl_root_fsolver_iterate(solver) == GSL_SUCCESS) {
+            const double s = gsl_root_fsolver_x_lower(solver);
             profile = profile_at(gamma, d, gsl_root_fsolver_root(solver), &unused);
-            if (!(high - low > 4 * GSL_DBL_EPSILON * (1 + fabs(low)))) break;
+            if (!(gsl_root_fsolver_x_upper(solver) - s > 4 * GSL_DBL_EPSILON * (1 + fabs(s))))
+                break;
         }
     gsl_root_fsolver_free(solver);
     return profile;

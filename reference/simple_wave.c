@@ -64,19 +64,18 @@ static double characteristic_start(const struct simple_wave *wave, double x, dou
     const double margin = 1e-6 * wave->length;
     struct characteristic c = {wave, x, t};
     gsl_function f = {miss, &c};
-    double low = x - fastest * t - margin, high = x - slowest * t + margin;
+    const double low = x - fastest * t - margin, high = x - slowest * t + margin;
     /* beyond the range of double; and GSL would abort */
     if (!(miss(low, &c) < 0 && miss(high, &c) > 0 && isfinite(high - low))) return undefined;
     gsl_root_fsolver *solver = gsl_root_fsolver_alloc(gsl_root_fsolver_brent);
     if (!solver) return undefined;
     double start = undefined;
     if (gsl_root_fsolver_set(solver, &f, low, high) == GSL_SUCCESS)
-        for (int i = 0; i < 200; i++) {
-            if (gsl_root_fsolver_iterate(solver) != GSL_SUCCESS) break;
+        while (gsl_root_fsolver_iterate(solver) == GSL_SUCCESS) {
+            const double width =
+                gsl_root_fsolver_x_upper(solver) - gsl_root_fsolver_x_lower(solver);
             start = gsl_root_fsolver_root(solver);
-            low = gsl_root_fsolver_x_lower(solver);
-            high = gsl_root_fsolver_x_upper(solver);
-            if (!(high - low > 2 * GSL_DBL_EPSILON * (fabs(start) + wave->length))) break;
+            if (!(width > 2 * GSL_DBL_EPSILON * (fabs(start) + wave->length))) break;
         }
     gsl_root_fsolver_free(solver);
     return start;

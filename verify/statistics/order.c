@@ -42,11 +42,12 @@ struct line {
     double slope, half;
 };
 
-/* Without replicates the scatter about the line is the only measure of noise. */
-static double half_by_scatter(size_t n, double slope_variance, double chi2)
+/* Without replicates the scatter about the line is the only measure of noise. scatter: chi^2 times
+ * what its weights alone make the slope's variance. */
+static double half_by_scatter(size_t n, double scatter)
 {
     const double freedom = (double)(n - 2);
-    return gsl_cdf_tdist_Pinv(0.975, freedom) * sqrt(slope_variance * chi2 / freedom);
+    return gsl_cdf_tdist_Pinv(0.975, freedom) * sqrt(scatter / freedom);
 }
 
 /* With them, the slope is sum c_i y_i and its variance sum c_i^2 s_i^2, with the degrees of freedom
@@ -85,7 +86,7 @@ static struct line fit_line(size_t n, const double *x, const double *y,
     const bool noisy = noise && weigh(n, noise, weight);
     for (size_t i = 0; i < n && !noisy; i++) weight[i] = 1;
     gsl_fit_wlinear(x, 1, weight, 1, y, 1, n, &c0, &c1, &cov00, &cov01, &cov11, &chi2);
-    const double scatter = half_by_scatter(n, cov11, chi2);
+    const double scatter = half_by_scatter(n, cov11 * chi2);
     if (!noisy) return (struct line){c1, scatter};
     /* Levels that lie farther off the line than their noise can explain (an F test at 1 %): what
      * is left is curvature, of which replicates know nothing. */
@@ -140,7 +141,7 @@ bool order_passes(const struct order_fit *fit, const struct order_gate *gate, ch
     else if (!(fit->finest <= gate->bound))
         snprintf(text, sizeof text, "finest error %.3g exceeds %.3g", fit->finest, gate->bound);
     if (why) snprintf(why, ORDER_GATE_TEXT, "%s", text);
-    return !text[0];
+    return !*text;
 }
 
 struct richardson {
@@ -163,13 +164,14 @@ static double richardson_order(struct richardson *r)
     gsl_root_fsolver *solver = gsl_root_fsolver_alloc(gsl_root_fsolver_brent);
     double p = NAN;
     int state = gsl_root_fsolver_set(solver, &function, 1e-3, 30);
-    if (!state) do {
-            state = gsl_root_fsolver_iterate(solver);
-            p = gsl_root_fsolver_root(solver);
-        } while (!state && isfinite(p) &&
-                 gsl_root_test_interval(gsl_root_fsolver_x_lower(solver),
-                                        gsl_root_fsolver_x_upper(solver), 0,
-                                        1e-14) == GSL_CONTINUE);
+    if (state == GSL_SUCCESS) state = GSL_CONTINUE;
+    while (state == GSL_CONTINUE) {
+        state = gsl_root_fsolver_iterate(solver);
+        p = gsl_root_fsolver_root(solver);
+        if (state == GSL_SUCCESS)
+            state = gsl_root_test_interval(gsl_root_fsolver_x_lower(solver),
+                                           gsl_root_fsolver_x_upper(solver), 0, 1e-14);
+    }
     gsl_root_fsolver_free(solver);
     gsl_set_error_handler(handler);
     return p;
@@ -185,7 +187,8 @@ static enum order_class class_by_errors(const double spacing[3], const double va
     const double last = log(error[1] / error[2]) / log(spacing[1] / spacing[2]);
     const double whole = log(error[0] / error[2]) / log(spacing[0] / spacing[2]);
     if (fabs(whole) < ORDER_FLAT || last < p / 3) return ORDER_FLOOR_LIMITED;
-    return error[0] > error[1] && error[1] > error[2] ? ORDER_PREASYMPTOTIC : ORDER_DIVERGING;
+    /* of values in a row: where the last step is one towards the exact one, so is the first */
+    return error[1] > error[2] ? ORDER_PREASYMPTOTIC : ORDER_DIVERGING;
 }
 
 struct order_extrapolation order_extrapolate(const double spacing[3], const double value[3],

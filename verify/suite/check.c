@@ -79,10 +79,10 @@ void check_skip(struct check_run *run, const char *why, ...)
                  .subject = text, .value = nan, .bound = nan, .floor = nan, .status = FIGURE_SKIP});
 }
 
-/* NULL: no memory; of no values it is not NULL either. */
+/* NULL: no memory, or no values. */
 static double *copy_of(const double *values, size_t n)
 {
-    double *copy = malloc(n * sizeof *copy + 1);
+    double *copy = malloc(n * sizeof *copy);
     if (copy) memcpy(copy, values, n * sizeof *copy);
     return copy;
 }
@@ -95,7 +95,7 @@ void check_series(struct check_run *run, const char *label, size_t n, const doub
                                   .label = strdup(label),
                                   .x = copy_of(x, n),
                                   .y = copy_of(y, n)};
-    if (!series.label || !series.x || !series.y ||
+    if (!series.label || (n && !(series.x && series.y)) ||
         !list_grow(&run->series, run->series_count, sizeof series)) {
         free(series.label), free(series.x), free(series.y);
         run->no_memory = true;

@@ -58,7 +58,7 @@ static void table(void **state)
 {
     (void)state;
     const double amplitudes[] = {
-#define ROW(t, M, gci) M,
+#define ROW(t, M) M,
 #include "kelvin_helmholtz.def"
 #undef ROW
     };

@@ -382,6 +382,47 @@ static void test_hot_beside_cold(void **state)
     }
 }
 
+/* Hot gas that almost parts from very heavy cold gas at rest: both move, as slowly as the heavy one
+ * can be pushed, v = sqrt(2 p/((gamma + 1) rho)); the light one's own motion is known worse. */
+static void test_heavy_beside_light(void **state)
+{
+    (void)state;
+    const double gamma = 1.4, c = sqrt(1.4), apart = 2 * c / (gamma - 1);
+    for (int k = 0; k <= 18; k++)
+        for (int j = 0; j < 6; j++) {
+            const double rho = pow(10, k), v = -apart * (1 - 1e-3 * pow(6, j) / 8);
+            const struct riemann_state hot = {1, v, 1}, back = {1, -v, 1}, cold = {rho, 0, 0};
+            const struct riemann_solution s = solved(gamma, hot, cold), t = solved(gamma, cold, back);
+            const double pushed = sqrt(2 * s.p_star / ((gamma + 1) * rho));
+            near_relative(s.v_star, pushed, 1e-14);
+            near_relative(s.right_head, 1.2 * pushed, 1e-14);
+            assert_true(t.v_star == -s.v_star && t.left_head == -s.right_head);
+            /* and along the fan */
+            const double jump = apart * (1 - pow(s.p_star, 1. / 7));
+            near_absolute(v + jump - s.v_star, 0, 1e-13);
+        }
+}
+
+/* Cold gases that meet: in units of velocity of 2^e all has the same bits. */
+static void test_cold_in_other_units(void **state)
+{
+    (void)state;
+    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
+    for (int i = 0; i < 200; i++) {
+        const int e = i % 2 ? 300 : -250;
+        struct riemann_state l = {0.1 + gsl_rng_uniform(random), gsl_rng_uniform(random), 0},
+                             r = {5 * gsl_rng_uniform(random), -gsl_rng_uniform(random), 0};
+        const struct riemann_solution s = solved(1.4, l, r);
+        l.v = ldexp(l.v, e), r.v = ldexp(r.v, e);
+        const struct riemann_solution other = solved(1.4, l, r);
+        assert_true(other.p_star == ldexp(s.p_star, 2 * e));
+        assert_true(other.v_star == ldexp(s.v_star, e));
+        assert_true(other.left_head == ldexp(s.left_head, e));
+        assert_true(other.rho_star_left == s.rho_star_left);
+    }
+    gsl_rng_free(random);
+}
+
 static void test_sample_regions(void **state)
 {
     (void)state;
@@ -507,6 +548,8 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_underflow),
         cmocka_unit_test(test_gentle_and_parting),
         cmocka_unit_test(test_hot_beside_cold),
+        cmocka_unit_test(test_heavy_beside_light),
+        cmocka_unit_test(test_cold_in_other_units),
         cmocka_unit_test(test_sample_regions),
         cmocka_unit_test(test_vacuum_samples),
         cmocka_unit_test(test_bad_input),

@@ -48,10 +48,9 @@ static enum status prepare(struct prepared *p, struct settings *settings, struct
     const double *right = settings->value[SETTING_right].real;
     struct setting_value *mass_ratio = &settings->value[SETTING_mass_ratio];
     tube->x0 = p->window.centre[0];
+    const double reach = 0.25 * domain_length(&p->domain, 0);
     if (settings->value[SETTING_window].automatic)
-        for (int side = -1; side <= 1; side += 2)
-            *(side < 0 ? &p->window.lo[0] : &p->window.hi[0]) =
-                tube->x0 + side * 0.25 * domain_length(&p->domain, 0);
+        p->window.lo[0] = tube->x0 - reach, p->window.hi[0] = tube->x0 + reach;
     if (problem_check_state(settings, SETTING_left, error) ||
         problem_check_state(settings, SETTING_right, error) ||
         solve(&tube->main, p->gamma, left, right, error) ||
@@ -85,7 +84,7 @@ struct grading {
 static double grading_weight(const struct grading *grading, size_t i, size_t n)
 {
     const size_t k = i < n - 1 - i ? i : n - 1 - i;
-    return grading->g < 1 ? fmin(1, grading->g * pow(grading->q, (double)k)) : 1;
+    return fmin(1, grading->g * pow(grading->q, (double)k)); /* q > 1: equal ones for g = 1 */
 }
 
 /* The sum of all weights of a side of n particles. */
