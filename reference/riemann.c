@@ -30,6 +30,12 @@ static struct side side_make(double gamma, const struct riemann_state *state, in
 
 /* ---- the jump of velocity across a wave (Toro eqs 4.6, 4.7) as a function of y ---- */
 
+/* The wave into cold gas is always one. */
+static bool is_shock(const struct side *side, real y)
+{
+    return !(side->P > 0 && y <= side->l);
+}
+
 static real rarefaction_jump(const struct side *side, real y)
 {
     const real gamma = side->gamma, z = (gamma - 1) / (2 * gamma);
@@ -40,7 +46,7 @@ static real rarefaction_jump(const struct side *side, real y)
 static real velocity_jump(const struct side *side, real scale, real y, real *slope)
 {
     const real gamma = side->gamma, z = (gamma - 1) / (2 * gamma);
-    if (!(side->P > 0 && y <= side->l)) {
+    if (is_shock(side, y)) {
         const real ratio = side->P > 0 ? expl(side->l - y) : 0; /* P/p */
         const real missing = side->P > 0 ? -expm1l(side->l - y) : 1;
         const real d = gamma + 1 + (gamma - 1) * ratio;
@@ -134,7 +140,7 @@ struct wave {
 static struct wave wave_make(const struct side *side, real y, real p, real v_star)
 {
     const real gamma = side->gamma;
-    if (!(side->P > 0 && y <= side->l)) {
+    if (is_shock(side, y)) {
         const real ratio = side->P > 0 ? expl(side->l - y) : 0;
         const real flux = ((gamma + 1) * p + (gamma - 1) * side->P) / 2;
         const real speed = fminl(side->v - sqrtl(flux / side->rho), v_star);

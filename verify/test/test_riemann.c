@@ -392,7 +392,8 @@ static void test_heavy_beside_light(void **state)
         for (int j = 0; j < 6; j++) {
             const double rho = pow(10, k), v = -apart * (1 - 1e-3 * pow(6, j) / 8);
             const struct riemann_state hot = {1, v, 1}, back = {1, -v, 1}, cold = {rho, 0, 0};
-            const struct riemann_solution s = solved(gamma, hot, cold), t = solved(gamma, cold, back);
+            const struct riemann_solution s = solved(gamma, hot, cold),
+                                          t = solved(gamma, cold, back);
             const double pushed = sqrt(2 * s.p_star / ((gamma + 1) * rho));
             near_relative(s.v_star, pushed, 1e-14);
             near_relative(s.right_head, 1.2 * pushed, 1e-14);
@@ -531,6 +532,14 @@ static void test_gentle_and_parting(void **state)
     const struct riemann_solution nearly =
         solved(3, (struct riemann_state){1, -3, 3}, (struct riemann_state){1, 3 - 0x1p-50, 3});
     assert_false(nearly.vacuum);
+    /* gamma = 7: cold gas takes 1/2 of velocity from a pressure of 1, which the left gas has: its
+     * wave is of no strength, and as where all is at rest a rarefaction */
+    const struct riemann_state pushes = {2, 0.5, 1}, waits = {1, 0, 0};
+    const struct riemann_solution pushed = solved(7, pushes, waits);
+    assert_true(pushed.p_star == 1 && pushed.v_star == 0.5 && pushed.rho_star_left == 2);
+    assert_int_equal(pushed.left_wave, RIEMANN_RAREFACTION);
+    assert_true(pushed.left_head == pushed.left_tail);
+    near_relative(pushed.left_head, 0.5 - sqrt(3.5), 1e-15);
 }
 
 int main(int argc, char **argv)

@@ -102,6 +102,7 @@ static void drawings(void **state)
     const char *svg = text_of("out/a-first.svg");
     assert_string_equal(strstr(svg, "drawn"), "drawn</svg>\n");
     struct stat is;
+    assert_true(stat(path_of("out/a-first.svg"), &is) == 0 && (size_t)is.st_size == strlen(svg));
     const mode_t mask = umask(0);
     umask(mask);
     assert_true(stat(out, &is) == 0 && (is.st_mode & 0777) == (0777 & ~mask));
