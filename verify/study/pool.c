@@ -10,6 +10,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "list.h"
 #include "result.h"
 
 enum { POLL_MS = 200, CHUNK = 1 << 16 };
@@ -18,7 +19,7 @@ enum { POLL_MS = 200, CHUNK = 1 << 16 };
 struct worker {
     pid_t pid;
     int pipe;
-    size_t job, length, room;
+    size_t job, length;
     char *text;
 };
 
@@ -30,13 +31,7 @@ size_t pool_add(struct pool *pool, const char *name, const char *key, double wei
     if (!pool->numbers) pool->numbers = json_object();
     if (key && json_object_set_new(pool->numbers, key, json_integer((json_int_t)pool->count)))
         return (size_t)-1;
-    if (pool->count == pool->room) {
-        const size_t room = pool->room ? 2 * pool->room : 64;
-        struct pool_job *jobs = realloc(pool->jobs, room * sizeof *jobs);
-        if (!jobs) return (size_t)-1;
-        pool->jobs = jobs;
-        pool->room = room;
-    }
+    if (!list_grow(&pool->jobs, pool->count, sizeof *pool->jobs)) return (size_t)-1;
     struct pool_job job = {.name = strdup(name), .key = key ? strdup(key) : NULL, .weight = weight};
     if (!job.name || (key && !job.key)) {
         free(job.name);
@@ -137,19 +132,16 @@ static enum status start(struct worker *worker, const struct pool *pool, size_t 
     return STATUS_OK;
 }
 
-/* Reads what there is; false at the end. */
+/* Reads what there is, which needs no waiting; false at the end. */
 static bool receive(struct worker *worker)
 {
-    if (worker->room - worker->length < CHUNK) {
-        char *text = realloc(worker->text, 2 * worker->room + 2 * CHUNK);
-        if (!text) return false; /* half a reply is none */
-        worker->text = text;
-        worker->room = 2 * worker->room + 2 * CHUNK;
-    }
-    const ssize_t n = read(worker->pipe, worker->text + worker->length, CHUNK);
-    if (n < 0) return errno == EINTR || errno == EAGAIN;
+    char *text = realloc(worker->text, worker->length + CHUNK);
+    if (!text) return false; /* half a reply is none */
+    worker->text = text;
+    const ssize_t n = read(worker->pipe, text + worker->length, CHUNK);
+    if (n <= 0) return false;
     worker->length += (size_t)n;
-    return n > 0;
+    return true;
 }
 
 static void finish(struct worker *worker, struct pool *pool)

@@ -33,7 +33,7 @@ struct pool_job {
 
 struct pool {
     struct pool_job *jobs;
-    size_t count, room;
+    size_t count;
     json_t *numbers; /* of jobs, by their keys */
     size_t found;    /* in the cache */
     size_t damaged;  /* were in the cache, but not whole: computed again */
