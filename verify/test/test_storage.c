@@ -1,12 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The arrays of particles: each has its own room, ghosts included, whatever the numbers; values
- * stay where room grows, are carried out and back with their ghosts, and follow a new order. */
+ * stay where room grows, are carried out and back with their ghosts, and follow a new order. Large
+ * pages are asked for where arrays are as long as one, and only there. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 #include <cmocka.h>
 
 #include "near.h"
@@ -238,6 +241,53 @@ static void sizes_of_vectors(void **state)
     }
 }
 
+/* --- pages --------------------------------------------------------------------------------------
+ */
+
+/* Does the system's list of mappings say that large pages were asked for at this address? -1: it
+ * knows of none. */
+static int asked_for(uintptr_t address)
+{
+    FILE *file = fopen("/proc/self/smaps", "r");
+    char text[512];
+    bool here = false;
+    int asked = -1;
+    while (file && fgets(text, sizeof text, file)) {
+        unsigned long begin, end;
+        char mode;
+        if (sscanf(text, "%lx-%lx %c", &begin, &end, &mode) == 3)
+            here = address >= begin && address < end;
+        else if (here && strncmp(text, "VmFlags:", 8) == 0)
+            asked = strstr(text, " hg") != NULL;
+    }
+    if (file) fclose(file);
+    return asked;
+}
+
+static void expect_pages(int dim, ptrdiff_t n, const char *array, bool asked)
+{
+    struct particles a = made(dim, n, 64);
+    const double *first = strcmp(array, "x") == 0 ? a.x[0] : a.signal;
+    /* where blocks are as long: a large page on, as the first one may begin after the array */
+    const int found = asked_for((uintptr_t)first + (n < (1 << 17) ? 0 : 1 << 21));
+    particles_destroy(&a);
+    if (found != asked) fail_msg("%d-D, %td particles, %s: %d", dim, n, array, found);
+}
+
+static void large_pages(void **state)
+{
+    (void)state;
+    if (access("/sys/kernel/mm/transparent_hugepage/enabled", R_OK) ||
+        asked_for((uintptr_t)&state) < 0)
+        skip();
+    for (int dim = 1; dim <= 3; dim++) {
+        expect_pages(dim, 1000, "x", false);
+        expect_pages(dim, (1 << 18) - 500, "x", false);
+        expect_pages(dim, 1 << 18, "x", true);
+        expect_pages(dim, 1 << 19, "signal", true);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -247,6 +297,7 @@ int main(void)
         cmocka_unit_test(failed_to_carry),
         cmocka_unit_test(a_new_order),
         cmocka_unit_test(sizes_of_vectors),
+        cmocka_unit_test(large_pages),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
