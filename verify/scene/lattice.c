@@ -21,7 +21,7 @@ struct crystal {
 #define ROOT_3       1.7320508075688772
 #define CLOSE_PACKED 1.6329931618554521 /* sqrt(8/3) */
 
-static const struct crystal line = {1, 1, 1, {1, 1, 1}, {{0.5, 0.5, 0.5}}};
+static const struct crystal line = {1, 0, 1, {1}, {{0.5}}};
 static const struct crystal square = {2, 1, 1, {1, 1, 1}, {{0.5, 0.5, 0.5}}};
 /* in 3D layers in the gaps of each other, every second one alike */
 static const struct crystal hexagonal = {2,

@@ -107,17 +107,20 @@ void problem_circular(const struct prepared *p, const double x[3], const double 
                       double *azimuthal, double *radial)
 {
     const double R = problem_radius(p, x);
-    double out = 0, squares = 0;
+    double away[3], out = 0, squares = 0;
     for (int d = 0; d < p->domain.dim; d++) {
-        out += R > 0 ? (x[d] - p->window.centre[d]) / R * v[d] : 0;
-        squares += v[d] * v[d];
+        away[d] = R > 0 ? (x[d] - p->window.centre[d]) / R : 0;
+        out += away[d] * v[d];
     }
     *radial = out;
+    /* not |v|^2 - out^2: of its round-off the root is 1e-8 |v| */
+    for (int d = 0; d < p->domain.dim; d++)
+        squares += (v[d] - out * away[d]) * (v[d] - out * away[d]);
     const double dx = x[0] - p->window.centre[0], dy = x[1] - p->window.centre[1];
     if (p->domain.dim == 2)
         *azimuthal = R > 0 ? (dx * v[1] - dy * v[0]) / R : 0;
     else
-        *azimuthal = sqrt(fmax(0, squares - out * out));
+        *azimuthal = sqrt(squares);
 }
 
 enum status problem_direction(const struct prepared *p, struct settings *settings, double n[3],

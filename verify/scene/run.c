@@ -405,7 +405,7 @@ static enum status simulate(const struct run *run, struct run_result *result,
         *error = outcome.reason;
         return status;
     }
-    struct watch watch = {run, simulation, result, 0};
+    struct watch watch = {.run = run, .simulation = simulation, .result = result};
     take_sums(run, simulation, &outcome.start);
     if (asked->checkpoint && asked->checkpoint->resume &&
         checkpoint_load(asked->checkpoint, simulation, &result->growth, error)) {

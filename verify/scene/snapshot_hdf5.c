@@ -28,13 +28,19 @@ struct image {
     bool good;
 };
 
+/* Of an identifier, or of what a call returns. */
+static bool went_well(hid_t code)
+{
+    return code >= 0;
+}
+
 static void set_attribute(struct image *image, hid_t group, const char *name, hid_t type,
                           const void *values, hsize_t count)
 {
     const hid_t space = count == 1 ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, &count, NULL);
     const hid_t attribute = H5Acreate2(group, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
-    image->good &= attribute >= 0 && H5Awrite(attribute, type, values) >= 0;
-    if (attribute >= 0) H5Aclose(attribute);
+    image->good &= went_well(attribute) && went_well(H5Awrite(attribute, type, values));
+    if (went_well(attribute)) H5Aclose(attribute);
     H5Sclose(space);
 }
 
@@ -44,8 +50,9 @@ static void set_data(struct image *image, hid_t group, const char *name, hid_t t
     const hsize_t shape[2] = {rows, columns};
     const hid_t space = H5Screate_simple(columns > 1 ? 2 : 1, shape, NULL);
     const hid_t data = H5Dcreate2(group, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-    image->good &= data >= 0 && H5Dwrite(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0;
-    if (data >= 0) H5Dclose(data);
+    image->good &=
+        went_well(data) && went_well(H5Dwrite(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values));
+    if (went_well(data)) H5Dclose(data);
     H5Sclose(space);
 }
 
@@ -64,7 +71,7 @@ static void set_header(struct image *image, const struct run_result *result)
         side[d] = domain_length(box, d);
         if (side[d] != side[0]) sides = 3;
     }
-    image->good &= header >= 0;
+    image->good &= went_well(header);
     set_attribute(image, header, "NumPart_ThisFile", H5T_NATIVE_UINT, count, TYPES);
     set_attribute(image, header, "NumPart_Total", H5T_NATIVE_UINT, count, TYPES);
     set_attribute(image, header, "NumPart_Total_HighWord", H5T_NATIVE_UINT, none, TYPES);
@@ -84,7 +91,7 @@ static void set_header(struct image *image, const struct run_result *result)
     for (size_t k = 0; k < sizeof still / sizeof *still; k++)
         set_attribute(image, header, still[k], H5T_NATIVE_DOUBLE, &zero, 1);
     set_attribute(image, header, "HubbleParam", H5T_NATIVE_DOUBLE, &one, 1);
-    H5Gclose(header);
+    if (went_well(header)) H5Gclose(header);
 }
 
 static void set_gas(struct image *image, const struct run_result *result)
@@ -94,7 +101,7 @@ static void set_gas(struct image *image, const struct run_result *result)
     const hid_t gas = H5Gcreate2(image->file, "PartType0", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
     double *vectors = calloc(6 * s->n, sizeof *vectors), *v = vectors + 3 * s->n;
     uint64_t *number = malloc(s->n * sizeof *number);
-    image->good &= gas >= 0 && vectors && number;
+    image->good &= went_well(gas) && vectors && number;
     for (size_t i = 0; image->good && i < s->n; i++) {
         number[i] = i + 1;
         for (int d = 0; d < box->dim; d++) {
@@ -117,7 +124,7 @@ static void set_gas(struct image *image, const struct run_result *result)
         for (size_t k = 0; k < sizeof scalars / sizeof *scalars; k++)
             set_data(image, gas, scalars[k].name, H5T_NATIVE_DOUBLE, scalars[k].values, s->n, 1);
     }
-    if (gas >= 0) H5Gclose(gas);
+    if (went_well(gas)) H5Gclose(gas);
     free(vectors);
     free(number);
 }
@@ -134,10 +141,10 @@ enum status snapshot_hdf5_write(const struct run_result *result, const char *pat
     H5Pset_fapl_core(access, 1 << 20, 0); /* in memory, never on disk */
     image.file = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, access);
     H5Pclose(access);
-    if (image.file >= 0) {
+    if (went_well(image.file)) {
         set_header(&image, result);
         set_gas(&image, result);
-        image.good &= H5Fflush(image.file, H5F_SCOPE_GLOBAL) >= 0;
+        image.good &= went_well(H5Fflush(image.file, H5F_SCOPE_GLOBAL));
         const ssize_t needed = H5Fget_file_image(image.file, NULL, 0);
         if (needed > 0) size = (size_t)needed;
         bytes = malloc(size + 1);

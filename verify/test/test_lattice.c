@@ -9,6 +9,7 @@
 #include <gsl/gsl_qrng.h>
 #include <gsl/gsl_rng.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "gas.h"
 #include "initial_fill.h"
@@ -117,6 +118,27 @@ static void crystals(void **state)
     }
 }
 
+/* Asked directly, too: in fewer dimensions there is no such crystal, and no point of it. */
+static void crystals_have_their_dimensions(void **state)
+{
+    (void)state;
+    static const struct {
+        enum lattice kind;
+        int least;
+    } rows[] = {{LATTICE_UNIFORM, 1},   {LATTICE_CLUSTERED, 1}, {LATTICE_COINCIDENT, 1},
+                {LATTICE_SQUARE, 2},    {LATTICE_CUBIC, 2},     {LATTICE_JITTERED, 2},
+                {LATTICE_HEXAGONAL, 2}, {LATTICE_FCC, 3},       {LATTICE_BCC, 3}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
+        for (int dim = 1; dim <= rows[k].least; dim++) {
+            const struct domain box = {dim, {0}, {1, 1, 1}};
+            struct lattice_plan plan;
+            struct error error = {0};
+            assert_int_equal(lattice_plan_make(&plan, &box, rows[k].kind, 8, &error),
+                             dim < rows[k].least ? STATUS_BAD_INPUT : STATUS_OK);
+            if (dim < rows[k].least) assert_non_null(strstr(error.message, "has no form in"));
+        }
+}
+
 /* As many cells as fit best: 2.5 of them, and a little more or less. */
 static void cells_that_fit(void **state)
 {
@@ -157,9 +179,8 @@ static void sobol_points_stay_inside(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_whole_box_is_laid),
-        cmocka_unit_test(crystals),
-        cmocka_unit_test(cells_that_fit),
+        cmocka_unit_test(the_whole_box_is_laid),          cmocka_unit_test(crystals),
+        cmocka_unit_test(crystals_have_their_dimensions), cmocka_unit_test(cells_that_fit),
         cmocka_unit_test(sobol_points_stay_inside),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

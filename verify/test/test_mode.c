@@ -257,6 +257,29 @@ static void grid_knows_the_mode_alone(void **state)
     near_relative(mode_other_parity.measure(&p, &s), 1, 1e-10);
 }
 
+/* Sides that differ by a millionth of a millionth are alike, by the last bit more they are not. */
+static void boxes_are_square(void **state)
+{
+    (void)state;
+    const double bit = 0x1p-52;
+    int tried = 0;
+    for (int k = 4600; k < 4700; k++) {
+        const double width = k * bit / 1e-12; /* from 1 to 2 */
+        if (1e-12 * width != k * bit) continue;
+        for (int more = -1; more <= 1; more++) {
+            char lo[] = "lo=0 0", hi[64], *keys[] = {lo, hi};
+            struct prepared p;
+            struct error error = {0};
+            snprintf(hi, sizeof hi, "hi=%.17g %.17g", width, width + (k + more) * bit);
+            assert_int_equal(make(&p, "kelvin_helmholtz_mode", 2, keys, &error),
+                             more > 0 ? STATUS_BAD_INPUT : STATUS_OK);
+            if (more > 0) assert_non_null(strstr(error.message, "the layers lie in a square box"));
+        }
+        if (++tried == 2) break;
+    }
+    assert_int_equal(tried, 2);
+}
+
 static void what_no_mode_has_is_refused(void **state)
 {
     (void)state;
@@ -354,6 +377,7 @@ int main(void)
         cmocka_unit_test(samples_are_base_and_mode),
         cmocka_unit_test(measured_as_defined),
         cmocka_unit_test(grid_knows_the_mode_alone),
+        cmocka_unit_test(boxes_are_square),
         cmocka_unit_test(what_no_mode_has_is_refused),
         cmocka_unit_test(amplitudes_leave_room_to_grow),
         cmocka_unit_test(layers_need_a_square),

@@ -99,10 +99,7 @@ static void numbers(void **state)
     static const struct {
         size_t n;
         bool kept;
-    } rows[] = {{RELAX_STORE_LEAST - 1, false},
-                {RELAX_STORE_LEAST, true},
-                {RELAX_STORE_MOST, true},
-                {RELAX_STORE_MOST + 1, false}};
+    } rows[] = {{999, false}, {1000, true}, {300000, true}, {300001, false}};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         char name[32], folder[64];
         snprintf(name, sizeof name, "number%zu", k);

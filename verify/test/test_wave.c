@@ -143,6 +143,36 @@ static void particles_carry_the_mass(void **state)
     }
 }
 
+/* Fifty steps of Newton at most: of some the last ones go to and fro between two numbers, and a run
+ * has the bits of that one where they end. */
+static void steps_are_counted(void **state)
+{
+    (void)state;
+    int restless = 0;
+    for (const struct row *row = rows; row < rows + 2; row++) {
+        struct settings s;
+        const struct prepared p = made(row, &s);
+        const struct initial initial = prepared_filled(&p, &s);
+        const double lo = p.domain.lo[0], mass = 1.3 * (p.domain.hi[0] - lo) / (double)initial.n;
+        const double length = domain_length(&p.domain, 0) / settings_real(&s, SETTING_waves);
+        const double k = 2 * M_PI / length;
+        for (size_t i = 0; i < initial.n; i++) {
+            const double there = ((double)i + 0.5) * mass / 1.3;
+            double x = there;
+            int steps = 0;
+            for (double step = 1; steps < 50 && fabs(step) > 1e-16 * length; steps++) {
+                step = (x + row->amplitude * (1 - cos(k * x)) / k - there) /
+                       (1 + row->amplitude * sin(k * x));
+                x -= step;
+            }
+            restless += steps == 50;
+            assert_true(initial.x[0][i] == lo + x);
+        }
+        free(initial.storage);
+    }
+    assert_true(restless > 0);
+}
+
 /* Without a wave they stand where uniform gas has its mass, to the last bit. */
 static void uniform_gas_is_laid_exactly(void **state)
 {
@@ -266,6 +296,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(samples_are_the_wave),
         cmocka_unit_test(particles_carry_the_mass),
+        cmocka_unit_test(steps_are_counted),
         cmocka_unit_test(uniform_gas_is_laid_exactly),
         cmocka_unit_test(what_cannot_be_laid_is_said),
         cmocka_unit_test(what_is_no_wave_is_refused),

@@ -83,8 +83,8 @@ struct grading {
 
 static double grading_weight(const struct grading *grading, size_t i, size_t n)
 {
-    const size_t k = i < n - 1 - i ? i : n - 1 - i;
-    return fmin(1, grading->g * pow(grading->q, (double)k)); /* q > 1: equal ones for g = 1 */
+    const double k = fmin((double)i, (double)(n - 1 - i));
+    return fmin(1, grading->g * pow(grading->q, k)); /* q > 1: equal ones for g = 1 */
 }
 
 /* The sum of all weights of a side of n particles. */
@@ -231,8 +231,8 @@ static double front(const struct prepared *p, double sign, double t)
     const double head = sign > 0 ? mirror->right_head : -mirror->left_head;
     const double ahead = sign > 0 ? -tube->left_head : tube->right_head;
     const double speed = isnan(head) ? sign * gas->v + c : head;
-    /* in gas without waves nothing is met */
-    const double meet = speed + ahead > 0 ? length / (speed + ahead) : (double)INFINITY;
+    /* nothing where both run away from each other, or there is no wave in the gas ahead */
+    const double meet = length / fmax(0, speed + ahead);
     if (t <= meet) return speed * t;
     const double mach = fmax(1, (speed - sign * gas->v) / c);
     return speed * meet + fmax(speed, fastest(tube, mach, sign)) * (t - meet);
