@@ -140,6 +140,39 @@ static void reaches_are_lowered_now_and_then(void **state)
         }
 }
 
+/* Newton leaves 1/h with h; a sum at a predicted width is taken there, and the pressure follows on
+ * the adiabat what the prediction has missed. */
+static void what_sums_leave(void **state)
+{
+    (void)state;
+    struct simulation *s = made_simulation(200);
+    const struct particles *a = &s->particles;
+    struct error error;
+    double h[200], rho[200];
+    assert_int_equal(widths_find(s, true, 0, &error), STATUS_OK);
+    assert_int_equal(widths_find(s, true, 0, &error), STATUS_OK);
+    for (ptrdiff_t i = 0; i < 200; i++) {
+        h[i] = a->h[i], rho[i] = a->rho[i];
+        near_relative(a->h_inverse[i] * a->h[i], 1, 1e-8);
+        near_relative(a->P[i], 0.4 * a->rho[i] * a->U[i] / a->m[i], 1e-14);
+    }
+    const double follow = s->scheme.integrator->follow;
+    assert_true(follow == 1.5);
+    for (int off = 0; off < 2; off++) {
+        for (ptrdiff_t i = 0; i < 200; i++)
+            a->h_inverse_found[i] = a->h_inverse_old[i] = (off ? 0.99 : 1) / h[i];
+        assert_int_equal(widths_find(s, false, 0, &error), STATUS_OK);
+        for (ptrdiff_t i = 0; i < 200; i++) {
+            const double missed = a->h[i] * a->h_inverse[i] - 1;
+            near_relative(a->rho[i], rho[i], off ? 0.01 : 1e-8);
+            near_relative(a->P[i],
+                          0.4 * a->rho[i] * a->U[i] / a->m[i] * (1 - follow * 0.4 * missed), 1e-14);
+            near_relative(a->h_inverse[i], (off ? 0.99 : 1) / h[i], 1e-14);
+        }
+    }
+    simulation_destroy(s);
+}
+
 /* A box whose widths reach over many images: as many ghosts as it takes, no more passes over ranges
  * that are done; a predicted width beyond all bounds is named. */
 static void ghosts_as_many_as_it_takes(void **state)
@@ -296,6 +329,7 @@ int main(void)
         cmocka_unit_test(every_range_once),
         cmocka_unit_test(the_first_without_a_root),
         cmocka_unit_test(reaches_are_lowered_now_and_then),
+        cmocka_unit_test(what_sums_leave),
         cmocka_unit_test(ghosts_as_many_as_it_takes),
         cmocka_unit_test(room_for_eight_times_the_reach),
         cmocka_unit_test(scratch_is_made_rarely),

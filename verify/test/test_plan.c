@@ -296,16 +296,16 @@ static void limits(void **state)
         bool off, beyond;
     } cases[] = {
         {2, GRADIENT_IA, false, false},
-        {2 / 0.9700001, GRADIENT_IA, false, false},
-        {2 / 0.9699999, GRADIENT_IA, true, false},
-        {2 / 1.0299999, GRADIENT_IA, false, false},
-        {2 / 1.0300001, GRADIENT_IA, true, false},
+        {2 / 0.97000001, GRADIENT_IA, false, false},
+        {2 / 0.96999999, GRADIENT_IA, true, false},
+        {2 / 1.02999999, GRADIENT_IA, false, false},
+        {2 / 1.03000001, GRADIENT_IA, true, false},
         {1.2, GRADIENT_IA, true, false},
         {4, GRADIENT_IA, false, false},
         {4.000001, GRADIENT_IA, false, true},
         {4.999, GRADIENT_STANDARD, true, false},
         {5.001, GRADIENT_STANDARD, true, false},
-        {4 / 0.9699999, GRADIENT_STANDARD, true, false},
+        {4 / 0.96999999, GRADIENT_STANDARD, true, false},
         {6, GRADIENT_STANDARD, false, false},
         {6, GRADIENT_IA, false, true},
     };
@@ -320,6 +320,29 @@ static void limits(void **state)
         explained(&scene, text, sizeof text);
         assert_string_equal(text, "");
     }
+}
+
+/* What each choice needs; loops are stamped unless the oracle is asked for. */
+static void needs(void **state)
+{
+    (void)state;
+    for (int choice = 0; choice < GRADIENTS * FORMULATIONS * PAIR_WIDTHS; choice++)
+        for (int unstamped = 0; unstamped < 2; unstamped++) {
+            struct scene scene = scene_of(2, (enum gradient)(choice % GRADIENTS));
+            struct scheme *s = &scene.scheme;
+            s->formulation = (enum formulation)(choice / GRADIENTS % FORMULATIONS);
+            s->pair_width = (enum pair_width)(choice / GRADIENTS / FORMULATIONS);
+            scene.unstamped = unstamped;
+            const struct plan plan = plan_of_scene(&scene);
+            const bool standard = s->gradient == GRADIENT_STANDARD,
+                       lagrangian = s->formulation == FORMULATION_LAGRANGIAN;
+            assert_int_equal(plan.own_gradient,
+                             standard && (lagrangian || s->pair_width == PAIR_WIDTH_MEAN));
+            assert_int_equal(plan.matrix, !standard);
+            assert_int_equal(plan.grad_h, lagrangian);
+            assert_int_equal(plan.stamped, !unstamped);
+            assert_true(plan.dim == 1 && plan.sums == sums_find(1));
+        }
 }
 
 /* Gravity in any direction is gravity, and wakes everybody. */
@@ -351,7 +374,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(plans),  cmocka_unit_test(warnings), cmocka_unit_test(room),
-        cmocka_unit_test(limits), cmocka_unit_test(gravity),
+        cmocka_unit_test(limits), cmocka_unit_test(gravity),  cmocka_unit_test(needs),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -10,8 +10,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <cmocka.h>
 
+#include "line/line.h"
 #include "made_simulation.h"
 #include "near.h"
 #include "solver.h"
@@ -20,7 +22,7 @@
  */
 
 static struct {
-    int steps, synchronised, signals, switched, widths, looked;
+    int steps, sleep_updates, synchronised, signals, switched, widths, looked;
     double dt, switch_dt, time;
     bool fail, stop;
 } seen;
@@ -44,7 +46,15 @@ static double still_signal(struct simulation *simulation)
     seen.signals++;
     for (ptrdiff_t i = 0; i < simulation->particles.n; i++)
         simulation->particles.signal[i] = i == 7 ? 1e6 : 1;
+    /* nobody's */
+    simulation->particles.signal[simulation->particles.n] = 1e30;
     return simulation->scheme.cfl / 0.125;
+}
+
+static void still_sleep(struct simulation *simulation)
+{
+    (void)simulation;
+    seen.sleep_updates++;
 }
 
 static void still_switch(struct simulation *simulation, double dt)
@@ -84,6 +94,7 @@ static struct simulation *standing(void)
     still_sums.signal = still_signal;
     still_sums.apply_switch = still_switch;
     still_sums.widths = still_widths;
+    still_sums.sleep_update = still_sleep;
     s->plan.sums = &still_sums;
     s->scheme.integrator = &still;
     s->dt = s->time_step = s->largest_dt = 0.125;
@@ -105,10 +116,15 @@ static void what_a_run_calls(void **state)
         if (way & 8) integrator.synchronise = NULL;
         s->scheme.integrator = &integrator;
         s->sleep.awake_count = 31;
+        s->team.most = s->team.size = way & 1 ? 2 : 1;
+        s->dt = 0.0625, s->largest_dt = 0;
         s->wall_start -= 1000, s->cpu_start -= 2000;
         assert_int_equal(simulation_run(s, 1, way & 8 ? NULL : look, s, &error), STATUS_OK);
         assert_true(s->time == 1 && s->dt == 0.125 && s->dt_before == 0.125 && seen.dt == 0.125);
+        assert_true(s->largest_dt == 0.125);
         assert_int_equal(seen.steps, 8);
+        assert_int_equal(seen.sleep_updates, 8);
+        assert_true(s->team.most == 1 ? s->team.begun == 0 : s->team.begun > 0);
         assert_int_equal(seen.switched, way & 1 ? 8 : 0);
         assert_true(seen.switch_dt == (way & 1 ? 0.125 : 0));
         assert_int_equal(seen.signals, way & 2 ? 7 : 0);
@@ -122,6 +138,35 @@ static void what_a_run_calls(void **state)
         near_inside(cost.cpu_s, 2000, 2100);
         simulation_destroy(s);
     }
+}
+
+static enum status slow_step(struct simulation *simulation, double dt, struct error *error)
+{
+    (void)simulation, (void)dt, (void)error;
+    nanosleep(&(struct timespec){.tv_nsec = 2000000}, NULL);
+    return STATUS_OK;
+}
+
+static double now(void)
+{
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + (double)time.tv_nsec / 1e9;
+}
+
+/* Eight steps of two milliseconds each take as long as this clock says, in the fractions of a
+ * second, too. */
+static void clocks_show_seconds(void **state)
+{
+    (void)state;
+    const struct integrator slow = {.step = slow_step, .ends_evaluated = true};
+    const double before = now();
+    struct simulation *s = standing();
+    struct error error;
+    s->scheme.integrator = &slow;
+    assert_int_equal(simulation_run(s, 1, NULL, NULL, &error), STATUS_OK);
+    near_inside(s->cost.wall_s, 0.016, now() - before);
+    simulation_destroy(s);
 }
 
 /* Stopped from outside, or by a step that fails: synchronised, and no further. */
@@ -201,6 +246,8 @@ static void who_limits(void **state)
         s->largest_dt = 1e12;
         for (ptrdiff_t i = 0; i < 40; i++) s->particles.h[i] = 1 + (double)i / 64;
         s->particles.h[last] = last == 7 ? 1e5 : 1e-7;
+        if (last < 39 && last != 7 && last != 6)
+            s->particles.h[last + 1] = 1e-7; /* not the first */
         assert_int_equal(simulation_run(s, 1, NULL, NULL, &error), STATUS_BROKE_DOWN);
         snprintf(name, sizeof name, "particle %zu ", s->particles.id[last]);
         assert_non_null(strstr(error.message, name));
@@ -258,6 +305,23 @@ static void runaway_energy(void **state)
             }
             simulation_destroy(s);
         }
+}
+
+/* Exactly half may come or go. */
+static void half_of_the_energy(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 4; k++) {
+        static const double left[] = {0.5, 1.5, 0.4999999999, 1.5000000001};
+        struct simulation *s = standing();
+        struct error error;
+        for (ptrdiff_t i = 0; i < 40; i++) s->particles.e[i] = s->particles.p[0][i] = 0;
+        s->particles.e[3] = left[k];
+        s->start_energy = 1;
+        assert_int_equal(simulation_run(s, 1, NULL, NULL, &error),
+                         k < 2 ? STATUS_OK : STATUS_BROKE_DOWN);
+        simulation_destroy(s);
+    }
 }
 
 /* --- kept and restored -------------------------------------------------------------------------
@@ -320,13 +384,43 @@ static void clocks_go_on(void **state)
     simulation_destroy(NULL);
 }
 
+/* What the integrator, the sums and those who sleep keep, too. */
+static void all_is_carried(void **state)
+{
+    (void)state;
+    static struct bag bag;
+    bag.used = bag.read = 0;
+    struct simulation *kept = made_simulation(40), *restored = made_simulation(40);
+    struct carrier out = {.bytes = put, .context = &bag},
+                   back = {.bytes = take, .context = &bag, .back = true};
+    const size_t keeps = kept->scheme.integrator->keeps;
+    assert_true(keeps > 0 && kept->sleep.span_count == 1);
+    memset(kept->integrator_state, 0x3f, keeps);
+    kept->sleep.spans[0] = (struct span){3, 5};
+    kept->sleep.on = true, kept->sleep.rate = 0.75, kept->sleep.awake_count = 5;
+    kept->sleep.at_rest = !restored->sleep.at_rest;
+    line_of(kept)->density_passes = 77;
+    simulation_carry(kept, &out);
+    simulation_carry(restored, &back);
+    assert_false(out.failed || back.failed);
+    assert_int_equal(bag.read, bag.used);
+    assert_memory_equal(restored->integrator_state, kept->integrator_state, keeps);
+    assert_true(restored->sleep.spans[0].first == 3 && restored->sleep.spans[0].len == 5);
+    assert_true(restored->sleep.on && restored->sleep.rate == 0.75 &&
+                restored->sleep.awake_count == 5 && restored->sleep.at_rest == kept->sleep.at_rest);
+    assert_int_equal(line_of(restored)->density_passes, 77);
+    simulation_destroy(kept);
+    simulation_destroy(restored);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_a_run_calls),    cmocka_unit_test(a_run_that_stops),
-        cmocka_unit_test(steps_that_collapse), cmocka_unit_test(who_limits),
-        cmocka_unit_test(too_much_work),       cmocka_unit_test(runaway_energy),
-        cmocka_unit_test(clocks_go_on),
+        cmocka_unit_test(what_a_run_calls), cmocka_unit_test(clocks_show_seconds),
+        cmocka_unit_test(a_run_that_stops), cmocka_unit_test(steps_that_collapse),
+        cmocka_unit_test(who_limits),       cmocka_unit_test(too_much_work),
+        cmocka_unit_test(runaway_energy),   cmocka_unit_test(half_of_the_energy),
+        cmocka_unit_test(clocks_go_on),     cmocka_unit_test(all_is_carried),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
