@@ -58,6 +58,7 @@ void grid_destroy(struct grid *grid)
     free(grid->widest);
     free(grid->reach);
     free(grid->marks);
+    free(grid->reached);
     free(grid);
 }
 
@@ -146,10 +147,13 @@ static enum status lay_cells(struct grid *grid, size_t n, const double *radius, 
         grid->cell_capacity = 2 * grid->cell_count + 1;
         free(grid->marks);
         grid->marks = malloc(2 * grid->cell_capacity);
+        free(grid->reached);
+        grid->reached = malloc(grid->cell_capacity * sizeof *grid->reached);
         grid->start = malloc(grid->cell_capacity * sizeof *grid->start);
         grid->widest = malloc(grid->cell_capacity * sizeof *grid->widest);
         grid->reach = malloc(grid->cell_capacity * sizeof *grid->reach);
-        if (!grid->start || !grid->widest || !grid->reach || !grid->marks) grid->cell_capacity = 0;
+        if (!grid->start || !grid->widest || !grid->reach || !grid->marks || !grid->reached)
+            grid->cell_capacity = 0;
     }
     if (!grid->column_capacity || !grid->cell_capacity)
         return error_set(error, STATUS_ENVIRONMENT, "no memory for %zu cells", grid->cell_count);
@@ -407,9 +411,10 @@ double grid_bytes(int dim, double n, double neighbours)
     /* cell_of, order; position; radius2 and place; list */
     const double point =
         2 * sizeof(uint32_t) + 3 * sizeof(double) + 4 * sizeof(float) + sizeof(struct grid_list);
-    /* 2D: lists end in half a vector of fillings; 3D: a mark for each point of 3 x 3 x 3 cells as
-     * wide as the radius, of which a ball has 4 pi/3 */
+    /* 2D: lists end in half a vector of fillings; 3D: a mark for each point within the radius of a
+     * cell as wide, 20.6 of its volumes, of which a ball has 4 pi/3; and for each cell one for
+     * those of 3 x 3 x 3 */
     const double list = dim == 2 ? (neighbours + 0.5 * GRID_LANES) * sizeof(int32_t)
-                                 : (neighbours * 27 / 4.19 + COPIED) / 8;
+                                 : (neighbours * 20.6 / 4.19 + COPIED + 27) / 8;
     return n * (point + list);
 }

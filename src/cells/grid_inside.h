@@ -31,7 +31,7 @@ struct candidates {
     float *x[3], *radius2;
     uint8_t *near;
     uint16_t *marks;
-    int32_t *slots; /* in 2D */
+    int32_t *slots; /* 3D: which of them are left */
 };
 
 /* Marks the candidates that are near a point. Returns how many. */
@@ -58,6 +58,8 @@ struct grid {
     float *reach;         /* how far its points and those of others reach across it */
     ptrdiff_t within[3];  /* cells that every reach covers; -1: not all the same */
     unsigned char *marks; /* two of each cell, for grid_wake */
+    uint16_t **reached;   /* 3D, of each cell with lists: marks of the points of the cells around
+                             that its own may be near; NULL: of none is it known that they are not */
     uint32_t *order;
     double (*position)[3];
     float *place[3], *radius2; /* of each slot: from the middle of its cell; radius squared */

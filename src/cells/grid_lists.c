@@ -107,6 +107,18 @@ static void copy_cell(const struct grid *grid, struct candidates *to, size_t cou
         memcpy(to->radius2 + count + from, grid->radius2 + begin + from, COPIED * sizeof(float));
 }
 
+/* The rest of the last 16 is near nobody. Returns how many they are with it. */
+static size_t fill_up(const struct candidates *candidates, size_t count)
+{
+    const size_t whole = (count + COPIED - 1) / COPIED * COPIED;
+    for (size_t k = count; k < whole; k++) {
+        candidates->x[0][k] = 1e18f;
+        candidates->x[1][k] = candidates->x[2][k] = 0;
+        candidates->radius2[k] = 0;
+    }
+    return whole;
+}
+
 struct region {
     struct look along[3];
     bool across, all; /* images matter; a pair's image must be found for each pair */
@@ -151,13 +163,7 @@ static size_t find_candidates(const struct grid *grid, const ptrdiff_t c[3],
                 count += n;
             }
         }
-    const size_t whole = (count + COPIED - 1) / COPIED * COPIED;
-    for (size_t k = count; k < whole; k++) {
-        candidates->x[0][k] = 1e18f;
-        candidates->x[1][k] = candidates->x[2][k] = 0;
-        candidates->radius2[k] = 0;
-    }
-    return whole;
+    return fill_up(candidates, count);
 }
 
 /* n numbers from first on, in whole vectors. */
@@ -166,6 +172,76 @@ CLONES static void count_up(size_t n, int32_t first, int32_t *restrict to)
     for (size_t from = 0; from < n; from += COPIED)
 #pragma omp simd
         for (int k = 0; k < COPIED; k++) to[from + (size_t)k] = first + (int32_t)from + k;
+}
+
+/* Bytes of 0 and 1 as bits. Returns how many are 1. */
+static int32_t pack(const uint8_t *near, size_t count, uint16_t *marks)
+{
+    const uint64_t to_top = 0x0102040810204080u, sum = 0x0101010101010101u;
+    uint64_t found = 0;
+    for (size_t k = 0; k < count; k += 16) {
+        uint64_t half[2];
+        memcpy(half, near + k, sizeof half);
+        const uint64_t low = half[0] * to_top >> 56, high = half[1] * to_top >> 56;
+        marks[k / 16] = (uint16_t)(low | high << 8);
+        found += (half[0] + half[1]) * sum >> 56;
+    }
+    return (int32_t)found;
+}
+
+/* Which candidates can be near a point between lo and hi? Rounding keeps order: no distance to such
+ * a point comes out less than that to the box. */
+CLONES static void near_box(size_t count, const float lo[3], const float hi[3], float radius2,
+                            const struct candidates *candidates)
+{
+    const float *restrict x = candidates->x[0], *restrict y = candidates->x[1],
+                          *restrict z = candidates->x[2], *restrict other = candidates->radius2;
+    uint8_t *restrict near = candidates->near;
+    const float x0 = lo[0], y0 = lo[1], z0 = lo[2], x1 = hi[0], y1 = hi[1], z1 = hi[2];
+#pragma omp simd
+    for (size_t k = 0; k < count; k++) {
+        const float dx = x[k] > x1   ? x[k] - x1
+                         : x[k] < x0 ? x0 - x[k]
+                                     : 0,
+                    dy = y[k] > y1   ? y[k] - y1
+                         : y[k] < y0 ? y0 - y[k]
+                                     : 0,
+                    dz = z[k] > z1   ? z[k] - z1
+                         : z[k] < z0 ? z0 - z[k]
+                                     : 0;
+        const float r2 = dx * dx + dy * dy + dz * dz;
+        const float widest = other[k] > radius2 ? other[k] : radius2;
+        near[k] = r2 <= widest;
+    }
+}
+
+/* Drops the candidates that no point of the cell can have in its list, in 3D a quarter of them;
+ * marks: a bit for each of count, of those that stay. Returns as find_candidates. */
+static size_t drop_far(const struct grid *grid, size_t cell, struct candidates *candidates,
+                       size_t count, uint16_t *marks, size_t *own)
+{
+    const uint32_t begin = grid->start[cell];
+    const size_t first = *own;
+    float lo[3], hi[3], radius2 = grid->radius2[begin];
+    for (int a = 0; a < 3; a++) lo[a] = hi[a] = grid->place[a][begin];
+    for (uint32_t s = begin; s < grid->start[cell + 1]; s++) {
+        for (int a = 0; a < 3; a++) {
+            lo[a] = grid->place[a][s] < lo[a] ? grid->place[a][s] : lo[a];
+            hi[a] = grid->place[a][s] > hi[a] ? grid->place[a][s] : hi[a];
+        }
+        radius2 = grid->radius2[s] > radius2 ? grid->radius2[s] : radius2;
+    }
+    near_box(count, lo, hi, radius2, candidates);
+    pack(candidates->near, count, marks);
+    count_up(count, 0, candidates->slots);
+    const size_t left = (size_t)grid->read(candidates->slots, marks, count, candidates->slots);
+    for (size_t k = 0; k < left; k++) {
+        const size_t from = (size_t)candidates->slots[k];
+        for (int a = 0; a < 3; a++) candidates->x[a][k] = candidates->x[a][from];
+        candidates->radius2[k] = candidates->radius2[from];
+        if (from == first) *own = k;
+    }
+    return fill_up(candidates, left);
 }
 
 /* Their slots, in the same order; the list has room for COPIED more. Returns how many. */
@@ -208,21 +284,6 @@ CLONES static void near_images(int dim, size_t count, const float at[3], float r
         const float most = other[k] > radius2 ? other[k] : radius2;
         near[k] = r2 < most;
     }
-}
-
-/* Bytes of 0 and 1 as bits. Returns how many are 1. */
-static int32_t pack(const uint8_t *near, size_t count, uint16_t *marks)
-{
-    const uint64_t to_top = 0x0102040810204080u, sum = 0x0101010101010101u;
-    uint64_t found = 0;
-    for (size_t k = 0; k < count; k += 16) {
-        uint64_t half[2];
-        memcpy(half, near + k, sizeof half);
-        const uint64_t low = half[0] * to_top >> 56, high = half[1] * to_top >> 56;
-        marks[k / 16] = (uint16_t)(low | high << 8);
-        found += (half[0] + half[1]) * sum >> 56;
-    }
-    return (int32_t)found;
 }
 
 static int32_t find_plainly(int dim, const struct candidates *candidates, size_t count,
@@ -351,9 +412,19 @@ static int search_cell(struct grid *grid, const ptrdiff_t c[3], struct candidate
     size_t own = 0;
     for (int a = 0; a < 3; a++)
         side[a] = grid_wraps(grid, a) ? (float)(grid->side[a] / grid->unit) : HUGE_VALF;
-    const size_t count = find_candidates(grid, c, &region, candidates, &own);
+    size_t count = find_candidates(grid, c, &region, candidates, &own);
     if (count == SIZE_MAX) return -1;
-    if (!marked) find_slots(grid, &region, candidates->slots);
+    if (count > candidates->most) candidates->most = count;
+    grid->reached[cell] = NULL;
+    if (!marked) {
+        find_slots(grid, &region, candidates->slots);
+    } else if (!region.all) {
+        int32_t *room = pool_take(pool, (count + 31) / 32);
+        if (!room) return -1;
+        pool->used += (count + 31) / 32;
+        grid->reached[cell] = (uint16_t *)(void *)room;
+        count = drop_far(grid, cell, candidates, count, grid->reached[cell], &own);
+    }
     int longest = 0;
     for (uint32_t s = grid->start[cell]; s < grid->start[cell + 1]; s++, own++) {
         struct grid_list *list = &grid->lists[s];
@@ -381,7 +452,6 @@ static int search_cell(struct grid *grid, const ptrdiff_t c[3], struct candidate
         pool->used += words;
         if (list->count > longest) longest = list->count;
     }
-    if (count > candidates->most) candidates->most = count;
     return longest;
 }
 
@@ -465,6 +535,9 @@ static void enter_cell(const struct grid *grid, struct grid_reader *reader, size
     }
     const struct region region = find_region(grid, reader->at, cell);
     reader->count = find_slots(grid, &region, reader->candidates);
+    if (grid->reached[cell])
+        reader->count = (size_t)grid->read(reader->candidates, grid->reached[cell], reader->count,
+                                           reader->candidates);
     reader->begin = grid->start[cell];
     reader->end = grid->start[cell + 1];
 }

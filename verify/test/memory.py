@@ -13,7 +13,7 @@ WITHIN = 0.2
 RUNS = [["gresho", "n=120^2", "t_end=0.0005"],
         ["sound_wave_3d", "n=40^3", "t_end=0.0001", "kernel=wendland_c4", "eta=3.6", "gradient=standard",
          "viscosity=constant"],
-        ["sound_wave_3d", "n=40^3", "t_end=0.0001"]]
+        ["sound_wave_3d", "n=40^3", "t_end=0.0001", "lattice=jittered"]]
 CLOSELY = 0.05  # of the last one, whose statement shall hold for a million particles in a GiB
 
 AWAY = ["--snapshot", "end.csv", "--snapshot-every", "0.0003"]

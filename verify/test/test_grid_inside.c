@@ -567,8 +567,8 @@ static void test_bytes(void **state)
     const double point = 4 + 4 + 24 + 4 + 12 + 16;
     near_relative(grid_bytes(2, 1000, 50), 1000 * (point + 4 * (50 + 4.)), 1e-15);
     near_relative(grid_bytes(2, 3, 0), 3 * (point + 16), 1e-15);
-    near_relative(grid_bytes(3, 1000, 50), 1000 * (point + (50 * 27 / 4.19 + 16) / 8), 1e-15);
-    near_relative(grid_bytes(3, 3, 0), 3 * (point + 2), 1e-15);
+    near_relative(grid_bytes(3, 1000, 50), 1000 * (point + (50 * 20.6 / 4.19 + 43) / 8), 1e-15);
+    near_relative(grid_bytes(3, 3, 0), 3 * (point + 43. / 8), 1e-15);
 }
 
 int main(void)
