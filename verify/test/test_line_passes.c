@@ -196,6 +196,33 @@ static void ghosts_as_many_as_it_takes(void **state)
     simulation_destroy(s);
 }
 
+/* As many ghosts as there were, or as the reach asks for, 8 at least; twice as many where they do
+ * not suffice, and those of the pairs after that. */
+static void ghosts_are_kept_filled(void **state)
+{
+    (void)state;
+    static const struct {
+        ptrdiff_t filled, reach, then;
+    } rows[] = {{0, 1, 8}, {7, 1, 8}, {8, 1, 8}, {9, 1, 9}, {9, 7, 9}, {9, 8, 10}, {0, 20, 22}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        struct simulation *s = made_simulation(200);
+        struct error error;
+        struct line *line = line_of(s);
+        line->ghosts_filled = rows[k].filled, line->reach = rows[k].reach;
+        s->particles.P[-1] = 77;
+        assert_int_equal(widths_find(s, true, 0.25, &error), STATUS_OK);
+        assert_int_equal(line->ghosts_filled, rows[k].then);
+        assert_true(line->predict_ratio == 0.25 && s->particles.P[-1] == s->particles.P[199]);
+        for (ptrdiff_t i = 0; i < 200; i++) s->particles.h_inverse_found[i] = 1. / 0.06;
+        for (ptrdiff_t i = 0; i < 200; i++) s->particles.h_inverse_old[i] = 1. / 0.06;
+        assert_int_equal(widths_find(s, false, 0, &error), STATUS_OK);
+        assert_in_range(line->reach, 11, 13);
+        const ptrdiff_t from = rows[k].then;
+        assert_int_equal(line->ghosts_filled, from > 13 ? from : 2 * from);
+        simulation_destroy(s);
+    }
+}
+
 /* --- room --------------------------------------------------------------------------------------
  */
 
@@ -330,6 +357,7 @@ int main(void)
         cmocka_unit_test(the_first_without_a_root),
         cmocka_unit_test(reaches_are_lowered_now_and_then),
         cmocka_unit_test(what_sums_leave),
+        cmocka_unit_test(ghosts_are_kept_filled),
         cmocka_unit_test(ghosts_as_many_as_it_takes),
         cmocka_unit_test(room_for_eight_times_the_reach),
         cmocka_unit_test(scratch_is_made_rarely),

@@ -78,7 +78,9 @@ struct batch {
 static struct batch drawn_batch(const struct width_rule *rule, double high)
 {
     struct batch b;
+    b.bracket.low[LEN] = b.bracket.high[LEN] = 77;
     width_begin(&b.bracket, LEN, high);
+    assert_true(b.bracket.low[LEN] == 77 && b.bracket.high[LEN] == 77);
     for (int i = 0; i <= LEN; i++) {
         b.m[i] = draw(0.5, 2), b.h[i] = draw(0.5, 2);
         b.sums.m[i] = draw(0.7, 1.4) * b.m[i] * pow(rule->eta, rule->dim) / rule->constant;
@@ -159,21 +161,21 @@ static void brackets_hold(void **state)
         {1.25, -2, 1, 0, INFINITY, 1 - 0.2 / 2.6}, /* 1 - (1 - 0.8)/(1 + 0.8 * 2) */
         {0.9, 0, 1, 0, end, end},                  /* 1 or the next number: there is no middle */
     };
-    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-        const double m[] = {1};
-        double h[] = {rows[k].h}, h_inverse[] = {1 / rows[k].h};
-        struct density_sums sums = {.m = {rows[k].sum * even},
-                                    .m_dh = {rows[k].dh * rows[k].sum * even}};
-        struct width_bracket bracket = {.low = {rows[k].low}, .high = {rows[k].high}};
-        assert_true(width_step(&rule, 1, m, &sums, &bracket, h, h_inverse));
-        near_relative(h[0], rows[k].next, 1e-15);
-        near_relative(h_inverse[0], 1 / rows[k].next, 1e-15);
-        if (rows[k].high == end) {
-            assert_true(bracket.low[0] == bracket.high[0]);
-            const double closed = h[0];
-            width_step(&rule, 1, m, &sums, &bracket, h, h_inverse);
-            near_relative(h[0], closed, 4e-16);
-        }
+    enum { ROWS = sizeof rows / sizeof *rows };
+    double m[ROWS], h[ROWS], h_inverse[ROWS];
+    struct density_sums sums;
+    struct width_bracket bracket;
+    for (int k = 0; k < ROWS; k++) { /* all of them half as wide again, side by side */
+        m[k] = 1, h[k] = 1.5 * rows[k].h, h_inverse[k] = 1 / h[k];
+        sums.m[k] = rows[k].sum * even, sums.m_dh[k] = rows[k].dh * sums.m[k];
+        bracket.low[k] = 1.5 * rows[k].low;
+        bracket.high[k] = rows[k].high == end ? nextafter(1.5, 2) : 1.5 * rows[k].high;
+    }
+    assert_true(width_step(&rule, ROWS, m, &sums, &bracket, h, h_inverse));
+    for (int k = 0; k < ROWS; k++) {
+        near_relative(h[k], 1.5 * rows[k].next, 1e-15);
+        near_relative(h_inverse[k], 1 / (1.5 * rows[k].next), 1e-15);
+        assert_int_equal(bracket.low[k] == bracket.high[k], rows[k].high == end);
     }
 }
 
@@ -208,7 +210,7 @@ static void predicted_widths(void **state)
         double found[BATCH_MAX], last[BATCH_MAX];
         if (particles_create(&a, 2, BATCH_MAX + 9, 0, &error)) fail_msg("%s", error.message);
         for (int i = 0; i < BATCH_MAX + 9; i++)
-            a.h_inverse[i] = a.h_inverse_found[i] = a.h_inverse_old[i] = 7;
+            a.h_inverse[i] = 5, a.h_inverse_found[i] = 6, a.h_inverse_old[i] = 7;
         for (int i = 0; i < len; i++) {
             found[i] = a.h_inverse_found[4 + i] = draw(0.5, 2);
             last[i] = a.h_inverse_old[4 + i] = found[i] * (1 + draw(-0.45, 0.45));
@@ -224,7 +226,7 @@ static void predicted_widths(void **state)
         }
         assert_true(bound % 100 > 3 && bound / 100 > 1);
         for (int i = 0; i < BATCH_MAX + 9; i++)
-            if (i < 4 || i >= 4 + len) assert_true(a.h_inverse[i] == 7 && a.h_inverse_old[i] == 7);
+            if (i < 4 || i >= 4 + len) assert_true(a.h_inverse[i] == 5 && a.h_inverse_old[i] == 7);
         particles_destroy(&a);
     }
 }
