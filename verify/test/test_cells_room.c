@@ -160,6 +160,168 @@ static void test_first_guess(void **state)
     }
 }
 
+/* sum_j Z_j W(r_ij, h_i) over the nearest images. */
+static double kernel_sum(const struct snapshot *s, int dim, const struct kernel *kernel, size_t i,
+                         const double *Z)
+{
+    double sum = 0;
+    for (size_t j = 0; j < s->n; j++) {
+        double r2 = 0;
+        for (int a = 0; a < dim; a++) {
+            const double d = s->x[a][j] - s->x[a][i];
+            r2 += (d - round(d)) * (d - round(d));
+        }
+        sum += (Z ? Z[j] : 1) * kernel_value(kernel, sqrt(r2), s->h[i], dim);
+    }
+    return sum;
+}
+
+/* Density and volume of every particle are sums over all others, whatever the volume element. */
+static void test_densities(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++)
+        for (int e = 0; e < VOLUME_ELEMENTS; e++) {
+            struct scheme scheme = scheme_of();
+            scheme.volume_element = (enum volume_element)e;
+            const struct scene scene = scene_of(dim, dim == 2 ? 13 : 6, &scheme); /* 169, 216 */
+            for (size_t i = 0; i < scene.n; i++) u[i] = 1 + 0.2 * sin(5. * (double)i);
+            struct simulation *simulation = created(&scene);
+            struct snapshot s;
+            double U[N];
+            simulation_snapshot(simulation, &s);
+            for (size_t i = 0; i < s.n; i++) U[i] = s.m[i] * s.u[i];
+            for (size_t i = 0; i < s.n; i++) {
+                const double mass = kernel_sum(&s, dim, &scheme.kernel, i, s.m),
+                             number = kernel_sum(&s, dim, &scheme.kernel, i, NULL),
+                             energy = kernel_sum(&s, dim, &scheme.kernel, i, U);
+                const double found = e == VOLUME_NUMBER ? s.m[i] * number : mass,
+                             V = e == VOLUME_ENERGY ? U[i] / energy : s.m[i] / found;
+                near_relative(s.rho[i], s.m[i] / V, 1e-10);
+                near_relative(s.volume[i], V, 1e-10);
+                near_relative(s.h[i], scheme.eta * pow(s.m[i] / found, 1. / dim), 1e-10);
+            }
+            simulation_destroy(simulation);
+        }
+}
+
+/* After a step alpha is what it jumps up to at once, or decays to: alpha_l + above/(1 + dt rate).
+ */
+static void test_switch(void **state)
+{
+    (void)state;
+    struct scheme scheme = scheme_of();
+    scheme.viscosity = VISCOSITY_CULLEN_DEHNEN;
+    struct scene scene = scene_of(2, 13, &scheme);
+    for (size_t i = 0; i < scene.n; i++) v[0][i] = sin(2 * M_PI * x[0][i]);
+    struct simulation *simulation = created(&scene);
+    const struct particles *p = &simulation->particles;
+    double local[N];
+    size_t below = 0, above = 0;
+    for (size_t i = 0; i < scene.n; i++) p->alpha[i] = 7;
+    cells_sums.apply_switch(simulation, 1e300);
+    memcpy(local, p->alpha, scene.n * sizeof *local);
+    for (int k = 0; k < 2; k++)
+        for (size_t i = 0; i < scene.n; i++) { /* from both sides, after two steps */
+            double after[3];
+            for (int step = 0; step < 3; step++) {
+                p->alpha[i] = k ? local[i] + 0.5 : local[i] - 0.01;
+                for (size_t j = 0; j < scene.n; j++)
+                    if (j != i) p->alpha[j] = local[j];
+                cells_sums.apply_switch(simulation, 0.1 * step);
+                after[step] = p->alpha[i] - local[i];
+            }
+            near_below(fabs(after[0] - 0.5 * k), 1e-15);
+            if (k == 0) near_below(fabs(after[1]), 0);
+            const double rate = k ? (0.5 / after[1] - 1) / 0.1 : 0;
+            if (k) near_relative(after[2], 0.5 / (1 + 0.2 * rate), 1e-12);
+            below += !k, above += k && rate > 0;
+        }
+    assert_true(below == scene.n && above == scene.n);
+    simulation_destroy(simulation);
+}
+
+/* Where a state is kept. */
+struct kept {
+    size_t at;
+    unsigned char bytes[1 << 21];
+};
+
+static bool keep_bytes(void *context, void *bytes, size_t n)
+{
+    struct kept *kept = context;
+    if (kept->at + n > sizeof kept->bytes) return false;
+    memcpy(kept->bytes + kept->at, bytes, n);
+    kept->at += n;
+    return true;
+}
+
+static bool take_bytes(void *context, void *bytes, size_t n)
+{
+    struct kept *kept = context;
+    memcpy(bytes, kept->bytes + kept->at, n);
+    kept->at += n;
+    return true;
+}
+
+static bool ten_steps(void *context, double time, uint64_t steps)
+{
+    const uint64_t *from = context;
+    (void)time;
+    return steps < *from + 10;
+}
+
+/* A state that is kept and comes back goes on to the last bit, with those who sleep, and is sorted
+ * at the same steps. */
+static void test_carried(void **state)
+{
+    (void)state;
+    static struct kept kept;
+    for (int predicted = 0; predicted < 2; predicted++) {
+        struct scheme scheme = scheme_of();
+        if (predicted) {
+            scheme.integrator =
+                (const struct integrator *)family_find(&integrator_family, "predicted_midpoint");
+            scheme.h_method = H_PREDICTED;
+        }
+        struct scene scene = scene_of(2, 8, &scheme);
+        scene.n = 1024, scene.hi[1] = 16, scene.skip = true;
+        for (size_t i = 0; i < scene.n; i++) {
+            x[0][i] = ((double)(i % 8) + 0.5) / 8, x[1][i] = ((double)(i / 8) + 0.5) / 8;
+            m[i] = 1. / 64, u[i] = i == 0 ? 3 : 1, v[0][i] = v[1][i] = 0;
+        }
+        struct simulation *first = created(&scene), *second = created(&scene);
+        uint64_t from = 0;
+        assert_int_equal(simulation_run(first, 1, ten_steps, &from, NULL), STATUS_OK);
+        struct carrier out = {.bytes = keep_bytes, .context = &kept},
+                       back = {.bytes = take_bytes, .context = &kept, .back = true};
+        kept.at = 0;
+        simulation_carry(first, &out);
+        assert_false(out.failed);
+        kept.at = 0;
+        simulation_carry(second, &back);
+        assert_false(back.failed);
+        for (from = 10; from < 50; from += 10) {
+            struct snapshot s, t;
+            struct simulation_cost cost[2];
+            assert_int_equal(simulation_run(first, 1, ten_steps, &from, NULL), STATUS_OK);
+            assert_int_equal(simulation_run(second, 1, ten_steps, &from, NULL), STATUS_OK);
+            simulation_snapshot(first, &s);
+            simulation_snapshot(second, &t);
+            simulation_cost(first, &cost[0]);
+            simulation_cost(second, &cost[1]);
+            assert_true(cost[0].skipped_particle_updates > 0);
+            assert_true(cost[0].skipped_particle_updates == cost[1].skipped_particle_updates);
+            assert_memory_equal(s.id, t.id, s.n * sizeof *s.id);
+            for (int a = 0; a < 2; a++) assert_memory_equal(s.x[a], t.x[a], s.n * sizeof(double));
+            assert_memory_equal(s.h, t.h, s.n * sizeof(double));
+            assert_memory_equal(s.rho, t.rho, s.n * sizeof(double));
+        }
+        simulation_destroy(first);
+        simulation_destroy(second);
+    }
+}
+
 /* Rates of alpha of every particle, in whole batches and not. */
 static void test_alpha(void **state)
 {
@@ -372,15 +534,12 @@ static void test_bytes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_order_in_memory),
-        cmocka_unit_test(test_everybody_moves_whole),
-        cmocka_unit_test(test_first_guess),
-        cmocka_unit_test(test_alpha),
-        cmocka_unit_test(test_described_asleep),
-        cmocka_unit_test(test_too_wide),
-        cmocka_unit_test(test_grown_too_wide),
-        cmocka_unit_test(test_no_position),
-        cmocka_unit_test(test_bytes),
+        cmocka_unit_test(test_order_in_memory), cmocka_unit_test(test_everybody_moves_whole),
+        cmocka_unit_test(test_first_guess),     cmocka_unit_test(test_densities),
+        cmocka_unit_test(test_switch),          cmocka_unit_test(test_carried),
+        cmocka_unit_test(test_alpha),           cmocka_unit_test(test_described_asleep),
+        cmocka_unit_test(test_too_wide),        cmocka_unit_test(test_grown_too_wide),
+        cmocka_unit_test(test_no_position),     cmocka_unit_test(test_bytes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
