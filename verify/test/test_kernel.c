@@ -117,8 +117,13 @@ static void test_sinc_constants(void **state)
         struct kernel kernel;
         assert_int_equal(kernel_select(&kernel, "sinc", table[i].n, NULL), STATUS_OK);
         assert_int_equal(kernel.order, table[i].n);
-        assert_int_equal(kernel.smoothness[2], table[i].n - 1);
+        assert_int_equal(kernel.smoothness[0], 0);
+        for (int g = 0; g < GRADIENTS; g++) /* limits are known of n = 5, in 1D */
+            assert_int_equal(kernel.stable_eta[g] != 0, table[i].n == 5 && g <= GRADIENT_IA);
         for (int dim = 1; dim <= 3; dim++) {
+            assert_int_equal(kernel.smoothness[dim], table[i].n - 1);
+            near_relative(pow(kernel_least_eta(&kernel, dim), dim), table[i].constant[dim - 1],
+                          2e-14);
             const double want = table[i].constant[dim - 1];
             assert_true(fabs(kernel.constant[dim] - want) <= 1e-14 * want);
         }
@@ -304,6 +309,9 @@ static void test_guests(void **state)
     (void)state;
     static struct kernel guests[KERNEL_GUESTS_MAX + 1];
     static char names[KERNEL_GUESTS_MAX + 1][24];
+    static const double knots[] = {0.3, 0.5};
+    struct kernel cubic;
+    assert_int_equal(kernel_select(&cubic, "cubic_spline", 5, NULL), STATUS_OK);
     for (int k = 0; k <= KERNEL_GUESTS_MAX; k++) {
         snprintf(names[k], sizeof names[k], "guest_%d", k);
         guests[k] = (struct kernel){.member = {names[k], "", ""},
@@ -311,6 +319,9 @@ static void test_guests(void **state)
                                     .plugin_w = one,
                                     .plugin_dw_dh = k ? guest_dh : NULL,
                                     .constant = {0, 0, 1 / M_PI}};
+        if (k == 5) /* one without a plug-in: normalised from knot to knot */
+            guests[k] = (struct kernel){
+                .member = {names[k], "", ""}, .w = cubic.w, .knot_count = 2, .knots = knots};
         assert_int_equal(kernel_add(&guests[k]), k < KERNEL_GUESTS_MAX ? KINDS + k : -1);
     }
     for (int k = 0; k <= KERNEL_GUESTS_MAX; k++) {
@@ -319,6 +330,9 @@ static void test_guests(void **state)
         assert_int_equal(kernel_index(names[k]), in ? KINDS + k : -1);
         assert_int_equal(kernel_select(&kernel, names[k], 5, NULL), in ? 0 : STATUS_BAD_INPUT);
         if (!in) continue;
+        for (int dim = 1; dim <= 3 && k == 5; dim++)
+            near_relative(kernel.constant[dim], cubic.constant[dim], 1e-14);
+        if (k == 5) continue;
         assert_true(kernel.constant[1] == 0 && kernel.constant[2] == 1 / M_PI);
         assert_int_equal(kernel_stamp(&kernel), -1);
         if (k) assert_true(kernel_dh(&kernel, 2, 3, 1) == 231);
