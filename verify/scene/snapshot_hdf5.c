@@ -65,13 +65,12 @@ static void set_header(struct image *image, const struct run_result *result)
     const unsigned count[TYPES] = {(unsigned)result->n}, none[TYPES] = {0};
     const double masses[TYPES] = {0}, zero = 0, one = 1;
     const int files = 1, no = 0, yes = 1, dim = box->dim;
-    double side[3] = {1, 1, 1};
+    double side[3] = {[2] = 1};
     hsize_t sides = 1;
     for (int d = 0; d < dim; d++) {
         side[d] = domain_length(box, d);
         if (side[d] != side[0]) sides = 3;
     }
-    image->good &= went_well(header);
     set_attribute(image, header, "NumPart_ThisFile", H5T_NATIVE_UINT, count, TYPES);
     set_attribute(image, header, "NumPart_Total", H5T_NATIVE_UINT, count, TYPES);
     set_attribute(image, header, "NumPart_Total_HighWord", H5T_NATIVE_UINT, none, TYPES);
