@@ -15,7 +15,7 @@
 
 /* Everything over its value right behind the shock. */
 struct profile {
-    double lambda, rho, v, P;
+    double rho, v, P;
 };
 
 struct exponents {
@@ -46,7 +46,6 @@ static struct profile profile_at(double gamma, double j, double s, double *log_l
     const double log1 = log(x1), log3 = log(x3), log4 = log(x4);
     *log_lambda = -e.a0 * log1 - e.a2 * s - e.a1 * log3;
     return (struct profile){
-        .lambda = exp(*log_lambda),
         .rho = exp(e.a3 * s + e.a4 * log3 + e.a5 * log4),
         .v = x1 * exp(*log_lambda),
         .P = exp(e.a0 * j * log1 + (e.a4 - 2 * e.a1) * log3 + (1 + e.a5) * log4)};
@@ -71,9 +70,9 @@ static struct profile profile_of(double gamma, int d, double lambda)
     gsl_function f = {miss, &place};
     const double low = 2 * place.log_lambda / -exponents_of(gamma, d).a2 - 10, high = 0;
     double unused;
-    if (!(miss(high, &place) > 0 && miss(low, &place) < 0)) return (struct profile){1, 1, 1, 1};
+    if (!(miss(high, &place) > 0 && miss(low, &place) < 0)) return (struct profile){1, 1, 1};
     gsl_root_fsolver *solver = gsl_root_fsolver_alloc(gsl_root_fsolver_brent);
-    struct profile profile = {(double)NAN, (double)NAN, (double)NAN, (double)NAN};
+    struct profile profile = {(double)NAN, (double)NAN, (double)NAN};
     if (!solver) return profile;
     if (gsl_root_fsolver_set(solver, &f, low, high) == GSL_SUCCESS)
         while (gsl_root_fsolver_iterate(solver) == GSL_SUCCESS) {
@@ -172,7 +171,7 @@ double sedov_integral(const struct sedov *sedov, double r, double t,
     const double front = sedov_shock(sedov, t);
     const double ends[] = {0, fmin(r, front), r};
     double sum = 0;
-    for (int k = 0; k < 2 && ends[k] < r; k++) { /* either side of the shock */
+    for (int k = 0; k < 2; k++) { /* either side of the shock */
         double part, error;
         const int status = gsl_integration_qag(&f, pow(ends[k], sedov->d) / sedov->d,
                                                pow(ends[k + 1], sedov->d) / sedov->d, 0, 1e-10, 200,

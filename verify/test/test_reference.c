@@ -198,6 +198,7 @@ static void test_sedov_ends(void **state)
         assert_true(at.rho < inner.rho);
         const struct sedov_state held = sedov_sample(&s, 1e-12 * R, t);
         near_relative(at.rho, held.rho, 1e-3);
+        near_relative(held.rho / sedov_sample(&s, 1e-11 * R, t).rho, pow(10, -d / 0.4), 1e-3);
         near_relative(at.P, inner.P, 1e-6);
     }
 }
