@@ -247,6 +247,28 @@ static void once(void **state)
     pool_free(&pool);
 }
 
+/* A run's document comes out of its process, or why there is none. */
+static void run_elsewhere(void **state)
+{
+    struct error error;
+    struct pool pool = {0};
+    const struct pool_settings settings = {.jobs = 1};
+    size_t job[2];
+    (void)state;
+    struct run run = resolved("sod", "t_end=0.001"), lost = resolved("sod", "t_end=0.002");
+    lost.settings.value[SETTING_n].real[0] = 0x1p53; /* more than there is room for */
+    assert_int_equal(run_job_add(&pool, &run, &job[0], &error), STATUS_OK);
+    assert_int_equal(run_job_add(&pool, &lost, &job[1], &error), STATUS_OK);
+    assert_int_equal(pool_run(&pool, &settings, &error), STATUS_OK);
+    const struct pool_job *done = &pool.jobs[job[0]], *failed = &pool.jobs[job[1]];
+    assert_int_equal(done->error.status, STATUS_OK);
+    assert_string_equal(value_text(done->document, "command"), "run");
+    assert_string_equal(value_text(done->document, "case"), "sod");
+    assert_int_equal(failed->error.status, STATUS_ENVIRONMENT);
+    assert_true(failed->error.message[0] && !failed->document && !failed->crashed);
+    pool_free(&pool);
+}
+
 /* A value that a key does not take any more. */
 static void changed_values(void **state)
 {
@@ -294,7 +316,7 @@ int main(void)
         cmocka_unit_test(numbers),        cmocka_unit_test(how_many_replicates),
         cmocka_unit_test(keys),           cmocka_unit_test(weights),
         cmocka_unit_test(once),           cmocka_unit_test(what_is_refused),
-        cmocka_unit_test(changed_values),
+        cmocka_unit_test(changed_values), cmocka_unit_test(run_elsewhere),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
