@@ -25,7 +25,6 @@ static void add_numbers(struct lanes_layout *layout, enum lanes_field first, enu
 static void begin_layout(struct lanes_layout *layout, enum lanes_geometry geometry, int dim)
 {
     *layout = (struct lanes_layout){.geometry = geometry};
-    for (int field = 0; field < FIELDS; field++) layout->offset[field] = -1;
     add_field(layout, FIELD_PLACE, dim);
 }
 

@@ -16,7 +16,7 @@ static void fill_records(struct cells *cells, const struct cells_fields *fields)
         int mirrored;
         const size_t i = sentinel ? 0 : lanes_source(cells, fields->n, s, &mirrored);
         record[weight] = sentinel ? 0 : cells->method.number ? 1 : fields->m[i];
-        if (energy >= 0) record[energy] = sentinel ? 0 : fields->U[i];
+        if (energy) record[energy] = sentinel ? 0 : fields->U[i];
     }
 }
 

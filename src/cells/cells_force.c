@@ -18,8 +18,8 @@ static void fill_sentinel(struct cells *cells)
     /* far beyond its own width, too; a density keeps quotients finite, and its matrix is as good as
      * any */
     record[at[FIELD_H_INVERSE]] = 16 / (record[0] > 0 ? record[0] : 1);
-    if (at[FIELD_DENSITY] >= 0) record[at[FIELD_DENSITY]] = 1;
-    if (at[FIELD_MATRIX] >= 0) record[at[FIELD_MATRIX]] = 1;
+    if (at[FIELD_DENSITY]) record[at[FIELD_DENSITY]] = 1;
+    if (at[FIELD_MATRIX]) record[at[FIELD_MATRIX]] = 1;
 }
 
 /* Matrices of a particle, or of its image. */
@@ -28,7 +28,7 @@ ALWAYS_INLINE void fill_matrices(int dim, int mirrored, const struct cells *cell
 {
     const int *at = cells->force.offset;
     double projector[CELLS_SYMMETRIC] = {0};
-    if (at[FIELD_PROJECTOR] >= 0) {
+    if (at[FIELD_PROJECTOR]) {
         double L[CELLS_SQUARE];
         for (int k = 0; k < dim * dim; k++) L[k] = fields->slope[k][i];
         cells_project(dim, L, projector);
@@ -37,11 +37,10 @@ ALWAYS_INLINE void fill_matrices(int dim, int mirrored, const struct cells *cell
         for (int b = 0; b < dim; b++) {
             const double sign = lanes_sign(mirrored, a) * lanes_sign(mirrored, b);
             const int ab = symmetric_at(dim, a, b), full = a * dim + b;
-            if (at[FIELD_SLOPE] >= 0)
-                record[at[FIELD_SLOPE] + full] = sign * fields->slope[full][i];
+            if (at[FIELD_SLOPE]) record[at[FIELD_SLOPE] + full] = sign * fields->slope[full][i];
             if (b < a) continue;
-            if (at[FIELD_MATRIX] >= 0) record[at[FIELD_MATRIX] + ab] = sign * fields->matrix[ab][i];
-            if (at[FIELD_PROJECTOR] >= 0) record[at[FIELD_PROJECTOR] + ab] = sign * projector[ab];
+            if (at[FIELD_MATRIX]) record[at[FIELD_MATRIX] + ab] = sign * fields->matrix[ab][i];
+            if (at[FIELD_PROJECTOR]) record[at[FIELD_PROJECTOR] + ab] = sign * projector[ab];
         }
 }
 
@@ -51,24 +50,24 @@ ALWAYS_INLINE void fill_record(int dim, const struct cells *cells,
 {
     const struct cells_method *method = &cells->method;
     const int *at = cells->force.offset;
-    if (at[FIELD_WEIGHT] >= 0) record[at[FIELD_WEIGHT]] = fields->m[i];
+    if (at[FIELD_WEIGHT]) record[at[FIELD_WEIGHT]] = fields->m[i];
     for (int a = 0; a < dim; a++)
         record[at[FIELD_VELOCITY] + a] = lanes_sign(mirrored, a) * fields->v[a][i];
     record[at[FIELD_H_INVERSE]] = fields->h_inverse[i];
     record[at[FIELD_VOLUME]] = fields->V[i];
     record[at[FIELD_PRESSURE]] = fields->P[i];
     record[at[FIELD_SOUND]] = fields->c[i];
-    if (at[FIELD_DENSITY] >= 0) record[at[FIELD_DENSITY]] = fields->rho[i];
-    if (at[FIELD_ALPHA] >= 0) record[at[FIELD_ALPHA]] = fields->alpha[i];
-    if (at[FIELD_BALSARA] >= 0) record[at[FIELD_BALSARA]] = fields->balsara[i];
-    if (at[FIELD_HEAT] >= 0) record[at[FIELD_HEAT]] = fields->U[i] / fields->m[i];
-    if (at[FIELD_LAGRANGIAN] >= 0) {
+    if (at[FIELD_DENSITY]) record[at[FIELD_DENSITY]] = fields->rho[i];
+    if (at[FIELD_ALPHA]) record[at[FIELD_ALPHA]] = fields->alpha[i];
+    if (at[FIELD_BALSARA]) record[at[FIELD_BALSARA]] = fields->balsara[i];
+    if (at[FIELD_HEAT]) record[at[FIELD_HEAT]] = fields->U[i] / fields->m[i];
+    if (at[FIELD_LAGRANGIAN]) {
         double *group = record + at[FIELD_LAGRANGIAN];
         group[0] = fields->b[i];
         group[1] = fields->grad_h[i];
         group[2] = method->energy_element ? fields->U[i] : method->number ? 1 : fields->m[i];
     }
-    if (at[FIELD_STEEP] >= 0) record[at[FIELD_STEEP]] = fields->steep[i];
+    if (at[FIELD_STEEP]) record[at[FIELD_STEEP]] = fields->steep[i];
     fill_matrices(dim, mirrored, cells, fields, i, record);
 }
 

@@ -20,8 +20,8 @@ static void fill_records(struct cells *cells, const struct cells_fields *fields)
         int mirrored;
         const size_t i = lanes_source(cells, fields->n, s, &mirrored);
         record[weight] = fields->V[i];
-        if (width >= 0) record[width] = 1 / fields->h_inverse[i];
-        for (int a = 0; velocity >= 0 && a < dim; a++)
+        if (width) record[width] = 1 / fields->h_inverse[i];
+        for (int a = 0; velocity && a < dim; a++)
             record[velocity + a] = lanes_sign(mirrored, a) * fields->v[a][i];
     }
     lanes_sentinel(cells, layout);

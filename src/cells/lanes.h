@@ -45,7 +45,7 @@ enum lanes_geometry {
 struct lanes_layout {
     enum lanes_geometry geometry;
     int used, size;     /* doubles of a record; in whole groups */
-    int offset[FIELDS]; /* -1: absent */
+    int offset[FIELDS]; /* 0: absent, but for the place, which comes first */
     gather_loop *gather;
 };
 

@@ -160,6 +160,40 @@ static void test_first_guess(void **state)
     }
 }
 
+/* The search for a root goes on 63 times, each 1.5 times as far, and no further. */
+static void test_far_roots(void **state)
+{
+    (void)state;
+    struct error error;
+    for (int dim = 2; dim <= 3; dim++) {
+        const struct scheme scheme = scheme_of();
+        struct scene scene = scene_of(dim, dim == 2 ? 8 : 5, &scheme);
+        for (int a = 0; a < dim; a++) scene.boundary[a] = BOUNDARY_OPEN;
+        struct simulation *simulation = created(&scene);
+        struct snapshot s;
+        double h[N];
+        simulation_snapshot(simulation, &s);
+        for (size_t i = 0; i < s.n; i++) h[s.id[i]] = s.h[i];
+        simulation_destroy(simulation);
+        scene.rho = guess;
+        for (int beyond = 0; beyond < 2; beyond++) {
+            const double furthest = 1.1 * pow(1.5, 63) * (beyond ? 1 + 1e-7 : 1 - 1e-7);
+            for (size_t i = 0; i < scene.n; i++)
+                guess[i] = m[i] * pow(scheme.eta * furthest / h[i], dim);
+            simulation = NULL;
+            const enum status status = simulation_create(&scene, &simulation, &error);
+            assert_int_equal(status, beyond ? STATUS_BROKE_DOWN : STATUS_OK);
+            if (status)
+                assert_string_equal(error.message,
+                                    "broke down at t = 0: no smoothing lengths found");
+            else
+                simulation_snapshot(simulation, &s);
+            for (size_t i = 0; !status && i < s.n; i++) near_relative(s.h[i], h[s.id[i]], 1e-10);
+            simulation_destroy(simulation);
+        }
+    }
+}
+
 /* sum_j Z_j W(r_ij, h_i) over the nearest images. */
 static double kernel_sum(const struct snapshot *s, int dim, const struct kernel *kernel, size_t i,
                          const double *Z)
@@ -405,8 +439,8 @@ static void test_too_wide(void **state)
         scene.scheme.eta = 2.4;
         assert_int_equal(simulation_create(&scene, &simulation, &error), STATUS_BAD_INPUT);
         assert_non_null(strstr(error.message, "particle "));
-        assert_non_null(strstr(error.message, "beyond half the box (0.5): more particles or a "
-                                              "smaller eta are needed"));
+        assert_non_null(strstr(error.message, " reaches as far as 0.75, beyond half the box (0.5): "
+                                              "more particles or a smaller eta are needed"));
         assert_null(simulation);
         /* the narrowest of all periodic sides counts, and only those */
         scene.hi[1] = 4;
@@ -536,12 +570,19 @@ static void test_bytes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_order_in_memory), cmocka_unit_test(test_everybody_moves_whole),
-        cmocka_unit_test(test_first_guess),     cmocka_unit_test(test_densities),
-        cmocka_unit_test(test_switch),          cmocka_unit_test(test_carried),
-        cmocka_unit_test(test_alpha),           cmocka_unit_test(test_described_asleep),
-        cmocka_unit_test(test_too_wide),        cmocka_unit_test(test_grown_too_wide),
-        cmocka_unit_test(test_no_position),     cmocka_unit_test(test_bytes),
+        cmocka_unit_test(test_order_in_memory),
+        cmocka_unit_test(test_everybody_moves_whole),
+        cmocka_unit_test(test_first_guess),
+        cmocka_unit_test(test_densities),
+        cmocka_unit_test(test_far_roots),
+        cmocka_unit_test(test_switch),
+        cmocka_unit_test(test_carried),
+        cmocka_unit_test(test_alpha),
+        cmocka_unit_test(test_described_asleep),
+        cmocka_unit_test(test_too_wide),
+        cmocka_unit_test(test_grown_too_wide),
+        cmocka_unit_test(test_no_position),
+        cmocka_unit_test(test_bytes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -377,7 +377,7 @@ static void check_waking(const struct grid *grid, int layers)
     memset(disturbed, 0, sizeof disturbed);
     memset(asleep, 1, sizeof asleep);
     for (int k = 0; k < 3; k++) disturbed[draw_bits() % scene.n] = 1;
-    disturbed[scene.n] = 1; /* nobody */
+    disturbed[scene.n] = disturbed[scene.active] = 1; /* nobody */
     grid_wake(grid, disturbed, layers, asleep);
     for (size_t i = 0; i < scene.n; i++) {
         bool woken = false;

@@ -36,7 +36,7 @@ struct drawn {
 
 static double *values(const struct drawn *drawn, enum lanes_field field, bool own)
 {
-    if (drawn->cells->force.offset[field] < 0) return NULL;
+    if (!drawn->cells->force.offset[field]) return NULL;
     return own ? (double *)drawn->pairs.record + drawn->cells->force.offset[field]
                : lane_of(&drawn->lanes, &drawn->cells->force, field);
 }
@@ -247,7 +247,8 @@ static void test_viscosity(void **state)
             near_below((double)fabsl(K[k] - expected), (round % 2 ? 3e-6 : 1e-12) * (double)size);
             zero += expected == 0, other += expected != 0;
         }
-        for (int a = 0; a < 4; a++) assert_true(lane(&drawn.lanes, (int)made[a])[COUNT] == behind[a]);
+        for (int a = 0; a < 4; a++)
+            assert_true(lane(&drawn.lanes, (int)made[a])[COUNT] == behind[a]);
         release(&drawn);
     }
     assert_true(zero > 400 && other > 400);
@@ -316,12 +317,94 @@ static void test_sums(void **state)
     }
 }
 
+/* Where the fields of a record lie, in the order of their names, and as many values of each as in
+ * `values`: none beside them, in whole groups. */
+static void expect_layout(const struct lanes_layout *layout, const int values[FIELDS])
+{
+    int used = 0;
+    for (int field = 0; field < FIELDS; field++) {
+        assert_int_equal(layout->offset[field], values[field] ? used : 0);
+        used += values[field];
+    }
+    assert_int_equal(layout->used, used);
+    assert_int_equal(layout->size, (used + GATHER_GROUP - 1) / GATHER_GROUP * GATHER_GROUP);
+}
+
+/* Records hold what their passes read, and nothing else. */
+static void test_records(void **state)
+{
+    (void)state;
+    struct kernel kernel;
+    assert_int_equal(kernel_select(&kernel, "cubic_spline", 5, NULL), STATUS_OK);
+    for (int dim = 2; dim <= 3; dim++)
+        for (int trial = 0; trial < 200; trial++) {
+            struct cells_method method = {.box.dim = dim,
+                                          .kernel = &kernel,
+                                          .gradient = (enum gradient)(int)draw(0, GRADIENTS),
+                                          .viscosity = (enum viscosity)(int)draw(0, VISCOSITIES),
+                                          .formulation = draw(0, 1) < 0.5 ? FORMULATION_LAGRANGIAN
+                                                                          : FORMULATION_VANILLA_ICE,
+                                          .energy_element = draw(0, 1) < 0.5,
+                                          .velocity_gradient = draw(0, 1) < 0.5,
+                                          .balsara = draw(0, 1) < 0.5,
+                                          .conductivity = draw(0, 1) < 0.5 ? 0.1 : 0,
+                                          .projected = draw(0, 1) < 0.5,
+                                          .jump = draw(0, 1) < 0.5,
+                                          .threads = 1};
+            const bool blended = method.gradient == GRADIENT_BLENDED,
+                       lagrangian = method.formulation == FORMULATION_LAGRANGIAN,
+                       dissipates = method.viscosity != VISCOSITY_NONE || method.conductivity > 0;
+            const int symmetric = dim == 2 ? 3 : 6;
+            struct cells *cells = cells_create(&method, 8);
+            assert_non_null(cells);
+            expect_layout(&cells->density, (int[FIELDS]){[FIELD_PLACE] = dim,
+                                                         [FIELD_WEIGHT] = 1,
+                                                         [FIELD_ENERGY] = method.energy_element});
+            expect_layout(&cells->matrix,
+                          (int[FIELDS]){[FIELD_PLACE] = dim,
+                                        [FIELD_WEIGHT] = 1,
+                                        [FIELD_VELOCITY] = method.velocity_gradient ? dim : 0,
+                                        [FIELD_H] = blended});
+            expect_layout(
+                &cells->force,
+                (int[FIELDS]){[FIELD_PLACE] = dim,
+                              [FIELD_WEIGHT] = dissipates || lagrangian,
+                              [FIELD_VELOCITY] = dim,
+                              [FIELD_H_INVERSE] = 1,
+                              [FIELD_VOLUME] = 1,
+                              [FIELD_PRESSURE] = 1,
+                              [FIELD_SOUND] = 1,
+                              [FIELD_DENSITY] = dissipates,
+                              [FIELD_ALPHA] = method.viscosity == VISCOSITY_TIME_DEPENDENT,
+                              [FIELD_BALSARA] = method.balsara,
+                              [FIELD_HEAT] = method.conductivity > 0,
+                              [FIELD_LAGRANGIAN] = lagrangian ? 3 : 0,
+                              [FIELD_MATRIX] = method.gradient == GRADIENT_STANDARD ? 0 : symmetric,
+                              [FIELD_STEEP] = blended,
+                              [FIELD_SLOPE] =
+                                  method.viscosity == VISCOSITY_RECONSTRUCTED ? dim * dim : 0,
+                              [FIELD_PROJECTOR] = method.projected ? symmetric : 0});
+            expect_layout(&cells->shift, method.jump ? (int[FIELDS]){[FIELD_PLACE] = dim,
+                                                                     [FIELD_WEIGHT] = 1,
+                                                                     [FIELD_VELOCITY] = dim,
+                                                                     [FIELD_H_INVERSE] = 1,
+                                                                     [FIELD_VOLUME] = 1,
+                                                                     [FIELD_SOUND] = 1,
+                                                                     [FIELD_ACCELERATION] = dim}
+                                                     : (int[FIELDS]){0});
+            assert_true(method.gradient != GRADIENT_CORRECTED ||
+                        cells->matrix.geometry == LANES_DIRECTION);
+            cells_destroy(cells);
+        }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_viscosity),
         cmocka_unit_test(test_no_viscosity),
         cmocka_unit_test(test_sums),
+        cmocka_unit_test(test_records),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

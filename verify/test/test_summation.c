@@ -245,6 +245,26 @@ static void test_refused(void **state)
     }
 }
 
+/* The smallest masses that are nearly nothing in ordinary units are weighed as any others. */
+static void test_light(void **state)
+{
+    (void)state;
+    for (int dim = 1; dim <= 3; dim++) {
+        struct summation sum = cloud_of(dim, 40, false, 1.8, 1e-12);
+        double all = 0, heaviest = 0;
+        for (size_t i = 0; i < 40; i++) {
+            m[i] *= 1e-12;
+            all += m[i], heaviest = fmax(heaviest, m[i]);
+        }
+        check(&sum);
+        const double least = kernel_least_eta(&kernel, dim);
+        sum.eta = least * pow(all / heaviest, 1. / dim) * (1 + 1e-7);
+        struct error error;
+        assert_int_equal(summation_solve(&sum, h, rho, &error), STATUS_BROKE_DOWN);
+        assert_non_null(strstr(error.message, "no smoothing length: the cloud's mass is"));
+    }
+}
+
 /* A cloud of no points is solved. */
 static void test_empty(void **state)
 {
@@ -307,6 +327,7 @@ int main(void)
         cmocka_unit_test(test_anywhere), cmocka_unit_test(test_stretched),
         cmocka_unit_test(test_together), cmocka_unit_test(test_refused),
         cmocka_unit_test(test_empty),    cmocka_unit_test(test_units),
+        cmocka_unit_test(test_light),
     };
     if (kernel_select(&kernel, "wendland_c2", 5, NULL)) return 1;
     return cmocka_run_group_tests(tests, NULL, NULL);
