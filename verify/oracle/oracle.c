@@ -121,13 +121,18 @@ static struct sums sum_density(const struct oracle *oracle, size_t i, long doubl
 {
     const struct oracle_particle *a = &oracle->particles[i];
     const bool number = oracle->scheme.volume_element == VOLUME_NUMBER;
+    const struct oracle_kernel *kernel = &oracle->kernel;
+    const int d = oracle->dim;
+    const long double of_w = kernel->constant / oracle_power(h, d),
+                      of_dw = kernel->constant / oracle_power(h, d + 1);
     struct sums s = {0};
     for (size_t j = 0; j < oracle->n; j++)
         for (int k = -oracle_images(oracle); k <= oracle_images(oracle); k++) {
             const struct oracle_particle *b = &oracle->particles[j];
             const long double r = oracle_distance(oracle, i, j, k);
             if (r >= h) continue;
-            const long double W = oracle_W(oracle, r, h), dW = oracle_dW_dh(oracle, r, h);
+            const long double q = r / h, W = of_w * oracle_kernel_w(kernel, q),
+                              dW = -(d * W + r * (of_dw * oracle_kernel_dw(kernel, q))) / h;
             const long double m = number ? a->m : b->m, Z = oracle_Z(oracle, b);
             s.rho += m * W;
             s.drho += m * dW;

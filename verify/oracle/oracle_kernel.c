@@ -7,13 +7,6 @@
 
 #define pi 3.14159265358979323846264338327950288L
 
-long double oracle_power(long double x, int n)
-{
-    long double y = 1;
-    while (n-- > 0) y *= x;
-    return y;
-}
-
 static long double factor_of_knot(int n, int k)
 {
     long double binomial = 1;

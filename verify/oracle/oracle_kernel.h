@@ -24,6 +24,11 @@ long double oracle_kernel_w(const struct oracle_kernel *kernel, long double q);
 long double oracle_kernel_dw(const struct oracle_kernel *kernel, long double q);
 
 /* x^n, n >= 0. */
-long double oracle_power(long double x, int n);
+static inline long double oracle_power(long double x, int n)
+{
+    long double y = 1;
+    while (n-- > 0) y *= x;
+    return y;
+}
 
 #endif
