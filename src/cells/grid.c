@@ -193,6 +193,17 @@ static void place_in_cells(struct grid *grid)
     }
 }
 
+/* How far off a distance may come out in single precision, in units: places are at most half a
+ * cell, and moved by whole cells. Counts where cells are many radii large, as those of points that
+ * are together in a small part of a periodic box: lists then hold more than they need, never less.
+ */
+static double rounding_of(const struct grid *grid)
+{
+    double largest = 0;
+    for (int a = 0; a < grid->box.dim; a++) largest = fmax(largest, grid->size[a]);
+    return 4e-7 * largest / grid->unit;
+}
+
 /* A counting sort: stable, so that points of a cell keep their order. */
 static void sort_points(struct grid *grid, size_t n, const double *const x[], const double *radius)
 {
@@ -214,6 +225,7 @@ static void sort_points(struct grid *grid, size_t n, const double *const x[], co
     memmove(grid->start + 1, grid->start, grid->cell_count * sizeof *grid->start);
     grid->start[0] = 0;
     for (size_t c = 0; c < grid->cell_count; c++) grid->widest[c] = 0;
+    const double rounding = rounding_of(grid);
     for (size_t s = 0; s < n; s++) {
         const size_t i = grid->order[s];
         for (int a = 0; a < 3; a++)
@@ -221,7 +233,8 @@ static void sort_points(struct grid *grid, size_t n, const double *const x[], co
                                    : grid->box.periodic[a]
                                        ? wrapped(x[a][i], grid->lo[a], grid->side[a])
                                        : x[a][i];
-        const float reach = (float)(radius[i] / grid->unit * (1 + 1e-5));
+        const double units = radius[i] / grid->unit;
+        const float reach = (float)fmax(units * (1 + 1e-5), units + rounding);
         float *widest = &grid->widest[grid->cell_of[i]];
         grid->radius2[s] = reach * reach;
         *widest = reach > *widest ? reach : *widest;

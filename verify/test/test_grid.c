@@ -146,6 +146,59 @@ static void lists_hold_every_pair(void **state)
     gsl_rng_free(rng);
 }
 
+/* Points so close together, or so much closer than others, that cells are 10 to 1e9 times as large
+ * as their radii: single precision knows their places no better than that. */
+static void clumps_hold_every_pair(void **state)
+{
+    struct points *p = calloc(1, sizeof *p);
+    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
+    size_t compared = 0;
+    (void)state;
+    assert_non_null(p);
+    gsl_rng_set(rng, 2385);
+    for (int k = 0; k < 36; k++) {
+        struct error error = {0};
+        const double scale = pow(10, -1 - k / 4.); /* 0.1 to 2e-10 of the box */
+        p->n = 60;
+        p->box = (struct grid_box){.dim = 2 + k % 2, .hi = {1, 1, 1}};
+        for (int a = 0; a < p->box.dim; a++) {
+            const double middle = gsl_rng_uniform(rng);
+            p->box.periodic[a] = k % 3 > 0;
+            for (size_t i = 0; i < p->n; i++) p->x[a][i] = middle + scale * gsl_rng_uniform(rng);
+            p->x[a][0] = 0, p->x[a][1] = 1 - 1e-9;
+        }
+        /* by turns all radii are small, and most are large */
+        for (size_t i = 0; i < p->n; i++)
+            p->radius[i] = k % 4 == 3 && i % 2 ? 0.3 : scale * (0.2 + 0.1 * gsl_rng_uniform(rng));
+        struct grid *grid = grid_create(&p->box, p->n, 1);
+        assert_non_null(grid);
+        const double *const x[] = {p->x[0], p->x[1], p->x[2]};
+        assert_int_equal(grid_search(grid, p->n, p->n, x, p->radius, NULL, &error), STATUS_OK);
+        struct grid_reader reader = {0};
+        assert_true(grid_reader_reserve(grid, &reader));
+        const uint32_t *order = grid_order(grid);
+        for (size_t s = 0; s < p->n; s++) {
+            const int32_t count = grid_lists(grid)[s].count, *slots;
+            char listed[POINTS_MAX] = {0};
+            slots = grid_neighbours(grid, &reader, grid_lists(grid), s);
+            for (int32_t m = 0; m < count; m++) listed[order[slots[m]]] = 1;
+            for (size_t j = 0; j < p->n; j++) {
+                const size_t i = order[s];
+                const double r = sqrt(distance2(p, i, j)), reach = fmax(p->radius[i], p->radius[j]);
+                if (j == i) continue;
+                if (r < reach * (1 - 1e-9) - 1e-15) assert_true(listed[j]);
+                if (r > reach * (1 + 1e-3) + 1e-6) assert_false(listed[j]);
+                compared += listed[j] != 0;
+            }
+        }
+        grid_reader_free(&reader);
+        grid_destroy(grid);
+    }
+    assert_in_range(compared, 10000, 60 * 60 * 36);
+    gsl_rng_free(rng);
+    free(p);
+}
+
 /* What cannot be searched is refused with the point's number. */
 static void refuses(void **state)
 {
@@ -206,6 +259,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(lists_hold_every_pair),
+        cmocka_unit_test(clumps_hold_every_pair),
         cmocka_unit_test(refuses),
         cmocka_unit_test(gathers),
         cmocka_unit_test(cube_roots),
