@@ -363,6 +363,7 @@ static enum status find_roots(struct simulation *simulation, struct error *error
     const struct particles *a = &simulation->particles;
     const struct width_rule rule = width_rule_of(simulation);
     const double half = half_box(simulation);
+    ptrdiff_t open = 0;
     for (int try = 0; try < TRIES_MAX; try++) {
         cells_widths(room->cells, &room->fields, &rule, room->radius, a->h, a->h_inverse,
                      room->outcome);
@@ -372,6 +373,7 @@ static enum status find_roots(struct simulation *simulation, struct error *error
                 return breakdown_of(simulation, i, "smoothing length (no root was found)", a->h[i],
                                     error);
             if (room->outcome[i] != CELLS_WIDER) continue;
+            if (!wider) open = i;
             wider = true;
             room->outcome[i] = CELLS_OPEN;
             a->h[i] = room->radius[i];
@@ -383,8 +385,8 @@ static enum status find_roots(struct simulation *simulation, struct error *error
         const enum status status = search(simulation, error);
         if (status) return status;
     }
-    return error_set(error, STATUS_BROKE_DOWN, "broke down at t = %.9g: no smoothing lengths found",
-                     simulation->time);
+    return breakdown_of(simulation, open, "smoothing length (no root was found)", a->h[open],
+                        error);
 }
 
 static enum status newton_widths(struct simulation *simulation, struct error *error)
