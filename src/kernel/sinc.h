@@ -12,7 +12,7 @@ enum { SINC_ORDER_MIN = 3, SINC_ORDER_MAX = 12 };
 static inline double sinc_s(double q)
 {
     const double x = M_PI * q;
-    return q < 1e-9 ? 1 : sin(q < 0.5 ? x : M_PI * (1 - q)) / x;
+    return q > 0 ? sin(q < 0.5 ? x : M_PI * (1 - q)) / x : 1;
 }
 
 static inline double sinc_ds(double q)

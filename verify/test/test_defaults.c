@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What `auto` stands for: eta of every kernel and cfl of every integrator as the tables of
  * CONVENTIONS section 9 have them, and what the rest depends on as the keys' meanings say it, for
- * every scheme of these choices in 1D and 2D. Argument: CONVENTIONS.md. */
+ * every scheme of these choices in 1D and 2D; and which schemes are refused, at each limit.
+ * Argument: CONVENTIONS.md. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -246,6 +247,147 @@ static void sinc(void **state)
     }
 }
 
+/* --- what is refused -------------------------------------------------------------------------- */
+
+/* A scheme of the given case's dimension with one member that is another. */
+static void with(const struct scheme *scheme, int dim, size_t member, double value,
+                 const char *said)
+{
+    struct scheme changed = *scheme;
+    struct error error = {0};
+    memcpy((char *)&changed + member, &value, sizeof value);
+    assert_int_equal(scheme_check(&changed, dim, &error), said ? STATUS_BAD_INPUT : STATUS_OK);
+    assert_string_equal(error.message, said ? said : "");
+}
+
+#define WITH(member, value, said) with(&s, dim, offsetof(struct scheme, member), value, said)
+
+static void numbers_that_are_refused(void **state)
+{
+    (void)state;
+    for (int dim = 1; dim <= 3; dim++) {
+        const struct run_settings base = case_of(dim == 1   ? "sod"
+                                                 : dim == 2 ? "rest_2d"
+                                                            : "rest_3d");
+        struct run run;
+        assert_true(scheme_of(&base, 0, NULL, &run));
+        struct scheme s = run.scheme;
+        char said[200];
+        const double least = kernel_least_eta(&s.kernel, dim);
+        for (int k = 0; k < 4; k++) {
+            const double eta[] = {least, -1, (double)NAN, (double)INFINITY};
+            snprintf(said, sizeof said,
+                     "eta = %g: h = eta (m/rho)^(1/%d) has no root with the kernel %s unless eta > "
+                     "%.6g",
+                     eta[k], dim, dim == 1 ? "quadratic_spline" : "wendland_c4", least);
+            WITH(eta, eta[k], said);
+        }
+        WITH(eta, nextafter(least, 9), NULL);
+        WITH(cfl, 0, "cfl = 0: cfl must be positive and finite");
+        WITH(cfl, (double)NAN, "cfl = nan: cfl must be positive and finite");
+        WITH(cfl, (double)INFINITY, "cfl = inf: cfl must be positive and finite");
+        WITH(cfl, 1e-300, NULL);
+        WITH(h_tolerance, nextafter(1e-15, 0),
+             "h_tolerance = 1e-15: h_tolerance must be in [1e-15, 1e-2]");
+        WITH(h_tolerance, nextafter(1e-2, 1),
+             "h_tolerance = 0.01: h_tolerance must be in [1e-15, 1e-2]");
+        WITH(h_tolerance, (double)NAN, "h_tolerance = nan: h_tolerance must be in [1e-15, 1e-2]");
+        WITH(h_tolerance, 1e-15, NULL);
+        WITH(h_tolerance, 1e-2, NULL);
+        WITH(alpha, -1e-300, "alpha = -1e-300: alpha must be >= 0 and finite");
+        WITH(alpha, (double)INFINITY, "alpha = inf: alpha must be >= 0 and finite");
+        WITH(alpha, 0, NULL);
+        WITH(beta, -1e-300, "beta = -1e-300: beta must be >= 0 and finite");
+        WITH(beta, (double)INFINITY, "beta = inf: beta must be >= 0 and finite");
+        WITH(beta, 0, NULL);
+        WITH(alpha_u, 0.5,
+             dim > 1 ? NULL
+                     : "alpha_u=0.5 and dimension=1 exclude each other: conductivity is for 2 and "
+                       "3 dimensions");
+        /* of a viscosity that varies only */
+        const double alphas[][2] = {{-1e-300, 1}, {0.5, 0.25}, {0.5, (double)INFINITY}, {1, NAN}};
+        for (int k = 0; k < 4; k++) {
+            s.alpha_min = alphas[k][0], s.alpha_max = alphas[k][1];
+            snprintf(said, sizeof said,
+                     "alpha_min = %g, alpha_max = %g: 0 <= alpha_min <= alpha_max is needed",
+                     s.alpha_min, s.alpha_max);
+            s.viscosity = VISCOSITY_CONSTANT;
+            WITH(cfl, 0.5, NULL);
+            s.viscosity = VISCOSITY_TIME_DEPENDENT;
+            WITH(cfl, 0.5, said);
+            s.viscosity = VISCOSITY_CULLEN_DEHNEN;
+            if (dim > 1) WITH(cfl, 0.5, said);
+        }
+        s.alpha_min = s.alpha_max = 0;
+        WITH(cfl, 0.5,
+             dim > 1 ? NULL
+                     : "viscosity=cullen_dehnen and dimension=1 exclude each other: "
+                       "it is for 2 and 3 dimensions");
+    }
+}
+
+/* Lagrangian forms have no width of a pair. Members of families that stand behind those with a form
+ * in a line are for more dimensions. */
+static void choices_that_are_refused(void **state)
+{
+    (void)state;
+    const struct run_settings base = case_of("sod");
+    struct run run;
+    struct error error = {0};
+    assert_true(scheme_of(&base, 0, NULL, &run));
+    struct scheme s = run.scheme;
+    for (size_t k = 0; k < scheme_pair_width_family.n; k++) {
+        const char *name = scheme_pair_width_family.members[k]->name;
+        char said[200];
+        s.pair_width = (enum pair_width)k;
+        s.formulation = FORMULATION_VANILLA_ICE;
+        assert_int_equal(scheme_check(&s, 1, &error), STATUS_OK);
+        s.formulation = FORMULATION_LAGRANGIAN;
+        snprintf(said, sizeof said,
+                 "pair_width=%s and formulation=lagrangian exclude each other: the lagrangian form "
+                 "needs both particles' own gradients",
+                 name);
+        const bool mean = strcmp(name, "mean") == 0;
+        assert_int_equal(scheme_check(&s, 1, &error), mean ? STATUS_OK : STATUS_BAD_INPUT);
+        if (!mean) assert_string_equal(error.message, said);
+    }
+    static const struct {
+        const struct family *family;
+        const char *key, *first_of_two;
+        size_t at; /* 0: not of a scheme */
+    } rows[] = {
+        {&scheme_gradient_family, "gradient", "corrected", offsetof(struct scheme, gradient)},
+        {&scheme_volume_element_family, "volume_element", "number",
+         offsetof(struct scheme, volume_element)},
+        {&scheme_viscosity_family, "viscosity", "cullen_dehnen",
+         offsetof(struct scheme, viscosity)},
+        {&scheme_viscosity_form_family, "viscosity_form", "signal",
+         offsetof(struct scheme, viscosity_form)},
+        {&scheme_balsara_family, "balsara", "on", offsetof(struct scheme, balsara)},
+        {&scheme_boundary_family, "", "open", 0},
+    };
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        const struct family *family = rows[k].family;
+        const size_t in_line = scheme_members(family, 1);
+        assert_string_equal(family->members[in_line]->name, rows[k].first_of_two);
+        assert_int_equal(scheme_members(family, 2), family->n);
+        assert_int_equal(scheme_members(family, 3), family->n);
+        for (unsigned member = 0; rows[k].at && member < family->n; member++) {
+            struct scheme changed = run.scheme;
+            char said[200];
+            memcpy((char *)&changed + rows[k].at, &member, sizeof member);
+            snprintf(said, sizeof said,
+                     "%s=%s and dimension=1 exclude each other: it is for 2 and 3 dimensions",
+                     rows[k].key, family->members[member]->name);
+            const bool line = member < in_line;
+            assert_int_equal(scheme_check(&changed, 1, &error),
+                             line ? STATUS_OK : STATUS_BAD_INPUT);
+            if (!line) assert_string_equal(error.message, said);
+        }
+    }
+    assert_int_equal(scheme_members(&scheme_formulation_family, 1), scheme_formulation_family.n);
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
@@ -254,6 +396,8 @@ int main(int argc, char **argv)
         cmocka_unit_test(in_a_plane),
         cmocka_unit_test(nothing_chosen),
         cmocka_unit_test(sinc),
+        cmocka_unit_test(numbers_that_are_refused),
+        cmocka_unit_test(choices_that_are_refused),
     };
     if (argc != 2) return 2;
     read_table(&kernels, argv[1], "kernel");
