@@ -8,9 +8,9 @@
 static enum status rk3_step(struct simulation *simulation, double dt, struct error *error)
 {
     runge_kutta_begin(simulation);
-    enum status status = runge_kutta_stage(simulation, 0, 1, 1, dt, error);
-    if (!status) status = runge_kutta_stage(simulation, 0.25, 0.75, 0.25, dt, error);
-    if (!status) status = runge_kutta_stage(simulation, 2. / 3, 1. / 3, 2. / 3, dt, error);
+    enum status status = runge_kutta_stage(simulation, 0, 1, dt, error);
+    if (!status) status = runge_kutta_stage(simulation, 0.25, 0.75, 0.25 * dt, error);
+    if (!status) status = runge_kutta_stage(simulation, 2. / 3, 1. / 3, 2. / 3 * dt, error);
     return status;
 }
 

@@ -9,12 +9,11 @@
 
 #include "solver.h"
 
-/* state = g1 state + g2 old + weight dt rates, then the rates of the new state. */
+/* state = g1 state + g2 old + step rates, then the rates of the new state. */
 static inline enum status runge_kutta_stage(struct simulation *simulation, double g1, double g2,
-                                            double weight, double dt, struct error *error)
+                                            double step, struct error *error)
 {
     struct particles *a = &simulation->particles;
-    const double step = weight * dt;
     for (int k = 0; k < a->dim; k++) {
         double *x = a->x[k], *p = a->p[k];
         const double *x_old = a->x_old[k], *p_old = a->p_old[k], *F = a->F[k];

@@ -8,8 +8,8 @@
 static enum status vl2_step(struct simulation *simulation, double dt, struct error *error)
 {
     runge_kutta_begin(simulation);
-    const enum status status = runge_kutta_stage(simulation, 0, 1, 0.5, dt, error);
-    return status ? status : runge_kutta_stage(simulation, 0, 1, 1, dt, error);
+    const enum status status = runge_kutta_stage(simulation, 0, 1, 0.5 * dt, error);
+    return status ? status : runge_kutta_stage(simulation, 0, 1, dt, error);
 }
 
 #endif

@@ -186,8 +186,8 @@ def integrator(tree):
 static enum status ralston_step(struct simulation *simulation, double dt, struct error *error)
 {
     runge_kutta_begin(simulation);
-    const enum status status = runge_kutta_stage(simulation, 0, 1, 2. / 3, dt, error);
-    return status ? status : runge_kutta_stage(simulation, 0.375, 0.625, 0.75, dt, error);
+    const enum status status = runge_kutta_stage(simulation, 0, 1, 2. / 3 * dt, error);
+    return status ? status : runge_kutta_stage(simulation, 0.375, 0.625, 0.75 * dt, error);
 }
 
 #endif

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What is said of matrices: in words and in a document, where there are some and where none. */
+ * What is said of matrices: the sums over particles, of matrices that are those of the state; in
+ * words and in a document, where there are some and where none. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -8,6 +9,77 @@
 #include <cmocka.h>
 
 #include "description_output.h"
+#include "solver.h"
+
+static const struct description *described; /* until a condition is < 0 */
+static int made;
+
+static void describe(const struct simulation *simulation, description_visit *visit, void *context)
+{
+    (void)simulation;
+    for (size_t i = 0; described[i].condition >= 0 || isnan(described[i].condition); i++)
+        visit(context, i, &described[i]);
+}
+
+static void make(struct simulation *simulation)
+{
+    made++;
+    simulation->cost.pair_interactions += 99;
+}
+
+static const struct sums known = {.describe = describe, .matrix = make};
+
+/* Of matrices that are used: their largest values and means, which some have no angle of; the rest
+ * is counted. */
+static void sums_over_particles(void **state)
+{
+    (void)state;
+    static const struct description mixed[] = {{5, 3, 20},
+                                               {5, DESCRIPTION_CONDITION, (double)NAN},
+                                               {5, 1000.0001, (double)NAN},
+                                               {5, (double)NAN, 40},
+                                               {5, 2, 10},
+                                               {5, 2.5, 12},
+                                               {5, HUGE_VAL, 170},
+                                               {5, -1, 0}},
+                                    bad[] = {{5, HUGE_VAL, 170}, {5, -1, 0}};
+    const struct integrator plain = {0};
+    struct simulation s = {.plan = {.dim = 2, .sums = &known, .matrix = true},
+                           .scheme.integrator = &plain};
+    described = mixed;
+    struct description_sums sums = description_sum(&s);
+    assert_true(sums.condition_max == 1000 && sums.condition_mean == 1007.5 / 4);
+    assert_true(sums.angle_max == 20 && sums.angle_mean == 14 && sums.fallen_back == 3);
+    described = bad;
+    sums = description_sum(&s);
+    assert_true(isnan(sums.condition_max) && isnan(sums.condition_mean));
+    assert_true(isnan(sums.angle_max) && isnan(sums.angle_mean) && sums.fallen_back == 1);
+    s.plan.matrix = false;
+    described = mixed;
+    sums = description_sum(&s);
+    assert_true(isnan(sums.condition_max) && isnan(sums.condition_mean));
+    assert_true(isnan(sums.angle_max) && isnan(sums.angle_mean) && sums.fallen_back == 0);
+    assert_int_equal(made, 0);
+}
+
+/* Made anew where a step has ended with another evaluation than one of rates, and at no cost. */
+static void matrices_of_the_state(void **state)
+{
+    (void)state;
+    static const struct description one[] = {{5, 3, 20}, {5, -1, 0}};
+    described = one;
+    for (uint64_t steps = 0; steps < 2; steps++)
+        for (int ends = 0; ends < 2; ends++) {
+            const struct integrator integrator = {.ends_evaluated = ends};
+            struct simulation s = {.plan = {.dim = 2, .sums = &known, .matrix = true},
+                                   .cost = {.steps = steps, .pair_interactions = 7},
+                                   .scheme.integrator = &integrator};
+            made = 0;
+            assert_true(description_sum(&s).condition_max == 3);
+            assert_int_equal(made, steps && !ends);
+            assert_int_equal(s.cost.pair_interactions, 7);
+        }
+}
 
 static void words_and_documents(void **state)
 {
@@ -47,6 +119,8 @@ static void words_and_documents(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(sums_over_particles),
+        cmocka_unit_test(matrices_of_the_state),
         cmocka_unit_test(words_and_documents),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -13,6 +13,10 @@
 #include <string.h>
 #include <cmocka.h>
 
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
 #include "line/line.h"
 #include "line/pass.h"
 #include "made_simulation.h"
@@ -350,6 +354,145 @@ static void rates_and_scratch_of_a_range(void **state)
             }
 }
 
+/* --- the passes over pairs ---------------------------------------------------------------------
+ */
+
+static struct {
+    ptrdiff_t first, len, D, thread;
+    const double *scratch;
+} asked[RANGES_MOST];
+
+static int this_thread(void)
+{
+#ifdef _OPENMP
+    return omp_get_thread_num();
+#else
+    return 0;
+#endif
+}
+
+static double asked_force(const struct loops *loops, const struct particles *particles,
+                          ptrdiff_t first, int len, ptrdiff_t D, double *scratch)
+{
+    (void)loops, (void)particles;
+    asked[first / BATCH_MAX].first = first, asked[first / BATCH_MAX].len = len;
+    asked[first / BATCH_MAX].D = D, asked[first / BATCH_MAX].scratch = scratch;
+    asked[first / BATCH_MAX].thread = this_thread();
+    return first / BATCH_MAX == 5 ? 9 : 1;
+}
+
+static void asked_matrix(const struct kernel *kernel, const struct particles *particles,
+                         ptrdiff_t first, int len, ptrdiff_t D)
+{
+    (void)particles;
+    assert_non_null(kernel->w);
+    asked[first / BATCH_MAX].first = first, asked[first / BATCH_MAX].len = len;
+    asked[first / BATCH_MAX].D = D;
+}
+
+/* Each range with its own reach and its thread's own scratch; pairs are counted on both sides in
+ * the sums, once in the forces. */
+static void forces_of_every_range(void **state)
+{
+    (void)state;
+    for (int way = 0; way < 8; way++) {
+        struct simulation *s = made_simulation(34 * BATCH_MAX + 5);
+        struct line *line = line_of(s);
+        struct error error;
+        uint64_t pairs = 0;
+        double rate = 0;
+        s->team.most = s->team.size = way & 1 ? 2 : 1;
+        s->plan.alpha = way & 4, s->scheme.alpha_max = 2;
+        line->scratch_size = 0; /* for so many threads */
+        line->loops.force = asked_force;
+        line->loops.matrix = way & 2 ? asked_matrix : NULL;
+        line->ranges[3].reach = line->reach += 2;
+        for (ptrdiff_t i = 0; i < s->particles.n; i++)
+            s->particles.dalpha[i] = 77, s->particles.div_v[i] = -1;
+        s->cost.pair_interactions = 1000;
+        assert_int_equal(forces_sum(s, &rate, &error), STATUS_OK);
+        assert_true(rate == 9 && line->scratch_size >= loop_force_scratch(line->reach));
+        for (ptrdiff_t b = 0; b < line->range_count; b++) {
+            const struct range *range = &line->ranges[b];
+            assert_true(asked[b].first == range->first && asked[b].len == range->len);
+            assert_true(asked[b].D == range->force_reach);
+            assert_int_equal(range->force_reach, reach_of_pairs(s, range));
+            assert_true(asked[b].scratch ==
+                        line->scratch + (ptrdiff_t)line->scratch_size * asked[b].thread);
+            pairs +=
+                (uint64_t)(range->len * ((way & 2 ? 4 : 2) * range->reach + range->force_reach));
+        }
+        assert_int_equal(s->cost.pair_interactions, 1000 + pairs);
+        for (ptrdiff_t i = 0; i < s->particles.n; i++)
+            assert_true((s->particles.dalpha[i] != 77) == (s->plan.alpha));
+        simulation_destroy(s);
+    }
+}
+
+/* Images of what the matrices have found, as far as pairs reach and one more. */
+static void matrices_of_every_range(void **state)
+{
+    (void)state;
+    for (int slope = 0; slope < 2; slope++) {
+        struct simulation *s = made_simulation(200);
+        struct line *line = line_of(s);
+        const struct particles *a = &s->particles;
+        line->loops.matrix = asked_matrix;
+        s->plan.slope = slope;
+        line->ranges[1].reach = 5, line->reach = 7;
+        for (ptrdiff_t i = -20; i < 220; i++)
+            a->g[i] = a->dv[i] = i < 0 || i >= 200 ? -77 : (double)i + 1;
+        forces_matrix(s);
+        for (ptrdiff_t b = 0; b < line->range_count; b++)
+            assert_true(asked[b].first == line->ranges[b].first &&
+                        asked[b].len == line->ranges[b].len && asked[b].D == line->ranges[b].reach);
+        for (ptrdiff_t k = 1; k <= 20; k++) {
+            assert_true(a->g[-k] == (k <= 8 ? a->g[200 - k] : -77));
+            assert_true(a->g[199 + k] == (k <= 8 ? a->g[k - 1] : -77));
+            assert_true(a->dv[-k] == (slope && k <= 8 ? a->dv[200 - k] : -77));
+            assert_true(a->dv[199 + k] == (slope && k <= 8 ? a->dv[k - 1] : -77));
+        }
+        simulation_destroy(s);
+    }
+}
+
+/* Signal speeds know velocities that have changed, those of images, too. */
+static void signals_of_every_range(void **state)
+{
+    (void)state;
+    for (int at = 0; at < 200; at += 7) {
+        struct simulation *s = made_simulation(200);
+        const struct particles *a = &s->particles;
+        const ptrdiff_t reach = line_of(s)->reach;
+        struct error error;
+        double rate = 0;
+        assert_int_equal(widths_find(s, true, 0, &error), STATUS_OK);
+        assert_int_equal(forces_sum(s, &rate, &error), STATUS_OK);
+        rate = 0;
+        for (ptrdiff_t i = -reach - 9; i < 209 + reach; i++) a->v[0][i] = -77;
+        for (ptrdiff_t i = 0; i < 200; i++) a->v[0][i] = sin((double)(i * i));
+        a->c[at] = 20; /* the largest, wherever it is */
+        a->c[at < reach + 1 ? at + 200 : at] = a->c[at >= 199 - reach ? at - 200 : at] = 20;
+        const double got = forces_signal(s);
+        for (ptrdiff_t i = 0; i < 200; i++) {
+            double want = 2 * a->c[i];
+            for (ptrdiff_t d = -reach; d <= reach; d++) {
+                const ptrdiff_t j = (i + d + 200) % 200;
+                const double closing = (d < 0 ? -1 : 1) * (a->v[0][i] - a->v[0][j]);
+                const double apart = fabs(a->x[0][i + d] - a->x[0][i]);
+                if (d && apart * fmin(a->h_inverse[i], a->h_inverse[j]) < 1)
+                    want = fmax(want, a->c[i] + a->c[j] + 3 * fmax(closing, 0));
+            }
+            near_relative(a->signal[i], want, 1e-15);
+            rate = fmax(rate, want * a->h_inverse[i]);
+        }
+        near_relative(got, rate, 1e-15);
+        assert_true(a->v[0][-reach - 1] == a->v[0][199 - reach] && a->v[0][-reach - 2] == -77);
+        assert_true(a->v[0][200 + reach] == a->v[0][reach] && a->v[0][201 + reach] == -77);
+        simulation_destroy(s);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -362,6 +505,9 @@ int main(void)
         cmocka_unit_test(room_for_eight_times_the_reach),
         cmocka_unit_test(scratch_is_made_rarely),
         cmocka_unit_test(rates_and_scratch_of_a_range),
+        cmocka_unit_test(forces_of_every_range),
+        cmocka_unit_test(matrices_of_every_range),
+        cmocka_unit_test(signals_of_every_range),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
