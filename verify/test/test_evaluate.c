@@ -248,6 +248,30 @@ static void gas_falls(void **state)
             }
 }
 
+/* Who is held has the density that it began with, and no rates; where all went well so far. */
+static void some_are_held(void **state)
+{
+    (void)state;
+    for (const char *fails = "_wf"; *fails; fails++) {
+        struct simulation s;
+        struct error error;
+        double held[10 + N] = {0};
+        begin(&s, 2, false);
+        const struct particles *a = &s.particles;
+        s.held = held, s.scheme.eta = 2, s.gamma = 1.5;
+        held[14] = 2.5;
+        seen.fails = *fails;
+        evaluate_rates(&s, &error);
+        for (int i = 0; i < N; i++) {
+            assert_true(a->rho[i] == (i == 4 && *fails != 'w' ? 2.5 : 0));
+            const bool moves = *fails != 'w' && (i != 4 || *fails == 'f');
+            assert_true(a->F[0][i] == (moves ? seen.F[0][i] : 0));
+            assert_true(a->de[i] == (moves ? seen.de[i] : 0));
+        }
+        particles_destroy(&s.particles);
+    }
+}
+
 /* cfl over the largest signal speed / h, of those who sleep, too. */
 static void time_is_limited(void **state)
 {
@@ -284,6 +308,7 @@ int main(void)
         cmocka_unit_test(widths_are_predicted),
         cmocka_unit_test(gas_falls),
         cmocka_unit_test(time_is_limited),
+        cmocka_unit_test(some_are_held),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

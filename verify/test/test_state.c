@@ -180,6 +180,8 @@ static void largest_rates(void **state)
             const double kept = a.signal[40 + at];
             a.signal[40 + at] = 99, a.signal[39] = a.signal[40 + len] = 1e9;
             near_relative(state_rate(&a, 40, len), 99 * a.h_inverse[40 + at], 1e-15);
+            for (int i = 0; i < len && at == 0; i++) a.signal[40 + i] = 1e-12; /* very cold */
+            if (at == 0) near_inside(state_rate(&a, 40, len), 0.5e-12, 2e-12);
             a.signal[40 + at] = kept, a.signal[39] = a.signal[40 + len] = 1;
         }
     particles_destroy(&a);
