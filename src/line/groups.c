@@ -117,8 +117,7 @@ static enum status allocate(struct simulation *simulation, struct error *error)
 
 enum status groups_begin(struct simulation *simulation, struct error *error)
 {
-    const struct line *line = line_of(simulation);
-    const ptrdiff_t count = (simulation->particles.n + GROUP - 1) / GROUP;
+    struct line *line = line_of(simulation);
     const enum status status = allocate(simulation, error);
     if (status) return status;
     simulation->sleep.at_rest = true;
@@ -126,14 +125,11 @@ enum status groups_begin(struct simulation *simulation, struct error *error)
         groups_wake_all(simulation);
         return STATUS_OK;
     }
-    struct groups *groups = &line_of(simulation)->groups;
-    ptrdiff_t reach = 0;
-    for (ptrdiff_t b = 0; b < line->range_count; b++)
-        if (line->ranges[b].force_reach > reach) reach = line->ranges[b].force_reach;
-    for (ptrdiff_t group = 0; group < count; group++)
-        if (group_disturbed(simulation, group)) wake(groups, group, margin(reach));
-    for (ptrdiff_t group = 0; group < count; group++)
-        if (!groups->awake[group]) fall_asleep(simulation, group, reach);
+    struct groups *groups = &line->groups;
+    for (ptrdiff_t group = 0; group < groups->count; group++)
+        if (group_disturbed(simulation, group)) wake(groups, group, margin(line->reach));
+    for (ptrdiff_t group = 0; group < groups->count; group++)
+        if (!groups->awake[group]) fall_asleep(simulation, group, line->reach);
     lay_out(simulation);
     return STATUS_OK;
 }

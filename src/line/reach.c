@@ -30,7 +30,6 @@ double reach_inside(const struct particles *particles, ptrdiff_t first, int len,
 bool reach_cover(const struct simulation *simulation, struct range *range)
 {
     const ptrdiff_t filled = line_of(simulation)->ghosts_filled;
-    if (range->reach < 1) range->reach = 1;
     while (range->reach + 1 <= filled) {
         if (reach_inside(&simulation->particles, range->first, range->len, range->reach + 1) <= 0)
             return true;

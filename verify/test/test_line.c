@@ -116,9 +116,11 @@ static void no_order_of_what_is_no_position(void **state)
             const double kept = a->x[0][30];
             assert_true(!order_sort(a) && a->x[0][30] == kept && a->id[30] == 30);
             assert_int_equal(order_arrange(&s, &error), STATUS_BROKE_DOWN);
-            char name[64];
-            snprintf(name, sizeof name, "position of particle %d ", i);
-            assert_non_null(strstr(error.message, name));
+            char said[100];
+            snprintf(said, sizeof said,
+                     "broke down at t = 0: position of particle %d at x = %g is %g", i, bad[k],
+                     bad[k]);
+            assert_string_equal(error.message, said);
             unmade(&s);
         }
 }
@@ -185,10 +187,16 @@ static void coincident_ones_are_moved_apart(void **state)
     int binding = 0;
     for (int count = 1; count <= 5; count++)
         for (int first = 0; first + count <= MEMBERS; first++)
-            for (int wide = 0; wide < 6; wide++) {
+            for (int wide = 0; wide < 7; wide++) {
                 struct simulation s;
                 made(&s, MEMBERS);
                 struct particles *a = &s.particles;
+                if (wide == 6) /* the nearer neighbour may stand beyond an end of the box */
+                    for (int i = 1; i < MEMBERS; i++)
+                        a->x[0][i] = first ? a->x[0][0] + 1.99 - 0.1 * (MEMBERS - 1 - i)
+                                           : a->x[0][0] + 1.999 - 0.1 * (MEMBERS - 1 - i);
+                for (int i = first; wide == 6 && first + count == MEMBERS && i < MEMBERS; i++)
+                    a->x[0][i] = a->x[0][0] + 1.999;
                 s.scheme.eta = wide == 3   ? 0.5 * least
                                : wide == 4 ? count * least /* as many as is too many */
                                : wide == 5 ? nextafter(count * least, 9)
@@ -197,8 +205,12 @@ static void coincident_ones_are_moved_apart(void **state)
                 const double at = a->x[0][first];
                 for (int i = 0; i < count; i++) a->x[0][first + i] = at;
                 for (int i = 0; i < MEMBERS; i++) {
-                    a->h[i] = (wide == 1 ? 3000 : wide == 2 ? 100 : 0.3) * (1 + 0.01 * i);
-                    a->x_old[0][i] = a->x[0][i];
+                    a->h[i] = (wide == 1   ? 3000
+                               : wide == 2 ? 100
+                               : wide == 6 ? 9000
+                                           : 0.3) *
+                              (1 + 0.01 * i);
+                    a->x_old[0][i] = 7 + i;
                 }
                 const double below = first ? a->x[0][first - 1] : a->x[0][MEMBERS - 1] - 2;
                 const double above =
@@ -211,7 +223,9 @@ static void coincident_ones_are_moved_apart(void **state)
                 for (int i = 0; i < count; i++)
                     near_absolute(a->x[0][first + i],
                                   at + (apart ? gap * (i - 0.5 * (count - 1)) : 0), 1e-15);
-                for (int i = 0; i < MEMBERS; i++) assert_true(a->x_old[0][i] == a->x[0][i]);
+                for (int i = 0; i < MEMBERS; i++)
+                    assert_true(a->x_old[0][i] ==
+                                (apart && i >= first && i < first + count ? a->x[0][i] : 7 + i));
                 assert_true(order_crossings(a, 0, MEMBERS - 1) == 0);
                 unmade(&s);
             }
@@ -354,6 +368,14 @@ static void a_room_is_divided(void **state)
         assert_true(s->particles.ghosts == 64 && s->particles.n == (ptrdiff_t)n);
         assert_true(line_sums.bytes(s, 1000) == 125. * sizeof(struct range));
         simulation_destroy(s);
+        struct simulation bare = {0};
+        struct error error;
+        assert_int_equal(line_sums.create(&bare, (ptrdiff_t)n, &error), STATUS_OK);
+        const struct range *ranges = line_of(&bare)->ranges;
+        for (ptrdiff_t b = 0; b < line_of(&bare)->range_count; b++)
+            assert_true(ranges[b].reach == 1 && ranges[b].first == BATCH_MAX * b);
+        assert_int_equal(ranges[line_of(&bare)->range_count].reach, 0);
+        unmade(&bare);
     }
     struct simulation none = {0};
     line_sums.free(&none); /* of a room that there is not */
@@ -392,7 +414,7 @@ static void reach_is_what_widths_ask_for(void **state)
             }
             /* raised as far as is needed, where images suffice for one more to be looked at */
             const int needed = most < 1 ? 1 : most;
-            range->reach = draw_count(0, 1);
+            range->reach = 1;
             line->ghosts_filled = needed + 1;
             assert_true(reach_cover(&s, range));
             assert_int_equal(range->reach, needed);
@@ -439,7 +461,44 @@ static void pairs_reach_as_far_as_the_wider_one(void **state)
     }
 }
 
+/* Who stands at a distance of just h is not inside. */
+static void widths_end_at_h(void **state)
+{
+    (void)state;
+    struct simulation s;
+    made(&s, 70);
+    const struct particles *a = &s.particles;
+    for (int i = -GHOSTS; i < 70 + GHOSTS; i++)
+        a->x[0][i] = 0.25 * i, a->h_inverse[i] = i == 3 ? 2 - 0x1p-50 : 2;
+    assert_true(reach_inside(a, 0, 64, 1) == 64 && reach_inside(a, 0, 64, 2) == 1);
+    assert_true(reach_inside(a, 4, 60, 2) == 0 && reach_inside(a, 0, 64, 3) == 0);
+    unmade(&s);
+}
+
 static double counted;
+
+static void see_all(void *context, size_t i, const struct description *of)
+{
+    const double want[] = {70 + 2 * GHOSTS, 3, 1};
+    (void)context;
+    assert_true(of->neighbours == want[i < 2 ? i : 2]);
+    counted++;
+}
+
+/* As many images as there are; nobody who stands at a distance of just h. */
+static void neighbours_end_somewhere(void **state)
+{
+    (void)state;
+    struct simulation s;
+    made(&s, 70);
+    const struct particles *a = &s.particles;
+    for (int i = -GHOSTS; i < 70 + GHOSTS; i++)
+        a->x[0][i] = 0.25 * i, a->h_inverse[i] = i == 0 ? 1e-9 : i == 1 ? 2 : 4;
+    counted = 0;
+    line_sums.describe(&s, see_all, NULL);
+    assert_true(counted == 70);
+    unmade(&s);
+}
 
 static void see(void *context, size_t i, const struct description *of)
 {
@@ -586,16 +645,15 @@ static void groups_sleep_and_wake(void **state)
     for (int scene = 0; scene < 10 * SCENES; scene++) {
         struct simulation s;
         struct error error;
-        const int n = scene % 4 ? draw_count(16, MOST * GROUP) : GROUP * draw_count(2, MOST);
+        const int n = scene % 4 ? draw_count(16, MOST * GROUP)
+                                : GROUP * draw_count(2, MOST - 1) + (scene % 8 == 0);
         const ptrdiff_t groups = (n + GROUP - 1) / GROUP;
         bool disturbed[MOST] = {false}, awake[MOST] = {false};
         made(&s, n);
         struct line *line = line_of(&s);
-        ptrdiff_t reach = 0;
-        for (ptrdiff_t b = 0; b < line->range_count; b++) {
-            line->ranges[b].force_reach = draw_count(1, 12);
-            if (line->ranges[b].force_reach > reach) reach = line->ranges[b].force_reach;
-        }
+        const bool narrow =
+            scene % 5 == 0; /* spans that are shorter than what is looked at later */
+        const ptrdiff_t reach = line->reach = narrow ? 1 : draw_count(1, 12);
         for (ptrdiff_t g = 0; g < groups; g++) disturbed[g] = draw(0, 1) < 0.06;
         at_rest(&s, disturbed, scene % 3 ? 0 : 0.1);
         for (ptrdiff_t g = 0; g < groups; g++)
@@ -609,9 +667,10 @@ static void groups_sleep_and_wake(void **state)
         bool later[MOST];
         memcpy(later, awake, sizeof later);
         for (ptrdiff_t i = 0; i < n; i++)
-            s.particles.F[0][i] = awake[i / GROUP] && draw(0, 1) < 0.02 ? 1 : 0;
+            s.particles.F[0][i] = (narrow || awake[i / GROUP]) && draw(0, 1) < 0.02 ? 1 : 0;
+        if (awake[groups - 1]) s.particles.F[0][n - 1] = scene % 2;
         for (ptrdiff_t b = 0; b < line->range_count; b++)
-            line->ranges[b].force_reach = draw_count(1, 12);
+            line->ranges[b].force_reach = draw_count(narrow ? 10 : 1, 12);
         for (ptrdiff_t k = 0, b = 0; k < s.sleep.span_count; k++) {
             const struct span *span = &s.sleep.spans[k];
             const ptrdiff_t first = span->first / GROUP,
@@ -628,6 +687,8 @@ static void groups_sleep_and_wake(void **state)
             if (g >= first && g > last - to) wake_around(later, groups, g, to);
         }
         groups_update(&s);
+        for (ptrdiff_t i = 0; i < n; i++)
+            if (!later[i / GROUP]) s.particles.F[0][i] = 0;
         sleeps(&s, later);
         groups_wake_all(&s);
         for (ptrdiff_t g = 0; g < groups; g++) later[g] = true;
@@ -647,6 +708,8 @@ int main(void)
         cmocka_unit_test(images_of_images),
         cmocka_unit_test(reach_is_what_widths_ask_for),
         cmocka_unit_test(pairs_reach_as_far_as_the_wider_one),
+        cmocka_unit_test(widths_end_at_h),
+        cmocka_unit_test(neighbours_end_somewhere),
         cmocka_unit_test(neighbours_are_described),
         cmocka_unit_test(sleepers_in_order),
         cmocka_unit_test(images_for_density),

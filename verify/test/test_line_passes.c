@@ -135,7 +135,7 @@ static void reaches_are_lowered_now_and_then(void **state)
             for (int b = 0; b < 4; b++) needed[b] = line->ranges[b].reach;
             const ptrdiff_t most = line->reach;
             s->cost.steps = step;
-            line->ranges[0].reach += 3, line->ranges[2].reach = 0;
+            line->ranges[0].reach += 3, line->ranges[2].reach = 1;
             assert_int_equal(widths_find(s, newton, 0, &error), STATUS_OK);
             for (int b = 0; b < 4; b++)
                 assert_int_equal(line->ranges[b].reach, needed[b] + (b == 0 && step % 8 ? 3 : 0));
@@ -192,12 +192,27 @@ static void ghosts_as_many_as_it_takes(void **state)
     assert_int_equal(line_of(s)->density_passes, passes + 1);
     assert_in_range(line_of(s)->reach, 40, 45);
     assert_int_equal(range_of(s, 3)->done, passes + 1);
-    s->particles.h_inverse_found[3] = s->particles.h_inverse_old[3] = 1e-9;
-    assert_int_equal(widths_find(s, false, 0, &error), STATUS_BROKE_DOWN);
-    snprintf(said, sizeof said, "smoothing length of particle %zu at x = %.9g is 1e+09",
-             s->particles.id[3], s->particles.x[0][3]);
-    assert_non_null(strstr(error.message, said));
     simulation_destroy(s);
+    /* twice as many until they are more than 64 and 2 eta + 2 boxes; the first of the widest */
+    static const struct {
+        double eta;
+        ptrdiff_t at, also, filled;
+    } rows[] = {{1.5, 3, 3, 256}, {0.6, 0, 19, 256}, {0.59, 19, 19, 128}, {0.6, 5, 6, 256}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        s = made_simulation(20);
+        const struct particles *a = &s->particles;
+        const ptrdiff_t at = rows[k].at, also = rows[k].also;
+        s->scheme.eta = rows[k].eta;
+        line_of(s)->ghosts_filled = 8, line_of(s)->reach = 1;
+        for (ptrdiff_t i = 0; i < 20; i++)
+            a->h_inverse_found[i] = a->h_inverse_old[i] = i == at || i == also ? 1e-9 : 1;
+        assert_int_equal(widths_find(s, false, 0, &error), STATUS_BROKE_DOWN);
+        snprintf(said, sizeof said, "smoothing length of particle %zu at x = %.9g is 1e+09",
+                 a->id[at], a->x[0][at]);
+        assert_non_null(strstr(error.message, said));
+        assert_int_equal(line_of(s)->ghosts_filled, rows[k].filled);
+        simulation_destroy(s);
+    }
 }
 
 /* As many ghosts as there were, or as the reach asks for, 8 at least; twice as many where they do

@@ -399,7 +399,12 @@ static void all_is_carried(void **state)
     kept->sleep.spans[0] = (struct span){3, 5};
     kept->sleep.on = true, kept->sleep.rate = 0.75, kept->sleep.awake_count = 5;
     kept->sleep.at_rest = !restored->sleep.at_rest;
-    line_of(kept)->density_passes = 77;
+    line_of(kept)->density_passes = 77, line_of(kept)->predict_ratio = 0.375;
+    line_of(kept)->ghosts_filled = 13, line_of(kept)->reach = 9, line_of(kept)->range_count = 2;
+    for (ptrdiff_t b = 0; b < 2; b++)
+        line_of(kept)->ranges[b] = (struct range){b, 5, 6, 7, 8, 9 + (uint64_t)b};
+    for (ptrdiff_t g = 0; g < 5; g++)
+        line_of(kept)->groups.awake[g] = g != 3, line_of(kept)->groups.rate[g] = (double)g;
     simulation_carry(kept, &out);
     simulation_carry(restored, &back);
     assert_false(out.failed || back.failed);
@@ -408,7 +413,14 @@ static void all_is_carried(void **state)
     assert_true(restored->sleep.spans[0].first == 3 && restored->sleep.spans[0].len == 5);
     assert_true(restored->sleep.on && restored->sleep.rate == 0.75 &&
                 restored->sleep.awake_count == 5 && restored->sleep.at_rest == kept->sleep.at_rest);
-    assert_int_equal(line_of(restored)->density_passes, 77);
+    const struct line *line = line_of(restored), *of = line_of(kept);
+    assert_int_equal(line->density_passes, 77);
+    assert_true(line->predict_ratio == 0.375 && line->ghosts_filled == 13 && line->reach == 9);
+    assert_int_equal(line->range_count, 2);
+    assert_memory_equal(line->ranges, of->ranges, 2 * sizeof *line->ranges);
+    assert_int_equal(line->groups.count, 5);
+    assert_memory_equal(line->groups.awake, of->groups.awake, 5);
+    assert_memory_equal(line->groups.rate, of->groups.rate, 5 * sizeof(double));
     simulation_destroy(kept);
     simulation_destroy(restored);
 }
