@@ -168,10 +168,7 @@ CLONES static double rate(const struct particles *particles, ptrdiff_t first, in
     double of[BATCH_MAX];
 #pragma omp simd
     for (int i = 0; i < BATCH_MAX; i++) of[i] = i < len ? signal[i] * h_inverse[i] : 0;
-    /* by halves: clang does not vectorise reduction(max) */
-    for (int half = BATCH_MAX / 2; half > 0; half /= 2)
-        for (int i = 0; i < half; i++) of[i] = largest(of[i], of[i + half]);
-    return of[0];
+    return largest_of(of, BATCH_MAX);
 }
 
 double state_rate(const struct particles *particles, ptrdiff_t first, int len)

@@ -305,6 +305,14 @@ static struct share share_of(const struct loops *loops, const struct particles *
                           .div_v = -a->V[i + d] * closing * (G + G_r) / 2};
 }
 
+/* Leaves nothing behind that a sum could begin with. */
+__attribute__((noinline)) static void poison_the_stack(void)
+{
+    double deep[2000];
+    memset(deep, 0xff, sizeof deep); /* not a number */
+    __asm__ volatile("" : : "r"(deep) : "memory");
+}
+
 static void forces(void **state)
 {
     (void)state;
@@ -326,6 +334,7 @@ static void forces(void **state)
                 if (viscosity == VISCOSITY_FADING) /* some below, some above a hundredth of c */
                     for (ptrdiff_t i = FIRST_OF_ALL; i < END_OF_ALL; i++) a.v[0][i] *= 0.02;
                 assert_true(loop_force_scratch(ranges[r].D) <= sizeof scratch / sizeof *scratch);
+                poison_the_stack();
                 loop_force(way & 16, loops.formulation, loops.viscosity,
                            loops.energy)(&loops, &a, first, ranges[r].len, ranges[r].D, scratch);
                 for (ptrdiff_t i = FIRST_OF_ALL; i < END_OF_ALL; i++) {
@@ -367,6 +376,14 @@ static void rates_of_cold_gas(void **state)
         near_relative(loop_force(stamped, loops.formulation, loops.viscosity,
                                  loops.energy)(&loops, &a, 20, 20, 4, scratch),
                       want, 1e-15);
+    for (int mirrored = 0; mirrored < 2; mirrored++) { /* inside the wider width alone */
+        a.h_inverse[30 + mirrored] = 3, a.h_inverse[31 - mirrored] = 0.5;
+        a.x[0][31] = a.x[0][30] + 1, a.x[0][32] = a.x[0][30] + 1.5;
+        for (ptrdiff_t i = FIRST_OF_ALL; i < END_OF_ALL; i++) a.v[0][i] = i <= 30 ? 1 : 0;
+        near_relative(loop_force(false, loops.formulation, loops.viscosity,
+                                 loops.energy)(&loops, &a, 20, 20, 1, scratch),
+                      3 * (a.c[30] + a.c[31] + 3), 1e-15);
+    }
     particles_destroy(&a);
 }
 
@@ -412,6 +429,15 @@ static void stamped_ones_differ(void **state)
             assert_true(loop_matrix(k, MATRIX_BOTH) != loop_matrix(other, MATRIX_BOTH));
             assert_true(loop_gradient(k, GRADIENT_IA, PAIR_WIDTH_MEAN) !=
                         loop_gradient(other, GRADIENT_IA, PAIR_WIDTH_MEAN));
+        }
+    for (int one = 0; one < FORMULATIONS * ENERGIES; one++)
+        for (int other = 0; other <= one; other++) {
+            force_loop *const of_one = loop_force(true, (enum formulation)(one / ENERGIES),
+                                                  VISCOSITY_FADING, (enum energy)(one % ENERGIES));
+            assert_true((of_one == loop_force(true, (enum formulation)(other / ENERGIES),
+                                              VISCOSITY_FADING, (enum energy)(other % ENERGIES))) ==
+                        (one == other));
+            assert_true(of_one != loop_force(false, 0, 0, 0));
         }
 }
 

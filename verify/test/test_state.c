@@ -132,6 +132,7 @@ static void closed(void **state)
                                   4e-14);
                     near_relative(a.h[i], (double)(1 / asked), 4e-15);
                     near_relative(a.V[i], (double)V, 4e-15);
+                    if (dim == 1 && !(way & 1)) assert_true(a.h[i] == gas_of.eta * a.V[i]);
                     near_relative(a.rho[i], (double)(way & 1 ? a.m[i] / V : rho), 4e-15);
                     near_relative(a.P[i], (double)P, 2e-14);
                     near_relative(a.c[i], (double)sqrtl(1.6L * 0.6L * u), 4e-15);
