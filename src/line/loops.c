@@ -35,14 +35,13 @@ void loops_signal(const struct particles *particles, ptrdiff_t first, int len, p
     const double *x = particles->x[0] + first, *v = particles->v[0] + first,
                  *c = particles->c + first, *h_inverse = particles->h_inverse + first;
     double *signal = particles->signal + first;
-    for (int i = 0; i < len; i++) signal[i] = 2 * c[i];
-    for (ptrdiff_t d = 1; d <= D; d++)
+    for (int i = 0; i < len; i++) signal[i] = 0;
+    for (ptrdiff_t d = -D; d <= D; d++) { /* with itself: twice its own speed of sound */
+        const double side = d < 0 ? -1 : 1;
         for (int i = 0; i < len; i++) {
-            const double right = pair_signal_speed(c[i], c[i + d], v[i] - v[i + d]);
-            const double left = pair_signal_speed(c[i], c[i - d], v[i - d] - v[i]);
-            if (pair_within(x[i + d] - x[i], h_inverse[i], h_inverse[i + d]))
-                signal[i] = largest(signal[i], right);
-            if (pair_within(x[i] - x[i - d], h_inverse[i], h_inverse[i - d]))
-                signal[i] = largest(signal[i], left);
+            const double r = side * (x[i + d] - x[i]), closing = side * (v[i] - v[i + d]);
+            if (pair_within(r, h_inverse[i], h_inverse[i + d]))
+                signal[i] = largest(signal[i], pair_signal_speed(c[i], c[i + d], closing));
         }
+    }
 }
