@@ -28,6 +28,23 @@ static void place(struct map *map, const struct domain *domain, const struct sna
     map->seen++;
 }
 
+/* Counts particle i in the cells whose centres its h reaches. */
+static void cover(struct map *map, const struct snapshot *s, size_t i)
+{
+    if (map->cell[i] == map->nx * map->ny) return;
+    const double h = s->h[i], wide = (map->hi[0] - map->lo[0]) / (double)map->nx,
+                 high = (map->hi[1] - map->lo[1]) / (double)map->ny;
+    const ptrdiff_t column = (ptrdiff_t)(map->cell[i] % map->nx),
+                    row = (ptrdiff_t)(map->cell[i] / map->nx),
+                    across = (ptrdiff_t)fmin(h / wide + 1, MAP_REACH),
+                    along = (ptrdiff_t)fmin(h / high + 1, MAP_REACH);
+    for (ptrdiff_t b = row - along; b <= row + along; b++)
+        for (ptrdiff_t a = column - across; a <= column + across; a++)
+            if (a >= 0 && b >= 0 && a < (ptrdiff_t)map->nx && b < (ptrdiff_t)map->ny &&
+                hypot(map->x[a] - s->x[0][i], map->y[b] - s->x[1][i]) <= h)
+                map->covered[(size_t)b * map->nx + (size_t)a]++;
+}
+
 static void set_centres(double *x, size_t n, double lo, double length)
 {
     for (size_t k = 0; k < n; k++) x[k] = lo + length * ((double)k + 0.5) / (double)n;
@@ -50,15 +67,19 @@ enum status map_create(struct map *map, const struct domain *domain, const struc
     map->ny = cells_along(domain_length(domain, 1), spacing, most);
     const size_t cells = map->nx * map->ny;
     _Static_assert(sizeof(size_t) <= sizeof(double), "numbers of cells fit");
-    double *centres = map->storage = calloc(map->nx + map->ny + cells + s->n, sizeof(double));
+    double *centres = map->storage = calloc(map->nx + map->ny + 2 * cells + s->n, sizeof(double));
     if (!centres) return error_set(error, STATUS_ENVIRONMENT, "no memory for a map");
     map->x = centres;
     map->y = centres + map->nx;
     map->count = (size_t *)(void *)(centres + map->nx + map->ny);
-    map->cell = map->count + cells;
+    map->covered = map->count + cells;
+    map->cell = map->covered + cells;
     set_centres(map->y, map->ny, map->lo[1], domain_length(domain, 1));
     set_centres(map->x, map->nx, map->lo[0], domain_length(domain, 0));
-    for (size_t i = 0; i < s->n; i++) place(map, domain, s, i);
+    for (size_t i = 0; i < s->n; i++) {
+        place(map, domain, s, i);
+        cover(map, s, i);
+    }
     return STATUS_OK;
 }
 
@@ -92,7 +113,7 @@ void map_mean(const struct map *map, const double *values, double *z)
     for (size_t k = 0; k < cells; k++) {
         if (map->count[k]) continue;
         z[k] = (double)NAN;
-        for (ptrdiff_t reach = 0; reach < MAP_REACH && isnan(z[k]);)
+        for (ptrdiff_t reach = 0; map->covered[k] && reach < MAP_REACH && isnan(z[k]);)
             z[k] = mean_around(map, z, (ptrdiff_t)(k % map->nx), (ptrdiff_t)(k / map->nx), ++reach);
     }
 }

@@ -18,6 +18,7 @@ struct map {
     size_t n, seen;       /* particles; those that are in a cell */
     double *x, *y;        /* nx and ny: centres of cells */
     size_t *count, *cell; /* nx ny: particles in a cell; n: the cell of each, nx ny: in none */
+    size_t *covered; /* nx ny: seen particles within whose h, in the plane, a cell's centre is */
     void *storage;
 };
 
@@ -29,7 +30,8 @@ enum status map_create(struct map *map, const struct domain *domain, const struc
 void map_free(struct map *map);
 
 /* z[j nx + i]: mean of the n values over the particles in cell (i, j); in an empty one the mean of
- * the nearest cells that hold any; NaN where there are none within MAP_REACH cells: a void. */
+ * the nearest cells that hold any; NaN where no particle's h reaches, or there are none within
+ * MAP_REACH cells: a void. */
 enum { MAP_REACH = 4 };
 void map_mean(const struct map *map, const double *values, double *z);
 

@@ -53,7 +53,7 @@ static void sample(const struct prepared *p, const double at[3], double t, struc
     s->rho += off[0], s->v[0] += off[1], s->v[1] += off[2], s->P += off[3];
 }
 
-static double x[3][MANY + 1], v[3][MANY + 1], rho[MANY + 1], P[MANY + 1];
+static double x[3][MANY + 1], v[3][MANY + 1], rho[MANY + 1], P[MANY + 1], h[MANY + 1];
 
 /* n particles where they have been carried by the boost, and one behind them that is nowhere. */
 static void make(int dim, bool circular, size_t n)
@@ -78,7 +78,7 @@ static void make(int dim, bool circular, size_t n)
             x[d][i] += boost[d] * now - (n == FEW ? 0 : 0.25);
             v[d][i] = 1 + d + 0.125 * (double)(i % 5);
         }
-        rho[i] = 2 + 0.5 * (double)i, P[i] = 3 + 0.25 * (double)i;
+        rho[i] = 2 + 0.5 * (double)i, P[i] = 3 + 0.25 * (double)i, h[i] = 9;
     }
     for (int d = 0; d < 3; d++)
         x[d][n] = boost[d] * now + (d == 1 ? behind : 0), v[d][n] = (double)NAN;
@@ -88,6 +88,7 @@ static void make(int dim, bool circular, size_t n)
                                         .v = {v[0], v[1], dim > 2 ? v[2] : NULL},
                                         .rho = rho,
                                         .P = P,
+                                        .h = h,
                                         .time = now};
 }
 

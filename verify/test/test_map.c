@@ -7,15 +7,20 @@
 #include <stdint.h>
 #include <cmocka.h>
 
+#include <math.h>
 #include <stdlib.h>
 
 #include "map.h"
 #include "near.h"
 
+/* So wide that no cell is beyond somebody's h. */
+static double wide[200];
+
 static struct map made(const struct domain *domain, const struct snapshot *s, size_t most)
 {
     struct map map;
     struct error error = {0};
+    for (size_t i = 0; i < sizeof wide / sizeof *wide; i++) wide[i] = 99;
     assert_int_equal(map_create(&map, domain, s, most, &error), STATUS_OK);
     return map;
 }
@@ -29,7 +34,7 @@ static void cells_of_a_plane(void **state)
     const double x[N] = {-1, 3, 0, 0.999, 2.5, -1.001, 1, 2},
                  y[N] = {2, 4, 3, 2.999, 4.001, 3, 2.5, 3};
     const size_t cell[N] = {0, 7, 5, 1, NONE, NONE, 2, 7};
-    const struct snapshot s = {.n = N, .x = {x, y}};
+    const struct snapshot s = {.n = N, .x = {x, y}, .h = wide};
     struct map map = made(&domain, &s, MAP_CELLS);
     assert_true(map.nx == 4 && map.ny == 2 && map.n == N);
     assert_int_equal(map.seen, 6);
@@ -53,7 +58,7 @@ static void cells_of_a_plane(void **state)
     map_free(&map);
     /* one particle in a flat box: cells are as wide as it is apart, but never none of them */
     const struct domain flat = {2, {0, 0}, {4, 0.1}};
-    const struct snapshot one = {.n = 1, .x = {x + 6, y}};
+    const struct snapshot one = {.n = 1, .x = {x + 6, y}, .h = wide};
     map = made(&flat, &one, MAP_CELLS);
     assert_true(map.nx == 6 && map.ny == 1 && map.y[0] == 0.05);
     map_free(&map);
@@ -69,14 +74,14 @@ static void slice_of_a_box(void **state)
     for (int i = 0; i < N; i++) x[i] = 99, y[i] = z[i] = 3;
     const double heights[] = {2, 1.999, 4, 3.999, 3};
     for (int i = 0; i < 5; i++) x[i] = 0.5 + i / 2, y[i] = 0.5, z[i] = heights[i];
-    const struct snapshot s = {.n = N, .x = {x, y, z}};
+    const struct snapshot s = {.n = N, .x = {x, y, z}, .h = wide};
     struct map map = made(&domain, &s, MAP_CELLS);
     assert_true(map.nx == 4 && map.ny == 2 && map.slice[0] == 2 && map.slice[1] == 4);
     assert_int_equal(map.seen, 3);
     assert_true(map.cell[0] == 0 && map.cell[1] == 8 && map.cell[2] == 8 && map.cell[3] == 1 &&
                 map.cell[4] == 2);
     map_free(&map);
-    const struct snapshot few = {.n = 5, .x = {x, y, z}};
+    const struct snapshot few = {.n = 5, .x = {x, y, z}, .h = wide};
     map = made(&domain, &few, MAP_CELLS);
     near_relative(map.slice[0], 3 - cbrt(32. / 5), 1e-14);
     near_relative(map.slice[1], 3 + cbrt(32. / 5), 1e-14);
@@ -99,7 +104,7 @@ static void rings(void **state)
         if (i < N)
             direct[at[i][1] * SIDE_X + at[i][0]] += values[i], held[at[i][1] * SIDE_X + at[i][0]]++;
     }
-    const struct snapshot s = {.n = CELLS, .x = {x, y}};
+    const struct snapshot s = {.n = CELLS, .x = {x, y}, .h = wide};
     struct map map = made(&domain, &s, MAP_CELLS);
     assert_true(map.nx == SIDE_X && map.ny == SIDE_Y && map.seen == N);
     z[CELLS] = 5;
@@ -128,12 +133,40 @@ static void rings(void **state)
     map_free(&map);
 }
 
+/* Empty cells that no h reaches are a void: by the distance of their centres, in the plane. */
+static void voids(void **state)
+{
+    (void)state;
+    enum { SIDE = 12, N = SIDE * SIDE };
+    const struct domain domain = {2, {0, 0}, {SIDE, SIDE}};
+    double x[N], y[N], h[N], values[N], z[N];
+    for (int i = 0; i < N; i++) x[i] = -1, y[i] = 5, h[i] = 3, values[i] = 7;
+    const double at[][3] = {{3.5, 3.5, 2.236}, {9.25, 6.5, 1.6}, {11.5, 0.5, 0.4}};
+    for (int i = 0; i < 3; i++) x[i] = at[i][0], y[i] = at[i][1], h[i] = at[i][2];
+    const struct snapshot s = {.n = N, .x = {x, y}, .h = h};
+    struct map map = made(&domain, &s, MAP_CELLS);
+    assert_true(map.nx == SIDE && map.ny == SIDE);
+    map_mean(&map, values, z);
+    int filled = 0;
+    for (int k = 0; k < N; k++) {
+        size_t covered = 0;
+        for (int i = 0; i < 3; i++)
+            covered += hypot(k % SIDE + 0.5 - x[i], k / SIDE + 0.5 - y[i]) <= h[i];
+        assert_int_equal(map.covered[k], covered);
+        assert_true(covered ? z[k] == 7 : isnan(z[k]));
+        filled += covered > 0;
+    }
+    assert_int_equal(filled, 13 + 7 + 1);
+    map_free(&map);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(cells_of_a_plane),
         cmocka_unit_test(slice_of_a_box),
         cmocka_unit_test(rings),
+        cmocka_unit_test(voids),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -202,7 +202,7 @@ static char path[] = "/tmp/sphproof_memory_XXXXXX.ini";
 static enum status mapped(struct error *error)
 {
     const struct domain domain = {2, {0, 0}, {10, 10}};
-    const struct snapshot s = {.n = N, .x = {places[0], places[1]}};
+    const struct snapshot s = {.n = N, .x = {places[0], places[1]}, .h = places[0]};
     struct map map;
     make_places();
     const enum status status = map_create(&map, &domain, &s, 8, error);

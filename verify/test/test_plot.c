@@ -281,7 +281,8 @@ static void map_counts(void **state)
                                     {0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5}};
     static const size_t cell[] = {0, 4, 8, 0, 6, 1, 9, 9};
     struct error error = {0};
-    struct snapshot s = {.n = 8, .x = {at[0], at[1]}};
+    static const double h[] = {1, 1, 1, 1, 1, 1, 1, 1};
+    struct snapshot s = {.n = 8, .x = {at[0], at[1]}, .h = h};
     const struct domain square = {.dim = 2, .hi = {1, 1}}, box = {.dim = 3, .hi = {1, 1, 1}};
     struct map grid;
     assert_int_equal(map_create(&grid, &square, &s, MAP_CELLS, &error), STATUS_OK);
@@ -305,9 +306,9 @@ static void map_means(void **state)
 {
     (void)state;
     static const double at[2][4] = {{0.1, 0.2, 0.9, 0.8}, {0.1, 0.2, 0.9, 0.1}};
-    static const double values[] = {1, 3, 8, 5};
+    static const double values[] = {1, 3, 8, 5}, h[] = {1, 1, 1, 1};
     struct error error = {0};
-    const struct snapshot s = {.n = 4, .x = {at[0], at[1]}};
+    const struct snapshot s = {.n = 4, .x = {at[0], at[1]}, .h = h};
     const struct domain square = {.dim = 2, .hi = {1, 1}};
     struct map grid;
     double z[4];
