@@ -30,10 +30,10 @@ static struct side side_make(double gamma, const struct riemann_state *state, in
 
 /* ---- the jump of velocity across a wave (Toro eqs 4.6, 4.7) as a function of y ---- */
 
-/* The wave into cold gas is always one. */
+/* The wave into cold gas, l = -infinity, is always one. */
 static bool is_shock(const struct side *side, real y)
 {
-    return !(side->P > 0 && y <= side->l);
+    return !(y <= side->l);
 }
 
 static real rarefaction_jump(const struct side *side, real y)
@@ -47,8 +47,8 @@ static real velocity_jump(const struct side *side, real scale, real y, real *slo
 {
     const real gamma = side->gamma, z = (gamma - 1) / (2 * gamma);
     if (is_shock(side, y)) {
-        const real ratio = side->P > 0 ? expl(side->l - y) : 0; /* P/p */
-        const real missing = side->P > 0 ? -expm1l(side->l - y) : 1;
+        const real ratio = expl(side->l - y); /* P/p */
+        const real missing = -expm1l(side->l - y);
         const real d = gamma + 1 + (gamma - 1) * ratio;
         const real speed = sqrtl(scale / side->rho) * expl(y / 2) * sqrtl(2 / d);
         *slope = speed * (1 - (gamma + 1) * missing / (2 * d));
@@ -121,8 +121,8 @@ static real star_pressure(struct problem *problem)
     struct side *a = &problem->side[0], *b = &problem->side[1];
     problem->scale = fmaxl(a->P, b->P);
     if (!(problem->scale > 0)) problem->scale = fminl(a->rho, b->rho) * problem->dv * problem->dv;
-    a->l = a->P > 0 ? logl(a->P / problem->scale) : -HUGE_VALL;
-    b->l = b->P > 0 ? logl(b->P / problem->scale) : -HUGE_VALL;
+    a->l = logl(a->P / problem->scale);
+    b->l = logl(b->P / problem->scale);
     real slope;
     const real lowest = fminl(a->l, b->l);
     if (isfinite(lowest) && residual(problem, lowest, &slope) >= 0)
@@ -141,7 +141,7 @@ static struct wave wave_make(const struct side *side, real y, real p, real v_sta
 {
     const real gamma = side->gamma;
     if (is_shock(side, y)) {
-        const real ratio = side->P > 0 ? expl(side->l - y) : 0;
+        const real ratio = expl(side->l - y);
         const real flux = ((gamma + 1) * p + (gamma - 1) * side->P) / 2;
         const real speed = fminl(side->v - sqrtl(flux / side->rho), v_star);
         const real compression =
@@ -274,8 +274,9 @@ struct riemann_state riemann_sample(const struct riemann_solution *s, double x, 
 {
     if (!(t > 0)) return x <= x0 ? s->left : s->right;
     const real xi = ((real)x - x0) / t;
-    const bool on_left = s->vacuum ? s->left.rho > 0 && xi <= s->left_tail : xi <= s->contact;
-    const bool on_right = s->vacuum ? s->right.rho > 0 && xi >= s->right_tail : !on_left;
+    /* beside vacuum a side without gas has no tail */
+    const bool on_left = xi <= (s->vacuum ? s->left_tail : s->contact);
+    const bool on_right = s->vacuum ? xi >= s->right_tail : !on_left;
     if (on_left) {
         if (s->left_wave == RIEMANN_NONE || xi <= s->left_head) return s->left;
         if (xi >= s->left_tail)

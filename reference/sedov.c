@@ -74,6 +74,8 @@ static struct profile profile_of(double gamma, int d, double lambda)
     gsl_root_fsolver *solver = gsl_root_fsolver_alloc(gsl_root_fsolver_brent);
     struct profile profile = {(double)NAN, (double)NAN, (double)NAN};
     if (!solver) return profile;
+    /* ends: at what is no number, or with Brent's bracket, which closes to GSL_DBL_EPSILON |root|
+     */
     if (gsl_root_fsolver_set(solver, &f, low, high) == GSL_SUCCESS)
         while (gsl_root_fsolver_iterate(solver) == GSL_SUCCESS) {
             const double s = gsl_root_fsolver_x_lower(solver);

@@ -70,6 +70,8 @@ static double characteristic_start(const struct simple_wave *wave, double x, dou
     gsl_root_fsolver *solver = gsl_root_fsolver_alloc(gsl_root_fsolver_brent);
     if (!solver) return undefined;
     double start = undefined;
+    /* ends: at what is no number, or with Brent's bracket, which closes to GSL_DBL_EPSILON |root|
+     */
     if (gsl_root_fsolver_set(solver, &f, low, high) == GSL_SUCCESS)
         while (gsl_root_fsolver_iterate(solver) == GSL_SUCCESS) {
             const double width =

@@ -149,8 +149,7 @@ static void propose(struct rate_check *check, const double *const theirs[RATE_CO
 {
     for (size_t k = 0; k < check->count; k++) {
         struct rate_comparison *c = &check->columns[k], now = *c;
-        int column = 0;
-        while (names[column] != c->quantity) column++;
+        const int column = c->column;
         if (c->good || c->cause[0]) continue;
         compare(&now, theirs[column], changed, m, column);
         if (now.worst <= fmax(tolerance, 1e-3 * c->worst))
@@ -237,8 +236,7 @@ static void find_causes(struct rate_check *check, const double *const theirs[RAT
     const char *first = NULL; /* that is wrong; what comes after it follows from it */
     for (size_t k = 0; k < check->count; k++) {
         struct rate_comparison *c = &check->columns[k];
-        int column = 0;
-        while (names[column] != c->quantity) column++;
+        const int column = c->column;
         if (c->good) continue;
         if (!c->cause[0]) explain_plainly(c, theirs[column], column, scene, ours, tolerance);
         if (!c->cause[0] && first && column >= 2)
@@ -263,6 +261,7 @@ enum status rate_check_make(struct rate_check *check, const char *path, const st
         if (k < 0 || (column >= 3 && column < 6 && column - 3 >= ours->dim)) continue;
         struct rate_comparison *c = &check->columns[check->count++];
         columns[column] = theirs->values[k];
+        c->column = column;
         c->quantity = names[column];
         compare(c, columns[column], ours, scene->m, column);
         c->good = c->worst <= tolerance;

@@ -10,6 +10,7 @@
 enum { RATE_COLUMNS = 7, RATE_CAUSE = 160 };
 
 struct rate_comparison {
+    int column;           /* 0 to 6: */
     const char *quantity; /* h rho P ax ay az du */
     double worst, rms; /* |theirs - ours|, relative: h, rho, P to ours, a and du to the largest */
     size_t particle;   /* the worst one, from 0 */

@@ -441,6 +441,37 @@ static void blasts_are_summed(void **state)
     }
 }
 
+/* One particle on either side of the middle along every axis, the light one twice as fast: as much
+ * momentum flies outwards everywhere, but energy of motion lies more on one side. */
+static void one_side_is_faster(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        struct settings s;
+        struct cloud cloud = {0};
+        const struct prepared p = prepared_of(&s, dim, "kind=sedov|gamma=1.6|lo=-0.75|hi=1.25");
+        for (int i = 0; i < 2 * dim; i++) {
+            const int side = i % 2 ? -1 : 1;
+            for (int d = 0; d < dim; d++) cloud.x[d][i] = 0.25;
+            cloud.x[i / 2][i] += 0.5 * side;
+            cloud.v[i / 2][i] = (i % 2 ? 1 : 2) * side;
+            cloud.m[i] = i % 2 ? 2 : 1;
+            cloud.volume[i] = 1 + i;
+        }
+        cloud.m[2 * dim] = 7;
+        cloud.snapshot = (struct snapshot){.n = 2 * (size_t)dim,
+                                           .x = {cloud.x[0], cloud.x[1], cloud.x[2]},
+                                           .v = {cloud.v[0], cloud.v[1], cloud.v[2]},
+                                           .m = cloud.m,
+                                           .u = cloud.volume,
+                                           .time = 0.3};
+        near_relative(measured(&p, "asymmetry", &cloud.snapshot), 1. / (3 * dim), 1e-15);
+        near_relative(measured(&p, "kinetic_energy", &cloud.snapshot), 3 * dim, 1e-15);
+        near_relative(measured(&p, "outward_momentum", &cloud.snapshot), 4 * dim, 1e-15);
+        near_relative(measured(&p, "thermal_radius", &cloud.snapshot), 0.5, 1e-15);
+    }
+}
+
 /* Where a start prefers no direction none may come. */
 static void symmetry_is_known(void **state)
 {
@@ -555,6 +586,7 @@ int main(void)
         cmocka_unit_test(blasts_run_outwards),
         cmocka_unit_test(blasts_are_measured),
         cmocka_unit_test(blasts_are_summed),
+        cmocka_unit_test(one_side_is_faster),
         cmocka_unit_test(symmetry_is_known),
         cmocka_unit_test(discs_fly_apart),
         cmocka_unit_test(discs_are_measured),

@@ -91,11 +91,10 @@ static void begins(const char *text, const char *message)
 #define FLAT                                                                                       \
     "[case]\ntitle = A vortex\ndimension = 2\nreference = gresho\n[domain]\nlo = 0\nhi = 1\n"      \
     "[initial]\nkind = gresho\n[run]\nt_end = 1\n"
-#define ERROR_GATE "order for shorter ladders, bound of the finest error"
-#define KNOWN      "; `known: WHY` after them, if it is known to fail"
-#define FUNCTIONAL_GATE                                                                            \
-    ERROR_GATE "; or order, least and greatest error" KNOWN
-#define GATE "least order, greatest order, bound of the finest error; or " ERROR_GATE KNOWN
+#define ERROR_GATE      "order for shorter ladders, bound of the finest error"
+#define KNOWN           "; `known: WHY` after them, if it is known to fail"
+#define FUNCTIONAL_GATE ERROR_GATE "; or order, least and greatest error" KNOWN
+#define GATE            "least order, greatest order, bound of the finest error; or " ERROR_GATE KNOWN
 
 /* A gate of a functional: the order that raises its bound, and the bound. */
 static void functionals(void **state)
@@ -220,6 +219,9 @@ static void bad_lines(void **state)
            AT("2") "no section 'cases'; did you mean 'case'? allowed: case "
                    "domain initial scheme run measure converge compared report");
     refused("[run]\neta = 2\n", AT("2") "key eta stands in the section [scheme], not in [run]");
+    refused("[case]\nkernel = 2\n",
+            AT("2") "key kernel stands in the section [scheme], not in [case]");
+    refused("[case]\nskip = 2\n", AT("2") "key skip stands in the section [run], not in [case]");
     begins("[run]\nt_ned = 2\n", AT("2") "no key in [run] 't_ned'; did you mean 't_end'? allowed: "
                                          "gamma n t_end skip");
     begins("[case]\nfields = 2\n", AT("2") "no key in [case] 'fields'; allowed: title dimension "

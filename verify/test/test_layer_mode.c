@@ -167,6 +167,51 @@ static void nothing_grows(void **state)
     assert_true(!(cimag(layer_mode_collocation(&still[0], 16)) >= 1e-6));
 }
 
+/* With units of time that are 2^e times as long, and of density, 2^b times as much. */
+static void units_do_not_matter(void **state)
+{
+    static const struct {
+        int layer, e, b;
+    } rows[] = {{1, 20, -30}, {3, -20, 30}};
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        const int e = rows[k].e, b = rows[k].b;
+        const struct layer_mode *usual = &modes[rows[k].layer];
+        struct layer layer = layers[rows[k].layer];
+        struct layer_mode mode;
+        layer.U = ldexp(layer.U, e), layer.g = ldexp(layer.g, 2 * e);
+        layer.P = ldexp(layer.P, 2 * e + b);
+        layer.rho = ldexp(layer.rho, b), layer.rho_step = ldexp(layer.rho_step, b);
+        assert_true(layer_mode_find(&layer, &mode));
+        near_below(cabs(mode.omega / ldexp(1, e) / usual->omega - 1), 1e-13);
+        for (int i = -4; i <= 4; i++) {
+            const double y = 0.23 * i * end_of(&layer);
+            const struct layer_amplitude have = layer_mode_amplitude(&mode, y),
+                                         want = layer_mode_amplitude(usual, y);
+            near_below(cabs(have.v - want.v), 1e-12);
+            near_below(cabs(have.p / ldexp(1, e + b) - want.p), 1e-12);
+        }
+    }
+}
+
+/* Weak gravity moves gas as slowly as it does where nothing is compressed: the growth goes with its
+ * root. What would take 1e8 sound times is round-off. */
+static void slow_growth_is_known_as_far_as_it_can_be(void **state)
+{
+    (void)state;
+    struct layer layer = layers[4];
+    struct layer_mode mode;
+    const double rate = layer.k * sqrt(layer.gamma * layer.P / layer.rho);
+    layer.g = 1e-8;
+    assert_true(layer_mode_find(&layer, &mode));
+    const double least = layer.g * pow(1e-8 * rate / cimag(mode.omega), 2);
+    layer.g = 1.01 * least;
+    assert_true(layer_mode_find(&layer, &mode));
+    near_relative(cimag(mode.omega), 1e-8 * rate * sqrt(1.01), 1e-7);
+    layer.g = 0.99 * least;
+    assert_false(layer_mode_find(&layer, &mode));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -175,6 +220,8 @@ int main(void)
         cmocka_unit_test(units_are_those_of_the_header),
         cmocka_unit_test(images_are_mirrored),
         cmocka_unit_test(nothing_grows),
+        cmocka_unit_test(units_do_not_matter),
+        cmocka_unit_test(slow_growth_is_known_as_far_as_it_can_be),
     };
     return cmocka_run_group_tests(tests, find_modes, NULL);
 }

@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include <gsl/gsl_errno.h>
+#include <gsl/gsl_rng.h>
 
 #include "disc.h"
 #include "kelvin_helmholtz.h"
@@ -237,6 +238,29 @@ static void test_sedov_inside(void **state)
     }
 }
 
+/* At every place of every blast the search ends, and finds no denser gas than right behind the
+ * shock. */
+static void test_sedov_anywhere(void **state)
+{
+    (void)state;
+    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
+    for (int i = 0; i < 3000; i++) {
+        double u[4];
+        for (int k = 0; k < 4; k++) u[k] = gsl_rng_uniform(random);
+        const int d = 1 + i % 3;
+        const struct sedov s = {1 + pow(10, (d == 3 ? 8.7 : 9.9) * u[0] - 8),
+                                pow(10, 200 * u[1] - 100), pow(10, 200 * u[2] - 100), d, 1};
+        const double part = i % 7 == 0   ? 1 - pow(10, -16 * u[3])
+                            : i % 7 == 1 ? pow(10, -320 * u[3])
+                                         : u[3];
+        const double t = i % 5 ? 0.7 : pow(10, 200 * u[3] - 100), R = sedov_shock(&s, t);
+        const struct sedov_state at = sedov_sample(&s, part * R, t);
+        near_below(at.rho / s.rho, (s.gamma + 1) / (s.gamma - 1) * (1 + 1e-7));
+        assert_true(at.rho >= 0 && at.v >= 0 && at.P >= 0);
+    }
+    gsl_rng_free(random);
+}
+
 static double mass_of(double r, const struct sedov_state *s)
 {
     (void)r;
@@ -414,6 +438,7 @@ int main(void)
         cmocka_unit_test(test_sedov_handler),
         cmocka_unit_test(test_sedov_ends),
         cmocka_unit_test(test_sedov_inside),
+        cmocka_unit_test(test_sedov_anywhere),
         cmocka_unit_test(test_sedov_integrals),
         cmocka_unit_test(test_layers_of_mcnally),
         cmocka_unit_test(test_table_of_mcnally),

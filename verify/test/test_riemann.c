@@ -433,6 +433,13 @@ static void test_sample_regions(void **state)
     assert_true(at.rho == 1);
     at = riemann_sample(&s, nextafter(0.25, 1), 0.25, 0);
     assert_true(at.rho == 0.125 && at.P == 0.1);
+    /* what lies on an edge */
+    at = riemann_sample(&s, s.contact, 0, 1);
+    assert_true(at.rho == s.rho_star_left && at.v == s.v_star && at.P == s.p_star);
+    assert_true(riemann_sample(&s, s.left_head, 0, 1).rho == 1);
+    assert_true(riemann_sample(&s, s.left_tail, 0, 1).rho == s.rho_star_left);
+    assert_true(riemann_sample(&s, s.right_head, 0, 1).rho == 0.125);
+    assert_true(riemann_sample(&s, nextafter(s.right_head, 0), 0, 1).rho == s.rho_star_right);
     at = riemann_sample(&s, 0.25 + 0.5 * 0.92, 0.25, 0.5);
     near_relative(at.rho, 0.42631942817849519, 1e-14);
     at = riemann_sample(&s, 0.25 + 0.5 * 0.93, 0.25, 0.5);
@@ -460,6 +467,15 @@ static void test_vacuum_samples(void **state)
     assert_true(at.rho == 0 && at.v == 7);
     at = riemann_sample(&s, s.left_tail - 1e-3, 0, 1);
     assert_true(at.rho > 0 && at.rho < 1e-15 && at.P > 0);
+    /* where the gas ends, 3 - 2 3/(3 - 1), nothing is left */
+    for (int side = -1; side <= 1; side += 2) {
+        const struct riemann_state hot = {1, 3 * side, 3}, away = {0, 0, 0};
+        s = side < 0 ? solved(3, hot, away) : solved(3, away, hot);
+        at = riemann_sample(&s, 0, 0, 1);
+        assert_true(at.rho == 0 && isnan(at.v) && at.P == 0);
+        near_relative(riemann_sample(&s, 1.5 * side, 0, 1).rho, 0.25, 1e-14);
+        assert_true(isnan(riemann_sample(&s, -1e-9 * side, 0, 1).v));
+    }
     s = solved(1.4, none, none);
     at = riemann_sample(&s, 0, 0, 1);
     assert_true(s.vacuum && s.left_wave == RIEMANN_NONE && at.rho == 0);

@@ -9,6 +9,10 @@
 #include <stdint.h>
 #include <cmocka.h>
 
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_rng.h>
+#include <gsl/gsl_roots.h>
+
 #include "near.h"
 #include "simple_wave.h"
 
@@ -162,13 +166,57 @@ static void test_beyond_double(void **state)
     assert_true(isfinite(simple_wave_sample(&wave, 0.3, 0).rho));
 }
 
+/* 1 to the left, -1 to the right, and between them no number. */
+static double torn(double x, void *parameters)
+{
+    (void)parameters;
+    return fabs(x) < 0.9 ? (double)NAN : x < 0 ? 1 : -1;
+}
+
+/* The search for a start ends: GSL's stops at what is no number, and whatever wave that is allowed
+ * has values between its least and its greatest one at any time until it breaks, or, beyond the
+ * range of double, none. */
+static void test_every_search_ends(void **state)
+{
+    (void)state;
+    gsl_function f = {torn, NULL};
+    gsl_error_handler_t *const handler = gsl_set_error_handler_off();
+    gsl_root_fsolver *solver = gsl_root_fsolver_alloc(gsl_root_fsolver_brent);
+    assert_int_equal(gsl_root_fsolver_set(solver, &f, -1, 1), GSL_SUCCESS);
+    assert_int_equal(gsl_root_fsolver_iterate(solver), GSL_EBADFUNC);
+    gsl_root_fsolver_free(solver);
+    gsl_set_error_handler(handler);
+    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
+    int known = 0;
+    for (int i = 0; i < 3000; i++) {
+        double any[6], u[4];
+        for (int k = 0; k < 4; k++) u[k] = gsl_rng_uniform(random);
+        for (int k = 0; k < 6; k++) any[k] = pow(10, 600 * gsl_rng_uniform(random) - 300);
+        const struct simple_wave w = {.gamma = 1 + pow(10, i % 2 ? 20 * u[0] - 15 : 2 * u[0] - 1),
+                                      .rho0 = i % 3 ? 2 : any[0],
+                                      .v0 = i % 5 ? 0 : any[1],
+                                      .P0 = i % 3 ? 3 : any[2],
+                                      .amplitude = i % 7 ? 2 * u[1] - 1 : 1 - pow(10, -15 * u[1]),
+                                      .length = i % 4 ? 1.7 : any[3]};
+        assert_null(simple_wave_fault(&w));
+        const double late = i % 2 ? u[2] : 1 - pow(10, -16 * u[2]);
+        const double x = i % 11 ? (4 * u[3] - 2) * w.length : any[4];
+        const struct simple_wave_state s =
+            simple_wave_sample(&w, x, late * simple_wave_breaking_time(&w));
+        assert_true(isnan(s.rho) || fabs(s.rho / w.rho0 - 1) <= fabs(w.amplitude) + 1e-14);
+        known += !isnan(s.rho);
+    }
+    gsl_rng_free(random);
+    assert_true(known > 1500);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_start),           cmocka_unit_test(test_characteristics),
         cmocka_unit_test(test_small_amplitude), cmocka_unit_test(test_breaking),
         cmocka_unit_test(test_breaking_times),  cmocka_unit_test(test_faults),
-        cmocka_unit_test(test_beyond_double),
+        cmocka_unit_test(test_beyond_double),   cmocka_unit_test(test_every_search_ends),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
