@@ -109,23 +109,29 @@ static void crystal_points(const struct lattice_plan *plan, const struct crystal
 }
 
 /* Sobol's sequence, shifted at random round the box. */
-static void sobol_points(const struct lattice_plan *plan, unsigned long seed, double *const x[3])
+static enum status sobol_points(const struct lattice_plan *plan, unsigned long seed,
+                                double *const x[3], struct error *error)
 {
     const struct domain *box = &plan->box;
     gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
     gsl_qrng *sequence = gsl_qrng_alloc(gsl_qrng_sobol, (unsigned)box->dim);
     double shift[3], at[3];
-    gsl_rng_set(random, seed);
-    for (int d = 0; d < 3; d++) shift[d] = gsl_rng_uniform(random);
-    for (size_t i = 0; i < plan->n; i++) {
-        gsl_qrng_get(sequence, at);
-        for (int d = 0; d < box->dim; d++) {
-            const double part = at[d] + shift[d];
-            x[d][i] = box->lo[d] + domain_length(box, d) * (part < 1 ? part : part - 1);
+    if (random && sequence) {
+        gsl_rng_set(random, seed);
+        for (int d = 0; d < 3; d++) shift[d] = gsl_rng_uniform(random);
+        for (size_t i = 0; i < plan->n; i++) {
+            gsl_qrng_get(sequence, at);
+            for (int d = 0; d < box->dim; d++) {
+                const double part = at[d] + shift[d];
+                x[d][i] = box->lo[d] + domain_length(box, d) * (part < 1 ? part : part - 1);
+            }
         }
     }
     gsl_qrng_free(sequence);
     gsl_rng_free(random);
+    return random && sequence
+               ? STATUS_OK
+               : error_set(error, STATUS_ENVIRONMENT, "no memory for %zu points", plan->n);
 }
 
 /* Of each of equal points. */
@@ -143,9 +149,11 @@ enum status lattice_points(const struct lattice_plan *plan, unsigned long seed, 
 {
     const struct crystal *crystal = crystal_of(plan->kind);
     const struct relax_room room = {plan->box, equal_share, plan};
+    enum status status = STATUS_OK;
     if (crystal)
         crystal_points(plan, crystal, x);
     else
-        sobol_points(plan, seed, x);
-    return plan->kind == LATTICE_GLASS ? relax_points(&room, plan->n, x, error) : STATUS_OK;
+        status = sobol_points(plan, seed, x, error);
+    if (status || plan->kind != LATTICE_GLASS) return status;
+    return relax_points(&room, plan->n, x, error);
 }

@@ -205,8 +205,7 @@ static enum status keep_snapshot(struct run_result *result, const struct snapsho
     }
     kept->n = seen.n;
     result->crossed = domain->dim == 1 ? count_crossed(snapshot) : 0;
-    result->spacing =
-        domain->dim == 1 ? volume / (double)seen.n : pow(volume / (double)seen.n, 1. / domain->dim);
+    result->spacing = pow(volume / (double)seen.n, 1. / domain->dim);
     kept->time = result->time = seen.time;
     return STATUS_OK;
 }
@@ -301,13 +300,13 @@ static bool after_step(void *context, double time, uint64_t steps)
         checkpoint->snapshot = settings->snapshots ? snapshots_last(settings->snapshots) : -1;
         checkpoint_save(checkpoint, watch->simulation, &watch->result->growth);
     }
-    if (settings->snapshots && time < watch->until &&
-        snapshots_keep(settings->snapshots, watch->simulation, time, watch->until))
-        return false;
     if (settings->trace && trace_wants(settings->trace, steps)) keep_trace(watch, time);
     if (settings->trace && trace_looks(settings->trace, time, t_end)) keep_look(watch, time);
-    if (!settings->progress || (steps % STEPS_BETWEEN && !settings->each_step)) return true;
-    return settings->progress(settings->progress_context, time, steps);
+    if (settings->progress && (steps % STEPS_BETWEEN == 0 || settings->each_step) &&
+        !settings->progress(settings->progress_context, time, steps))
+        return false;
+    return !(settings->snapshots && time < watch->until &&
+             snapshots_keep(settings->snapshots, watch->simulation, time, watch->until));
 }
 
 /* A snapshot on the way; what cannot be written or kept does not end the run. */

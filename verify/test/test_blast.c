@@ -441,6 +441,35 @@ static void blasts_are_summed(void **state)
     }
 }
 
+static double nothing_but_mass(double r, const struct sedov_state *s)
+{
+    (void)r;
+    return s->rho;
+}
+
+static double pressure_alone(double r, const struct sedov_state *s)
+{
+    (void)r;
+    return s->P;
+}
+
+/* The energy that a mass has in a ball round the middle: before the blast that of the cold gas. */
+static void energy_of_a_ball(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        struct settings s;
+        struct sedov blast;
+        const struct prepared p = prepared_of(&s, dim, "kind=sedov|gamma=1.6|lo=-0.75|hi=1.25");
+        assert_null(sedov_solve(1.6, dim, 1, 1, &blast));
+        near_relative(p.problem->mean_energy(&p, 0.1, 0), 1e-6 / 0.6, 1e-14);
+        near_relative(p.problem->mean_energy(&p, 0.1, 0.3),
+                      sedov_integral(&blast, 0.1, 0.3, pressure_alone) / 0.6 /
+                          sedov_integral(&blast, 0.1, 0.3, nothing_but_mass),
+                      1e-13);
+    }
+}
+
 /* One particle on either side of the middle along every axis, the light one twice as fast: as much
  * momentum flies outwards everywhere, but energy of motion lies more on one side. */
 static void one_side_is_faster(void **state)
@@ -467,6 +496,8 @@ static void one_side_is_faster(void **state)
                                            .time = 0.3};
         near_relative(measured(&p, "asymmetry", &cloud.snapshot), 1. / (3 * dim), 1e-15);
         near_relative(measured(&p, "kinetic_energy", &cloud.snapshot), 3 * dim, 1e-15);
+        cloud.v[1][0] = 1, cloud.v[1][1] = -0.5; /* and along y on either side */
+        near_relative(measured(&p, "asymmetry", &cloud.snapshot), 0.5, 1e-15);
         near_relative(measured(&p, "outward_momentum", &cloud.snapshot), 4 * dim, 1e-15);
         near_relative(measured(&p, "thermal_radius", &cloud.snapshot), 0.5, 1e-15);
     }
@@ -587,6 +618,7 @@ int main(void)
         cmocka_unit_test(blasts_are_measured),
         cmocka_unit_test(blasts_are_summed),
         cmocka_unit_test(one_side_is_faster),
+        cmocka_unit_test(energy_of_a_ball),
         cmocka_unit_test(symmetry_is_known),
         cmocka_unit_test(discs_fly_apart),
         cmocka_unit_test(discs_are_measured),

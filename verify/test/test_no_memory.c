@@ -30,6 +30,7 @@
 #include "rate_table.h"
 #include "regularity.h"
 #include "relax.h"
+#include "run.h"
 #include "snapshots.h"
 #include "suite.h"
 #include "suite_output.h"
@@ -184,6 +185,20 @@ static enum status regular(struct error *error)
     return status;
 }
 
+/* All that comes before a run's first step; a glass is measured. */
+static enum status explained(struct error *error)
+{
+    static struct run run;
+    static struct run_result result;
+    if (!run.asked.threads) {
+        struct run_settings settings;
+        char *keys[] = {"n=8^2", "lattice=glass"};
+        assert_int_equal(run_prepare(&settings, "rest_2d", 2, keys, error), STATUS_OK);
+        assert_int_equal(run_resolve(&run, &settings, error), STATUS_OK);
+    }
+    return run_explain(&run, &result, error);
+}
+
 static void places_of_particles(void **state)
 {
     (void)state;
@@ -191,6 +206,9 @@ static void places_of_particles(void **state)
     without_memory(created, 2, true);
     without_memory(equal, 3, true);
     without_memory(relaxed, 4, true);
+    struct error error;
+    assert_int_equal(explained(&error), STATUS_OK); /* what it asks for once is there */
+    without_memory(explained, 8, true);
     without_memory(relax_measured, 4, true);
     without_memory(regular, 4, true);
 }

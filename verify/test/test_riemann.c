@@ -333,6 +333,21 @@ static void test_underflow(void **state)
     }
 }
 
+/* It is said of a density, too, whichever side it is on: thin gas that runs away from a wall. */
+static void test_underflow_of_one_side(void **state)
+{
+    (void)state;
+    for (int side = -1; side <= 1; side += 2) {
+        const struct riemann_state thin = {4e-308, side * 1.18e154, 1}, wall = {1, 0, 1e-9};
+        struct riemann_solution s;
+        assert_null(riemann_solve(1.4, side < 0 ? &thin : &wall, side < 0 ? &wall : &thin, &s));
+        near_relative(s.p_star, pow(1 - 0.2 * 1.18e154 / sqrt(1.4 / 4e-308), 7), 1e-9);
+        const double rho = side < 0 ? s.rho_star_left : s.rho_star_right;
+        assert_true(rho > 0 && rho < DBL_MIN);
+        assert_true(s.underflow);
+    }
+}
+
 static void test_cold_gas(void **state)
 {
     (void)state;
@@ -516,6 +531,11 @@ static void test_bad_input(void **state)
         if (rows[i].fault != beyond)
             assert_string_equal(riemann_solve(1.4, &good, &rows[i].gas, &s), rows[i].fault);
     }
+    /* too fast is the head of the fan alone: c = 2e307 */
+    const struct riemann_state far = {3.5e-307, -1.7e308, 1e308}, none = {0, 0, 0},
+                               back = {3.5e-307, 1.7e308, 1e308};
+    assert_string_equal(riemann_solve(1.4, &far, &none, &s), beyond);
+    assert_string_equal(riemann_solve(1.4, &none, &back, &s), beyond);
     /* the left one's first */
     assert_string_equal(riemann_solve(1.4, &rows[0].gas, &rows[4].gas, &s), negative);
     assert_string_equal(riemann_solve(1.4, &rows[4].gas, &rows[0].gas, &s), finite);
@@ -571,6 +591,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_equal_states),
         cmocka_unit_test(test_cold_gas),
         cmocka_unit_test(test_underflow),
+        cmocka_unit_test(test_underflow_of_one_side),
         cmocka_unit_test(test_gentle_and_parting),
         cmocka_unit_test(test_hot_beside_cold),
         cmocka_unit_test(test_heavy_beside_light),

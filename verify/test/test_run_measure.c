@@ -2,6 +2,7 @@
  * What the end of a run is measured by, on gas and particles that are made here: errors of the
  * particles in the window against the exact state where they are, fields that look like another
  * one, budgets and functionals. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -187,6 +188,65 @@ static void changed_places(void **state)
         }
 }
 
+/* What lies in a large volume counts for more, also where fields have changed places. */
+static void large_ones_count(void **state)
+{
+    (void)state;
+    for (int large = 0; large < 2; large++) {
+        struct run_result result;
+        struct error error = {0};
+        make(&result, "sod", 1);
+        for (int i = 2; i < 5; i += 2) {
+            const double kept = rho[i];
+            rho[i] = P[i], P[i] = kept;
+            volume[i] = large ? 1000 : 1e-3;
+        }
+        assert_int_equal(run_measure_errors(&result, &error), STATUS_OK);
+        assert_int_equal(result.suspicion[0] != 0, large);
+    }
+}
+
+static double far_more(const struct prepared *p, double r, double t)
+{
+    return p->domain.dim * 100 + r + t;
+}
+
+/* Where an energy has no bound: a particle whose own ball holds the middle is compared with the
+ * mean over that ball; who only touches it is not. */
+static void means_round_the_middle(void **state)
+{
+    (void)state;
+    for (int dim = 1; dim <= 2; dim++) {
+        struct run_result result;
+        struct error error = {0};
+        double want[N], places[N];
+        const double window[2] = {-1, 1};
+        int inside = 0;
+        make(&result, dim == 1 ? "sod" : "square", dim);
+        problem.mean_energy = far_more;
+        result.problem.window.centre[0] = 0;
+        for (int i = 0; i < N; i++) {
+            volume[i] = dim == 1 ? 0.25 * (i + 1) : 0.125 * (i + 1);
+            if (dim == 1 && i == 3) volume[i] = 2 * x[0][i];
+            struct problem_state s;
+            sample(NULL, (double[3]){x[0][i], dim > 1 ? x[1][i] : 0}, 0.25, &s);
+            const double r = dim == 1 ? fabs(x[0][i]) : hypot(x[0][i], x[1][i]);
+            const double reach = dim == 1 ? volume[i] / 2 : sqrt(volume[i] / M_PI);
+            want[i] = r < reach ? 100 * dim + reach + 0.25 : s.u;
+            places[i] =
+                window_contains(&result.problem.window, (double[3]){x[0][i], dim > 1 ? x[1][i] : 0})
+                    ? 0
+                    : 2;
+            inside += places[i] < 1 && r < reach;
+        }
+        assert_in_range(inside, 1, 3);
+        assert_int_equal(run_measure_errors(&result, &error), STATUS_OK);
+        const struct norms of = norm_errors(N, places, window, volume, u, want);
+        near_relative(result.errors[FIELD_INTERNAL_ENERGY].l1, of.l1, 1e-13);
+        near_relative(result.errors[FIELD_INTERNAL_ENERGY].linf, of.linf, 1e-13);
+    }
+}
+
 /* Where no field is known there are no errors. */
 static void nothing(void **state)
 {
@@ -271,9 +331,13 @@ static void functionals(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(on_a_line),      cmocka_unit_test(in_a_plane),
-        cmocka_unit_test(changed_places), cmocka_unit_test(nothing),
+        cmocka_unit_test(on_a_line),
+        cmocka_unit_test(in_a_plane),
+        cmocka_unit_test(changed_places),
+        cmocka_unit_test(nothing),
         cmocka_unit_test(functionals),
+        cmocka_unit_test(large_ones_count),
+        cmocka_unit_test(means_round_the_middle),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
