@@ -52,7 +52,7 @@ static double relative(double difference, double scale)
 static void compare(struct rate_comparison *c, const double *theirs, const struct rate_table *ours,
                     const double *m, int column)
 {
-    const double common = column < 3 ? 0 : scale_of(ours, m, column, 0);
+    const double common = scale_of(ours, m, column, 0);
     double sum = 0;
     c->worst = 0;
     for (size_t i = 0; i < ours->n; i++) {
@@ -142,7 +142,13 @@ static const struct {
     {open_box, "boundary: theirs is open"},
 };
 
-/* Is it explained: as good as asked for, or a thousand times better than before? */
+/* A difference is explained by what makes it as small as asked for, or a thousand times smaller;
+ * one beyond all bounds, beside rates of 0, only by the former. */
+static double near_enough(const struct rate_comparison *c, double tolerance)
+{
+    return isinf(c->worst) ? tolerance : fmax(tolerance, 1e-3 * c->worst);
+}
+
 static void propose(struct rate_check *check, const double *const theirs[RATE_COLUMNS],
                     const struct rate_table *changed, const double *m, double tolerance,
                     const char *cause)
@@ -152,7 +158,7 @@ static void propose(struct rate_check *check, const double *const theirs[RATE_CO
         const int column = c->column;
         if (c->good || c->cause[0]) continue;
         compare(&now, theirs[column], changed, m, column);
-        if (now.worst <= fmax(tolerance, 1e-3 * c->worst))
+        if (now.worst <= near_enough(c, tolerance))
             snprintf(c->cause, sizeof c->cause, "%s", cause);
     }
 }
@@ -191,8 +197,8 @@ static void explain_plainly(struct rate_comparison *c, const double *theirs, int
                             double tolerance)
 {
     const struct kernel *kernel = &scene->scheme.kernel;
-    const double close = fmax(tolerance, 1e-3 * c->worst);
-    const double scale = column < 3 ? 0 : scale_of(ours, scene->m, column, 0);
+    const double close = near_enough(c, tolerance);
+    const double scale = scale_of(ours, scene->m, column, 0);
     double ratio = 0, weight = 0, off[4] = {0};
     for (size_t i = 0; i < ours->n; i++) {
         const double mine = value(ours, scene->m, column, i), size = column < 3 ? mine : scale;
@@ -258,7 +264,7 @@ enum status rate_check_make(struct rate_check *check, const char *path, const st
                          path, theirs->rows, ours->n);
     for (int column = 0; column < RATE_COLUMNS; column++) {
         const int k = csv_column(theirs, names[column]);
-        if (k < 0 || (column >= 3 && column < 6 && column - 3 >= ours->dim)) continue;
+        if (k < 0 || (column < 6 && column - 3 >= ours->dim)) continue;
         struct rate_comparison *c = &check->columns[check->count++];
         columns[column] = theirs->values[k];
         c->column = column;

@@ -136,7 +136,6 @@ static void measure_cloud(struct run_result *result, const double *const *measur
             norm_errors(s->n, of->place, window, s->volume, vector ? of->jump : measured[field],
                         vector ? of->none : of->exact[field]);
     }
-    result->binned_density_l1 = (double)NAN;
     if (!problem_is_circular(&result->problem)) return;
     result->azimuthal =
         norm_errors(s->n, of->place, window, s->volume, of->azimuthal[0], of->azimuthal[1]);

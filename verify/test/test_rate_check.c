@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * One evaluation in the order of the scene, and rates of others against it: what is said of the
  * differences, by how much, and what each of them comes from. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -539,6 +540,63 @@ static void plainly_enough(void **state)
     rate_table_free(&ours);
 }
 
+/* Of a kernel that is not 1 at 0: 66 (7/478 pi) 3^2/h^2 is the quintic spline's W(0) in a plane. */
+static void self_contribution(void **state)
+{
+    static struct gas gas;
+    static struct file file;
+    (void)state;
+    make(&gas, 2, 8, USUAL " kernel=quintic_spline eta=2.5");
+    struct rate_table ours = table_of(&gas.scene);
+    write_file(&file, &gas, &ours, 1 << 1);
+    for (size_t i = 0; i < gas.scene.n; i++)
+        file.values[1][i] -= gas.m[i] * 66 * 7 * 9 / (478 * M_PI) / pow(ours.h[i], 2);
+    const struct rate_check check = checked(&file, &gas, &ours, 1e-9);
+    assert_string_equal(cause_of(&check, "rho"), "self-contribution: they leave out m W(0)");
+    rate_table_free(&ours);
+}
+
+/* How well a factor explains an acceleration is relative to the largest one, not to a particle's
+ * own, of which the smallest is off here. */
+static void factor_of_an_acceleration(void **state)
+{
+    static struct gas gas;
+    static struct file file;
+    size_t least = 0;
+    (void)state;
+    make(&gas, 2, 6, USUAL);
+    struct rate_table ours = table_of(&gas.scene);
+    write_file(&file, &gas, &ours, 1 << 3);
+    for (size_t i = 0; i < gas.scene.n; i++) {
+        if (fabs(file.values[3][i]) < fabs(file.values[3][least])) least = i;
+        file.values[3][i] *= 0.8125;
+    }
+    const double worst = checked(&file, &gas, &ours, 1e-9).columns[0].worst;
+    file.values[3][least] += 0.5e-3 * worst * scale_of(&gas, &ours, 3, least);
+    const struct rate_check check = checked(&file, &gas, &ours, 1e-9);
+    assert_non_null(strstr(cause_of(&check, "ax"), "times ours everywhere"));
+    rate_table_free(&ours);
+}
+
+/* Beside rates that are all 0 every difference is beyond bounds: no choice explains it. */
+static void beside_nothing(void **state)
+{
+    static struct gas gas;
+    static struct file file;
+    (void)state;
+    make(&gas, 2, 6, USUAL);
+    struct rate_table ours = table_of(&gas.scene);
+    write_file(&file, &gas, &ours, 1 << 3);
+    for (size_t i = 0; i < gas.scene.n; i++) {
+        for (int a = 0; a < 2; a++) ours.force[a][i] = 0;
+        file.values[3][i] *= 1 + 0.01 * (double)i;
+    }
+    const struct rate_check check = checked(&file, &gas, &ours, 1e-9);
+    assert_true(isinf(check.columns[0].worst) && !check.columns[0].good);
+    assert_string_equal(cause_of(&check, "ax"), "");
+    rate_table_free(&ours);
+}
+
 /* What is wrong after the first wrong one follows from it; what comes before it does not. */
 static void what_follows(void **state)
 {
@@ -628,6 +686,9 @@ int main(void)
         cmocka_unit_test(better_by_a_thousand),
         cmocka_unit_test(plain_differences),
         cmocka_unit_test(plainly_enough),
+        cmocka_unit_test(self_contribution),
+        cmocka_unit_test(factor_of_an_acceleration),
+        cmocka_unit_test(beside_nothing),
         cmocka_unit_test(what_follows),
         cmocka_unit_test(no_grad_h),
     };
