@@ -11,9 +11,9 @@ import tempfile
 PROGRAM = os.path.abspath(sys.argv[1])
 WITHIN = 0.2
 RUNS = [["gresho", "n=120^2", "t_end=0.0005"],
-        ["sound_wave_3d", "n=40^3", "t_end=0.0001", "kernel=wendland_c4", "eta=3.6", "gradient=standard",
+        ["sound_wave_3d", "n=32^3", "t_end=0.0001", "kernel=wendland_c4", "eta=3.6", "gradient=standard",
          "viscosity=constant"],
-        ["sound_wave_3d", "n=40^3", "t_end=0.0001", "lattice=jittered"]]
+        ["sound_wave_3d", "n=34^3", "t_end=0.0001", "lattice=jittered"]]
 CLOSELY = 0.05  # of the last one, whose statement shall hold for a million particles in a GiB
 
 # meson has malloc fill what it gives: arrays that nobody writes to would take room
