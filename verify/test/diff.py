@@ -341,7 +341,7 @@ def main():
         study = made_by("converge", "sod", "--n", "40,60,80,120")
         test_runs(run)
         test_breakdowns(run)
-        test_identity(made_by("stress", "few", "leblanc"))
+        test_identity(made_by("stress", "few", "start"))
         test_alike()
         test_studies(study)
         test_checks(made_by("verify", "norms"))

@@ -142,7 +142,7 @@ COMMANDS = [
     ["kernel", "cubic_spline", "--dim", "2", "--at", "0.5"],
     ["kernel", "verify/examples/hostile_prints.so", "--dim", "2", "--at", "0.5"],
     ["kernel", "verify/examples/hostile_abort_in_dh.so", "--dim", "2", "--at", "0.5"],
-    ["stress", "few", "leblanc"],
+    ["stress", "few", "blasts"],
     ["stress", "steps"],
 ]
 

@@ -67,8 +67,9 @@ def test_kill():
     status, resumed, stderr = study(*LONG, "--cache", "cache")
     expect("resumed", status in (0, 1) and len(resumed["levels"]) == 4, stderr)
     expect("computed twice", inodes == {name: os.stat(name).st_ino for name in whole})
-    _, alone, _ = study(*LONG, "--jobs", "2")
+    _, alone, said = study(*LONG, "--jobs", "2")
     expect("resumed, other results", without_times(resumed) == without_times(alone))
+    expect("progress in a log", "\r" not in said and "\033" not in said, said)
 
 
 def test_two_at_once():
@@ -110,9 +111,6 @@ def test_shares():
 
 def test_progress():
     shown = ["--vary", "alpha=0.5,1,1.5"]
-    done = subprocess.run([program, *LONG, "--json", os.devnull], stderr=subprocess.PIPE,
-                          stdout=subprocess.DEVNULL, text=True)
-    expect("progress in a log", "\r" not in done.stderr and "\033" not in done.stderr, done.stderr)
     lead, follow = pty.openpty()
     running = subprocess.Popen([program, *LONG, *shown], stderr=follow, stdout=subprocess.DEVNULL)
     os.close(follow)
