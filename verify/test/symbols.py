@@ -10,6 +10,7 @@ Who calls whom? No files may take names from each other in a circle: of two that
 belongs below both.
 
 The test first tries itself on libraries with a name and a circle that break the rules."""
+import functools
 import os
 import re
 import subprocess
@@ -45,18 +46,26 @@ def prefixes(path):
     return words - {""}
 
 
-def symbols(nm, library):
-    """(object, symbol, is it defined there?) of all global names of a library."""
+@functools.lru_cache(maxsize=None)
+def names_of(nm, library, changed):
+    """What nm says of a library that was changed then."""
     out = subprocess.run([nm, "-A", "-g", library], capture_output=True, text=True)
     if out.returncode:
         sys.exit("%s %s: %s" % (nm, library, out.stderr.strip()))
+    found = []
     for line in out.stdout.splitlines():
         match = re.match(r".*[:\[/]([^:\[\]/]+\.o(?:bj)?)\]?:\s*[0-9a-fA-F]*\s+(\w)\s+(\S+)$", line)
         if match and (match[2] in EXPORTED or match[2] == "U"):
             # clang gives the dispatch of a static function over instruction sets a global name
             name = "" if match[3].endswith(".resolver") else match[3].split(".")[0]
             if name and not name.startswith("_"):
-                yield match[1], name, match[2] != "U"
+                found.append((match[1], name, match[2] != "U"))
+    return found
+
+
+def symbols(nm, library):
+    """(object, symbol, is it defined there?) of all global names of a library."""
+    return names_of(nm, library, os.stat(library).st_mtime_ns)
 
 
 def circles(source, nm, libraries):
@@ -85,13 +94,13 @@ def circles(source, nm, libraries):
 
 def check(source, nm, libraries):
     files = sources(source)
-    troubles, count = set(), 0
+    troubles, paths, count = set(), {}, 0
     for library in libraries:
         before = count
         for member, symbol, defined in symbols(nm, library):
             if not defined:
                 continue
-            path = source_of(member, files)
+            path = paths[member] = paths.get(member) or source_of(member, files)
             count += 1
             if symbol.split("_")[0] not in prefixes(path):
                 troubles.add("%s exports %s: allowed: %s"
