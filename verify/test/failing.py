@@ -19,8 +19,8 @@ def expect(what, well, got=""):
         faults.append("%s: %s" % (what, got))
 
 
-def sphproof(*words):
-    done = subprocess.run([program, "verify", "kernels", "--failures", "failures", *words], capture_output=True,
+def sphproof(*words, what="kernels"):
+    done = subprocess.run([program, "verify", what, "--failures", "failures", *words], capture_output=True,
                           text=True, timeout=100, check=False)
     return done.returncode, done.stdout, done.stderr
 
@@ -58,13 +58,14 @@ def main():
     tail = out.split("\n\n")[-1].splitlines()
     expect("printed last", tail[0] == first["headline"] and len(tail) < 8, tail)
     expect("details on demand", sum(" got " in line for line in out.splitlines()) == 1, out)
-    _, details, _ = sphproof("--kernel-plugin", wrong, "--details")
-    expect("every figure with --details", sum(" got " in line for line in details.splitlines()) ==
-           len(failing) + 1, details)
     expect("what an earlier fault left", not os.path.exists(stale))
     plots = [name for name in os.listdir("failures") if name.endswith(".svg")]
     checks = {c["name"] for c in failing}
     expect("a plot of every failing check", len(plots) == len(checks), plots)
+    _, details, _ = sphproof("--kernel-plugin", wrong, "--details", what="kernels/radial_derivative")
+    figures = [c for c in failing if c["name"] == "radial_derivative"]
+    expect("every figure with --details", sum(" got " in line for line in details.splitlines()) ==
+           len(figures) + 1 > 2, details)
 
     test = {"name": "sphproof:quick / verify kernels", "result": "FAIL", "starttime": 0}
     other = {"name": "sphproof:quick / kernel", "result": "FAIL", "starttime": 0, "stderr": "[  ERROR   ] --- 0x1d != 0"}
