@@ -2,7 +2,6 @@
 #include "gates.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "result.h"
@@ -37,11 +36,12 @@ void gates_compare(struct case_file *file)
     }
 }
 
-static void add(json_t *list, const char *name, double value, double bound,
+/* Takes the name over. */
+static void add(json_t *list, json_t *name, double value, double bound,
                 const struct case_weakness *known)
 {
     const bool passed = value <= bound, is_known = !passed && gates_know(known, 1, value);
-    json_t *gate = json_pack("{s:s, s:o, s:o, s:s}", "name", name, "value", result_number(value),
+    json_t *gate = json_pack("{s:o, s:o, s:o, s:s}", "name", name, "value", result_number(value),
                              "bound", result_number(bound), "status",
                              passed     ? "pass"
                              : is_known ? "known"
@@ -50,23 +50,21 @@ static void add(json_t *list, const char *name, double value, double bound,
     json_array_append_new(list, gate);
 }
 
-/* What a gate is of, NaN where the run does not have it; false: a functional without an exact
- * value. */
-static bool read_error(const struct case_gate *gate, const json_t *run, char name[64],
-                       double *value)
+/* What a gate is of and its name, which is the caller's; NaN where the run does not have it. NULL:
+ * a functional without an exact value. */
+static json_t *read_error(const struct case_gate *gate, const json_t *run, double *value)
 {
     const char *field = field_family.members[gate->field]->name,
                *norm = field_norm_family.members[gate->norm]->name;
     const json_t *functionals = json_object_get(run, "functionals");
     if (gate->functional) {
         const json_t *entry = value_named(functionals, gate->functional);
-        snprintf(name, 64, "%s", gate->functional);
         *value = fabs(value_member(entry, "value") - value_member(entry, "reference"));
-        return !entry || isfinite(value_member(entry, "reference"));
+        return !entry || isfinite(value_member(entry, "reference")) ? json_string(gate->functional)
+                                                                    : NULL;
     }
-    snprintf(name, 64, "%s_%s", field, norm);
     *value = value_inner(json_object_get(run, "errors"), field, norm);
-    return true;
+    return json_sprintf("%s_%s", field, norm);
 }
 
 void gates_add_errors(const struct case_file *file, const json_t *run, json_t *list)
@@ -76,11 +74,10 @@ void gates_add_errors(const struct case_file *file, const json_t *run, json_t *l
         const struct case_gate *gate = &file->gates[i];
         const double raise = gates_raise(file, gate, n);
         struct case_weakness known = gate->known;
-        char name[64];
         double value;
+        json_t *name = read_error(gate, run, &value);
         known.bound *= raise;
-        if (read_error(gate, run, name, &value))
-            add(list, name, value, raise * gate->gate.bound, &known);
+        if (name) add(list, name, value, raise * gate->gate.bound, &known);
     }
 }
 
@@ -111,9 +108,10 @@ void gates_add_conserved(const json_t *run, json_t *list)
     const struct case_weakness none = {.bound = 0};
     const json_t *conserved = json_object_get(run, "conservation");
     const bool walls = says(run, "boundary", "reflecting") || says(run, "boundary", "fixed");
-    add(list, "mass", value_member(conserved, "mass"), conserved_bound, &none);
+    add(list, json_string("mass"), value_member(conserved, "mass"), conserved_bound, &none);
     if (!walls && !is_heavy(run))
-        add(list, "momentum", value_member(conserved, "momentum"), conserved_bound, &none);
+        add(list, json_string("momentum"), value_member(conserved, "momentum"), conserved_bound,
+            &none);
     if (says(run, "energy", "total") && !is_heavy(run))
-        add(list, "energy", value_member(conserved, "energy"), conserved_bound, &none);
+        add(list, json_string("energy"), value_member(conserved, "energy"), conserved_bound, &none);
 }
