@@ -60,8 +60,8 @@ static json_t *read_error(const struct case_gate *gate, const json_t *run, doubl
     if (gate->functional) {
         const json_t *entry = value_named(functionals, gate->functional);
         *value = fabs(value_member(entry, "value") - value_member(entry, "reference"));
-        return !entry || isfinite(value_member(entry, "reference")) ? json_string(gate->functional)
-                                                                    : NULL;
+        if (entry && !isfinite(value_member(entry, "reference"))) return NULL;
+        return json_string(gate->functional);
     }
     *value = value_inner(json_object_get(run, "errors"), field, norm);
     return json_sprintf("%s_%s", field, norm);
