@@ -22,27 +22,18 @@ static bool group_disturbed(const struct simulation *simulation, ptrdiff_t group
  * in one step, so it comes twice the reach of pairs closer. */
 static ptrdiff_t margin(ptrdiff_t reach)
 {
-    return (2 * reach + 2 + GROUP - 1) / GROUP;
-}
-
-static void wake_groups(struct groups *groups, ptrdiff_t first, ptrdiff_t count)
-{
-    memset(groups->awake + first, 1, (size_t)count);
-    memset(groups->rate + first, 0, (size_t)count * sizeof *groups->rate);
+    return 2 * reach / GROUP + 1;
 }
 
 /* A group and its neighbours, across the ends of the box. */
 static void wake(struct groups *groups, ptrdiff_t group, ptrdiff_t reach)
 {
-    const ptrdiff_t count = 2 * reach + 1;
-    if (count >= groups->count) {
-        wake_groups(groups, 0, groups->count);
-        return;
+    const ptrdiff_t count = groups->count;
+    for (ptrdiff_t k = -reach; k <= reach; k++) {
+        const ptrdiff_t at = ((group + k) % count + count) % count;
+        groups->awake[at] = 1;
+        groups->rate[at] = 0;
     }
-    const ptrdiff_t first = (group - reach + groups->count) % groups->count;
-    const ptrdiff_t before_end = groups->count - first < count ? groups->count - first : count;
-    wake_groups(groups, first, before_end);
-    wake_groups(groups, 0, count - before_end);
 }
 
 /* The next group from the given one on that is awake, or asleep; their number where there is none.
@@ -109,7 +100,7 @@ static enum status allocate(struct simulation *simulation, struct error *error)
     groups->awake = calloc((size_t)groups->count, 1);
     /* whole vectors */
     groups->rate = calloc((size_t)(groups->count + 7), sizeof *groups->rate);
-    sleep->spans = malloc((size_t)(groups->count / 2 + 1) * sizeof *sleep->spans);
+    sleep->spans = malloc((size_t)groups->count * sizeof *sleep->spans);
     return groups->awake && groups->rate && sleep->spans
                ? STATUS_OK
                : error_set(error, STATUS_ENVIRONMENT, "no memory for %td particles", n);
@@ -137,7 +128,8 @@ enum status groups_begin(struct simulation *simulation, struct error *error)
 void groups_wake_all(struct simulation *simulation)
 {
     struct groups *groups = &line_of(simulation)->groups;
-    wake_groups(groups, 0, groups->count);
+    memset(groups->awake, 1, (size_t)groups->count);
+    memset(groups->rate, 0, (size_t)groups->count * sizeof *groups->rate);
     lay_out(simulation);
 }
 
