@@ -363,12 +363,46 @@ static void layers_hold(void **state)
     gsl_rng_free(rng);
 }
 
+/* Where h changes by less than 0.05 over its own length, blended forces are those of ia to the last
+ * bit, and only there. */
+static void blended_is_ia_at_even_widths(void **state)
+{
+    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
+    (void)state;
+    gsl_rng_set(rng, 77);
+    for (int k = 0; k < 2 * DRAWS; k++) {
+        const int dim = 2 + k / 2 % 2;
+        const bool even = k % 2 == 0;
+        const size_t side = dim == 2 ? 16 : 8;
+        const double spread = (even ? 0.02 : 0.6) / (double)side;
+        struct scheme scheme = draw_scheme(rng, dim);
+        lattice(&p, dim, side, 1);
+        for (size_t i = 0; i < p.n; i++)
+            for (int a = 0; a < dim; a++) p.x[a][i] += spread * (gsl_rng_uniform(rng) - 0.5);
+        scheme.gradient = GRADIENT_IA;
+        struct scene scene = scene_of(&p, dim, &scheme);
+        run(&scene, 1e-3, &plain);
+        scene.scheme.gradient = GRADIENT_BLENDED;
+        run(&scene, 1e-3, &other);
+        assert_true(plain.v[0][0] != 0);
+        if (even)
+            assert_memory_equal(plain.v, other.v, sizeof plain.v);
+        else
+            assert_memory_not_equal(plain.v, other.v, sizeof plain.v);
+    }
+    gsl_rng_free(rng);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sleep_changes_nothing), cmocka_unit_test(threads_change_no_bit),
-        cmocka_unit_test(walls_are_mirrors),     cmocka_unit_test(gravity_is_a_fall),
-        cmocka_unit_test(gravity_keeps_energy),  cmocka_unit_test(layers_hold),
+        cmocka_unit_test(sleep_changes_nothing),
+        cmocka_unit_test(threads_change_no_bit),
+        cmocka_unit_test(walls_are_mirrors),
+        cmocka_unit_test(gravity_is_a_fall),
+        cmocka_unit_test(gravity_keeps_energy),
+        cmocka_unit_test(layers_hold),
+        cmocka_unit_test(blended_is_ia_at_even_widths),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
