@@ -14,7 +14,8 @@
  */
 enum when { ALWAYS, PREDICTED, INVISCID, UNIFORM };
 static const struct {
-    const char *name, *keys[BENCH_SIDES]; /* ALPHA stands for the scheme's own alpha */
+    /* ALPHA and CFL stand for the scheme's own: what is automatic depends on the viscosity */
+    const char *name, *keys[BENCH_SIDES];
     enum when when;
     enum bench_promise promise;
     double bound;
@@ -25,9 +26,13 @@ static const struct {
      PROMISE_ROUND_OFF,
      1e-8},
     {"h by Newton", {"", "h_method=newton"}, PREDICTED, PROMISE_ERROR, 0.05},
-    {"viscosity of none", {"", "viscosity=constant alpha=0 beta=0"}, INVISCID, PROMISE_BITS, 0},
+    {"viscosity of none",
+     {"", "viscosity=constant alpha=0 beta=0 cfl=CFL"},
+     INVISCID,
+     PROMISE_BITS,
+     0},
     {"evolution of alpha",
-     {"", "viscosity=time_dependent alpha_min=ALPHA alpha_max=ALPHA"},
+     {"", "viscosity=time_dependent alpha_min=ALPHA alpha_max=ALPHA cfl=CFL"},
      UNIFORM,
      PROMISE_ROUND_OFF,
      1e-10},
@@ -118,17 +123,19 @@ struct bench {
     struct bench_subject *subjects;
 };
 
-/* Keys as words, ALPHA replaced. */
-static enum status apply(struct run_settings *settings, const char *keys, double alpha,
+/* Keys as words, ALPHA and CFL replaced. own: NULL where neither is there. */
+static enum status apply(struct run_settings *settings, const char *keys, const struct scheme *own,
                          struct error *error)
 {
     char text[256], *rest = text;
     snprintf(text, sizeof text, "%s", keys);
     for (char *word; (word = strtok_r(rest, " ", &rest));) {
         char key[80], *arguments[] = {key};
-        char *named = strstr(word, "=ALPHA");
-        if (named)
-            snprintf(key, sizeof key, "%.*s=%.17g", (int)(named - word), word, alpha);
+        const char *alpha = strstr(word, "=ALPHA"), *cfl = strstr(word, "=CFL");
+        if (alpha)
+            snprintf(key, sizeof key, "%.*s=%.17g", (int)(alpha - word), word, own->alpha);
+        else if (cfl)
+            snprintf(key, sizeof key, "%.*s=%.17g", (int)(cfl - word), word, own->cfl);
         else
             snprintf(key, sizeof key, "%s", word);
         if (settings_apply(&settings->settings, 1, arguments, error)) return error->status;
@@ -171,11 +178,11 @@ static struct job *jobs_of(const struct bench *bench, const struct bench_skip *s
 }
 
 /* A run with more keys; malloced. NULL: they cannot be, or no memory. */
-static struct run *run_with(const struct run_settings *from, const char *keys, double alpha,
-                            struct error *error)
+static struct run *run_with(const struct run_settings *from, const char *keys,
+                            const struct scheme *own, struct error *error)
 {
     struct run_settings asked = *from;
-    if (apply(&asked, keys, alpha, error)) return NULL;
+    if (apply(&asked, keys, own, error)) return NULL;
     struct run *run = malloc(sizeof *run);
     if (!run) error_set(error, STATUS_ENVIRONMENT, "no memory");
     if (!run || !run_resolve(run, &asked, error)) return run;
@@ -194,8 +201,7 @@ static enum status add_switches(struct bench *bench, size_t c, const struct sche
         skip->bound = switches[s].bound;
         for (int side = BENCH_WITHOUT; side <= BENCH_WITH; side++) {
             struct job *job = &jobs_of(bench, skip)[side];
-            job->run =
-                run_with(&bench->result->cases[c], switches[s].keys[side], scheme->alpha, error);
+            job->run = run_with(&bench->result->cases[c], switches[s].keys[side], scheme, error);
             if (!job->run) return error->status;
         }
     }
@@ -291,7 +297,7 @@ static enum status add_case(struct bench *bench, size_t c, struct error *error)
 {
     const struct run_settings *settings = &bench->result->cases[c];
     struct job *whole = &bench->jobs[bench->max * BENCH_SIDES + c];
-    whole->run = run_with(settings, "skip=none", 0, error);
+    whole->run = run_with(settings, "skip=none", NULL, error);
     if (!whole->run || add_switches(bench, c, &whole->run->scheme, error) ||
         add_extras(bench, c, &whole->run->scheme, error))
         return error->status;
@@ -310,7 +316,7 @@ static double sensitivity(const struct job *job)
     double difference = 0;
     char cfl[40];
     snprintf(cfl, sizeof cfl, "cfl=%.17g", job->run->scheme.cfl * (1 + 1e-11));
-    struct run *nudged = run_with(&job->run->asked, cfl, 0, &ignored);
+    struct run *nudged = run_with(&job->run->asked, cfl, NULL, &ignored);
     if (!nudged) return 0;
     if (!run_execute(nudged, &result, &ignored))
         difference = bench_skips_difference(&job->last.snapshot, &result.snapshot,

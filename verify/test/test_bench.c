@@ -398,6 +398,32 @@ static void test_promises_are_kept_or_seen_broken(void **state)
     bench_skips_free(&skips);
 }
 
+/* Without viscosity and with one of strength 0: the same bits, at the same time steps. */
+static void test_no_viscosity(void **state)
+{
+    (void)state;
+    static struct run_settings settings;
+    struct bench_skips skips;
+    struct error error = {0};
+    const struct bench_rules brief = {.least_s = 1e-6, .most_s = 0.01, .samples = 1};
+    static char *keys[][4] = {{"t_end=0.1", "n=40"}, {"t_end=0.02", "n=16^2", "viscosity=none"}};
+    for (int k = 0; k < 2; k++) {
+        const char *name = k ? "gresho" : "sound_wave";
+        assert_int_equal(run_prepare(&settings, name, 2 + k, keys[k], &error), 0);
+        settings.threads = 1;
+        assert_int_equal(bench_skips_measure(&settings, 1, &brief, &skips, &error), 0);
+        int met = 0;
+        for (size_t i = 0; i < skips.count; i++) {
+            assert_true(skips.skips[i].kept);
+            if (strcmp(skips.skips[i].name, "viscosity of none")) continue;
+            assert_true(skips.skips[i].difference == 0);
+            met++;
+        }
+        assert_int_equal(met, 1);
+        bench_skips_free(&skips);
+    }
+}
+
 static void test_positions_along_every_axis_count(void **state)
 {
     (void)state;
@@ -661,6 +687,7 @@ int main(void)
         cmocka_unit_test(test_plain_refuses_other_schemes),
         cmocka_unit_test(test_difference_of_states),
         cmocka_unit_test(test_promises_are_kept_or_seen_broken),
+        cmocka_unit_test(test_no_viscosity),
         cmocka_unit_test(test_positions_along_every_axis_count),
         cmocka_unit_test(test_promises_in_2d),
         cmocka_unit_test(test_cells),
