@@ -310,6 +310,7 @@ struct grid *grid_create(const struct grid_box *box, size_t n, int threads)
     if (!grid) return NULL;
     grid->box = *box;
     grid->threads = grid->team = threads;
+    grid->take = grid_take_choose();
     grid->find = grid_find_choose();
     grid->read = grid_read_choose();
     grid->pools = calloc((size_t)threads, sizeof *grid->pools);

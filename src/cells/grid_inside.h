@@ -27,12 +27,27 @@ struct pool {
 
 /* What one thread needs for the cell that it works on: candidates of its points. */
 struct candidates {
-    size_t capacity, most; /* most: that a cell has had in this search */
+    size_t capacity, most; /* most: points around a cell in this search */
+    size_t seen;           /* points of the cells around, that it has candidates of */
     float *x[3], *radius2;
     uint8_t *near;
     uint16_t *marks;
-    int32_t *slots; /* 3D: which of them are left */
+    int32_t *slots; /* 2D: of the points of the cells around */
 };
+
+/* What the points of a cell lie in, and the largest of their radii squared. */
+struct surroundings {
+    float lo[3], hi[3], radius2;
+};
+
+struct grid;
+
+/* 3D: appends the points of a cell, moved by what lies between it and the cell that looks, to the
+ * count candidates that there are, if they may be near; marks them, the first one as number at.
+ * Returns how many candidates there are then. */
+typedef size_t take_loop(const struct grid *grid, size_t cell, const float moved[3],
+                         const struct surroundings *around, struct candidates *to, size_t count,
+                         size_t at);
 
 /* Marks the candidates that are near a point. Returns how many. */
 typedef int32_t find_loop(int dim, const struct candidates *candidates, size_t count,
@@ -72,6 +87,7 @@ struct grid {
     const unsigned char *asleep; /* of the last search */
     struct pool *pools;
     struct candidates *candidates;
+    take_loop *take;
     find_loop *find;
     read_loop *read;
 };
@@ -137,6 +153,7 @@ static inline ptrdiff_t grid_folded(const struct grid *grid, int axis, ptrdiff_t
 /* --- grid_lists.c ----------------------------------------------------------------------------- */
 
 /* The fastest loops that this processor runs. */
+take_loop *grid_take_choose(void);
 find_loop *grid_find_choose(void);
 read_loop *grid_read_choose(void);
 

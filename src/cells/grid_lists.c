@@ -39,7 +39,7 @@ static int32_t *pool_take(struct pool *pool, size_t most)
     return pool->chunks[pool->used_chunks - 1] + pool->used;
 }
 
-/* Room for n more after count, which are kept. */
+/* Room for n more after count, which are kept, and their marks. */
 static bool reserve_candidates(struct candidates *candidates, size_t count, size_t n)
 {
     if (count + n <= candidates->capacity) return true;
@@ -54,7 +54,10 @@ static bool reserve_candidates(struct candidates *candidates, size_t count, size
     grown.near = (uint8_t *)(void *)(next + capacity / 2);
     for (int a = 0; a < 3 && count; a++)
         memcpy(grown.x[a], candidates->x[a], count * sizeof(float));
-    if (count) memcpy(grown.radius2, candidates->radius2, count * sizeof(float));
+    if (count) {
+        memcpy(grown.radius2, candidates->radius2, count * sizeof(float));
+        memcpy(grown.marks, candidates->marks, (count / 16 + 1) * sizeof *grown.marks);
+    }
     free(candidates->x[0]);
     *candidates = grown;
     return true;
@@ -86,25 +89,97 @@ ALWAYS_INLINE float nearest(float d, float side)
     return d > half ? d - side : d < -half ? d + side : d;
 }
 
-/* to = from + moved for n values, in whole vectors. */
-CLONES static void shift(size_t n, const float *restrict from, float moved, float *restrict to)
+/* All points of a cell, in whole vectors, whose rest the next cell overwrites. */
+CLONES static size_t take_all(const struct grid *grid, size_t cell, const float moved[3],
+                              struct candidates *to, size_t count)
 {
-    const size_t whole = (n + COPIED - 1) / COPIED * COPIED;
+    const size_t first = grid->start[cell], n = grid->start[cell + 1] - first;
+    const int dim = grid->box.dim;
+    for (size_t begin = 0; begin < n; begin += COPIED) {
+        for (int a = 0; a < dim; a++) {
+            const float *restrict place = grid->place[a] + first + begin, along = moved[a];
+            float *restrict x = to->x[a] + count + begin;
 #pragma omp simd
-    for (size_t k = 0; k < whole; k++) to[k] = from[k] + moved;
+            for (int k = 0; k < COPIED; k++) x[k] = place[k] + along;
+        }
+        memcpy(to->radius2 + count + begin, grid->radius2 + first + begin, COPIED * sizeof(float));
+    }
+    return count + n;
 }
 
-/* Copies the points of a cell, moved by what lies between the two cells: whole vectors, whose rest
- * the next cell overwrites. */
-static void copy_cell(const struct grid *grid, struct candidates *to, size_t count, size_t cell,
-                      const float moved[3])
+/* Bytes of 0 and 1 as bits. Returns how many are 1. */
+static int32_t pack(const uint8_t *near, size_t count, uint16_t *marks)
 {
-    const uint32_t begin = grid->start[cell];
-    const size_t n = grid->start[cell + 1] - begin;
-    for (int a = 0; a < grid->box.dim; a++)
-        shift(n, grid->place[a] + begin, moved[a], to->x[a] + count);
-    for (size_t from = 0; from < n; from += COPIED)
-        memcpy(to->radius2 + count + from, grid->radius2 + begin + from, COPIED * sizeof(float));
+    const uint64_t to_top = 0x0102040810204080u, sum = 0x0101010101010101u;
+    uint64_t found = 0;
+    for (size_t k = 0; k < count; k += 16) {
+        uint64_t half[2];
+        memcpy(half, near + k, sizeof half);
+        const uint64_t low = half[0] * to_top >> 56, high = half[1] * to_top >> 56;
+        marks[k / 16] = (uint16_t)(low | high << 8);
+        found += (half[0] + half[1]) * sum >> 56;
+    }
+    return (int32_t)found;
+}
+
+/* Marks of 16 points from the one numbered `at` on; those before it stay. */
+ALWAYS_INLINE void put_marks(uint16_t *marks, size_t at, uint32_t near)
+{
+    const uint32_t before = marks[at / 16] & ((1u << at % 16) - 1), wide = near << at % 16 | before;
+    marks[at / 16] = (uint16_t)wide;
+    marks[at / 16 + 1] = (uint16_t)(wide >> 16);
+}
+
+/* How far outside of lo .. hi is x? */
+ALWAYS_INLINE float outside(float x, float lo, float hi)
+{
+    const float above = x - hi, below = lo - x, d = above > below ? above : below;
+    return d > 0 ? d : 0;
+}
+
+/* Rounding keeps order: no distance to a point between lo and hi comes out less than that to the
+ * box. */
+CLONES static size_t take_plainly(const struct grid *grid, size_t cell, const float moved[3],
+                                  const struct surroundings *around, struct candidates *to,
+                                  size_t count, size_t at)
+{
+    const size_t first = grid->start[cell], all = grid->start[cell + 1] - first;
+    const float moved_x = moved[0], moved_y = moved[1], moved_z = moved[2],
+                radius2 = around->radius2;
+    const float x0 = around->lo[0], y0 = around->lo[1], z0 = around->lo[2], x1 = around->hi[0],
+                y1 = around->hi[1], z1 = around->hi[2];
+    for (size_t begin = 0; begin < all; begin += COPIED) {
+        const size_t n = all - begin < COPIED ? all - begin : COPIED;
+        const size_t from = first + begin;
+        const float *restrict x = grid->place[0] + from, *restrict y = grid->place[1] + from,
+                              *restrict z = grid->place[2] + from,
+                              *restrict theirs = grid->radius2 + from;
+        float at_x[COPIED], at_y[COPIED], at_z[COPIED];
+        uint8_t near[COPIED];
+#pragma omp simd
+        for (int k = 0; k < COPIED; k++) {
+            at_x[k] = x[k] + moved_x;
+            at_y[k] = y[k] + moved_y;
+            at_z[k] = z[k] + moved_z;
+            const float dx = outside(at_x[k], x0, x1), dy = outside(at_y[k], y0, y1),
+                        dz = outside(at_z[k], z0, z1);
+            const float r2 = dx * dx + dy * dy + dz * dz;
+            const float widest = theirs[k] > radius2 ? theirs[k] : radius2;
+            near[k] = r2 <= widest;
+        }
+        uint16_t marks;
+        pack(near, COPIED, &marks);
+        if (n < COPIED) marks &= (uint16_t)((1u << n) - 1);
+        for (uint32_t left = marks; left; left &= left - 1, count++) {
+            const int k = __builtin_ctz(left);
+            to->x[0][count] = at_x[k];
+            to->x[1][count] = at_y[k];
+            to->x[2][count] = at_z[k];
+            to->radius2[count] = theirs[k];
+        }
+        put_marks(to->marks, at + begin, marks);
+    }
+    return count;
 }
 
 /* The rest of the last 16 is near nobody. Returns how many they are with it. */
@@ -136,16 +211,18 @@ static struct region find_region(const struct grid *grid, const ptrdiff_t c[3], 
     return region;
 }
 
-/* Gathers the candidates of the cell at c; own: the first of its own points among them. Returns how
- * many, in whole 16s the last of which never match; SIZE_MAX: no memory. */
+/* Gathers the candidates of the cell at c: the points of the cells around, or, unless `around` is
+ * NULL, those that may be near it, marked by a bit for each point in the order of find_slots; own:
+ * the first of the cell's own among them. Returns how many, in whole 16s the last of which never
+ * match; SIZE_MAX: no memory. */
 static size_t find_candidates(const struct grid *grid, const ptrdiff_t c[3],
-                              const struct region *region, struct candidates *candidates,
-                              size_t *own)
+                              const struct region *region, const struct surroundings *around,
+                              struct candidates *candidates, size_t *own)
 {
     const struct look *l = region->along;
     const double scale = 1 / grid->unit;
     const size_t at = grid_cell_at(grid, c);
-    size_t count = 0;
+    size_t count = 0, seen = 0;
     for (ptrdiff_t kz = 0; kz < l[2].count; kz++)
         for (ptrdiff_t ky = 0; ky < l[1].count; ky++) {
             const size_t row =
@@ -156,13 +233,15 @@ static size_t find_candidates(const struct grid *grid, const ptrdiff_t c[3],
             for (ptrdiff_t kx = 0; kx < l[0].count; kx++) {
                 const size_t cell = row + (size_t)grid_folded(grid, 0, l[0].from + kx);
                 const size_t n = grid->start[cell + 1] - grid->start[cell];
-                if (!reserve_candidates(candidates, count, n + 64)) return SIZE_MAX;
+                if (!reserve_candidates(candidates, seen, n + 64)) return SIZE_MAX;
                 moved[0] = (float)((double)(l[0].from + kx - c[0]) * grid->size[0] * scale);
-                copy_cell(grid, candidates, count, cell, moved);
                 if (cell == at) *own = count;
-                count += n;
+                count = around ? grid->take(grid, cell, moved, around, candidates, count, seen)
+                               : take_all(grid, cell, moved, candidates, count);
+                seen += n;
             }
         }
+    candidates->seen = seen;
     return fill_up(candidates, count);
 }
 
@@ -174,74 +253,21 @@ CLONES static void count_up(size_t n, int32_t first, int32_t *restrict to)
         for (int k = 0; k < COPIED; k++) to[from + (size_t)k] = first + (int32_t)from + k;
 }
 
-/* Bytes of 0 and 1 as bits. Returns how many are 1. */
-static int32_t pack(const uint8_t *near, size_t count, uint16_t *marks)
-{
-    const uint64_t to_top = 0x0102040810204080u, sum = 0x0101010101010101u;
-    uint64_t found = 0;
-    for (size_t k = 0; k < count; k += 16) {
-        uint64_t half[2];
-        memcpy(half, near + k, sizeof half);
-        const uint64_t low = half[0] * to_top >> 56, high = half[1] * to_top >> 56;
-        marks[k / 16] = (uint16_t)(low | high << 8);
-        found += (half[0] + half[1]) * sum >> 56;
-    }
-    return (int32_t)found;
-}
-
-/* Which candidates can be near a point between lo and hi? Rounding keeps order: no distance to such
- * a point comes out less than that to the box. */
-CLONES static void near_box(size_t count, const float lo[3], const float hi[3], float radius2,
-                            const struct candidates *candidates)
-{
-    const float *restrict x = candidates->x[0], *restrict y = candidates->x[1],
-                          *restrict z = candidates->x[2], *restrict other = candidates->radius2;
-    uint8_t *restrict near = candidates->near;
-    const float x0 = lo[0], y0 = lo[1], z0 = lo[2], x1 = hi[0], y1 = hi[1], z1 = hi[2];
-#pragma omp simd
-    for (size_t k = 0; k < count; k++) {
-        const float dx = x[k] > x1   ? x[k] - x1
-                         : x[k] < x0 ? x0 - x[k]
-                                     : 0,
-                    dy = y[k] > y1   ? y[k] - y1
-                         : y[k] < y0 ? y0 - y[k]
-                                     : 0,
-                    dz = z[k] > z1   ? z[k] - z1
-                         : z[k] < z0 ? z0 - z[k]
-                                     : 0;
-        const float r2 = dx * dx + dy * dy + dz * dz;
-        const float widest = other[k] > radius2 ? other[k] : radius2;
-        near[k] = r2 <= widest;
-    }
-}
-
-/* Drops the candidates that no point of the cell can have in its list, in 3D a quarter of them;
- * marks: a bit for each of count, of those that stay. Returns as find_candidates. */
-static size_t drop_far(const struct grid *grid, size_t cell, struct candidates *candidates,
-                       size_t count, uint16_t *marks, size_t *own)
+/* Of a cell that is not empty. */
+static struct surroundings find_surroundings(const struct grid *grid, size_t cell)
 {
     const uint32_t begin = grid->start[cell];
-    const size_t first = *own;
-    float lo[3], hi[3], radius2 = grid->radius2[begin];
+    struct surroundings around = {.radius2 = grid->radius2[begin]};
+    float *lo = around.lo, *hi = around.hi;
     for (int a = 0; a < 3; a++) lo[a] = hi[a] = grid->place[a][begin];
     for (uint32_t s = begin; s < grid->start[cell + 1]; s++) {
         for (int a = 0; a < 3; a++) {
             lo[a] = grid->place[a][s] < lo[a] ? grid->place[a][s] : lo[a];
             hi[a] = grid->place[a][s] > hi[a] ? grid->place[a][s] : hi[a];
         }
-        radius2 = grid->radius2[s] > radius2 ? grid->radius2[s] : radius2;
+        around.radius2 = grid->radius2[s] > around.radius2 ? grid->radius2[s] : around.radius2;
     }
-    near_box(count, lo, hi, radius2, candidates);
-    pack(candidates->near, count, marks);
-    count_up(count, 0, candidates->slots);
-    const size_t left = (size_t)grid->read(candidates->slots, marks, count, candidates->slots);
-    for (size_t k = 0; k < left; k++) {
-        const size_t from = (size_t)candidates->slots[k];
-        for (int a = 0; a < 3; a++) candidates->x[a][k] = candidates->x[a][from];
-        candidates->radius2[k] = candidates->radius2[from];
-        if (from == first) *own = k;
-    }
-    return fill_up(candidates, left);
+    return around;
 }
 
 /* Their slots, in the same order; the list has room for COPIED more. Returns how many. */
@@ -336,7 +362,38 @@ find_in_vectors(int dim, const struct candidates *candidates, size_t count, cons
     return found;
 }
 
-/* Lanes that are marked are moved together in a register. */
+/* Lanes that stay are moved together in a register. */
+__attribute__((target("avx512f,popcnt"))) static size_t
+take_in_vectors(const struct grid *grid, size_t cell, const float moved[3],
+                const struct surroundings *around, struct candidates *to, size_t count, size_t at)
+{
+    const size_t first = grid->start[cell], all = grid->start[cell + 1] - first;
+    const __m512 none = _mm512_setzero_ps(), own = _mm512_set1_ps(around->radius2);
+    for (size_t begin = 0; begin < all; begin += COPIED) {
+        const size_t n = all - begin;
+        const __mmask16 there = (__mmask16)(n < COPIED ? (1u << n) - 1 : 0xffffu);
+        __m512 x[3], r2 = none;
+        for (int a = 0; a < 3; a++) {
+            x[a] = _mm512_add_ps(_mm512_loadu_ps(grid->place[a] + first + begin),
+                                 _mm512_set1_ps(moved[a]));
+            const __m512 above = _mm512_sub_ps(x[a], _mm512_set1_ps(around->hi[a])),
+                         below = _mm512_sub_ps(_mm512_set1_ps(around->lo[a]), x[a]),
+                         d = _mm512_max_ps(_mm512_max_ps(above, below), none);
+            r2 = _mm512_add_ps(r2, _mm512_mul_ps(d, d));
+        }
+        const __m512 theirs = _mm512_loadu_ps(grid->radius2 + first + begin);
+        const __mmask16 near =
+            _mm512_mask_cmp_ps_mask(there, r2, _mm512_max_ps(theirs, own), _CMP_LE_OQ);
+        for (int a = 0; a < 3; a++)
+            _mm512_storeu_ps(to->x[a] + count, _mm512_maskz_compress_ps(near, x[a]));
+        _mm512_storeu_ps(to->radius2 + count, _mm512_maskz_compress_ps(near, theirs));
+        put_marks(to->marks, at + begin, near);
+        count += (size_t)_mm_popcnt_u32(near);
+    }
+    return count;
+}
+
+/* The same with slots. */
 __attribute__((target("avx512f,popcnt"))) static int32_t
 read_by_compressing(const int32_t *candidates, const uint16_t *marks, size_t count, int32_t *list)
 {
@@ -350,6 +407,11 @@ read_by_compressing(const int32_t *candidates, const uint16_t *marks, size_t cou
     return found;
 }
 
+take_loop *grid_take_choose(void)
+{
+    return __builtin_cpu_supports("avx512f") ? take_in_vectors : take_plainly;
+}
+
 find_loop *grid_find_choose(void)
 {
     return __builtin_cpu_supports("avx512f") ? find_in_vectors : find_plainly;
@@ -361,6 +423,11 @@ read_loop *grid_read_choose(void)
 }
 
 #else
+
+take_loop *grid_take_choose(void)
+{
+    return take_plainly;
+}
 
 find_loop *grid_find_choose(void)
 {
@@ -412,18 +479,22 @@ static int search_cell(struct grid *grid, const ptrdiff_t c[3], struct candidate
     size_t own = 0;
     for (int a = 0; a < 3; a++)
         side[a] = grid_wraps(grid, a) ? (float)(grid->side[a] / grid->unit) : HUGE_VALF;
-    size_t count = find_candidates(grid, c, &region, candidates, &own);
+    const bool drops = marked && !region.all;
+    struct surroundings around;
+    if (drops) around = find_surroundings(grid, cell);
+    const size_t count =
+        find_candidates(grid, c, &region, drops ? &around : NULL, candidates, &own);
     if (count == SIZE_MAX) return -1;
-    if (count > candidates->most) candidates->most = count;
+    if (candidates->seen > candidates->most) candidates->most = candidates->seen;
     grid->reached[cell] = NULL;
     if (!marked) {
         find_slots(grid, &region, candidates->slots);
-    } else if (!region.all) {
-        int32_t *room = pool_take(pool, (count + 31) / 32);
+    } else if (drops) {
+        const size_t words = (candidates->seen + 31) / 32;
+        int32_t *room = pool_take(pool, words);
         if (!room) return -1;
-        pool->used += (count + 31) / 32;
-        grid->reached[cell] = (uint16_t *)(void *)room;
-        count = drop_far(grid, cell, candidates, count, grid->reached[cell], &own);
+        pool->used += words;
+        grid->reached[cell] = memcpy(room, candidates->marks, words * sizeof *room);
     }
     int longest = 0;
     for (uint32_t s = grid->start[cell]; s < grid->start[cell + 1]; s++, own++) {
