@@ -304,6 +304,115 @@ static void test_ends(void **state)
             }
 }
 
+static struct grid_box open_box(int dim)
+{
+    return (struct grid_box){dim, {0}, {1, 1, 1}, {false}};
+}
+
+/* All n points in one place, in each other's reach. Returns the calls that a search takes. */
+static long search_together(struct grid *grid, size_t n)
+{
+    const double *const x[] = {place[0], place[1], place[2]};
+    const long before = watched_calls;
+    for (size_t i = 0; i < n; i++)
+        for (int a = 0; a < 3; a++) place[a][i] = 0.5, width[i] = 0.3;
+    assert_int_equal(grid_search(grid, n, n, x, width, NULL, NULL), STATUS_OK);
+    return watched_calls - before;
+}
+
+/* The same in so many cells along the last axis. */
+static long search_in_cells(struct grid *grid, int dim, int cells)
+{
+    const size_t n = 200;
+    const double *const x[] = {place[0], place[1], place[2]};
+    const long before = watched_calls;
+    for (size_t i = 0; i < n; i++)
+        place[dim - 1][i] = (double)i / (double)(n - 1), width[i] = 1 / (cells + 0.5);
+    assert_int_equal(grid_search(grid, n, n, x, width, NULL, NULL), STATUS_OK);
+    return watched_calls - before;
+}
+
+static long reserve(const struct grid *grid, struct grid_reader *reader)
+{
+    const long before = watched_calls;
+    assert_true(grid_reader_reserve(grid, reader));
+    return watched_calls - before;
+}
+
+/* What there is room for, to the last entry, takes no call; one more does, of every array that it
+ * lacks, and makes room for more. */
+static void test_room_of_grids(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        const struct grid_box box = open_box(dim);
+        static const struct {
+            size_t n;
+            long calls;
+        } points[] = {{188, 0}, {189, 10}, {299, 0}, {300, 10}},
+          reader[] = {{9, 2}, {17, 0}, {34, 2}, {49, 0}, {73, 1}, {97, 1}},
+          other[] = {{17, 2}, {33, 0}, {34, 1}, {49, 1}, {73, 1}, {105, 1}};
+        watched_begin(0);
+        struct grid *grid = grid_create(&box, 100, 1);
+        search_together(grid, 150);
+        for (int k = 0; k < 4; k++)
+            assert_int_equal(search_together(grid, points[k].n), points[k].calls);
+        struct grid_reader readers[2] = {{0}, {0}};
+        for (int k = 0; k < 6; k++) {
+            search_together(grid, reader[k].n);
+            assert_int_equal(reserve(grid, &readers[0]), reader[k].calls);
+            search_together(grid, other[k].n);
+            assert_int_equal(reserve(grid, &readers[1]), other[k].calls);
+        }
+        for (int k = 0; k < 2; k++) grid_reader_free(&readers[k]);
+        grid_destroy(grid);
+        grid = grid_create(&box, 1000, 1);
+        search_together(grid, 150);
+        assert_int_equal(search_together(grid, 448), 0);
+        assert_int_equal(search_together(grid, 449), 1);
+        search_in_cells(grid, dim, 10);
+        assert_int_equal(search_in_cells(grid, dim, 20), 0);
+        assert_int_equal(search_in_cells(grid, dim, 21), 7);
+        grid_destroy(grid);
+        assert_int_equal(watched_live, 0);
+    }
+}
+
+static long arrange_together(struct cells *cells, size_t n)
+{
+    const struct cells_fields fields = {.n = n, .x = {place[0], place[1], place[2]}};
+    const long before = watched_calls;
+    for (size_t i = 0; i < n; i++)
+        for (int a = 0; a < 3; a++) place[a][i] = 0.5, width[i] = 0.3;
+    assert_int_equal(cells_arrange(cells, &fields, width, NULL, NULL), STATUS_OK);
+    return watched_calls - before;
+}
+
+static void test_room_of_cells(void **state)
+{
+    (void)state;
+    static const struct {
+        size_t n;
+        long calls;
+    } steps[] = {{132, 0}, {133, 1}, {173, 0}, {174, 1}, {185, 0}, {195, 13}};
+    for (int dim = 2; dim <= 3; dim++) {
+        struct cells_method method = {.box = open_box(dim), .kernel = &kernel, .threads = 1};
+        watched_begin(0);
+        struct cells *cells = cells_create(&method, 100);
+        arrange_together(cells, 120);
+        for (size_t k = 0; k < sizeof steps / sizeof *steps; k++)
+            assert_int_equal(arrange_together(cells, steps[k].n), steps[k].calls);
+        cells_destroy(cells);
+        method.wall[1] = true; /* images have room of their own */
+        cells = cells_create(&method, 400);
+        arrange_together(cells, 100);
+        assert_int_equal(arrange_together(cells, 150), 0);
+        assert_int_equal(arrange_together(cells, 151), 6);
+        cells_destroy(cells);
+        assert_int_equal(watched_live, 0);
+    }
+}
+
 /* Who asks for loops that are not stamped gets them: the oracle of those that are. */
 static bool stamped_asked;
 struct shapes __real_shapes_of(const struct kernel *of, int dim, bool stamped);
@@ -331,8 +440,8 @@ static void test_unstamped(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_every_call),
-        cmocka_unit_test(test_ends),
+        cmocka_unit_test(test_every_call),    cmocka_unit_test(test_ends),
+        cmocka_unit_test(test_room_of_grids), cmocka_unit_test(test_room_of_cells),
         cmocka_unit_test(test_unstamped),
     };
     if (kernel_select(&kernel, "cubic_spline", 5, NULL)) return 1;
