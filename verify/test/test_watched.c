@@ -289,10 +289,13 @@ static void test_every_call(void **state)
 static void test_ends(void **state)
 {
     (void)state;
-    static work *const all[] = {find, differentiate, differentiate_all, weigh, list};
+    static work *const all[] = {find, differentiate, differentiate_all, weigh, list, arrange};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++)
-        for (int dim = all[k] == list ? 2 : 1; dim <= 3; dim++)
-            for (size_t n = all[k] == list ? 3 : 0; n < 140; n = n < 20 ? n + 1 : n + 12) {
+        for (int dim = all[k] == list || all[k] == arrange ? 2 : 1; dim <= 3; dim++)
+            for (size_t n = all[k] == list      ? 3
+                            : all[k] == arrange ? 1
+                                                : 0;
+                 n < 140; n = n < 20 ? n + 1 : n + 12) {
                 struct error error = {0};
                 make(n, 0.45, 1);
                 watched_begin(0);

@@ -1,0 +1,377 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What a scheme's numbers do in 2D and 3D: beta where there is no alpha, Balsara's factor, signal
+ * speeds, what is counted, and how far from a disturbance everybody is awake. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <string.h>
+
+#include "near.h"
+#include "solver.h"
+
+#include "cells/cells.h"
+
+enum { N = 1024 };
+
+static double x[3][N], v[3][N], m[N], u[N];
+
+static struct scheme scheme_of(void)
+{
+    struct scheme scheme = {
+        .gradient = GRADIENT_STANDARD,
+        .viscosity = VISCOSITY_CONSTANT,
+        .h_method = H_NEWTON,
+        .integrator = (const struct integrator *)family_find(&integrator_family, "leapfrog"),
+        .alpha = 1,
+        .beta = 2,
+        .alpha_min = 0.1,
+        .alpha_max = 1.5,
+        .eta = 2,
+        .cfl = 0.2,
+        .h_tolerance = 1e-12};
+    assert_int_equal(kernel_select(&scheme.kernel, "cubic_spline", 5, NULL), STATUS_OK);
+    return scheme;
+}
+
+/* A lattice of so many particles each way in a box of side 1, displaced by so much of its spacing;
+ * at rest. */
+static struct scene scene_of(int dim, size_t side, double displaced, const struct scheme *scheme)
+{
+    struct scene scene = {.dim = dim,
+                          .hi = {1, 1, 1},
+                          .gamma = 1.4,
+                          .t_end = 1,
+                          .n = dim == 2 ? side * side : side * side * side,
+                          .m = m,
+                          .u = u,
+                          .scheme = *scheme,
+                          .threads = 1};
+    assert_true(scene.n <= N);
+    for (size_t i = 0, at = 0; i < scene.n; at = ++i) {
+        m[i] = 1. / (double)scene.n, u[i] = 1;
+        for (int a = 0; a < dim; a++, at /= side) {
+            x[a][i] =
+                ((double)(at % side) + 0.5 + displaced * sin(7. * (double)i + a)) / (double)side;
+            v[a][i] = 0;
+        }
+    }
+    for (int a = 0; a < dim; a++) scene.x[a] = x[a], scene.v[a] = v[a];
+    return scene;
+}
+
+static struct simulation *created(const struct scene *scene)
+{
+    struct simulation *simulation = NULL;
+    struct error error = {0};
+    if (simulation_create(scene, &simulation, &error)) fail_msg("%s", error.message);
+    return simulation;
+}
+
+static void find_forces(struct simulation *simulation)
+{
+    double rate;
+    assert_int_equal(cells_sums.forces(simulation, &rate, NULL), STATUS_OK);
+}
+
+/* Of an alpha that varies beta is a multiple, beta/alpha of the scheme; 2 where it has no alpha. */
+static void test_beta(void **state)
+{
+    (void)state;
+    static const double numbers[][2] = {{1, 2}, {0, 5}, {2, 4}, {0.5, 1.5}};
+    static double F[N], de[N];
+    for (int dim = 2; dim <= 3; dim++)
+        for (int k = 0; k < 4; k++) {
+            struct scheme scheme = scheme_of();
+            scheme.viscosity = VISCOSITY_TIME_DEPENDENT;
+            scheme.alpha = numbers[k][0], scheme.beta = numbers[k][1];
+            struct scene scene = scene_of(dim, dim == 2 ? 9 : 6, 0.2, &scheme);
+            for (size_t i = 0; i < scene.n; i++) v[0][i] = sin(2 * M_PI * x[0][i]);
+            struct simulation *simulation = created(&scene);
+            const struct particles *p = &simulation->particles;
+            for (size_t i = 0; i < scene.n; i++) p->alpha[i] = 0.7;
+            find_forces(simulation);
+            const size_t bytes = scene.n * sizeof *F;
+            if (k == 0) memcpy(F, p->F[0], bytes), memcpy(de, p->de, bytes);
+            assert_int_equal(!memcmp(F, p->F[0], bytes) && !memcmp(de, p->de, bytes), k < 3);
+            simulation_destroy(simulation);
+        }
+}
+
+/* Gas that is drawn together and turned evenly, in its middle, where all have the same factor: so
+ * much of the heat of friction is left. */
+static void test_balsara(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++)
+        for (int k = 0; k < 3; k++) {
+            static const double floors[] = {0, 1e-4, 0.3};
+            static const double L[3][3] = {
+                {-1e-3, 2e-3, 5e-4}, {-1.5e-3, -7e-4, 4e-4}, {1e-3, -3e-4, -4e-4}};
+            double heat[3], expected = 0;
+            for (int friction = 0; friction < 3; friction++) {
+                struct scheme scheme = scheme_of();
+                scheme.viscosity = friction ? VISCOSITY_CONSTANT : VISCOSITY_NONE;
+                scheme.balsara = friction == 2 ? BALSARA_ON : BALSARA_OFF;
+                scheme.balsara_floor = floors[k];
+                const size_t side = dim == 2 ? 15 : 9;
+                struct scene scene = scene_of(dim, side, 0, &scheme);
+                for (int a = 0; a < dim; a++) scene.boundary[a] = BOUNDARY_OPEN;
+                for (size_t i = 0; i < scene.n; i++)
+                    for (int a = 0; a < dim; a++)
+                        for (int b = 0; b < dim; b++) v[a][i] += L[a][b] * x[b][i];
+                struct simulation *simulation = created(&scene);
+                const struct particles *p = &simulation->particles;
+                size_t middle = 0;
+                while (p->id[middle] != scene.n / 2) middle++;
+                heat[friction] = p->de[middle];
+                const double rate = p->c[middle] / p->h[middle];
+                double div = 0, curl2 = 0;
+                for (int a = 0; a < dim; a++) {
+                    div += L[a][a];
+                    for (int b = 0; b < a; b++) curl2 += pow(L[a][b] - L[b][a], 2);
+                }
+                expected = (fabs(div) + floors[k] * rate) /
+                           (fabs(div) + sqrt(curl2) + (floors[k] + 1e-4) * rate);
+                simulation_destroy(simulation);
+            }
+            near_relative((heat[2] - heat[0]) / (heat[1] - heat[0]), expected, 1e-8);
+        }
+}
+
+/* dW/dr. */
+static double kernel_slope_of(const struct kernel *kernel, double r, double h, int dim)
+{
+    return r < h ? kernel->constant[dim] / pow(h, dim + 1) * kernel->dw(kernel, r / h, dim) : 0;
+}
+
+/* From particle i to j, the nearest image. Returns the distance. */
+static double separation(const struct particles *p, size_t i, size_t j, double d[3])
+{
+    double r2 = 0;
+    for (int a = 0; a < p->dim; a++) {
+        d[a] = p->x[a][j] - p->x[a][i];
+        d[a] -= p->period[a] * round(d[a] / p->period[a]);
+        r2 += d[a] * d[a];
+    }
+    return sqrt(r2);
+}
+
+/* 2 c of everybody, and c_i + c_j + 3 times how fast the pair closes within the wider width; with
+ * the forces and alone. */
+static void test_signals(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        const struct scheme scheme = scheme_of();
+        struct scene scene = scene_of(dim, dim == 2 ? 14 : 6, 0.2, &scheme);
+        for (size_t i = 0; i < scene.n; i++) {
+            u[i] = exp(2 * sin(5. * (double)i));
+            for (int a = 0; a < dim; a++) v[a][i] = 3 * sin(2 * M_PI * x[a][i] + a);
+        }
+        struct simulation *simulation = created(&scene);
+        const struct particles *p = &simulation->particles;
+        size_t own = 0;
+        for (int alone = 0; alone < 2; alone++) {
+            double rate = 0;
+            for (size_t i = 0; i < scene.n; i++) p->signal[i] = -1;
+            if (alone)
+                cells_sums.signal(simulation);
+            else
+                find_forces(simulation);
+            for (size_t i = 0; i < scene.n; i++) {
+                double most = 2 * p->c[i];
+                for (size_t j = 0; j < scene.n; j++) {
+                    double d[3], closing = 0;
+                    const double r = separation(p, i, j, d);
+                    if (j == i || !(r < fmax(p->h[i], p->h[j]))) continue;
+                    for (int a = 0; a < dim; a++) closing += (p->v[a][i] - p->v[a][j]) * d[a] / r;
+                    most = fmax(most, p->c[i] + p->c[j] + 3 * fmax(closing, 0));
+                }
+                near_relative(p->signal[i], most, 1e-13);
+                own += most == 2 * p->c[i];
+                rate = fmax(rate, most / p->h[i]);
+            }
+            assert_true(rate > 0);
+        }
+        if (dim == 2) assert_true(own > 0);
+        simulation_destroy(simulation);
+    }
+}
+
+/* The pressure of the lagrangian form, CONVENTIONS eq. 5.3, of every volume element, from both
+ * widths of a pair; heat by the particle's own. */
+static void test_lagrangian(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++)
+        for (int e = 0; e < VOLUME_ELEMENTS; e++) {
+            struct scheme scheme = scheme_of();
+            scheme.viscosity = VISCOSITY_NONE;
+            scheme.formulation = FORMULATION_LAGRANGIAN;
+            scheme.volume_element = (enum volume_element)e;
+            scheme.energy = ENERGY_INTERNAL;
+            struct scene scene = scene_of(dim, dim == 2 ? 9 : 6, 0.2, &scheme);
+            for (size_t i = 0; i < scene.n; i++) {
+                m[i] *= 1 + 0.2 * sin(3. * (double)i), u[i] = 1 + 0.3 * sin(5. * (double)i);
+                for (int a = 0; a < dim; a++) v[a][i] = sin(11. * (double)i + a);
+            }
+            struct simulation *simulation = created(&scene);
+            const struct particles *p = &simulation->particles;
+            double Z[N], M[N], b[N];
+            for (size_t i = 0; i < scene.n; i++) {
+                Z[i] = e == VOLUME_NUMBER ? 1 : e == VOLUME_ENERGY ? p->U[i] : p->m[i];
+                M[i] = e == VOLUME_NUMBER ? 1 : p->m[i];
+                b[i] = p->P[i] * p->V[i] * p->V[i] / Z[i];
+            }
+            for (size_t i = 0; i < scene.n; i++) {
+                double F[3] = {0}, heat = 0, size = 0;
+                for (size_t j = 0; j < scene.n; j++) {
+                    double d[3];
+                    const double r = separation(p, i, j, d);
+                    if (j == i) continue;
+                    const double slope = kernel_slope_of(&scheme.kernel, r, p->h[i], dim),
+                                 other = kernel_slope_of(&scheme.kernel, r, p->h[j], dim),
+                                 own = b[i] * (Z[j] - M[j] * p->grad_h[i]) * slope / r,
+                                 theirs = b[j] * (Z[i] - M[i] * p->grad_h[j]) * other / r;
+                    for (int a = 0; a < dim; a++) {
+                        F[a] += (own + theirs) * d[a];
+                        heat += own * d[a] * (p->v[a][j] - p->v[a][i]);
+                        size += fabs(own * d[a]) + fabs(theirs * d[a]);
+                    }
+                }
+                for (int a = 0; a < dim; a++) near_below(fabs(p->F[a][i] - F[a]), 1e-11 * size);
+                near_below(fabs(p->de[i] - heat), 1e-11 * size);
+            }
+            simulation_destroy(simulation);
+        }
+}
+
+/* Who has no neighbours feels no force and has the signal speed of its own sound. */
+static void test_alone(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        const struct scheme scheme = scheme_of();
+        const struct cells_method method = {
+            .box = {dim, {0}, {1, 1, 1}, {false}}, .kernel = &scheme.kernel, .threads = 1};
+        double at[2][3] = {{0.1, 0.9}, {0.2, 0.7}}, F[3][2], of[8][2];
+        const double ones[] = {1, 1}, radius[] = {0.2, 0.2}, inverse[] = {5, 5}, c[] = {3, 0.7};
+        const struct cells_fields fields = {.n = 2,
+                                            .x = {at[0], at[1], at[1]},
+                                            .v = {ones, ones, ones},
+                                            .m = ones,
+                                            .h_inverse = inverse,
+                                            .P = ones,
+                                            .c = c,
+                                            .V = ones,
+                                            .sum_m = of[0],
+                                            .sum_m_dh = of[1],
+                                            .F = {F[0], F[1], F[2]},
+                                            .de = of[2],
+                                            .signal = of[3]};
+        struct cells *cells = cells_create(&method, 2);
+        assert_int_equal(cells_arrange(cells, &fields, radius, NULL, NULL), STATUS_OK);
+        cells_density(cells, &fields);
+        assert_int_equal(cells_forces(cells, &fields), 0);
+        for (int i = 0; i < 2; i++) {
+            const double w = scheme.kernel.w(&scheme.kernel, 0, dim);
+            near_relative(of[0][i], w, 1e-15);
+            near_relative(of[1][i], dim * w, 1e-15);
+            for (int a = 0; a < dim; a++) assert_true(F[a][i] == 0);
+            assert_true(of[2][i] == 0 && of[3][i] == 2 * c[i]);
+        }
+        cells_destroy(cells);
+    }
+}
+
+/* Matrices of particles that lie in a line cannot be used: as many as they are, each time; at most
+ * so many at once. */
+static void test_fallen_back(void **state)
+{
+    (void)state;
+    struct scheme scheme = scheme_of();
+    scheme.gradient = GRADIENT_IA;
+    for (int dim = 2; dim <= 3; dim++) {
+        struct scene scene = scene_of(dim, 6, 0, &scheme);
+        for (int a = 0; a < dim; a++) scene.boundary[a] = BOUNDARY_OPEN;
+        scene.n = 20;
+        for (size_t i = 0; i < scene.n; i++)
+            for (int a = 0; a < dim; a++) x[a][i] = a == 0 ? ((double)i + 0.5) / 20 : 0.5;
+        struct simulation *simulation = created(&scene);
+        for (uint64_t times = 1; times <= 3; times++) {
+            struct simulation_cost cost;
+            simulation_cost(simulation, &cost);
+            assert_int_equal(cost.fallen_back, 20 * times);
+            assert_int_equal(cost.fallen_back_most, 20);
+            cells_sums.matrix(simulation);
+        }
+        simulation_destroy(simulation);
+    }
+}
+
+/* A periodic box 8 particles wide and 128 long. */
+static struct scene long_box(const struct scheme *scheme)
+{
+    struct scene scene = scene_of(2, 8, 0, scheme);
+    scene.n = 1024, scene.hi[1] = 16, scene.skip = true;
+    for (size_t i = 0; i < scene.n; i++) {
+        x[0][i] = ((double)(i % 8) + 0.5) / 8, x[1][i] = ((double)(i / 8) + 0.5) / 8;
+        m[i] = 1. / 64, u[i] = 1, v[0][i] = v[1][i] = 0;
+    }
+    return scene;
+}
+
+/* Whoever is within two widths of a particle that feels a force is awake, wherever that is. */
+static void test_awake(void **state)
+{
+    (void)state;
+    const struct scheme scheme = scheme_of();
+    for (size_t row = 0; row < 30; row += 3) {
+        const struct scene scene = long_box(&scheme);
+        u[8 * row] = 3;
+        struct simulation *simulation = created(&scene);
+        const struct particles *p = &simulation->particles;
+        ptrdiff_t awake = 0;
+        for (size_t i = 0; i < scene.n; i++) {
+            bool near = false;
+            for (size_t j = 0; j < scene.n && !near; j++) {
+                double d[3];
+                if (fabs(p->F[0][j]) + fabs(p->F[1][j]) < 1e-6) continue;
+                separation(p, i, j, d);
+                near = fabs(d[1]) < 2 * p->h[j];
+            }
+            awake += near;
+        }
+        assert_true(awake > 64 && simulation->sleep.awake_count >= awake);
+        assert_true(simulation->sleep.awake_count < 256);
+        simulation_destroy(simulation);
+    }
+}
+
+/* So is whoever moves, however slowly, and feels none. */
+static void test_awake_in_flow(void **state)
+{
+    (void)state;
+    const struct scheme scheme = scheme_of();
+    const struct scene scene = long_box(&scheme);
+    for (size_t i = 0; i < scene.n / 2; i++) v[0][i] = 1e-9;
+    struct simulation *simulation = created(&scene);
+    assert_true(simulation->sleep.awake_count > 512 && simulation->sleep.awake_count < 700);
+    simulation_destroy(simulation);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_beta),       cmocka_unit_test(test_balsara),
+        cmocka_unit_test(test_signals),    cmocka_unit_test(test_fallen_back),
+        cmocka_unit_test(test_lagrangian), cmocka_unit_test(test_alone),
+        cmocka_unit_test(test_awake),      cmocka_unit_test(test_awake_in_flow),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
