@@ -166,12 +166,14 @@ static double separation(const struct particles *p, size_t i, size_t j, double d
 static void test_signals(void **state)
 {
     (void)state;
-    for (int dim = 2; dim <= 3; dim++) {
+    for (int k = 0; k < 4; k++) {
+        const int dim = 2 + k % 2;
+        const double unit = k < 2 ? 1 : 1e-10; /* of speeds: cold gas */
         const struct scheme scheme = scheme_of();
         struct scene scene = scene_of(dim, dim == 2 ? 14 : 6, 0.2, &scheme);
         for (size_t i = 0; i < scene.n; i++) {
-            u[i] = exp(2 * sin(5. * (double)i));
-            for (int a = 0; a < dim; a++) v[a][i] = 3 * sin(2 * M_PI * x[a][i] + a);
+            u[i] = unit * unit * exp(2 * sin(5. * (double)i));
+            for (int a = 0; a < dim; a++) v[a][i] = unit * 3 * sin(2 * M_PI * x[a][i] + a);
         }
         struct simulation *simulation = created(&scene);
         const struct particles *p = &simulation->particles;
@@ -289,6 +291,67 @@ static void test_alone(void **state)
     }
 }
 
+/* Where all masses are the same, numbers are as good as masses. */
+static void test_equal_masses(void **state)
+{
+    (void)state;
+    static double of[5][N];
+    for (int dim = 2; dim <= 3; dim++)
+        for (int number = 0; number < 2; number++) {
+            struct scheme scheme = scheme_of();
+            scheme.formulation = FORMULATION_LAGRANGIAN;
+            scheme.volume_element = number ? VOLUME_NUMBER : VOLUME_MASS;
+            const struct scene scene = scene_of(dim, dim == 2 ? 16 : 8, 0.2, &scheme);
+            struct simulation *simulation = created(&scene);
+            const struct particles *p = &simulation->particles;
+            const double *const found[] = {p->F[0], p->F[1], p->de, p->h, p->grad_h};
+            for (int k = 0; k < 5; k++)
+                for (size_t i = 0; i < scene.n; i++)
+                    if (number)
+                        near_below(fabs(found[k][i] - of[k][i]), 1e-10 * (1 + fabs(of[k][i])));
+                    else
+                        of[k][i] = found[k][i];
+            simulation_destroy(simulation);
+        }
+}
+
+/* Axes in another order give the same forces in that order, with walls and whatever the gradient.
+ */
+static void test_axes_are_alike(void **state)
+{
+    (void)state;
+    static double F[3][N];
+    for (int dim = 2; dim <= 3; dim++)
+        for (int g = 0; g < 2 * GRADIENTS; g++) {
+            struct scheme scheme = scheme_of();
+            scheme.gradient = (enum gradient)(g / 2);
+            scheme.viscosity = g % 2 ? VISCOSITY_PROJECTED : VISCOSITY_CONSTANT;
+            scheme.noise = 0.4;
+            for (int turned = 0; turned < 2; turned++) {
+                struct scene scene = scene_of(dim, dim == 2 ? 9 : 6, 0.2, &scheme);
+                for (int a = 0; a < dim; a++) {
+                    scene.boundary[a] = BOUNDARY_REFLECTING;
+                    for (size_t i = 0; i < scene.n; i++) v[a][i] = sin((2. + a) * x[0][i] + a);
+                }
+                for (int a = 0; a < dim; a++) {
+                    scene.x[a] = x[(a + turned) % dim];
+                    scene.v[a] = v[(a + turned) % dim];
+                }
+                struct simulation *simulation = created(&scene);
+                const struct particles *p = &simulation->particles;
+                for (size_t i = 0; i < scene.n; i++)
+                    for (int a = 0; a < dim; a++) {
+                        double *known = &F[(a + turned) % dim][p->id[i]];
+                        if (turned)
+                            near_below(fabs(p->F[a][i] - *known), 1e-10 * (0.1 + fabs(*known)));
+                        else
+                            *known = p->F[a][i];
+                    }
+                simulation_destroy(simulation);
+            }
+        }
+}
+
 /* Matrices of particles that lie in a line cannot be used: as many as they are, each time; at most
  * so many at once. */
 static void test_fallen_back(void **state)
@@ -368,10 +431,11 @@ static void test_awake_in_flow(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_beta),       cmocka_unit_test(test_balsara),
-        cmocka_unit_test(test_signals),    cmocka_unit_test(test_fallen_back),
-        cmocka_unit_test(test_lagrangian), cmocka_unit_test(test_alone),
-        cmocka_unit_test(test_awake),      cmocka_unit_test(test_awake_in_flow),
+        cmocka_unit_test(test_beta),         cmocka_unit_test(test_balsara),
+        cmocka_unit_test(test_signals),      cmocka_unit_test(test_fallen_back),
+        cmocka_unit_test(test_lagrangian),   cmocka_unit_test(test_alone),
+        cmocka_unit_test(test_equal_masses), cmocka_unit_test(test_axes_are_alike),
+        cmocka_unit_test(test_awake),        cmocka_unit_test(test_awake_in_flow),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -41,7 +41,7 @@ static void end_scene(void)
 {
     for (size_t i = scene.n; i < POINTS_MAX; i++) {
         scene.radius[i] = 1e30;
-        for (int a = 0; a < 3; a++) scene.x[a][i] = (double)NAN;
+        for (int a = 0; a < 3; a++) scene.x[a][i] = i % 2 ? (double)NAN : a % 2 ? 1e9 : -1e9;
     }
 }
 
@@ -534,7 +534,7 @@ static void test_refused(void **state)
     make(1);
     scene.n = 5;
     for (int a = 0; a < 3; a++) {
-        scene.box.periodic[a] = true, scene.box.lo[a] = 0, scene.box.hi[a] = 2 + a;
+        scene.box.periodic[a] = true, scene.box.lo[a] = 0, scene.box.hi[a] = 2.469128 + a;
         for (int i = 0; i < 5; i++) scene.x[a][i] = 0.1 * i, scene.radius[i] = 1;
     }
     struct grid *grid = search(1, 1); /* half a box is not too far */
@@ -542,11 +542,11 @@ static void test_refused(void **state)
     refused(grid, INT32_MAX, "2147483647 particles: allowed are 1 to 2^31 - 2");
     scene.radius[0] = 1.75;
     refused(grid, 5,
-            "particle 0 reaches as far as 1.75, beyond half the box (1): more particles "
+            "particle 0 reaches as far as 1.75, beyond half the box (1.23456): more particles "
             "or a smaller eta are needed");
     scene.radius[0] = 1, scene.radius[4] = 1.25;
     refused(grid, 5,
-            "particle 4 reaches as far as 1.25, beyond half the box (1): more particles "
+            "particle 4 reaches as far as 1.25, beyond half the box (1.23456): more particles "
             "or a smaller eta are needed");
     scene.radius[4] = 0;
     refused(grid, 5, "search radius of particle 4 is 0");

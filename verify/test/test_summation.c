@@ -226,6 +226,17 @@ static void test_refused(void **state)
         refused(&sum, STATUS_BROKE_DOWN, text);
         sum.eta *= 1 - 2e-7;
         assert_int_equal(summation_solve(&sum, h, rho, NULL), STATUS_OK);
+        if (dim == 1) { /* exactly as much is too little */
+            const double two[] = {1, 1};
+            struct summation pair = sum;
+            pair.points.n = 2, pair.m = two, pair.eta = 2 * least;
+            snprintf(
+                text, sizeof text,
+                "point 0: no smoothing length: the cloud's mass is 2, eta = %g needs more than "
+                "2",
+                pair.eta);
+            refused(&pair, STATUS_BROKE_DOWN, text);
+        }
         /* too many in one place, and all */
         m[7] = 1;
         sum.eta = least * pow(3, 1. / dim) * (1 - 1e-9);
