@@ -24,6 +24,7 @@
 #include "initial_create.h"
 #include "initial_fill.h"
 #include "junit.h"
+#include "line/line.h"
 #include "map.h"
 #include "particle_file.h"
 #include "pool.h"
@@ -439,6 +440,32 @@ static enum status set_aside(struct error *error)
     return error->status;
 }
 
+/* Widths that reach over many boxes ask for more ghosts, and pairs for more scratch; who was
+ * refused that may ask again. */
+static enum status widened(struct error *error)
+{
+    double arrays[4][8], rate;
+    const struct scene scene = line_scene(arrays);
+    struct simulation *simulation;
+    enum status status = simulation_create(&scene, &simulation, error);
+    if (status) return status;
+    const struct particles *a = &simulation->particles;
+    const struct line *line = line_of(simulation);
+    assert_true(a->ghosts == 64);
+    for (ptrdiff_t i = 0; i < 8; i++) a->h_inverse_found[i] = a->h_inverse_old[i] = 1. / 30;
+    simulation->scheme.eta = 60; /* so far is no runaway */
+    status = widths_find(simulation, false, 0, error);
+    if (!status) status = forces_sum(simulation, &rate, error);
+    if (status) {
+        assert_int_equal(forces_reserve_scratch(simulation, 250, error), STATUS_OK);
+        assert_true(line->scratch && line->scratch_size >= loop_force_scratch(250));
+    } else {
+        assert_true(a->ghosts > 64 && line->reach == 239);
+    }
+    simulation_destroy(simulation);
+    return status;
+}
+
 static struct simulation *to_resume;
 static struct checkpoint checkpoint = {.path = path, .build = "one", .run = "a run"};
 
@@ -470,6 +497,7 @@ static void jobs_and_tables(void **state)
     without_memory(computed, 13, false); /* the reply is there when its end is looked for */
     without_memory(rated, 3, true);
     without_memory(set_aside, 3, true);
+    without_memory(widened, 10, true);
 }
 
 static int make_file(void **state)
