@@ -76,9 +76,7 @@ static struct cells_method method_of(const struct simulation *simulation)
         .alpha_max = scheme->alpha_max,
         .numbers = {.alpha = scheme->alpha,
                     .beta = scheme->beta,
-                    .beta_ratio = !varies             ? 0
-                                  : scheme->alpha > 0 ? scheme->beta / scheme->alpha
-                                                      : 2,
+                    .beta_ratio = scheme->alpha > 0 ? scheme->beta / scheme->alpha : 2,
                     .near = 1 / scheme->eta},
         .threads = simulation->team.most,
     };
