@@ -10,16 +10,19 @@
 
 static const char *const places[] = {"x", "y", "z"}, *const velocities[] = {"vx", "vy", "vz"};
 
-/* The column of that name; NULL and an error where there is none. */
-static const double *find(const struct particle_file *file, const char *path, const char *name,
-                          struct error *error)
+/* The column of that name, NULL where there are no rows; an error where there is no such column. */
+static enum status find(const struct particle_file *file, const char *path, const char *name,
+                        const double **column, struct error *error)
 {
     const int k = csv_column(&file->csv, name);
-    if (k >= 0) return file->csv.values[k];
-    error_set(error, STATUS_BAD_INPUT,
-              "%.200s:1: no column '%s': allowed: x[,y[,z]], vx[,vy[,vz]], m, u, in any order",
-              path, name);
-    return NULL;
+    if (k >= 0) {
+        *column = file->csv.values[k];
+        return STATUS_OK;
+    }
+    return error_set(
+        error, STATUS_BAD_INPUT,
+        "%.200s:1: no column '%s': allowed: x[,y[,z]], vx[,vy[,vz]], m, u, in any order", path,
+        name);
 }
 
 static enum status check_values(const struct particle_file *file, const char *path,
@@ -61,10 +64,10 @@ enum status particle_file_of(const char *path, struct particle_file *file, struc
                 : csv_column(&file->csv, "y") >= 0 || csv_column(&file->csv, "vy") >= 0 ? 2
                                                                                         : 1;
     for (int a = 0; a < file->dim; a++)
-        if (!(file->x[a] = find(file, path, places[a], error)) ||
-            !(file->v[a] = find(file, path, velocities[a], error)))
+        if (find(file, path, places[a], &file->x[a], error) ||
+            find(file, path, velocities[a], &file->v[a], error))
             return error->status;
-    if (!(file->m = find(file, path, "m", error)) || !(file->u = find(file, path, "u", error)))
+    if (find(file, path, "m", &file->m, error) || find(file, path, "u", &file->u, error))
         return error->status;
     if (file->csv.rows < 2)
         return error_set(error, STATUS_BAD_INPUT, "%.200s: %zu particles: allowed: 2 or more", path,

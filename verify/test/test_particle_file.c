@@ -97,6 +97,7 @@ static void columns(void **state)
          ":1: no column 'vy': allowed: x[,y[,z]], vx[,vy[,vz]], m, u, in any order"},
         {"vy,x,vx,m,u\n1,1,1,1,1\n1,1,1,1,1\n",
          ":1: no column 'y': allowed: x[,y[,z]], vx[,vy[,vz]], m, u, in any order"},
+        {"x,vx,m,u\n", ": 0 particles: allowed: 2 or more"},
         {"x,vx,m,u\n1,1,1,1\n", ": 1 particles: allowed: 2 or more"},
         {"x,vx,m,u\n1,1,1,1\n1,1,0,1\n", ":3: m = 0: allowed: above 0"},
         {"x,vx,m,u\n1,1,-2,0\n1,1,0,1\n", ":2: m = -2: allowed: above 0"},
