@@ -45,7 +45,6 @@ static void choose(struct team *team, double now)
 
 void team_step(struct team *team, double now)
 {
-    if (team->most == 1) return;
     if (!(team->begun > 0)) {
         begin_stretch(team, team->size, team->trying, now);
         return;
@@ -56,7 +55,7 @@ void team_step(struct team *team, double now)
     if (!((double)team->steps >= times && taken >= times * trial)) return;
     *pace = present;
     const int other = team->size == 1 ? team->most : 1;
-    if (team->trying && team->pace[other > 1] > 0)
+    if (team->trying && team->pace[0] > 0) /* the first trial is of all threads */
         choose(team, now);
     else
         begin_stretch(team, other, true, now);
