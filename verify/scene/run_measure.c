@@ -86,7 +86,7 @@ static enum status suspect(struct run_result *result, const double *const *measu
         exact[field] = inside + (FIELDS + field) * s->n;
     }
     for (size_t i = 0; i < s->n; i++) {
-        if (of->place[i] > 1) continue;
+        if (of->place[i] > 0) continue;
         for (size_t field = 0; field < FIELDS; field++) {
             inside[field * s->n + n] = measured[field][i];
             inside[(FIELDS + field) * s->n + n] = of->exact[field][i];
