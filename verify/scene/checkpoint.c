@@ -130,7 +130,7 @@ static enum status check_bytes(const struct checkpoint *checkpoint, FILE *file, 
     struct stream stream = {.file = file, .sum = CACHE_HASH};
     uint64_t sum;
     const long begin = ftell(file);
-    if (begin < 0 || fseek(file, 0, SEEK_END)) return refuse(checkpoint, "is damaged", error);
+    if (fseek(file, 0, SEEK_END)) return refuse(checkpoint, "is damaged", error);
     char *part = malloc(PART);
     if (!part) return error_set(error, STATUS_ENVIRONMENT, "no memory to resume");
     long left = ftell(file) - begin - (long)sizeof sum;
