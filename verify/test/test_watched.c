@@ -353,8 +353,8 @@ static void test_room_of_grids(void **state)
             size_t n;
             long calls;
         } points[] = {{188, 0}, {189, 10}, {299, 0}, {300, 10}},
-          reader[] = {{9, 2}, {17, 0}, {34, 2}, {49, 0}, {73, 1}, {97, 1}},
-          other[] = {{17, 2}, {33, 0}, {34, 1}, {49, 1}, {73, 1}, {105, 1}};
+          reader[] = {{9, 2}, {17, 0}, {34, 2}, {59, 0}, {60, 1}, {97, 1}},
+          other[] = {{17, 2}, {33, 0}, {34, 2}, {49, 0}, {73, 2}, {105, 0}};
         watched_begin(0);
         struct grid *grid = grid_create(&box, 100, 1);
         search_together(grid, 150);
