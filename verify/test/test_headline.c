@@ -13,7 +13,7 @@
 #include "headline.h"
 #include "value.h"
 
-enum { MOST = 8 };
+enum { MOST = 9 };
 
 static const struct check slope = {.group = "kernels",
                                    .name = "radial_derivative",
@@ -116,6 +116,12 @@ static void the_order(void **state)
         text_of(list, 0, "headline"),
         "kernel: dw is not the derivative of w; dW/dh is not the derivative of W in h");
     json_decref(list);
+    /* each member once, also one that is not the first */
+    list = told(
+        4, (const struct row[]){
+               {&slope, "a", 2, 1}, {&one, "b", 3, 1}, {&two, "b", 2, 1}, {&width, "b", 2, 1}});
+    assert_int_equal(json_array_size(list), 2);
+    json_decref(list);
     list = told(0, NULL); /* nothing failed */
     assert_int_equal(json_array_size(list), 0);
     json_decref(list);
@@ -143,13 +149,59 @@ static void missed_mutants(void **state)
     json_decref(list);
 }
 
+/* What a person reads, to the last letter: with and without colour; figures or none; how many other
+ * checks are named. */
+static void what_is_printed(void **state)
+{
+    (void)state;
+    static struct check others[9] = {{0}};
+    static char names[9][8];
+    struct row rows[9];
+    for (size_t i = 0; i < 9; i++) {
+        snprintf(names[i], sizeof names[i], "c%zu", i);
+        others[i] = (struct check){.group = "hydro", .name = names[i], .property = "p"};
+        rows[i] = (struct row){&others[i], i ? "a" : "a: here", 10 - (double)i, 1};
+    }
+    others[0].slow = true;
+    static const struct {
+        size_t n;
+        bool color;
+        const char *text;
+    } list[] = {
+        {1, false,
+         "a: c0 off by 10\n    c0: got 10, bound 1, 10 times over, at here\n    property: p\n"
+         "    1 failing figures\n    all of it: sphproof verify hydro --details --slow\n"},
+        {2, true,
+         "\033[1;31ma: c0 off by 10; c1 off by 9\033[0m\n    c0: got 10, bound 1, 10 times over, "
+         "at here\n    property: p\n    2 failing figures; also: c1\n"
+         "    all of it: sphproof verify hydro --details --slow\n"},
+        {7, false,
+         "a: c0 off by 10; c1 off by 9\n    c0: got 10, bound 1, 10 times over, at here\n"
+         "    property: p\n    7 failing figures; also: c1, c2, c3, c4, c5, c6\n"
+         "    all of it: sphproof verify hydro --details --slow\n"},
+        {9, false,
+         "a: c0 off by 10; c1 off by 9\n    c0: got 10, bound 1, 10 times over, at here\n"
+         "    property: p\n    9 failing figures; also: c1, c2, c3, c4, c5, c6 and 2 more checks\n"
+         "    all of it: sphproof verify hydro --details --slow\n"},
+    };
+    for (size_t k = 0; k < sizeof list / sizeof *list; k++) {
+        char text[2048] = "";
+        FILE *stream = fmemopen(text, sizeof text, "w");
+        json_t *headlines = told(list[k].n, rows);
+        assert_non_null(stream);
+        headline_print(headlines, stream, list[k].color);
+        fclose(stream);
+        assert_string_equal(text, list[k].text);
+        json_decref(headlines);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(members_and_places),
-        cmocka_unit_test(the_worst_figure),
-        cmocka_unit_test(the_order),
-        cmocka_unit_test(missed_mutants),
+        cmocka_unit_test(members_and_places), cmocka_unit_test(the_worst_figure),
+        cmocka_unit_test(the_order),          cmocka_unit_test(missed_mutants),
+        cmocka_unit_test(what_is_printed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

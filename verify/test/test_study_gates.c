@@ -220,6 +220,37 @@ static void gates_are_judged(void **state)
     }
 }
 
+/* Half the order that is asked for, known up to an error that this one, on a coarser ladder, is
+ * beyond: it says up to which. */
+static void beyond_what_is_known(void **state)
+{
+    (void)state;
+    struct study study;
+    struct pool pool;
+    struct error error;
+    char text[200];
+    factor = 0.01;
+    make(&study, &pool, "sod", NULL, 1, times_factor, &error);
+    struct case_file *file = &study.settings.file;
+    file->gates[0] = (struct case_gate){.gate = {.low = 0.6, .high = 0.8, .bound = 1},
+                                        .field = FIELD_DENSITY,
+                                        .norm = NORM_L1,
+                                        .known = {.bound = 1e-4, .why = "why"}};
+    file->gate_count = file->ladder_count = 1;
+    file->ladder[0] = 640;
+    const struct settings settings = study.results[0].settings;
+    const struct scheme scheme = study.results[0].scheme;
+    study.results[0] = (struct study_result){.settings = settings, .scheme = scheme};
+    assert_int_equal(study_judge(&study, &pool, &error), STATUS_OK);
+    const struct study_order *order = &study.results[0].orders[FIELD_DENSITY][NORM_L1];
+    snprintf(text, sizeof text, "finest error %.3g exceeds 0.000152, up to which it is known",
+             factor * pow(spacing_of(3, 0), 0.5)); /* 1e-4 times 2^0.6 */
+    assert_int_equal(order->status, GATE_FAIL);
+    assert_string_equal(order->why, text);
+    study_free(&study);
+    pool_free(&pool);
+}
+
 /* An error that is too small to be believed is one of the case's own ladder and settings. */
 static void small_errors_are_strange(void **state)
 {
@@ -230,10 +261,14 @@ static void small_errors_are_strange(void **state)
         enum setting key; /* that a user has set; n: always */
         bool known;
         enum study_gate outcome;
-    } rows[] = {
-        {0.99, 320, SETTING_n, false, GATE_PASS}, {1.01, 320, SETTING_n, false, GATE_FAIL},
-        {1.01, 320, SETTING_n, true, GATE_KNOWN}, {1.01, 320, SETTING_eta, false, GATE_PASS},
-        {1.01, 640, SETTING_n, false, GATE_PASS}, {1.01, 160, SETTING_n, false, GATE_PASS}};
+    } rows[] = {{0.99, 320, SETTING_n, false, GATE_PASS},
+                {1.01, 320, SETTING_n, false, GATE_FAIL},
+                {1.01, 320, SETTING_n, true, GATE_KNOWN},
+                {1.01, 320, SETTING_eta, false, GATE_PASS},
+                {1.01, 640, SETTING_n, false, GATE_PASS},
+                {1.01, 160, SETTING_n, false, GATE_PASS},
+                {1.01, 320, (enum setting)0, false, GATE_PASS},
+                {1.01, 320, (enum setting)(SETTINGS - 1), false, GATE_PASS}};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         struct study study;
         struct pool pool;
@@ -351,6 +386,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(gates_are_judged),
+        cmocka_unit_test(beyond_what_is_known),
         cmocka_unit_test(small_errors_are_strange),
         cmocka_unit_test(floors_explain_up_to_a_point),
         cmocka_unit_test(no_floor),
