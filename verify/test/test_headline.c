@@ -121,6 +121,8 @@ static void the_order(void **state)
         4, (const struct row[]){
                {&slope, "a", 2, 1}, {&one, "b", 3, 1}, {&two, "b", 2, 1}, {&width, "b", 2, 1}});
     assert_int_equal(json_array_size(list), 2);
+    assert_string_equal(text_of(list, 0, "member"), "a");
+    assert_string_equal(text_of(list, 1, "check"), "width_derivative");
     json_decref(list);
     list = told(0, NULL); /* nothing failed */
     assert_int_equal(json_array_size(list), 0);
