@@ -39,7 +39,7 @@ static double masses[N];
 static struct slope slopes[STAGES + 1][N];
 static struct point starts[N], seen_state[STAGES][N];
 static double seen_v[STAGES][3][N], seen_U[STAGES][N];
-static int stage;
+static int stage, fails_at; /* which evaluation; 0: none */
 
 static enum status arrange(struct simulation *simulation, struct error *error)
 {
@@ -74,7 +74,6 @@ static void give_rates(const struct simulation *s, int of)
 static enum status forces(struct simulation *simulation, double *rate, struct error *error)
 {
     const struct particles *a = &simulation->particles;
-    (void)error;
     assert_true(stage < STAGES);
     for (ptrdiff_t i = 0; i < a->n; i++) {
         seen_state[stage][i] = state_of(simulation, i);
@@ -83,7 +82,7 @@ static enum status forces(struct simulation *simulation, double *rate, struct er
     }
     give_rates(simulation, ++stage);
     *rate = 2;
-    return STATUS_OK;
+    return stage == fails_at ? error_set(error, STATUS_BROKE_DOWN, "as was wished") : STATUS_OK;
 }
 
 static const struct sums known = {.arrange = arrange, .widths = widths, .forces = forces};
@@ -234,6 +233,27 @@ static void one_step(void **state)
             }
 }
 
+/* Whichever evaluation fails, the step says so and goes no further. */
+static void evaluations_that_fail(void **state)
+{
+    (void)state;
+    for (size_t k = 0; k < integrator_family.n; k++) {
+        const struct integrator *integrator =
+            (const struct integrator *)integrator_family.members[k];
+        for (int at = 1; at <= integrator->evaluations; at++) {
+            struct simulation s;
+            struct error error = {0};
+            begin(&s, integrator->member.name, 2, 9, false, false);
+            fails_at = at;
+            assert_int_equal(integrator->step(&s, 0.25, &error), STATUS_BROKE_DOWN);
+            assert_string_equal(error.message, "as was wished");
+            assert_int_equal(stage, at);
+            fails_at = 0;
+            end(&s);
+        }
+    }
+}
+
 /* --- predicted_midpoint ------------------------------------------------------------------------
  */
 
@@ -356,6 +376,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(one_step),
+        cmocka_unit_test(evaluations_that_fail),
         cmocka_unit_test(from_middle_to_middle),
         cmocka_unit_test(back_from_the_middle),
         cmocka_unit_test(sleepers_stay),
