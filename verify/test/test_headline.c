@@ -91,6 +91,7 @@ static void the_worst_figure(void **state)
     assert_string_equal(text_of(list, 0, "place"), "first");
     assert_true(value_member(json_array_get(list, 0), "ratio") == 3 &&
                 value_member(json_array_get(list, 0), "figures") == 4);
+    assert_int_equal(json_array_size(json_object_get(json_array_get(list, 0), "also")), 0);
     json_decref(list);
     list = told(1, &(struct row){&one, "a: below its floor", 0, 1e-4});
     assert_string_equal(text_of(list, 0, "place"), "below its floor");
