@@ -560,6 +560,10 @@ static void test_gentle_and_parting(void **state)
             near_below(fabs(s.p_star - 1 - d), 3e-16 * (1 + d) + 1e-13 * d * d);
             near_below(fabs(s.v_star), 1e-18);
         }
+    /* of equal gases the mean velocity stays */
+    const struct riemann_state fast = {1, 0.75, 1}, slow = {1, 0.25, 1};
+    assert_true(solved(1.4, fast, slow).v_star == 0.5);
+    assert_true(solved(1.4, slow, fast).v_star == 0.5);
     /* gamma = 3, c = 3: the gases part at 2 (c + c)/(gamma - 1) = 6 */
     const struct riemann_solution just =
         solved(3, (struct riemann_state){1, -3, 3}, (struct riemann_state){1, 3, 3});
