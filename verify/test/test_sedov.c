@@ -151,6 +151,12 @@ static double behind(const struct sedov *blast, int what, double t)
     return sum;
 }
 
+static double of_motion(double r, const struct sedov_state *s)
+{
+    (void)r;
+    return s->rho * s->v * s->v / 2;
+}
+
 /* Sums over all gas: energy of motion, momentum outwards, where the heat is, what is not alike in
  * all directions. */
 static void blasts_are_summed(void **state)
@@ -196,6 +202,8 @@ static void blasts_are_summed(void **state)
         cloud.snapshot.time = 0;
         assert_true(measured(&p, "asymmetry", &cloud.snapshot) == 0);
         near_relative(exactly(&p, "kinetic_energy", t), behind(&blast, 0, t), 1e-5);
+        near_relative(exactly(&p, "kinetic_energy", t),
+                      sedov_integral(&blast, sedov_shock(&blast, t), t, of_motion), 1e-9);
         near_relative(exactly(&p, "outward_momentum", t), behind(&blast, 1, t), 1e-5);
         near_relative(exactly(&p, "thermal_radius", t), behind(&blast, 3, t) / behind(&blast, 2, t),
                       1e-5);
