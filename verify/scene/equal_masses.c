@@ -3,11 +3,10 @@
  * (rejection in one dimension more), then pushed apart into a glass. */
 #include "equal_masses.h"
 
-#include <gsl/gsl_qrng.h>
-#include <gsl/gsl_rng.h>
 #include <math.h>
 
 #include "initial.h"
+#include "quasi_random.h"
 #include "relax.h"
 
 enum { CELLS_PLANE = 512, CELLS_SPACE = 96 }; /* per direction, of sums over the box */
@@ -49,26 +48,19 @@ static enum status throw_points(const struct gas *gas, unsigned long seed, size_
                                 double *const x[3], struct error *error)
 {
     const struct domain *box = &gas->p->domain;
-    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
-    gsl_qrng *sequence = gsl_qrng_alloc(gsl_qrng_sobol, (unsigned)box->dim + 1);
-    double shift[4], part[4];
-    if (random && sequence) {
-        gsl_rng_set(random, seed);
-        for (int d = 0; d < 4; d++) shift[d] = gsl_rng_uniform(random);
-        for (size_t i = 0; i < n;) {
-            double at[3] = {0};
-            gsl_qrng_get(sequence, part);
-            for (int d = 0; d <= box->dim; d++) part[d] = fmod(part[d] + shift[d], 1);
-            for (int d = 0; d < box->dim; d++) at[d] = box->lo[d] + domain_length(box, d) * part[d];
-            if (!(part[box->dim] * gas->most < density_at(gas->p, at))) continue;
-            for (int d = 0; d < box->dim; d++) x[d][i] = at[d];
-            i++;
-        }
+    struct quasi_random *random = quasi_random_create(box->dim + 1, seed);
+    double part[QUASI_RANDOM_DIM_MAX];
+    if (!random) return error_set(error, STATUS_ENVIRONMENT, "no memory for %zu points", n);
+    for (size_t i = 0; i < n;) {
+        double at[3] = {0};
+        quasi_random_next(random, part);
+        for (int d = 0; d < box->dim; d++) at[d] = box->lo[d] + domain_length(box, d) * part[d];
+        if (!(part[box->dim] * gas->most < density_at(gas->p, at))) continue;
+        for (int d = 0; d < box->dim; d++) x[d][i] = at[d];
+        i++;
     }
-    gsl_qrng_free(sequence);
-    gsl_rng_free(random);
-    return random && sequence ? STATUS_OK
-                              : error_set(error, STATUS_ENVIRONMENT, "no memory for %zu points", n);
+    quasi_random_destroy(random);
+    return STATUS_OK;
 }
 
 static double room_at(const void *context, const double x[3])

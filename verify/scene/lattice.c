@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Crystal lattices: Kittel 2005, ch. 1. Quasi-random points: Sobol 1967, by GSL. */
+ * Crystal lattices: Kittel 2005, ch. 1. */
 #include "lattice.h"
 
-#include <gsl/gsl_qrng.h>
-#include <gsl/gsl_rng.h>
 #include <math.h>
 
+#include "quasi_random.h"
 #include "relax.h"
 
 enum { BASE_MAX = 4 };
@@ -108,30 +107,19 @@ static void crystal_points(const struct lattice_plan *plan, const struct crystal
                 }
 }
 
-/* Sobol's sequence, shifted at random round the box. */
-static enum status sobol_points(const struct lattice_plan *plan, unsigned long seed,
-                                double *const x[3], struct error *error)
+static enum status random_points(const struct lattice_plan *plan, unsigned long seed,
+                                 double *const x[3], struct error *error)
 {
     const struct domain *box = &plan->box;
-    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
-    gsl_qrng *sequence = gsl_qrng_alloc(gsl_qrng_sobol, (unsigned)box->dim);
-    double shift[3], at[3];
-    if (random && sequence) {
-        gsl_rng_set(random, seed);
-        for (int d = 0; d < 3; d++) shift[d] = gsl_rng_uniform(random);
-        for (size_t i = 0; i < plan->n; i++) {
-            gsl_qrng_get(sequence, at);
-            for (int d = 0; d < box->dim; d++) {
-                const double part = at[d] + shift[d];
-                x[d][i] = box->lo[d] + domain_length(box, d) * (part < 1 ? part : part - 1);
-            }
-        }
+    struct quasi_random *random = quasi_random_create(box->dim, seed);
+    double part[3];
+    if (!random) return error_set(error, STATUS_ENVIRONMENT, "no memory for %zu points", plan->n);
+    for (size_t i = 0; i < plan->n; i++) {
+        quasi_random_next(random, part);
+        for (int d = 0; d < box->dim; d++) x[d][i] = box->lo[d] + domain_length(box, d) * part[d];
     }
-    gsl_qrng_free(sequence);
-    gsl_rng_free(random);
-    return random && sequence
-               ? STATUS_OK
-               : error_set(error, STATUS_ENVIRONMENT, "no memory for %zu points", plan->n);
+    quasi_random_destroy(random);
+    return STATUS_OK;
 }
 
 /* Of each of equal points. */
@@ -153,7 +141,7 @@ enum status lattice_points(const struct lattice_plan *plan, unsigned long seed, 
     if (crystal)
         crystal_points(plan, crystal, x);
     else
-        status = sobol_points(plan, seed, x, error);
+        status = random_points(plan, seed, x, error);
     if (status || plan->kind != LATTICE_GLASS) return status;
     return relax_points(&room, plan->n, x, error);
 }

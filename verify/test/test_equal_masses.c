@@ -12,9 +12,10 @@
 #include "equal_masses.h"
 #include "gas.h"
 #include "initial_fill.h"
+#include "made_digits.h"
 #include "near.h"
 
-/* Sobol's sequence, shifted, each point with the density's probability. */
+/* Sobol's sequence, its digits exchanged, shifted, each point with the density's probability. */
 static void equal_masses_follow_the_density(void **state)
 {
     (void)state;
@@ -47,7 +48,8 @@ static void equal_masses_follow_the_density(void **state)
         for (int i = 0; i < N;) {
             double part[4], x[3] = {0};
             gsl_qrng_get(sequence, part);
-            for (int d = 0; d <= dim; d++) part[d] += shift[d], part[d] -= part[d] >= 1;
+            for (int d = 0; d <= dim; d++)
+                part[d] = made_digits(part[d], d, 5) + shift[d], part[d] -= part[d] >= 1;
             for (int d = 0; d < dim; d++)
                 x[d] = p.domain.lo[d] + (p.domain.hi[d] - p.domain.lo[d]) * part[d];
             if (part[dim] * most >= gas_density(x)) {
@@ -92,7 +94,7 @@ static void points_are_kept_by_their_density(void **state)
     for (int d = 0; d < 3; d++) shift[d] = gsl_rng_uniform(random);
     do { /* one that less than all of the gas would keep */
         gsl_qrng_get(sequence, part);
-        for (int d = 0; d < 3; d++) part[d] = fmod(part[d] + shift[d], 1);
+        for (int d = 0; d < 3; d++) part[d] = fmod(made_digits(part[d], d, 5) + shift[d], 1);
     } while (!(part[2] > 0.25 && part[2] < 0.75));
     for (int more = -1; more <= 1; more += 2) {
         struct initial initial;

@@ -14,6 +14,7 @@
 #include "gas.h"
 #include "initial_fill.h"
 #include "lattice.h"
+#include "made_digits.h"
 #include "near.h"
 
 static void the_whole_box_is_laid(void **state)
@@ -45,7 +46,7 @@ static void the_whole_box_is_laid(void **state)
                 double part[3], place[3] = {0};
                 gsl_qrng_get(sequence, part);
                 for (int d = 0; d < dim; d++) {
-                    part[d] += shift[d];
+                    part[d] = made_digits(part[d], d, 3) + shift[d];
                     if (random)
                         y[d][i] = p.domain.lo[d] +
                                   (p.domain.hi[d] - p.domain.lo[d]) * (part[d] - floor(part[d]));
@@ -176,12 +177,64 @@ static void sobol_points_stay_inside(void **state)
     free(y);
 }
 
+/* The first seed's points are Sobol's, moved as one. Those of another seed are no such image of
+ * them, and as even: no two of 255 points are in the same of 256 equal parts of an axis. */
+static void seeds_have_arrangements_of_their_own(void **state)
+{
+    (void)state;
+    enum { N = 256, SEEDS = 6 };
+    static double x[SEEDS][3][N];
+    const struct domain box = {3, {0, 0, 0}, {1, 1, 1}};
+    struct lattice_plan plan;
+    struct error error;
+    assert_int_equal(lattice_plan_make(&plan, &box, LATTICE_RANDOM, N, &error), STATUS_OK);
+    gsl_qrng *sobol = gsl_qrng_alloc(gsl_qrng_sobol, 3);
+    for (int s = 0; s < SEEDS; s++) {
+        double *const to[] = {x[s][0], x[s][1], x[s][2]};
+        assert_int_equal(lattice_points(&plan, (unsigned long)s + 1, to, &error), STATUS_OK);
+        for (int d = 0; d < 3; d++) {
+            double lowest = 1; /* of the places in their parts, which all share */
+            bool taken[N] = {false};
+            for (int i = 0; i < N - 1; i++) lowest = fmin(lowest, fmod(x[s][d][i] * N, 1));
+            for (int i = 0; i < N - 1; i++) {
+                const double moved = x[s][d][i] * N - lowest + 1e-9;
+                const int part = (int)floor(moved);
+                assert_true(part >= 0 && part < N && !taken[part]);
+                taken[part] = true;
+            }
+        }
+    }
+    for (int i = 0; i < N; i++) {
+        double point[3];
+        gsl_qrng_get(sobol, point);
+        for (int d = 0; d < 3; d++) {
+            const double shift = x[0][d][i] - point[d] - (x[0][d][0] - 0.5);
+            near_below(fabs(shift - round(shift)), 1e-14);
+        }
+    }
+    for (int s = 0; s < SEEDS; s++)
+        for (int other = 0; other < s; other++)
+            for (int d = 0; d < 3; d++) {
+                int differing = 0;
+                for (int i = 1; i < N; i++) {
+                    const double own = x[s][d][i] - x[s][d][0],
+                                 theirs = x[other][d][i] - x[other][d][0];
+                    differing += fabs(own - theirs - round(own - theirs)) > 1e-6;
+                }
+                assert_true(differing > N / 4);
+            }
+    gsl_qrng_free(sobol);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_whole_box_is_laid),          cmocka_unit_test(crystals),
-        cmocka_unit_test(crystals_have_their_dimensions), cmocka_unit_test(cells_that_fit),
+        cmocka_unit_test(the_whole_box_is_laid),
+        cmocka_unit_test(crystals),
+        cmocka_unit_test(crystals_have_their_dimensions),
+        cmocka_unit_test(cells_that_fit),
         cmocka_unit_test(sobol_points_stay_inside),
+        cmocka_unit_test(seeds_have_arrangements_of_their_own),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
