@@ -44,7 +44,7 @@ static bool reserve_candidates(struct candidates *candidates, size_t count, size
 {
     if (count + n <= candidates->capacity) return true;
     const size_t capacity = (2 * (count + n) + 127) / 64 * 64;
-    float *next = aligned_alloc(64, capacity * (5 * sizeof *next + 4));
+    float *next = aligned_alloc(64, capacity * (5 * sizeof(float) + sizeof(int32_t)));
     if (!next) return false;
     struct candidates grown = {.capacity = capacity};
     for (int a = 0; a < 3; a++, next += capacity) grown.x[a] = next;

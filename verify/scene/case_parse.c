@@ -209,7 +209,7 @@ static bool read_known(const char *value, char text[256], const char **why)
     static const char mark[] = "known:";
     const char *known = strstr(value, mark);
     *why = known ? known + strlen(mark) : "";
-    snprintf(text, 256, "%.*s", known ? (int)(known - value) : 200, value);
+    snprintf(text, 256, "%.*s", known ? (int)(known - value) : -1, value);
     for (size_t n = strlen(text); n && text[n - 1] == ' '; n--) text[n - 1] = '\0';
     while (**why == ' ') ++*why;
     return !(known && !**why) && strlen(*why) < sizeof((struct case_weakness *)NULL)->why;
@@ -545,7 +545,7 @@ enum status case_parse(struct case_file *file, const char *path, const char *tex
     struct settings trial = file->settings;
     struct prepared problem;
     struct scheme scheme;
-    struct error reason = {0};
+    struct error reason;
     if (problem_prepare(&problem, &trial, file->dimension, &reason) ||
         settings_scheme(&trial, file->dimension, &scheme, &reason))
         return error_set(error, STATUS_BAD_INPUT, "%.160s: %.340s", path, reason.message);

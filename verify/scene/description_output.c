@@ -27,7 +27,6 @@ void description_text(const struct description_sums *sums, size_t n, char text[D
 {
     int used = 0;
     text[0] = '\0';
-    if (!has_matrix(sums)) return;
     if (!isnan(sums->condition_max))
         used =
             snprintf(text, DESCRIPTION_TEXT,
