@@ -149,6 +149,7 @@ def main(score, work):
     expect("a sample is no larger than asked for", run("--sample", "7", "--seed", "3")[1]["chosen"] == 7)
     stable_draw(expect, score)
     as_often_as_listed(expect, score)
+    near_to_constants(expect, score)
     failing_thread(expect)
     sound_without(expect)
     expect("a shard that is none is refused", "I/N" in run("--shard", "4/3", code=2)[0])
@@ -195,6 +196,16 @@ def as_often_as_listed(expect, score):
     for times, there in ("1", 0), ("1", 2), ("2", 1), ("3", 2):
         expect("listed %s times, there %d times, is said" % (times, there), len(said(times, there)) == 1)
     expect("as often as listed is well", not said("1", 1) and not said("2", 2))
+
+
+def near_to_constants(expect, score):
+    """Who comes past mutants of a file is near to its constants; of a file with no other mutant everybody is."""
+    drawn = [types.SimpleNamespace(number=1, file="a.h"), types.SimpleNamespace(number=2, file="b.c"),
+             types.SimpleNamespace(number=0, file="a.h"), types.SimpleNamespace(number=0, file="c.h")]
+    judge = types.SimpleNamespace(reached={1: {"one"}, 2: {"two"}})
+    sources = {n: types.SimpleNamespace(text="") for n in ("a.h", "b.c", "c.h")}
+    near = load(score).near_of(sources, drawn, judge)
+    expect("near to constants: %s" % near, near["a.h"] == {"one"} and near["c.h"] == {"one", "two"})
 
 
 def failing_thread(expect):
