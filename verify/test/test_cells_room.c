@@ -13,6 +13,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "made_scheme.h"
 #include "near.h"
 #include "solver.h"
 #include "width.h"
@@ -22,24 +23,6 @@
 enum { N = 1024 };
 
 static double x[3][N], v[3][N], m[N], u[N], guess[N];
-
-static struct scheme scheme_of(void)
-{
-    struct scheme scheme = {
-        .gradient = GRADIENT_STANDARD,
-        .viscosity = VISCOSITY_CONSTANT,
-        .h_method = H_NEWTON,
-        .integrator = (const struct integrator *)family_find(&integrator_family, "leapfrog"),
-        .alpha = 1,
-        .beta = 2,
-        .alpha_min = 0.1,
-        .alpha_max = 1.5,
-        .eta = 2,
-        .cfl = 0.2,
-        .h_tolerance = 1e-12};
-    assert_int_equal(kernel_select(&scheme.kernel, "cubic_spline", 5, NULL), STATUS_OK);
-    return scheme;
-}
 
 /* A displaced lattice of so many particles each way in a periodic box of side 1, at rest. */
 static struct scene scene_of(int dim, size_t side, const struct scheme *scheme)
@@ -63,14 +46,6 @@ static struct scene scene_of(int dim, size_t side, const struct scheme *scheme)
     }
     for (int a = 0; a < dim; a++) scene.x[a] = x[a], scene.v[a] = v[a];
     return scene;
-}
-
-static struct simulation *created(const struct scene *scene)
-{
-    struct simulation *simulation = NULL;
-    struct error error = {0};
-    if (simulation_create(scene, &simulation, &error)) fail_msg("%s", error.message);
-    return simulation;
 }
 
 /* When particles have changed places in memory. */
@@ -99,10 +74,10 @@ static void test_order_in_memory(void **state)
 {
     (void)state;
     struct sorting sorting = {0};
-    struct scheme scheme = scheme_of();
+    struct scheme scheme = made_scheme();
     struct scene scene = scene_of(2, 16, &scheme);
     for (size_t i = 0; i < scene.n; i++) v[0][i] = 1.5, v[1][i] = 0.7;
-    sorting.simulation = created(&scene);
+    sorting.simulation = made_of(&scene);
     watch(&sorting, 0, 0);
     size_t moved = 0;
     for (size_t i = 0; i < scene.n; i++) moved += sorting.id[i] != i;
@@ -118,11 +93,11 @@ static void test_everybody_moves_whole(void **state)
 {
     (void)state;
     for (int skip = 0; skip < 2; skip++) {
-        struct scheme scheme = scheme_of();
+        struct scheme scheme = made_scheme();
         struct scene scene = scene_of(3, 7, &scheme);
         scene.skip = skip;
         for (size_t i = 0; i < scene.n; i++) m[i] = (1 + 1e-3 * (double)i) / (double)scene.n;
-        struct simulation *simulation = created(&scene);
+        struct simulation *simulation = made_of(&scene);
         struct snapshot s;
         simulation_snapshot(simulation, &s);
         for (size_t i = 0; i < s.n; i++) {
@@ -139,13 +114,13 @@ static void test_first_guess(void **state)
     (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         double h[N];
-        const struct scheme scheme = scheme_of();
+        const struct scheme scheme = made_scheme();
         for (int k = 0; k < 5; k++) {
             static const double factors[] = {1, 1e-9, 0.3, 8, 1e9};
             struct scene scene = scene_of(dim, dim == 2 ? 16 : 8, &scheme);
             for (size_t i = 0; i < scene.n; i++) guess[i] = factors[k] * (i % 3 ? 1 : 0.7);
             scene.rho = guess;
-            struct simulation *simulation = created(&scene);
+            struct simulation *simulation = made_of(&scene);
             struct snapshot s;
             simulation_snapshot(simulation, &s);
             for (size_t i = 0; i < s.n; i++) {
@@ -166,10 +141,10 @@ static void test_far_roots(void **state)
     (void)state;
     struct error error;
     for (int dim = 2; dim <= 3; dim++) {
-        const struct scheme scheme = scheme_of();
+        const struct scheme scheme = made_scheme();
         struct scene scene = scene_of(dim, dim == 2 ? 8 : 5, &scheme);
         for (int a = 0; a < dim; a++) scene.boundary[a] = BOUNDARY_OPEN;
-        struct simulation *simulation = created(&scene);
+        struct simulation *simulation = made_of(&scene);
         struct snapshot s;
         double h[N];
         simulation_snapshot(simulation, &s);
@@ -216,11 +191,11 @@ static void test_densities(void **state)
     (void)state;
     for (int dim = 2; dim <= 3; dim++)
         for (int e = 0; e < VOLUME_ELEMENTS; e++) {
-            struct scheme scheme = scheme_of();
+            struct scheme scheme = made_scheme();
             scheme.volume_element = (enum volume_element)e;
             const struct scene scene = scene_of(dim, dim == 2 ? 13 : 6, &scheme); /* 169, 216 */
             for (size_t i = 0; i < scene.n; i++) u[i] = 1 + 0.2 * sin(5. * (double)i);
-            struct simulation *simulation = created(&scene);
+            struct simulation *simulation = made_of(&scene);
             struct snapshot s;
             double U[N];
             simulation_snapshot(simulation, &s);
@@ -244,11 +219,11 @@ static void test_densities(void **state)
 static void test_switch(void **state)
 {
     (void)state;
-    struct scheme scheme = scheme_of();
+    struct scheme scheme = made_scheme();
     scheme.viscosity = VISCOSITY_CULLEN_DEHNEN;
     struct scene scene = scene_of(2, 13, &scheme);
     for (size_t i = 0; i < scene.n; i++) v[0][i] = sin(2 * M_PI * x[0][i]);
-    struct simulation *simulation = created(&scene);
+    struct simulation *simulation = made_of(&scene);
     const struct particles *p = &simulation->particles;
     double local[N];
     size_t below = 0, above = 0;
@@ -312,7 +287,7 @@ static void test_carried(void **state)
     (void)state;
     static struct kept kept;
     for (int kind = 0; kind < 3; kind++) { /* asleep, with predicted widths; all moving */
-        struct scheme scheme = scheme_of();
+        struct scheme scheme = made_scheme();
         const bool moving = kind == 2;
         if (kind == 1) {
             scheme.integrator =
@@ -326,7 +301,7 @@ static void test_carried(void **state)
             m[i] = 1. / 64, u[i] = i == 0 ? 3 : 1;
             v[0][i] = moving ? 1.5 : 0, v[1][i] = moving ? 0.7 : 0;
         }
-        struct simulation *first = created(&scene), *second = created(&scene);
+        struct simulation *first = made_of(&scene), *second = made_of(&scene);
         uint64_t from = moving ? 30 : 0; /* sorted once more */
         assert_int_equal(simulation_run(first, 1, ten_steps, &from, NULL), STATUS_OK);
         struct carrier out = {.bytes = keep_bytes, .context = &kept},
@@ -362,12 +337,12 @@ static void test_carried(void **state)
 static void test_alpha(void **state)
 {
     (void)state;
-    struct scheme scheme = scheme_of();
+    struct scheme scheme = made_scheme();
     scheme.viscosity = VISCOSITY_TIME_DEPENDENT;
     for (size_t side = 8; side <= 12; side += 2) { /* 64, 100, 144 */
         struct scene scene = scene_of(2, side, &scheme);
         for (size_t i = 0; i < scene.n; i++) v[0][i] = sin(2 * M_PI * x[0][i]);
-        struct simulation *simulation = created(&scene);
+        struct simulation *simulation = made_of(&scene);
         const struct particles *a = &simulation->particles;
         struct rates rates;
         simulation_rates(simulation, &rates);
@@ -400,7 +375,7 @@ static void count_neighbours(void *context, size_t particle, const struct descri
 static void test_described_asleep(void **state)
 {
     (void)state;
-    struct scheme scheme = scheme_of();
+    struct scheme scheme = made_scheme();
     scheme.gradient = GRADIENT_IA;
     for (int dim = 2; dim <= 3; dim++) {
         const size_t side = dim == 2 ? 8 : 5;
@@ -415,7 +390,7 @@ static void test_described_asleep(void **state)
                 x[a][i] = ((double)k + 0.5) / (double)side, v[a][i] = 0;
             }
         }
-        struct simulation *simulation = created(&scene);
+        struct simulation *simulation = made_of(&scene);
         assert_int_equal(simulation_run(simulation, 0.05, NULL, NULL, NULL), STATUS_OK);
         size_t counts[2] = {0};
         description_each(simulation, count_neighbours, counts);
@@ -434,7 +409,7 @@ static void test_too_wide(void **state)
     struct simulation *simulation = NULL;
     struct error error;
     for (int dim = 2; dim <= 3; dim++) {
-        struct scheme scheme = scheme_of();
+        struct scheme scheme = made_scheme();
         struct scene scene = scene_of(dim, 4, &scheme);
         scene.scheme.eta = 2.4;
         assert_int_equal(simulation_create(&scene, &simulation, &error), STATUS_BAD_INPUT);
@@ -446,7 +421,7 @@ static void test_too_wide(void **state)
         scene.hi[1] = 4;
         for (size_t i = 0; i < scene.n; i++) x[1][i] *= 4;
         scene.boundary[0] = scene.boundary[2] = BOUNDARY_REFLECTING;
-        simulation = created(&scene);
+        simulation = made_of(&scene);
         simulation_destroy(simulation);
         simulation = NULL;
     }
@@ -459,7 +434,7 @@ static void test_too_heavy(void **state)
     for (int dim = 2; dim <= 3; dim++) {
         struct simulation *simulation = NULL;
         struct error error = {0};
-        struct scheme scheme = scheme_of();
+        struct scheme scheme = made_scheme();
         struct scene scene = scene_of(dim, 4, &scheme);
         for (int a = 0; a < dim; a++) scene.boundary[a] = BOUNDARY_OPEN;
         m[5] *= 1000;
@@ -479,7 +454,7 @@ static void test_grown_too_wide(void **state)
 {
     (void)state;
     for (int predicted = 0; predicted < 2; predicted++) {
-        struct scheme scheme = scheme_of();
+        struct scheme scheme = made_scheme();
         if (predicted) {
             scheme.integrator =
                 (const struct integrator *)family_find(&integrator_family, "predicted_midpoint");
@@ -491,7 +466,7 @@ static void test_grown_too_wide(void **state)
             u[i] = 1e-3;
             for (int a = 0; a < 2; a++) v[a][i] = sin(2 * M_PI * x[a][i]);
         }
-        struct simulation *simulation = created(&scene);
+        struct simulation *simulation = made_of(&scene);
         struct error error = {0};
         assert_int_equal(simulation_run(simulation, 1, NULL, NULL, &error), STATUS_BROKE_DOWN);
         struct snapshot s;
@@ -525,9 +500,9 @@ static void test_no_position(void **state)
     for (int dim = 2; dim <= 3; dim++)
         for (int a = 0; a < dim; a++)
             for (int last = 0; last < 2; last++) {
-                const struct scheme scheme = scheme_of();
+                const struct scheme scheme = made_scheme();
                 const struct scene scene = scene_of(dim, 5, &scheme);
-                struct simulation *simulation = created(&scene);
+                struct simulation *simulation = made_of(&scene);
                 struct particles *p = &simulation->particles;
                 const size_t i = last ? scene.n - 1 : 0;
                 struct error error = {0};
@@ -563,7 +538,7 @@ static void test_bytes(void **state)
     (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         const bool plane = dim == 2;
-        struct scheme scheme = scheme_of();
+        struct scheme scheme = made_scheme();
         scheme.viscosity = VISCOSITY_NONE;
         expect_bytes(dim, &scheme, 3, plane ? 8 : 12); /* 8, 10 */
         scheme.viscosity = VISCOSITY_CONSTANT;

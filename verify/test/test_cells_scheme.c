@@ -11,6 +11,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "made_scheme.h"
 #include "near.h"
 #include "solver.h"
 
@@ -19,24 +20,6 @@
 enum { N = 1024 };
 
 static double x[3][N], v[3][N], m[N], u[N];
-
-static struct scheme scheme_of(void)
-{
-    struct scheme scheme = {
-        .gradient = GRADIENT_STANDARD,
-        .viscosity = VISCOSITY_CONSTANT,
-        .h_method = H_NEWTON,
-        .integrator = (const struct integrator *)family_find(&integrator_family, "leapfrog"),
-        .alpha = 1,
-        .beta = 2,
-        .alpha_min = 0.1,
-        .alpha_max = 1.5,
-        .eta = 2,
-        .cfl = 0.2,
-        .h_tolerance = 1e-12};
-    assert_int_equal(kernel_select(&scheme.kernel, "cubic_spline", 5, NULL), STATUS_OK);
-    return scheme;
-}
 
 /* A lattice of so many particles each way in a box of side 1, displaced by so much of its spacing;
  * at rest. */
@@ -64,14 +47,6 @@ static struct scene scene_of(int dim, size_t side, double displaced, const struc
     return scene;
 }
 
-static struct simulation *created(const struct scene *scene)
-{
-    struct simulation *simulation = NULL;
-    struct error error = {0};
-    if (simulation_create(scene, &simulation, &error)) fail_msg("%s", error.message);
-    return simulation;
-}
-
 static void find_forces(struct simulation *simulation)
 {
     double rate;
@@ -86,12 +61,12 @@ static void test_beta(void **state)
     static double F[N], de[N];
     for (int dim = 2; dim <= 3; dim++)
         for (int k = 0; k < 4; k++) {
-            struct scheme scheme = scheme_of();
+            struct scheme scheme = made_scheme();
             scheme.viscosity = VISCOSITY_TIME_DEPENDENT;
             scheme.alpha = numbers[k][0], scheme.beta = numbers[k][1];
             struct scene scene = scene_of(dim, dim == 2 ? 9 : 6, 0.2, &scheme);
             for (size_t i = 0; i < scene.n; i++) v[0][i] = sin(2 * M_PI * x[0][i]);
-            struct simulation *simulation = created(&scene);
+            struct simulation *simulation = made_of(&scene);
             const struct particles *p = &simulation->particles;
             for (size_t i = 0; i < scene.n; i++) p->alpha[i] = 0.7;
             find_forces(simulation);
@@ -114,7 +89,7 @@ static void test_balsara(void **state)
                 {-1e-3, 2e-3, 5e-4}, {-1.5e-3, -7e-4, 4e-4}, {1e-3, -3e-4, -4e-4}};
             double heat[3], expected = 0;
             for (int friction = 0; friction < 3; friction++) {
-                struct scheme scheme = scheme_of();
+                struct scheme scheme = made_scheme();
                 scheme.viscosity = friction ? VISCOSITY_CONSTANT : VISCOSITY_NONE;
                 scheme.balsara = friction == 2 ? BALSARA_ON : BALSARA_OFF;
                 scheme.balsara_floor = floors[k];
@@ -124,7 +99,7 @@ static void test_balsara(void **state)
                 for (size_t i = 0; i < scene.n; i++)
                     for (int a = 0; a < dim; a++)
                         for (int b = 0; b < dim; b++) v[a][i] += L[a][b] * x[b][i];
-                struct simulation *simulation = created(&scene);
+                struct simulation *simulation = made_of(&scene);
                 const struct particles *p = &simulation->particles;
                 size_t middle = 0;
                 while (p->id[middle] != scene.n / 2) middle++;
@@ -169,13 +144,13 @@ static void test_signals(void **state)
     for (int k = 0; k < 4; k++) {
         const int dim = 2 + k % 2;
         const double unit = k < 2 ? 1 : 1e-10; /* of speeds: cold gas */
-        const struct scheme scheme = scheme_of();
+        const struct scheme scheme = made_scheme();
         struct scene scene = scene_of(dim, dim == 2 ? 14 : 6, 0.2, &scheme);
         for (size_t i = 0; i < scene.n; i++) {
             u[i] = unit * unit * exp(2 * sin(5. * (double)i));
             for (int a = 0; a < dim; a++) v[a][i] = unit * 3 * sin(2 * M_PI * x[a][i] + a);
         }
-        struct simulation *simulation = created(&scene);
+        struct simulation *simulation = made_of(&scene);
         const struct particles *p = &simulation->particles;
         size_t own = 0;
         for (int alone = 0; alone < 2; alone++) {
@@ -212,7 +187,7 @@ static void test_lagrangian(void **state)
     (void)state;
     for (int dim = 2; dim <= 3; dim++)
         for (int e = 0; e < VOLUME_ELEMENTS; e++) {
-            struct scheme scheme = scheme_of();
+            struct scheme scheme = made_scheme();
             scheme.viscosity = VISCOSITY_NONE;
             scheme.formulation = FORMULATION_LAGRANGIAN;
             scheme.volume_element = (enum volume_element)e;
@@ -222,7 +197,7 @@ static void test_lagrangian(void **state)
                 m[i] *= 1 + 0.2 * sin(3. * (double)i), u[i] = 1 + 0.3 * sin(5. * (double)i);
                 for (int a = 0; a < dim; a++) v[a][i] = sin(11. * (double)i + a);
             }
-            struct simulation *simulation = created(&scene);
+            struct simulation *simulation = made_of(&scene);
             const struct particles *p = &simulation->particles;
             double Z[N], M[N], b[N];
             for (size_t i = 0; i < scene.n; i++) {
@@ -258,7 +233,7 @@ static void test_alone(void **state)
 {
     (void)state;
     for (int dim = 2; dim <= 3; dim++) {
-        const struct scheme scheme = scheme_of();
+        const struct scheme scheme = made_scheme();
         const struct cells_method method = {
             .box = {dim, {0}, {1, 1, 1}, {false}}, .kernel = &scheme.kernel, .threads = 1};
         double at[2][3] = {{0.1, 0.9}, {0.2, 0.7}}, F[3][2], of[8][2];
@@ -298,11 +273,11 @@ static void test_equal_masses(void **state)
     static double of[5][N];
     for (int dim = 2; dim <= 3; dim++)
         for (int number = 0; number < 2; number++) {
-            struct scheme scheme = scheme_of();
+            struct scheme scheme = made_scheme();
             scheme.formulation = FORMULATION_LAGRANGIAN;
             scheme.volume_element = number ? VOLUME_NUMBER : VOLUME_MASS;
             const struct scene scene = scene_of(dim, dim == 2 ? 16 : 8, 0.2, &scheme);
-            struct simulation *simulation = created(&scene);
+            struct simulation *simulation = made_of(&scene);
             const struct particles *p = &simulation->particles;
             const double *const found[] = {p->F[0], p->F[1], p->de, p->h, p->grad_h};
             for (int k = 0; k < 5; k++)
@@ -323,7 +298,7 @@ static void test_axes_are_alike(void **state)
     static double F[3][N];
     for (int dim = 2; dim <= 3; dim++)
         for (int g = 0; g < 2 * GRADIENTS; g++) {
-            struct scheme scheme = scheme_of();
+            struct scheme scheme = made_scheme();
             scheme.gradient = (enum gradient)(g / 2);
             scheme.viscosity = g % 2 ? VISCOSITY_PROJECTED : VISCOSITY_CONSTANT;
             scheme.noise = 0.4;
@@ -337,7 +312,7 @@ static void test_axes_are_alike(void **state)
                     scene.x[a] = x[(a + turned) % dim];
                     scene.v[a] = v[(a + turned) % dim];
                 }
-                struct simulation *simulation = created(&scene);
+                struct simulation *simulation = made_of(&scene);
                 const struct particles *p = &simulation->particles;
                 for (size_t i = 0; i < scene.n; i++)
                     for (int a = 0; a < dim; a++) {
@@ -357,7 +332,7 @@ static void test_axes_are_alike(void **state)
 static void test_fallen_back(void **state)
 {
     (void)state;
-    struct scheme scheme = scheme_of();
+    struct scheme scheme = made_scheme();
     scheme.gradient = GRADIENT_IA;
     for (int dim = 2; dim <= 3; dim++) {
         struct scene scene = scene_of(dim, 6, 0, &scheme);
@@ -365,7 +340,7 @@ static void test_fallen_back(void **state)
         scene.n = 20;
         for (size_t i = 0; i < scene.n; i++)
             for (int a = 0; a < dim; a++) x[a][i] = a == 0 ? ((double)i + 0.5) / 20 : 0.5;
-        struct simulation *simulation = created(&scene);
+        struct simulation *simulation = made_of(&scene);
         for (uint64_t times = 1; times <= 3; times++) {
             struct simulation_cost cost;
             simulation_cost(simulation, &cost);
@@ -393,11 +368,11 @@ static struct scene long_box(const struct scheme *scheme)
 static void test_awake(void **state)
 {
     (void)state;
-    const struct scheme scheme = scheme_of();
+    const struct scheme scheme = made_scheme();
     for (size_t row = 0; row < 30; row += 3) {
         const struct scene scene = long_box(&scheme);
         u[8 * row] = 3;
-        struct simulation *simulation = created(&scene);
+        struct simulation *simulation = made_of(&scene);
         const struct particles *p = &simulation->particles;
         ptrdiff_t awake = 0;
         for (size_t i = 0; i < scene.n; i++) {
@@ -420,10 +395,10 @@ static void test_awake(void **state)
 static void test_awake_in_flow(void **state)
 {
     (void)state;
-    const struct scheme scheme = scheme_of();
+    const struct scheme scheme = made_scheme();
     const struct scene scene = long_box(&scheme);
     for (size_t i = 0; i < scene.n / 2; i++) v[0][i] = 1e-9;
-    struct simulation *simulation = created(&scene);
+    struct simulation *simulation = made_of(&scene);
     assert_true(simulation->sleep.awake_count > 512 && simulation->sleep.awake_count < 700);
     simulation_destroy(simulation);
 }
