@@ -20,7 +20,8 @@ enum { HEAD_MAX = 1 << 16 };
 bool checkpoint_due(struct checkpoint *checkpoint)
 {
     const double now = clock_wall();
-    if (checkpoint->written <= 0) checkpoint->written = now;
+    if (!checkpoint->begun) checkpoint->written = now;
+    checkpoint->begun = true;
     if (now < checkpoint->written + checkpoint->every) return false;
     checkpoint->written = now;
     return true;

@@ -18,7 +18,8 @@ struct checkpoint {
     bool resume;       /* begin with what the file has, if there is one */
     double snapshot;   /* goes with the state: time of the last snapshot on the way; < 0: none */
     /* kept by the functions below: */
-    double written;       /* when it was last; 0: not yet */
+    bool begun;           /* written holds a time */
+    double written;       /* when the file was last written, or the first question was asked */
     struct error trouble; /* why the last write failed: the file is then the one before */
 };
 
