@@ -82,7 +82,7 @@ static enum status take_ladder(const struct request *request, const struct run_s
                                size_t ladder[CASE_LADDER_MAX], size_t *count, struct error *error)
 {
     const char *text = options_value(request->options, "n");
-    if (text) return sweep_ladder(text, 1, ladder, count, error);
+    if (text) return sweep_ladder(text, 1, settings->file.dimension, ladder, count, error);
     *count = settings->file.ladder_count;
     memcpy(ladder, settings->file.ladder, sizeof settings->file.ladder);
     if (*count) return STATUS_OK;
@@ -270,7 +270,8 @@ static enum status scaling(struct request *request, struct error *error)
     const int threads = request->options->threads > 1 ? request->options->threads : 2;
     if (refuse_option(request, "--scaling", "vary", error) ||
         prepare_case(request, &settings, error) ||
-        sweep_ladder(sizes ? sizes : usual_sizes, 1, ladder, &count, error) ||
+        sweep_ladder(sizes ? sizes : usual_sizes, 1, settings.file.dimension, ladder, &count,
+                     error) ||
         (plot && picture_probe(plot, error)))
         return error->status;
     progress_begin(&request->progress, "bench --scaling", request->options->quiet);

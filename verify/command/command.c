@@ -8,6 +8,7 @@
 
 #include "guest.h"
 #include "output.h"
+#include "settings.h"
 #include "text.h"
 #include "threads.h"
 #include "version.h"
@@ -30,7 +31,7 @@ const struct command_option command_common[] = {
     {"quiet", NULL, "print neither tables nor progress"},
     {"uncertified", NULL, "use a plug-in kernel although its certificate is refused"},
     {"color", "auto|always|never", "colours in tables (default auto; NO_COLOR is respected)"},
-    {"help", NULL, "this help; after a command, that command's"},
+    {"help", NULL, "this help; after a command, that command's (also: sphproof help COMMAND)"},
     {"version", NULL, "version, git revision and compiler"},
     {NULL, NULL, NULL},
 };
@@ -64,6 +65,14 @@ static const struct command_option *find(const struct command_option *list, cons
 static enum status unknown_option(const struct options *options, const char *word,
                                   struct error *error)
 {
+    const int length = (int)strcspn(word + 2, "=");
+    char key[40];
+    snprintf(key, sizeof key, "%.*s", length, word[1] == '-' ? word + 2 : "");
+    if (options->command && strstr(options->command->synopsis, "KEY=VALUE") &&
+        setting_find(key) >= 0)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "%s: '--%s' is a key, not an option; write it as %s=VALUE",
+                         options->command->name, key, key);
     const struct command_option *const lists[] = {
         options->command ? options->command->options : NULL, command_common};
     const size_t most = count(lists[0]) + count(lists[1]);
@@ -189,7 +198,9 @@ static enum status parse(struct line *line, int argc, char **argv, struct error 
     for (int i = 1; i < argc && !status; i++) {
         char *word = argv[i];
         double number;
-        if (!options_end && strcmp(word, "--") == 0)
+        if (i == 1 && strcmp(word, "help") == 0)
+            line->help = 1;
+        else if (!options_end && strcmp(word, "--") == 0)
             options_end = 1;
         else if (!options_end && word[0] == '-' && word[1] && !text_real(word, &number))
             status = take_option(line, argc, argv, &i, error);

@@ -192,7 +192,8 @@ static enum status take_ladder(struct study *study, const struct options *option
                          "converge: the key n and a ladder exclude each other; allowed: --n "
                          "N1,N2,N3,N4,...");
     if (text)
-        return sweep_ladder(text, ORDER_LEVELS_MIN, study->ladder, &study->level_count, error);
+        return sweep_ladder(text, ORDER_LEVELS_MIN, file->dimension, study->ladder,
+                            &study->level_count, error);
     if (file->ladder_count == 0)
         return error_set(error, STATUS_BAD_INPUT,
                          "converge: the case %s has no ladder; give one: --n 100,200,400,800",

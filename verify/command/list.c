@@ -275,10 +275,11 @@ static const struct command_option own_options[] = {
 const struct command command_list = {
     .name = "list",
     .synopsis = "[FAMILY]",
-    .help = "the names of cases, kernels, gradients, keys ..., one line each\n"
-            "FAMILY: cases problems kernels gradients formulations volume_elements integrators\n"
-            "viscosities viscosity_forms balsara_factors lattices energies pair_widths h_methods "
-            "fields norms checks mutants keys",
+    .help =
+        "the names of cases, kernels, gradients, keys ..., one line each\n"
+        "FAMILY: cases problems kernels gradients operators formulations volume_elements\n"
+        "integrators viscosities viscosity_forms balsara_factors lattices energies pair_widths\n"
+        "h_methods fields norms snapshots checks mutants stress keys",
     .run = run,
     .options = own_options,
     .examples = "sphproof list\nsphproof list kernels\nsphproof list keys",

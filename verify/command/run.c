@@ -20,6 +20,17 @@
 #include "table.h"
 #include "text.h"
 
+/* eta beside the numbers that other codes state for the same width. */
+static void print_width(const struct settings *settings)
+{
+    static const double unit_ball[] = {0, 2, M_PI, 4 * M_PI / 3};
+    const double eta = settings_real(settings, SETTING_eta);
+    const int dim = settings->dim;
+    printf("width: the support radius is %.4g mean spacings, so it holds about %.0f neighbours; "
+           "h/dx = %.4g where h is half of the support radius\n",
+           eta, unit_ball[dim] * pow(eta, dim), eta / 2);
+}
+
 static void print_head(const struct run_settings *settings, const struct run_result *result,
                        const struct table_style *style)
 {
@@ -36,6 +47,7 @@ static void print_head(const struct run_settings *settings, const struct run_res
                                  value);
     }
     table_wrap("", line);
+    print_width(&result->settings);
 }
 
 static void print_start(const struct run_result *result)
@@ -200,6 +212,20 @@ static void remark(const struct options *options, const char *text)
     if (text[0] && !options->quiet) fprintf(stderr, "sphproof: note: %s\n", text);
 }
 
+/* A plain number counts all particles, which is easily taken for those along one side. */
+static void remark_count(const struct options *options, const struct settings *settings)
+{
+    const struct setting_value *n = &settings->value[SETTING_n];
+    const int dim = settings->dim;
+    char text[120];
+    if (dim < 2 || n->source != SOURCE_USER || n->exponent || n->real[0] > 200) return;
+    snprintf(text, sizeof text,
+             "n=%.0f is the number of all particles, about %.0f along each side; did you mean "
+             "n=%.0f^%d?",
+             n->real[0], pow(n->real[0], 1.0 / dim), n->real[0], dim);
+    remark(options, text);
+}
+
 static enum status explain(const struct options *options, const struct run *run,
                            struct error *error)
 {
@@ -209,6 +235,7 @@ static enum status explain(const struct options *options, const struct run *run,
     enum status status = run_explain(run, &result, error);
     if (status) return status;
     remark(options, result.warnings);
+    remark_count(options, &result.settings);
     if (options->speak) {
         print_head(settings, &result, &style);
         printf("n=%zu; nothing has been run\n", result.n);
@@ -243,6 +270,7 @@ static enum status present(const struct options *options, const struct run_setti
     const char *snapshot = options_value(options, "snapshot");
     const struct table_style style = table_style(options->color);
     remark(options, result->warnings);
+    remark_count(options, &result->settings);
     remark(options, result->suspicion);
     if (options->speak && result->status != STATUS_BROKE_DOWN) {
         print_head(settings, result, &style);

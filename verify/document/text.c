@@ -2,6 +2,7 @@
 #include "text.h"
 
 #include <ctype.h>
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -28,19 +29,22 @@ bool text_integer(const char *text, double *value)
     return true;
 }
 
-bool text_count(const char *text, double *value)
+bool text_count(const char *text, double *value, int *exponent)
 {
     char word[WORD_MAX];
-    double base, exponent;
+    double base, power_of;
     const char *power = strchr(text, '^');
+    *exponent = 0;
     if (!power) return text_integer(text, value);
     const size_t length = (size_t)(power - text);
     if (length >= sizeof word) return false;
     memcpy(word, text, length);
     word[length] = '\0';
-    if (!text_integer(word, &base) || !text_integer(power + 1, &exponent) || !(exponent >= 1))
+    if (!text_integer(word, &base) || !text_integer(power + 1, &power_of) ||
+        !(power_of >= 1 && power_of <= INT_MAX))
         return false;
-    *value = pow(base, exponent);
+    *exponent = (int)power_of;
+    *value = pow(base, power_of);
     return isfinite(*value);
 }
 

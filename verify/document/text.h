@@ -18,8 +18,8 @@ bool text_real(const char *text, double *value);
  * so that a range check can speak about 1e12 as well. */
 bool text_integer(const char *text, double *value);
 
-/* The same, or BASE^EXPONENT: "64^2" is 4096. */
-bool text_count(const char *text, double *value);
+/* The same, or BASE^EXPONENT: "64^2" is 4096. *exponent is 0 for a plain integer. */
+bool text_count(const char *text, double *value, int *exponent);
 
 /* Exactly n numbers separated by any of separators (a run of blanks is one separator). */
 bool text_reals(const char *text, const char *separators, size_t n, double *values);

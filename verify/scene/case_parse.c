@@ -107,7 +107,8 @@ static void set_ladder(struct parser *parser, const char *name, const char *valu
     snprintf(copy, sizeof copy, "%s", value);
     for (char *word = strtok_r(copy, " \t,", &rest); word; word = strtok_r(NULL, " \t,", &rest)) {
         double n;
-        if (!text_count(word, &n) || n < key->lo || n > key->hi || *count == CASE_LADDER_MAX ||
+        int exponent;
+        if (!text_count(word, &n, &exponent) || n < key->lo || n > key->hi || *count == CASE_LADDER_MAX ||
             (*count && n <= (double)ladder[*count - 1])) {
             fail_value(parser, name, value, allowed);
             return;

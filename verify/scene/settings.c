@@ -134,6 +134,16 @@ static enum status refuse(struct error *error, const char *where, const struct s
                      where ? ": " : "", key->name, shown, allowed);
 }
 
+enum status setting_check_power(const char *before, const char *text, int exponent, int dim,
+                                struct error *error)
+{
+    if (exponent == 0 || dim < 2 || exponent == dim) return STATUS_OK;
+    return error_set(error, STATUS_BAD_INPUT,
+                     "%s%.40s: the case has %d dimensions; allowed: %.*s^%d, or the number of all "
+                     "particles",
+                     before, text, dim, (int)strcspn(text, "^"), text, dim);
+}
+
 static bool in_range(const struct setting_key *key, double value)
 {
     return (key->above ? value > key->lo : value >= key->lo) && value <= key->hi;
@@ -179,7 +189,7 @@ static bool read_numbers(const struct setting_key *key, const char *text,
 {
     switch (key->type) {
     case SETTING_COUNT:
-        return text_count(text, &value->real[0]);
+        return text_count(text, &value->real[0], &value->exponent);
     case SETTING_INTEGER:
         return text_integer(text, &value->real[0]);
     case SETTING_REAL:
@@ -225,6 +235,12 @@ enum status settings_set(struct settings *settings, enum setting which, const ch
     for (int i = 0; i < value.given && good && !key->family; i++)
         good = in_range(key, value.real[i]);
     if (!good) return refuse(error, where, key, text);
+    if (value.exponent) {
+        char name[80];
+        snprintf(name, sizeof name, "%s%s%s=", where ? where : "", where ? ": " : "", key->name);
+        if (setting_check_power(name, text, value.exponent, settings->dim, error))
+            return error->status;
+    }
     settings->value[which] = value;
     return STATUS_OK;
 }

@@ -50,6 +50,7 @@ struct setting_value {
     enum setting_source source;
     bool automatic;                 /* the user, the case or the fallback says auto */
     double real[SETTING_REALS_MAX]; /* INTEGER, COUNT, REAL: real[0] */
+    int exponent;                   /* of a COUNT that was written as 64^2; 0: a plain number */
     int given;                      /* numbers in real, or choices; 0: a CHOICE */
     int choice;                     /* position in the family */
     int choices[SETTING_REALS_MAX]; /* of CHOICES */
@@ -84,6 +85,12 @@ int setting_find(const char *name);
 
 /* "an integer from 3 to 12", "one of a b c" ...: what a value of this key may be. */
 void setting_allowed(const struct setting_key *key, char *text, size_t size);
+
+/* Refuses a number of particles that is written as 64^3 where the case has another dimension than 3;
+ * exponent 0 stands for a plain number, dim 0 for a dimension that is not known yet. The message
+ * begins with `before` and the text. */
+enum status setting_check_power(const char *before, const char *text, int exponent, int dim,
+                                struct error *error);
 
 /* Everything at its fallback. */
 void settings_init(struct settings *settings);

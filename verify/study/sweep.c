@@ -139,7 +139,7 @@ static int ascending(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-enum status sweep_ladder(const char *text, size_t least, size_t ladder[CASE_LADDER_MAX],
+enum status sweep_ladder(const char *text, size_t least, int dim, size_t ladder[CASE_LADDER_MAX],
                          size_t *count, struct error *error)
 {
     const struct setting_key *key = &setting_keys[SETTING_n];
@@ -148,14 +148,16 @@ enum status sweep_ladder(const char *text, size_t least, size_t ladder[CASE_LADD
     for (const char *rest = text; rest;) {
         const size_t length = strcspn(rest, ",");
         double value;
+        int exponent;
         snprintf(word, sizeof word, "%.*s", (int)length, rest);
-        if (length >= sizeof word || !text_count(word, &value) ||
+        if (length >= sizeof word || !text_count(word, &value, &exponent) ||
             !(value >= key->lo && value <= key->hi))
             return error_set(
                 error, STATUS_BAD_INPUT,
                 "--n: '%.40s': allowed: integers (or 64^2) from %.10g to %.10g, separated by "
                 "commas",
                 word, key->lo, key->hi);
+        if (setting_check_power("--n: ", word, exponent, dim, error)) return error->status;
         if (n == CASE_LADDER_MAX)
             return error_set(error, STATUS_BAD_INPUT, "--n: at most %d resolutions",
                              CASE_LADDER_MAX);

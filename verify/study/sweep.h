@@ -34,8 +34,9 @@ void sweep_label(const struct sweep *sweep, size_t i, char label[SWEEP_LABEL]);
 /* {"kernel": "cubic_spline", ...}. New reference. */
 json_t *sweep_json(const struct sweep *sweep, size_t i);
 
-/* A comma-separated list of particle numbers, sorted, each once; at least `least` of them. */
-enum status sweep_ladder(const char *text, size_t least, size_t ladder[CASE_LADDER_MAX],
+/* A comma-separated list of particle numbers, sorted, each once; at least `least` of them. dim: of
+ * the case, see setting_check_power. */
+enum status sweep_ladder(const char *text, size_t least, int dim, size_t ladder[CASE_LADDER_MAX],
                          size_t *count, struct error *error);
 
 #endif

@@ -4,6 +4,7 @@
 Each line: arguments, exit status, words that the message must contain (what, where, what is
 allowed). Always: one message on standard error, nothing on standard output, no file left behind,
 no hang."""
+import json
 import os
 import subprocess
 import sys
@@ -238,11 +239,27 @@ BAD = [
     ("converge sod --vary n=1,2", 2, "--n"),
     ("converge good.ini", 2, "ladder", "--n"),
     ("list nothing", 2, "nothing", "allowed", "kernels"),
+    ("run sod --n 400", 2, "'--n' is a key, not an option; write it as n=VALUE"),
+    ("run gresho n=64^3", 2, "n=64^3", "the case has 2 dimensions; allowed: 64^2"),
+    ("converge gresho --n 16^3,24^2,32^2,48^2", 2, "--n: 16^3", "allowed: 16^2"),
+    ("help nothing", 2, "nothing", "allowed", "kernel"),
 ]
 
 GOOD_ONES = ["run good.ini", "run ./crlf.ini", "run indented.ini", "run|space name.ini",
              "run sod n=1e2 t_end=1e-2", "run sod n=20 n=30 t_end=0.01", "run --quiet sod n=20",
              "--threads 2 run sod n=20 t_end=.01"]
+
+# what each call must say on standard output, or (notes) on standard error
+SAID = [
+    ("help run", "usage: sphproof run CASE"),
+    ("help", "usage: sphproof COMMAND"),
+    ("run gresho n=64 --explain", "about 8 along each side; did you mean n=64^2?"),
+    ("run gresho n=64^2 --explain", "3.6 mean spacings, so it holds about 41 neighbours; h/dx = 1.8"),
+    ("run noh_3d n=6^3 --explain eta=3", "holds about 113 neighbours"),
+    ("run sod n=100 --explain eta=2", "holds about 4 neighbours"),
+]
+# what it must not say
+UNSAID = [("run gresho n=64^2 --explain", "did you mean"), ("run sod n=64 --explain", "did you mean")]
 
 
 def words(line):
@@ -294,6 +311,16 @@ def main():
             if done.returncode or (not done.stdout and "quiet" not in line):
                 print("sphproof %s: exit %d: %s" % (line, done.returncode, done.stderr))
                 bad += 1
+        for line, phrase in SAID + UNSAID:
+            done = call(program, line, folder)
+            if done.returncode or (phrase in done.stdout + done.stderr) != ((line, phrase) in SAID):
+                print("sphproof %s: exit %d, %r is %s" % (line, done.returncode, phrase, "missing or unwanted"))
+                bad += 1
+        families = json.loads(call(program, "list --json -", folder).stdout)["families"]
+        named = call(program, "help list", folder).stdout.split("FAMILY: ")[1].split("\n\n")[0].split()
+        if named != list(families):
+            print("sphproof help list names %s, but the families are %s" % (named, list(families)))
+            bad += 1
     print("%d kinds of bad input, %d good ones, %d answered wrongly"
           % (len(BAD), len(GOOD_ONES), bad))
     return bad > 0

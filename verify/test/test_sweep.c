@@ -188,17 +188,22 @@ static void ladder_is(const char *text, size_t n, const size_t *want)
 {
     size_t ladder[CASE_LADDER_MAX], count;
     struct error error = {0};
-    if (sweep_ladder(text, 1, ladder, &count, &error)) fail_msg("%s", error.message);
+    if (sweep_ladder(text, 1, 0, ladder, &count, &error)) fail_msg("%s", error.message);
     assert_int_equal(count, n);
     for (size_t i = 0; i < n; i++) assert_int_equal(ladder[i], want[i]);
 }
 
-static void no_ladder(const char *text, size_t least, const char *why)
+static void no_ladder_in(int dim, const char *text, size_t least, const char *why)
 {
     size_t ladder[CASE_LADDER_MAX], count;
     struct error error = {0};
-    assert_int_equal(sweep_ladder(text, least, ladder, &count, &error), STATUS_BAD_INPUT);
+    assert_int_equal(sweep_ladder(text, least, dim, ladder, &count, &error), STATUS_BAD_INPUT);
     if (!strstr(error.message, why)) fail_msg("%s: '%s' lacks '%s'", text, error.message, why);
+}
+
+static void no_ladder(const char *text, size_t least, const char *why)
+{
+    no_ladder_in(0, text, least, why);
 }
 
 static void ladders(void **state)
@@ -208,6 +213,8 @@ static void ladders(void **state)
     ladder_is("100,50,200,50,100,100", 3, (const size_t[]){50, 100, 200});
     ladder_is("8^2,65,64,1e2", 3, (const size_t[]){64, 65, 100});
     ladder_is("4", 1, (const size_t[]){4});
+    no_ladder_in(2, "8^2,8^3", 1, "8^3: the case has 2 dimensions; allowed: 8^2");
+    no_ladder_in(3, "8^2", 1, "8^2: the case has 3 dimensions; allowed: 8^3");
     ladder_is("10000000,4", 2, (const size_t[]){4, 10000000});
     ladder_is("300,299,298,297,4,5,6", 7, (const size_t[]){4, 5, 6, 297, 298, 299, 300});
     no_ladder("3", 1, "'3'");
