@@ -50,6 +50,20 @@ static enum status take_width(const char *text, struct width_meaning *width, str
     return STATUS_OK;
 }
 
+/* A:B along x, or the radius of a disc or ball. */
+static enum status take_window(const char *text, struct judge_request *request, struct error *error)
+{
+    if (!text) return STATUS_OK;
+    request->window =
+        text_reals(text, ":", 2, request->ends) && request->ends[0] < request->ends[1];
+    if (request->window || (text_real(text, &request->radius) && request->radius > 0))
+        return STATUS_OK;
+    return error_set(error, STATUS_BAD_INPUT,
+                     "judge: --window '%.40s': allowed: A:B (A < B, along x), or the radius of a "
+                     "disc about the middle of the box",
+                     text);
+}
+
 static enum status take_request(const struct options *options, int n, struct judge_request *request,
                                 struct error *error)
 {
@@ -61,15 +75,16 @@ static enum status take_request(const struct options *options, int n, struct jud
     if (n > JUDGE_SNAPSHOTS_MAX)
         return command_usage(options, error, "%d snapshots; allowed: up to %d", n,
                              JUDGE_SNAPSHOTS_MAX);
-    if (!request->case_name && !(request->left && request->right))
-        return command_usage(options, error,
-                             "what should it be? --case CASE, or --left and --right");
-    if (!request->case_name && !options_value(options, "gamma"))
-        return command_usage(options, error, "--left and --right need --gamma");
-    if (!request->case_name) request->case_name = "sod";
+    if (!request->case_name && (request->left || request->right)) {
+        if (!request->left || !request->right || !options_value(options, "gamma"))
+            return command_usage(options, error,
+                                 "--left and --right belong together, and need --gamma");
+        request->case_name = "sod";
+    }
     if (take_number(options, "gamma", &request->gamma, error) ||
         take_number(options, "x0", &request->x0, error) ||
         take_number(options, "time", &request->time, error) ||
+        take_window(options_value(options, "window"), request, error) ||
         take_width(options_value(options, "h-is"), &request->width, error))
         return error->status;
     return options_kernel(options, &request->kernel, error);
@@ -222,12 +237,13 @@ static enum status run(const struct options *options, int n, char **arguments, s
 }
 
 static const struct command_option own_options[] = {
-    {"case", "CASE", "what it should be: a case, or a case file"},
+    {"case", "CASE", "what it should be: a case, or a case file; else what the file says"},
     {"left", "\"RHO V P\"", "instead, or on top: gas left of x0 at t = 0"},
     {"right", "\"RHO V P\"", "gas right of it"},
     {"gamma", "G", "ratio of specific heats; else the file's, or the case's"},
     {"x0", "X", "where the gases met, as the file counts x; else the middle of its box"},
     {"time", "T", "else the file's"},
+    {"window", "A:B|R", "where errors are measured: along x, or a disc; else as a run does"},
     {"map", "NAME=THEIRS,...", "text: which column is x, vx, m, rho, u, P, h"},
     {"kernel", "K", "the code's kernel, in place of finding it"},
     {"h-is", "MEANING", "support, half, sigma, 2sigma, or support radius over h"},
@@ -238,13 +254,14 @@ static const struct command_option own_options[] = {
 
 const struct command command_judge = {
     .name = "judge",
-    .synopsis = "SNAPSHOT... --case CASE | --left \"RHO V P\" --right \"RHO V P\" --gamma G",
+    .synopsis = "SNAPSHOT... [--case CASE | --left \"RHO V P\" --right \"RHO V P\" --gamma G]",
     .help =
         "errors of ANY code's snapshots against the exact solution of a case\n"
         "Reads HDF5 of GADGET, AREPO, GIZMO, SWIFT, SPH-EXA and Phantom, binaries of GADGET\n"
         "(formats 1 and 2, either byte order), SPLASH's ASCII and CSV, also compressed\n"
         "(`sphproof list snapshots`). The kernel and the meaning of h are found by summing the\n"
         "density again. Everything that had to be assumed is said, with the evidence for it.\n"
+        "Snapshots of `sphproof run` name their case, and need no option.\n"
         "Several snapshots: orders where numbers of particles differ, conservation where only\n"
         "times do; gates look at the one of most particles.",
     .run = run,

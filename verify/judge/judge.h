@@ -14,9 +14,11 @@ enum { JUDGE_SNAPSHOTS_MAX = 64, JUDGE_GATES_MAX = 24 };
 
 /* What is asked. */
 struct judge_request {
-    const char *case_name;                 /* a case; with left and right: of its box */
+    const char *case_name;                 /* NULL: the file's; with left and right: of its box */
     const char *left, *right;              /* "rho v P"; NULL: the case's */
     struct snapshot_value gamma, x0, time; /* where the user says them */
+    bool window;                           /* between ends[] along x */
+    double ends[2], radius;                /* radius > 0: a disc or ball about the middle */
     int kernel;                            /* place in kernel_family.members; -1: found */
     struct width_meaning width;
     struct snapshot_options options;

@@ -88,7 +88,7 @@ static enum status take_time(const struct judge_request *request, struct judged 
 /* ---- the box ---- */
 
 struct box {
-    bool periodic;
+    bool known; /* by the file, or as the case's */
     double lo[3], hi[3];
 };
 
@@ -120,7 +120,7 @@ static enum status take_box(struct judged *judged, const struct settings *settin
     struct snapshot_file *file = &judged->file;
     char value[80];
     bool inside = true;
-    *box = (struct box){.periodic = file->boxed};
+    *box = (struct box){.known = file->boxed};
     for (int d = 0; d < file->dim && file->boxed; d++) {
         double lo, hi;
         const double length = file->box[d];
@@ -130,12 +130,19 @@ static enum status take_box(struct judged *judged, const struct settings *settin
                              "%.200s: the header's box is %g long along %s, but positions reach "
                              "from %g to %g",
                              judged->path, length, snapshot_column_names[d], lo, hi);
-        inside = inside && lo >= -1e-6 * length && hi <= length * (1 + 1e-6);
+        const double corner = file->placed ? file->corner[d] : 0;
+        inside = inside && lo >= corner - 1e-6 * length && hi <= corner + length * (1 + 1e-6);
+        if (!inside && file->placed)
+            return error_set(error, STATUS_BAD_INPUT,
+                             "%.200s: the file's box reaches from %g to %g along %s, but positions "
+                             "from %g to %g",
+                             judged->path, corner, corner + length, snapshot_column_names[d], lo,
+                             hi);
     }
     for (int d = 0; d < file->dim; d++) {
         extent(file, file->n, d, &box->lo[d], &box->hi[d]);
         if (file->boxed && inside)
-            box->lo[d] = 0, box->hi[d] = file->box[d];
+            box->lo[d] = file->corner[d], box->hi[d] = file->corner[d] + file->box[d];
         else if (file->boxed) { /* as large as the header says, about the middle of the particles */
             const double middle = 0.5 * (box->lo[d] + box->hi[d]);
             const double snapped = fabs(middle) < 0.05 * file->box[d] ? 0 : middle;
@@ -143,19 +150,21 @@ static enum status take_box(struct judged *judged, const struct settings *settin
         }
     }
     if (!file->boxed && file->gas == file->n && fits_case(file, settings)) {
-        box->periodic = true;
+        box->known = file->boxed = true; /* and periodic, as nothing else is said */
         for (int d = 0; d < file->dim; d++) {
             box->lo[d] = settings_along(settings, SETTING_lo, d);
             box->hi[d] = settings_along(settings, SETTING_hi, d);
+            file->box[d] = box->hi[d] - box->lo[d];
         }
         snapshot_note(&file->notes, "box", "the case's",
                       "the file says none; all positions lie in the case's and fill it");
     } else {
         snprintf(value, sizeof value, "%.6g to %.6g along x", box->lo[0], box->hi[0]);
         snapshot_note(&file->notes, "box", value, "%s",
-                      !file->boxed ? "the file says none: as far as particles reach; not periodic"
-                      : inside     ? "the header's length, from 0; positions lie in it; taken for "
-                                     "periodic"
+                      !file->boxed   ? "the file says none: as far as particles reach; not periodic"
+                      : file->placed ? "the file says so"
+                      : inside ? "the header's length, from 0; positions lie in it; taken for "
+                                 "periodic"
                                : "the header's length, about the middle of the particles, which "
                                  "are not in it from 0 on");
     }
@@ -177,7 +186,7 @@ static enum status place_tube(const struct judge_request *request, struct judged
                          judged->path, box->lo[0], box->hi[0]);
     if (request->x0.known)
         x0 = request->x0.value, evidence = "--x0";
-    else if (!box->periodic && fabs(x0) < 0.1 * length)
+    else if (!box->known && fabs(x0) < 0.1 * length)
         x0 = 0, evidence = "x = 0 is near the middle of the particles; --x0 says otherwise";
     snprintf(value, sizeof value, "%.9g", x0);
     snapshot_note(notes, "x0", value, "%s", evidence);
@@ -195,22 +204,28 @@ static enum status set_ends(struct settings *settings, enum setting key, const d
     return settings_set(settings, key, text, SOURCE_USER, NULL, error);
 }
 
-/* The case's window about its middle, if the box is as long as the case's; discs for vortices. */
-static enum status set_window(struct judged *judged, struct settings *settings,
-                              const struct problem *problem, const struct box *box,
-                              double case_length, double case_middle, struct error *error)
+/* As --window asks, else as the file says; else that of a run: the case's about its middle, if the
+ * box is as long as the case's. */
+static enum status set_window(const struct judge_request *request, struct judged *judged,
+                              struct settings *settings, const struct box *box, double case_length,
+                              double case_middle, struct error *error)
 {
     char text[SETTING_TEXT_MAX];
     struct setting_value *window = &settings->value[SETTING_window];
     const double length = box->hi[0] - box->lo[0], middle = 0.5 * (box->lo[0] + box->hi[0]);
-    if (problem->circular && settings_real(settings, SETTING_window_radius) == 0) {
-        double least = INFINITY;
-        for (int d = 0; d < judged->file.dim; d++) least = fmin(least, box->hi[d] - box->lo[d]);
-        snapshot_note(&judged->file.notes, "window", "a disc",
-                      "radius %.6g, half of the box: as other codes' errors are given", least / 2);
-        return set_real(settings, SETTING_window_radius, least / 2, error);
+    if (request->radius > 0) {
+        snprintf(text, sizeof text, "radius %.6g", request->radius);
+        snapshot_note(&judged->file.notes, "window", text, "--window");
+        return settings_set(settings, SETTING_window, "auto", SOURCE_USER, NULL, error)
+                   ? error->status
+                   : set_real(settings, SETTING_window_radius, request->radius, error);
     }
-    if (window->automatic) return STATUS_OK;
+    if (request->window) {
+        snprintf(text, sizeof text, "%.17g %.17g", request->ends[0], request->ends[1]);
+        snapshot_note(&judged->file.notes, "window", text, "--window");
+        return settings_set(settings, SETTING_window, text, SOURCE_USER, NULL, error);
+    }
+    if (window->automatic || window->source == SOURCE_USER) return STATUS_OK;
     if (!(fabs(length - case_length) <= 1e-6 * case_length)) {
         snapshot_note(&judged->file.notes, "window", "the middle half",
                       "the case's box is %.6g long, the file's %.6g", case_length, length);
@@ -221,9 +236,8 @@ static enum status set_window(struct judged *judged, struct settings *settings,
     return settings_set(settings, SETTING_window, text, SOURCE_USER, NULL, error);
 }
 
-static enum status check_dimension(const struct judge_request *request, struct judged *judged,
-                                   struct run_settings *asked, const struct problem *problem,
-                                   struct error *error)
+static enum status check_dimension(struct judged *judged, struct run_settings *asked,
+                                   const struct problem *problem, struct error *error)
 {
     const int dim = judged->file.dim;
     char value[32];
@@ -231,12 +245,35 @@ static enum status check_dimension(const struct judge_request *request, struct j
     if (dim < problem->least_dim || dim > problem->most_dim || problem->circular)
         return error_set(error, STATUS_BAD_INPUT,
                          "%.200s: particles in %d dimensions; the case %.60s has %d", judged->path,
-                         dim, request->case_name, asked->file.dimension);
+                         dim, asked->file.asked, asked->file.dimension);
     snprintf(value, sizeof value, "in %d dimensions", dim);
     snapshot_note(&judged->file.notes, "case", value,
                   "it is written in %d, but its solution varies along x alone",
                   asked->file.dimension);
     asked->file.dimension = dim;
+    return STATUS_OK;
+}
+
+/* What a snapshot of ours says beside its columns: boundary, window and keys of the same case. */
+static enum status take_keys(struct judged *judged, struct settings *settings, struct error *error)
+{
+    struct snapshot_file *file = &judged->file;
+    char keys[sizeof file->keys], *rest = keys;
+    struct error reason = {0};
+    enum status status = STATUS_OK;
+    strcpy(keys, file->keys);
+    for (char *word; !status && (word = strtok_r(rest, ";", &rest));) {
+        word += strspn(word, " ");
+        status = settings_apply(settings, 1, &word, &reason);
+    }
+    if (!status && file->dim > 1 && file->boundary[0])
+        status =
+            settings_set(settings, SETTING_boundary, file->boundary, SOURCE_USER, NULL, &reason);
+    if (status)
+        return error_set(error, status, "%.200s: what it says of its run: %.280s", judged->path,
+                         reason.message);
+    if (file->keys[0])
+        snapshot_note(&file->notes, "keys", "of its run", "the file says %.200s", file->keys);
     return STATUS_OK;
 }
 
@@ -246,7 +283,17 @@ enum status judge_place(const struct judge_request *request, struct judged *judg
     struct run_settings asked;
     struct box box;
     struct settings *settings = &asked.settings;
-    if (run_prepare(&asked, request->case_name, 0, NULL, error)) return error->status;
+    const char *said = judged->file.case_name;
+    const char *name = request->case_name ? request->case_name : said;
+    if (!*name)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "%.200s: what should it be? It names no case: --case CASE, or --left and "
+                         "--right",
+                         judged->path);
+    if (!request->case_name) snapshot_note(&judged->file.notes, "case", name, "the file says so");
+    if (run_prepare(&asked, name, 0, NULL, error)) return error->status;
+    if (strcmp(name, said) == 0 && !request->x0.known && take_keys(judged, settings, error))
+        return error->status;
     if ((request->left &&
          settings_set(settings, SETTING_left, request->left, SOURCE_USER, "--left", error)) ||
         (request->right &&
@@ -258,19 +305,19 @@ enum status judge_place(const struct judge_request *request, struct judged *judg
         return error_set(error, STATUS_BAD_INPUT,
                          "judge: --left, --right and --x0 belong to two gases that meet; %.60s has "
                          "none",
-                         request->case_name);
+                         name);
     const double case_lo = settings_along(settings, SETTING_lo, 0),
                  case_hi = settings_along(settings, SETTING_hi, 0);
-    if (check_dimension(request, judged, &asked, problem, error) ||
+    if (check_dimension(judged, &asked, problem, error) ||
         take_gamma(request, judged, settings, error) ||
         take_time(request, judged, settings, error) || take_box(judged, settings, &box, error))
         return error->status;
-    for (int d = 0; d < 3; d++) period[d] = box.periodic ? box.hi[d] - box.lo[d] : 0;
+    for (int d = 0; d < 3; d++) period[d] = snapshot_period(&judged->file, d);
     if (tube && place_tube(request, judged, &box, error)) return error->status;
     const int dim = judged->file.dim;
     for (int d = 1; d < dim; d++) /* of particles that stand on one line there is no box */
         if (!(box.hi[d] > box.lo[d])) box.hi[d] = box.lo[d] + 1;
-    if (set_window(judged, settings, problem, &box, case_hi - case_lo, 0.5 * (case_lo + case_hi),
+    if (set_window(request, judged, settings, &box, case_hi - case_lo, 0.5 * (case_lo + case_hi),
                    error) ||
         set_ends(settings, SETTING_lo, box.lo, dim, error) ||
         set_ends(settings, SETTING_hi, box.hi, dim, error))

@@ -77,7 +77,7 @@ static enum status load_installed(struct case_file *file, const char *name, stru
     return unknown_case(name, error);
 }
 
-enum status case_load(struct case_file *file, const char *name, struct error *error)
+static enum status load(struct case_file *file, const char *name, struct error *error)
 {
     const char *dot = strrchr(name, '.');
     if (strchr(name, '/') || (dot && strcmp(dot, ".ini") == 0)) return load_path(file, name, error);
@@ -88,4 +88,11 @@ enum status case_load(struct case_file *file, const char *name, struct error *er
             return case_parse(file, path, builtin->text, strlen(builtin->text), error);
     }
     return load_installed(file, name, error);
+}
+
+enum status case_load(struct case_file *file, const char *name, struct error *error)
+{
+    const enum status status = load(file, name, error);
+    if (!status) snprintf(file->asked, sizeof file->asked, "%s", name);
+    return status;
 }

@@ -38,7 +38,8 @@ struct case_gate {
 };
 
 struct case_file {
-    char name[64]; /* "sod", also for .../sod.ini */
+    char name[64];   /* "sod", also for .../sod.ini */
+    char asked[256]; /* by what name or path case_load found it */
     char title[128];
     int dimension;
     struct settings settings; /* fallbacks and what the file says */

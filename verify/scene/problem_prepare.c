@@ -141,8 +141,7 @@ static enum status check_together(const struct prepared *p, const struct setting
     return STATUS_OK;
 }
 
-/* Does the key say how particles are laid? */
-static bool lays_particles(const struct problem *problem, enum setting key)
+bool problem_lays_particles(const struct problem *problem, enum setting key)
 {
     for (size_t k = 0; k < problem->key_count; k++)
         if (problem->keys[k].key == key) return problem->keys[k].role == ROLE_PARTICLES;
@@ -157,7 +156,7 @@ static enum status check_file(const struct prepared *p, const struct settings *s
     if (!settings->file[0]) return STATUS_OK;
     for (int i = 0; i < SETTINGS; i++)
         if (settings->value[i].source == SOURCE_USER &&
-            lays_particles(p->problem, (enum setting)i))
+            problem_lays_particles(p->problem, (enum setting)i))
             return error_set(error, STATUS_BAD_INPUT,
                              "key %s and file=%.120s exclude each other: its particles are as they "
                              "are",

@@ -10,7 +10,10 @@
 enum status problem_prepare(struct prepared *p, struct settings *settings, int dim,
                             struct error *error);
 
-/* The same for a problem that need not be in the list. */
+/* Does the key only say how particles are laid, and not which problem it is? */
+bool problem_lays_particles(const struct problem *problem, enum setting key);
+
+/* As problem_prepare for a problem that need not be in the list. */
 enum status problem_prepare_as(struct prepared *p, const struct problem *problem,
                                struct settings *settings, int dim, struct error *error);
 

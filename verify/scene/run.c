@@ -120,6 +120,7 @@ static enum status begin(const struct run *run, struct run_result *result, struc
                                   .scheme = run->scheme,
                                   .problem = run->problem,
                                   .matrix = no_matrix};
+    snprintf(result->case_name, sizeof result->case_name, "%s", run->asked.file.asked);
     *initial = (struct initial){0};
     if ((!run->asked.any_window && (status = problem_check_time(&run->problem, t_end, error))) ||
         (status = check_size(run, error)) ||
@@ -477,6 +478,7 @@ enum status run_judge(const struct run *run, const struct snapshot *snapshot,
                                   .scheme = run->scheme,
                                   .problem = run->problem,
                                   .matrix = no_matrix};
+    snprintf(result->case_name, sizeof result->case_name, "%s", run->asked.file.asked);
     result->n = snapshot->n;
     enum status status = problem_check_time(&run->problem, snapshot->time, error);
     if (!status) status = keep_snapshot(result, snapshot, error);

@@ -59,6 +59,7 @@ struct run_functional {
 struct run_result {
     enum status status;       /* STATUS_OK or STATUS_BROKE_DOWN */
     char message[512];        /* how it broke down */
+    char case_name[256];      /* as case_load knows it; "": nobody said */
     struct settings settings; /* as used: these three are the run's */
     struct scheme scheme;
     struct prepared problem;
@@ -132,8 +133,9 @@ void run_add_plan(const struct run_settings *settings, const struct run_result *
 
 double run_error(const struct run_result *result, enum field field, enum norm norm);
 
-/* Header and one line a particle: x,vx,m,rho,u,P,h; in 2D and 3D x,y,vx,vy, ..., in the order in
- * which particles have started; a path that ends in .hdf5 or .h5: see snapshot_hdf5.h. */
+/* Header, comment lines `# KEY = VALUE` (see snapshot_remarks.h) and one line a particle:
+ * x,vx,m,rho,u,P,h; in 2D and 3D x,y,vx,vy, ..., in the order in which particles have started; a
+ * path that ends in .hdf5 or .h5: see snapshot_hdf5.h. */
 enum status run_write_snapshot(const struct run_result *result, const char *path,
                                struct error *error);
 

@@ -10,6 +10,7 @@
 #include "result.h"
 #include "settings_output.h"
 #include "snapshot_hdf5.h"
+#include "snapshot_remarks.h"
 
 static void set_number(json_t *object, const char *name, double value)
 {
@@ -161,6 +162,10 @@ enum status run_write_snapshot(const struct run_result *result, const char *path
     for (size_t k = 0; k < sizeof rest / sizeof *rest; k++) columns[count++] = rest[k];
     static const char *const names[] = {"x,vx", "x,y,vx,vy", "x,y,z,vx,vy,vz"};
     fprintf(output.stream, "%s,m,rho,u,P,h\n", names[dim - 1]);
+    struct snapshot_remark remarks[SNAPSHOT_REMARKS];
+    const size_t said = snapshot_remarks(result, remarks);
+    for (size_t k = 0; k < said; k++)
+        fprintf(output.stream, "# %s = %s\n", remarks[k].key, remarks[k].value);
     for (size_t i = 0; i < s->n; i++)
         for (int k = 0; k < count; k++)
             fprintf(output.stream, "%.17g%c", columns[k][i], k + 1 < count ? ',' : '\n');

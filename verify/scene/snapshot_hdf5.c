@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "output.h"
+#include "snapshot_remarks.h"
 
 bool snapshot_hdf5_wanted(const char *path)
 {
@@ -56,6 +57,24 @@ static void set_data(struct image *image, hid_t group, const char *name, hid_t t
     H5Sclose(space);
 }
 
+/* What no attribute of GADGET's says: Case, Boundary and Keys. */
+static void set_remarks(struct image *image, hid_t header, const struct run_result *result)
+{
+    static const struct {
+        const char *key, *attribute;
+    } names[] = {{"case", "Case"}, {"boundary", "Boundary"}, {"keys", "Keys"}};
+    struct snapshot_remark remarks[SNAPSHOT_REMARKS];
+    const size_t count = snapshot_remarks(result, remarks);
+    for (size_t k = 0; k < count; k++)
+        for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+            if (strcmp(remarks[k].key, names[i].key)) continue;
+            const hid_t text = H5Tcopy(H5T_C_S1);
+            H5Tset_size(text, strlen(remarks[k].value) + 1);
+            set_attribute(image, header, names[i].attribute, text, remarks[k].value, 1);
+            H5Tclose(text);
+        }
+}
+
 enum { TYPES = 6 }; /* of particles, gas first */
 
 static void set_header(struct image *image, const struct run_result *result)
@@ -90,6 +109,7 @@ static void set_header(struct image *image, const struct run_result *result)
     for (size_t k = 0; k < sizeof still / sizeof *still; k++)
         set_attribute(image, header, still[k], H5T_NATIVE_DOUBLE, &zero, 1);
     set_attribute(image, header, "HubbleParam", H5T_NATIVE_DOUBLE, &one, 1);
+    set_remarks(image, header, result);
     if (went_well(header)) H5Gclose(header);
 }
 

@@ -15,7 +15,8 @@ bool snapshot_hdf5_wanted(const char *path);
 enum status snapshot_hdf5_possible(const char *path, struct error *error);
 
 /* The whole file or none. Header: NumPart_*, MassTable, Time, BoxSize (one number, or one each
- * where sides differ), Dimension, Gamma, Origin; PartType0: Coordinates (from the lower corner of
+ * where sides differ), Dimension, Gamma, Origin, and as text Case, Boundary and Keys
+ * (see snapshot_remarks.h); PartType0: Coordinates (from the lower corner of
  * the box, `Origin`, z = 0 in 2D), Velocities, Masses, Density, InternalEnergy, Pressure,
  * SmoothingLength (support radius), ParticleIDs (from 1, in the order of the start).
  * STATUS_ENVIRONMENT: it cannot be written. */

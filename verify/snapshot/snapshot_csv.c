@@ -12,7 +12,7 @@ static enum status scale_widths(struct snapshot_file *file, char why[200], struc
     const struct width_meaning unknown = {0};
     struct conventions found;
     double box[3] = {0};
-    for (int d = 0; d < file->dim && file->boxed; d++) box[d] = file->box[d];
+    for (int d = 0; d < file->dim; d++) box[d] = snapshot_period(file, d);
     if (conventions_find(file, box, NULL, &unknown, &found, error)) return error->status;
     snprintf(why, 200, "%s", found.why);
     if (!file->column[SNAPSHOT_H]) return STATUS_OK;

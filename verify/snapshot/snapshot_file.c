@@ -58,6 +58,18 @@ void snapshot_file_free(struct snapshot_file *file)
     for (int c = 0; c < SNAPSHOT_COLUMNS; c++) free(file->column[c]), file->column[c] = NULL;
 }
 
+double snapshot_period(const struct snapshot_file *file, int d)
+{
+    const char *word = file->boundary; /* one for all directions, or one each */
+    for (int k = 0; k < d; k++) {
+        const char *next = strchr(word, ' ');
+        if (!next) break;
+        word = next + 1;
+    }
+    const bool periodic = !*word || strncmp(word, "periodic", strlen("periodic")) == 0;
+    return file->boxed && periodic ? file->box[d] : 0;
+}
+
 void snapshot_note(struct snapshot_notes *notes, const char *what, const char *value,
                    const char *format, ...)
 {

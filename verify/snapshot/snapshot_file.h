@@ -50,8 +50,11 @@ struct snapshot_file {
     double *column[SNAPSHOT_COLUMNS]; /* n each; NULL: the file has none */
     double precision[2];              /* relative, of positions and of what is stored besides */
     struct snapshot_value time, gamma;
-    bool boxed;      /* the file says how large its box is: from 0 to box[] */
-    double box[3];   /* > 0 along the dimensions that it has */
+    bool boxed;    /* the file says how large its box is */
+    bool placed;   /* the file says where its box begins: at corner[] */
+    double box[3]; /* > 0 along the dimensions that it has */
+    double corner[3];
+    char case_name[256], boundary[64], keys[1024]; /* what snapshots of ours say; "" */
     int parts, part; /* files that the snapshot is spread over; this one's number */
     char kernel[48]; /* what the file calls its kernel; "" */
     double ratio;    /* support radius over h as the file says it; 0 */
@@ -91,6 +94,9 @@ bool snapshot_file_make(struct snapshot_file *file, enum snapshot_column column)
 
 void snapshot_note(struct snapshot_notes *notes, const char *what, const char *value,
                    const char *format, ...) __attribute__((format(printf, 4, 5)));
+
+/* The length of the box along d where it is known and periodic, else 0. */
+double snapshot_period(const struct snapshot_file *file, int d);
 
 /* The column that people call name ("density", "v_x", "particle mass"), or -1. */
 int snapshot_column_of(const char *name);

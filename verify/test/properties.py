@@ -108,7 +108,7 @@ def wrong_numbers(value, path=""):
 
 def read_particles(path):
     with open(path, newline="", encoding="utf-8") as file:
-        return [{k: float(v) for k, v in row.items()} for row in csv.DictReader(file)]
+        return [{k: float(v) for k, v in row.items()} for row in csv.DictReader(line for line in file if line[0] != "#")]
 
 
 def check_particles(rows):

@@ -95,7 +95,8 @@ def test_interval():
 
 def rows(path):
     with open(path, encoding="ascii") as file:
-        return [[float(value) for value in line] for line in list(csv.reader(file))[1:]]
+        return [[float(value) for value in line] for line in list(csv.reader(file))[1:]
+                if line[0][0] != "#"]
 
 
 def test_late():

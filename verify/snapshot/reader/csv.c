@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Text tables: a line with the names of the columns (any names with --map), then a line a particle;
- * separated by commas or, where the first line has none, by blanks. Lines "# time = 0.2", "# gamma
- * = 1.4" and "# box = 2" or "# box = 2 1 1" say what columns do not. */
+ * separated by commas or, where the first line has none, by blanks. Lines before the particles say
+ * what columns do not: "# time = 0.2", "# gamma = 1.4", "# box = 2", "# box = 2 1 1" or
+ * "# box = -1:1 0:0.5"; our own snapshots also have "case", "boundary" and "keys". */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -9,9 +10,36 @@
 #include "text.h"
 #include "text_table.h"
 
+/* One length for all directions, a length each, or LO:HI for each; false: none of these. */
+static bool take_box(const char *text, struct snapshot_file *file)
+{
+    double numbers[3], ends[2];
+    char copy[160], *rest = copy;
+    int count = 0;
+    file->placed = false;
+    if (!strchr(text, ':')) {
+        if (text_real(text, numbers)) {
+            for (int d = 0; d < 3; d++) file->box[d] = numbers[0];
+            return true;
+        }
+        count = text_reals(text, " \t,", 3, numbers)   ? 3
+                : text_reals(text, " \t,", 2, numbers) ? 2
+                                                       : 0;
+        for (int d = 0; d < count; d++) file->box[d] = numbers[d];
+        return count > 0;
+    }
+    if (strlen(text) >= sizeof copy) return false;
+    strcpy(copy, text);
+    for (char *word; (word = strtok_r(rest, " \t,", &rest)); count++) {
+        if (count == 3 || !text_reals(word, ":", 2, ends)) return false;
+        file->corner[count] = ends[0], file->box[count] = ends[1] - ends[0];
+    }
+    return file->placed = count > 0;
+}
+
 static void take_remark(const char *line, size_t length, struct snapshot_file *file)
 {
-    char text[160], key[16];
+    char text[1200], key[16];
     if (length >= sizeof text) return;
     memcpy(text, line, length);
     text[length] = '\0';
@@ -22,19 +50,17 @@ static void take_remark(const char *line, size_t length, struct snapshot_file *f
     if (size == 0 || size >= sizeof key || value >= (size_t)(end - text)) return;
     memcpy(key, text + begin, size);
     key[size] = '\0';
-    double numbers[3];
-    if (strcmp(key, "box") == 0) {
-        file->boxed = text_reals(text + value, " \t,", 3, numbers) ||
-                      text_reals(text + value, " \t,", 2, numbers);
-        if (!file->boxed && (file->boxed = text_real(text + value, numbers)))
-            numbers[1] = numbers[2] = numbers[0];
-        for (int d = 0; d < 3 && file->boxed; d++) file->box[d] = numbers[d];
-        return;
-    }
-    if (!text_real(text + value, numbers)) return;
-    if (strcmp(key, "time") == 0) file->time = (struct snapshot_value){true, numbers[0]};
+    double number;
+    if (strcmp(key, "box") == 0) file->boxed = take_box(text + value, file);
+    if (strcmp(key, "case") == 0)
+        snprintf(file->case_name, sizeof file->case_name, "%s", text + value);
+    if (strcmp(key, "boundary") == 0)
+        snprintf(file->boundary, sizeof file->boundary, "%s", text + value);
+    if (strcmp(key, "keys") == 0) snprintf(file->keys, sizeof file->keys, "%s", text + value);
+    if (!text_real(text + value, &number)) return;
+    if (strcmp(key, "time") == 0) file->time = (struct snapshot_value){true, number};
     if (strcmp(key, "gamma") == 0) {
-        file->gamma = (struct snapshot_value){true, numbers[0]};
+        file->gamma = (struct snapshot_value){true, number};
         snapshot_note(&file->notes, "gamma", "in the file", "its line '%.100s'", text);
     }
 }
@@ -79,7 +105,7 @@ static enum status read(const struct snapshot_source *source,
     const char *text = (const char *)source->bytes;
     size_t at = 0, line = 1;
     if (source->size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0) at = 3;
-    for (; at < source->size && !table.columns; line++) {
+    for (; at < source->size && (!table.columns || text[at] == '#'); line++) {
         const size_t length = strcspn(text + at, "\n");
         const size_t begin = strspn(text + at, " \t\r");
         if (text[at + begin] == '#')

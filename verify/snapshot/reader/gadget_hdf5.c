@@ -22,6 +22,21 @@ static const struct hdf5_names names[] = {
     {SNAPSHOT_DU, {"RateOfChangeOfInternalEnergy"}, false},
 };
 
+/* Our own snapshots say where the box begins, from which positions count, and what they are of. */
+static void place(const struct snapshot_source *source, struct snapshot_file *file)
+{
+    double corner[3];
+    hdf5_text(source, "Header", "Case", file->case_name, sizeof file->case_name);
+    hdf5_text(source, "Header", "Boundary", file->boundary, sizeof file->boundary);
+    hdf5_text(source, "Header", "Keys", file->keys, sizeof file->keys);
+    if (!file->boxed || hdf5_numbers(source, "Header", "Origin", corner, 3) != 3) return;
+    file->placed = true;
+    for (int d = 0; d < file->columns; d++) {
+        file->corner[d] = corner[d];
+        for (size_t i = 0; i < file->n; i++) file->column[d][i] += corner[d];
+    }
+}
+
 static enum status read(const struct snapshot_source *source,
                         const struct snapshot_options *options, struct snapshot_file *file,
                         struct error *error)
@@ -42,6 +57,7 @@ static enum status read(const struct snapshot_source *source,
     const struct snapshot_value version =
         hdf5_first(source, (const char *const[]){"Header:GIZMO_version", NULL}, NULL);
     const char *from = "";
+    place(source, file);
     file->gamma = hdf5_first(source, gammas, &from);
     if (file->gamma.known)
         snapshot_note(&file->notes, "gamma", "in the file", "attribute %s", from);
