@@ -425,12 +425,37 @@ static void runs_are_written(void **state)
     }
 }
 
+/* Only a box has periods, along the directions that the boundary does not close or open. */
+static void periods(void **state)
+{
+    static const struct {
+        const char *boundary;
+        double period[3];
+    } rows[] = {{"", {2, 3, 5}},
+                {"periodic", {2, 3, 5}},
+                {"reflecting", {0, 0, 0}},
+                {"periodic reflecting", {2, 0, 0}},
+                {"open periodic fixed", {0, 3, 0}}};
+    (void)state;
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
+        for (int boxed = 0; boxed < 2; boxed++) {
+            struct snapshot_file file = {.boxed = boxed, .box = {2, 3, 5}};
+            strcpy(file.boundary, rows[k].boundary);
+            for (int d = 0; d < 3; d++)
+                assert_true(snapshot_period(&file, d) == boxed * rows[k].period[d]);
+        }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(runs_are_written),       cmocka_unit_test(gadget_says_little),
-        cmocka_unit_test(several_files),          cmocka_unit_test(sph_exa_has_steps),
-        cmocka_unit_test(phantom_has_no_density), cmocka_unit_test(what_is_refused),
+        cmocka_unit_test(runs_are_written),
+        cmocka_unit_test(gadget_says_little),
+        cmocka_unit_test(several_files),
+        cmocka_unit_test(sph_exa_has_steps),
+        cmocka_unit_test(phantom_has_no_density),
+        cmocka_unit_test(what_is_refused),
+        cmocka_unit_test(periods),
     };
     char command[96];
     if (!mkdtemp(folder)) return 1;
