@@ -5,6 +5,7 @@
                                   anything is built, right ones reach the program as they are, those
                                   of the nightly jobs, too
    readme.py stories SOURCE WORK  its stories, and all else that it says to type, in a copy of the tree"""
+import fnmatch
 import json
 import os
 import re
@@ -45,17 +46,17 @@ PLACES = {
     "sphproof run CASE n=64^2": "sphproof run gresho n=24^2 t_end=0.1",
     "sphproof run sound_wave n=512 [KEYS]": "sphproof run sound_wave n=512 viscosity=fading",
     "sphproof converge CASE --n 402,804,1206,1602 [KEYS]": "sphproof converge sod --n 402,804,1206,1602",
-    "sphproof diff OLD.json NEW.json": "sphproof run sod --json a.json; sphproof diff a.json a.json",
+    "sphproof diff OLD.json NEW.json": "sphproof run sod --json try/a.json; sphproof diff try/a.json try/a.json",
     "sphproof kernel ./mine.so --dim 3": "sphproof kernel build/verify/examples/wendland_c8.so --dim 3",
     "sphproof converge sod kernel=./mine.so":
         "sphproof converge sod kernel=build/verify/examples/wendland_c8.so --n 100,200,300,400  # exit 1",  # others' gates
     "sphproof gradient cloud.csv --operator ia --kernel wendland_c2 --dim 2 --eta 2":
-        "printf 'x,y,volume,f\\n0,0,1,2\\n1,0,1,3\\n0,1,1,4\\n1,1,1,5\\n' >cloud.csv; "
-        "sphproof gradient cloud.csv --operator ia --kernel wendland_c2 --dim 2 --eta 2",
+        "printf 'x,y,volume,f\\n0,0,1,2\\n1,0,1,3\\n0,1,1,4\\n1,1,1,5\\n' >try/cloud.csv; "
+        "sphproof gradient try/cloud.csv --operator ia --kernel wendland_c2 --dim 2 --eta 2",
     "sphproof rates particles.csv lo=0 hi=1 --check theirs.csv":
-        "printf 'x,vx,m,u\\n0.1,0,1,1\\n0.4,0,1,1\\n0.6,0,1,1\\n0.9,0,1,1\\n' >particles.csv; "
-        "sphproof rates particles.csv lo=0 hi=1 --csv theirs.csv; "
-        "sphproof rates particles.csv lo=0 hi=1 --check theirs.csv",
+        "printf 'x,vx,m,u\\n0.1,0,1,1\\n0.4,0,1,1\\n0.6,0,1,1\\n0.9,0,1,1\\n' >try/particles.csv; "
+        "sphproof rates try/particles.csv lo=0 hi=1 --csv try/theirs.csv; "
+        "sphproof rates try/particles.csv lo=0 hi=1 --check try/theirs.csv",
     "python3 verify/test/faults.py build/sphproof PART": None,  # test `faults`
     "reports/run": None, "reports/run --nightly": None, "reports/compare main": None,  # tests `README: scripts`, `reports/compare`
     "verify/run --only valgrind,threads": None, "verify/run --full": None, "verify/run --nightly": None,
@@ -172,8 +173,14 @@ def stories(source, work):
             sys.exit("exit %d instead of %d\n%s%s" % (result.returncode, wanted,
                                                       result.stdout[-2000:], result.stderr[-2000:]))
     for made in ("sod.svg", "streams.svg"):
-        if os.path.getsize(os.path.join(tree, made)) < 1000:
+        if os.path.getsize(os.path.join(tree, "try", made)) < 1000:
             sys.exit(made + " is empty")
+    with open(os.path.join(tree, ".gitignore"), encoding="ascii") as file:
+        ignored = [line.strip().strip("/") for line in file]
+    left = [name for name in os.listdir(tree) if name not in os.listdir(source) and
+            not any(fnmatch.fnmatch(name, pattern) for pattern in ignored)]
+    if left:
+        sys.exit("the stories leave behind what git does not ignore: %s" % ", ".join(left))
     if not os.listdir(os.path.join(tree, "nights", "report", "cache")):
         sys.exit("the job's report has computed nothing")
 
