@@ -172,6 +172,8 @@ def stories(source, work):
         if result.returncode != wanted:
             sys.exit("exit %d instead of %d\n%s%s" % (result.returncode, wanted,
                                                       result.stdout[-2000:], result.stderr[-2000:]))
+        if "first bad commit" in command and "    step 6" not in result.stdout.splitlines():
+            sys.exit("the bisection does not find step 6:\n" + result.stdout)
     for made in ("sod.svg", "streams.svg"):
         if os.path.getsize(os.path.join(tree, "try", made)) < 1000:
             sys.exit(made + " is empty")
