@@ -89,11 +89,13 @@ void html_command(struct buffer *to, const char *what, const char *command)
 
 void html_status(struct buffer *to, const char *status)
 {
-    bool good = !strcmp(status, "pass") || !strcmp(status, "ok");
-    buffer_format(to, "<b class=\"%s\">",
-                  good                      ? "pass"
-                  : !strcmp(status, "skip") || !strcmp(status, "known") ? "skip"
-                                            : "fail");
+    static const char *const classes[][2] = {
+        {"pass", "pass"},  {"ok", "pass"},    {"skip", "skip"},        {"none", "skip"},
+        {"known", "open"}, {"smoke", "open"}, {"undetermined", "open"}};
+    const char *class = "fail";
+    for (size_t k = 0; k < sizeof classes / sizeof *classes; k++)
+        if (!strcmp(status, classes[k][0])) class = classes[k][1];
+    buffer_format(to, "<b class=\"%s\">", class);
     html_words(to, status);
     buffer_add(to, "</b>");
 }

@@ -22,7 +22,8 @@ void html_cell_code(struct buffer *to, const char *string);
 /* <p class="command"><code>$ command</code></p>, with what it does before it. */
 void html_command(struct buffer *to, const char *what, const char *command);
 
-/* pass, fail or skip as a coloured word. */
+/* A status as a coloured word: what passes, what is not judged, what is open (known, smoke,
+ * undetermined), and all else as a failure. */
 void html_status(struct buffer *to, const char *status);
 
 /* A name of the results for people: "internal_energy" is "internal energy". */

@@ -19,7 +19,8 @@ static void test_case(struct suite_writer *suite, const char *class, const char 
     buffer_escape(&suite->cases, class);
     buffer_add(&suite->cases, "\" name=\"");
     buffer_escape(&suite->cases, name);
-    bool skipped = !strcmp(status, "skip") || !strcmp(status, "known");
+    bool skipped = !strcmp(status, "skip") || !strcmp(status, "known") ||
+                   !strcmp(status, "smoke") || !strcmp(status, "undetermined");
     if (!strcmp(status, "pass") || !strcmp(status, "ok")) {
         buffer_add(&suite->cases, "\"/>\n");
         return;
@@ -27,6 +28,7 @@ static void test_case(struct suite_writer *suite, const char *class, const char 
     suite->skipped += skipped;
     suite->failures += !skipped;
     buffer_format(&suite->cases, "\"><%s message=\"", skipped ? "skipped" : "failure");
+    if (skipped && strcmp(status, "skip")) buffer_format(&suite->cases, "%s: ", status);
     buffer_escape(&suite->cases, message);
     buffer_add(&suite->cases, "\"/></testcase>\n");
 }

@@ -18,6 +18,25 @@ static void tile(struct buffer *to, const char *label, double good, double all, 
                   good < all ? "bad" : "good", anchor, good, all, label);
 }
 
+/* Orders and errors of runs: as expected of those that could be judged, and what became of the
+ * others. */
+static void gates_tile(struct buffer *to, const json_t *verdict)
+{
+    static const char *const others[][2] = {{"gates_smoke", "too coarse to judge"},
+                                            {"gates_undetermined", "undetermined"},
+                                            {"gates_known", "known"}};
+    const double good = value_member(verdict, "gates_passed");
+    struct buffer label = {0};
+    buffer_add(&label, "orders and errors of runs as expected");
+    for (size_t k = 0; k < sizeof others / sizeof *others; k++) {
+        const double count = value_member(verdict, others[k][0]);
+        if (count > 0) buffer_format(&label, "%s%.0f %s", k ? ", " : "; ", count, others[k][1]);
+    }
+    if (label.data)
+        tile(to, label.data, good, good + value_member(verdict, "gates_failed"), "cases");
+    buffer_free(&label);
+}
+
 static void head(struct buffer *to, const json_t *results, const json_t *verdict)
 {
     bool well = !strcmp(value_text(verdict, "status"), "pass");
@@ -41,12 +60,10 @@ static void head(struct buffer *to, const json_t *results, const json_t *verdict
     page_since(to, results);
     buffer_add(to, "<p class=\"tiles\">");
     double passed = value_member(verdict, "figures_passed");
-    double gates = value_member(verdict, "gates_passed");
     double runs = value_member(verdict, "runs");
     tile(to, "figures within their bounds", passed,
          passed + value_member(verdict, "figures_failed"), "checks");
-    tile(to, "orders and errors of runs as expected", gates,
-         gates + value_member(verdict, "gates_failed"), "cases");
+    gates_tile(to, verdict);
     tile(to, "runs sound", runs - value_member(verdict, "broke_down"), runs, "cases");
     tile(to, "deliberate faults caught", value_member(verdict, "mutants_detected"),
          value_member(verdict, "mutants"), "detection");

@@ -360,9 +360,10 @@ static void gate_table(struct buffer *to, const json_t *const *runs, size_t coun
             html_cell_number(to, value_member(gate, "bound"));
             buffer_add(to, "<td>");
             html_status(to, value_text(gate, "status"));
-            if (*value_text(gate, "known")) {
+            const char *why = value_text_or(gate, "known", value_text(gate, "why"));
+            if (*why) {
                 buffer_add(to, ": ");
-                buffer_escape(to, value_text(gate, "known"));
+                buffer_escape(to, why);
             }
             buffer_add(to, "</td></tr>\n");
         }

@@ -339,9 +339,10 @@ static void order_rows(struct buffer *to, const struct study *study)
         gate_words(to, json_object_get(order, "gate"));
         buffer_add(to, "<td>");
         if (gated) html_status(to, status);
-        if (*value_text(order, "known")) {
+        const char *why = value_text_or(order, "known", value_text(order, "why"));
+        if (gated && *why) {
             buffer_add(to, ": ");
-            buffer_escape(to, value_text(order, "known"));
+            buffer_escape(to, why);
         }
         buffer_add(to, "</td></tr>\n");
     }

@@ -10,11 +10,16 @@
 #include "html.h"
 #include "value.h"
 
+/* What became of a figure or a gate. Only FAIL fails anything, and only PASS and FAIL are judged.
+ */
+enum answer { FAIL, PASS, SKIP, KNOWN, SMOKE, UNDETERMINED };
+enum { GATE_ANSWERS = UNDETERMINED + 1 };
+
 struct tally {
     struct failure_list failures;
     int figures_passed, figures_failed, figures_skipped;
     int mutants, detected;
-    int gates_passed, gates_failed;
+    int gates[GATE_ANSWERS];
     int runs, broke_down;
     int faults, faults_right;
 };
@@ -36,14 +41,12 @@ static void unreadable(struct tally *tally, const char *what, const char *messag
     fail(tally, "harness", what, &detail, "sphproof report --force");
 }
 
-enum answer { FAIL, PASS, SKIP, KNOWN };
-
-/* The status of an entry; `skip` is its word for neither; what is known to fail fails nothing. One
- * that is none of these is a failure of its own and counts as SKIP. */
+/* The status of an entry; `skip` is its word for neither. One that is none of these is a failure of
+ * its own and counts as SKIP. */
 static enum answer answer_of(struct tally *tally, const json_t *entry, const char *skip,
                              const char *what)
 {
-    const char *const words[] = {"fail", "pass", skip, "known", NULL};
+    const char *const words[] = {"fail", "pass", skip, "known", "smoke", "undetermined", NULL};
     char message[VALUE_MESSAGE];
     const int word = value_need_word(entry, "status", words, message);
     if (word >= 0) return (enum answer)word;
@@ -105,8 +108,7 @@ static void judge_verify(struct tally *tally, const json_t *verify)
 static void judge_gate(struct tally *tally, const json_t *run, const json_t *gate)
 {
     const enum answer answer = answer_of(tally, gate, "none", value_text(run, "case"));
-    tally->gates_passed += answer == PASS;
-    tally->gates_failed += answer == FAIL;
+    tally->gates[answer]++;
     if (answer != FAIL) return;
     struct buffer detail = {0}, name = {0};
     buffer_format(&name, "%s, %s: %s", value_text(run, "case"), value_text(run, "label"),
@@ -139,8 +141,7 @@ static void judge_run(struct tally *tally, const json_t *run)
 static void judge_still_gas(struct tally *tally, const json_t *study, const json_t *still)
 {
     const enum answer answer = answer_of(tally, still, "none", "still gas");
-    tally->gates_passed += answer == PASS;
-    tally->gates_failed += answer == FAIL;
+    tally->gates[answer]++;
     if (answer != FAIL) return;
     struct buffer detail = {0}, name = {0};
     buffer_format(&name, "%s, %s: still gas", value_text(study, "case"),
@@ -167,8 +168,7 @@ static void judge_study(struct tally *tally, const json_t *study)
     const json_t *order;
     json_array_foreach(json_object_get(study, "orders"), i, order) {
         const enum answer answer = answer_of(tally, order, "none", value_text(study, "case"));
-        tally->gates_passed += answer == PASS;
-        tally->gates_failed += answer == FAIL;
+        tally->gates[answer]++;
         if (answer != FAIL) continue;
         struct buffer detail = {0}, name = {0};
         buffer_format(&name, "%s, %s: order of %s(%s)", value_text(study, "case"),
@@ -202,7 +202,7 @@ static void judge_study(struct tally *tally, const json_t *study)
     }
     if (!strcmp(value_text(study, "status"), "broke_down")) {
         struct buffer detail = {0};
-        tally->gates_failed++;
+        tally->gates[FAIL]++;
         buffer_format(&detail, "broke down: %s", value_text(study, "message"));
         fail(tally, "study", value_text(study, "case"), &detail, value_text(study, "reproduce"));
     }
@@ -249,8 +249,22 @@ static void judge_faults(struct tally *tally, const json_t *faults)
     json_array_foreach(list, i, entry) judge_fault(tally, entry);
 }
 
+/* "271 judged, 30 too coarse to judge, 2 undetermined, 6 known weaknesses": of orders and errors of
+ * runs. */
+static void gates_words(struct buffer *to, const struct tally *tally)
+{
+    const int *gates = tally->gates;
+    buffer_format(to, "%d judged", gates[PASS] + gates[FAIL]);
+    if (gates[FAIL]) buffer_format(to, " (%d failed)", gates[FAIL]);
+    if (gates[SMOKE]) buffer_format(to, ", %d too coarse to judge", gates[SMOKE]);
+    if (gates[UNDETERMINED]) buffer_format(to, ", %d undetermined", gates[UNDETERMINED]);
+    if (gates[KNOWN])
+        buffer_format(to, ", %d known weakness%s", gates[KNOWN], gates[KNOWN] == 1 ? "" : "es");
+}
+
 /* The failures' number and the first one: what it is and, of a check, of whom. */
-static void headline(struct buffer *to, bool checked, const json_t *failures)
+static void headline(struct buffer *to, const struct tally *tally, bool checked,
+                     const json_t *failures)
 {
     size_t count = json_array_size(failures);
     const json_t *first = json_array_get(failures, 0);
@@ -258,7 +272,12 @@ static void headline(struct buffer *to, bool checked, const json_t *failures)
     /* these names say what they are about */
     bool plain = !strcmp(area, "check") || !strcmp(area, "convergence") || !strcmp(area, "budget");
     if (!count) {
-        buffer_add(to, checked ? "All is well" : "Nothing was checked");
+        const bool all =
+            !tally->gates[SMOKE] && !tally->gates[UNDETERMINED] && !tally->gates[KNOWN];
+        buffer_add(to, !checked ? "Nothing was checked"
+                       : all    ? "All is well"
+                                : "All that could be judged is well: ");
+        if (checked && !all) gates_words(to, tally);
         return;
     }
     buffer_format(to, "%zu %s%s%s%s", count, count == 1 ? "failure: " : "failures; look first at ",
@@ -290,20 +309,26 @@ json_t *verdict_make(const json_t *results)
     json_array_foreach(json_object_get(since, "figures"), i, entry) judge_since(&tally, entry);
 
     struct buffer words = {0};
-    bool checked = tally.figures_passed + tally.gates_passed + tally.runs > 0;
+    bool checked = tally.figures_passed + tally.gates[PASS] + tally.runs > 0;
     json_t *failures = failure_take(&tally.failures);
     if (!failures) return NULL;
     size_t count = json_array_size(failures);
-    headline(&words, checked, failures);
+    headline(&words, &tally, checked, failures);
     char *line = buffer_take(&words);
+    gates_words(&words, &tally);
+    char *gates = buffer_take(&words);
     json_t *verdict = json_pack(
-        "{s:s, s:s, s:i, s:i, s:i, s:i, s:i, s:i, s:i, s:i, s:i, s:i, s:i, s:o}", "status",
-        count || !checked ? "fail" : "pass", "headline", line ? line : "", "figures_passed",
-        tally.figures_passed, "figures_failed", tally.figures_failed, "figures_skipped",
-        tally.figures_skipped, "mutants", tally.mutants, "mutants_detected", tally.detected,
-        "gates_passed", tally.gates_passed, "gates_failed", tally.gates_failed, "runs", tally.runs,
+        "{s:s, s:s, s:i, s:i, s:i, s:i, s:i, s:i, s:i, s:i, s:i, s:i, s:s, s:i, s:i, s:i, s:i, "
+        "s:o}",
+        "status", count || !checked ? "fail" : "pass", "headline", line ? line : "",
+        "figures_passed", tally.figures_passed, "figures_failed", tally.figures_failed,
+        "figures_skipped", tally.figures_skipped, "mutants", tally.mutants, "mutants_detected",
+        tally.detected, "gates_passed", tally.gates[PASS], "gates_failed", tally.gates[FAIL],
+        "gates_smoke", tally.gates[SMOKE], "gates_undetermined", tally.gates[UNDETERMINED],
+        "gates_known", tally.gates[KNOWN], "gates", gates ? gates : "", "runs", tally.runs,
         "broke_down", tally.broke_down, "faults", tally.faults, "faults_right", tally.faults_right,
         "failures", failures);
     free(line);
+    free(gates);
     return verdict;
 }

@@ -27,7 +27,9 @@
 #include <jansson.h>
 
 /* {"status": "pass" or "fail", "headline", "figures_passed", "figures_failed", "mutants",
- * "mutants_detected", "gates_passed", "gates_failed", "runs", "broke_down", "faults",
+ * "mutants_detected", "gates_passed", "gates_failed", "gates_smoke" (too coarse to judge),
+ * "gates_undetermined" (the order's interval is wider than its gate), "gates_known" (fail as their
+ * case says), "gates": what became of all of them in words, "runs", "broke_down", "faults",
  * "faults_right", "failures": [{"area", "name", "detail", "command"}]}. New reference, NULL: no
  * memory. */
 json_t *verdict_make(const json_t *results);

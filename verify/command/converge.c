@@ -39,17 +39,19 @@ static void print_ladder(const struct study *study, const struct study_result *r
 static void print_gate(const struct study_result *result, const struct study_order *order,
                        const struct table_style *style)
 {
+    static const char *const words[] = {"",      "pass",        "FAIL", "known to fail",
+                                        "smoke", "undetermined"};
     const bool good = order->status == GATE_PASS, known = order->status == GATE_KNOWN;
     if (order->status == GATE_NONE) return;
     printf("    gate: ");
     if (isfinite(order->gate.low)) printf("order in [%g, %g], ", order->gate.low, order->gate.high);
     printf("error at n = %zu ", result->levels[result->level_count - 1].n);
     if (order->least > 0) printf("at least %.3g, ", order->least);
-    printf("at most %.3g: %s%s%s%s%s\n", order->gate.bound, good ? style->good : style->bad,
-           good    ? "pass"
-           : known ? "known to fail"
-                   : "FAIL",
-           style->end, good ? "" : ": ", order->why);
+    const char *color = good                          ? style->good
+                        : order->status >= GATE_SMOKE ? style->faint
+                                                      : style->bad;
+    printf("at most %.3g: %s%s%s%s%s\n", order->gate.bound, color, words[order->status], style->end,
+           good ? "" : ": ", order->why);
     if (known) printf("    known: %s\n", order->known);
 }
 

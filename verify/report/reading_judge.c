@@ -23,7 +23,8 @@ static int rank(const char *word, bool suspicion)
     } ranks[] = {{"", 0},           {"pass", 0},          {"ok", 0},       {"true", 0},
                  {"asymptotic", 0}, {"none", 1},          {"skip", 1},     {"oscillating", 1},
                  {"diverging", 2},  {"floor-limited", 1}, {"fail", FAULT}, {"false", FAULT},
-                 {"inaccurate", 4}, {"broke_down", 5},    {"wrong", 6},    {"pre-asymptotic", 1}};
+                 {"inaccurate", 4}, {"broke_down", 5},    {"wrong", 6},    {"pre-asymptotic", 1},
+                 {"smoke", 1},      {"undetermined", 1}};
     if (suspicion) return *word ? FAULT : 0;
     for (size_t i = 0; i < sizeof ranks / sizeof *ranks; i++)
         if (strcmp(ranks[i].word, word) == 0) return ranks[i].rank;
@@ -47,8 +48,10 @@ static enum reading_verdict judge_word(const struct reading *old, const struct r
     if (after < before) return VERDICT_BETTER;
     *amount = (double)INFINITY;
     /* what passed and is not judged any more is lost, too */
-    *fault = after >= FAULT || (strcmp(old->word, "pass") == 0 &&
-                                (!strcmp(new->word, "none") || !strcmp(new->word, "skip")));
+    *fault =
+        after >= FAULT || (strcmp(old->word, "pass") == 0 &&
+                           (!strcmp(new->word, "none") || !strcmp(new->word, "skip") ||
+                            !strcmp(new->word, "smoke") || !strcmp(new->word, "undetermined")));
     return VERDICT_WORSE;
 }
 

@@ -2,6 +2,7 @@
 #include "gates.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "result.h"
@@ -10,6 +11,12 @@
 static const double compared_bound = 3;
 /* Round-off of sums over particles and steps is some 1e-14. */
 static const double conserved_bound = 1e-12;
+/* A bound beyond this part of the exact value lets pass what is no solution. */
+static const double coarse_part = 0.25;
+/* An order that is known to no more than this does not tell convergence from none. */
+static const double open_width = 1;
+
+const char *const gate_names[] = {"none", "pass", "fail", "known", "smoke", "undetermined"};
 
 double gates_raise(const struct case_file *file, const struct case_gate *gate, size_t n)
 {
@@ -24,6 +31,29 @@ bool gates_know(const struct case_weakness *known, double raise, double error)
     return isnan(known->bound) ? isnan(error) : error <= known->bound * raise;
 }
 
+enum study_gate gates_weigh(const struct case_file *file, const struct case_gate *gate, size_t n,
+                            double bound, double exact, const struct order_fit *fit, char *why)
+{
+    const double asked = gate->gate.low;
+    const bool ordered = isfinite(gate->gate.high);
+    why[0] = '\0';
+    if (file->ladder_count && n <= file->ladder[0] && (ordered || asked > 0)) {
+        snprintf(why, GATE_WHY, "too coarse to say: n = %zu, and the case's ladder begins at %zu",
+                 n, file->ladder[0]);
+        return GATE_SMOKE;
+    }
+    if (fabs(exact) > 0 && bound > coarse_part * fabs(exact)) {
+        snprintf(why, GATE_WHY, "too coarse to say: an error of %.2g of the exact value is allowed",
+                 bound / fabs(exact));
+        return GATE_SMOKE;
+    }
+    const double allowed = ordered ? gate->gate.high - asked : open_width;
+    if (!fit || !(ordered || asked > 0) || fit->high - fit->low <= allowed) return GATE_PASS;
+    snprintf(why, GATE_WHY, "the order is known to +-%.2g only, the gate is +-%.2g wide",
+             (fit->high - fit->low) / 2, allowed / 2);
+    return GATE_UNDETERMINED;
+}
+
 void gates_compare(struct case_file *file)
 {
     for (size_t i = 0; i < file->gate_count; i++) {
@@ -36,31 +66,34 @@ void gates_compare(struct case_file *file)
     }
 }
 
-/* Takes the name over. */
+/* Takes the name over. weighed: what is said of an error that passes, with its reason. */
 static void add(json_t *list, json_t *name, double value, double bound,
-                const struct case_weakness *known)
+                const struct case_weakness *known, enum study_gate weighed, const char *why)
 {
-    const bool passed = value <= bound, is_known = !passed && gates_know(known, 1, value);
+    const enum study_gate status = value <= bound                ? weighed
+                                   : gates_know(known, 1, value) ? GATE_KNOWN
+                                                                 : GATE_FAIL;
     json_t *gate = json_pack("{s:o, s:o, s:o, s:s}", "name", name, "value", result_number(value),
-                             "bound", result_number(bound), "status",
-                             passed     ? "pass"
-                             : is_known ? "known"
-                                        : "fail");
-    if (is_known) json_object_set_new(gate, "known", json_string(known->why));
+                             "bound", result_number(bound), "status", gate_names[status]);
+    if (status == GATE_KNOWN) json_object_set_new(gate, "known", json_string(known->why));
+    if (status == GATE_SMOKE) json_object_set_new(gate, "why", json_string(why));
     json_array_append_new(list, gate);
 }
 
-/* What a gate is of and its name, which is the caller's; NaN where the run does not have it. NULL:
- * a functional without an exact value. */
-static json_t *read_error(const struct case_gate *gate, const json_t *run, double *value)
+/* What a gate is of and its name, which is the caller's; NaN where the run does not have it, as is
+ * the exact value of a field. NULL: a functional without an exact value. */
+static json_t *read_error(const struct case_gate *gate, const json_t *run, double *value,
+                          double *exact)
 {
     const char *field = field_family.members[gate->field]->name,
                *norm = field_norm_family.members[gate->norm]->name;
     const json_t *functionals = json_object_get(run, "functionals");
+    *exact = (double)NAN;
     if (gate->functional) {
         const json_t *entry = value_named(functionals, gate->functional);
-        *value = fabs(value_member(entry, "value") - value_member(entry, "reference"));
-        if (entry && !isfinite(value_member(entry, "reference"))) return NULL;
+        *exact = value_member(entry, "reference");
+        *value = fabs(value_member(entry, "value") - *exact);
+        if (entry && !isfinite(*exact)) return NULL;
         return json_string(gate->functional);
     }
     *value = value_inner(json_object_get(run, "errors"), field, norm);
@@ -74,10 +107,13 @@ void gates_add_errors(const struct case_file *file, const json_t *run, json_t *l
         const struct case_gate *gate = &file->gates[i];
         const double raise = gates_raise(file, gate, n);
         struct case_weakness known = gate->known;
-        double value;
-        json_t *name = read_error(gate, run, &value);
+        double value, exact;
+        char why[GATE_WHY];
+        json_t *name = read_error(gate, run, &value, &exact);
         known.bound *= raise;
-        if (name) add(list, name, value, raise * gate->gate.bound, &known);
+        const double bound = raise * gate->gate.bound;
+        const enum study_gate weighed = gates_weigh(file, gate, n, bound, exact, NULL, why);
+        if (name) add(list, name, value, bound, &known, weighed, why);
     }
 }
 
@@ -108,10 +144,12 @@ void gates_add_conserved(const json_t *run, json_t *list)
     const struct case_weakness none = {.bound = 0};
     const json_t *conserved = json_object_get(run, "conservation");
     const bool walls = says(run, "boundary", "reflecting") || says(run, "boundary", "fixed");
-    add(list, json_string("mass"), value_member(conserved, "mass"), conserved_bound, &none);
+    add(list, json_string("mass"), value_member(conserved, "mass"), conserved_bound, &none,
+        GATE_PASS, "");
     if (!walls && !is_heavy(run))
         add(list, json_string("momentum"), value_member(conserved, "momentum"), conserved_bound,
-            &none);
+            &none, GATE_PASS, "");
     if (says(run, "energy", "total") && !is_heavy(run))
-        add(list, json_string("energy"), value_member(conserved, "energy"), conserved_bound, &none);
+        add(list, json_string("energy"), value_member(conserved, "energy"), conserved_bound, &none,
+            GATE_PASS, "");
 }

@@ -11,6 +11,7 @@
 #include <jansson.h>
 
 #include "budget.h"
+#include "gates.h"
 #include "order.h"
 #include "pool.h"
 #include "run.h"
@@ -38,15 +39,12 @@ struct study_level {
     double functionals[PROBLEM_FUNCTIONALS_MAX];
 };
 
-/* GATE_KNOWN: fails, as the case says that it does. */
-enum study_gate { GATE_NONE, GATE_PASS, GATE_FAIL, GATE_KNOWN };
-
 struct study_order {
     struct order_fit fit;
     enum study_gate status;
     struct order_gate gate;    /* bound: at the ladder's finest level; see study_judge */
     double least;              /* of the error there, see cases.h; 0: none */
-    char why[ORDER_GATE_TEXT]; /* the condition that fails */
+    char why[ORDER_GATE_TEXT]; /* the condition that fails; why it says little */
     const char *known;         /* why it is known to fail, "" if it is not; the case's */
 };
 

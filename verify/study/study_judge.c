@@ -86,6 +86,15 @@ static struct study_order *gated(struct study_result *result, const struct case_
     return NULL;
 }
 
+/* The exact value of a gate's functional; NaN of a field. */
+static double exact_of(const struct study_result *result, const struct case_gate *gate)
+{
+    for (size_t i = 0; gate->functional && i < result->functional_count; i++)
+        if (strcmp(result->functional_names[i], gate->functional) == 0)
+            return result->functional_exact[i];
+    return (double)NAN;
+}
+
 /* Is it the case as it stands, on its own ladder? */
 static bool is_untouched(const struct study_result *result, const struct case_file *file)
 {
@@ -137,7 +146,10 @@ static void judge_gates(struct study_result *result, const struct case_file *fil
         order->gate = gate->gate;
         order->gate.bound *= gates_raise(file, gate, finest->n);
         order->least = is_untouched(result, file) ? gate->least : 0;
-        order->status = passes(gate, order) ? GATE_PASS : GATE_FAIL;
+        order->status = passes(gate, order)
+                            ? gates_weigh(file, gate, finest->n, order->gate.bound,
+                                          exact_of(result, gate), &order->fit, order->why)
+                            : GATE_FAIL;
         order->known = gate->known.why;
         if (order->status == GATE_FAIL && is_known(file, gate, finest->n, order))
             order->status = GATE_KNOWN;

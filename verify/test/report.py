@@ -102,14 +102,23 @@ expect("mended, results:", computed(mended) == computed(resumed))
 expect("nights:", len([json.loads(line) for line in read("history.jsonl").splitlines()]) == 3)
 
 page, results = read("index.html"), json.loads(read("results.json"))
-expect("verdict:", "<h1>All is well</h1>" in page and results["verdict"]["status"] == "pass")
+expect("verdict:", "<h1>%s</h1>" % results["verdict"]["headline"] in page and results["verdict"]["status"] == "pass")
+counts = {"smoke": 0, "undetermined": 0, "known": 0, "pass": 0}
+for entry in [o for s in results["studies"] for o in s["orders"] + [b["still_gas"] for b in s.get("budgets", []) if b.get("still_gas")]] \
+        + [g for r in results["runs"] for g in r.get("gates", [])]:
+    counts[entry["status"]] = counts.get(entry["status"], 0) + 1
+for word, name in (("smoke", "smoke"), ("undetermined", "undetermined"), ("known", "known"), ("pass", "passed")):
+    expect("gates counted as %s:" % word, results["verdict"]["gates_" + name] == counts[word],
+           (results["verdict"], counts))
+expect("the headline's counts:", results["verdict"]["gates"] in results["verdict"]["headline"]
+       and results["verdict"]["gates"] in read("summary.md"), results["verdict"]["headline"])
 itself = os.path.join(folder, "results.json")
 done = subprocess.run([program, "diff", itself, itself], capture_output=True, text=True)
 expect("a figure that nobody can compare:", done.returncode == 0 and "\nwell: " in done.stdout, done)
 expect("asks the network:", not re.search(r"(src|href)=\"(https?:)?//|url\(|@import|<script", page))
 xml.fromstring(page.replace("<!DOCTYPE html>", ""))
 xml.fromstring(read("junit.xml"))
-expect("summary:", "All is well" in read("summary.md"))
+expect("summary:", results["verdict"]["headline"] in read("summary.md"))
 plots = [name[:-3] for name in os.listdir(os.path.join(folder, "plots")) if name.endswith(".gp")]
 expect("plots:", len(plots) == page.count("<svg ") > 10, len(plots))
 for name in plots:
@@ -143,7 +152,7 @@ shutil.copytree(os.path.join(folder, "cache"), os.path.join(alone, "cache"))
 done = report("--out", alone, "--jobs", "1", PATH="/nowhere")
 expect("exit status without gnuplot:", done.returncode == 4 and "gnuplot" in done.stderr, done)
 expect("page without gnuplot:", "<svg" not in read("alone", "index.html")
-       and "All is well" in read("alone", "index.html"))
+       and results["verdict"]["headline"] in read("alone", "index.html"))
 expect("what was kept is not what was computed:",
        lasting(json.loads(read("alone", "results.json"))) == lasting(results))
 

@@ -407,22 +407,22 @@ static void judges_see(void **state)
         enum study_gate gate, still;
         const char *suspicion;
     } cases[] = {
-        {"first order", of_first_order, STATUS_OK, GATE_PASS, GATE_PASS, ""},
+        {"first order", of_first_order, STATUS_OK, GATE_SMOKE, GATE_PASS, ""},
         {"half an order", of_half_order, STATUS_CHECK_FAILED, GATE_FAIL, GATE_PASS, ""},
         {"half an order, known", of_half_order, STATUS_OK, GATE_KNOWN, GATE_PASS, ""},
         {"half an order, known up to less", of_half_order, STATUS_CHECK_FAILED, GATE_FAIL,
          GATE_PASS, ""},
-        {"first order, known to fail", of_first_order, STATUS_OK, GATE_PASS, GATE_PASS, ""},
+        {"first order, known to fail", of_first_order, STATUS_OK, GATE_SMOKE, GATE_PASS, ""},
         {"too large", too_large, STATUS_CHECK_FAILED, GATE_FAIL, GATE_PASS, ""},
         {"a NaN", nan_at_one_level, STATUS_CHECK_FAILED, GATE_FAIL, GATE_PASS, ""},
         {"a NaN, known", nan_at_one_level, STATUS_CHECK_FAILED, GATE_FAIL, GATE_PASS, ""},
         {"a NaN at last, known", nan_at_the_finest, STATUS_CHECK_FAILED, GATE_FAIL, GATE_PASS, ""},
-        {"an error of 0", zero_at_one_level, STATUS_CHECK_FAILED, GATE_PASS, GATE_PASS,
+        {"an error of 0", zero_at_one_level, STATUS_CHECK_FAILED, GATE_SMOKE, GATE_PASS,
          "velocity: the error at level 3 is exactly 0"},
-        {"twice the same", same_at_two_levels, STATUS_CHECK_FAILED, GATE_PASS, GATE_PASS,
+        {"twice the same", same_at_two_levels, STATUS_CHECK_FAILED, GATE_SMOKE, GATE_PASS,
          "pressure: levels 0 and 3"},
-        {"still gas", moved_gas, STATUS_CHECK_FAILED, GATE_PASS, GATE_FAIL, ""},
-        {"a suspected run", suspected_run, STATUS_CHECK_FAILED, GATE_PASS, GATE_PASS,
+        {"still gas", moved_gas, STATUS_CHECK_FAILED, GATE_SMOKE, GATE_FAIL, ""},
+        {"a suspected run", suspected_run, STATUS_CHECK_FAILED, GATE_SMOKE, GATE_PASS,
          "a run suspects itself"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {

@@ -7,6 +7,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
+#include "gates.h"
 #include "made_study.h"
 #include "measure.h"
 #include "near.h"
@@ -382,9 +383,112 @@ static void no_floor(void **state)
     pool_free(&pool);
 }
 
+/* What passes is a pass only where the run is fine enough and the order known well enough: at the
+ * coarsest level of the case's ladder a bound that was raised says little, and so does one of more
+ * than a quarter of the exact value, and an order whose interval is wider than its gate. */
+static void what_passes_is_weighed(void **state)
+{
+    (void)state;
+    const double open = (double)INFINITY, none = (double)NAN;
+    const struct {
+        double low, high, bound, exact, half; /* half: of the order's interval; < 0: one run */
+        size_t n;
+        enum study_gate outcome;
+    } rows[] = {
+        {0.9, 1.1, 1, none, 0.09, 101, GATE_PASS},
+        {0.9, 1.1, 1, none, 0.09, 100, GATE_SMOKE},
+        {0.9, 1.1, 1, none, 0.09, 50, GATE_SMOKE},
+        {0.9, 1.1, 1, none, 0.11, 101, GATE_UNDETERMINED},
+        {-0.1, 0.1, 1, none, 0.09, 101, GATE_PASS},
+        {-0.1, 0.1, 1, none, 0.09, 100, GATE_SMOKE},
+        {-0.1, 0.1, 1, none, 0.11, 101, GATE_UNDETERMINED},
+        {0.9, 1.1, 1, none, none, 101, GATE_UNDETERMINED},
+        {1, open, 1, none, 0.49, 101, GATE_PASS},
+        {1, open, 1, none, 0.51, 101, GATE_UNDETERMINED},
+        {1, open, 1, none, none, 101, GATE_UNDETERMINED},
+        {1, open, 1, none, 0.49, 100, GATE_SMOKE},
+        {1, open, 1, none, -1, 101, GATE_PASS},
+        {1, open, 1, none, -1, 100, GATE_SMOKE},
+        /* a bound for all n, which asks for no order */
+        {0, open, 1, none, 3, 100, GATE_PASS},
+        /* a bound and the exact value, of either sign; of 0 there is no part */
+        {1, open, 1, 4.01, 0.1, 101, GATE_PASS},
+        {1, open, 1, -4.01, 0.1, 101, GATE_PASS},
+        {1, open, 1, 3.99, 0.1, 101, GATE_SMOKE},
+        {0, open, 1, -3.99, -1, 101, GATE_SMOKE},
+        {1, open, 1, 0, 0.1, 101, GATE_PASS},
+    };
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        const struct case_file file = {.ladder = {100, 200}, .ladder_count = 2};
+        const struct case_file alone = {.dimension = 1};
+        const struct case_gate gate = {.gate = {rows[k].low, rows[k].high, 0}};
+        const struct order_fit fit = {.low = 1 - rows[k].half, .high = 1 + rows[k].half};
+        const struct order_fit *of = rows[k].half < 0 ? NULL : &fit;
+        char why[GATE_WHY] = "?";
+        const enum study_gate outcome =
+            gates_weigh(&file, &gate, rows[k].n, rows[k].bound, rows[k].exact, of, why);
+        if (outcome != rows[k].outcome) fail_msg("row %zu: outcome %d, %s", k, outcome, why);
+        assert_int_equal(!why[0], outcome == GATE_PASS);
+        if (outcome == GATE_SMOKE) assert_non_null(strstr(why, "too coarse to say"));
+        if (outcome == GATE_UNDETERMINED) assert_non_null(strstr(why, "is known to"));
+        /* a case without a ladder has no coarsest level */
+        if (rows[k].n == 100 && rows[k].half < 0)
+            assert_int_equal(gates_weigh(&alone, &gate, 100, rows[k].bound, rows[k].exact, of, why),
+                             GATE_PASS);
+    }
+}
+
+/* A study, and a run alone, that are too coarse are smoke, with the reason, and fail nothing; an
+ * error beyond the bound fails at any n. */
+static void coarse_runs_are_smoke(void **state)
+{
+    (void)state;
+    for (int beyond = 0; beyond < 2; beyond++) {
+        struct study study;
+        struct pool pool;
+        struct error error;
+        factor = 0.01;
+        make(&study, &pool, "sod", NULL, 1, times_factor, &error);
+        struct study_result *result = &study.results[0];
+        struct case_file *file = &study.settings.file;
+        const struct settings settings = result->settings;
+        const struct scheme scheme = result->scheme;
+        *result = (struct study_result){.settings = settings, .scheme = scheme};
+        study.status = STATUS_OK;
+        file->gates[0] = (struct case_gate){.field = FIELD_DENSITY,
+                                            .gate = {1, (double)INFINITY, beyond ? 1e-9 : 1}};
+        file->gate_count = file->ladder_count = 1;
+        file->ladder[0] = 320; /* the finest of this study */
+        assert_int_equal(study_judge(&study, &pool, &error), STATUS_OK);
+        const struct study_order *order = &result->orders[0][0];
+        assert_int_equal(order->status, beyond ? GATE_FAIL : GATE_SMOKE);
+        assert_int_equal(study.status, beyond ? STATUS_CHECK_FAILED : STATUS_OK);
+        json_t *run = json_pack("{s:i, s:{s:{s:f}}}", "n", 320, "errors", "density", "l1", 0.5);
+        json_t *list = json_array();
+        gates_add_errors(file, run, list);
+        json_t *gate = json_array_get(list, 0);
+        assert_string_equal(json_string_value(json_object_get(gate, "status")),
+                            beyond ? "fail" : "smoke");
+        assert_int_equal(!json_object_get(gate, "why"), beyond);
+        json_decref(list);
+        /* one particle more than the coarsest level: judged */
+        json_object_set_new(run, "n", json_integer(321));
+        list = json_array();
+        gates_add_errors(file, run, list);
+        assert_string_equal(json_string_value(json_object_get(json_array_get(list, 0), "status")),
+                            beyond ? "fail" : "pass");
+        json_decref(list);
+        json_decref(run);
+        study_free(&study);
+        pool_free(&pool);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_passes_is_weighed),
+        cmocka_unit_test(coarse_runs_are_smoke),
         cmocka_unit_test(gates_are_judged),
         cmocka_unit_test(beyond_what_is_known),
         cmocka_unit_test(small_errors_are_strange),

@@ -123,7 +123,15 @@ static void alone(void **state)
         {"{'studies': [{'budgets': [{'still_gas': {'status': 'pass'}}]}]}", "pass", "All is well"},
         {"{'runs': [{'status': 'ok'}]}", "pass", "All is well"},
         {"{'runs': [{'status': 'ok', 'gates': [{'status': 'pass'}, {'status': 'known'}]}]}", "pass",
-         "All is well"},
+         "All that could be judged is well: 1 judged, 1 known weakness"},
+        {"{'runs': [{'status': 'ok', 'gates': [{'status': 'smoke'}, {'status': 'smoke'}, "
+         "{'status': 'pass'}]}], 'studies': [{'orders': [{'status': 'undetermined'}, "
+         "{'status': 'known'}, {'status': 'known'}, {'status': 'none'}]}]}",
+         "pass",
+         "All that could be judged is well: 1 judged, 2 too coarse to judge, 1 undetermined, "
+         "2 known weaknesses"},
+        {"{'studies': [{'orders': [{'status': 'undetermined'}]}]}", "fail", "Nothing was checked"},
+        {"{'studies': [{'orders': [{'status': 'smoke'}]}]}", "fail", "Nothing was checked"},
         {"{'runs': [{'status': 'ok', 'case': 'c', 'label': 'l', 'gates': [{'status': 'fail', "
          "'name': 'energy', 'value': 'nan', 'bound': 1}]}]}",
          "fail", "1 failure: gate c, l: energy"},
