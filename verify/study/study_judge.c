@@ -76,23 +76,31 @@ static void extrapolate(struct study_result *result)
     }
 }
 
+/* The number of the functional that a gate is of; of a field's gate that of all functionals. */
+static size_t functional_of(const struct study_result *result, const struct case_gate *gate)
+{
+    size_t i = gate->functional ? 0 : result->functional_count;
+    while (i < result->functional_count &&
+           strcmp(result->functional_names[i], gate->functional) != 0)
+        i++;
+    return i;
+}
+
 /* What a gate is of; NULL: of a functional that these settings have no exact value of. */
 static struct study_order *gated(struct study_result *result, const struct case_gate *gate)
 {
+    const size_t i = functional_of(result, gate);
     if (!gate->functional) return &result->orders[gate->field][gate->norm];
-    for (size_t i = 0; i < result->functional_count; i++)
-        if (strcmp(result->functional_names[i], gate->functional) == 0)
-            return result->functional_errors[i].fit.n ? &result->functional_errors[i] : NULL;
-    return NULL;
+    return i < result->functional_count && result->functional_errors[i].fit.n
+               ? &result->functional_errors[i]
+               : NULL;
 }
 
 /* The exact value of a gate's functional; NaN of a field. */
 static double exact_of(const struct study_result *result, const struct case_gate *gate)
 {
-    for (size_t i = 0; gate->functional && i < result->functional_count; i++)
-        if (strcmp(result->functional_names[i], gate->functional) == 0)
-            return result->functional_exact[i];
-    return (double)NAN;
+    const size_t i = functional_of(result, gate);
+    return i < result->functional_count ? result->functional_exact[i] : (double)NAN;
 }
 
 /* Is it the case as it stands, on its own ladder? */
