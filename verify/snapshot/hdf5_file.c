@@ -11,6 +11,8 @@
 #ifdef HAVE_HDF5
 #include <hdf5.h>
 
+enum { HEADER_NUMBERS_MAX = 4096 };
+
 static hid_t file_of(const struct snapshot_source *source)
 {
     return (hid_t)(intptr_t)source->file;
@@ -102,66 +104,84 @@ static bool is_number(hid_t type)
     return (class == H5T_INTEGER || class == H5T_FLOAT) && H5Tget_size(type) <= 8;
 }
 
-/* Opens an attribute and its type and space; false: there is none. Close with close_attribute. */
-struct attribute {
+/* An attribute, or a dataset that a code has in its place, with its type and space. */
+struct entry {
+    bool attribute;
     hid_t self, type, space;
     hssize_t count;
 };
 
-static void close_attribute(struct attribute *a)
+static void close_entry(struct entry *e)
 {
-    if (a->type >= 0) H5Tclose(a->type);
-    if (a->space >= 0) H5Sclose(a->space);
-    if (a->self >= 0) H5Aclose(a->self);
+    if (e->type >= 0) H5Tclose(e->type);
+    if (e->space >= 0) H5Sclose(e->space);
+    if (e->self >= 0) e->attribute ? H5Aclose(e->self) : H5Dclose(e->self);
 }
 
-static bool open_attribute(const struct snapshot_source *source, const char *group,
-                           const char *name, struct attribute *a)
+/* False: there is none, or it has more numbers than a header. Close with close_entry. */
+static bool open_entry(const struct snapshot_source *source, const char *group, const char *name,
+                       struct entry *e)
 {
-    *a = (struct attribute){-1, -1, -1, 0};
-    if (!hdf5_has(source, group) ||
-        H5Aexists_by_name(file_of(source), group, name, H5P_DEFAULT) <= 0)
-        return false;
-    a->self = H5Aopen_by_name(file_of(source), group, name, H5P_DEFAULT, H5P_DEFAULT);
-    if (a->self >= 0) a->type = H5Aget_type(a->self);
-    if (a->self >= 0) a->space = H5Aget_space(a->self);
-    if (a->type >= 0 && a->space >= 0) a->count = H5Sget_simple_extent_npoints(a->space);
-    if (a->count >= 1 && a->count <= 4096) return true;
-    close_attribute(a);
+    char path[256];
+    *e = (struct entry){false, -1, -1, -1, 0};
+    snprintf(path, sizeof path, "%s/%s", group, name);
+    if (!hdf5_has(source, group)) return false;
+    e->attribute = H5Aexists_by_name(file_of(source), group, name, H5P_DEFAULT) > 0;
+    if (e->attribute) {
+        e->self = H5Aopen_by_name(file_of(source), group, name, H5P_DEFAULT, H5P_DEFAULT);
+        if (e->self >= 0) e->type = H5Aget_type(e->self), e->space = H5Aget_space(e->self);
+    } else if (hdf5_has(source, path)) {
+        e->self = H5Dopen2(file_of(source), path, H5P_DEFAULT);
+        if (e->self >= 0) e->type = H5Dget_type(e->self), e->space = H5Dget_space(e->self);
+    }
+    if (e->type >= 0 && e->space >= 0) e->count = H5Sget_simple_extent_npoints(e->space);
+    if (e->count >= 1 && e->count <= HEADER_NUMBERS_MAX) return true;
+    close_entry(e);
     return false;
+}
+
+static bool read_entry(const struct entry *e, hid_t type, void *values)
+{
+    return (e->attribute ? H5Aread(e->self, type, values)
+                         : H5Dread(e->self, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values)) >= 0;
 }
 
 int hdf5_numbers(const struct snapshot_source *source, const char *group, const char *name,
                  double *values, int max)
 {
-    struct attribute a;
+    struct entry e;
     int count = -1;
-    if (!open_attribute(source, group, name, &a)) return -1;
-    double *all = calloc((size_t)a.count, sizeof *all);
-    if (all && is_number(a.type) && H5Aread(a.self, H5T_NATIVE_DOUBLE, all) >= 0) {
-        count = (int)a.count;
+    if (!open_entry(source, group, name, &e)) return -1;
+    double *all = calloc((size_t)e.count, sizeof *all);
+    if (all && is_number(e.type) && read_entry(&e, H5T_NATIVE_DOUBLE, all)) {
+        count = (int)e.count;
         for (int i = 0; i < count && i < max; i++) values[i] = all[i];
     }
     free(all);
-    close_attribute(&a);
+    close_entry(&e);
     return count;
 }
 
 void hdf5_text(const struct snapshot_source *source, const char *group, const char *name,
                char *text, size_t size)
 {
-    struct attribute a;
+    struct entry e;
+    char *all = NULL;
     *text = '\0';
-    if (!open_attribute(source, group, name, &a)) return;
-    const size_t length = H5Tget_size(a.type);
-    if (a.count == 1 && H5Tget_class(a.type) == H5T_STRING && H5Tis_variable_str(a.type) == 0 &&
-        length > 0 && length < 1 << 16) {
-        char *all = calloc(1, length + 1);
-        if (all && H5Aread(a.self, a.type, all) >= 0) snprintf(text, size, "%s", all);
+    if (!open_entry(source, group, name, &e)) return;
+    const bool is_text = e.count == 1 && H5Tget_class(e.type) == H5T_STRING,
+               variable = is_text && H5Tis_variable_str(e.type) > 0;
+    const size_t length = H5Tget_size(e.type);
+    if (variable && read_entry(&e, e.type, &all) && all) {
+        snprintf(text, size, "%s", all);
+        H5free_memory(all);
+    } else if (is_text && !variable && length > 0 && length < 1 << 16 &&
+               (all = calloc(1, length + 1))) {
+        if (read_entry(&e, e.type, all)) snprintf(text, size, "%s", all);
         free(all);
-        status_clean(text);
     }
-    close_attribute(&a);
+    status_clean(text);
+    close_entry(&e);
 }
 
 struct dataset {

@@ -25,12 +25,12 @@ void hdf5_names(const struct snapshot_source *source, const char *group, char *t
 bool hdf5_last(const struct snapshot_source *source, const char *group, const char *prefix,
                char *name, size_t size);
 
-/* Numbers of an attribute of the group into values, how many it has (at most max are set); -1: no
- * such attribute, or no numbers. */
+/* Numbers of an attribute of the group, or of a dataset in it, into values, how many there are (at
+ * most max are set); a scalar is a list of one. -1: there is neither, or it holds no numbers. */
 int hdf5_numbers(const struct snapshot_source *source, const char *group, const char *name,
                  double *values, int max);
 
-/* A text attribute, cleaned; "" where there is none. */
+/* A text, kept like numbers, cleaned; "" where there is none. */
 void hdf5_text(const struct snapshot_source *source, const char *group, const char *name,
                char *text, size_t size);
 

@@ -12,16 +12,16 @@ const char *const snapshot_column_names[SNAPSHOT_COLUMNS] = {
 
 /* What people call them, in small letters, and without what is neither letter nor digit. */
 static const char *const called[SNAPSHOT_COLUMNS] = {
-    "x posx positionx coordinatesx",
+    "x pos posx position positionx positions coordinates coordinatesx",
     "y posy positiony coordinatesy",
     "z posz positionz coordinatesz",
-    "vx velx velocityx velocitiesx",
+    "vx v vel velx velocity velocityx velocities velocitiesx",
     "vy vely velocityy velocitiesy",
     "vz velz velocityz velocitiesz",
     "m mass masses particlemass pmass",
-    "rho density densities",
+    "rho dens density densities",
     "u internalenergy internalenergies specificinternalenergy energy thermalenergy utherm",
-    "p pressure pressures",
+    "p pres pressure pressures",
     "h hsml smoothinglength smoothinglengths",
     "ax accx accelerationx",
     "ay accy accelerationy",

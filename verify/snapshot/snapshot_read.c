@@ -161,13 +161,37 @@ static bool part_path(const char *path, int part, char *text, size_t size)
            snprintf(text, size, "%.*s.%d%s", (int)(at - path), path, part, at + 2) < (int)size;
 }
 
+static bool same(struct snapshot_value a, struct snapshot_value b)
+{
+    return a.known == b.known && a.value == b.value;
+}
+
+/* What the headers of two parts say differently; NULL: nothing. */
+static const char *header_differs(const struct snapshot_file *a, const struct snapshot_file *b)
+{
+    bool boxes_equal = a->boxed == b->boxed;
+    for (int d = 0; d < 3; d++) boxes_equal = boxes_equal && a->box[d] == b->box[d];
+    return strcmp(a->layout, b->layout) ? "layout"
+           : a->parts != b->parts       ? "number of files"
+           : !same(a->time, b->time)    ? "time"
+           : !same(a->gamma, b->gamma)  ? "gamma"
+           : !boxes_equal               ? "box"
+           : a->dim != b->dim           ? "dimension"
+           : a->columns != b->columns   ? "number of coordinates"
+                                        : NULL;
+}
+
 static enum status append(struct snapshot_file *file, const struct snapshot_file *more,
                           const char *path, struct error *error)
 {
-    if (strcmp(file->layout, more->layout) || file->time.value != more->time.value ||
-        file->parts != more->parts || file->gas != file->n || more->gas != more->n ||
-        file->n + more->n > SNAPSHOT_ROWS_MAX)
-        return error_set(error, STATUS_BAD_INPUT, "%.200s: no part of the same snapshot", path);
+    const char *other = header_differs(file, more);
+    if (other)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "%.200s: is no part of the same snapshot: the first part has another %s",
+                         path, other);
+    if (file->n + more->n > SNAPSHOT_ROWS_MAX)
+        return error_set(error, STATUS_BAD_INPUT, "%.200s: with it %zu particles; allowed: %d",
+                         path, file->n + more->n, SNAPSHOT_ROWS_MAX);
     for (int c = 0; c < SNAPSHOT_COLUMNS; c++) {
         if (!file->column[c] != !more->column[c])
             return error_set(error, STATUS_BAD_INPUT, "%.200s: has %s %s than the other parts",
@@ -178,6 +202,7 @@ static enum status append(struct snapshot_file *file, const struct snapshot_file
         memcpy(longer + file->n, more->column[c], more->n * sizeof *longer);
         file->column[c] = longer;
     }
+    for (int k = 0; k < 2; k++) file->precision[k] = fmax(file->precision[k], more->precision[k]);
     file->n = file->gas = file->n + more->n;
     return STATUS_OK;
 }
@@ -251,6 +276,8 @@ static enum status check_columns(const char *path, const struct snapshot_file *f
     if (file->gas < 4)
         return error_set(error, STATUS_BAD_INPUT, "%.200s: %zu gas particles; allowed: at least 4",
                          path, file->gas);
+    if (file->column[SNAPSHOT_X + 2] && !file->column[SNAPSHOT_X + 1])
+        return error_set(error, STATUS_BAD_INPUT, "%.200s: has z but no y; found:%s", path, there);
     for (int d = 1; d < file->dim; d++)
         if (!file->column[d])
             return error_set(error, STATUS_BAD_INPUT,

@@ -87,25 +87,38 @@ enum status text_table_name(struct text_table *table, const char *map, struct er
 
 /* ---- rows ---- */
 
-/* One number of a line that ends at end; Fortran's exponent D counts as E. */
-static bool take_number(const char **at, const char *end, char separator, double *value)
+bool text_table_number(const char *word, double *value)
+{
+    char plain[48];
+    size_t n = 0;
+    for (; word[n] && n + 1 < sizeof plain; n++)
+        plain[n] = word[n] == 'D' || word[n] == 'd' ? 'e' : word[n];
+    plain[n] = '\0';
+    return !word[n] && text_real(plain, value);
+}
+
+static void skip_blanks(const char **at, const char *end)
+{
+    while (*at < end && (**at == ' ' || **at == '\t' || **at == '\r')) ++*at;
+}
+
+/* One number of a line that ends at end, behind the separator unless it is the first. */
+static bool take_number(const char **at, const char *end, char separator, bool first, double *value)
 {
     char word[48];
     size_t n = 0;
-    while (*at < end && (**at == ' ' || **at == '\t')) ++*at;
+    skip_blanks(at, end);
+    if (!first && separator != ' ') {
+        if (*at == end || **at != separator) return false;
+        ++*at;
+        skip_blanks(at, end);
+    }
     while (*at < end && **at != separator && **at != ' ' && **at != '\t' && **at != '\r') {
         if (n + 1 == sizeof word) return false;
-        word[n] = **at == 'D' || **at == 'd' ? 'e' : **at;
-        n++, ++*at;
-    }
-    while (*at < end && (**at == ' ' || **at == '\t' || **at == '\r')) ++*at;
-    if (separator != ' ' && *at < end) {
-        if (**at != separator) return false;
-        ++*at;
-        if (*at == end) return false;
+        word[n++] = *(*at)++;
     }
     word[n] = '\0';
-    return text_real(word, value);
+    return text_table_number(word, value);
 }
 
 static bool blank(const char *line, const char *end)
@@ -140,7 +153,7 @@ static enum status take_rows(const struct text_table *table, size_t from, size_t
         if (!blank(at, stop)) {
             for (size_t c = 0; c < table->columns; c++) {
                 double value;
-                if (!take_number(&at, stop, table->separator, &value))
+                if (!take_number(&at, stop, table->separator, c == 0, &value))
                     return error_set(error, STATUS_BAD_INPUT,
                                      "%.200s:%zu: column %zu, '%s': no number (or a row that is "
                                      "too short)",

@@ -24,8 +24,11 @@ bool text_table_is_text(const struct snapshot_source *source);
  * people call them. STATUS_BAD_INPUT: a map that names no column, a quantity twice. */
 enum status text_table_name(struct text_table *table, const char *map, struct error *error);
 
+/* As text_real; Fortran's exponent D counts as E. */
+bool text_table_number(const char *word, double *value);
+
 /* Reads the rows from the byte `from` on (line: its number), gas first. STATUS_BAD_INPUT: place of
- * what is no number (Fortran's 1.0D0 is one), of rows of another length. */
+ * what is no number, of rows of another length. */
 enum status text_table_read(const struct text_table *table, size_t from, size_t line,
                             struct snapshot_file *file, struct error *error);
 

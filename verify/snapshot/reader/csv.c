@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Text tables: a line with the names of the columns (any names with --map), then a line a particle;
- * separated by commas or, where the first line has none, by blanks. Lines before the particles say
- * what columns do not: "# time = 0.2", "# gamma = 1.4", "# box = 2", "# box = 2 1 1" or
+ * separated by commas or, where the first line has none, by blanks. Where numbers come first, the
+ * names are the last comment before them, as numpy.savetxt writes it. Lines before the particles
+ * say what columns do not: "# time = 0.2", "# gamma = 1.4", "# box = 2", "# box = 2 1 1" or
  * "# box = -1:1 0:0.5"; our own snapshots also have "case", "boundary" and "keys". */
 #include <math.h>
 #include <stdio.h>
@@ -68,8 +69,8 @@ static void take_remark(const char *line, size_t length, struct snapshot_file *f
 static enum status take_names(struct text_table *table, const char *line, size_t length,
                               struct error *error)
 {
-    table->separator = memchr(line, ',', length) ? ',' : ' ';
-    const char *stops = table->separator == ',' ? "," : " \t";
+    const bool commas = memchr(line, ',', length);
+    const char *stops = commas ? "," : " \t";
     for (size_t at = 0; at < length;) {
         size_t n = 0;
         while (at < length && (line[at] == ' ' || line[at] == '\t')) at++;
@@ -78,8 +79,10 @@ static enum status take_names(struct text_table *table, const char *line, size_t
         size_t size = n;
         while (size && strchr(" \t\r", line[at + size - 1])) size--;
         double number;
-        if (table->separator == ' ' && !size) break;
-        if (table->columns == TABLE_COLUMNS_MAX || size >= sizeof table->names[0] || !size)
+        if (!commas && !size) break;
+        const bool last_empty = commas && at + n + 1 == length;
+        if (table->columns == TABLE_COLUMNS_MAX || size >= sizeof table->names[0] || !size ||
+            last_empty)
             return error_set(error, STATUS_BAD_INPUT,
                              "%.200s: names of columns: allowed: at most %d, of 1 to %zu letters",
                              table->source->path, TABLE_COLUMNS_MAX, sizeof table->names[0] - 1);
@@ -89,12 +92,20 @@ static enum status take_names(struct text_table *table, const char *line, size_t
         status_clean(name);
         if (text_real(name, &number))
             return error_set(error, STATUS_BAD_INPUT,
-                             "%.200s: '%.40s' is a number; the first line must hold the names of "
-                             "the columns",
+                             "%.200s: '%.40s' is a number; the first line, or the last comment "
+                             "before the numbers, must hold the names of the columns",
                              table->source->path, name);
         at = next;
     }
     return STATUS_OK;
+}
+
+static bool begins_with_number(const char *line)
+{
+    char word[48];
+    double number;
+    snprintf(word, sizeof word, "%.*s", (int)strcspn(line, " \t\r\n,"), line);
+    return text_table_number(word, &number);
 }
 
 static enum status read(const struct snapshot_source *source,
@@ -103,15 +114,22 @@ static enum status read(const struct snapshot_source *source,
 {
     struct text_table table = {.source = source};
     const char *text = (const char *)source->bytes;
-    size_t at = 0, line = 1;
+    size_t at = 0, line = 1, remark = 0, remark_length = 0;
     if (source->size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0) at = 3;
     for (; at < source->size && (!table.columns || text[at] == '#'); line++) {
         const size_t length = strcspn(text + at, "\n");
         const size_t begin = strspn(text + at, " \t\r");
-        if (text[at + begin] == '#')
+        if (text[at + begin] == '#') {
             take_remark(text + at, length, file);
-        else if (begin < length && take_names(&table, text + at, length, error))
-            return error->status;
+            remark = at + begin + 1, remark_length = length - begin - 1;
+        } else if (begin < length) {
+            const bool named = !(remark_length && begins_with_number(text + at + begin));
+            table.separator = memchr(text + at, ',', length) ? ',' : ' ';
+            if (take_names(&table, named ? text + at : text + remark,
+                           named ? length : remark_length, error))
+                return error->status;
+            if (!named) break; /* rows begin here */
+        }
         at += length + (text[at + length] == '\n');
         if (text[at] == '\0') break;
     }

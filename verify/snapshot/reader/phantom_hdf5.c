@@ -8,6 +8,8 @@
 
 #include "hdf5_gas.h"
 
+enum { GAS = 1, TYPES_MAX = 32 };
+
 static bool recognises(const struct snapshot_source *source)
 {
     return source->file && hdf5_has(source, "header") && hdf5_has(source, "particles");
@@ -19,78 +21,72 @@ static const struct hdf5_names names[] = {
     {SNAPSHOT_H, {"h"}, true},   {SNAPSHOT_RHO, {"density"}, false},
 };
 
-/* Numbers of the header are datasets, attributes in newer files. */
-static struct snapshot_value header(const struct snapshot_source *source, const char *name,
-                                    struct error *error)
+/* Type of each row, as a positive number; NULL: all are gas, or there is no memory. Phantom turns
+ * the sign of particles that are between their time steps. */
+static enum status take_types(const struct snapshot_source *source, struct snapshot_file *file,
+                              double **types, struct error *error)
 {
-    char path[80];
-    double value;
-    if (hdf5_numbers(source, "header", name, &value, 1) >= 1)
-        return (struct snapshot_value){true, value};
-    snprintf(path, sizeof path, "header/%s", name);
-    struct snapshot_file one = {.n = 1};
-    size_t rows, columns;
-    struct snapshot_value found = {0};
-    if (hdf5_shape(source, path, &rows, &columns) && rows >= 1 && columns == 1) {
-        one.n = rows;
-        if (rows <= 4096 && !hdf5_read(source, path, &one, SNAPSHOT_M, error))
-            found = (struct snapshot_value){true, one.column[SNAPSHOT_M][0]};
-    }
-    snapshot_file_free(&one);
-    return found;
+    struct snapshot_file of = {.n = file->n};
+    *types = NULL;
+    if (!hdf5_has(source, "particles/itype")) return STATUS_OK;
+    const enum status status = hdf5_read(source, "particles/itype", &of, SNAPSHOT_M, error);
+    for (size_t i = 0; i < file->n && !status; i++)
+        of.column[SNAPSHOT_M][i] = fabs(of.column[SNAPSHOT_M][i]);
+    if (status)
+        snapshot_file_free(&of);
+    else
+        *types = of.column[SNAPSHOT_M];
+    return status;
 }
 
 /* Rows of gas first, the others after them, each in their order. */
-static enum status sort_gas(const struct snapshot_source *source, struct snapshot_file *file,
+static enum status sort_gas(struct snapshot_file *file, const double *types, const char *path,
                             struct error *error)
 {
-    struct snapshot_file type = {.n = file->n};
-    if (!hdf5_has(source, "particles/itype")) return STATUS_OK;
-    enum status status = hdf5_read(source, "particles/itype", &type, SNAPSHOT_M, error);
+    if (!types) return STATUS_OK;
     double *sorted = malloc((file->n + 1) * sizeof *sorted);
-    if (!status && !sorted)
-        status = error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", source->path);
-    for (int c = 0; c < SNAPSHOT_COLUMNS && !status; c++) {
+    if (!sorted) return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", path);
+    for (int c = 0; c < SNAPSHOT_COLUMNS; c++) {
         if (!file->column[c]) continue;
         size_t at = 0;
         for (int round = 0; round < 2; round++) {
             for (size_t i = 0; i < file->n; i++)
-                if ((fabs(type.column[SNAPSHOT_M][i]) == 1) == !round)
-                    sorted[at++] = file->column[c][i];
+                if ((types[i] == GAS) == !round) sorted[at++] = file->column[c][i];
             if (!round) file->gas = at;
         }
         memcpy(file->column[c], sorted, file->n * sizeof *sorted);
     }
     free(sorted);
-    snapshot_file_free(&type);
-    return status;
+    return STATUS_OK;
 }
 
-static enum status take_header(const struct snapshot_source *source, struct snapshot_file *file,
-                               struct error *error)
+/* Masses, one for each type, and the density that follows from them and h. */
+static enum status take_masses(const struct snapshot_source *source, struct snapshot_file *file,
+                               const double *types, struct error *error)
 {
-    const struct snapshot_value mass = header(source, "massoftype", error),
-                                hfact = header(source, "hfact", error);
-    if (!mass.known || !hfact.known || !(mass.value > 0) || !(hfact.value > 0))
+    double masses[TYPES_MAX] = {0}, hfact = 0;
+    const int count = hdf5_numbers(source, "header", "massoftype", masses, TYPES_MAX),
+              said = hdf5_numbers(source, "header", "hfact", &hfact, 1);
+    if (count < 1 || !(masses[0] > 0) || said < 1 || !(hfact > 0))
         return error_set(error, STATUS_BAD_INPUT,
-                         "%.200s: header/massoftype and header/hfact are needed: Phantom's density "
-                         "is m (hfact/h)^3",
-                         source->path);
+                         "%.200s: Phantom's density is m (hfact/h)^3: header/massoftype %s %g, "
+                         "header/hfact %s %g; allowed: numbers above 0",
+                         source->path, count < 1 ? "is no number, read as" : "begins with",
+                         masses[0], said < 1 ? "is no number, read as" : "is", hfact);
     const bool lacks = !file->column[SNAPSHOT_RHO];
     if (!snapshot_file_make(file, SNAPSHOT_M) || (lacks && !snapshot_file_make(file, SNAPSHOT_RHO)))
         return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", source->path);
     for (size_t i = 0; i < file->n; i++) {
-        file->column[SNAPSHOT_M][i] = mass.value;
+        const double type = types ? types[i] : GAS;
+        const double m = type >= 1 && type <= fmin(count, TYPES_MAX) ? masses[(int)type - 1] : 0;
+        file->column[SNAPSHOT_M][i] = m > 0 ? m : masses[0];
         if (lacks)
             file->column[SNAPSHOT_RHO][i] =
-                mass.value * pow(hfact.value / file->column[SNAPSHOT_H][i], 3);
+                file->column[SNAPSHOT_M][i] * pow(hfact / file->column[SNAPSHOT_H][i], 3);
     }
     if (lacks)
         snapshot_note(&file->notes, "density", "m (hfact/h)^3", "the file stores none; hfact = %g",
-                      hfact.value);
-    file->time = header(source, "time", error);
-    file->gamma = header(source, "gamma", error);
-    if (file->gamma.known) snapshot_note(&file->notes, "gamma", "in the file", "header/gamma");
+                      hfact);
     return STATUS_OK;
 }
 
@@ -102,10 +98,19 @@ static enum status read(const struct snapshot_source *source,
     file->parts = 1;
     file->dim = 3;
     snprintf(file->code, sizeof file->code, "Phantom");
+    double *types = NULL;
+    static const char *const times[] = {"header:time", NULL}, *const gammas[] = {"header:gamma",
+                                                                                 NULL};
     if (hdf5_gas(source, "particles", names, sizeof names / sizeof *names, file, error) ||
-        take_header(source, file, error))
+        take_types(source, file, &types, error))
         return error->status;
-    return sort_gas(source, file, error);
+    file->time = hdf5_first(source, times, NULL);
+    file->gamma = hdf5_first(source, gammas, NULL);
+    if (file->gamma.known) snapshot_note(&file->notes, "gamma", "in the file", "header/gamma");
+    enum status status = take_masses(source, file, types, error);
+    if (!status) status = sort_gas(file, types, source->path, error);
+    free(types);
+    return status;
 }
 
 const struct snapshot_reader reader_phantom_hdf5 = {

@@ -33,7 +33,7 @@ static void take_box(const struct snapshot_source *source, const char *step,
     file->boxed = true;
     for (int d = 0; d < 3; d++) {
         file->box[d] = box[2 * d + 1] - box[2 * d];
-        file->boxed = file->boxed && file->box[d] > 0 && isfinite(box[2 * d]);
+        file->boxed = file->boxed && file->box[d] > 0 && isfinite(file->box[d]);
     }
     for (int d = 0; d < 3 && file->boxed; d++)
         for (size_t i = 0; file->column[d] && i < file->n; i++) file->column[d][i] -= box[2 * d];

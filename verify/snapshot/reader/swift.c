@@ -13,14 +13,10 @@ static bool recognises(const struct snapshot_source *source)
 }
 
 static const struct hdf5_names names[] = {
-    {SNAPSHOT_X, {"Coordinates"}, true},
-    {SNAPSHOT_VX, {"Velocities"}, true},
-    {SNAPSHOT_M, {"Masses"}, true},
-    {SNAPSHOT_RHO, {"Densities"}, true},
-    {SNAPSHOT_U, {"InternalEnergies"}, false},
-    {SNAPSHOT_P, {"Pressures"}, false},
-    {SNAPSHOT_H, {"SmoothingLengths"}, false},
-    {SNAPSHOT_AX, {"Accelerations"}, false},
+    {SNAPSHOT_X, {"Coordinates"}, true},       {SNAPSHOT_VX, {"Velocities"}, true},
+    {SNAPSHOT_M, {"Masses"}, false},           {SNAPSHOT_RHO, {"Densities"}, true},
+    {SNAPSHOT_U, {"InternalEnergies"}, false}, {SNAPSHOT_P, {"Pressures"}, false},
+    {SNAPSHOT_H, {"SmoothingLengths"}, false}, {SNAPSHOT_AX, {"Accelerations"}, false},
 };
 
 static enum status read(const struct snapshot_source *source,

@@ -1,0 +1,102 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * HDF5 files made from a list of what is in them, in every form in which a code may store it.
+ * Include after cmocka.h and where HAVE_HDF5 is defined. */
+#ifndef MADE_HDF5_H
+#define MADE_HDF5_H
+
+#include <hdf5.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { ITEM_NUMBERS = 64 };
+
+/* How numbers are stored, and texts. */
+enum stored { F64, F32, F32_BIG, I64, I32_BIG, I8, TEXT, TEXT_VARIABLE, GROUP };
+
+/* A dataset or, of the group that stands before the last '/', an attribute. */
+struct item {
+    char path[64]; /* "": the item is left out */
+    bool attribute;
+    enum stored stored;
+    int rank; /* 0: a scalar */
+    hsize_t shape[3];
+    bool packed; /* in pieces, compressed */
+    double values[ITEM_NUMBERS];
+    char text[48];
+};
+
+static hid_t item_type(const struct item *item)
+{
+    const hid_t numbers[] = {H5T_IEEE_F64LE, H5T_IEEE_F32LE, H5T_IEEE_F32BE,
+                             H5T_STD_I64LE,  H5T_STD_I32BE,  H5T_STD_I8LE};
+    if (item->stored < TEXT) return H5Tcopy(numbers[item->stored]);
+    const hid_t type = H5Tcopy(H5T_C_S1);
+    H5Tset_size(type, item->stored == TEXT ? sizeof item->text : H5T_VARIABLE);
+    return type;
+}
+
+/* Groups on the way are made, also those in which there is nothing else. */
+static hid_t group_of(hid_t file, const char *path, size_t length)
+{
+    char part[64];
+    hid_t group = H5Gopen2(file, "/", H5P_DEFAULT);
+    for (size_t k = 1; k <= length; k++) {
+        if (k < length && path[k] != '/') continue;
+        snprintf(part, sizeof part, "%.*s", (int)k, path);
+        H5Gclose(group);
+        group = H5Lexists(file, part, H5P_DEFAULT) > 0
+                    ? H5Gopen2(file, part, H5P_DEFAULT)
+                    : H5Gcreate2(file, part, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    }
+    return group;
+}
+
+static void write_item(hid_t file, const struct item *item)
+{
+    const char *slash = strrchr(item->path, '/'), *name = slash ? slash + 1 : item->path;
+    const hid_t group = group_of(file, item->path, slash ? (size_t)(slash - item->path) : 0);
+    const hid_t type = item_type(item), how = H5Pcreate(H5P_DATASET_CREATE);
+    const hid_t space =
+        item->rank ? H5Screate_simple(item->rank, item->shape, NULL) : H5Screate(H5S_SCALAR);
+    const char *text = item->text;
+    const hid_t memory = item->stored < TEXT ? H5T_NATIVE_DOUBLE : type;
+    const void *values = item->stored < TEXT    ? (const void *)item->values
+                         : item->stored == TEXT ? (const void *)item->text
+                                                : (const void *)&text;
+    herr_t status = 0;
+    if (item->stored == GROUP) {
+        H5Gclose(group_of(file, item->path, strlen(item->path)));
+    } else if (item->attribute) {
+        const hid_t self = H5Acreate2(group, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
+        status = H5Awrite(self, memory, values);
+        H5Aclose(self);
+    } else {
+        const hsize_t piece[3] = {3, 1, 1};
+        if (item->packed && item->rank) {
+            H5Pset_chunk(how, item->rank, piece);
+            H5Pset_shuffle(how);
+            H5Pset_deflate(how, 4);
+        }
+        const hid_t self = H5Dcreate2(group, name, type, space, H5P_DEFAULT, how, H5P_DEFAULT);
+        if (item->stored < TEXT || !item->rank) /* a table of texts is left empty */
+            status = H5Dwrite(self, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, values);
+        H5Dclose(self);
+    }
+    if (status < 0) fail_msg("%s is not written", item->path);
+    H5Sclose(space);
+    H5Pclose(how);
+    H5Tclose(type);
+    H5Gclose(group);
+}
+
+static void write_items(const char *path, const struct item *items, size_t n)
+{
+    const hid_t file = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+    assert_true(file >= 0);
+    for (size_t k = 0; k < n; k++)
+        if (items[k].path[0]) write_item(file, &items[k]);
+    H5Fclose(file);
+}
+
+#endif

@@ -1,0 +1,208 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Readers of HDF5: every layout is made from a list of all that it may hold. Then each item of the
+ * list in turn is left out, stored in every other form (which must change nothing) and spoilt in
+ * every way (which must be refused, or read as absent). */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#ifdef HAVE_HDF5
+#include <float.h>
+
+#include "made_layouts.h"
+
+static void left_out(void **state)
+{
+    (void)state;
+    for (int a = 0; a < LAYOUTS; a++) {
+        const struct layout *l = &layouts[a];
+        struct item items[ITEMS_MAX];
+        items_of(l, items);
+        reads(l, items, "all");
+        for (size_t k = 0; k < l->count; k++) {
+            const char *name = strrchr(l->fields[k].path, '/') + 1;
+            items_of(l, items);
+            items[k].path[0] = '\0';
+            if (l->fields[k].needed)
+                refuses(l, items, l->fields[k].path, name);
+            else if (l->fields[k].meaning == COLUMN && l->fields[k].column == SNAPSHOT_X + 1)
+                refuses(l, items, l->fields[k].path, "has z but no y");
+            else
+                reads(l, items, l->fields[k].path);
+        }
+        /* without masses of their own, and without any */
+        items_of(l, items);
+        bool named = false;
+        for (size_t k = 0; k < l->count; k++)
+            if (l->fields[k].column == SNAPSHOT_M) items[k].path[0] = '\0', named = true;
+        for (size_t k = 0; k < l->count; k++)
+            if (l->fields[k].meaning == MASS) items[k].path[0] = '\0';
+        if (named) refuses(l, items, "no masses", "no masses");
+        /* neither of two that stand for each other */
+        items_of(l, items);
+        for (size_t k = 0; k < l->count; k++)
+            if (l->fields[k].column == SNAPSHOT_U || l->fields[k].column == SNAPSHOT_P)
+                items[k].path[0] = '\0';
+        refuses(l, items, "no energies", "neither u nor P");
+    }
+}
+
+/* Numbers may be stored in any way: nothing that is read differs. */
+static void other_forms(void **state)
+{
+    static const enum stored numbers[] = {F32, F32_BIG, I64, I32_BIG};
+    (void)state;
+    for (int a = 0; a < LAYOUTS; a++) {
+        const struct layout *l = &layouts[a];
+        for (size_t k = 0; k < l->count; k++) {
+            const struct field *f = &l->fields[k];
+            struct item items[ITEMS_MAX];
+            for (size_t s = 0; s < sizeof numbers / sizeof *numbers && !f->text; s++) {
+                items_of(l, items);
+                items[k].stored = numbers[s];
+                reads(l, items, f->path);
+            }
+            items_of(l, items);
+            items[k].packed = true;
+            if (is_column(f)) reads(l, items, f->path);
+            if (is_column(f) && f->width == 1) { /* N x 1 */
+                items[k].rank = 2;
+                items[k].shape[1] = 1;
+                reads(l, items, f->path);
+            }
+            if (is_column(f)) continue;
+            items_of(l, items);
+            for (int form = 0; form < 8; form++) { /* where a number is said */
+                items[k].attribute = form % 2;
+                if (f->text && !items[k].attribute) continue;
+                if (f->width <= 1) items[k].rank = form / 2 % 3;
+                if (f->width <= 1 && items[k].rank) items[k].shape[0] = items[k].shape[1] = 1;
+                if (f->text) items[k].stored = form / 4 ? TEXT_VARIABLE : TEXT;
+                reads(l, items, f->path);
+            }
+        }
+    }
+}
+
+static double fault_of(int fault)
+{
+    const double faults[] = {(double)NAN, (double)INFINITY, (double)-INFINITY, 1e101, -1e101};
+    return faults[fault];
+}
+
+/* Columns of another shape, of words, a group in their place, and values that cannot be. */
+static void spoilt_columns(void **state)
+{
+    (void)state;
+    for (int a = 0; a < LAYOUTS; a++) {
+        const struct layout *l = &layouts[a];
+        for (size_t k = 0; k < l->count; k++) {
+            const struct field *f = &l->fields[k];
+            const bool first = f->column == SNAPSHOT_X && f->meaning == COLUMN;
+            struct item items[ITEMS_MAX];
+            char says[80];
+            if (!is_column(f) || f->meaning == IGNORED) continue;
+            for (int more = -1; more < 2; more += 2) {
+                items_of(l, items);
+                items[k].shape[0] = (hsize_t)(N + more);
+                /* rows of others, or a count in the header, do not agree with those of positions */
+                snprintf(says, sizeof says, "%s has %d x %d numbers; allowed: %d x %s", f->path,
+                         N + more, f->width, N,
+                         f->meaning == COLUMN &&
+                                 (f->column == SNAPSHOT_X || f->column == SNAPSHOT_VX ||
+                                  f->column == SNAPSHOT_AX)
+                             ? "1 to 3"
+                             : "1");
+                refuses(l, items, f->path, first ? "allowed: 1" : says);
+            }
+            items_of(l, items);
+            items[k].rank = 2;
+            items[k].shape[1] = 4;
+            refuses(l, items, f->path, "12 x 4");
+            items[k].shape[0] = 0;
+            refuses(l, items, f->path, first ? "no particles" : "0 x 4");
+            items[k].rank = 3;
+            items[k].shape[0] = N, items[k].shape[1] = items[k].shape[2] = 1;
+            refuses(l, items, f->path, "no table of numbers");
+            items_of(l, items);
+            items[k].stored = TEXT;
+            refuses(l, items, f->path, "no table of numbers");
+            items[k].stored = GROUP;
+            refuses(l, items, f->path, "no table of numbers");
+            if (f->meaning == TYPES) continue;
+            for (int fault = 0; fault < 5; fault++)
+                for (int c = 0; c < f->width; c++) {
+                    items_of(l, items);
+                    items[k].values[5 * f->width + c] = fault_of(fault);
+                    snprintf(says, sizeof says, "%s of particle %d is",
+                             snapshot_column_names[f->column + (unsigned)c],
+                             field_of(l, items, TYPES) ? 3 : 5);
+                    refuses(l, items, f->path, says);
+                }
+            for (int fault = 0; fault < 2; fault++) { /* 0, and below it */
+                const bool above = f->column == SNAPSHOT_M || f->column == SNAPSHOT_RHO ||
+                                   f->column == SNAPSHOT_H,
+                           below = f->column == SNAPSHOT_U || f->column == SNAPSHOT_P;
+                items_of(l, items);
+                items[k].values[5 * f->width] = fault ? -DBL_MIN : 0;
+                if (above || (below && fault))
+                    refuses(l, items, f->path, above ? "above 0" : "0 or above");
+            }
+        }
+    }
+}
+
+/* In the header: words, nothing, no number. */
+static void spoilt_numbers(void **state)
+{
+    (void)state;
+    for (int a = 0; a < LAYOUTS; a++) {
+        const struct layout *l = &layouts[a];
+        for (size_t k = 0; k < l->count; k++) {
+            const struct field *f = &l->fields[k];
+            const char *name = strrchr(f->path, '/') + 1;
+            struct item items[ITEMS_MAX];
+            if (is_column(f) || f->text || f->meaning == IGNORED) continue;
+            items_of(l, items);
+            items[k].stored = TEXT, items[k].rank = 0;
+            if (f->needed) refuses(l, items, f->path, name);
+            items_of(l, items);
+            items[k].values[0] = (double)NAN;
+            if (f->meaning == TIME) refuses(l, items, f->path, "time = nan");
+            if (f->meaning == PARTS || f->meaning == COUNT || f->needed)
+                refuses(l, items, f->path, name);
+            items[k].values[0] = 0;
+            if (f->meaning == PARTS || f->meaning == COUNT || f->needed)
+                refuses(l, items, f->path, name);
+            items[k].values[0] = SNAPSHOT_PARTS_MAX + 1;
+            if (f->meaning == PARTS) refuses(l, items, f->path, "allowed: 1 to 512");
+            items[k].values[0] = 2;
+            if (f->meaning == PARTS) refuses(l, items, f->path, "one of 2 files");
+            if (f->meaning == DIMENSION)
+                refuses(l, items, f->path, "says that it has 2 dimensions");
+            items[k].values[0] = N + 1;
+            if (f->meaning == COUNT)
+                refuses(l, items, f->path, "13 gas particles, PartType0 has 12");
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(left_out),
+        cmocka_unit_test(other_forms),
+        cmocka_unit_test(spoilt_columns),
+        cmocka_unit_test(spoilt_numbers),
+    };
+    return cmocka_run_group_tests(tests, make_place, remove_place);
+}
+#else
+
+int main(void)
+{
+    return 77; /* skipped: no HDF5 */
+}
+#endif

@@ -1,0 +1,254 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Headers in HDF5: other names, boxes, dimensions, precision, comoving units, and files that no
+ * reader knows. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#ifdef HAVE_HDF5
+#include <float.h>
+
+#include "made_layouts.h"
+
+/* ---- what a layout calls otherwise, or has beside ---- */
+
+static struct item *item_called(struct item *items, const char *path)
+{
+    while (strcmp(items->path, path) != 0) items++;
+    return items;
+}
+
+static void add_number(struct item *item, const char *path, double value)
+{
+    *item = (struct item){.attribute = true, .values = {value}};
+    snprintf(item->path, sizeof item->path, "%s", path);
+}
+
+static void other_names(void **state)
+{
+    static const struct {
+        int layout;
+        const char *from, *to;
+    } rows[] = {{0, "PartType0/SmoothingLength", "PartType0/Hsml"},
+                {0, "PartType0/Acceleration", "PartType0/HydroAcceleration"},
+                {0, "Header/Gamma", "Header/gamma"},
+                {0, "Header/Gamma", "Parameters/Gamma"},
+                {1, "HydroScheme/Dimension", "Header/Dimension"}};
+    struct item items[ITEMS_MAX];
+    (void)state;
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        items_of(&layouts[rows[k].layout], items);
+        snprintf(item_called(items, rows[k].from)->path, sizeof items->path, "%s", rows[k].to);
+        reads(&layouts[rows[k].layout], items, rows[k].to);
+    }
+    /* what a code calls itself */
+    for (int k = 0; k < 4; k++) {
+        static const char *const codes[] = {"AREPO or GADGET-4", "GIZMO 2022", "SWIFT v1.0",
+                                            "SWIFT"};
+        struct layout l = layouts[k > 1];
+        const size_t n = items_of(&l, items);
+        l.code = codes[k];
+        l.count = n + 1;
+        l.fields[n] = (struct field){.path = "Config/x", .meaning = IGNORED};
+        if (k < 2) {
+            add_number(&items[n], k ? "Header/GIZMO_version" : "Config/x", 2022);
+        } else {
+            items[n] = (struct item){.attribute = true, .stored = TEXT};
+            strcpy(items[n].path, "Code/Git Revision");
+            strcpy(items[n].text, k == 2 ? "v1.0" : "unknown");
+        }
+        reads(&l, items, codes[k]);
+    }
+    struct layout l = layouts[0]; /* AREPO's */
+    items_of(&l, items);
+    strcpy(item_called(items, "Header/Gamma")->path, "Config/GAMMA");
+    l.code = "AREPO or GADGET-4";
+    reads(&l, items, "Config/GAMMA");
+}
+
+/* Runs in an expanding universe are not read: by what they say, else by redshift and time. */
+static void comoving(void **state)
+{
+    static const struct {
+        const char *path;
+        double said, redshift, time;
+        bool comoving;
+    } rows[] = {{"Header/ComovingIntegrationOn", 1, 0, 3, true},
+                {"Parameters/ComovingIntegrationOn", 1, 0, 3, true},
+                {"Cosmology/Cosmological run", 1, 0, 3, true},
+                {"Header/ComovingIntegrationOn", 0, 1, 0.5, false},
+                {NULL, 0, 1, 0.5, true},
+                {NULL, 0, 1, 0.5 * (1 + 9e-7), true},
+                {NULL, 0, 1, 0.5 * (1 + 3e-6), false},
+                {NULL, 0, 1, 3, false},
+                {NULL, 0, 0, 1, false},
+                {NULL, 0, -0.5, 2, false}};
+    (void)state;
+    for (int a = 0; a < 2; a++)
+        for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+            struct layout l = layouts[a];
+            struct item items[ITEMS_MAX];
+            const size_t n = items_of(&l, items);
+            item_called(items, "Header/Time")->values[0] = rows[k].time;
+            for (size_t f = 0; f < n; f++)
+                if (l.fields[f].meaning == TIME) l.fields[f].value = rows[k].time;
+            l.fields[n] = l.fields[n + 1] = (struct field){.path = "", .meaning = IGNORED};
+            add_number(&items[n], rows[k].path ? rows[k].path : "", rows[k].said);
+            add_number(&items[n + 1], "Header/Redshift", rows[k].redshift);
+            l.count = n + 2;
+            if (rows[k].comoving)
+                refuses(&l, items, "an expanding box", "comoving");
+            else
+                reads(&l, items, "no expanding box");
+        }
+}
+
+static void boxes(void **state)
+{
+    static const struct {
+        int count;
+        double box[3];
+        bool boxed;
+        double wanted[3];
+    } rows[] = {{1, {20}, true, {20, 20, 20}},
+                {3, {20, 21, 22}, true, {20, 21, 22}},
+                {2, {20, 21}, true, {20, 21, 0}},
+                {1, {0}, false, {0}},
+                {1, {-1}, false, {0}},
+                {1, {(double)NAN}, false, {0}},
+                {1, {(double)INFINITY}, false, {0}},
+                {3, {20, -1, 22}, true, {20, 0, 22}},
+                {3, {20, (double)INFINITY, 22}, true, {20, 0, 22}}};
+    struct item items[ITEMS_MAX];
+    (void)state;
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        struct snapshot_file file;
+        struct error error = {0};
+        items_of(&layouts[0], items);
+        struct item *box = item_called(items, "Header/BoxSize");
+        box->rank = rows[k].count > 1, box->shape[0] = (hsize_t)rows[k].count;
+        memcpy(box->values, rows[k].box, sizeof rows[k].box);
+        write_items(path_of("b.hdf5"), items, layouts[0].count);
+        if (snapshot_read(path_of("b.hdf5"), &here, &file, &error)) fail_msg("%s", error.message);
+        assert_true(file.boxed == rows[k].boxed);
+        for (int d = 0; d < 3; d++) assert_true(file.box[d] == rows[k].wanted[d]);
+        snapshot_file_free(&file);
+    }
+    static const struct {
+        int at;
+        double value;
+    } wrong[] = {{0, (double)NAN},      {1, -9}, {1, -8},
+                 {1, (double)INFINITY}, {4, 7},  {5, (double)NAN}};
+    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) { /* of ends: all or none */
+        struct snapshot_file file;
+        struct error error = {0};
+        items_of(&layouts[2], items);
+        item_called(items, "Step#10/box")->values[wrong[k].at] = wrong[k].value;
+        write_items(path_of("b.hdf5"), items, layouts[2].count);
+        if (snapshot_read(path_of("b.hdf5"), &here, &file, &error)) fail_msg("%s", error.message);
+        assert_false(file.boxed);
+        assert_true(file.column[0][0] == 0);
+        snapshot_file_free(&file);
+    }
+}
+
+/* Precision is that of the coarsest column, positions apart. */
+static void precision(void **state)
+{
+    (void)state;
+    for (size_t k = 0; k < layouts[0].count; k++) {
+        const struct field *f = &layouts[0].fields[k];
+        struct snapshot_file file;
+        struct error error = {0};
+        struct item items[ITEMS_MAX];
+        items_of(&layouts[0], items);
+        items[k].stored = F32;
+        write_items(path_of("p.hdf5"), items, layouts[0].count);
+        if (snapshot_read(path_of("p.hdf5"), &here, &file, &error)) fail_msg("%s", error.message);
+        const bool column = f->meaning == COLUMN, x = column && f->column < SNAPSHOT_VX;
+        assert_true(file.precision[0] == (x ? (double)FLT_EPSILON : DBL_EPSILON) / 2);
+        assert_true(file.precision[1] == (column && !x ? (double)FLT_EPSILON : DBL_EPSILON) / 2);
+        snapshot_file_free(&file);
+    }
+}
+
+/* As many dimensions as positions vary along: the first ones. */
+static void dimensions(void **state)
+{
+    (void)state;
+    for (int width = 1; width <= 3; width++)
+        for (int varies = 0; varies < 1 << width; varies++)
+            for (int v = 1; v <= 3; v++) {
+                struct snapshot_file file;
+                struct error error = {0};
+                struct item items[ITEMS_MAX];
+                items_of(&layouts[0], items);
+                item_called(items, "Header/Dimension")->path[0] = '\0';
+                struct item *x = item_called(items, "PartType0/Coordinates"),
+                            *velocity = item_called(items, "PartType0/Velocities");
+                x->shape[1] = (hsize_t)width;
+                velocity->shape[1] = (hsize_t)v;
+                for (int i = 0; i < N; i++)
+                    for (int d = 0; d < width; d++)
+                        x->values[width * i + d] = varies >> d & 1 && i == N - 1 ? 7 : 5;
+                write_items(path_of("d.hdf5"), items, layouts[0].count);
+                const enum status status = snapshot_read(path_of("d.hdf5"), &here, &file, &error);
+                const int dim = varies == 1 ? 1 : varies == 3 ? 2 : varies == 7 ? 3 : 0;
+                assert_int_equal(status, dim && v >= dim ? STATUS_OK : STATUS_BAD_INPUT);
+                if (status)
+                    assert_non_null(strstr(error.message, !varies ? "all particles are at one place"
+                                                          : !dim  ? "positions differ along"
+                                                          : v < 2 ? "no vy"
+                                                                  : "no vz"));
+                else
+                    assert_true(file.dim == dim && file.columns == width);
+                snapshot_file_free(&file);
+            }
+}
+
+/* ---- what is none of them ---- */
+
+static void unknown(void **state)
+{
+    static const struct {
+        const char *paths[3], *says;
+    } rows[] = {
+        {{"stuff/a", "more/b"}, "it has: more stuff"},
+        {{"Header/Time"}, "no gas (PartType0); it has: Header"},
+        {{"Header/Time", "PartType1/x"}, "(dark matter only?)"},
+        {{"Header/Time", "HydroScheme/x", "PartType1/x"}, "it has: Header HydroScheme PartType1"},
+        {{"Header/Time", "PartType0/x"}, "PartType0 holds no Coordinates; it has: x"},
+        {{"header/time"}, "it has: header"},
+        {{"header/time", "particles/x"}, "particles holds no xyz; it has: x"},
+        {{"Step#/x"}, "it has: Step#"},
+        {{"Step#3x/x"}, "it has: Step#3x"},
+        {{"Step#3/y"}, "Step#3 holds no x; it has: y"}};
+    (void)state;
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        struct item items[3] = {0};
+        struct layout l = {.name = rows[k].says, .count = 3};
+        for (int i = 0; i < 3 && rows[k].paths[i]; i++) {
+            items[i].rank = 1, items[i].shape[0] = 5;
+            strcpy(items[i].path, rows[k].paths[i]);
+        }
+        refuses(&l, items, rows[k].paths[0], rows[k].says);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(other_names), cmocka_unit_test(comoving),   cmocka_unit_test(boxes),
+        cmocka_unit_test(precision),   cmocka_unit_test(dimensions), cmocka_unit_test(unknown),
+    };
+    return cmocka_run_group_tests(tests, make_place, remove_place);
+}
+#else
+
+int main(void)
+{
+    return 77; /* skipped: no HDF5 */
+}
+#endif

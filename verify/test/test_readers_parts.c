@@ -1,0 +1,233 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Snapshots in several files: joined in the order of their numbers, whatever lies where, and not
+ * joined where their headers differ. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#ifdef HAVE_HDF5
+#include <float.h>
+
+#include "made_layouts.h"
+
+static const struct layout *const gadget = &layouts[0];
+enum { PARTS_MOST = 4 };
+
+/* The list, with numbers of particles that tell the part; as many as the part's place says. */
+static void part(int k, int parts, struct item *items)
+{
+    items_of(gadget, items);
+    for (size_t i = 0; i < gadget->count; i++) {
+        const struct field *f = &gadget->fields[i];
+        if (f->meaning == COUNT) items[i].values[0] = N - k;
+        if (f->meaning == PARTS) items[i].values[0] = parts;
+        if (!is_column(f)) continue;
+        items[i].shape[0] = (hsize_t)(N - k);
+        for (int j = 0; j < N * f->width; j++) items[i].values[j] += 1000 * k;
+    }
+    for (size_t i = 0; i < gadget->count; i++)
+        if (gadget->fields[i].meaning == BOX)
+            for (int d = 0; d < 3; d++) items[i].values[d] = 9000 + d;
+}
+
+static void write_part(const char *name, const struct item *items)
+{
+    write_items(path_of(name), items, gadget->count);
+}
+
+static enum status read_parts(const char *name, struct snapshot_file *file, struct error *error)
+{
+    *error = (struct error){0};
+    return snapshot_read(path_of(name), &here, file, error);
+}
+
+/* In whatever order parts lie there, their particles follow each other by the numbers of files. */
+static void every_order(void **state)
+{
+    int order[PARTS_MOST] = {0, 1, 2, 3};
+    (void)state;
+    for (int parts = 1; parts <= PARTS_MOST; parts++)
+        for (int turn = 0; turn < 6; turn++) {
+            struct snapshot_file file;
+            struct error error;
+            struct item items[ITEMS_MAX];
+            const int a = turn % parts, b = (turn / 2 + 1) % parts, swap = order[a];
+            char name[32];
+            for (int k = 0; k < PARTS_MOST && turn == 0; k++) order[k] = k;
+            if (turn) order[a] = order[b], order[b] = swap;
+            size_t n = 0;
+            for (int k = 0; k < parts; k++) {
+                snprintf(name, sizeof name, "run.05.%d.hdf5", k);
+                part(order[k], parts, items);
+                write_part(name, items);
+                n += (size_t)(N - order[k]);
+            }
+            if (read_parts("run.05.0.hdf5", &file, &error)) fail_msg("%s", error.message);
+            assert_true(file.n == n && file.gas == n && file.parts == parts);
+            size_t at = 0;
+            for (int k = 0; k < parts; k++)
+                for (int i = 0; i < N - order[k]; i++, at++)
+                    for (size_t f = 0; f < gadget->count; f++)
+                        for (int c = 0; c < gadget->fields[f].width; c++) {
+                            const struct field *of = &gadget->fields[f];
+                            if (of->meaning != COLUMN) continue;
+                            assert_true(file.column[of->column + (unsigned)c][at] ==
+                                        planted(of, i, c) + 1000 * order[k]);
+                        }
+            snapshot_file_free(&file);
+        }
+}
+
+/* Any of two parts has one item otherwise: they are not joined. */
+static void other_headers(void **state)
+{
+    static const struct {
+        const char *item, *says;
+        bool gone;
+        double value;
+    } rows[] = {{"Header/Time", "another time", false, 4},
+                {"Header/Time", "another time", true, 0},
+                {"Header/Gamma", "another gamma", false, 1.5},
+                {"Header/Gamma", "another gamma", true, 0},
+                {"Header/BoxSize", "another box", false, 9001},
+                {"Header/BoxSize", "another box", true, 0},
+                {"Header/Dimension", "another dimension", true, 0},
+                {"Header/NumPart_ThisFile", "cut off or damaged", false, 3},
+                {"Header/NumFilesPerSnapshot", "another number of files", false, 3},
+                {"PartType0/Masses", "m than the other parts", true, 0},
+                {"PartType0/Pressure", "P than the other parts", true, 0},
+                {"PartType0/Acceleration", "ax than the other parts", true, 0}};
+    (void)state;
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
+        for (int which = 0; which < 2; which++) {
+            struct snapshot_file file;
+            struct error error;
+            struct item items[2][ITEMS_MAX];
+            char name[32];
+            for (int p = 0; p < 2; p++) part(p, 2, items[p]);
+            for (size_t i = 0; i < gadget->count; i++) {
+                struct item *item = &items[which][i];
+                if (strcmp(item->path, rows[k].item) != 0) continue;
+                if (rows[k].gone)
+                    item->path[0] = '\0';
+                else
+                    item->values[0] = rows[k].value;
+            }
+            for (int p = 0; p < 2; p++) {
+                snprintf(name, sizeof name, "s.%d", p);
+                write_part(name, items[p]);
+            }
+            const bool masses = strstr(rows[k].item, "Masses"); /* the table has them */
+            const enum status status = read_parts("s.0", &file, &error);
+            snapshot_file_free(&file);
+            if (masses) {
+                assert_int_equal(status, STATUS_OK);
+                continue;
+            }
+            if (status != STATUS_BAD_INPUT || !strstr(error.message, rows[k].says))
+                fail_msg("%s of part %d: '%s' is not in: %s", rows[k].item, which, rows[k].says,
+                         error.message);
+            const bool own = strstr(rows[k].says, "cut off"); /* of the file itself */
+            assert_non_null(strstr(error.message, own && !which ? "s.0" : "s.1"));
+        }
+}
+
+/* Along each direction, and where only the last part is another. */
+static void other_boxes(void **state)
+{
+    (void)state;
+    for (int d = 0; d < 3; d++)
+        for (int which = 0; which < 3; which++) {
+            struct snapshot_file file;
+            struct error error;
+            char name[32];
+            for (int p = 0; p < 3; p++) {
+                struct item items[ITEMS_MAX];
+                part(p, 3, items);
+                for (size_t i = 0; i < gadget->count && p == which; i++)
+                    if (gadget->fields[i].meaning == BOX) items[i].values[d] += 1;
+                snprintf(name, sizeof name, "b.%d.h5", p);
+                write_part(name, items);
+            }
+            assert_int_equal(read_parts("b.0.h5", &file, &error), STATUS_BAD_INPUT);
+            assert_non_null(
+                strstr(error.message, which == 2 ? "b.2.h5: is no part" : "b.1.h5: is no part"));
+            snapshot_file_free(&file);
+        }
+}
+
+/* The coarsest part says how precise the whole is. */
+static void precision(void **state)
+{
+    (void)state;
+    for (int which = 0; which < 2; which++) {
+        struct snapshot_file file;
+        struct error error;
+        char name[32];
+        for (int p = 0; p < 2; p++) {
+            struct item items[ITEMS_MAX];
+            part(p, 2, items);
+            items[0].stored = p == which ? F32 : F64; /* positions */
+            items[1].stored = p == which ? F64 : F32;
+            snprintf(name, sizeof name, "p.%d.h5", p);
+            write_part(name, items);
+        }
+        if (read_parts("p.0.h5", &file, &error)) fail_msg("%s", error.message);
+        for (int k = 0; k < 2; k++) assert_true(file.precision[k] == (double)FLT_EPSILON / 2);
+        snapshot_file_free(&file);
+    }
+}
+
+static void names(void **state)
+{
+    static const struct {
+        const char *first, *second, *says; /* says NULL: read */
+    } rows[] = {{"a.0", "a.1", NULL},
+                {"a.0.hdf5", "a.1.hdf5", NULL},
+                {"a.05.0.hdf5", "a.05.1.hdf5", NULL},
+                {"a.0b.0.hdf5", "a.0b.1.hdf5", NULL},
+                {"d.0/a.0.hdf5", "d.0/a.1.hdf5", NULL},
+                {"c.0.hdf5", "c.2.hdf5", "c.1.hdf5: cannot be read"},
+                {"c.1.hdf5", "c.2.hdf5", "one of 2 files of a snapshot; give the first"},
+                {"c.hdf5", "d.hdf5", "give the first"},
+                {"c.01.hdf5", "c.11.hdf5", "give the first"},
+                {"d.0/c.hdf5", "d.1/c.hdf5", "give the first"}};
+    char command[300];
+    (void)state;
+    snprintf(command, sizeof command, "mkdir %s/d.0 %s/d.1", place, place);
+    assert_int_equal(system(command), 0);
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        struct snapshot_file file;
+        struct error error;
+        for (int p = 0; p < 2; p++) {
+            struct item items[ITEMS_MAX];
+            part(p, 2, items);
+            write_part(p ? rows[k].second : rows[k].first, items);
+        }
+        const enum status status = read_parts(rows[k].first, &file, &error);
+        if (status != (rows[k].says ? STATUS_BAD_INPUT : STATUS_OK) ||
+            (rows[k].says && !strstr(error.message, rows[k].says)))
+            fail_msg("%s: %s", rows[k].first, error.message);
+        if (!status) assert_int_equal(file.n, 2 * N - 1);
+        snapshot_file_free(&file);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_order), cmocka_unit_test(other_headers),
+        cmocka_unit_test(other_boxes), cmocka_unit_test(precision),
+        cmocka_unit_test(names),
+    };
+    return cmocka_run_group_tests(tests, make_place, remove_place);
+}
+#else
+
+int main(void)
+{
+    return 77; /* skipped: no HDF5 */
+}
+#endif
