@@ -53,7 +53,8 @@ enum status judge_place(const struct judge_request *request, struct judged *judg
 /* ---- several ---- */
 
 /* How much a conserved quantity differs between the first and the last of several snapshots of one
- * run; false: there are no two of the same particles at different times. */
+ * run (of several runs: of most particles); false: there are no two of as many particles at
+ * different times. */
 bool judge_drift(const struct judged *judged, size_t n, struct trace_drift *drift, size_t pair[2]);
 
 /* A bound for an error: density_l1=2e-3. */
@@ -75,7 +76,7 @@ const struct judged *judge_main(const struct judged *judged, size_t n);
 json_t *judge_json(const struct judged *judged, size_t n, const struct judge_gate *gates,
                    size_t gate_count, bool profiles);
 
-/* Orders of L1 against n^(1/d), of all fields: [{"field", "norm", "order", "low", "high",
+/* Orders of L1 against n^(1/d), of all fields, from the last snapshot of each n: [{"field", "norm", "order", "low", "high",
  * "pairwise"}], [] where there are no two different n. New reference. */
 json_t *judge_orders(const struct judged *judged, size_t n);
 

@@ -10,28 +10,40 @@
 #include "result.h"
 #include "text.h"
 
-bool judge_drift(const struct judged *judged, size_t n, struct trace_drift *drift, size_t pair[2])
+/* More particles; of as many, later; of one time, whichever comes first. */
+static bool better(const struct judged *a, const struct judged *b)
 {
-    for (size_t a = 0; a < n; a++)
-        for (size_t b = 0; b < n; b++) {
-            const struct judged *start = &judged[a], *end = &judged[b];
-            if (start->result.n != end->result.n || !(start->result.time < end->result.time))
-                continue;
-            *drift = trace_drift(&start->sums, &end->sums, &end->sums);
-            pair[0] = a, pair[1] = b;
-            return true;
-        }
-    return false;
+    return a->result.n > b->result.n ||
+           (a->result.n == b->result.n && a->result.time > b->result.time);
 }
 
 const struct judged *judge_main(const struct judged *judged, size_t n)
 {
     const struct judged *best = judged;
     for (size_t i = 1; i < n; i++)
-        if (judged[i].result.n > best->result.n ||
-            (judged[i].result.n == best->result.n && judged[i].result.time > best->result.time))
-            best = &judged[i];
+        if (better(&judged[i], best)) best = &judged[i];
     return best;
+}
+
+/* The first and the last of as many particles; of several numbers, the most that have two times. */
+bool judge_drift(const struct judged *judged, size_t n, struct trace_drift *drift, size_t pair[2])
+{
+    const struct judged *start = NULL, *end = NULL;
+    for (size_t a = 0; a < n; a++)
+        for (size_t b = 0; b < n; b++) {
+            const struct judged *first = &judged[a], *last = &judged[b];
+            if (first->result.n != last->result.n || !(first->result.time < last->result.time))
+                continue;
+            if (end && (better(end, last) ||
+                        (end->result.n == last->result.n && end->result.time == last->result.time &&
+                         start->result.time <= first->result.time)))
+                continue;
+            start = first, end = last;
+        }
+    if (!end) return false;
+    *drift = trace_drift(&start->sums, &end->sums, &end->sums);
+    pair[0] = (size_t)(start - judged), pair[1] = (size_t)(end - judged);
+    return true;
 }
 
 /* ---- gates ---- */
@@ -95,14 +107,16 @@ enum status judge_gates(const char *text, const struct judged *judged, struct ju
 
 /* ---- orders ---- */
 
+/* Fewest first; of as many, the last one. */
 static int by_number(const void *a, const void *b)
 {
-    const size_t n = (*(const struct judged *const *)a)->result.n,
-                 k = (*(const struct judged *const *)b)->result.n;
-    return (n > k) - (n < k);
+    const struct judged *one = *(const struct judged *const *)a,
+                        *other = *(const struct judged *const *)b;
+    if (one->result.n != other->result.n) return one->result.n > other->result.n ? 1 : -1;
+    return better(one, other) ? -1 : better(other, one) ? 1 : (one > other) - (one < other);
 }
 
-/* One for each number of particles, fewest first. */
+/* The last one of each number of particles, fewest first. */
 static size_t levels_of(const struct judged *judged, size_t n, const struct judged **levels)
 {
     size_t count = 0;

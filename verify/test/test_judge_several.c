@@ -1,0 +1,285 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What several judged snapshots say together, on results that are made here: in whatever order they
+ * are given, the same ones are gated, compared and fitted, and what comes out is known. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "judge.h"
+#include "near.h"
+
+enum { MOST = 5 };
+static struct problem problem; /* of all results */
+
+static struct judged made(size_t n, double time, int dim)
+{
+    struct judged judged = {.path = "made"};
+    judged.file.dim = dim;
+    judged.result.n = n;
+    judged.result.time = time;
+    judged.result.problem.problem = &problem;
+    /* all numbers of a snapshot tell which one it is */
+    const double mark = 1000. * (double)n + time;
+    judged.sums = (struct conservation){.mass = mark,
+                                        .momentum = {mark, 2, 3},
+                                        .momentum_scale = 10 * mark,
+                                        .sound_scale = mark,
+                                        .energy = 4 * mark,
+                                        .angular_momentum = {1, 2, 5 * mark},
+                                        .angular_scale = 20 * mark,
+                                        .turning_scale = mark};
+    for (int f = 0; f < FIELDS; f++) judged.result.errors[f].l1 = mark * (f + 1);
+    return judged;
+}
+
+/* The k-th order of n things. */
+static void permute(int n, int k, int *order)
+{
+    for (int i = 0; i < n; i++) order[i] = i;
+    for (int i = n; i > 1; k /= i, i--) {
+        const int j = k % i, old = order[i - 1];
+        order[i - 1] = order[j], order[j] = old;
+    }
+}
+
+static const struct {
+    int count;
+    struct {
+        size_t n;
+        double time;
+    } shot[MOST];
+    int main, start, end; /* which is gated; which two are compared, -1: none */
+    int levels[MOST];     /* of orders; -1: no more */
+} groups[] = {
+    {1, {{50, 0.2}}, 0, -1, -1, {0, -1}},
+    {2, {{50, 0.1}, {50, 0.2}}, 1, 0, 1, {1, -1}},
+    {2, {{50, 0.2}, {60, 0.1}}, 1, -1, -1, {0, 1, -1}},
+    {3, {{50, 0}, {50, 0.1}, {50, 0.2}}, 2, 0, 2, {2, -1}},
+    {4, {{50, 0}, {50, 0.3}, {60, 0.1}, {60, 0.2}}, 3, 2, 3, {1, 3, -1}},
+    {4, {{50, 0}, {50, 0.1}, {50, 0.3}, {60, 0.2}}, 3, 0, 2, {2, 3, -1}},
+    {5, {{40, 0.9}, {50, 0.5}, {50, 0.6}, {60, 0.2}, {70, 0.1}}, 4, 1, 2, {0, 2, 3, 4, -1}},
+    {5, {{50, 0.1}, {50, 0.2}, {50, 0.3}, {50, 0.4}, {50, 0.5}}, 4, 0, 4, {4, -1}},
+};
+
+static void every_order(void **state)
+{
+    (void)state;
+    problem = (struct problem){0};
+    for (size_t g = 0; g < sizeof groups / sizeof *groups; g++)
+        for (int k = 0; k < 120; k++) {
+            struct judged judged[MOST];
+            struct trace_drift drift;
+            size_t pair[2], levels = 0;
+            int order[MOST], place[MOST];
+            permute(groups[g].count, k, order);
+            for (int i = 0; i < groups[g].count; i++) {
+                judged[i] = made(groups[g].shot[order[i]].n, groups[g].shot[order[i]].time, 2);
+                place[order[i]] = i;
+            }
+            const size_t n = (size_t)groups[g].count;
+            assert_ptr_equal(judge_main(judged, n), &judged[place[groups[g].main]]);
+            const bool drifts = judge_drift(judged, n, &drift, pair);
+            assert_true(drifts == (groups[g].start >= 0));
+            if (drifts) {
+                assert_int_equal(pair[0], place[groups[g].start]);
+                assert_int_equal(pair[1], place[groups[g].end]);
+                const double a = judged[pair[0]].sums.mass, b = judged[pair[1]].sums.mass;
+                near_relative(drift.mass, (b - a) / a, 1e-9);
+                near_relative(drift.energy, (b - a) / a, 1e-9);
+                near_relative(drift.momentum, (b - a) / (10 * b), 1e-9);
+                near_relative(drift.angular_momentum, (b - a) / (4 * b), 1e-9);
+            }
+            while (groups[g].levels[levels] >= 0 && ++levels < MOST)
+                if (levels == n) break;
+            json_t *orders = judge_orders(judged, n);
+            assert_int_equal(json_array_size(orders), levels > 1 ? FIELDS : 0);
+            for (size_t f = 0; f < json_array_size(orders); f++) {
+                const json_t *one = json_array_get(orders, f),
+                             *pairwise = json_object_get(one, "pairwise");
+                assert_string_equal(json_string_value(json_object_get(one, "field")),
+                                    field_family.members[f]->name);
+                assert_int_equal(json_array_size(pairwise), levels - 1);
+                for (size_t i = 0; i + 1 < levels; i++) {
+                    const struct judged *a = &judged[place[groups[g].levels[i]]],
+                                        *b = &judged[place[groups[g].levels[i + 1]]];
+                    near_relative(json_real_value(json_array_get(pairwise, i)),
+                                  2 * log(a->sums.mass / b->sums.mass) /
+                                      log((double)b->result.n / (double)a->result.n),
+                                  1e-10);
+                }
+            }
+            json_decref(orders);
+        }
+}
+
+/* Of the same time, whichever was given first. */
+static void ties(void **state)
+{
+    struct judged judged[4] = {made(50, 0.1, 2), made(50, 0.2, 2), made(50, 0.2, 2),
+                               made(50, 0.1, 2)};
+    struct trace_drift drift;
+    size_t pair[2];
+    (void)state;
+    assert_ptr_equal(judge_main(judged, 4), &judged[1]);
+    assert_true(judge_drift(judged, 4, &drift, pair));
+    assert_int_equal(pair[0], 0);
+    assert_int_equal(pair[1], 1);
+    judged[2].result.n = 60;
+    for (int f = 0; f < FIELDS; f++) judged[0].result.errors[f].l1 = 1e9;
+    json_t *orders = judge_orders(judged, 4), *other = judge_orders(judged + 1, 3);
+    assert_true(json_equal(orders, other)); /* which the earlier one is no part of */
+    json_decref(orders);
+    json_decref(other);
+}
+
+/* Errors that fall with a power of the spacing have that order, in any dimension. */
+static void orders(void **state)
+{
+    (void)state;
+    for (int dim = 1; dim <= 3; dim++)
+        for (int count = 2; count <= MOST; count++) {
+            struct judged judged[MOST];
+            for (int i = 0; i < count; i++) {
+                const size_t side = (size_t)(10 + 3 * i);
+                judged[i] = made(dim == 1   ? side
+                                 : dim == 2 ? side * side
+                                            : side * side * side,
+                                 0.2, dim);
+                for (int f = 0; f < FIELDS; f++)
+                    judged[i].result.errors[f].l1 = pow((double)side, -0.5 * (f + 1));
+            }
+            json_t *found = judge_orders(judged, (size_t)count);
+            assert_int_equal(json_array_size(found), FIELDS);
+            for (int f = 0; f < FIELDS; f++) {
+                const json_t *one = json_array_get(found, (size_t)f);
+                const json_t *pairwise = json_object_get(one, "pairwise");
+                for (int i = 0; i + 1 < count; i++)
+                    near_relative(json_real_value(json_array_get(pairwise, (size_t)i)),
+                                  0.5 * (f + 1), 1e-12);
+                assert_string_equal(json_string_value(json_object_get(one, "norm")), "l1");
+                if (count < 4) {
+                    assert_true(json_is_null(json_object_get(one, "order")));
+                    assert_true(json_is_null(json_object_get(one, "low")));
+                    assert_true(json_is_null(json_object_get(one, "high")));
+                    assert_string_equal(json_string_value(json_object_get(one, "class")),
+                                        "too few levels");
+                    continue;
+                }
+                near_relative(json_real_value(json_object_get(one, "order")), 0.5 * (f + 1), 1e-12);
+                near_relative(json_real_value(json_object_get(one, "low")), 0.5 * (f + 1), 1e-6);
+                near_relative(json_real_value(json_object_get(one, "high")), 0.5 * (f + 1), 1e-6);
+                assert_string_equal(json_string_value(json_object_get(one, "class")), "asymptotic");
+            }
+            json_decref(found);
+            problem.fieldless = true;
+            found = judge_orders(judged, (size_t)count);
+            assert_int_equal(json_array_size(found), 0);
+            json_decref(found);
+            problem.fieldless = false;
+        }
+}
+
+/* ---- gates ---- */
+
+static enum status gate(const char *text, const struct judged *judged, struct judge_gate *gates,
+                        size_t *count, const char *says)
+{
+    struct error error = {0};
+    const enum status status = judge_gates(text, judged, gates, count, &error);
+    if (says && (status != STATUS_BAD_INPUT || !strstr(error.message, says)))
+        fail_msg("%s: '%s' is not in: %s", text, says, error.message);
+    return status;
+}
+
+static void gates(void **state)
+{
+    static const char *const fields[] = {"density",         "velocity",  "pressure",
+                                         "internal_energy", "azimuthal", "radial"},
+                             *const norms[] = {"l1", "l2", "linf", "particle_mean", "l1_cut"};
+    struct judged judged = made(50, 0.2, 2);
+    struct judge_gate found[JUDGE_GATES_MAX + 1];
+    size_t count;
+    (void)state;
+    for (int f = 0; f < 6; f++) {
+        struct norms *of = f < FIELDS    ? &judged.result.errors[f]
+                           : f == FIELDS ? &judged.result.azimuthal
+                                         : &judged.result.radial;
+        *of = (struct norms){f + 1.1, f + 1.2, f + 1.3, f + 1.4, f + 1.5, 7};
+    }
+    for (int circular = 0; circular < 2; circular++)
+        for (int f = 0; f < 6; f++)
+            for (int k = 0; k < 5; k++) {
+                const double value = f + 1.1 + 0.1 * k;
+                char text[200], name[60];
+                problem.circular = circular ? CIRCULAR_ROUND : CIRCULAR_NOT;
+                snprintf(name, sizeof name, "%s_%s", fields[f], norms[k]);
+                snprintf(text, sizeof text, "%s=%.17g,%s=%.17g", name, value, name,
+                         nextafter(value, 0));
+                if (f >= FIELDS && !circular) {
+                    gate(text, &judged, found, &count, "no such error");
+                    continue;
+                }
+                assert_int_equal(gate(text, &judged, found, &count, NULL), STATUS_OK);
+                assert_int_equal(count, 2);
+                for (int g = 0; g < 2; g++) {
+                    assert_string_equal(found[g].name, name);
+                    near_relative(found[g].value, value, 1e-15);
+                    near_relative(found[g].bound, value, 1e-15);
+                }
+                const double exact = found[0].value;
+                snprintf(text, sizeof text, "%s=%.17g,%s=%.17g", name, exact, name,
+                         nextafter(exact, 0));
+                gate(text, &judged, found, &count, NULL);
+                assert_true(found[0].good && !found[1].good);
+            }
+    judged.result.errors[0].l1 = (double)NAN;
+    assert_int_equal(gate("density_l1=1e300", &judged, found, &count, NULL), STATUS_OK);
+    assert_false(found[0].good);
+    assert_int_equal(gate(NULL, &judged, found, &count, NULL), STATUS_OK);
+    assert_int_equal(count, 0);
+    assert_int_equal(gate("", &judged, found, &count, NULL), STATUS_OK);
+    assert_int_equal(count, 0);
+    static const char *const wrong[] = {"density_l1", "density_l1,velocity_l1=1",
+                                        "velocity_l1=1,,pressure_l1=1", "=1", "density_l1=1,x"};
+    for (int k = 0; k < 5; k++)
+        gate(wrong[k], &judged, found, &count, k == 3 ? "no such error" : "FIELD_NORM=BOUND,...");
+    static const char *const bounds[] = {"density_l1=0",   "density_l1=-1",
+                                         "density_l1=",    "density_l1=a",
+                                         "density_l1=nan", "velocity_l1=1,density_l1=1x"};
+    for (int k = 0; k < 6; k++) gate(bounds[k], &judged, found, &count, "allowed: above 0");
+    static const char *const names[] = {"l1=1", "density=1", "density_l3=1", "densit_l1=1",
+                                        "density_l1x=1"};
+    for (int k = 0; k < 5; k++) gate(names[k], &judged, found, &count, "no such error");
+    /* as many as there is room for, and names and bounds as long as there is room for */
+    char text[2000] = "";
+    for (int k = 0; k < JUDGE_GATES_MAX; k++)
+        snprintf(text + strlen(text), sizeof text - strlen(text), "%svelocity_l1=%d", k ? "," : "",
+                 k + 1);
+    assert_int_equal(gate(text, &judged, found, &count, NULL), STATUS_OK);
+    assert_int_equal(count, JUDGE_GATES_MAX);
+    for (int k = 0; k < JUDGE_GATES_MAX; k++) assert_true(found[k].bound == k + 1);
+    snprintf(text + strlen(text), sizeof text - strlen(text), ",velocity_l1=1");
+    gate(text, &judged, found, &count, "at most 24");
+    snprintf(text, sizeof text, "velocity_l1=1.%0*d", 37, 0); /* a bound of 39 letters */
+    assert_int_equal(gate(text, &judged, found, &count, NULL), STATUS_OK);
+    snprintf(text, sizeof text, "velocity_l1=1.%0*d", 38, 0);
+    gate(text, &judged, found, &count, "FIELD_NORM=BOUND,...");
+    snprintf(text, sizeof text, "%047d=1", 0);
+    gate(text, &judged, found, &count, "no such error");
+    snprintf(text, sizeof text, "%048d=1", 0);
+    gate(text, &judged, found, &count, "FIELD_NORM=BOUND,...");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_order),
+        cmocka_unit_test(ties),
+        cmocka_unit_test(orders),
+        cmocka_unit_test(gates),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
