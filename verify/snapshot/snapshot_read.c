@@ -169,16 +169,18 @@ static bool same(struct snapshot_value a, struct snapshot_value b)
 /* What the headers of two parts say differently; NULL: nothing. */
 static const char *header_differs(const struct snapshot_file *a, const struct snapshot_file *b)
 {
-    bool boxes_equal = a->boxed == b->boxed;
-    for (int d = 0; d < 3; d++) boxes_equal = boxes_equal && a->box[d] == b->box[d];
-    return strcmp(a->layout, b->layout) ? "layout"
-           : a->parts != b->parts       ? "number of files"
-           : !same(a->time, b->time)    ? "time"
-           : !same(a->gamma, b->gamma)  ? "gamma"
-           : !boxes_equal               ? "box"
-           : a->dim != b->dim           ? "dimension"
-           : a->columns != b->columns   ? "number of coordinates"
-                                        : NULL;
+    bool boxes_equal = a->boxed == b->boxed && a->placed == b->placed;
+    for (int d = 0; d < 3; d++)
+        boxes_equal = boxes_equal && a->box[d] == b->box[d] && a->corner[d] == b->corner[d];
+    return strcmp(a->layout, b->layout)       ? "layout"
+           : a->parts != b->parts             ? "number of files"
+           : !same(a->time, b->time)          ? "time"
+           : !same(a->gamma, b->gamma)        ? "gamma"
+           : !boxes_equal                     ? "box"
+           : strcmp(a->boundary, b->boundary) ? "boundary"
+           : a->dim != b->dim                 ? "dimension"
+           : a->columns != b->columns         ? "number of coordinates"
+                                              : NULL;
 }
 
 static enum status append(struct snapshot_file *file, const struct snapshot_file *more,

@@ -37,7 +37,7 @@ struct table {
     /* the style */
     char separator, exponent;
     bool splash, wide, plus, returns, mark, comments, open_end, saved; /* saved: by numpy */
-    char head[400];
+    char head[1400];
 };
 
 /* What people write, by the names of the columns. */
@@ -286,6 +286,53 @@ static void remarks(void **state)
             for (int d = 0; d < dim; d++) assert_true(file.box[d] == rows[k].box[d]);
             snapshot_file_free(&file);
         }
+    /* corners, and what our own snapshots say, before the names of the columns or behind them */
+    static const struct {
+        const char *box;
+        int count; /* of directions; 0: it is none */
+        double corner[3], length[3];
+    } ends[] = {{"-1:3", 1, {-1}, {4}},
+                {"-1:3 0:0.5", 2, {-1, 0}, {4, 0.5}},
+                {"-1:3, 0:0.5,\t2:2.25", 3, {-1, 0, 2}, {4, 0.5, 0.25}},
+                {"-1:3 0:0.5 2:3 4:5", 0, {0}, {0}},
+                {"-1:3 0", 0, {0}, {0}},
+                {"1:a", 0, {0}, {0}},
+                {":", 0, {0}, {0}}};
+    for (size_t k = 0; k < sizeof ends / sizeof *ends; k++)
+        for (int behind = 0; behind < 2; behind++) {
+            static char text[TEXT_MAX], other[TEXT_MAX];
+            struct table t = table_of(1, true);
+            struct snapshot_file file;
+            struct error error = {0};
+            const struct snapshot_options plain = {0};
+            char head[300];
+            t.columns -= 2;
+            snprintf(
+                head, sizeof head,
+                "# case = my tube.ini\n# boundary = open fixed\n# keys = n=3; eta=2\n# box = %s\n",
+                ends[k].box);
+            if (!behind) strcpy(t.head, head);
+            size_t size = text_of(&t, text, -1, -1, NULL);
+            const size_t line = (size_t)(strchr(text, '\n') + 1 - text);
+            if (behind) { /* the names, what is said, the rows */
+                memcpy(other, text, line);
+                size_t at = line + (size_t)sprintf(other + line, "%s", head);
+                memcpy(other + at, text + line, size - line);
+                memcpy(text, other, size += at - line);
+            }
+            put_file(text, size);
+            if (snapshot_read(path_of("a.txt"), &plain, &file, &error))
+                fail_msg("%s", error.message);
+            is_read(&t, &file);
+            assert_string_equal(file.case_name, "my tube.ini");
+            assert_string_equal(file.boundary, "open fixed");
+            assert_string_equal(file.keys, "n=3; eta=2");
+            assert_true(file.boxed == (ends[k].count > 0) && file.placed == file.boxed);
+            for (int d = 0; d < ends[k].count; d++)
+                assert_true(file.corner[d] == ends[k].corner[d] &&
+                            file.box[d] == ends[k].length[d]);
+            snapshot_file_free(&file);
+        }
     static const char *const boxes[] = {"# box = 0\n", "# box = -1\n", "# box = 1 0\n",
                                         "# box = 1 2 -3\n"};
     for (int k = 0; k < 4; k++) { /* along the directions that there are */
@@ -294,14 +341,14 @@ static void remarks(void **state)
         snprintf(t.head, sizeof t.head, "%s", boxes[k]);
         refuses(text, text_of(&t, text, -1, -1, NULL), NULL, "; allowed: above 0");
     }
-    char longest[400];
-    for (int more = 0; more < 2; more++) { /* lines of 160 letters and more say nothing */
+    char longest[1300];
+    for (int more = 0; more < 2; more++) { /* lines of 1200 letters and more say nothing */
         struct table t = table_of(1, true);
         struct snapshot_file file;
         t.columns -= 2;
         memset(longest, ' ', sizeof longest);
         memcpy(longest, "# time = 0.25", 13);
-        longest[159 + more] = '\0';
+        longest[1199 + more] = '\0';
         snprintf(t.head, sizeof t.head, "%s\n", longest);
         reads(&t, NULL, &file);
         assert_true(file.time.known == !more);

@@ -190,8 +190,9 @@ static bool positive(double value)
  * 0.3 to 30 spacings. */
 static bool plausible(const struct binary *b, const struct layout *layout, double volume, int dim)
 {
-    const struct record *m = layout->block[MASSES], *u = layout->block[ENERGIES],
-                        *rho = layout->block[DENSITIES], *h = layout->block[WIDTHS];
+    const struct record *m = b->mass[0] > 0 ? NULL : layout->block[MASSES],
+                        *u = layout->block[ENERGIES], *rho = layout->block[DENSITIES],
+                        *h = layout->block[WIDTHS];
     const size_t n = b->particles[0];
     double filled = 0;
     for (size_t i = 0; i < n; i++) {

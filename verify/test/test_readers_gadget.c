@@ -1,0 +1,426 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Binaries of GADGET, made with random particles of all types in every form: formats 1 and 2, both
+ * byte orders, words of 4 and 8 bytes, masses in the header or in a block, blocks left out. What is
+ * planted must be read; what is spoilt must be refused. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <float.h>
+#include <math.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "made_place.h"
+#include "snapshot_file.h"
+
+enum { TYPES = 6, MOST = 40, BYTES = 1 << 16 };
+enum { POS, VEL, ID, MASS, U, RHO, HSML, ACCE, BLOCKS };
+static const char *const tags[BLOCKS] = {"POS ", "VEL ", "ID  ", "MASS",
+                                         "U   ", "RHO ", "HSML", "ACCE"};
+static const int columns[BLOCKS] = {SNAPSHOT_X, SNAPSHOT_VX,  -1,         SNAPSHOT_M,
+                                    SNAPSHOT_U, SNAPSHOT_RHO, SNAPSHOT_H, SNAPSHOT_AX};
+
+static uint64_t seed = 26;
+static unsigned drawn(unsigned below)
+{
+    seed = seed * 6364136223846793005u + 1442695040888963407u;
+    return (unsigned)(seed >> 33) % below;
+}
+
+static double uniform(double lo, double hi)
+{
+    return lo + (hi - lo) * drawn(1u << 20) / (1u << 20); /* exact in single precision */
+}
+
+struct binary {
+    bool tagged, swapped;
+    int dim;
+    uint32_t count[TYPES], parts;
+    double table[TYPES], time, redshift, box;
+    bool there[BLOCKS];
+    int width[BLOCKS];
+    double value[BLOCKS][3 * MOST];
+    size_t extra; /* records of the code's own between ID and MASS */
+    size_t rows[BLOCKS];
+};
+
+static bool is_vector(int block)
+{
+    return block == POS || block == VEL || block == ACCE;
+}
+
+/* Gas of density 1 to 2 in a box of 64 along each direction; particles of other types with it.
+ * Widths are so much larger than densities that they cannot be taken for them. */
+enum { SIDE = 64 };
+
+static struct binary made(int dim)
+{
+    struct binary b = {.tagged = true, .dim = dim, .parts = 1, .time = 0.375, .box = SIDE};
+    size_t all = 0, massive = 0;
+    for (int t = 0; t < TYPES; t++) {
+        b.count[t] = t == 0 ? 8 + drawn(5) : drawn(3);
+        b.table[t] = drawn(2) ? 0 : 0.5 + t;
+        all += b.count[t];
+        massive += b.table[t] > 0 ? 0 : b.count[t];
+    }
+    const double share = pow(SIDE, dim) / b.count[0]; /* volume of each */
+    if (b.table[0] > 0) b.table[0] = (double)(float)(1.5 * share);
+    for (int k = 0; k < BLOCKS; k++) {
+        b.there[k] = true, b.width[k] = k == ID ? 4 : drawn(2) ? 4 : 8;
+        b.rows[k] = k <= ID ? all : k == MASS ? massive : b.count[0];
+        for (size_t i = 0; i < b.rows[k]; i++)
+            for (int c = 0; c < 3; c++) {
+                double *to = &b.value[k][is_vector(k) ? 3 * i + (size_t)c : i];
+                *to = k == POS    ? (c < dim ? uniform(0, SIDE) : 0)
+                      : k == MASS ? (double)(float)uniform(1.4 * share, 1.6 * share)
+                      : k == RHO  ? uniform(1, 2)
+                      : k == HSML ? (double)(float)(uniform(1, 3) * pow(share, 1. / dim))
+                      : k == U    ? uniform(2, 3)
+                                  : uniform(-4, 4);
+            }
+    }
+    for (int c = 0; c < dim; c++) b.value[POS][c] = 0, b.value[POS][3 + c] = SIDE;
+    b.there[MASS] = massive > 0;
+    return b;
+}
+
+static unsigned char bytes[BYTES];
+
+static size_t put_word(size_t at, const struct binary *b, const void *word, size_t size)
+{
+    const unsigned char *from = word;
+    for (size_t k = 0; k < size; k++) bytes[at + k] = from[b->swapped ? size - 1 - k : k];
+    return at + size;
+}
+
+static size_t put_count(size_t at, const struct binary *b, uint32_t count)
+{
+    return put_word(at, b, &count, sizeof count);
+}
+
+static size_t put_real(size_t at, const struct binary *b, double value, int width)
+{
+    const float half = (float)value;
+    return width == 4 ? put_word(at, b, &half, 4) : put_word(at, b, &value, 8);
+}
+
+static size_t put_tag(size_t at, const struct binary *b, const char *tag, uint32_t size)
+{
+    if (!b->tagged) return at;
+    at = put_count(at, b, 8);
+    memcpy(bytes + at, tag, 4);
+    at = put_count(at + 4, b, size + 8);
+    return put_count(at, b, 8);
+}
+
+static size_t put_header(const struct binary *b)
+{
+    size_t at = put_count(put_tag(0, b, "HEAD", 256), b, 256);
+    const size_t h = at;
+    memset(bytes + at, 0, 256);
+    for (int t = 0; t < TYPES; t++) {
+        put_count(h + 4 * (size_t)t, b, b->count[t]);
+        put_real(h + 24 + 8 * (size_t)t, b, b->table[t], 8);
+    }
+    put_real(h + 72, b, b->time, 8);
+    put_real(h + 80, b, b->redshift, 8);
+    put_count(h + 124, b, b->parts);
+    put_real(h + 128, b, b->box, 8);
+    return put_count(h + 256, b, 256);
+}
+
+static size_t put_block(size_t at, const struct binary *b, int k)
+{
+    const size_t n = b->rows[k] * (is_vector(k) ? 3 : 1);
+    const uint32_t size = (uint32_t)(n * (size_t)b->width[k]);
+    at = put_count(put_tag(at, b, tags[k], size), b, size);
+    for (size_t i = 0; i < n; i++)
+        at = k == ID ? put_count(at, b, (uint32_t)i) : put_real(at, b, b->value[k][i], b->width[k]);
+    return put_count(at, b, size);
+}
+
+static size_t put_all(const struct binary *b)
+{
+    size_t at = put_header(b);
+    for (int k = 0; k < BLOCKS; k++) {
+        if (k == MASS) /* of another length than any block has */
+            for (size_t e = 0; e < b->extra; e++) {
+                at = put_count(put_tag(at, b, "MINE", 4), b, 4);
+                at = put_count(put_count(at, b, 77), b, 4);
+            }
+        if (b->there[k]) at = put_block(at, b, k);
+    }
+    return at;
+}
+
+static enum status read_bytes(size_t size, struct snapshot_file *file, struct error *error)
+{
+    static const struct snapshot_options plain = {0};
+    FILE *out = fopen(path_of("a.gadget"), "wb");
+    assert_true(out && fwrite(bytes, 1, size, out) == size && fclose(out) == 0);
+    *error = (struct error){0};
+    return snapshot_read(path_of("a.gadget"), &plain, file, error);
+}
+
+static void is_read(const struct binary *b, const char *what)
+{
+    struct snapshot_file file;
+    struct error error;
+    double precision[2] = {0, 0};
+    if (read_bytes(put_all(b), &file, &error)) fail_msg("%s: %s", what, error.message);
+    assert_int_equal(file.n, b->count[0]);
+    assert_int_equal(file.gas, b->count[0]);
+    assert_int_equal(file.dim, b->dim);
+    assert_true(file.time.known && file.time.value == b->time && !file.gamma.known);
+    assert_true(file.boxed == (b->box > 0 && b->box < (double)INFINITY) && file.parts == 1);
+    for (int d = 0; d < 3; d++) assert_true(file.box[d] == (file.boxed ? b->box : 0));
+    for (int k = 0; k < BLOCKS; k++) {
+        if (columns[k] < 0) continue;
+        const bool table = k == MASS && b->table[0] > 0;
+        if (!b->there[k] && !table) {
+            assert_null(file.column[columns[k]]);
+            continue;
+        }
+        const double coarse = (b->width[k] == 4 ? (double)FLT_EPSILON : DBL_EPSILON) / 2;
+        if (!table) precision[k != POS] = fmax(precision[k != POS], coarse);
+        for (size_t i = 0; i < b->count[0]; i++)
+            for (int c = 0; c < (is_vector(k) ? 3 : 1); c++) {
+                const double want = table          ? b->table[0]
+                                    : is_vector(k) ? b->value[k][3 * i + (size_t)c]
+                                                   : b->value[k][i];
+                if (file.column[columns[k] + c][i] != want)
+                    fail_msg("%s: %s of %zu: %g, not %g", what, tags[k], i,
+                             file.column[columns[k] + c][i], want);
+            }
+    }
+    for (int k = 0; k < 2; k++) assert_true(file.precision[k] == precision[k]);
+    snapshot_file_free(&file);
+}
+
+static void refuses(size_t size, const char *what, const char *says)
+{
+    struct snapshot_file file;
+    struct error error;
+    const enum status status = read_bytes(size, &file, &error);
+    snapshot_file_free(&file);
+    if (status != STATUS_BAD_INPUT || !strstr(error.message, says))
+        fail_msg("%s: status %d: '%s' is not in: %s", what, (int)status, says, error.message);
+}
+
+static void every_form(void **state)
+{
+    (void)state;
+    for (int draw = 0; draw < 400; draw++) {
+        struct binary b = made(1 + draw % 3);
+        b.tagged = draw % 2, b.swapped = draw / 2 % 2;
+        b.extra = drawn(3);
+        if (drawn(4) == 0) b.box = drawn(2) ? 0 : -1;
+        if (drawn(4) == 0) b.parts = 0;
+        b.there[ID] = !b.tagged || drawn(2);
+        b.there[ACCE] = b.tagged && drawn(2); /* nobody can tell what it is without its name */
+        b.there[HSML] = drawn(3) || !b.tagged;
+        if (b.tagged && drawn(3) == 0) b.rows[ACCE] = b.rows[POS]; /* of all particles */
+        is_read(&b, "a draw");
+    }
+    struct binary b = made(2);
+    b.box = (double)INFINITY;
+    is_read(&b, "an infinite box");
+    b.there[HSML] = b.there[ACCE] = b.tagged = false; /* densities come last */
+    b.box = SIDE;
+    is_read(&b, "without widths");
+}
+
+static void left_out(void **state)
+{
+    (void)state;
+    static const char *const says[BLOCKS] = {
+        "positions of",    "velocities of",   NULL, "no block 'MASS'",
+        "neither u nor P", "no block 'RHO '", NULL, NULL};
+    for (int k = 0; k < BLOCKS; k++)
+        for (int draw = 0; draw < 4; draw++) {
+            struct binary b = made(1 + draw % 3);
+            b.table[0] = 0; /* its mass stands in a block */
+            b.rows[MASS] = 0;
+            for (int t = 0; t < TYPES; t++) b.rows[MASS] += b.table[t] > 0 ? 0 : b.count[t];
+            for (size_t i = 0; i < b.rows[MASS]; i++) b.value[MASS][i] = 1;
+            b.there[MASS] = true;
+            b.there[k] = false;
+            if (says[k])
+                refuses(put_all(&b), tags[k], says[k]);
+            else
+                is_read(&b, tags[k]);
+            b.there[k] = true; /* of another length */
+            b.rows[k]++;
+            if (k == ID)
+                is_read(&b, tags[k]);
+            else
+                refuses(put_all(&b), tags[k],
+                        k <= VEL ? "bytes; the record has" : "bytes; allowed:");
+        }
+    struct binary b = made(1); /* all of one mass: no block is needed */
+    for (int t = 0; t < TYPES; t++) b.table[t] = 2;
+    b.there[MASS] = false;
+    is_read(&b, "masses in the table");
+}
+
+/* Every byte that is missing, and every count that is another. */
+static void cut_off(void **state)
+{
+    (void)state;
+    for (int form = 0; form < 4; form++) {
+        struct binary b = made(1);
+        b.tagged = form % 2, b.swapped = form / 2;
+        const size_t size = put_all(&b), head = b.tagged ? 280 : 264;
+        for (size_t cut = 1; cut + head < size; cut += 1 + cut / 8)
+            refuses(size - cut, "cut off", cut < 4 || b.tagged ? "" : "cut off: record");
+        refuses(head, "a header alone", "1 records; allowed: a header of 256 bytes");
+        for (size_t at = head - 4; at < size; at += at < head ? 1 : 1 + at % 97) {
+            put_all(&b);
+            bytes[at] ^= 0x40;
+            struct snapshot_file file;
+            struct error error;
+            const enum status status = read_bytes(size, &file, &error);
+            assert_true(status == STATUS_OK || status == STATUS_BAD_INPUT);
+            snapshot_file_free(&file);
+        }
+        put_all(&b);
+        bytes[size - 4] ^= 1, bytes[size - 1] ^= 1; /* either order */
+        refuses(size, "a wrong count", "damaged: record");
+    }
+}
+
+static void headers(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *says;
+        int count; /* of this type is changed; -1: none */
+        uint32_t to;
+        int mass;
+        double mass_to, time, redshift;
+        uint32_t parts;
+        bool fits;
+    } rows[] = {
+        {"no gas: 3 particles of other types (dark matter only?)", 0, 0, -1, 0, 1, 0, 1, false},
+        {"header: 536870912 particles of type 2", 2, 1u << 29, -1, 0, 1, 0, 1, false},
+        {"header: 268435457 particles of type 0", 0, (1u << 28) + 1, -1, 0, 1, 0, 1, false},
+        {"of type 5, of mass nan", -1, 0, 5, (double)NAN, 1, 0, 1, false},
+        {"of type 0, of mass -1", -1, 0, 0, -1, 1, 0, 1, false},
+        {"of type 3, of mass inf", -1, 0, 3, (double)INFINITY, 1, 0, 1, false},
+        {"header: time nan", -1, 0, -1, 0, (double)NAN, 0, 1, false},
+        {"header: time inf", -1, 0, -1, 0, (double)INFINITY, 0, 1, false},
+        {"header: time 1, 513 files", -1, 0, -1, 0, 1, 0, 513, false},
+        {"header: time 1, -1 files", -1, 0, -1, 0, 1, 0, UINT32_MAX, false},
+        {"one of 512 files", -1, 0, -1, 0, 1, 0, 512, false},
+        {"comoving units (redshift 1 at time 0.5)", -1, 0, -1, 0, 0.5, 1, 1, false},
+        {"comoving", -1, 0, -1, 0, 0.5 * (1 + 9e-7), 1, 1, false},
+        {"", -1, 0, -1, 0, 0.5 * (1 + 2e-6), 1, 1, true},
+        {"", -1, 0, -1, 0, 1, 0, 1, true},
+        {"", -1, 0, -1, 0, 2, -0.5, 1, true}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        struct binary b = made(1);
+        for (int t = 1; t < TYPES; t++) b.count[t] = t == 1 ? 3 : 0, b.table[t] = 1;
+        b.rows[POS] = b.rows[VEL] = b.rows[ID] = b.count[0] + 3;
+        b.table[0] = 0, b.rows[MASS] = b.count[0], b.there[MASS] = true;
+        for (size_t i = 0; i < b.rows[MASS]; i++) b.value[MASS][i] = 1;
+        if (rows[k].count >= 0) b.count[rows[k].count] = rows[k].to;
+        if (rows[k].mass >= 0) b.table[rows[k].mass] = rows[k].mass_to;
+        b.time = rows[k].time, b.redshift = rows[k].redshift, b.parts = rows[k].parts;
+        if (rows[k].fits)
+            is_read(&b, "a header");
+        else
+            refuses(put_all(&b), "a header", rows[k].says);
+    }
+}
+
+/* Format 1 names nothing: a reading must be the only one in which all is plausible. */
+static void inferred(void **state)
+{
+    (void)state;
+    static const struct {
+        int block;
+        double factor; /* of all its values */
+        bool fits;
+    } rows[] = {{RHO, 1, true},       {RHO, 1.9, true},   {RHO, 2.1, false},   {RHO, 0.55, true},
+                {RHO, 0.45, false},   {RHO, -1, false},   {U, -1, false},      {U, 0, false},
+                {MASS, -1, false},    {MASS, 1.9, true},  {MASS, 2.1, false},  {MASS, 0.55, true},
+                {MASS, 0.45, false},  {HSML, 14.9, true}, {HSML, 15.1, false}, {HSML, 0.151, true},
+                {HSML, 0.149, false}, {HSML, -1, false},  {U, 1e31, false},    {U, 1e-31, false}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
+        for (int dim = 1; dim <= 3; dim++) {
+            struct binary b = made(dim);
+            b.tagged = b.there[ACCE] = false;
+            b.table[0] = 0, b.there[MASS] = true;
+            b.rows[MASS] = 0;
+            for (int t = 0; t < TYPES; t++) b.rows[MASS] += b.table[t] > 0 ? 0 : b.count[t];
+            for (size_t i = 0; i < MOST; i++) { /* spacings of 1, widths of 1 to 3 */
+                b.value[RHO][i] = 1, b.value[MASS][i] = pow(SIDE, dim) / b.count[0];
+                const double spacing = pow(b.value[MASS][i], 1. / dim);
+                b.value[HSML][i] = 2 * spacing;
+            }
+            for (int w = MASS; w <= HSML; w++) b.width[w] = 8;
+            for (size_t i = 0; i < MOST; i++) b.value[rows[k].block][i] *= rows[k].factor;
+            if (rows[k].block == RHO) /* spacings grow with it */
+                for (size_t i = 0; i < MOST; i++)
+                    b.value[HSML][i] = 2 * pow(b.value[MASS][i] / fabs(b.value[RHO][i]), 1. / dim);
+            if (rows[k].block == MASS)
+                for (size_t i = 0; i < MOST; i++)
+                    b.value[HSML][i] = 2 * pow(fabs(b.value[MASS][i]), 1. / dim);
+            if (rows[k].fits)
+                is_read(&b, "plausible");
+            else
+                refuses(put_all(&b), "implausible", "none fit as masses, energies");
+        }
+    struct binary b = made(1); /* twice the same blocks */
+    b.tagged = b.there[ACCE] = false;
+    for (int t = 0; t < TYPES; t++) b.table[t] = t ? 1 : 0;
+    b.rows[MASS] = b.count[0], b.there[MASS] = true;
+    for (size_t i = 0; i < MOST; i++) {
+        b.value[RHO][i] = 1.5, b.value[MASS][i] = (double)SIDE / b.count[0];
+        b.value[HSML][i] = 2 * b.value[MASS][i];
+    }
+    b.width[MASS] = b.width[U] = b.width[RHO] = b.width[HSML] = 8;
+    size_t size = put_all(&b);
+    for (int k = MASS; k <= HSML; k++) size = put_block(size, &b, k);
+    refuses(size, "twice", "more than one choice fits");
+}
+
+static void records(void **state)
+{
+    (void)state;
+    for (int more = 0; more < 2; more++) {
+        struct binary b = made(2);
+        b.there[MASS] = true;
+        size_t blocks = 1;
+        for (int k = 0; k < BLOCKS; k++) blocks += b.there[k];
+        b.extra = 64 - blocks + (size_t)more;
+        if (b.table[0] > 0 && b.rows[MASS] == 0) b.value[MASS][0] = 1;
+        if (more)
+            refuses(put_all(&b), "many records", "more than 64 records");
+        else
+            is_read(&b, "64 records");
+    }
+    struct binary b = made(1); /* the first of two blocks of one name */
+    size_t size = put_all(&b);
+    for (size_t i = 0; i < MOST; i++) b.value[RHO][i] *= 2;
+    put_block(size, &b, RHO);
+    const size_t all = put_block(size, &b, RHO);
+    struct snapshot_file file;
+    struct error error;
+    assert_int_equal(read_bytes(all, &file, &error), STATUS_OK);
+    assert_true(file.column[SNAPSHOT_RHO][3] == b.value[RHO][3] / 2);
+    snapshot_file_free(&file);
+    /* a block may be 8 bytes long itself */
+    bytes[put_count(0, &b, 7)] = 1;
+    refuses(300, "seven bytes", "no snapshot that is read");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_form), cmocka_unit_test(left_out), cmocka_unit_test(cut_off),
+        cmocka_unit_test(headers),    cmocka_unit_test(inferred), cmocka_unit_test(records),
+    };
+    return cmocka_run_group_tests(tests, make_place, remove_place);
+}
