@@ -335,6 +335,7 @@ void simulation_carry(struct simulation *simulation, struct carrier *carrier)
     CARRY(carrier, sleep->on);
     CARRY(carrier, sleep->at_rest);
     CARRY(carrier, sleep->rate);
+    CARRY(carrier, sleep->sound);
     CARRY(carrier, sleep->span_count);
     CARRY(carrier, sleep->awake_count);
     carry(carrier, sleep->spans, (size_t)sleep->span_count * sizeof *sleep->spans);

@@ -6,27 +6,50 @@
 
 #include "solver.h"
 
-/* Above the rounding of a lattice of n points: positions of order 1 are known to eps, spacings to
- * n eps. */
-static double tolerance(const struct simulation *simulation)
-{
-    return fmax(1e-11, 30 * DBL_EPSILON * (double)simulation->particles.n);
-}
-
-bool sleep_disturbed(const struct simulation *simulation, ptrdiff_t first, ptrdiff_t len)
+void sleep_scale(struct simulation *simulation)
 {
     const struct particles *a = &simulation->particles;
-    const double limit = tolerance(simulation);
-    bool disturbed = false;
-    for (ptrdiff_t i = first; i < first + len; i++) {
-        double area = 1;
-        for (int k = 1; k < a->dim; k++) area *= a->h[i];
-        disturbed |= !(particles_norm(a, a->F, i) <= limit * a->P[i] * area);
-        disturbed |=
-            !(fabs(a->de[i]) <= limit * a->P[i] * (a->c[i] + particles_norm(a, a->v, i)) * area);
-        if (simulation->plan.alpha) disturbed |= !(fabs(a->dalpha[i]) * a->h[i] <= limit * a->c[i]);
+    const double gamma = simulation->gamma;
+    const bool total = simulation->scheme.energy == ENERGY_TOTAL;
+    double mass = 0, energy = 0, momentum[3] = {0};
+    for (ptrdiff_t i = 0; i < a->n; i++) {
+        mass += a->m[i];
+        energy += a->e[i];
+        for (int k = 0; k < a->dim; k++) {
+            momentum[k] += a->p[k][i];
+            if (!total) energy += 0.5 * a->p[k][i] * a->p[k][i] * a->m_inverse[i];
+        }
     }
-    return disturbed;
+    for (int k = 0; k < a->dim; k++) energy -= 0.5 * momentum[k] * momentum[k] / mass;
+    simulation->sleep.sound = energy > 0 ? sqrt(gamma * (gamma - 1) * energy / mass) : 0;
+}
+
+/* Tubes in 1D may amplify round-off by 1e9, and their signals die out within fewer particles.
+ * Positions of order 1 are known to eps, spacings to n^(1/d) eps. */
+double sleep_tolerance(const struct simulation *simulation)
+{
+    const int dim = simulation->plan.dim;
+    return fmax(dim == 1 ? 1e-11 : 1e-9,
+                30 * DBL_EPSILON * pow((double)simulation->particles.n, 1. / dim));
+}
+
+double sleep_disturbance(const struct simulation *simulation, ptrdiff_t first, ptrdiff_t len)
+{
+    const struct particles *a = &simulation->particles;
+    const double sound = simulation->sleep.sound, in_tolerances = 1 / sleep_tolerance(simulation);
+    double worst = 0;
+    for (ptrdiff_t i = first; i < first + len; i++) {
+        const double c = a->c[i] < sound ? sound : a->c[i]; /* NaN stays */
+        const double rate = c / a->h[i], force = a->m[i] * c * rate;
+        const double rates[3] = {
+            particles_norm(a, a->F, i) / force,
+            fabs(a->de[i]) / (force * (c + particles_norm(a, a->v, i))),
+            simulation->plan.alpha ? fabs(a->dalpha[i]) / rate : 0,
+        };
+        for (int k = 0; k < 3; k++)
+            if (!(rates[k] <= worst || isnan(worst))) worst = rates[k];
+    }
+    return worst * in_tolerances;
 }
 
 void sleep_begin(struct simulation *simulation, ptrdiff_t first, ptrdiff_t len)

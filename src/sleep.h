@@ -1,10 +1,22 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Particles that no signal has reached sleep: on an undisturbed lattice the rates vanish to
- * round-off, so density, forces and time step are left out there. A group of neighbours is awake
- * once a particle within the margin is disturbed, |dp/dt| > tolerance P h^(d-1) or |de/dt| >
- * tolerance P c h^(d-1), and stays awake. The tolerance lies above the rounding of the lattice, so
- * results with and without sleep agree to about the tolerance, not to the last bit. Which
- * particles form a group and how far a margin is, the sums know (sums.h). */
+ * round-off, so density, forces and time step are left out there. A sleeper keeps its velocity.
+ *
+ * A particle is disturbed once |dp/dt| > tol m c^2/h or |de/dt| > tol m c^2 (c + |v|)/h, where c is
+ * its sound speed or the scene's mean one, whichever is more (c_s: all energy but that of the
+ * common motion taken for heat). A sleeper wakes when it is a neighbour of a disturbed particle, or
+ * of one that moves against it at more than tol c. Whoever is calm, to a quarter of tol, among
+ * neighbours that are, falls asleep (again).
+ *
+ * What the left-out rates could do until t_end: they belong to particles all of whose neighbours
+ * are undisturbed, so they are at most about tol c^2/h. Over a time T that changes velocities by
+ * tol c (c T/h) and distances, and so densities, by tol (c T/h)^2/2 of h. Rates fall by orders of
+ * magnitude from reach to reach ahead of a wave and stand for h/c only before the gas wakes: then
+ * both changes are about tol. With c_s for c they are compared with the fields that the scene's
+ * energy makes, not with those of a cold gas that a blast will run over. The errors of any run (L1
+ * of 1e-4 and more) are seven orders above. A flow that amplifies round-off amplifies this as well:
+ * skips act as a change of the start by the tolerance does.
+ */
 #ifndef SPHPROOF_SLEEP_H
 #define SPHPROOF_SLEEP_H
 
@@ -19,15 +31,28 @@ struct span {
 };
 
 struct sleep {
-    bool on;            /* somebody sleeps */
+    bool on;            /* somebody sleeps, and spans leave them out */
     bool at_rest;       /* all sleepers have no velocity: integrators may leave them out, too */
     double rate;        /* largest signal speed / h of the sleepers */
+    double sound;       /* c_s; 0 before sleep_scale */
     struct span *spans; /* of awake particles; all particles where nobody sleeps */
     ptrdiff_t span_count, awake_count;
 };
 
-/* Has a signal reached any of these particles? */
-bool sleep_disturbed(const struct simulation *simulation, ptrdiff_t first, ptrdiff_t len);
+/* In tolerances: below it whoever is awake may fall asleep; above 1 neighbours wake; above the
+ * last neighbours of neighbours do, as what comes so far within one step is no more than 1e-4 of
+ * it. */
+#define SLEEP_CALM    0.25
+#define SLEEP_VIOLENT 1e4
+
+/* Sets sleep.sound from the state. */
+void sleep_scale(struct simulation *simulation);
+
+/* The tolerance tol, above the rounding of a lattice. */
+double sleep_tolerance(const struct simulation *simulation);
+
+/* The largest rate of these particles, in tolerances; NaN where one is no number. */
+double sleep_disturbance(const struct simulation *simulation, ptrdiff_t first, ptrdiff_t len);
 
 /* They fall asleep: they have no rates any more. */
 void sleep_begin(struct simulation *simulation, ptrdiff_t first, ptrdiff_t len);

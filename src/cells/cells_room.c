@@ -27,7 +27,7 @@ struct room {
     double *sum_m, *sum_m_dh, *sum_Z, *sum_Z_dh;
     size_t arrays, stride; /* that lie in block, and from one to the next */
     unsigned char *outcome;
-    unsigned char *disturbed;
+    unsigned char *level;  /* of who sleeps and who may: enum in cells.h; likewise */
     unsigned char *asleep; /* of each particle; NULL: nobody ever sleeps */
     double *kept;          /* 1/h of those who sleep; likewise */
     uint64_t sorted_at;    /* steps */
@@ -178,7 +178,7 @@ static double bytes(const struct simulation *simulation, double n)
     const double arrays = (double)list_arrays(simulation, &room, of);
     /* the first search goes further, and lists hold who is within the wider of two widths */
     const double neighbours = width_neighbours(method.box.dim, simulation->scheme.eta * margin);
-    /* outcome; where somebody sleeps, kept, asleep and disturbed */
+    /* outcome; where somebody sleeps, kept, asleep and level */
     const double sleepers = simulation->plan.sleep ? sizeof(double) + 2 : 0;
     return n * (arrays * sizeof(double) + 1 + sleepers) + cells_bytes(&method, n, neighbours);
 }
@@ -186,9 +186,9 @@ static double bytes(const struct simulation *simulation, double n)
 static void forget_sleep(struct room *room)
 {
     free(room->asleep);
-    free(room->disturbed);
+    free(room->level);
     free(room->kept);
-    room->asleep = room->disturbed = NULL;
+    room->asleep = room->level = NULL;
     room->kept = NULL;
 }
 
@@ -514,19 +514,40 @@ static void describe(const struct simulation *simulation, description_visit *vis
 
 /* --- sleep ------------------------------------------------------------------------------------ */
 
-/* Layers of reaches around a disturbance that must be awake: it passes through density and forces
- * in one step. */
-enum { WAKE_LAYERS = 2 };
+/* Steps from one look for who may sleep again to the next. */
+enum { LULL_EVERY = 16 };
 
-/* Only what is at rest may sleep: in a shear flow on a lattice forces vanish, too, and neighbours
- * change all the same. */
-static void mark_disturbed(struct simulation *simulation)
+/* Finds everybody's level. Only what moves with its neighbours may sleep: in a shear flow on a
+ * lattice forces vanish, too, and neighbours change all the same. */
+static struct cells_quiet find_quiet(struct simulation *simulation)
 {
     struct room *room = room_of(simulation);
     const struct particles *a = &simulation->particles;
-    for (ptrdiff_t i = 0; i < a->n; i++)
-        room->disturbed[i] = !room->asleep[i] && (sleep_disturbed(simulation, i, 1) ||
-                                                  !(particles_norm(a, a->p, i) <= 0));
+    for (ptrdiff_t i = 0; i < a->n; i++) {
+        room->level[i] = CELLS_CALM;
+        if (room->asleep[i]) continue;
+        const double disturbance = sleep_disturbance(simulation, i, 1);
+        if (!(disturbance <= SLEEP_CALM)) room->level[i] = CELLS_STIRRED;
+        if (!(disturbance <= 1)) room->level[i] = CELLS_DISTURBED;
+        if (!(disturbance <= SLEEP_VIOLENT)) room->level[i] = CELLS_VIOLENT;
+    }
+    return (struct cells_quiet){.level = room->level,
+                                .tolerance = sleep_tolerance(simulation),
+                                .sound = simulation->sleep.sound,
+                                .calm = SLEEP_CALM};
+}
+
+static void lull(struct simulation *simulation, const struct cells_quiet *quiet)
+{
+    struct room *room = room_of(simulation);
+    const struct particles *a = &simulation->particles;
+    if (!cells_lull(room->cells, &room->fields, quiet, room->asleep)) return;
+    for (ptrdiff_t i = 0; i < a->n; i++) {
+        if (room->asleep[i] != CELLS_JUST_ASLEEP) continue;
+        room->asleep[i] = CELLS_ASLEEP;
+        room->kept[i] = a->h_inverse[i];
+        sleep_begin(simulation, i, 1);
+    }
 }
 
 static ptrdiff_t count_awake(const struct room *room, ptrdiff_t n)
@@ -549,34 +570,30 @@ static enum status begin_sleep(struct simulation *simulation, struct error *erro
     sleep->span_count = 1;
     sleep->awake_count = a->n;
     if (!simulation->plan.sleep) return STATUS_OK;
-    unsigned char *asleep = calloc(n, 1);
-    room->disturbed = calloc(n, 1);
+    room->asleep = calloc(n, 1);
+    room->level = calloc(n, 1);
     room->kept = calloc(n, sizeof *room->kept);
-    if (!asleep || !room->disturbed || !room->kept) {
-        free(asleep);
+    if (!room->asleep || !room->level || !room->kept) {
+        forget_sleep(room);
         return error_set(error, STATUS_ENVIRONMENT, "no memory for %zu particles", n);
     }
-    room->asleep = asleep;
-    mark_disturbed(simulation);
-    memset(asleep, 1, n);
-    grid_wake(cells_grid(room->cells), room->disturbed, WAKE_LAYERS, asleep);
-    for (ptrdiff_t i = 0; i < a->n; i++) {
-        if (!asleep[i]) continue;
-        room->kept[i] = a->h_inverse[i];
-        sleep_begin(simulation, i, 1);
-    }
+    sleep_scale(simulation);
+    const struct cells_quiet quiet = find_quiet(simulation);
+    lull(simulation, &quiet);
     sleep->awake_count = count_awake(room, a->n);
-    if (sleep->awake_count == a->n) forget_sleep(room); /* nobody falls asleep later */
     return STATUS_OK;
 }
 
 static void update_sleep(struct simulation *simulation)
 {
     struct room *room = room_of(simulation);
-    if (!room->asleep || simulation->sleep.awake_count == simulation->particles.n) return;
-    mark_disturbed(simulation);
-    grid_wake(cells_grid(room->cells), room->disturbed, WAKE_LAYERS, room->asleep);
-    simulation->sleep.awake_count = count_awake(room, simulation->particles.n);
+    const ptrdiff_t n = simulation->particles.n;
+    const bool due = simulation->cost.steps % LULL_EVERY == LULL_EVERY - 1;
+    if (!room->asleep || (simulation->sleep.awake_count == n && !due)) return;
+    const struct cells_quiet quiet = find_quiet(simulation);
+    cells_wake(room->cells, &room->fields, &quiet, room->asleep);
+    if (due) lull(simulation, &quiet);
+    simulation->sleep.awake_count = count_awake(room, n);
 }
 
 /* Neighbours are found anew in every evaluation. */

@@ -344,49 +344,42 @@ enum status grid_search(struct grid *grid, size_t n, size_t active, const double
     return grid_make_lists(grid, error);
 }
 
-/* Marks the cells within k cells along one axis of a marked one. */
-static void spread(const struct grid *grid, int axis, ptrdiff_t k, const unsigned char *from,
-                   unsigned char *to)
+static bool any_asleep(const struct grid *grid, size_t cell, const unsigned char *asleep)
 {
-    ptrdiff_t c[3];
-    for (c[2] = 0; c[2] < grid->cells[2]; c[2]++)
-        for (c[1] = 0; c[1] < grid->cells[1]; c[1]++)
-            for (c[0] = 0; c[0] < grid->cells[0]; c[0]++) {
-                if (!from[grid_cell_at(grid, c)]) continue;
-                ptrdiff_t near[3] = {c[0], c[1], c[2]};
-                const ptrdiff_t most = k < grid->cells[axis] ? k : grid->cells[axis] - 1;
-                for (ptrdiff_t step = -most; step <= most; step++) {
-                    near[axis] = c[axis] + step;
-                    if (grid->box.periodic[axis])
-                        near[axis] = grid_folded(grid, axis, near[axis]);
-                    else if (near[axis] < 0 || near[axis] >= grid->cells[axis])
-                        continue;
-                    to[grid_cell_at(grid, near)] = 1;
-                }
-            }
+    for (uint32_t s = grid->start[cell]; s < grid->start[cell + 1]; s++)
+        if (grid->order[s] >= grid->active || asleep[grid->order[s]]) return true;
+    return false;
 }
 
-void grid_wake(const struct grid *grid, const unsigned char *disturbed, int layers,
-               unsigned char *asleep)
+/* Is one of the cells that the points of the cell look through marked? */
+static bool looks_at_mark(const struct grid *grid, size_t cell)
 {
-    float most = 0;
-    unsigned char *from = grid->marks, *to = grid->marks + grid->cell_count;
-    memset(from, 0, grid->cell_count);
-    for (size_t cell = 0; cell < grid->cell_count; cell++) {
-        most = grid->reach[cell] > most ? grid->reach[cell] : most;
-        for (uint32_t s = grid->start[cell]; s < grid->start[cell + 1]; s++)
-            if (grid->order[s] < grid->active && disturbed[grid->order[s]]) from[cell] = 1;
-    }
-    for (int a = 0; a < grid->box.dim; a++) {
-        memset(to, 0, grid->cell_count);
-        spread(grid, a, layers * grid_cells_within(grid, a, most), from, to);
-        unsigned char *const next = from;
-        from = to;
-        to = next;
-    }
+    ptrdiff_t c[3];
+    struct look l[3];
+    grid_cell_coordinates(grid, cell, c);
+    for (int a = 0; a < 3; a++) l[a] = grid_look_along(grid, a, c[a], grid->reach[cell]);
+    for (ptrdiff_t kz = 0; kz < l[2].count; kz++)
+        for (ptrdiff_t ky = 0; ky < l[1].count; ky++) {
+            const size_t row =
+                grid_cell_at(grid, (ptrdiff_t[3]){0, grid_folded(grid, 1, l[1].from + ky),
+                                                  grid_folded(grid, 2, l[2].from + kz)});
+            for (ptrdiff_t kx = 0; kx < l[0].count; kx++)
+                if (grid->marks[row + (size_t)grid_folded(grid, 0, l[0].from + kx)]) return true;
+        }
+    return false;
+}
+
+void grid_find_rim(struct grid *grid, const unsigned char *asleep)
+{
+    unsigned char *const rim = grid->marks + grid->cell_count;
     for (size_t cell = 0; cell < grid->cell_count; cell++)
-        for (uint32_t s = grid->start[cell]; from[cell] && s < grid->start[cell + 1]; s++)
-            if (grid->order[s] < grid->active) asleep[grid->order[s]] = 0;
+        grid->marks[cell] = any_asleep(grid, cell, asleep);
+    for (size_t cell = 0; cell < grid->cell_count; cell++) rim[cell] = looks_at_mark(grid, cell);
+}
+
+bool grid_in_rim(const struct grid *grid, size_t slot)
+{
+    return grid->marks[grid->cell_count + grid->cell_of[grid->order[slot]]];
 }
 
 const uint32_t *grid_order(const struct grid *grid)

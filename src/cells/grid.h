@@ -65,10 +65,10 @@ const uint32_t *grid_order(const struct grid *grid); /* slot -> point, n of them
 const double (*grid_positions(const struct grid *grid))[3];
 const struct grid_list *grid_lists(const struct grid *grid); /* of each slot */
 double grid_side(const struct grid *grid, int axis);         /* period, 0: open */
-/* Wakes whoever is in a cell that comes within `layers` reaches of a cell with a disturbed point:
- * clears their flag. n of each flag. */
-void grid_wake(const struct grid *grid, const unsigned char *disturbed, int layers,
-               unsigned char *asleep);
+/* Finds the cells whose points may have a point that sleeps, or is not active, in their lists;
+ * then: is the slot in one of them? */
+void grid_find_rim(struct grid *grid, const unsigned char *asleep);
+bool grid_in_rim(const struct grid *grid, size_t slot);
 int grid_longest(const struct grid *grid); /* list, in whole vectors */
 
 /* Makes room for the lists of the last search, half as much again as they need; needed after every

@@ -72,7 +72,7 @@ struct grid {
     float *widest;        /* largest radius of the cell's points; in units, as all floats here */
     float *reach;         /* how far its points and those of others reach across it */
     ptrdiff_t within[3];  /* cells that every reach covers; -1: not all the same */
-    unsigned char *marks; /* two of each cell, for grid_wake */
+    unsigned char *marks; /* two of each cell, for the rim */
     uint16_t **reached;   /* 3D, of each cell with lists: marks of the points of the cells around
                              that its own may be near; NULL: of none is it known that they are not */
     uint32_t *order;

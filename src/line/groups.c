@@ -15,7 +15,7 @@ static int group_len(const struct simulation *simulation, ptrdiff_t group)
 
 static bool group_disturbed(const struct simulation *simulation, ptrdiff_t group)
 {
-    return sleep_disturbed(simulation, group * GROUP, group_len(simulation, group));
+    return !(sleep_disturbance(simulation, group * GROUP, group_len(simulation, group)) <= 1);
 }
 
 /* Groups around a disturbed one that must be awake: a disturbance passes through density and forces
@@ -117,6 +117,7 @@ enum status groups_begin(struct simulation *simulation, struct error *error)
         return STATUS_OK;
     }
     struct groups *groups = &line->groups;
+    sleep_scale(simulation);
     for (ptrdiff_t group = 0; group < groups->count; group++)
         if (group_disturbed(simulation, group)) wake(groups, group, margin(line->reach));
     for (ptrdiff_t group = 0; group < groups->count; group++)

@@ -121,6 +121,9 @@ struct problem {
     bool (*holds)(const struct prepared *p, double t);
     /* Says why it does not; longest: the last time at which it does. */
     enum status (*refuse)(const struct prepared *p, double t, double longest, struct error *error);
+    /* How far ahead of the nearest wave x lies, without boost; <= 0 where one has been. NULL: no
+     * wave has an edge. */
+    double (*ahead)(const struct prepared *p, const double x[3], double t);
     /* Does the start depend on the seed? */
     bool (*random)(const struct settings *settings);
     /* Ends with NULL; with the rate of what grows at most PROBLEM_FUNCTIONALS_MAX. */

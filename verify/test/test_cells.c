@@ -171,10 +171,10 @@ static void sleep_changes_nothing(void **state)
         skipped += other.skipped;
         for (size_t i = 0; i < p.n; i++) {
             for (int a = 0; a < dim; a++) {
-                near_below(fabs(plain.x[a][i] - other.x[a][i]), 1e-9);
-                near_below(fabs(plain.v[a][i] - other.v[a][i]), 1e-9);
+                near_below(fabs(plain.x[a][i] - other.x[a][i]), 1e-10);
+                near_below(fabs(plain.v[a][i] - other.v[a][i]), 1e-10);
             }
-            near_below(fabs(plain.rho[i] - other.rho[i]), 1e-9);
+            near_below(fabs(plain.rho[i] - other.rho[i]), 1e-10);
         }
         if (scheme.energy == ENERGY_TOTAL) near_relative(other.energy, plain.energy, 1e-12);
     }

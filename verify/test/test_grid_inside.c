@@ -367,37 +367,34 @@ static size_t check_lists(const struct grid *grid)
     return compared;
 }
 
-/* Who lies within so many reaches of a cell with somebody disturbed, cell by cell along each axis.
- */
-static void check_waking(const struct grid *grid, int layers)
+/* The rim is where lists may have somebody who sleeps, or is not active. */
+static void check_rim(struct grid *grid)
 {
-    static unsigned char disturbed[POINTS_MAX], asleep[POINTS_MAX];
-    float most = 0;
-    for (size_t cell = 0; cell < grid->cell_count; cell++) most = fmaxf(most, grid->reach[cell]);
-    memset(disturbed, 0, sizeof disturbed);
-    memset(asleep, 1, sizeof asleep);
-    for (int k = 0; k < 3; k++) disturbed[draw_bits() % scene.n] = 1;
-    disturbed[scene.n] = disturbed[scene.active] = 1; /* nobody */
-    grid_wake(grid, disturbed, layers, asleep);
-    for (size_t i = 0; i < scene.n; i++) {
-        bool woken = false;
+    static unsigned char asleep[POINTS_MAX];
+    memset(asleep, 0, sizeof asleep);
+    for (int k = 0; k < 3; k++) asleep[draw_bits() % scene.active] = 1;
+    grid_find_rim(grid, asleep);
+    for (size_t s = 0; s < scene.n; s++) {
+        const size_t cell = grid->cell_of[grid->order[s]];
         ptrdiff_t c[3], d[3];
-        grid_cell_coordinates(grid, grid->cell_of[i], c);
-        for (size_t j = 0; j < scene.active; j++) {
-            bool near = disturbed[j];
-            if (!near) continue;
+        bool rim = false;
+        grid_cell_coordinates(grid, cell, c);
+        for (size_t j = 0; j < scene.n && !rim; j++) {
+            rim = j >= scene.active || asleep[j];
+            if (!rim) continue;
             grid_cell_coordinates(grid, grid->cell_of[j], d);
             for (int a = 0; a < grid->box.dim; a++) {
                 ptrdiff_t apart = c[a] < d[a] ? d[a] - c[a] : c[a] - d[a];
+                const ptrdiff_t within = grid->within[a] >= 0
+                                             ? grid->within[a]
+                                             : grid_cells_within(grid, a, grid->reach[cell]);
                 if (grid_wraps(grid, a) && grid->cells[a] - apart < apart)
                     apart = grid->cells[a] - apart;
-                near = near && apart <= layers * grid_cells_within(grid, a, most);
+                rim = rim && apart <= within;
             }
-            woken = woken || near;
         }
-        assert_int_equal(asleep[i], !woken || i >= scene.active);
+        assert_int_equal(grid_in_rim(grid, s), rim);
     }
-    assert_true(asleep[scene.n]);
 }
 
 static void test_scenes(void **state)
@@ -414,7 +411,7 @@ static void test_scenes(void **state)
         check_reaches(grid);
         check_parts(grid);
         compared += check_lists(grid);
-        check_waking(grid, trial % 3);
+        check_rim(grid);
         grid_destroy(grid);
     }
     assert_true(compared > 100000);
@@ -514,7 +511,7 @@ static void test_searched_again(void **state)
             check_points(grid);
             check_reaches(grid);
             assert_true(check_lists(grid) > 0);
-            check_waking(grid, 2);
+            check_rim(grid);
         }
         grid_destroy(grid);
     }

@@ -540,44 +540,48 @@ static void neighbours_are_described(void **state)
 
 /* --- sleep ------------------------------------------------------------------------------------ */
 
-/* Each limit exactly, and the next number beyond it, in d dimensions. */
+/* Each limit exactly, and the next number beyond it, in d dimensions; where the scene's mean sound
+ * speed and pressure are more than the particle's own, they count. */
 static void disturbed_beyond_a_limit(void **state)
 {
     (void)state;
     for (int dim = 1; dim <= 3; dim++)
         for (int n = 10; n < 9000; n += 1700)
-            for (int what = 0; what < 3; what++)
+            for (int what = 0; what < 6; what++)
                 for (int beyond = 0; beyond < 2; beyond++)
                     for (int at = 2; at < 8; at++) {
-                        struct simulation s = {.plan.alpha = what == 2};
+                        const bool mean = what >= 3;
+                        struct simulation s = {.plan.alpha = what % 3 == 2, .plan.dim = dim};
                         struct error error;
                         struct particles *a = &s.particles;
                         if (particles_create(a, dim, n, 0, &error)) fail_msg("%s", error.message);
-                        const double limit = fmax(1e-11, 30 * DBL_EPSILON * n);
+                        const double limit =
+                            fmax(dim == 1 ? 1e-11 : 1e-9, 30 * DBL_EPSILON * pow(n, 1. / dim));
+                        if (mean) s.sleep.sound = 20;
                         for (int i = 0; i < 9; i++) {
                             a->P[i] = 3 + i, a->c[i] = 2 + i, a->h[i] = 0.25 + 0.125 * i;
-                            a->v[0][i] = -4;
-                            const double area = dim == 1   ? 1
-                                                : dim == 2 ? a->h[i]
-                                                           : a->h[i] * a->h[i];
-                            double *of = what == 0   ? &a->F[0][i]
-                                         : what == 1 ? &a->de[i]
-                                                     : &a->dalpha[i];
-                            *of = what == 0   ? limit * a->P[i] * area
-                                  : what == 1 ? limit * a->P[i] * (a->c[i] + 4) * area
-                                              : limit * a->c[i] / a->h[i];
-                            if (what == 2) *of *= 1 - 4 * DBL_EPSILON;
-                            if (beyond && i == at) *of *= 1 + (what == 2 ? 8 : 1) * DBL_EPSILON;
+                            a->v[0][i] = -4, a->m[i] = 1 + i;
+                            const double c = mean ? 20 : a->c[i];
+                            const double force = a->m[i] * c * c / a->h[i];
+                            double *of = what % 3 == 0   ? &a->F[0][i]
+                                         : what % 3 == 1 ? &a->de[i]
+                                                         : &a->dalpha[i];
+                            *of = what % 3 == 0   ? limit * force
+                                  : what % 3 == 1 ? limit * force * (c + 4)
+                                                  : limit * c / a->h[i];
+                            *of *= 1 - 8 * DBL_EPSILON;
+                            if (beyond && i == at) *of *= 1 + 16 * DBL_EPSILON;
                             if (i % 2) *of = -*of;
                         }
-                        const bool disturbed = sleep_disturbed(&s, 3, 4);
-                        assert_int_equal(disturbed, beyond && at >= 3 && at < 7);
-                        if (what == 2) {
+                        const double worst = sleep_disturbance(&s, 3, 4);
+                        near_relative(worst, 1, 1e-14);
+                        assert_int_equal(worst > 1, beyond && at >= 3 && at < 7);
+                        if (what % 3 == 2) {
                             s.plan.alpha = false;
-                            assert_false(sleep_disturbed(&s, 3, 4));
+                            assert_true(sleep_disturbance(&s, 3, 4) == 0);
                         }
-                        a->P[5] = NAN;
-                        assert_true(sleep_disturbed(&s, 3, 4));
+                        a->c[5] = NAN;
+                        assert_true(isnan(sleep_disturbance(&s, 3, 4)));
                         particles_destroy(a);
                     }
 }
@@ -587,9 +591,9 @@ static void disturbed_beyond_a_limit(void **state)
 static void at_rest(struct simulation *s, const bool *disturbed, double v)
 {
     struct particles *a = &s->particles;
-    s->plan.sleep = true;
+    s->plan.sleep = true, s->plan.dim = 1;
     for (ptrdiff_t i = -GHOSTS; i < a->n + GHOSTS; i++)
-        a->P[i] = a->c[i] = 1, a->v[0][i] = v, a->p[0][i] = v;
+        a->P[i] = a->c[i] = 1, a->v[0][i] = v, a->p[0][i] = v, a->m[i] = a->h[i];
     ghosts_fill(a, a->x[0], GHOSTS - 8, 2);
     ghosts_fill(a, a->h_inverse, GHOSTS - 8, 0);
     for (ptrdiff_t i = 0; i < a->n; i++) {

@@ -354,6 +354,16 @@ static bool far_ahead(double place, double way, double h, double widest)
     return place - way > fmax(fmax(still_widths * h, still_way * fabs(way)), reaches * widest);
 }
 
+/* Of the main tube's wave and of the one that comes from the box's end. */
+static double ahead(const struct prepared *p, const double place[3], double t)
+{
+    const struct tube *tubes = tube_of(p);
+    const double x = place[0], sign = x > tubes->x0 ? 1 : -1;
+    const double from_end = sign > 0 ? p->domain.hi[0] - x : x - p->domain.lo[0];
+    return fmin(sign * (x - tubes->x0) - edge(&tubes->main, sign) * t,
+                from_end - edge(&tubes->mirror, -sign) * t);
+}
+
 /* Undisturbed gas lies between the main tube's wave and the one that comes from the box's end. */
 static double stillness(const struct prepared *p, const struct snapshot *s)
 {
@@ -403,6 +413,7 @@ const struct problem problem_riemann = {
     .prepare = prepare,
     .sample = sample,
     .fill = fill,
+    .ahead = ahead,
     .holds = holds,
     .refuse = refuse,
     .random = initial_is_shaken,

@@ -92,6 +92,11 @@ static bool holds(const struct prepared *p, double t)
     return sedov_shock(sedov_of(p), t) <= 0.9 * half;
 }
 
+static double ahead(const struct prepared *p, const double x[3], double t)
+{
+    return problem_radius(p, x) - sedov_shock(sedov_of(p), t);
+}
+
 static enum status refuse(const struct prepared *p, double t, double longest, struct error *error)
 {
     return error_set(error, STATUS_BAD_INPUT,
@@ -281,6 +286,7 @@ const struct problem problem_sedov = {
     .prepare = prepare,
     .sample = sample,
     .fill = fill,
+    .ahead = ahead,
     .holds = holds,
     .refuse = refuse,
     .random = initial_is_shaken,

@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * How much of a run is skipped, beside what an exact solution leaves in peace. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "bench_possible.h"
+#include "near.h"
+
+enum { KEYS = 8 };
+
+static struct bench_shares shares_of(const char *name, const char *words)
+{
+    struct run_settings settings;
+    struct run run = {0};
+    struct bench_shares shares;
+    struct error error;
+    char text[256], *keys[KEYS], *rest = text;
+    int n = 0;
+    snprintf(text, sizeof text, "%s", words);
+    for (char *word; n < KEYS && (word = strtok_r(rest, ",", &rest));) keys[n++] = word;
+    if (run_prepare(&settings, name, n, keys, &error) || run_resolve(&run, &settings, &error) ||
+        bench_possible(&run, &shares, &error))
+        fail_msg("%s %s: %s", name, words, error.message);
+    print_message("%s,%s: skipped %.3f, possible %.3f\n", name, words, shares.skipped,
+                  shares.possible);
+    return shares;
+}
+
+static void test_shares(void **state)
+{
+    static const struct {
+        const char *name, *keys;
+        double possible;
+    } cases[] = {{"sod_2d", "n=22400,t_end=0.03", 0.7},
+                 {"sedov_2d", "n=64^2,t_end=0.003", 0.7},
+                 {"sedov_3d", "n=32^3,t_end=0.0002", 0.5}};
+    (void)state;
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        const struct bench_shares shares = shares_of(cases[k].name, cases[k].keys);
+        near_inside(shares.possible, cases[k].possible, 1);
+        near_inside(shares.skipped, 0.8 * shares.possible, 1);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_shares)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
