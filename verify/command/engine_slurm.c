@@ -43,9 +43,9 @@ struct share {
     size_t lacking; /* computations that the cache does not have */
     int tries;      /* how often it was submitted */
     bool live, failed;
-    double ended;               /* when its end was first seen; 0: not yet */
-    long job;                   /* its last array */
-    char state[24], reason[64]; /* of its last task; "" before */
+    double ended;   /* when its end was first seen; 0: not yet */
+    long job;       /* its last array */
+    char state[24]; /* of its last task; "" before */
 };
 
 struct array {
@@ -258,6 +258,17 @@ static bool held(const struct slurm_task *task)
     return task->live && strstr(task->reason, "launch failed");
 }
 
+/* Tasks that waited when their array was cancelled are one record, without their numbers. */
+static void hear_cancelled(struct array *array, const struct slurm_task *task)
+{
+    for (int s = 1; s <= array->count; s++) {
+        struct share *share = &array->shares[s];
+        const bool waited = !share->state[0] || strcmp(share->state, "PENDING") == 0;
+        if (share->job == task->job && !share->live && waited)
+            snprintf(share->state, sizeof share->state, "%s", task->state);
+    }
+}
+
 static void hear(struct array *array, struct slurm_task *tasks, size_t count)
 {
     array->waiting = array->running = 0;
@@ -275,8 +286,9 @@ static void hear(struct array *array, struct slurm_task *tasks, size_t count)
         share->live = task->live;
         share->job = task->job;
         snprintf(share->state, sizeof share->state, "%s", task->state);
-        snprintf(share->reason, sizeof share->reason, "%s", task->reason);
     }
+    for (size_t i = 0; i < count; i++)
+        if (tasks[i].index == 0 && !tasks[i].live) hear_cancelled(array, &tasks[i]);
 }
 
 /* Is it time to submit what is left of this share, or to give it up? */
@@ -284,15 +296,15 @@ static bool due(struct array *array, struct share *share, int number)
 {
     const double now = clock_wall();
     if (!share->lacking || share->live || share->failed) return false;
-    if (share->tries && share->ended <= 0) share->ended = now;
+    if (!share->tries) return true; /* whatever became of an earlier call's */
+    if (share->ended <= 0) share->ended = now;
     /* one that ended well has written everything, which other machines may see a little later */
-    if (share->tries && strcmp(share->state, "COMPLETED") == 0 && now < share->ended + visible)
-        return false;
+    if (strcmp(share->state, "COMPLETED") == 0 && now < share->ended + visible) return false;
     if (share->tries >= TRIES || strcmp(share->state, "CANCELLED") == 0) {
         share->failed = true; /* who cancels a task does not want it again */
         return false;
     }
-    if (share->tries && !array->work->options->quiet)
+    if (!array->work->options->quiet)
         fprintf(stderr,
                 "sphproof: note: share %d ended (%s) and %zu of its computations are missing: "
                 "submitted again (%d of %d)\n",

@@ -8,7 +8,7 @@
 #include "child.h"
 #include "list.h"
 
-/* Runs one of Slurm's commands; said is to be freed where that went well. */
+/* Runs one of Slurm's commands; said is to be freed where that went well. error may be NULL. */
 static enum status ask(const char *const *words, struct child_said *said, struct error *error)
 {
     struct error trouble = {0};
@@ -19,16 +19,16 @@ static enum status ask(const char *const *words, struct child_said *said, struct
             "on a machine that may submit jobs)",
             trouble.message);
     if (said->exit == 0) return STATUS_OK;
-    error_set(error, STATUS_ENVIRONMENT, "--engine slurm: %s failed (exit status %d): %s", words[0],
-              said->exit, said->complaint[0] ? said->complaint : "it says nothing");
     child_free(said);
-    return error->status;
+    return error_set(error, STATUS_ENVIRONMENT, "--engine slurm: %s failed (exit status %d): %s",
+                     words[0], said->exit,
+                     said->complaint[0] ? said->complaint : "it says nothing");
 }
 
 enum status slurm_submit(const char *const *words, long *job, struct error *error)
 {
     struct child_said said;
-    if (ask(words, &said, error)) return error->status;
+    if (ask(words, &said, error)) return STATUS_ENVIRONMENT;
     char *end = said.output;
     *job = strtol(said.output, &end, 10); /* "17", or "17;cluster" */
     const bool sound = end > said.output && *job > 0;
@@ -36,7 +36,7 @@ enum status slurm_submit(const char *const *words, long *job, struct error *erro
         error_set(error, STATUS_ENVIRONMENT, "--engine slurm: sbatch answers '%.60s', no number",
                   said.output);
     child_free(&said);
-    return sound ? STATUS_OK : error->status;
+    return sound ? STATUS_OK : STATUS_ENVIRONMENT;
 }
 
 static bool ended(const char *state)
@@ -59,15 +59,17 @@ enum status slurm_queue(const char *name, struct slurm_task **tasks, size_t *cou
     snprintf(named, sizeof named, "--name=%s", name);
     *tasks = NULL;
     *count = 0;
-    if (ask(words, &said, error)) return error->status;
+    if (ask(words, &said, error)) return STATUS_ENVIRONMENT;
     enum status status = STATUS_OK;
     for (char *line = said.output; *line && !status;) {
         struct slurm_task task = {0};
         const size_t length = strcspn(line, "\n");
         const bool last = !line[length];
         line[length] = '\0';
-        if (sscanf(line, "%ld %d %23s %63[^\n]", &task.job, &task.index, task.state, task.reason) >=
+        char index[16] = ""; /* "N/A": see slurm.h */
+        if (sscanf(line, "%ld %15s %23s %63[^\n]", &task.job, index, task.state, task.reason) >=
             3) {
+            task.index = atoi(index);
             task.live = !ended(task.state);
             if (list_grow(tasks, *count, sizeof task))
                 (*tasks)[(*count)++] = task;
@@ -84,7 +86,7 @@ static enum status cancel(const char *what, struct error *error)
 {
     struct child_said said;
     const char *words[] = {"scancel", what, NULL};
-    if (ask(words, &said, error)) return error->status;
+    if (ask(words, &said, error)) return STATUS_ENVIRONMENT;
     child_free(&said);
     return STATUS_OK;
 }

@@ -14,7 +14,7 @@ enum { SLURM_WORDS_MAX = 64 };
 /* A task of an array, as the controller knows it: for some minutes also after its end. */
 struct slurm_task {
     long job;        /* of the array */
-    int index;       /* in the array */
+    int index;       /* in the array; 0: of all that waited when the array was cancelled */
     bool live;       /* it waits, runs or will run again */
     char state[24];  /* RUNNING, TIMEOUT ... */
     char reason[64]; /* why it waits */
@@ -27,7 +27,7 @@ enum status slurm_submit(const char *const *words, long *job, struct error *erro
 enum status slurm_queue(const char *name, struct slurm_task **tasks, size_t *count,
                         struct error *error);
 
-/* Cancels what is left of the arrays of this name. */
+/* Cancels what is left of the arrays of this name. error may be NULL, here and below. */
 enum status slurm_cancel(const char *name, struct error *error);
 
 /* Cancels a task that Slurm holds. */

@@ -281,10 +281,9 @@ static void add_changes(const struct reading *reading, const json_t *nights, jso
     const bool order = reading->kind == READING_ORDER;
     for (size_t i = 0; i < json_array_size(nights) && i < HISTORY_NIGHTS_MAX; i++) {
         const json_t *figures = json_object_get(json_array_get(nights, i), "figures");
-        double now = value_member(figures, reading->path);
-        if (!order) now = log(fmax(now, fmax(reading->floor, error_least)));
+        const double now = value_member(figures, reading->path);
         if (!isfinite(now)) continue;
-        value[n] = now;
+        value[n] = order ? now : log(fmax(now, fmax(reading->floor, error_least)));
         night[n++] = i;
     }
     const size_t count = trend_changes(

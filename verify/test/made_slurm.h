@@ -1,0 +1,318 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Slurm as the engine sees it, in this process: sbatch, squeue and scancel answer what Slurm 22.05
+ * answered (recorded on a cluster of two nodes), seconds pass only while somebody sleeps, and every
+ * task meets the fate that a test has written for it. Needs the linker's --wrap of child_run,
+ * clock_wall, isatty and nanosleep. Include after cmocka.h. */
+#ifndef MADE_SLURM_H
+#define MADE_SLURM_H
+
+#include <math.h>
+#include <signal.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "cache.h"
+#include "child.h"
+#include "clock.h"
+#include "pool.h"
+
+enum { MADE_TASKS = 40, MADE_TRIES = 4, MADE_SHARES = 4 };
+
+/* What becomes of a task. */
+enum fate {
+    COMPLETES, /* its results are in the cache */
+    LATE,      /* as well, but the folder shows them 12 s later */
+    USELESS,   /* it ends well, and has written nothing */
+    ENDS_BADLY,
+    TIMES_OUT,
+    LOSES_NODE,
+    PREEMPTED,
+    NO_MEMORY,
+    NO_BOOT,
+    MISSES_DEADLINE,
+    REVOKED,
+    CANCELLED_RUNNING,
+    CANCELLED_WAITING, /* its array's record says N/A where its number was */
+    CANCELLED_AT_ONCE, /* likewise, before anybody has asked */
+    FORGOTTEN,         /* the controller does not know it any more */
+    NEVER_SEEN,        /* nor has it ever */
+    REQUEUED,          /* it waits again for some seconds, then COMPLETES */
+    SUSPENDED,         /* for some seconds, then COMPLETES */
+    HELD,              /* Slurm could not start it, and waits for ever */
+    STAYS,             /* it runs for ever */
+    FATES
+};
+
+struct made_task {
+    long job;
+    int index;
+    enum fate fate;
+    double submitted;
+    bool stored, cancelled;
+};
+
+static struct made_slurm {
+    double now;
+    const struct pool *pool;
+    const struct cache *cache;
+    enum fate fates[MADE_SHARES + 1][MADE_TRIES]; /* by share, and how often it was submitted */
+    int tries[MADE_SHARES + 1];
+    struct made_task tasks[MADE_TASKS];
+    size_t count, submissions, questions;
+    char arrays[200];    /* what --array said, each submission's with a space behind it */
+    char cancelled[200]; /* what scancel was told, likewise */
+    char name[64], output[CACHE_PATH_MAX], wrap[4000], words[80][100]; /* of the last sbatch */
+    double away_from, away_to; /* the controller does not answer */
+    bool backwards;            /* squeue has the newest tasks first */
+    bool no_sbatch;            /* there is no such program */
+    bool refuses_cancel;
+    const char *refuses; /* what sbatch says instead of a number */
+    const char *answers; /* what it prints behind the number */
+    double interrupt;    /* when somebody presses Ctrl-C; 0: never */
+    bool terminal;
+    void (*meanwhile)(void); /* is called with every question */
+} made;
+
+double __wrap_clock_wall(void);
+double __wrap_clock_wall(void)
+{
+    return made.now;
+}
+
+int __wrap_nanosleep(const struct timespec *time, struct timespec *left);
+int __wrap_nanosleep(const struct timespec *time, struct timespec *left)
+{
+    (void)left;
+    const double before = made.now;
+    made.now += (double)time->tv_sec + 1e-9 * (double)time->tv_nsec;
+    assert_true(time->tv_sec >= 0 && time->tv_nsec >= 0 && time->tv_nsec < 1000000000);
+    assert_true(made.now > before && made.now < 5000); /* it ends, and does not ask incessantly */
+    if (made.interrupt > 0 && made.now >= made.interrupt) {
+        made.interrupt = 0;
+        raise(SIGINT);
+    }
+    return 0;
+}
+
+int __wrap_isatty(int file);
+int __wrap_isatty(int file)
+{
+    return file == STDIN_FILENO && made.terminal;
+}
+
+static inline bool begins(const char *word, const char *with)
+{
+    return strncmp(word, with, strlen(with)) == 0;
+}
+
+static inline enum status answer(struct child_said *said, int code, const char *output,
+                                 const char *complaint)
+{
+    *said = (struct child_said){.exit = code, .output = strdup(output)};
+    snprintf(said->complaint, sizeof said->complaint, "%s", complaint);
+    return STATUS_OK;
+}
+
+/* Its computations' results. */
+static inline void store_share(int share, int of)
+{
+    int *shares = calloc(made.pool->count + 1, sizeof *shares);
+    struct error error = {0};
+    assert_int_equal(pool_divide(made.pool, of, shares, &error), STATUS_OK);
+    for (size_t i = 0; i < made.pool->count; i++) {
+        json_t *reply = json_pack("{s:i, s:s, s:{s:i}}", "status", 0, "message", "", "document",
+                                  "number", (int)i);
+        if (shares[i] == share)
+            assert_int_equal(cache_store(made.cache, made.pool->jobs[i].key, reply, &error),
+                             STATUS_OK);
+        json_decref(reply);
+    }
+    free(shares);
+}
+
+/* A task that waits for a second, runs for two, and then meets its fate. */
+static inline void task_state(const struct made_task *task, const char **state, const char **reason)
+{
+    static const struct {
+        const char *state, *reason;
+    } ends[FATES] = {
+        [COMPLETES] = {"COMPLETED", "None"},
+        [LATE] = {"COMPLETED", "None"},
+        [USELESS] = {"COMPLETED", "None"},
+        [ENDS_BADLY] = {"FAILED", "NonZeroExitCode"},
+        [TIMES_OUT] = {"TIMEOUT", "TimeLimit"},
+        [LOSES_NODE] = {"NODE_FAIL", "NodeDown"},
+        [PREEMPTED] = {"PREEMPTED", "None"},
+        [NO_MEMORY] = {"OUT_OF_MEMORY", "OutOfMemory"},
+        [NO_BOOT] = {"BOOT_FAIL", "NodeDown"},
+        [MISSES_DEADLINE] = {"DEADLINE", "DeadLine"},
+        [REVOKED] = {"REVOKED", "None"},
+        [CANCELLED_RUNNING] = {"CANCELLED", "None"},
+        [CANCELLED_WAITING] = {"CANCELLED", "Resources"},
+        [CANCELLED_AT_ONCE] = {"CANCELLED", "Resources"},
+        [FORGOTTEN] = {NULL, NULL},
+        [NEVER_SEEN] = {NULL, NULL},
+        [REQUEUED] = {"COMPLETED", "None"},
+        [SUSPENDED] = {"COMPLETED", "None"},
+        [HELD] = {"PENDING", "launch failed requeued held"},
+        [STAYS] = {"RUNNING", "None"},
+    };
+    const bool at_once =
+        task->fate == HELD || task->fate == CANCELLED_AT_ONCE || task->fate == NEVER_SEEN;
+    const double age = at_once ? (double)INFINITY : made.now - task->submitted;
+    *state = ends[task->fate].state, *reason = ends[task->fate].reason;
+    if (task->cancelled) {
+        *state = "CANCELLED", *reason = "None";
+    } else if (age < 1) {
+        *state = "PENDING", *reason = "None";
+    } else if (age < 3) {
+        *state = task->fate == CANCELLED_WAITING ? "PENDING" : "RUNNING", *reason = "None";
+    } else if (age < 6 && task->fate == REQUEUED) {
+        *state = "PENDING", *reason = "BeginTime";
+    } else if (age < 6 && task->fate == SUSPENDED) {
+        *state = "SUSPENDED", *reason = "None";
+    }
+}
+
+static inline void pass_time(int of)
+{
+    for (size_t i = 0; i < made.count; i++) {
+        struct made_task *task = &made.tasks[i];
+        const char *state, *reason;
+        task_state(task, &state, &reason);
+        if (task->stored || !state || strcmp(state, "COMPLETED") || task->fate == USELESS) continue;
+        if (task->fate == LATE && made.now < task->submitted + 15) continue;
+        store_share(task->index, of);
+        task->stored = true;
+    }
+}
+
+static int made_of; /* the number of shares that the last command line named */
+
+static inline enum status fake_squeue(const char *const *words, struct child_said *said)
+{
+    static const char *const recorded[] = {"squeue", "--noheader", "--array", "--states=all"};
+    char text[4000] = "";
+    size_t length = 0;
+    for (size_t i = 0; i < 4; i++) assert_string_equal(words[i], recorded[i]);
+    assert_true(begins(words[4], "--name="));
+    assert_string_equal(words[5], "--format=%F %K %T %r");
+    assert_null(words[6]);
+    made.questions++;
+    if (made.now >= made.away_from && made.now < made.away_to)
+        return answer(said, 1, "",
+                      "slurm_load_jobs error: Unable to contact slurm controller (connect "
+                      "failure)");
+    pass_time(made_of);
+    long nameless = 0; /* the array whose waiting tasks are one record that was cancelled */
+    for (size_t i = 0; i < made.count; i++) {
+        const struct made_task *task = &made.tasks[made.backwards ? made.count - 1 - i : i];
+        const char *state, *reason;
+        char index[16] = "N/A";
+        task_state(task, &state, &reason);
+        if (!state || strcmp(words[4] + 7, made.name)) continue;
+        if (strcmp(reason, "Resources"))
+            snprintf(index, sizeof index, "%d", task->index);
+        else if (nameless == task->job)
+            continue;
+        else
+            nameless = task->job;
+        length += (size_t)snprintf(text + length, sizeof text - length, "%ld %s %s %s\n", task->job,
+                                   index, state, reason);
+    }
+    if (made.meanwhile) made.meanwhile();
+    return answer(said, 0, text, "");
+}
+
+/* Its array as sbatch reads it: 1,3-5. */
+static inline void add_tasks(const char *text, long job)
+{
+    while (*text) {
+        int first, last, length = 0;
+        assert_int_equal(sscanf(text, "%d%n", &first, &length), 1);
+        text += length;
+        last = first;
+        if (*text == '-') {
+            assert_int_equal(sscanf(text, "-%d%n", &last, &length), 1);
+            text += length;
+            assert_true(last > first);
+        }
+        for (int k = first; k <= last; k++) {
+            assert_true(k >= 1 && k <= MADE_SHARES && made.tries[k] < MADE_TRIES);
+            assert_true(made.count < MADE_TASKS);
+            made.tasks[made.count++] = (struct made_task){
+                .job = job,
+                .index = k,
+                .fate = made.fates[k][made.tries[k]++],
+                .submitted = made.now,
+            };
+        }
+        if (*text) assert_int_equal(*text++, ',');
+    }
+}
+
+static inline enum status fake_sbatch(const char *const *words, struct child_said *said,
+                                      struct error *error)
+{
+    const char *array = NULL, *wrap = NULL;
+    bool parsable = false;
+    char text[80];
+    if (made.no_sbatch)
+        return error_set(error, STATUS_ENVIRONMENT, "sbatch: No such file or directory");
+    if (made.refuses) return answer(said, 1, "", made.refuses);
+    for (size_t i = 1; words[i]; i++) {
+        assert_true(i < 80);
+        snprintf(made.words[i - 1], sizeof made.words[0], "%s", words[i]);
+        if (begins(words[i], "--array=")) array = words[i] + 8;
+        if (begins(words[i], "--job-name="))
+            snprintf(made.name, sizeof made.name, "%s", words[i] + 11);
+        if (begins(words[i], "--output="))
+            snprintf(made.output, sizeof made.output, "%s", words[i] + 9);
+        if (strcmp(words[i], "--parsable") == 0) parsable = true;
+        if (strcmp(words[i], "--wrap") == 0) wrap = words[++i];
+    }
+    assert_true(array && wrap && parsable && begins(wrap, "exec '"));
+    snprintf(made.wrap, sizeof made.wrap, "%s", wrap);
+    const char *of = strstr(wrap, "--shard $SLURM_ARRAY_TASK_ID/");
+    assert_true(of && sscanf(of, "--shard $SLURM_ARRAY_TASK_ID/%d", &made_of) == 1);
+    const size_t length = strlen(made.arrays);
+    snprintf(made.arrays + length, sizeof made.arrays - length, "%s ", array);
+    add_tasks(array, 7 + (long)made.submissions);
+    snprintf(text, sizeof text, "%ld%s\n", 7 + (long)made.submissions++,
+             made.answers ? made.answers : "");
+    return answer(said, 0, text, "");
+}
+
+static inline enum status fake_scancel(const char *const *words, struct child_said *said)
+{
+    const size_t length = strlen(made.cancelled);
+    long job = 0;
+    int index = 0;
+    assert_true(words[1] && !words[2]);
+    snprintf(made.cancelled + length, sizeof made.cancelled - length, "%s ", words[1]);
+    if (made.refuses_cancel)
+        return answer(said, 1, "",
+                      "scancel: error: Kill job error on job id 7: Access/permission denied");
+    const bool all = begins(words[1], "--name=") && strcmp(words[1] + 7, made.name) == 0;
+    if (!all) assert_int_equal(sscanf(words[1], "%ld_%d", &job, &index), 2);
+    for (size_t i = 0; i < made.count; i++)
+        if (all || (made.tasks[i].job == job && made.tasks[i].index == index))
+            made.tasks[i].cancelled = true;
+    return answer(said, 0, "", "");
+}
+
+enum status __wrap_child_run(const char *const *words, struct child_said *said,
+                             struct error *error);
+enum status __wrap_child_run(const char *const *words, struct child_said *said, struct error *error)
+{
+    if (strcmp(words[0], "squeue") == 0) return fake_squeue(words, said);
+    if (strcmp(words[0], "sbatch") == 0) return fake_sbatch(words, said, error);
+    assert_string_equal(words[0], "scancel");
+    return fake_scancel(words, said);
+}
+
+#endif

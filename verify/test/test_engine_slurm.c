@@ -1,0 +1,330 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The engine slurm on a cluster that is made up (made_slurm.h): what becomes of a study for every
+ * fate of its tasks, and what is submitted. */
+#define _GNU_SOURCE /* nftw */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "made_slurm_call.h"
+
+/* ---- fates of tasks ---- */
+
+static const struct {
+    enum fate fate;
+    const char *state; /* as it is said; NULL: nothing is submitted again */
+    bool given_up;     /* not submitted again either */
+} rows[] = {
+    {COMPLETES, NULL, false},
+    {LATE, NULL, false},
+    {REQUEUED, NULL, false},
+    {SUSPENDED, NULL, false},
+    {USELESS, "COMPLETED", false},
+    {ENDS_BADLY, "FAILED", false},
+    {TIMES_OUT, "TIMEOUT", false},
+    {LOSES_NODE, "NODE_FAIL", false},
+    {PREEMPTED, "PREEMPTED", false},
+    {NO_MEMORY, "OUT_OF_MEMORY", false},
+    {NO_BOOT, "BOOT_FAIL", false},
+    {MISSES_DEADLINE, "DEADLINE", false},
+    {REVOKED, "REVOKED", false},
+    {FORGOTTEN, "RUNNING", false},
+    {CANCELLED_RUNNING, "CANCELLED", true},
+    {CANCELLED_WAITING, "CANCELLED", true},
+    {CANCELLED_AT_ONCE, "CANCELLED", true},
+    /* of these nobody knows whether they were cancelled with their array */
+    {HELD, "PENDING", false},
+    {NEVER_SEEN, "not in the queue", false},
+};
+enum { ROWS = sizeof rows / sizeof *rows };
+
+/* Once: share 2 meets its fate and is submitted again, and only it. */
+static void once(void **state)
+{
+    (void)state;
+    for (int r = 0; r < ROWS; r++) {
+        char note[200];
+        again();
+        made.fates[2][0] = rows[r].fate;
+        const enum status status = compute_all();
+        if (rows[r].given_up) {
+            assert_int_equal(status, STATUS_ENVIRONMENT);
+            assert_string_equal(made.arrays, "1-3 ");
+            continue;
+        }
+        assert_int_equal(status, STATUS_OK);
+        all_is_left_behind_in_order();
+        assert_string_equal(made.cancelled, rows[r].fate == HELD ? "7_2 " : "");
+        assert_string_equal(made.arrays, rows[r].state ? "1-3 2 " : "1-3 ");
+        if (!rows[r].state) {
+            assert_string_equal(call.said, "");
+            continue;
+        }
+        snprintf(note, sizeof note,
+                 "sphproof: note: share 2 ended (%s) and %zu of its computations are missing: "
+                 "submitted again (1 of 2)\n",
+                 rows[r].state, shares_computations(2));
+        assert_string_equal(call.said, note);
+    }
+}
+
+/* Three times: it is given up, the others are not; what is missing and where to look is said. */
+static void thrice(void **state)
+{
+    (void)state;
+    for (int r = 0; r < ROWS; r++) {
+        if (!rows[r].state) continue;
+        char text[400], what[200], name[32] = "";
+        again();
+        for (int t = 0; t < 3; t++) made.fates[2][t] = rows[r].fate;
+        assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
+        assert_string_equal(made.arrays, rows[r].given_up ? "1-3 " : "1-3 2 2 ");
+        assert_int_equal(lacking(), shares_computations(2));
+        snprintf(what, sizeof what,
+                 "--engine slurm: %zu computations are missing; what is done is kept in",
+                 shares_computations(2));
+        says_error(what);
+        says_error(call.place.cache_folder);
+        snprintf(what, sizeof what, "share 2 of 3 (%s, submitted %d times), log ",
+                 rows[r].fate == HELD ? "CANCELLED" : rows[r].state, rows[r].given_up ? 1 : 3);
+        says(what);
+        snprintf(what, sizeof what, "-%d_2.log: (there is none)\n", rows[r].given_up ? 7 : 9);
+        says(what);
+        assert_null(strstr(call.said, "share 1 of"));
+        assert_null(strstr(call.said, "share 3 of"));
+        size_t missing = 0;
+        for (int i = 0; i < N; i++) {
+            snprintf(name, sizeof name, "missing: task %d (share 2)\n", i);
+            missing += strstr(call.said, name) != NULL;
+            snprintf(text, sizeof text, "task %d", i);
+            assert_int_equal(strstr(call.said, name) != NULL, !cache_has(&call.place.cache, text));
+        }
+        assert_int_equal(missing, shares_computations(2));
+        if (!rows[r].given_up) says("submitted again (1 of 2)"), says("submitted again (2 of 2)");
+        assert_int_equal(files("*.json"), 0);
+        /* who calls again begins anew, even while the queue still shows what was cancelled */
+        made.arrays[0] = '\0';
+        made.tries[2] = 3;
+        assert_int_equal(compute_all(), STATUS_OK);
+        assert_int_equal(made.submissions, rows[r].given_up ? 2 : 4);
+        assert_int_equal(lacking(), 0);
+    }
+}
+
+/* All shares at once, and each after another fate. */
+static void many(void **state)
+{
+    (void)state;
+    srand(26);
+    for (int draw = 0; draw < 60; draw++) {
+        size_t expected[SHARES + 1] = {0}; /* submissions of each share */
+        bool lost = false;
+        again();
+        made.backwards = draw % 2;
+        for (int s = 1; s <= SHARES; s++)
+            for (int t = 0; t < 3; t++) {
+                const int r = rand() % (ROWS - 2);
+                made.fates[s][t] = rows[r].fate;
+                if (expected[s] > 0 && expected[s] <= (size_t)t) continue; /* it is over */
+                if (!rows[r].state || rows[r].given_up) {
+                    lost = lost || rows[r].given_up;
+                    expected[s] = (size_t)t + 1;
+                } else if (t == 2) {
+                    expected[s] = 3;
+                    lost = true;
+                } else {
+                    expected[s] = 0;
+                }
+            }
+        assert_int_equal(compute_all(), lost ? STATUS_ENVIRONMENT : STATUS_OK);
+        for (int s = 1; s <= SHARES; s++) assert_int_equal(made.tries[s], expected[s]);
+        assert_int_equal(lacking() > 0, lost);
+    }
+}
+
+/* What is said of a share is of its last task. */
+static void one_after_the_other(void **state)
+{
+    (void)state;
+    again();
+    made.fates[2][0] = ENDS_BADLY, made.fates[2][1] = NEVER_SEEN, made.fates[2][2] = TIMES_OUT;
+    assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
+    says("share 2 ended (FAILED)");
+    says("share 2 ended (not in the queue)");
+    says("share 2 of 3 (TIMEOUT, submitted 3 times)");
+}
+
+static void submit_share_2(void)
+{
+    if (made.tries[2] == 1) add_tasks("2", 90);
+}
+
+/* A share that two tasks are at, in whichever order they are listed: one that lives counts. */
+static void two_tasks_of_a_share(void **state)
+{
+    (void)state;
+    for (int backwards = 0; backwards < 2; backwards++)
+        for (int older = 0; older < 2; older++) {
+            again();
+            made.backwards = backwards;
+            made.fates[2][0] = older ? STAYS : ENDS_BADLY;
+            made.fates[2][1] = older ? ENDS_BADLY : STAYS;
+            made.interrupt = 110;
+            made.meanwhile = older ? submit_share_2 : NULL;
+            assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
+            says_error("interrupted; 1 tasks go on");
+            assert_string_equal(made.arrays, older ? "1-3 " : "1-3 2 ");
+            assert_int_equal(made.tries[2], 2);
+        }
+}
+
+/* What ended well is waited for 30 s: folders of other machines show things later. */
+static void what_ended_well_may_be_late(void **state)
+{
+    (void)state;
+    again();
+    made.fates[2][0] = USELESS;
+    assert_int_equal(compute_all(), STATUS_OK);
+    assert_true(made.tasks[3].submitted >= 100 + 3 + 30 && made.tasks[3].submitted < 100 + 3 + 35);
+    again();
+    made.fates[2][0] = ENDS_BADLY;
+    assert_int_equal(compute_all(), STATUS_OK);
+    assert_true(made.tasks[3].submitted >= 103 && made.tasks[3].submitted < 104);
+}
+
+/* ---- what is submitted ---- */
+
+static void only_what_is_missing(void **state)
+{
+    static const struct {
+        int there; /* the share that is in the cache */
+        const char *array;
+    } there[] = {{0, "1-3 "}, {1, "2-3 "}, {2, "1,3 "}, {3, "1-2 "}};
+    (void)state;
+    for (size_t i = 0; i < 4; i++) {
+        again();
+        if (there[i].there) store_share(there[i].there, SHARES);
+        assert_int_equal(compute_all(), STATUS_OK);
+        assert_string_equal(made.arrays, there[i].array);
+    }
+    again();
+    for (int s = 1; s <= SHARES; s++) store_share(s, SHARES);
+    made.no_sbatch = true, made.away_to = 1e9; /* nobody is asked */
+    assert_int_equal(compute_all(), STATUS_OK);
+    assert_int_equal(made.questions, 0);
+}
+
+/* Ten minutes' work each, and no more tasks than computations. */
+static void how_many_shares(void **state)
+{
+    static const struct {
+        double weight; /* of each of the 8 computations */
+        int jobs, tasks, shares;
+        const char *array;
+    } cases[] = {{0, 1, 0, 1, "1 "},     {10, 1, 0, 1, "1 "},   {150, 1, 0, 2, "1-2 "},
+                 {149, 1, 0, 1, "1 "},   {150, 2, 0, 1, "1 "},  {300, 2, 0, 2, "1-2 "},
+                 {300, 1, 0, 4, "1-4 "}, {10, 1, 4, 4, "1-4 "}, {1e9, 1, 1, 1, "1 "},
+                 {224, 1, 0, 2, "1-2 "}, {225, 1, 0, 3, "1-3 "}};
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char of[40];
+        again();
+        for (int k = 0; k < N; k++) call.pool.jobs[k].weight = cases[i].weight;
+        call.work.jobs = cases[i].jobs;
+        call.work.tasks = cases[i].tasks;
+        assert_int_equal(compute_all(), STATUS_OK);
+        snprintf(of, sizeof of, "TASK_ID/%d --only-build", cases[i].shares);
+        assert_non_null(strstr(made.wrap, of));
+        assert_string_equal(made.arrays, cases[i].array);
+    }
+}
+
+/* The share's command line is this one's, without what is the caller's; a shell reads it back. */
+static void the_line_of_a_share(void **state)
+{
+    char program[1000], text[3000];
+    (void)state;
+    again();
+    const ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+    assert_true(length > 0);
+    program[length] = '\0';
+    set("n", "1,2,3"), set("words", "it's \"$HOME\" `x`\n2"), set("flag", "");
+    set("jobs", "2"), set("plot", "p.svg"), set("cache", "a b"), set("engine", "slurm");
+    set("engine-tasks", "3"), set("list", "");
+    call.arguments[1] = (char *)"-1'";
+    call.options.count = 2;
+    call.options.threads = 3;
+    call.work.jobs = 2;
+    set("engine-options", "--partition=main  --time=1:00\t--mem=1G");
+    assert_int_equal(compute_all(), STATUS_OK);
+    snprintf(text, sizeof text,
+             "exec '%s' converge --shard $SLURM_ARRAY_TASK_ID/3 --only-build %s --jobs 2 --threads "
+             "3 '--n=1,2,3' '--words=it'\\''s \"$HOME\" `x`\n2' '--flag' '--cache=a b' -- 'sod' "
+             "'-1'\\'''",
+             program, call.place.cache.build);
+    assert_string_equal(made.wrap, text);
+    static const char *const words[] = {
+        "--requeue",   "--open-mode=append", "--cpus-per-task=6", "--partition=main",
+        "--time=1:00", "--mem=1G",           "--parsable"};
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++)
+        assert_string_equal(made.words[i], words[i]);
+    snprintf(text, sizeof text, "/slurm/%s-%%A_%%a.log", made.name);
+    assert_non_null(strstr(made.output, text));
+    assert_true(made.output[0] == '/'); /* from wherever the task starts */
+}
+
+static void too_many_words(void **state)
+{
+    char words[400] = "";
+    (void)state;
+    again();
+    for (int i = 0; i < 54; i++) strcat(words, "-x ");
+    set("engine-options", words);
+    assert_int_equal(compute_all(), STATUS_OK);
+    again();
+    strcat(words, "-x");
+    set("engine-options", words);
+    assert_int_equal(compute_all(), STATUS_BAD_INPUT);
+    says_error("--engine-options: more than 54 words");
+    assert_int_equal(made.submissions, 0);
+}
+
+/* The same study in the same folder has the same name, another one another. */
+static void its_name(void **state)
+{
+    char name[64];
+    (void)state;
+    again();
+    assert_int_equal(compute_all(), STATUS_OK);
+    assert_true(begins(made.name, "sphproof-") && strlen(made.name) == 9 + 16);
+    snprintf(name, sizeof name, "%s", made.name);
+    call.pool.jobs[3].key[0] = 'T';
+    assert_int_equal(compute_all(), STATUS_OK);
+    assert_string_not_equal(made.name, name);
+    call.pool.jobs[3].key[0] = 't';
+    char path[CACHE_PATH_MAX];
+    cache_path(&call.place.cache, "task 1", path);
+    assert_int_equal(unlink(path), 0);
+    assert_int_equal(compute_all(), STATUS_OK);
+    assert_string_equal(made.name, name);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        IN_ITS_PLACE(once),
+        IN_ITS_PLACE(thrice),
+        IN_ITS_PLACE(many),
+        IN_ITS_PLACE(one_after_the_other),
+        IN_ITS_PLACE(two_tasks_of_a_share),
+        IN_ITS_PLACE(what_ended_well_may_be_late),
+        IN_ITS_PLACE(only_what_is_missing),
+        IN_ITS_PLACE(how_many_shares),
+        IN_ITS_PLACE(the_line_of_a_share),
+        IN_ITS_PLACE(too_many_words),
+        IN_ITS_PLACE(its_name),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,385 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The engine slurm on a cluster that is made up (made_slurm.h): a controller that does not answer,
+ * interrupts, several calls for one study, what is left behind. */
+#define _GNU_SOURCE /* nftw */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "made_slurm_call.h"
+
+/* ---- who does not answer ---- */
+
+static void what_sbatch_says(void **state)
+{
+    (void)state;
+    again();
+    made.answers = ";elsewhere"; /* of several clusters */
+    assert_int_equal(compute_all(), STATUS_OK);
+    again();
+    made.no_sbatch = true;
+    assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
+    says_error("no command sbatch: No such file or directory (sbatch, squeue and scancel are "
+               "needed, on a machine that may submit jobs)");
+    again();
+    made.refuses = "sbatch: error: invalid partition specified: none";
+    assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
+    says_error("--engine slurm: sbatch failed (exit status 1): sbatch: error: invalid partition");
+    /* what was not submitted does not count as a try */
+    made.refuses = NULL;
+    for (int t = 0; t < 3; t++) made.fates[2][t] = t < 2 ? ENDS_BADLY : COMPLETES;
+    assert_int_equal(compute_all(), STATUS_OK);
+    assert_string_equal(made.arrays, "1-3 2 2 ");
+}
+
+static void a_controller_that_is_away(void **state)
+{
+    static const struct {
+        double from, to;
+        enum status status;
+    } times[] = {
+        {0, 100.1, STATUS_ENVIRONMENT}, /* was never there */
+        {101, 102, STATUS_OK},          {101, 200, STATUS_OK},
+        {102, 219, STATUS_OK},          {102, 250, STATUS_ENVIRONMENT},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof times / sizeof *times; i++)
+        for (int quiet = 0; quiet < 2; quiet++) {
+            again();
+            call.options.quiet = quiet;
+            made.away_from = times[i].from, made.away_to = times[i].to;
+            assert_int_equal(compute_all(), times[i].status);
+            const char *note = strstr(call.said, "; trying again\n");
+            assert_int_equal(note != NULL, !quiet);
+            if (note) assert_null(strstr(note + 14, "trying again")); /* once */
+            if (times[i].status) {
+                says_error("squeue failed (exit status 1): slurm_load_jobs error: Unable to "
+                           "contact slurm controller");
+                assert_true(made.now < (times[i].from > 0 ? 102 + 140 : 101));
+            }
+            assert_int_equal(made.submissions, times[i].from > 0);
+        }
+    /* twice, each time not for long */
+    again();
+    made.fates[2][0] = STAYS;
+    made.away_from = 101, made.away_to = 211;
+    made.interrupt = 1000;
+    assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
+    says_error("interrupted");
+}
+
+static void go_away_again(void)
+{
+    if (made.now > 300 && made.now < 310) made.away_from = 320, made.away_to = 430;
+}
+
+static void away_twice(void **state)
+{
+    (void)state;
+    again();
+    made.fates[2][0] = STAYS;
+    made.away_from = 101, made.away_to = 211;
+    made.interrupt = 600;
+    made.meanwhile = go_away_again;
+    assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
+    says_error("interrupted");
+    assert_true(made.away_from > 300);
+    const char *first = strstr(call.said, "trying again");
+    assert_non_null(first);
+    assert_non_null(strstr(first + 1, "trying again"));
+}
+
+/* ---- who watches ---- */
+
+static void results_appear(void)
+{
+    if (made.now > 110) store_share(2, SHARES);
+}
+
+/* What a task that goes on was for is there already: it is cancelled, if Slurm lets us. */
+static void nothing_is_left_to_do(void **state)
+{
+    (void)state;
+    for (int refused = 0; refused < 2; refused++) {
+        char text[100];
+        again();
+        made.fates[2][0] = STAYS;
+        made.meanwhile = results_appear;
+        made.refuses_cancel = refused;
+        assert_int_equal(compute_all(), STATUS_OK);
+        snprintf(text, sizeof text, "--name=%s ", made.name);
+        assert_string_equal(made.cancelled, text);
+        all_is_left_behind_in_order();
+    }
+}
+
+/* A task that Slurm holds, and does not let us cancel, is waited for. */
+static void held_for_ever(void **state)
+{
+    (void)state;
+    again();
+    made.fates[2][0] = HELD;
+    made.refuses_cancel = true;
+    made.interrupt = 120;
+    assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
+    says_error("interrupted; 1 tasks go on");
+    assert_string_equal(made.arrays, "1-3 ");
+}
+
+/* Ctrl-C: without a terminal, or without a yes, the tasks go on, and who calls again attaches. */
+static void interrupted(void **state)
+{
+    static const struct {
+        const char *answer; /* NULL: no terminal */
+        bool cancelled;
+    } answers[] = {{NULL, false},   {"n\n", false}, {"\n", false},     {"", false},
+                   {"yes\n", true}, {"Y\n", true},  {"no, y\n", false}};
+    (void)state;
+    for (size_t i = 0; i < sizeof answers / sizeof *answers; i++)
+        for (int refused = 0; refused < 2; refused++) {
+            char text[200], path[200];
+            again();
+            made.fates[2][0] = STAYS;
+            made.fates[3][0] = STAYS;
+            made.interrupt = 120;
+            made.refuses_cancel = refused;
+            made.terminal = answers[i].answer != NULL;
+            snprintf(path, sizeof path, "%s/answer", call.place.cache_folder);
+            FILE *file = fopen(path, "w");
+            fputs(answers[i].answer ? answers[i].answer : "y\n", file);
+            fclose(file);
+            assert_non_null(freopen(path, "r", stdin));
+            assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
+            snprintf(text, sizeof text, "Cancel the 2 tasks of %s? They go on otherwise. [y/N] ",
+                     made.name);
+            assert_int_equal(strstr(call.said, text) != NULL, made.terminal);
+            snprintf(text, sizeof text, "--name=%s ", made.name);
+            assert_string_equal(made.cancelled, answers[i].cancelled ? text : "");
+            if (!answers[i].cancelled) {
+                says_error("interrupted; 2 tasks go on: the same command attaches to them again, "
+                           "scancel --name=sphproof-");
+                assert_int_equal(files("*.json"), 1);
+            } else if (refused) {
+                says_error("scancel failed (exit status 1): scancel: error: Kill job error");
+                assert_int_equal(files("*.json"), 1);
+            } else {
+                says_error("interrupted; its tasks are cancelled, what is done is kept in");
+                assert_int_equal(files("*.json"), 0);
+            }
+            /* once more: what goes on is not submitted a second time, what was cancelled is */
+            made.meanwhile = NULL;
+            for (size_t k = 0; k < made.count; k++)
+                if (made.tasks[k].fate == STAYS) made.tasks[k].fate = COMPLETES;
+            assert_int_equal(compute_all(), STATUS_OK);
+            assert_string_equal(made.arrays,
+                                answers[i].cancelled && !refused ? "1-3 2-3 " : "1-3 ");
+            all_is_left_behind_in_order();
+        }
+}
+
+/* The signal's usual meaning is there again afterwards. */
+static void the_signal_is_given_back(void **state)
+{
+    struct sigaction now;
+    (void)state;
+    again();
+    assert_int_equal(compute_all(), STATUS_OK);
+    assert_int_equal(sigaction(SIGINT, NULL, &now), 0);
+    assert_true(now.sa_handler == SIG_DFL);
+}
+
+/* Tasks that were submitted before, by somebody who has died since: their tries count. */
+static void attached(void **state)
+{
+    (void)state;
+    for (int fate = 0; fate < 2; fate++) {
+        again();
+        made.fates[2][0] = STAYS;
+        made.interrupt = 120;
+        assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
+        for (size_t k = 0; k < made.count; k++)
+            if (made.tasks[k].fate == STAYS) made.tasks[k].fate = ENDS_BADLY;
+        made.fates[2][1] = ENDS_BADLY;
+        made.fates[2][2] = fate ? COMPLETES : ENDS_BADLY;
+        assert_int_equal(compute_all(), fate ? STATUS_OK : STATUS_ENVIRONMENT);
+        assert_string_equal(made.arrays, "1-3 2 2 ");
+        says("submitted again (1 of 2)"), says("submitted again (2 of 2)");
+    }
+}
+
+static const char *planted; /* what somebody else writes into the state */
+
+static void write_state(void)
+{
+    char path[300];
+    if (!planted || made.now < 110) return;
+    state_path(path);
+    FILE *file = fopen(path, "w");
+    fputs(planted, file);
+    fclose(file);
+    planted = NULL;
+}
+
+/* What is remembered between calls, as another one may have left it. */
+static void the_state(void **state)
+{
+    static const struct {
+        const char *text;
+        enum status status;
+        const char *arrays;
+    } states[] = {
+        {"{\"tasks\": 3, \"tries\": [1, 1, 1], \"jobs\": [7, 7, 7]}", STATUS_OK, "1-3 2 2 "},
+        {"{\"tasks\": 3, \"tries\": [1, 2, 1], \"jobs\": [7, 7, 7]}", STATUS_OK, "1-3 2 "},
+        {"{\"tasks\": 3, \"tries\": [1, 3, 1], \"jobs\": [7, 7, 7]}", STATUS_ENVIRONMENT, "1-3 "},
+        {"{\"tasks\": 2, \"tries\": [1, 1], \"jobs\": [7, 7]}", STATUS_ENVIRONMENT, "1-3 "},
+        {"{\"tasks\": 4, \"tries\": [1, 1, 1, 1], \"jobs\": [7, 7, 7, 7]}", STATUS_ENVIRONMENT,
+         "1-3 "},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof states / sizeof *states; i++) {
+        again();
+        made.fates[2][0] = STAYS;
+        made.fates[2][1] = i ? COMPLETES : ENDS_BADLY;
+        made.interrupt = 130;
+        made.meanwhile = write_state;
+        planted = states[i].text;
+        assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
+        if (i > 2) {
+            says_error("another call has divided this study anew: call again to attach to it");
+            continue;
+        }
+        for (size_t k = 0; k < made.count; k++)
+            if (made.tasks[k].fate == STAYS) made.tasks[k].fate = ENDS_BADLY;
+        made.meanwhile = NULL;
+        assert_int_equal(compute_all(), states[i].status);
+        assert_string_equal(made.arrays, states[i].arrays);
+    }
+    /* one that is none: the study is divided anew */
+    static const char *const none[] = {"",
+                                       "{",
+                                       "[]",
+                                       "{}",
+                                       "{\"tasks\": 0, \"tries\": [], \"jobs\": []}",
+                                       "{\"tasks\": 2, \"tries\": [1], \"jobs\": [7, 7]}",
+                                       "{\"tasks\": 2, \"tries\": [1, 1], \"jobs\": [7]}",
+                                       "{\"tasks\": \"2\", \"tries\": [1, 1], \"jobs\": [7, 7]}"};
+    for (size_t i = 0; i < sizeof none / sizeof *none; i++) {
+        char path[300];
+        again();
+        made.fates[2][0] = STAYS;
+        made.interrupt = 130;
+        assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
+        state_path(path);
+        FILE *file = fopen(path, "w");
+        fputs(none[i], file);
+        fclose(file);
+        for (size_t k = 0; k < made.count; k++) made.tasks[k].fate = FORGOTTEN;
+        call.work.tasks = 2;
+        assert_int_equal(compute_all(), STATUS_OK);
+        assert_non_null(strstr(made.wrap, "TASK_ID/2 "));
+    }
+}
+
+/* How many shares there are is remembered, whatever the next call asks for. */
+static void shares_stay(void **state)
+{
+    (void)state;
+    again();
+    made.fates[2][0] = STAYS;
+    made.interrupt = 120;
+    assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
+    for (size_t k = 0; k < made.count; k++)
+        if (made.tasks[k].fate == STAYS) made.tasks[k].fate = ENDS_BADLY;
+    call.work.tasks = 2;
+    assert_int_equal(compute_all(), STATUS_OK);
+    assert_string_equal(made.arrays, "1-3 2 ");
+    assert_non_null(strstr(made.wrap, "TASK_ID/3 "));
+}
+
+/* Of a share that is given up the last line of its log that says something; the log stays. */
+static void the_last_line(void **state)
+{
+    static const struct {
+        const char *text, *line;
+    } logs[] = {{"one\ntwo\n", "two\n"},
+                {"one\n  \n\n", "one\n"},
+                {"", "(empty)\n"},
+                {"one", "one\n"},
+                {"a\x1b[31mb\n", "a"}};
+    (void)state;
+    for (size_t i = 0; i < sizeof logs / sizeof *logs; i++) {
+        char path[400], text[200];
+        again();
+        made.fates[2][0] = STAYS;
+        made.interrupt = 120;
+        assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
+        snprintf(path, sizeof path, "%s/slurm/%s-7_2.log", call.place.cache_folder, made.name);
+        FILE *file = fopen(path, "w");
+        fputs(logs[i].text, file);
+        fclose(file);
+        for (size_t k = 0; k < made.count; k++)
+            if (made.tasks[k].fate == STAYS) made.tasks[k].fate = CANCELLED_RUNNING;
+        assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
+        snprintf(text, sizeof text, "-7_2.log: %s", logs[i].line);
+        says(text);
+        assert_null(strchr(call.said, '\x1b'));
+        assert_int_equal(files("*.log"), 1);
+        unlink(path);
+    }
+}
+
+/* Logs of what is done are not kept. */
+static void logs_go(void **state)
+{
+    (void)state;
+    again();
+    made.fates[2][0] = STAYS;
+    made.interrupt = 120;
+    assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
+    for (int s = 1; s <= SHARES; s++) {
+        char path[400];
+        snprintf(path, sizeof path, "%s/slurm/%s-7_%d.log", call.place.cache_folder, made.name, s);
+        FILE *file = fopen(path, "w");
+        fclose(file);
+    }
+    for (size_t k = 0; k < made.count; k++)
+        if (made.tasks[k].fate == STAYS) made.tasks[k].fate = COMPLETES;
+    assert_int_equal(compute_all(), STATUS_OK);
+    all_is_left_behind_in_order();
+}
+
+/* Looks become rarer, from half a second to a quarter of a minute. */
+static void how_often_it_looks(void **state)
+{
+    (void)state;
+    again();
+    made.fates[2][0] = STAYS;
+    made.interrupt = 1100;
+    assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
+    size_t looks = 0; /* a twentieth of what has passed */
+    for (double passed = 0; passed < 1000; looks++)
+        passed += passed < 10.1 ? 0.505 : passed < 300 ? passed / 20 : 15;
+    assert_int_equal(made.questions, looks);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        IN_ITS_PLACE(what_sbatch_says),
+        IN_ITS_PLACE(a_controller_that_is_away),
+        IN_ITS_PLACE(away_twice),
+        IN_ITS_PLACE(nothing_is_left_to_do),
+        IN_ITS_PLACE(held_for_ever),
+        IN_ITS_PLACE(interrupted),
+        IN_ITS_PLACE(the_signal_is_given_back),
+        IN_ITS_PLACE(attached),
+        IN_ITS_PLACE(the_state),
+        IN_ITS_PLACE(shares_stay),
+        IN_ITS_PLACE(the_last_line),
+        IN_ITS_PLACE(logs_go),
+        IN_ITS_PLACE(how_often_it_looks),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,401 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Histories that are generated: of no night, of as many as are kept and of more, with damaged
+ * lines, the same night twice and missing fields; and which way a change is better. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "history.h"
+#include "made_place.h"
+#include "near.h"
+#include "result.h"
+#include "value.h"
+
+enum { NIGHTS_MOST = 500, KEPT = 120 };
+
+static const char error_path[] = "studies[sod, ia].levels[n 400].errors.density.l1_cut",
+                  order_path[] = "studies[sod, ia].orders[density, l1_cut].order";
+
+/* What a night says; a field that is NULL or NaN is missing in its line. */
+struct night {
+    const char *mode;
+    char git[16], date[16];
+    double error, order;
+};
+
+static json_t *results_of(const struct night *night)
+{
+    json_t *results = result_new("report");
+    json_object_set_new(results, "git", json_string(night->git));
+    json_object_set_new(results, "date", json_string(night->date));
+    json_object_set_new(results, "mode", json_string(night->mode));
+    json_object_set_new(results, "verdict", json_pack("{s:s, s:[]}", "status", "pass", "failures"));
+    json_object_set_new(
+        results, "studies",
+        json_pack("[{s:s, s:s, s:s, s:[{s:i, s:{s:{s:f}}}], s:[{s:s, s:s, s:f, s:f, s:f}], s:[s]}]",
+                  "case", "sod", "label", "ia", "status", "pass", "levels", "n", 400, "errors",
+                  "density", "l1_cut", night->error, "orders", "field", "density", "norm", "l1_cut",
+                  "order", night->order, "low", night->order - 0.01, "high", night->order + 0.01,
+                  "measured", "density"));
+    return results;
+}
+
+static void write_night(FILE *file, const struct night *night)
+{
+    json_t *figures = json_object();
+    if (!isnan(night->error)) json_object_set_new(figures, error_path, json_real(night->error));
+    if (!isnan(night->order)) json_object_set_new(figures, order_path, json_real(night->order));
+    json_t *line = json_pack("{s:s, s:s, s:o}", "schema", "sphproof-history/1", "mode", night->mode,
+                             "figures", figures);
+    if (night->git[0]) json_object_set_new(line, "git", json_string(night->git));
+    if (night->date[0]) json_object_set_new(line, "date", json_string(night->date));
+    json_dumpf(line, file, JSON_COMPACT);
+    fputc('\n', file);
+    json_decref(line);
+}
+
+static json_t *told(const struct night *now)
+{
+    struct error error = {0};
+    json_t *history, *results = results_of(now);
+    assert_int_equal(history_tell(results, path_of("history"), &history, &error), STATUS_OK);
+    json_decref(results);
+    return history;
+}
+
+static struct night usual_night(int number)
+{
+    struct night night = {.mode = "quick", .error = 1e-3, .order = 0.95};
+    snprintf(night.git, sizeof night.git, "git%d", number);
+    snprintf(night.date, sizeof night.date, "day%d", number);
+    return night;
+}
+
+static const json_t *trend_of(const json_t *history, const char *what)
+{
+    const json_t *trends = json_object_get(history, "trends");
+    assert_int_equal(json_array_size(trends), 1);
+    return json_object_get(json_array_get(trends, 0), what);
+}
+
+/* Are these the history's nights, oldest first? `now` is the last of them. */
+static void same_nights(const json_t *history, const struct night *const *nights, size_t count)
+{
+    const json_t *heads = json_object_get(history, "nights"), *errors = trend_of(history, "error"),
+                 *orders = trend_of(history, "order");
+    assert_int_equal(json_array_size(heads), count);
+    assert_int_equal(json_array_size(errors), count);
+    assert_int_equal(json_array_size(orders), count);
+    for (size_t i = 0; i < count; i++) {
+        const double error = value_real(json_array_get(errors, i)),
+                     order = value_real(json_array_get(orders, i));
+        assert_string_equal(value_text(json_array_get(heads, i), "git"), nights[i]->git);
+        assert_string_equal(value_text(json_array_get(heads, i), "date"), nights[i]->date);
+        assert_int_equal(isnan(error), isnan(nights[i]->error));
+        assert_int_equal(isnan(order), isnan(nights[i]->order));
+        if (!isnan(error)) near_relative(error, nights[i]->error, 1e-12);
+        if (!isnan(order)) near_relative(order, nights[i]->order, 1e-12);
+    }
+}
+
+static void same_since(const json_t *history, const struct night *const *nights, size_t count)
+{
+    const json_t *since = json_object_get(history, "since");
+    if (count < 2) {
+        assert_true(json_is_null(since));
+    } else {
+        assert_string_equal(value_text(since, "git"), nights[count - 2]->git);
+        assert_string_equal(value_text(since, "date"), nights[count - 2]->date);
+    }
+}
+
+/* Of however many nights the newest 120 are told, this one the last of them. */
+static void the_newest_are_kept(void **state)
+{
+    static const int counts[] = {0, 1, 2, 3, 118, 119, 120, 121, 122, 240, NIGHTS_MOST};
+    static struct night made[NIGHTS_MOST + 1];
+    const struct night *expected[NIGHTS_MOST + 1];
+    (void)state;
+    for (size_t c = 0; c < sizeof counts / sizeof *counts; c++) {
+        FILE *file = fopen(path_of("history"), "w");
+        for (int i = 0; i <= counts[c]; i++) {
+            made[i] = usual_night(i);
+            made[i].error *= 1 + 1e-6 * i;
+            made[i].order *= 1 + 1e-6 * i;
+            expected[i] = &made[i];
+            if (i < counts[c]) write_night(file, &made[i]);
+        }
+        fclose(file);
+        const size_t count = (size_t)counts[c] + 1, kept = count < KEPT ? count : KEPT;
+        json_t *history = told(&made[counts[c]]);
+        same_nights(history, expected + count - kept, kept);
+        same_since(history, expected + count - kept, kept);
+        near_absolute(value_member(history, "unreadable"), 0, 0);
+        assert_int_equal(json_array_size(json_object_get(history, "changes")), 0);
+        json_decref(history);
+        unlink(path_of("history"));
+    }
+}
+
+/* The change of one figure from `before` to `after` at night `at` of `count`, as it is told. */
+static json_t *changed(const char *path, double before, double after, int at, int count)
+{
+    FILE *file = fopen(path_of("history"), "w");
+    struct night night;
+    for (int i = 0; i < count; i++) {
+        night = usual_night(i);
+        *(path == error_path ? &night.error : &night.order) = i < at ? before : after;
+        if (i < count - 1) write_night(file, &night);
+    }
+    fclose(file);
+    json_t *history = told(&night);
+    unlink(path_of("history"));
+    return history;
+}
+
+/* A smaller error and a larger order are better, before and after the oldest nights are left out.
+ */
+static void which_way_is_better(void **state)
+{
+    static const struct {
+        const char *path;
+        double before, after;
+        const char *verdict;
+    } rows[] = {
+        {error_path, 1e-3, 2e-3, "worse"},    {error_path, 2e-3, 1e-3, "better"},
+        {error_path, 1e-3, 1.05e-3, "worse"}, {error_path, 1.05e-3, 1e-3, "better"},
+        {order_path, 0.95, 0.80, "worse"},    {order_path, 0.80, 0.95, "better"},
+        {order_path, 0.95, 1.95, "better"},   {order_path, 1.95, 0.95, "worse"},
+        {order_path, 0.50, -0.5, "worse"},    {order_path, -0.5, 0.50, "better"},
+    };
+    static const int counts[] = {2, 12, 119, 120, 121, 150};
+    (void)state;
+    for (size_t r = 0; r < sizeof rows / sizeof *rows; r++)
+        for (size_t c = 0; c < sizeof counts / sizeof *counts; c++) {
+            const int count = counts[c], at = count - (count > 2 ? 6 : 1);
+            const int first = count > KEPT ? count - KEPT : 0;
+            json_t *history = changed(rows[r].path, rows[r].before, rows[r].after, at, count);
+            const json_t *changes = json_object_get(history, "changes"),
+                         *change = json_array_get(changes, 0);
+            char git[32];
+            assert_int_equal(json_array_size(changes), 1);
+            assert_string_equal(value_text(change, "path"), rows[r].path);
+            assert_string_equal(value_text(change, "verdict"), rows[r].verdict);
+            near_absolute(value_member(change, "night"), at - first, 0);
+            near_relative(value_member(change, "before"), rows[r].before, 1e-12);
+            near_relative(value_member(change, "after"), rows[r].after, 1e-12);
+            near_relative(value_member(change, "ratio"), rows[r].after / rows[r].before, 1e-12);
+            snprintf(git, sizeof git, "git%d", at);
+            assert_string_equal(value_text(change, "git"), git);
+            snprintf(git, sizeof git, "day%d", at);
+            assert_string_equal(value_text(change, "date"), git);
+            snprintf(git, sizeof git, "git%d", at - 1);
+            assert_string_equal(value_text(change, "git_before"), git);
+            json_decref(history);
+        }
+    /* within the noise nothing has changed: 1 % of an error, 0.03 of an order */
+    for (int sign = -1; sign <= 1; sign += 2) {
+        json_t *history = changed(error_path, 1e-3, 1e-3 * (1 + 0.009 * sign), 6, 12);
+        assert_int_equal(json_array_size(json_object_get(history, "changes")), 0);
+        json_decref(history);
+        history = changed(order_path, 0.95, 0.95 + 0.029 * sign, 6, 12);
+        assert_int_equal(json_array_size(json_object_get(history, "changes")), 0);
+        json_decref(history);
+        history = changed(order_path, 0.95, 0.95 + 0.031 * sign, 6, 12);
+        assert_int_equal(json_array_size(json_object_get(history, "changes")), 1);
+        json_decref(history);
+    }
+}
+
+/* Since last night: each figure's verdict, what is a fault first, and how many there are of each.
+ */
+static void since_says_which_way(void **state)
+{
+    static const struct {
+        double error, order; /* last night; this night they are 1e-3 and 0.95 */
+        const char *of_error, *of_order;
+    } rows[] = {
+        {1e-3, 0.95, "same", "same"},       {2e-3, 0.95, "better", "same"},
+        {5e-4, 0.95, "worse", "same"},      {1e-3, 0.50, "same", "better"},
+        {1e-3, 1.50, "same", "worse"},      {5e-4, 0.50, "worse", "better"},
+        {2e-3, 1.50, "better", "worse"},    {5e-4, 1.50, "worse", "worse"},
+        {2e-3, 0.50, "better", "better"},   {(double)NAN, 0.95, "new", "same"},
+        {1e-3, (double)NAN, "same", "new"},
+    };
+    static const char *const words[] = {"same", "better", "worse", "new"};
+    (void)state;
+    for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
+        struct night last = usual_night(0), now = usual_night(1);
+        FILE *file = fopen(path_of("history"), "w");
+        last.error = rows[r].error, last.order = rows[r].order;
+        write_night(file, &last);
+        fclose(file);
+        json_t *history = told(&now);
+        const json_t *since = json_object_get(history, "since"),
+                     *figures = json_object_get(since, "figures"), *figure;
+        const char *of_error = "same", *of_order = "same";
+        bool fault_ended = false;
+        size_t i;
+        json_array_foreach(figures, i, figure) {
+            const char *path = value_text(figure, "path");
+            const bool fault = json_is_true(json_object_get(figure, "fault"));
+            assert_false(fault && fault_ended);
+            fault_ended = !fault;
+            if (strcmp(path, error_path) == 0) of_error = value_text(figure, "verdict");
+            if (strcmp(path, order_path) == 0) of_order = value_text(figure, "verdict");
+            assert_string_not_equal(value_text(figure, "verdict"), "same");
+            assert_int_equal(fault, strcmp(value_text(figure, "verdict"), "worse") == 0);
+        }
+        assert_string_equal(of_error, rows[r].of_error);
+        assert_string_equal(of_order, rows[r].of_order);
+        for (size_t w = 1; w < sizeof words / sizeof *words; w++) {
+            size_t count = 0;
+            if (w < 3) /* statuses are new, too: no line here has them */
+                json_array_foreach(figures, i, figure)
+                    count += strcmp(value_text(figure, "verdict"), words[w]) == 0;
+            if (w < 3) near_absolute(value_member(since, words[w]), (double)count, 0);
+        }
+        json_decref(history);
+    }
+    unlink(path_of("history"));
+}
+
+/* Which lines are nights, and what is told of those that are not whole. */
+static void lines_of_every_kind(void **state)
+{
+    static const char *const damaged[] = {
+        "no JSON",
+        "[1, 2]",
+        "{}",
+        "null",
+        "3",
+        "{\"schema\": 1}",
+        "{\"schema\": \"sphproof-history/2\", \"mode\": \"quick\"}",
+        "{\"schema\": \"sphproof-history/1\", \"mode\": \"quick\"",
+        "{\"schema\": \"sphproof-history/1\", \"mode\": \"quick\"} {}",
+        "\xff\xfe",
+        " ",
+    };
+    enum { DAMAGED = sizeof damaged / sizeof *damaged, DRAWS = 40 };
+    static struct night made[NIGHTS_MOST + 1];
+    (void)state;
+    srand(1);
+    for (int draw = 0; draw < DRAWS; draw++) {
+        const struct night *expected[NIGHTS_MOST + 1];
+        size_t nights = 0, unreadable = 0;
+        const int lines = rand() % 30 + (draw % 4 == 3 ? 130 : 0);
+        FILE *file = fopen(path_of("history"), "w");
+        for (int i = 0; i < lines; i++) {
+            const int kind = rand() % 10;
+            made[i] = usual_night(i);
+            made[i].error *= 1 + 1e-6 * i;
+            if (kind == 0) {
+                fprintf(file, "%s\n", damaged[rand() % DAMAGED]);
+                unreadable++;
+                continue;
+            }
+            if (kind == 1) {
+                fputc('\n', file); /* nothing is no damage */
+                continue;
+            }
+            if (kind == 2) made[i].mode = "nightly";
+            if (kind == 3) made[i].git[0] = '\0';
+            if (kind == 4) made[i].date[0] = '\0';
+            if (kind == 5) made[i].error = (double)NAN;
+            if (kind == 6) made[i].order = (double)NAN;
+            if (kind == 7 && i) made[i] = made[i - 1]; /* once more */
+            write_night(file, &made[i]);
+            if (strcmp(made[i].mode, "quick") == 0) expected[nights++] = &made[i];
+        }
+        if (draw % 3 == 0) { /* the last line was cut off */
+            fputs("{\"schema\": \"sphproof-hi", file);
+            unreadable++;
+        }
+        fclose(file);
+        made[lines] = usual_night(lines);
+        expected[nights++] = &made[lines];
+        json_t *history = told(&made[lines]);
+        const size_t kept = nights < KEPT ? nights : KEPT;
+        same_nights(history, expected + nights - kept, kept);
+        same_since(history, expected + nights - kept, kept);
+        near_absolute(value_member(history, "unreadable"), (double)unreadable, 0);
+        json_decref(history);
+    }
+    unlink(path_of("history"));
+}
+
+/* Nights without a figure do not count where it moves, nor are they a change. */
+static void nights_that_lack_a_figure(void **state)
+{
+    (void)state;
+    for (int lacking = 0; lacking < 3; lacking++) { /* before the change, around it, at its night */
+        FILE *file = fopen(path_of("history"), "w");
+        struct night night;
+        for (int i = 0; i < 15; i++) {
+            night = usual_night(i);
+            night.error = i < 8 ? 1e-3 : 2e-3;
+            if (lacking == 0 && (i == 2 || i == 5)) night.error = (double)NAN;
+            if (lacking == 1 && (i == 6 || i == 9)) night.error = (double)NAN;
+            if (lacking == 2 && (i == 7 || i == 8)) night.error = (double)NAN;
+            if (i < 14) write_night(file, &night);
+        }
+        fclose(file);
+        json_t *history = told(&night);
+        const json_t *changes = json_object_get(history, "changes"),
+                     *change = json_array_get(changes, 0);
+        assert_int_equal(json_array_size(changes), 1);
+        assert_string_equal(value_text(change, "git"), lacking == 2 ? "git9" : "git8");
+        assert_string_equal(value_text(change, "git_before"), lacking == 2 ? "git6" : "git7");
+        near_absolute(value_member(change, "night"), lacking == 2 ? 9 : 8, 0);
+        json_decref(history);
+    }
+    unlink(path_of("history"));
+}
+
+/* Newest changes first; of one night the larger one, whichever figure's it is. */
+static void changes_in_order(void **state)
+{
+    (void)state;
+    for (int larger = 0; larger < 2; larger++) {
+        FILE *file = fopen(path_of("history"), "w");
+        struct night night;
+        for (int i = 0; i < 24; i++) {
+            night = usual_night(i);
+            night.error = (i < 8 ? 1e-3 : 2e-3) * (i < 16 ? 1 : larger ? 1.2 : 3);
+            night.order = i < 16 ? 1 : 2;
+            if (i < 23) write_night(file, &night);
+        }
+        fclose(file);
+        json_t *history = told(&night);
+        const json_t *changes = json_object_get(history, "changes");
+        assert_int_equal(json_array_size(changes), 3);
+        const char *paths[3];
+        for (size_t i = 0; i < 3; i++) {
+            paths[i] = value_text(json_array_get(changes, i), "path");
+            near_absolute(value_member(json_array_get(changes, i), "night"), i < 2 ? 16 : 8, 0);
+        }
+        assert_string_equal(paths[0], larger ? order_path : error_path);
+        assert_string_equal(paths[1], larger ? error_path : order_path);
+        assert_string_equal(paths[2], error_path);
+        json_decref(history);
+    }
+    unlink(path_of("history"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_newest_are_kept),       cmocka_unit_test(which_way_is_better),
+        cmocka_unit_test(since_says_which_way),      cmocka_unit_test(lines_of_every_kind),
+        cmocka_unit_test(nights_that_lack_a_figure), cmocka_unit_test(changes_in_order),
+    };
+    return cmocka_run_group_tests(tests, make_place, remove_place);
+}

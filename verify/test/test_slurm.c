@@ -1,0 +1,240 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Slurm's answers and how they are read: recorded from Slurm 22.05 (two nodes on one host), and
+ * answers that are none. Scripts in a folder of their own stand for its commands. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "made_place.h"
+#include "slurm.h"
+
+/* The command prints this, complains and ends with the code; what it was told is kept. */
+static void command_says(const char *name, const char *output, const char *complaint, int code)
+{
+    char text[64];
+    snprintf(text, sizeof text, "%s.said", name);
+    FILE *file = fopen(path_of(text), "w");
+    fputs(output, file);
+    fclose(file);
+    file = fopen(path_of(name), "w");
+    fprintf(file,
+            "#!/bin/sh\nprintf '[%%s]' \"$@\" >%s/%s.told\nIFS= read -r nothing && exit 99\n"
+            "while IFS= read -r line; do echo \"$line\"; done <%s/%s.said\n"
+            "[ -z \"%s\" ] || echo \"%s\" >&2\nexit %d\n",
+            place, name, place, name, complaint, complaint, code);
+    fclose(file);
+    assert_int_equal(chmod(path_of(name), 0700), 0);
+}
+
+static const char *told(const char *name)
+{
+    static char text[2000];
+    char path[64];
+    snprintf(path, sizeof path, "%s.told", name);
+    FILE *file = fopen(path_of(path), "r");
+    assert_non_null(file);
+    text[fread(text, 1, sizeof text - 1, file)] = '\0';
+    fclose(file);
+    return text;
+}
+
+static int take_path(void **state)
+{
+    if (make_place(state)) return 1;
+    return setenv("PATH", place, 1);
+}
+
+static int give_path_back(void **state)
+{
+    setenv("PATH", "/usr/bin:/bin", 1);
+    return remove_place(state);
+}
+
+/* ---- the queue ---- */
+
+struct expected {
+    long job;
+    int index;
+    bool live;
+    const char *state, *reason;
+};
+
+static void queue_is(const char *output, const struct expected *tasks, size_t n)
+{
+    struct slurm_task *found;
+    struct error error;
+    size_t count;
+    command_says("squeue", output, "", 0);
+    assert_int_equal(slurm_queue("name", &found, &count, &error), STATUS_OK);
+    assert_string_equal(told("squeue"), "[--noheader][--array][--states=all][--name=name]"
+                                        "[--format=%F %K %T %r]");
+    assert_int_equal(count, n);
+    for (size_t i = 0; i < n; i++) {
+        assert_int_equal(found[i].job, tasks[i].job);
+        assert_int_equal(found[i].index, tasks[i].index);
+        assert_int_equal(found[i].live, tasks[i].live);
+        assert_string_equal(found[i].state, tasks[i].state);
+        assert_string_equal(found[i].reason, tasks[i].reason);
+    }
+    free(found);
+}
+
+/* Each with what squeue said of a task after what became of it. */
+static void recorded_answers(void **state)
+{
+    static const struct {
+        const char *line;
+        struct expected task;
+    } rows[] = {
+        {"1 1 PENDING None\n", {1, 1, true, "PENDING", "None"}},
+        {"6 4 PENDING Resources\n", {6, 4, true, "PENDING", "Resources"}},
+        {"4 1 RUNNING None\n", {4, 1, true, "RUNNING", "None"}},
+        {"5 2 COMPLETING None\n", {5, 2, true, "COMPLETING", "None"}},
+        {"1 1 COMPLETED None\n", {1, 1, false, "COMPLETED", "None"}},
+        {"1 3 FAILED NonZeroExitCode\n", {1, 3, false, "FAILED", "NonZeroExitCode"}},
+        {"14 1 FAILED JobLaunchFailure\n", {14, 1, false, "FAILED", "JobLaunchFailure"}},
+        {"9 1 PREEMPTED None\n", {9, 1, false, "PREEMPTED", "None"}},
+        {"12 1 NODE_FAIL NodeDown\n", {12, 1, false, "NODE_FAIL", "NodeDown"}},
+        {"6 1 CANCELLED None\n", {6, 1, false, "CANCELLED", "None"}},
+        {"6 N/A CANCELLED Resources\n", {6, 0, false, "CANCELLED", "Resources"}},
+        {"8 1 PENDING BeginTime\n", {8, 1, true, "PENDING", "BeginTime"}},
+        {"9 2 PENDING JobHeldUser\n", {9, 2, true, "PENDING", "JobHeldUser"}},
+        {"8 2 PENDING DependencyNeverSatisfied\n",
+         {8, 2, true, "PENDING", "DependencyNeverSatisfied"}},
+        /* longer than there is room for */
+        {"13 1 PENDING Nodes required for job are DOWN, DRAINED or reserved for jobs in higher "
+         "priority partitions\n",
+         {13, 1, true, "PENDING",
+          "Nodes required for job are DOWN, DRAINED or reserved for jobs i"}},
+        /* from the manual squeue(1) */
+        {"7 2 TIMEOUT TimeLimit\n", {7, 2, false, "TIMEOUT", "TimeLimit"}},
+        {"7 2 OUT_OF_MEMORY OutOfMemory\n", {7, 2, false, "OUT_OF_MEMORY", "OutOfMemory"}},
+        {"7 2 BOOT_FAIL NodeDown\n", {7, 2, false, "BOOT_FAIL", "NodeDown"}},
+        {"7 2 DEADLINE DeadLine\n", {7, 2, false, "DEADLINE", "DeadLine"}},
+        {"7 2 REVOKED None\n", {7, 2, false, "REVOKED", "None"}},
+        {"7 2 SUSPENDED None\n", {7, 2, true, "SUSPENDED", "None"}},
+        {"7 2 REQUEUED None\n", {7, 2, true, "REQUEUED", "None"}},
+        {"7 2 REQUEUE_HOLD launch failed requeued held\n",
+         {7, 2, true, "REQUEUE_HOLD", "launch failed requeued held"}},
+        {"7 2 RUNNING\n", {7, 2, true, "RUNNING", ""}},
+    };
+    struct expected all[sizeof rows / sizeof *rows];
+    char text[4000] = "";
+    (void)state;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        queue_is(rows[i].line, &rows[i].task, 1);
+        strcat(text, rows[i].line);
+        all[i] = rows[i].task;
+    }
+    queue_is(text, all, sizeof rows / sizeof *rows);
+    queue_is("", NULL, 0); /* nothing of this name */
+}
+
+/* Lines that are none are left out, the others are read; the last one may have no end. */
+static void odd_answers(void **state)
+{
+    const struct expected two[] = {{1, 1, true, "RUNNING", "None"}, {1, 2, true, "RUNNING", "x y"}};
+    (void)state;
+    queue_is("1 1 RUNNING None\n\nsqueue: hello\n1 2\n1 2 RUNNING x y\n", two, 2);
+    queue_is("\n\n", NULL, 0);
+    queue_is("x 1 RUNNING None\n", NULL, 0);
+}
+
+static void no_queue(void **state)
+{
+    struct slurm_task *found;
+    struct error error;
+    size_t count = 7;
+    (void)state;
+    command_says("squeue", "", "slurm_load_jobs error: Unable to contact slurm controller", 1);
+    assert_int_equal(slurm_queue("name", &found, &count, &error), STATUS_ENVIRONMENT);
+    assert_string_equal(error.message,
+                        "--engine slurm: squeue failed (exit status 1): slurm_load_jobs error: "
+                        "Unable to contact slurm controller");
+    assert_true(found == NULL && count == 0);
+    command_says("squeue", "1 1 RUNNING None\n", "", 3); /* what a failure prints is no answer */
+    assert_int_equal(slurm_queue("name", &found, &count, &error), STATUS_ENVIRONMENT);
+    assert_string_equal(error.message,
+                        "--engine slurm: squeue failed (exit status 3): it says nothing");
+    assert_true(found == NULL && count == 0);
+    assert_int_equal(remove(path_of("squeue")), 0);
+    assert_int_equal(slurm_queue("name", &found, &count, &error), STATUS_ENVIRONMENT);
+    assert_non_null(strstr(error.message, "--engine slurm: no command squeue: No such file"));
+    assert_non_null(strstr(error.message, "(sbatch, squeue and scancel are needed, on a machine "
+                                          "that may submit jobs)"));
+}
+
+/* ---- submitting and cancelling ---- */
+
+static void submissions(void **state)
+{
+    static const struct {
+        const char *output, *complaint;
+        int code;
+        long job; /* 0: none */
+        const char *error;
+    } rows[] = {
+        {"1\n", "", 0, 1, NULL},
+        {"17;cluster\n", "", 0, 17, NULL},
+        {"2147483647\n", "", 0, 2147483647, NULL},
+        {"", "", 0, 0, "sbatch answers '', no number"},
+        {"0\n", "", 0, 0, "sbatch answers '0"},
+        {"-3\n", "", 0, 0, "sbatch answers '-3"},
+        {"Submitted batch job 11\n", "", 0, 0, "sbatch answers 'Submitted batch job 11"},
+        {"", "sbatch: error: invalid partition specified: none", 1, 0,
+         "sbatch failed (exit status 1): sbatch: error: invalid partition specified: none"},
+        {"5\n", "sbatch: unrecognized option '--nonsense'", 255, 0,
+         "sbatch failed (exit status 255): sbatch: unrecognized option '--nonsense'"},
+    };
+    const char *const words[] = {"sbatch", "--parsable", "--array=1-3", "a b", NULL};
+    (void)state;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        struct error error = {0};
+        long job = -1;
+        command_says("sbatch", rows[i].output, rows[i].complaint, rows[i].code);
+        assert_int_equal(slurm_submit(words, &job, &error),
+                         rows[i].job ? STATUS_OK : STATUS_ENVIRONMENT);
+        assert_string_equal(told("sbatch"), "[--parsable][--array=1-3][a b]");
+        if (rows[i].job) {
+            assert_int_equal(job, rows[i].job);
+        } else {
+            assert_int_equal(error.status, STATUS_ENVIRONMENT);
+            assert_non_null(strstr(error.message, rows[i].error));
+        }
+    }
+}
+
+static void cancelling(void **state)
+{
+    const struct slurm_task task = {.job = 12, .index = 3};
+    struct error error = {0};
+    (void)state;
+    command_says("scancel", "", "", 0);
+    assert_int_equal(slurm_cancel("name", &error), STATUS_OK);
+    assert_string_equal(told("scancel"), "[--name=name]");
+    assert_int_equal(slurm_cancel_task(&task, &error), STATUS_OK);
+    assert_string_equal(told("scancel"), "[12_3]");
+    command_says("scancel", "", "scancel: error: Kill job error", 1);
+    assert_int_equal(slurm_cancel("name", &error), STATUS_ENVIRONMENT);
+    assert_string_equal(error.message, "--engine slurm: scancel failed (exit status 1): scancel: "
+                                       "error: Kill job error");
+    assert_int_equal(slurm_cancel_task(&task, NULL), STATUS_ENVIRONMENT);
+    assert_int_equal(slurm_cancel("name", NULL), STATUS_ENVIRONMENT);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(recorded_answers), cmocka_unit_test(odd_answers),
+        cmocka_unit_test(no_queue),         cmocka_unit_test(submissions),
+        cmocka_unit_test(cancelling),
+    };
+    return cmocka_run_group_tests(tests, take_path, give_path_back);
+}
