@@ -88,7 +88,9 @@ setup_missing() {
         setup_compiles clang || echo clang
         setup_compiles clang -fopenmp || echo libomp-dev
         setup_libclang || echo python3-clang
-        setup_numpy || echo python3-numpy ;;
+        setup_numpy || echo python3-numpy
+        # elsewhere than with apt a test is skipped where there is no cluster
+        setup_cluster || ! setup_has apt-get || echo slurm-wlm munge ;;
     esac
     case $1 in nightly) setup_has valgrind || echo valgrind ;; esac
 }
@@ -120,10 +122,6 @@ setup_packages() {
     build=$(CDPATH='' cd -- "${BUILD:-$root/build}" && pwd -P)
     # shellcheck disable=SC2046 # words on purpose
     setup_install $(setup_missing "${1:-}")
-    # Without a cluster its test is skipped, and by night it fails.
-    case "${1:-}" in full | nightly)
-        setup_cluster || (setup_install slurm-wlm munge) || echo "without Slurm: its test cannot run" ;;
-    esac
     # clang's sanitizers are a package of their own, named after clang's version.
     if [ "${1:-}" = nightly ] && ! setup_compiles clang -fsanitize=thread; then
         setup_install "libclang-rt-$(clang -dumpversion | cut -d. -f1)-dev"

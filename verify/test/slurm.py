@@ -220,7 +220,7 @@ def test_power(nodes):
     """kill -9 of who submitted, then a node without power: a second call attaches, and Slurm starts the
     task on the other node."""
     first = start(LONG, "power", "--engine-tasks", "2", start_new_session=True)
-    nodes.wait(lambda: nodes.tasks("n0") and len(entries("power")) >= 3, "task on n0")
+    nodes.wait(lambda: nodes.tasks("n0") and len(entries("power")) >= 3 and len(queue()) == 1, "task on n0")
     os.killpg(first.pid, signal.SIGKILL)
     first.wait()
     before = queue()

@@ -118,7 +118,7 @@ static void many(void **state)
 {
     (void)state;
     srand(26);
-    for (int draw = 0; draw < 60; draw++) {
+    for (int draw = 0; draw < 24; draw++) {
         size_t expected[SHARES + 1] = {0}; /* submissions of each share */
         bool lost = false;
         again();

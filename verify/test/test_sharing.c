@@ -1,0 +1,450 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Shares: what comes of one for every outcome of its computations, in whatever order shares are
+ * computed and joined; what is missing is computed by the last, plain call; every wrong option. */
+#define _GNU_SOURCE /* nftw */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <fcntl.h>
+
+#include "made_jobs.h"
+#include "sharing.h"
+
+enum { N = 7, SHARES = 3 };
+
+static const struct command_option list[] = {
+    {"jobs", "J", ""}, SHARING_OPTIONS, {NULL, NULL, NULL}};
+static const struct command command = {.name = "converge", .synopsis = "CASE", .options = list};
+
+/* What a computation is to end with. */
+struct planned {
+    enum status status;
+    enum { ENDS, IS_KILLED, LEAVES } how;
+};
+
+static struct call {
+    struct place place;
+    struct planned planned[N];
+    const char *values[sizeof list / sizeof *list];
+    struct options options;
+    struct sharing sharing;
+    struct pool pool;
+    struct error error;
+    char said[4000]; /* on standard output, then on standard error */
+    bool whole;
+} call;
+
+static enum status end_as_planned(const void *context, json_t **document, struct error *error)
+{
+    const struct planned *planned = context;
+    if (planned->how == IS_KILLED) raise(SIGKILL);
+    if (planned->how == LEAVES) _exit(0);
+    *document = json_pack("{s:i}", "number", (int)(planned - call.planned));
+    return planned->status ? error_set(error, planned->status, "reason %d", (int)planned->status)
+                           : STATUS_OK;
+}
+
+static void set(const char *name, const char *value)
+{
+    for (size_t i = 0; list[i].name; i++)
+        if (strcmp(list[i].name, name) == 0) call.values[i] = value;
+}
+
+static int begin(void **state)
+{
+    (void)state;
+    call = (struct call){
+        .options = {
+            .command = &command, .threads = 1, .speak = 1, .quiet = 1, .values = call.values}};
+    place_make(&call.place);
+    return 0;
+}
+
+static int end(void **state)
+{
+    (void)state;
+    place_clear(&call.place);
+    return 0;
+}
+
+static void fill_planned(void)
+{
+    call.pool = (struct pool){0};
+    for (int i = 0; i < N; i++) {
+        char name[32];
+        snprintf(name, sizeof name, "task %d", i);
+        assert_int_equal(pool_add(&call.pool, name, name, N - i, end_as_planned, &call.planned[i]),
+                         i);
+    }
+}
+
+static void listen_to(int said[2], int usual[2])
+{
+    fflush(NULL);
+    for (int f = 0; f < 2; f++) {
+        char path[100];
+        snprintf(path, sizeof path, "%s/said%d", call.place.cache_folder, f);
+        said[f] = open(path, O_RDWR | O_CREAT | O_TRUNC, 0600);
+        usual[f] = dup(f + 1);
+        dup2(said[f], f + 1);
+    }
+}
+
+static void listened(const int said[2], const int usual[2])
+{
+    size_t length = 0;
+    fflush(NULL);
+    for (int f = 0; f < 2; f++) {
+        dup2(usual[f], f + 1);
+        const ssize_t n = pread(said[f], call.said + length, sizeof call.said - 1 - length, 0);
+        length += n > 0 ? (size_t)n : 0;
+        close(said[f]), close(usual[f]);
+    }
+    call.said[length] = '\0';
+}
+
+/* Takes the options and runs the pool, which is left to the caller. shard: NULL, a plain call. */
+static enum status run_share(const char *shard)
+{
+    int said[2], usual[2];
+    set("cache", call.place.cache_folder);
+    set("shard", shard);
+    call.error = (struct error){0};
+    assert_int_equal(sharing_take(&call.sharing, &call.options, 1, NULL, false, &call.error),
+                     STATUS_OK);
+    fill_planned();
+    listen_to(said, usual);
+    const enum status status =
+        sharing_run(&call.sharing, &call.pool, "converge", &call.options, &call.whole, &call.error);
+    listened(said, usual);
+    assert_int_equal(status, call.error.status);
+    assert_int_equal(call.whole, shard == NULL);
+    return status;
+}
+
+static const struct {
+    struct planned planned;
+    enum status of_share; /* what a share that has one of these ends with */
+    bool kept;
+    const char *message;
+} outcomes[] = {
+    {{STATUS_OK, ENDS}, STATUS_OK, true, ""},
+    {{STATUS_CHECK_FAILED, ENDS}, STATUS_OK, true, ""},
+    {{STATUS_BAD_INPUT, ENDS}, STATUS_BAD_INPUT, false, "reason 2"},
+    {{STATUS_BROKE_DOWN, ENDS}, STATUS_OK, true, ""},
+    {{STATUS_ENVIRONMENT, ENDS}, STATUS_ENVIRONMENT, false, "reason 4"},
+    {{STATUS_OK, IS_KILLED}, STATUS_BROKE_DOWN, false, "its process was ended by signal 9"},
+    {{STATUS_OK, LEAVES}, STATUS_ENVIRONMENT, false, "its process gave no result"},
+};
+enum { OUTCOMES = sizeof outcomes / sizeof *outcomes };
+
+/* A share that has one computation of each outcome; the other shares do not notice. */
+static void a_share_ends_as_its_computations(void **state)
+{
+    (void)state;
+    for (int k = 0; k < OUTCOMES; k++)
+        for (int i = k % 2; i < N; i += 3) {
+            char shard[16], text[100];
+            end(NULL), begin(NULL);
+            call.planned[i] = outcomes[k].planned;
+            size_t mine = 0;
+            for (int s = 1; s <= SHARES; s++) {
+                snprintf(shard, sizeof shard, "%d/%d", s, SHARES);
+                const enum status status = run_share(shard);
+                size_t has = 0;
+                for (int j = 0; j < N; j++) has += !call.pool.jobs[j].elsewhere;
+                mine += has;
+                if (call.pool.jobs[i].elsewhere || !outcomes[k].of_share) {
+                    assert_int_equal(status, STATUS_OK);
+                    snprintf(text, sizeof text,
+                             "share %d of 3: %zu of 7 computations, 0 of them found in ", s, has);
+                    assert_int_equal(strncmp(call.said, text, strlen(text)), 0);
+                } else {
+                    assert_int_equal(status, outcomes[k].of_share);
+                    snprintf(text, sizeof text, "task %d: %s", i,
+                             outcomes[k].planned.how == ENDS ? outcomes[k].message : "task");
+                    assert_int_equal(strncmp(call.error.message, text, strlen(text)), 0);
+                    assert_non_null(strstr(call.error.message, outcomes[k].message));
+                    assert_string_equal(call.said, "");
+                }
+                pool_free(&call.pool);
+            }
+            assert_int_equal(mine, N);
+            char key[16];
+            snprintf(key, sizeof key, "task %d", i);
+            assert_int_equal(cache_has(&call.place.cache, key), outcomes[k].kept);
+        }
+}
+
+/* The plain call that follows has every outcome as one machine alone has it. */
+static void joined_in_every_order(void **state)
+{
+    static const int orders[][SHARES] = {{1, 2, 3}, {1, 3, 2}, {2, 1, 3}, {2, 3, 1}, {3, 1, 2},
+                                         {3, 2, 1}, {2, 2, 1}, {1, 0, 0}, {0, 0, 3}, {0, 0, 0}};
+    (void)state;
+    for (size_t o = 0; o < sizeof orders / sizeof *orders; o++) {
+        size_t there = 0;
+        end(NULL), begin(NULL);
+        for (int i = 0; i < N; i++) call.planned[i] = outcomes[i % OUTCOMES].planned;
+        for (int s = 0; s < SHARES; s++) {
+            char shard[16];
+            if (!orders[o][s]) continue; /* missing */
+            snprintf(shard, sizeof shard, "%d/%d", orders[o][s], SHARES);
+            run_share(shard);
+            pool_free(&call.pool);
+        }
+        for (int i = 0; i < N; i++) {
+            char key[16];
+            snprintf(key, sizeof key, "task %d", i);
+            there += cache_has(&call.place.cache, key);
+        }
+        assert_int_equal(run_share(NULL), STATUS_OK);
+        assert_string_equal(call.said, "");
+        assert_int_equal(call.pool.found, there);
+        for (int i = 0; i < N; i++) {
+            const struct pool_job *job = &call.pool.jobs[i];
+            const struct planned *planned = &outcomes[i % OUTCOMES].planned;
+            assert_true(job->done && !job->elsewhere);
+            assert_int_equal(job->crashed, planned->how == IS_KILLED);
+            assert_int_equal(job->error.status, planned->how == IS_KILLED ? STATUS_BROKE_DOWN
+                                                : planned->how == LEAVES  ? STATUS_ENVIRONMENT
+                                                                          : planned->status);
+            assert_int_equal(job->document != NULL, planned->how == ENDS);
+        }
+        pool_free(&call.pool);
+    }
+}
+
+/* Damaged entries and a cache that cannot keep: said, and an error for a share. */
+static void what_is_remarkable(void **state)
+{
+    char path[CACHE_PATH_MAX];
+    (void)state;
+    assert_int_equal(run_share("1/1"), STATUS_OK);
+    pool_free(&call.pool);
+    cache_path(&call.place.cache, "task 1", path);
+    assert_int_equal(truncate(path, 20), 0);
+    call.options.quiet = 0;
+    assert_int_equal(run_share("1/1"), STATUS_OK);
+    assert_non_null(strstr(call.said, "share 1 of 1: 7 of 7 computations, 6 of them found in "));
+    assert_non_null(strstr(call.said, "sphproof: note: 1 kept results were damaged: computed "
+                                      "again\n"));
+    pool_free(&call.pool);
+    assert_int_equal(run_share("1/1"), STATUS_OK);
+    assert_non_null(strstr(call.said, "7 of them found in "));
+    assert_null(strstr(call.said, "note"));
+    pool_free(&call.pool);
+    /* no room: a file where the folder of an entry would be */
+    unlink(path);
+    *strrchr(path, '/') = '\0';
+    assert_int_equal(rmdir(path), 0);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fclose(file);
+    for (int quiet = 0; quiet < 2; quiet++) {
+        call.options.quiet = quiet;
+        assert_int_equal(run_share("1/1"), STATUS_ENVIRONMENT);
+        assert_true(strlen(call.error.message) > 10);
+        assert_string_equal(call.said, "");
+        pool_free(&call.pool);
+        assert_int_equal(run_share(NULL), STATUS_OK); /* it has the result itself */
+        assert_int_equal(strncmp(call.said, "sphproof: note: ", 16) == 0, !quiet);
+        pool_free(&call.pool);
+    }
+    unlink(path);
+}
+
+/* What --speak is off for is not said. */
+static void a_share_may_be_silent(void **state)
+{
+    (void)state;
+    call.options.speak = 0;
+    assert_int_equal(run_share("2/3"), STATUS_OK);
+    assert_string_equal(call.said, "");
+    pool_free(&call.pool);
+}
+
+/* --list: what there is, in whose share, and whether it is kept. */
+static void listing(void **state)
+{
+    static const char *const shards[] = {NULL, "1/3", "2/3", "3/3"};
+    int shares[N], said[2], usual[2];
+    (void)state;
+    fill_planned();
+    assert_int_equal(pool_divide(&call.pool, SHARES, shares, &call.error), STATUS_OK);
+    pool_free(&call.pool);
+    assert_int_equal(run_share("2/3"), STATUS_OK);
+    pool_free(&call.pool);
+    set("list", "");
+    for (size_t k = 0; k < 4; k++)
+        for (int there = 0; there < 2; there++) {
+            char expected[1000] = "";
+            set("shard", shards[k]);
+            set("cache", there ? call.place.cache_folder : k ? "nowhere" : NULL);
+            assert_int_equal(
+                sharing_take(&call.sharing, &call.options, 1, NULL, false, &call.error), STATUS_OK);
+            assert_true(call.sharing.list);
+            fill_planned();
+            listen_to(said, usual);
+            assert_int_equal(sharing_list(&call.sharing, &call.pool, &call.error), STATUS_OK);
+            listened(said, usual);
+            for (int i = 0; i < N; i++) {
+                if (k && shares[i] != (int)k) continue;
+                snprintf(expected + strlen(expected), sizeof expected - strlen(expected),
+                         "%d\t%d\t%s\ttask %d\n", N - i, k ? shares[i] : 1,
+                         there && shares[i] == 2 ? "kept" : "-", i);
+            }
+            assert_string_equal(call.said, expected);
+            pool_free(&call.pool);
+        }
+    assert_int_equal(access("nowhere", F_OK), -1); /* no folder is made to list */
+}
+
+/* ---- options ---- */
+
+static void wrong_options(void **state)
+{
+    static const struct {
+        const char *names[3], *values[3];
+        bool force;
+        const char *message; /* NULL: it is right */
+    } rows[] = {
+        {{"jobs"}, {"1"}, false, NULL},
+        {{"jobs"}, {"1024"}, false, NULL},
+        {{"jobs"}, {"0"}, false, "converge: --jobs '0': allowed: an integer from 1 to 1024"},
+        {{"jobs"}, {"1025"}, false, "--jobs '1025'"},
+        {{"jobs"}, {"2.5"}, false, "--jobs '2.5'"},
+        {{"jobs"}, {"x"}, false, "--jobs 'x'"},
+        {{"jobs"}, {""}, false, "--jobs ''"},
+        {{"shard", "cache"}, {"1/1", "c"}, false, NULL},
+        {{"shard", "cache"}, {"3/3", "c"}, false, NULL},
+        {{"shard", "cache"}, {"1/1000000", "c"}, false, NULL},
+        {{"shard", "cache"},
+         {"1/1000001", "c"},
+         false,
+         "converge: --shard '1/1000001': allowed: I/N with 1 <= I <= N <= 1000000, as 3/8"},
+        {{"shard", "cache"}, {"0/3", "c"}, false, "--shard '0/3'"},
+        {{"shard", "cache"}, {"-1/3", "c"}, false, "--shard '-1/3'"},
+        {{"shard", "cache"}, {"4/3", "c"}, false, "--shard '4/3'"},
+        {{"shard", "cache"}, {"1/3x", "c"}, false, "--shard '1/3x'"},
+        {{"shard", "cache"}, {"1", "c"}, false, "--shard '1'"},
+        {{"shard", "cache"}, {"", "c"}, false, "--shard ''"},
+        {{"shard", "cache"}, {"1/0", "c"}, false, "--shard '1/0'"},
+        {{"shard"}, {"1/3"}, false, "converge: --shard needs --cache DIR: there the shares meet"},
+        {{"shard", "cache"},
+         {"1/3", "c"},
+         true,
+         "converge: --shard and --force exclude each other: begin with an empty cache"},
+        {{"cache"}, {"c"}, true, NULL},
+        {{"engine"}, {"local"}, false, NULL},
+        {{"engine"}, {"slum"}, false, "slurm"},
+        {{"engine"},
+         {"slurm"},
+         false,
+         "converge: --engine slurm needs --cache DIR, which all machines see"},
+        {{"engine", "cache"}, {"slurm", "c"}, false, NULL},
+        {{"engine", "cache"},
+         {"slurm", "c"},
+         true,
+         "converge: --engine slurm and --force exclude each other"},
+        {{"engine", "cache", "shard"},
+         {"slurm", "c", "1/2"},
+         false,
+         "converge: --engine slurm and --shard exclude each other"},
+        {{"engine", "cache", "engine-tasks"}, {"slurm", "c", "1"}, false, NULL},
+        {{"engine", "cache", "engine-tasks"}, {"slurm", "c", "1000"}, false, NULL},
+        {{"engine", "cache", "engine-tasks"},
+         {"slurm", "c", "1001"},
+         false,
+         "converge: --engine-tasks '1001': allowed: an integer from 1 to 1000"},
+        {{"engine", "cache", "engine-tasks"}, {"slurm", "c", "0"}, false, "--engine-tasks '0'"},
+        {{"engine", "cache", "engine-tasks"}, {"slurm", "c", "x"}, false, "--engine-tasks 'x'"},
+        {{"engine", "cache", "engine-options"}, {"slurm", "c", "-p x"}, false, NULL},
+        {{"engine-tasks"},
+         {"3"},
+         false,
+         "converge: --engine-options and --engine-tasks need --engine slurm"},
+        {{"engine-options"},
+         {"-p x"},
+         false,
+         "converge: --engine-options and --engine-tasks need --engine slurm"},
+        {{"engine-options", "engine"}, {"-p x", "local"}, false, "need --engine slurm"},
+        {{"only-build", "cache"}, {"0123", "c"}, false, ", not 0123: another program, C library"},
+        {{"only-build"}, {"0123"}, false, NULL},
+    };
+    (void)state;
+    for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
+        struct sharing sharing;
+        end(NULL), begin(NULL);
+        for (int i = 0; i < 3 && rows[r].names[i]; i++)
+            set(rows[r].names[i],
+                strcmp(rows[r].values[i], "c") ? rows[r].values[i] : call.place.cache_folder);
+        const bool build = strcmp(rows[r].names[0], "only-build") == 0;
+        call.error = (struct error){0};
+        const enum status status =
+            sharing_take(&sharing, &call.options, 5, NULL, rows[r].force, &call.error);
+        if (!rows[r].message) {
+            assert_int_equal(status, STATUS_OK);
+            continue;
+        }
+        assert_int_equal(status, build ? STATUS_ENVIRONMENT : STATUS_BAD_INPUT);
+        assert_int_equal(call.error.status, status);
+        if (!strstr(call.error.message, rows[r].message)) print_error("%s\n", call.error.message);
+        assert_non_null(strstr(call.error.message, rows[r].message));
+    }
+}
+
+/* What right options come to. */
+static void right_options(void **state)
+{
+    struct sharing sharing;
+    (void)state;
+    assert_int_equal(sharing_take(&sharing, &call.options, 5, NULL, false, &call.error), STATUS_OK);
+    assert_int_equal(sharing.pool.jobs, 5);
+    assert_true(!sharing.list && !sharing.pool.cache && !sharing.pool.share.of && !sharing.tasks);
+    assert_string_equal(sharing.engine->name, "local");
+    assert_int_equal(sharing_take(&sharing, &call.options, 0, NULL, false, &call.error), STATUS_OK);
+    assert_int_equal(sharing.pool.jobs, 1);
+    set("jobs", "3"), set("shard", "2/7"), set("cache", "elsewhere");
+    char build[CACHE_BUILD_MAX];
+    cache_build(build);
+    set("only-build", build);
+    assert_int_equal(
+        sharing_take(&sharing, &call.options, 5, call.place.cache_folder, false, &call.error),
+        STATUS_OK); /* the command's own folder counts */
+    assert_int_equal(sharing.pool.jobs, 3);
+    assert_true(sharing.pool.share.number == 2 && sharing.pool.share.of == 7);
+    assert_true(sharing.pool.cache == &sharing.cache && !sharing.cache.force);
+    assert_string_equal(sharing.cache.folder, call.place.cache_folder);
+    assert_int_equal(access("elsewhere", F_OK), -1);
+    set("shard", NULL), set("engine", "slurm"), set("engine-tasks", "9");
+    assert_int_equal(
+        sharing_take(&sharing, &call.options, 5, call.place.cache_folder, false, &call.error),
+        STATUS_OK);
+    assert_string_equal(sharing.engine->name, "slurm");
+    assert_int_equal(sharing.tasks, 9);
+    set("engine", NULL), set("engine-tasks", NULL);
+    assert_int_equal(
+        sharing_take(&sharing, &call.options, 5, call.place.cache_folder, true, &call.error),
+        STATUS_OK);
+    assert_true(sharing.cache.force);
+}
+
+#define IN_ITS_PLACE(test) cmocka_unit_test_setup_teardown(test, begin, end)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        IN_ITS_PLACE(a_share_ends_as_its_computations),
+        IN_ITS_PLACE(joined_in_every_order),
+        IN_ITS_PLACE(what_is_remarkable),
+        IN_ITS_PLACE(a_share_may_be_silent),
+        IN_ITS_PLACE(listing),
+        IN_ITS_PLACE(wrong_options),
+        IN_ITS_PLACE(right_options),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
