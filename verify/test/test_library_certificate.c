@@ -1,0 +1,399 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The library's certificate of a kernel on figures that are planted, and every shape that is none:
+ * knots, constants, values, dimensions. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "property.h"
+/* the library's own text, which certifies what this file plants */
+#define property_list  planted_list
+#define property_count planted_count
+extern const struct property planted_list[];
+extern const size_t planted_count;
+#include "../library/sphproof_kernels.c"
+
+/* ---- planted figures ---- */
+
+static const double values[] = {-1, 0, 0.5, 1, 2, (double)INFINITY, (double)NAN},
+                    bounds[] = {0, 1, 1e-9, 1e-5}, floors[] = {0, 0.5, 1, 2, (double)NAN};
+
+struct figure {
+    double value, bound, floor;
+    bool skipped;
+};
+static struct figure planted;
+static int measured[2];
+
+static void plant(const struct pieces *pieces, struct property_sink *sink)
+{
+    assert_non_null(pieces);
+    measured[0]++;
+    sink->take(sink, planted.value, planted.bound, planted.floor, "here", planted.skipped);
+}
+
+static void plant_good(const struct pieces *pieces, struct property_sink *sink)
+{
+    assert_non_null(pieces);
+    measured[1]++;
+    sink->take(sink, 0, 1, 0, "there", false);
+    sink->take(sink, 0.25, 1, 0, "elsewhere", false);
+}
+
+const struct property planted_list[] = {{"good", "0 = 0", plant_good}, {"bad", "a = b", plant}};
+const size_t planted_count = 2;
+
+static struct sphproof_figure seen[8];
+static size_t seen_count;
+
+static void see(void *context, const struct sphproof_figure *figure)
+{
+    assert_ptr_equal(context, &seen_count);
+    assert_true(seen_count < 8);
+    seen[seen_count++] = *figure;
+}
+
+/* As a person would decide. */
+static bool holds(const struct figure *figure, bool single)
+{
+    const double bound = single && figure->bound > 0 && figure->bound < 1e-6 ? 1e-6 : figure->bound;
+    if (figure->skipped) return true;
+    if (isnan(figure->value) || isnan(figure->floor)) return false;
+    return !(figure->value > bound) && !(figure->floor > bound);
+}
+
+static void every_planted_figure(void **state)
+{
+    struct sphproof_kernel *kernel;
+    (void)state;
+    assert_int_equal(sphproof_kernels_find("cubic_spline", &kernel, NULL), SPHPROOF_OK);
+    for (size_t v = 0; v < sizeof values / sizeof *values; v++)
+        for (size_t b = 0; b < sizeof bounds / sizeof *bounds; b++)
+            for (size_t f = 0; f < sizeof floors / sizeof *floors; f++)
+                for (int how = 0; how < 4; how++) {
+                    struct sphproof_error error = {.message = ""};
+                    planted = (struct figure){values[v], bounds[b], floors[f], how & 1};
+                    kernel->single = how & 2;
+                    seen_count = 0;
+                    const bool well = holds(&planted, kernel->single);
+                    const enum sphproof_status status =
+                        sphproof_kernels_certify(kernel, 1, see, &seen_count, &error);
+                    assert_int_equal(status, well ? SPHPROOF_OK : SPHPROOF_CHECK_FAILED);
+                    assert_int_equal(seen_count, 3);
+                    for (size_t i = 0; i < 2; i++)
+                        assert_true(seen[i].passed && !seen[i].skipped && seen[i].floor == 0 &&
+                                    seen[i].bound == 1 && seen[i].value == 0.25 * (double)i);
+                    assert_string_equal(seen[2].property, "bad");
+                    assert_string_equal(seen[2].formula, "a = b");
+                    assert_int_equal(seen[2].passed, well);
+                    assert_int_equal(seen[2].skipped, planted.skipped);
+                    assert_memory_equal(&seen[2].value, &planted.value, sizeof planted.value);
+                    assert_memory_equal(&seen[2].floor, &planted.floor, sizeof planted.floor);
+                    assert_true(seen[2].bound ==
+                                (kernel->single && bounds[b] == 1e-9 ? 1e-6 : bounds[b]));
+                    assert_int_equal(error.status, status);
+                    assert_int_equal(strncmp(error.message, well ? "" : "bad: ", 5) == 0, true);
+                    assert_int_equal(sphproof_kernels_certify(kernel, 1, NULL, NULL, NULL), status);
+                }
+    sphproof_kernels_free(kernel);
+}
+
+/* Single precision loosens a bound at 1e-6, where there is one, and nothing else. */
+static void single_precision(void **state)
+{
+    struct sphproof_kernel *kernel;
+    (void)state;
+    assert_int_equal(sphproof_kernels_find("cubic_spline", &kernel, NULL), SPHPROOF_OK);
+    for (int single = 0; single < 2; single++) {
+        kernel->single = single;
+        planted = (struct figure){9e-7, 1e-9, 9e-7, false};
+        assert_int_equal(sphproof_kernels_certify(kernel, 2, NULL, NULL, NULL),
+                         single ? SPHPROOF_OK : SPHPROOF_CHECK_FAILED);
+        planted = (struct figure){1.1e-6, 1e-9, 0, false};
+        assert_int_equal(sphproof_kernels_certify(kernel, 2, NULL, NULL, NULL),
+                         SPHPROOF_CHECK_FAILED);
+        planted = (struct figure){9e-6, 1e-5, 0, false};
+        assert_int_equal(sphproof_kernels_certify(kernel, 2, NULL, NULL, NULL), SPHPROOF_OK);
+        planted = (struct figure){9e-7, 0, 0, false};
+        assert_int_equal(sphproof_kernels_certify(kernel, 2, NULL, NULL, NULL),
+                         SPHPROOF_CHECK_FAILED);
+    }
+    sphproof_kernels_free(kernel);
+}
+
+static void dimensions(void **state)
+{
+    static const int all[] = {-1, 0, 1, 2, 3, 4};
+    struct sphproof_kernel *kernel;
+    (void)state;
+    planted = (struct figure){0, 1, 0, false};
+    assert_int_equal(sphproof_kernels_find("wendland_c2", &kernel, NULL), SPHPROOF_OK);
+    for (int own = 0; own <= 3; own++)
+        for (size_t d = 0; d < sizeof all / sizeof *all; d++) {
+            struct sphproof_error error;
+            const bool there = all[d] >= 1 && all[d] <= 3 && (own == 0 || own == all[d]);
+            kernel->dim = own;
+            measured[0] = measured[1] = 0;
+            assert_int_equal(sphproof_kernels_certify(kernel, all[d], NULL, NULL, &error),
+                             there ? SPHPROOF_OK : SPHPROOF_BAD_INPUT);
+            assert_true(measured[0] == there && measured[1] == there);
+            char text[100];
+            snprintf(text, sizeof text, "kernel wendland_c2: dim = %d is not among its own",
+                     all[d]);
+            if (!there) assert_string_equal(error.message, text);
+        }
+    sphproof_kernels_free(kernel);
+}
+
+/* ---- shapes ---- */
+
+enum odd { USUAL, NAN_W, NAN_DW, INF_W, INF_DW, NOTHING, HALF_NEGATIVE };
+static enum odd odd;
+static double odd_at, odd_width;
+
+static double parabola(double q, int dim)
+{
+    const double a = 1 - q * q;
+    (void)dim;
+    if (odd == NOTHING) return 0;
+    if (odd == HALF_NEGATIVE) return q < 1 ? -a * a * a : 0;
+    if (odd == NAN_W && fabs(q - odd_at) <= odd_width) return (double)NAN;
+    if (odd == INF_W && fabs(q - odd_at) <= odd_width) return (double)INFINITY;
+    return q < 1 ? a * a * a : 0;
+}
+
+static double parabola_slope(double q, int dim)
+{
+    const double a = 1 - q * q;
+    (void)dim;
+    if (odd == NOTHING) return 0;
+    if (odd == NAN_DW && fabs(q - odd_at) <= odd_width) return (double)NAN;
+    if (odd == INF_DW && fabs(q - odd_at) <= odd_width) return -(double)INFINITY;
+    return q < 1 ? (odd == HALF_NEGATIVE ? 6 : -6) * q * a * a : 0;
+}
+
+static const struct sphproof_shape usual = {.w = parabola,
+                                            .dw = parabola_slope,
+                                            .constant = {0, 35. / 32, 4 / M_PI, 315 / (64 * M_PI)},
+                                            .smoothness = 2,
+                                            .name = "bump"};
+
+static enum sphproof_status own(const struct sphproof_shape *shape, const char *message)
+{
+    struct sphproof_kernel *kernel = (struct sphproof_kernel *)1;
+    struct sphproof_error error = {.message = ""};
+    const enum sphproof_status status = sphproof_kernels_own(shape, &kernel, &error);
+    assert_int_equal(kernel != NULL, status == SPHPROOF_OK);
+    assert_int_equal(error.status, status);
+    if (!strstr(error.message, message)) print_error("%s, not %s\n", error.message, message);
+    assert_non_null(strstr(error.message, message));
+    sphproof_kernels_free(kernel);
+    assert_int_equal(sphproof_kernels_own(shape, &kernel, NULL), status);
+    sphproof_kernels_free(kernel);
+    return status;
+}
+
+/* Knots are strictly within ]0, 1[, and ascend. */
+static void knots(void **state)
+{
+    static const struct {
+        int count, wrong; /* wrong: the number of the first one that is; 0: none */
+        double knots[3];
+    } rows[] = {
+        {0, 0, {0}},
+        {1, 0, {0.5}},
+        {1, 0, {1e-3}},
+        {1, 0, {1 - 1e-3}},
+        {2, 0, {0.3, 0.7}},
+        {3, 0, {0.2, 0.5, 0.9}},
+        {1, 1, {0}},
+        {1, 1, {-0.0}},
+        {1, 1, {1}},
+        {1, 1, {-0.5}},
+        {1, 1, {1.5}},
+        {1, 1, {(double)NAN}},
+        {1, 1, {(double)INFINITY}},
+        {1, 1, {-(double)INFINITY}},
+        {2, 2, {0.3, 0.3}},
+        {2, 2, {0.7, 0.3}},
+        {2, 2, {0.5, 1}},
+        {2, 1, {0, 0.5}},
+        {2, 1, {1, 0.5}},
+        {2, 2, {0.5, (double)NAN}},
+        {2, 1, {(double)NAN, 0.5}},
+        {3, 2, {0.5, 0.2, 0.9}},
+        {3, 3, {0.2, 0.5, 0.5}},
+        {3, 3, {0.2, 0.9, 0.5}},
+        {3, 3, {0.2, 0.5, 1}},
+        {-1, 0, {7}}, /* they are found */
+    };
+    (void)state;
+    for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
+        struct sphproof_shape shape = usual;
+        char text[100] = "";
+        shape.dim = 1;
+        shape.knots = rows[r].knots;
+        shape.knot_count = rows[r].count;
+        if (rows[r].wrong)
+            snprintf(text, sizeof text, "knot %d of %d is %.17g; allowed: ascending in ]0, 1[",
+                     rows[r].wrong, rows[r].count, rows[r].knots[rows[r].wrong - 1]);
+        assert_int_equal(own(&shape, text), rows[r].wrong ? SPHPROOF_BAD_INPUT : SPHPROOF_OK);
+    }
+}
+
+static void what_a_shape_needs(void **state)
+{
+    static const double knot = 0.5;
+    static const char needs[] = "a kernel needs w, dw, its knots (";
+    struct sphproof_shape shape = usual;
+    (void)state;
+    assert_int_equal(own(&shape, ""), SPHPROOF_OK);
+    shape.w = NULL;
+    assert_int_equal(own(&shape, needs), SPHPROOF_BAD_INPUT);
+    shape = usual, shape.dw = NULL;
+    assert_int_equal(own(&shape, needs), SPHPROOF_BAD_INPUT);
+    shape = usual, shape.knot_count = 1;
+    assert_int_equal(own(&shape, needs), SPHPROOF_BAD_INPUT);
+    shape.knots = &knot;
+    assert_int_equal(own(&shape, ""), SPHPROOF_OK);
+    shape.knots = NULL, shape.knot_count = -1;
+    assert_int_equal(own(&shape, ""), SPHPROOF_OK);
+    for (int dim = -2; dim <= 5; dim++) {
+        shape = usual, shape.dim = dim;
+        const bool well = dim >= 0 && dim <= 3;
+        assert_int_equal(own(&shape, well ? "" : needs), well ? SPHPROOF_OK : SPHPROOF_BAD_INPUT);
+    }
+}
+
+/* Values that are not finite, at the origin, within and at the edge, in each dimension of its own.
+ */
+static void values_of_a_shape(void **state)
+{
+    static const double at[] = {0, 0.25, 0.5, 0.75, 1};
+    static const enum odd kinds[] = {NAN_W, NAN_DW, INF_W, INF_DW};
+    (void)state;
+    for (size_t k = 0; k < 4; k++)
+        for (size_t i = 0; i < 5; i++)
+            for (int dim = 0; dim <= 3; dim++) {
+                struct sphproof_shape shape = usual;
+                odd = kinds[k], odd_at = at[i], odd_width = 0.003;
+                shape.dim = dim;
+                char text[60];
+                snprintf(text, sizeof text, "kernel bump: dim %d, q = ", dim ? dim : 1);
+                assert_int_equal(own(&shape, text), SPHPROOF_BAD_INPUT);
+            }
+    odd = NOTHING;
+    assert_int_equal(own(&usual, "kernel bump: dim 1: w is 0 everywhere"), SPHPROOF_BAD_INPUT);
+    odd = USUAL;
+    struct sphproof_shape shape = usual;
+    shape.name = NULL, odd = NOTHING;
+    assert_int_equal(own(&shape, "kernel yours: "), SPHPROOF_BAD_INPUT);
+    odd = USUAL;
+}
+
+/* A constant is declared, or else found; it is finite and above 0. */
+static void constants(void **state)
+{
+    static const double wrong[] = {-1, (double)NAN, (double)INFINITY, -(double)INFINITY};
+    (void)state;
+    for (int dim = 1; dim <= 3; dim++) {
+        struct sphproof_shape shape = usual;
+        struct sphproof_kernel *kernel;
+        char text[60];
+        shape.dim = dim;
+        for (size_t i = 0; i < 4; i++) {
+            shape.constant[dim] = wrong[i];
+            snprintf(text, sizeof text, "kernel bump: dim %d: the constant is ", dim);
+            assert_int_equal(own(&shape, text), SPHPROOF_BAD_INPUT);
+        }
+        shape.constant[dim] = 0;
+        assert_int_equal(sphproof_kernels_own(&shape, &kernel, NULL), SPHPROOF_OK);
+        assert_true(fabs(sphproof_kernels_value(kernel, 0, 1, dim) / usual.constant[dim] - 1) <
+                    1e-10);
+        sphproof_kernels_free(kernel);
+        shape.constant[dim] = 2 * usual.constant[dim]; /* what is declared is taken */
+        assert_int_equal(sphproof_kernels_own(&shape, &kernel, NULL), SPHPROOF_OK);
+        assert_true(sphproof_kernels_value(kernel, 0, 1, dim) == 2 * usual.constant[dim]);
+        sphproof_kernels_free(kernel);
+    }
+    struct sphproof_shape shape = usual;
+    memset(shape.constant, 0, sizeof shape.constant);
+    odd = HALF_NEGATIVE;
+    assert_int_equal(own(&shape, "the constant is -"), SPHPROOF_BAD_INPUT);
+    odd = USUAL;
+}
+
+/* What is declared reaches the properties; a class that is not is measured. */
+static void what_is_declared(void **state)
+{
+    (void)state;
+    for (int how = 0; how < 8; how++) {
+        struct sphproof_shape shape = usual;
+        struct sphproof_kernel *kernel;
+        shape.dim = 2;
+        shape.negative = how & 1, shape.single = how & 2, shape.smoothness = how & 4 ? -1 : 1;
+        assert_int_equal(sphproof_kernels_own(&shape, &kernel, NULL), SPHPROOF_OK);
+        const struct terms terms = terms_of(kernel, 77);
+        assert_int_equal(terms.negative, how & 1);
+        assert_int_equal(terms.single, (how & 2) != 0);
+        assert_int_equal(terms.class_found, (how & 4) != 0);
+        assert_int_equal(terms.samples, 77);
+        assert_int_equal(kernel->kernel.smoothness[2], how & 4 ? 2 : 1);
+        sphproof_kernels_free(kernel);
+    }
+}
+
+/* W, dW/dr and dW/dh of one's own kernel and of a built-in one, from w and dw. */
+static void values_and_slopes(void **state)
+{
+    static const double r[] = {0, 0.3, 1, 1.9, 2, 2.5}, h = 2;
+    struct sphproof_kernel *kernel;
+    (void)state;
+    assert_int_equal(sphproof_kernels_own(&usual, &kernel, NULL), SPHPROOF_OK);
+    for (int dim = 1; dim <= 3; dim++)
+        for (size_t i = 0; i < sizeof r / sizeof *r; i++) {
+            const double q = r[i] / h, unit = usual.constant[dim] / pow(h, dim);
+            const double w = parabola(q, dim), dw = parabola_slope(q, dim);
+            assert_true(fabs(sphproof_kernels_value(kernel, r[i], h, dim) - unit * w) < 1e-15);
+            assert_true(fabs(sphproof_kernels_dr(kernel, r[i], h, dim) - unit / h * dw) < 1e-15);
+            assert_true(fabs(sphproof_kernels_dh(kernel, r[i], h, dim) +
+                             unit / h * (dim * w + q * dw)) < 1e-15);
+        }
+    sphproof_kernels_free(kernel);
+    assert_int_equal(sphproof_kernels_find("sinc", &kernel, NULL), SPHPROOF_OK);
+    assert_true(kernel->negative && kernel->kernel.order == 5);
+    sphproof_kernels_free(kernel);
+    assert_int_equal(sphproof_kernels_find("cubic_spline", &kernel, NULL), SPHPROOF_OK);
+    assert_false(kernel->negative);
+    sphproof_kernels_free(kernel);
+    static const char *const none[] = {NULL, "", "cubic", "Cubic_spline"};
+    for (size_t i = 0; i < 4; i++) {
+        struct sphproof_error error = {.message = ""};
+        assert_int_equal(sphproof_kernels_find(none[i], &kernel, &error), SPHPROOF_BAD_INPUT);
+        assert_true(kernel == NULL && error.status == SPHPROOF_BAD_INPUT);
+        assert_non_null(strstr(error.message, "cubic_spline"));
+        assert_int_equal(sphproof_kernels_find(none[i], &kernel, NULL), SPHPROOF_BAD_INPUT);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_planted_figure),
+        cmocka_unit_test(single_precision),
+        cmocka_unit_test(dimensions),
+        cmocka_unit_test(knots),
+        cmocka_unit_test(what_a_shape_needs),
+        cmocka_unit_test(values_of_a_shape),
+        cmocka_unit_test(constants),
+        cmocka_unit_test(what_is_declared),
+        cmocka_unit_test(values_and_slopes),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
