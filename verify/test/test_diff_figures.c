@@ -1,0 +1,331 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What a diff says of figures of every kind, both ways round, of wholes and their parts, and in
+ * which order, on documents that are drawn. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "failure.h"
+#include "made_diff.h"
+
+/* ---- figures, both ways round ---- */
+
+/* A figure of each kind: at `good` and at `bad`. */
+static const struct kind {
+    const char *path, *inside, *good, *bad;
+    enum reading_verdict worse, better; /* from good to bad, and back */
+    bool fault;                         /* a regression */
+} kinds[] = {
+    {"error", NULL, "1e-3", "2e-3", VERDICT_WORSE, VERDICT_BETTER, true},
+    {"error_rms", NULL, "1e-3", "\"nan\"", VERDICT_WORSE, VERDICT_BETTER, true},
+    {"error_worst", NULL, "1", "\"inf\"", VERDICT_WORSE, VERDICT_BETTER, true},
+    {"order", NULL, "2", "1", VERDICT_WORSE, VERDICT_BETTER, true},
+    {"order_fine", NULL, "2", "\"nan\"", VERDICT_WORSE, VERDICT_BETTER, false},
+    {"cost.cpu_s", "cost", "1", "4", VERDICT_WORSE, VERDICT_BETTER, false},
+    {"cost.wall_s", "cost", "1", "40", VERDICT_WORSE, VERDICT_BETTER, false},
+    {"cost.steps", "cost", "100", "200", VERDICT_WORSE, VERDICT_BETTER, false},
+    /* its noise is the whole distance from 1: what comes nearer is the same */
+    {"normalisation", NULL, "1", "1.5", VERDICT_WORSE, VERDICT_SAME, false},
+    {"p_star", NULL, "1", "2", VERDICT_INCOMPARABLE, VERDICT_INCOMPARABLE, false},
+    {"signal", NULL, "1", "\"nan\"", VERDICT_INCOMPARABLE, VERDICT_INCOMPARABLE, false},
+    {"outcome", NULL, "\"ok\"", "\"wrong\"", VERDICT_WORSE, VERDICT_BETTER, true},
+    {"state", NULL, "\"pass\"", "\"none\"", VERDICT_WORSE, VERDICT_BETTER, true},
+    {"same_bits", NULL, "true", "false", VERDICT_WORSE, VERDICT_BETTER, true},
+    {"left_wave", NULL, "\"shock\"", "\"rarefaction\"", VERDICT_INCOMPARABLE, VERDICT_INCOMPARABLE,
+     false},
+    {"suspicion", NULL, "\"\"", "\"too good\"", VERDICT_WORSE, VERDICT_BETTER, true},
+};
+enum { KINDS = sizeof kinds / sizeof *kinds };
+
+static void add_figure(json_t *document, const struct kind *kind, const char *text)
+{
+    const char *dot = strrchr(kind->path, '.');
+    put(document, kind->inside, dot ? dot + 1 : kind->path, text);
+}
+
+/* Each kind alone, in each pair of: not there, null, good, bad. */
+static void each_kind(void **state)
+{
+    (void)state;
+    for (size_t f = 0; f < KINDS; f++) {
+        const char *const texts[] = {NULL, "null", kinds[f].good, kinds[f].bad};
+        for (int i = 0; i < 4; i++)
+            for (int k = 0; k < 4; k++) {
+                json_t *old = json_pack("{s:s, s:f}", "command", "run", "error_l1", 1.),
+                       *new = json_deep_copy(old);
+                struct diff diff;
+                add_figure(old, &kinds[f], texts[i]);
+                add_figure(new, &kinds[f], texts[k]);
+                const enum status status = differ(old, new, &diff);
+                const struct difference *d = find(&diff, kinds[f].path);
+                const bool worse = i == 2 && k == 3;
+                const enum reading_verdict verdict = i < 2    ? VERDICT_NEW
+                                                     : k < 2  ? VERDICT_VANISHED
+                                                     : i == k ? VERDICT_SAME
+                                                     : worse  ? kinds[f].worse
+                                                              : kinds[f].better;
+                assert_int_equal(d == NULL, i < 2 && k < 2);
+                if (d) {
+                    assert_int_equal(d->verdict, verdict);
+                    assert_int_equal(d->regression, worse && kinds[f].fault);
+                    assert_int_equal(d->amount > 0, verdict == VERDICT_WORSE);
+                    assert_int_equal(diff.verdicts[verdict], verdict == VERDICT_SAME ? 2 : 1);
+                }
+                assert_int_equal(diff.regressions, worse && kinds[f].fault);
+                assert_int_equal(diff.compared, i >= 2 && k >= 2 ? 2 : 1);
+                const bool well = !d || verdict == VERDICT_NEW || verdict == VERDICT_SAME ||
+                                  verdict == VERDICT_BETTER ||
+                                  (verdict == VERDICT_WORSE && !kinds[f].fault);
+                assert_int_equal(diff.well, well);
+                assert_int_equal(status, well ? STATUS_OK : STATUS_CHECK_FAILED);
+                diff_free(&diff);
+                json_decref(old), json_decref(new);
+            }
+    }
+    json_t *none = json_pack("{s:s}", "command", "run");
+    struct diff diff;
+    assert_int_equal(differ(none, none, &diff), STATUS_CHECK_FAILED);
+    assert_string_equal(diff.problem,
+                        "nothing was compared: the documents have no figure in common");
+    diff_free(&diff);
+    json_decref(none);
+}
+
+/* ---- the order of what is told ---- */
+
+static const char *path_of(const struct difference *d)
+{
+    return d->new ? d->new->path : d->old->path;
+}
+
+/* What counts, the most first: of two differences the first number that differs decides. */
+static void weights_of(const struct difference *d, double weights[5])
+{
+    static const int verdicts[] = {
+        [VERDICT_VANISHED] = 1, [VERDICT_INCOMPARABLE] = 2, [VERDICT_WORSE] = 3,
+        [VERDICT_BETTER] = 4,   [VERDICT_NEW] = 5,          [VERDICT_SAME] = 6};
+    char group[64], check[64];
+    const char *entry = strstr(path_of(d), "checks[");
+    weights[0] = d->regression ? 0 : verdicts[d->verdict];
+    weights[1] = 0;
+    if (d->regression)
+        weights[1] = entry && sscanf(entry, "checks[%63[^,], %63[^],]", group, check) == 2
+                         ? (double)failure_rank(group, check)
+                         : 1e30;
+    weights[2] = d->new && d->new->kind == READING_TIMING;
+    weights[3] = !(d->new && d->new->headline);
+    weights[4] = -d->amount;
+}
+
+/* Lists of checks and figures of all kinds, drawn: good or bad, there or not, before and after. */
+static void drawn(json_t *document)
+{
+    static const char *const checks[][2] = {{"kernels", "derivative"}, {"kernels", "support"},
+                                            {"norms", "sum"},          {"hydro", "rates"},
+                                            {"gradients", "order"},    {"none", "such"}};
+    json_t *list = json_array(), *studies = json_array();
+    for (size_t f = 0; f < KINDS; f++) {
+        const int draw = rand() % 5;
+        if (draw) add_figure(document, &kinds[f], draw < 3 ? kinds[f].good : kinds[f].bad);
+    }
+    for (int c = 0; c < 6; c++)
+        for (int subject = 0; subject < 2; subject++) {
+            char name[] = "a";
+            name[0] = (char)('a' + subject);
+            if (rand() % 6 == 0) continue;
+            const bool fails = rand() % 3 == 0;
+            json_array_append_new(
+                list, json_pack("{s:s, s:s, s:s, s:f, s:f, s:f, s:s}", "group", checks[c][0],
+                                "name", checks[c][1], "subject", name, "value",
+                                (fails ? 10. : 0.1) * (double)(1 << rand() % 4), "bound", 1.,
+                                "floor", 0., "status", fails ? "fail" : "pass"));
+        }
+    for (int s = 0; s < 6; s++) {
+        char label[16];
+        snprintf(label, sizeof label, "label %d", s);
+        if (rand() % 6 == 0) continue;
+        json_array_append_new(
+            studies, json_pack("{s:s, s:s, s:{s:{s:f, s:f, s:f}}, s:{s:f}}", "case", "sod", "label",
+                               label, "errors", "density", "l1", 1e-3 * (1 + rand() % 3), "l1_cut",
+                               1e-3 * (1 + rand() % 3), "linf", 0.1 * (1 + rand() % 3), "cost",
+                               "cpu_s", 1. + rand() % 5));
+    }
+    json_object_set_new(document, "checks", list);
+    json_object_set_new(document, "studies", studies);
+}
+
+static void order(void **state)
+{
+    size_t seen[READING_VERDICTS + 1] = {0};
+    (void)state;
+    srand(3);
+    for (int draw = 0; draw < 150; draw++) {
+        json_t *old = json_pack("{s:s, s:f}", "command", "report", "error_l1", 1.),
+               *new = json_deep_copy(old);
+        struct diff diff;
+        drawn(old), drawn(new);
+        differ(old, new, &diff);
+        for (size_t i = 0; i < diff.count; i++) {
+            double before[5], now[5];
+            int k = 0;
+            seen[diff.list[i].regression ? READING_VERDICTS : (int)diff.list[i].verdict]++;
+            if (!i) continue;
+            weights_of(&diff.list[i - 1], before);
+            weights_of(&diff.list[i], now);
+            while (k < 5 && !(before[k] < now[k]) && !(before[k] > now[k])) k++;
+            if (k < 5)
+                assert_true(before[k] < now[k]);
+            else
+                assert_true(strcmp(path_of(&diff.list[i - 1]), path_of(&diff.list[i])) < 0);
+        }
+        diff_free(&diff);
+        json_decref(old), json_decref(new);
+    }
+    for (int v = 0; v <= READING_VERDICTS; v++) assert_true(seen[v] > 100);
+}
+
+/* What vanishes one way is new the other way; what stays stays. */
+static void both_ways_round(void **state)
+{
+    static const enum reading_verdict back[] = {
+        [VERDICT_SAME] = VERDICT_SAME,    [VERDICT_BETTER] = VERDICT_WORSE,
+        [VERDICT_WORSE] = VERDICT_BETTER, [VERDICT_INCOMPARABLE] = VERDICT_INCOMPARABLE,
+        [VERDICT_VANISHED] = VERDICT_NEW, [VERDICT_NEW] = VERDICT_VANISHED,
+    };
+    (void)state;
+    srand(4);
+    for (int draw = 0; draw < 100; draw++) {
+        json_t *old = json_pack("{s:s, s:f}", "command", "report", "error_l1", 1.),
+               *new = json_deep_copy(old);
+        struct diff one, other;
+        drawn(old), drawn(new);
+        const enum status status = differ(old, new, &one);
+        differ(new, old, &other);
+        assert_int_equal(one.count, other.count);
+        size_t verdicts[READING_VERDICTS] = {0}, regressions = 0, compared = 0;
+        for (size_t i = 0; i < one.count; i++) {
+            const struct difference *d = &one.list[i], *e = find(&other, path_of(d));
+            assert_non_null(e);
+            if (strcmp(path_of(d), "normalisation")) assert_int_equal(e->verdict, back[d->verdict]);
+            verdicts[d->verdict]++;
+            regressions += d->regression;
+            compared += d->old && d->new;
+        }
+        assert_memory_equal(one.verdicts, verdicts, sizeof verdicts);
+        assert_int_equal(one.regressions, regressions);
+        assert_int_equal(one.compared, compared);
+        assert_int_equal(one.well, !regressions && !verdicts[VERDICT_VANISHED] &&
+                                       !verdicts[VERDICT_INCOMPARABLE]);
+        assert_int_equal(status, one.well ? STATUS_OK : STATUS_CHECK_FAILED);
+        diff_free(&one), diff_free(&other);
+        json_decref(old), json_decref(new);
+    }
+}
+
+/* ---- what is part of a whole ---- */
+
+static json_t *runs(const char *one, const char *two, const char *verdict)
+{
+    return json_pack("{s:s, s:[{s:s, s:s, s:f, s:{s:f}}, {s:s, s:s, s:f}], s:{s:s}, s:f}",
+                     "command", "report", "runs", "label", "a", "status", one, "error", 1., "cost",
+                     "steps", 7., "label", "ab", "status", two, "error", 1., "verdict", "status",
+                     verdict, "error_l1", 1.);
+}
+
+/* Of a run that broke down its status is compared, before or after, and nothing else of it. */
+static void runs_that_break_down(void **state)
+{
+    static const char *const words[] = {"ok", "broke_down", "fail"};
+    (void)state;
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++) {
+            json_t *old = runs(words[i], "ok", "pass"), *new = runs(words[k], "ok", "pass");
+            const bool broken = i == 1 || k == 1;
+            struct diff diff;
+            differ(old, new, &diff);
+            assert_int_equal(diff.left_out, broken ? 2 : 0);
+            assert_int_equal(find(&diff, "runs[a].error") == NULL, broken);
+            assert_int_equal(find(&diff, "runs[a].cost.steps") == NULL, broken);
+            assert_non_null(find(&diff, "runs[a].status"));
+            assert_non_null(find(&diff, "runs[ab].error"));
+            assert_non_null(find(&diff, "error_l1"));
+            diff_free(&diff);
+            json_decref(old), json_decref(new);
+        }
+    /* a document that is one run */
+    json_t *old = run_with(1e-3, 1), *new = run_with(1, 1);
+    struct diff diff;
+    json_object_set_new(old, "status", json_string("ok"));
+    json_object_set_new(new, "status", json_string("broke_down"));
+    assert_int_equal(differ(old, new, &diff), STATUS_CHECK_FAILED);
+    assert_true(diff.count == 1 && diff.left_out == 3 && diff.regressions == 1);
+    diff_free(&diff);
+    json_decref(old), json_decref(new);
+}
+
+/* A whole that fails because a part of it does is no regression of its own. */
+static void causes(void **state)
+{
+    (void)state;
+    for (int one = 0; one < 2; one++)
+        for (int verdict = 0; verdict < 2; verdict++) {
+            json_t *old = runs("ok", "ok", "pass"),
+                   *new = runs(one ? "fail" : "ok", "ok", verdict ? "fail" : "pass");
+            struct diff diff;
+            assert_int_equal(differ(old, new, &diff),
+                             one || verdict ? STATUS_CHECK_FAILED : STATUS_OK);
+            assert_int_equal(diff.regressions, one || verdict);
+            assert_int_equal(find(&diff, "verdict.status")->regression, verdict && !one);
+            assert_int_equal(find(&diff, "runs[a].status")->regression, one);
+            diff_free(&diff);
+            json_decref(old), json_decref(new);
+        }
+    /* of a run whose error grew, too, the error is what is told; another run's does not count */
+    for (int own = 0; own < 2; own++) {
+        json_t *old = runs("ok", "ok", "pass"), *new = runs("fail", "ok", "pass");
+        struct diff diff;
+        json_object_set_new(json_array_get(json_object_get(new, "runs"), own ? 0 : 1), "error",
+                            json_real(9));
+        differ(old, new, &diff);
+        assert_int_equal(find(&diff, "runs[a].status")->regression, !own);
+        assert_true(find(&diff, own ? "runs[a].error" : "runs[ab].error")->regression);
+        diff_free(&diff);
+        json_decref(old), json_decref(new);
+    }
+}
+
+/* Beyond the threshold an error is a regression, an order beyond its interval is one anyway. */
+static void thresholds(void **state)
+{
+    static const double factors[] = {1.04, 1.06, 1.2};
+    (void)state;
+    for (size_t i = 0; i < 3; i++)
+        for (int t = 0; t < 3; t++) {
+            const double threshold = (double[]){0, 0.05, 0.1}[t];
+            json_t *old = json_pack("{s:s, s:f, s:f}", "command", "run", "error", 1., "order", 2.),
+                   *new = json_pack("{s:s, s:f, s:f}", "command", "run", "error", factors[i],
+                                    "order", 1.97);
+            struct diff diff;
+            struct error error = {0};
+            diff_documents(old, new, threshold, &diff, &error);
+            assert_int_equal(find(&diff, "error")->regression, factors[i] - 1 > threshold);
+            assert_true(find(&diff, "order")->regression);
+            diff_free(&diff);
+            json_decref(old), json_decref(new);
+        }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(each_kind),       cmocka_unit_test(order),
+        cmocka_unit_test(both_ways_round), cmocka_unit_test(runs_that_break_down),
+        cmocka_unit_test(causes),          cmocka_unit_test(thresholds),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
