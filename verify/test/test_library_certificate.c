@@ -17,7 +17,7 @@
 #define property_count planted_count
 extern const struct property planted_list[];
 extern const size_t planted_count;
-#include "../library/sphproof_kernels.c"
+#include "sphproof_kernels.c"
 
 /* ---- planted figures ---- */
 
