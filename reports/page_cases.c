@@ -175,7 +175,7 @@ static void run_table(struct buffer *to, const json_t *const *runs, size_t count
         html_cell(to, value_text(runs[k], "label"));
         html_cell_number(to, value_member(runs[k], "n"));
         for (int q = 0; q < QUANTITIES; q++)
-            html_cell_number(to, value_inner(errors, quantities[q], "l1_cut"));
+            html_cell_number(to, value_inner(errors, quantities[q], "l1"));
         html_cell_number(to, value_inner(runs[k], "conservation", "mass"));
         html_cell_number(to, value_inner(runs[k], "conservation", "momentum"));
         html_cell_number(to, value_inner(runs[k], "conservation", "energy"));

@@ -78,11 +78,11 @@ static void row(struct buffer *to, const json_t *results, const json_t *first,
         const json_t *study = find(studies, name, labels[k]);
         levels = json_object_get(study, "levels");
         const json_t *finest = json_array_get(levels, json_array_size(levels) - 1);
-        html_cell_number(to, value_inner(json_object_get(finest, "errors"), "density", "l1_cut"));
+        html_cell_number(to, value_inner(json_object_get(finest, "errors"), "density", "l1"));
         const char *now = status_of(study, find(runs, name, labels[k]));
         if (strcmp(now, "ok")) status = now;
     }
-    order_cell(to, page_study_order(first, "density", "l1_cut"));
+    order_cell(to, page_study_order(first, "density", "l1"));
     html_cell_number(to, value_inner(run, "conservation", "momentum"));
     html_cell_number(to, value_inner(run, "conservation", "energy"));
     buffer_add(to, "<td>");

@@ -42,7 +42,7 @@ const json_t *page_study_order(const json_t *study, const char *field, const cha
 /* Of a field the norm that pages show, of a scalar its error. */
 static const json_t *order_of(const json_t *document, const char *name)
 {
-    const json_t *order = page_study_order(document, name, "l1_cut");
+    const json_t *order = page_study_order(document, name, "l1");
     return order ? order : page_study_order(document, name, "error");
 }
 
@@ -81,7 +81,7 @@ void page_study_name(struct buffer *to, const json_t *order)
 static double error_of(const json_t *document, const char *name, size_t i)
 {
     const json_t *level = json_array_get(json_object_get(document, "levels"), i), *entry;
-    const double error = value_inner(json_object_get(level, "errors"), name, "l1_cut");
+    const double error = value_inner(json_object_get(level, "errors"), name, "l1");
     size_t k;
     if (isfinite(error)) return error;
     json_array_foreach(json_object_get(document, "functionals"), k, entry)
@@ -228,7 +228,7 @@ static void error_cell(struct buffer *to, const struct study *study, size_t i)
 {
     const json_t *level = json_array_get(json_object_get(study->document, "levels"), i);
     const char *name = study->names[0];
-    const double spread = value_inner(json_object_get(level, "spread"), name, "l1_cut");
+    const double spread = value_inner(json_object_get(level, "spread"), name, "l1");
     buffer_add(to, "<td class=\"n\">");
     html_number(to, error_of(study->document, name, i));
     if (spread > 0.03) buffer_format(to, " ± %.0f %%", 100 * spread);
@@ -306,8 +306,8 @@ static void gate_words(struct buffer *to, const json_t *gate)
 
 static const char *norm_name(const char *norm)
 {
-    static const char *const names[][2] = {{"l1_cut", "L1"},
-                                           {"l1", "L1, whole volumes"},
+    static const char *const names[][2] = {{"l1", "L1"},
+                                           {"l1_whole", "L1, whole volumes"},
                                            {"l2", "L2"},
                                            {"linf", "L∞"},
                                            {"particle_mean", "particle mean"}};
@@ -323,7 +323,7 @@ static void order_rows(struct buffer *to, const struct study *study)
     json_array_foreach(json_object_get(study->document, "orders"), i, order) {
         const char *status = value_text(order, "status");
         bool gated = json_is_object(json_object_get(order, "gate"));
-        bool shown = !strcmp(value_text(order, "norm"), "l1_cut") || is_scalar(order);
+        bool shown = !strcmp(value_text(order, "norm"), "l1") || is_scalar(order);
         if (!gated && !shown && strcmp(status, "fail")) continue;
         buffer_add(to, "<tr>");
         html_cell(to, value_text(study->document, "label"));

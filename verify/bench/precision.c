@@ -121,9 +121,7 @@ static int order_of(const struct run_settings *settings)
     const struct case_file *file = &settings->file;
     for (size_t i = 0; i < file->gate_count; i++) {
         const struct case_gate *gate = &file->gates[i];
-        if (gate->functional || gate->field != FIELD_DENSITY ||
-            (gate->norm != NORM_L1 && gate->norm != NORM_L1_CUT))
-            continue;
+        if (gate->functional || gate->field != FIELD_DENSITY || (gate->norm != NORM_L1)) continue;
         const double low = gate->gate.low, high = gate->gate.high,
                      middle = isfinite(high) ? (low + high) / 2 : low;
         return middle > 1 ? (int)lround(middle) : 1;

@@ -300,8 +300,8 @@ static void measure_errors_again(struct check_run *run, const void *subject)
             mean += error;
             count += 1;
         }
-        const double want[NORMS] = {(double)(l1 / weight), (double)sqrtl(l2 / weight), (double)linf,
-                                    (double)(mean / count), (double)(cut / length)};
+        const double want[NORMS] = {(double)(cut / length), (double)sqrtl(l2 / weight),
+                                    (double)linf, (double)(mean / count), (double)(l1 / weight)};
         for (int k = 0; k < NORMS; k++)
             check_measure(run, fabs(run_error(&result, (enum field)f, (enum norm)k) / want[k] - 1),
                           1e-12, 2e-14, "%s of %s", field_norm_family.members[k]->name,

@@ -27,10 +27,10 @@ static void print_ladder(const struct study *study, const struct study_result *r
         printf("%10zu %12.4e", level->n, level->h);
         for (int field = 0; field < FIELDS; field++)
             if (file->fields[field] && study->replicates > 1)
-                printf(" %11.4e +-%2.0f%%", level->errors[field][NORM_L1_CUT],
-                       100 * level->spread[field][NORM_L1_CUT]);
+                printf(" %11.4e +-%2.0f%%", level->errors[field][NORM_L1],
+                       100 * level->spread[field][NORM_L1]);
             else if (file->fields[field])
-                printf(" %17.4e", level->errors[field][NORM_L1_CUT]);
+                printf(" %17.4e", level->errors[field][NORM_L1]);
         printf(" %10.3g\n", level->cpu_s);
     }
 }
@@ -63,8 +63,7 @@ static void print_orders(const struct case_file *file, const struct study_result
     for (int field = 0; field < FIELDS; field++)
         for (int norm = 0; norm < NORMS; norm++) {
             const struct study_order *order = &result->orders[field][norm];
-            if (order->status == GATE_NONE && (norm != NORM_L1_CUT || !file->fields[field]))
-                continue;
+            if (order->status == GATE_NONE && (norm != NORM_L1 || !file->fields[field])) continue;
             char name[40];
             snprintf(name, sizeof name, "%s_%s", field_family.members[field]->name,
                      field_norm_family.members[norm]->name);

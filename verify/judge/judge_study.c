@@ -59,7 +59,7 @@ static bool error_called(const struct judged *judged, const char *name, double *
     of[FIELDS + 1] = &r->radial, names[FIELDS + 1] = "radial";
     for (int f = 0; f < FIELDS + 2; f++) {
         const double values[NORMS] = {of[f]->l1, of[f]->l2, of[f]->linf, of[f]->particle_mean,
-                                      of[f]->l1_cut};
+                                      of[f]->l1_whole};
         for (int norm = 0; norm < NORMS; norm++) {
             char full[64];
             snprintf(full, sizeof full, "%s_%s", names[f], field_norm_family.members[norm]->name);
@@ -96,7 +96,7 @@ enum status judge_gates(const char *text, const struct judged *judged, struct ju
         if (!error_called(judged, gate->name, &gate->value))
             return error_set(error, STATUS_BAD_INPUT,
                              "--gate %.48s: no such error; FIELD: density velocity pressure "
-                             "internal_energy%s, NORM: l1 l2 linf particle_mean l1_cut",
+                             "internal_energy%s, NORM: l1 l2 linf particle_mean l1_whole",
                              gate->name,
                              judged->result.problem.problem->circular ? " azimuthal radial" : "");
         gate->good = gate->value <= gate->bound;

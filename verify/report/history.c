@@ -230,10 +230,10 @@ static json_t *trend_of(const json_t *nights, const json_t *study)
     json_array_foreach(json_object_get(study, "measured"), i, field) {
         const char *what = json_string_value(field);
         char path[PATH_LENGTH];
-        snprintf(path, sizeof path, "studies[%s, %s].levels[n %.10g].errors.%s.l1_cut", name, label,
-                 n, what);
+        snprintf(path, sizeof path, "studies[%s, %s].levels[n %.10g].errors.%s.l1", name, label, n,
+                 what);
         json_t *error = series_of(nights, path);
-        snprintf(path, sizeof path, "studies[%s, %s].orders[%s, l1_cut].order", name, label, what);
+        snprintf(path, sizeof path, "studies[%s, %s].orders[%s, l1].order", name, label, what);
         json_t *order = series_of(nights, path);
         if (has_points(error) && has_points(order))
             return json_pack("{s:s, s:s, s:s, s:o, s:o, s:o}", "case", name, "label", label,

@@ -105,10 +105,11 @@ static void nobody_knows(struct readings *readings, const char *path, const char
 static bool is_headline(const struct place *at, const json_t *parent, const char *name,
                         const struct reading *reading)
 {
-    static const char *const minor[] = {"l1", "l2", "linf", "particle_mean", "class", "suspicion"};
+    static const char *const minor[] = {"l1_whole",      "l2",    "linf",
+                                        "particle_mean", "class", "suspicion"};
     static const char *const elsewhere[] = {"kernels", "verify", "budget", "budgets"};
     const char *norm = json_string_value(json_object_get(parent, "norm"));
-    bool headline = !one_of(name, minor, LENGTH(minor)) && (!norm || !strcmp(norm, "l1_cut")) &&
+    bool headline = !one_of(name, minor, LENGTH(minor)) && (!norm || !strcmp(norm, "l1")) &&
                     reading->kind != READING_NEUTRAL;
     for (size_t i = 0; i < LENGTH(elsewhere); i++)
         headline = headline && !reading_passes(at->path, elsewhere[i]);

@@ -15,12 +15,13 @@ void budget_measure(const struct prepared *p, const struct snapshot *s,
     const double *const measured[FIELDS] = {s->rho, s->v[0], s->P, s->u};
     double volume = 0, x[3];
     for (size_t i = 0; i < s->n; i++) {
+        const double part = problem_window_part(p, s, i);
+        if (part == 0) continue;
         problem_place(p, s, i, x);
-        if (!window_contains(&p->window, x)) continue;
         const size_t region = regions->at(p, x, BUDGET_REACH * s->h[i], s->time);
-        volume += s->volume[i];
+        volume += part;
         for (int f = 0; f < FIELDS; f++)
-            budget->l1[region][f] += s->volume[i] * fabs(measured[f][i] - exact_values[f][i]);
+            budget->l1[region][f] += part * fabs(measured[f][i] - exact_values[f][i]);
     }
     for (size_t r = 0; regions->names[r]; r++)
         for (int f = 0; f < FIELDS; f++) budget->l1[r][f] /= volume;

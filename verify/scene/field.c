@@ -19,10 +19,10 @@ const struct family field_family = {"fields", "fields whose errors are measured"
                                     FIELDS};
 const struct family field_norm_family = {
     "norms", "error norms over the measure window",
-    MEMBERS(MEMBER("l1", "sum V |q - exact| / sum V"),
+    MEMBERS(MEMBER("l1", "sum w |q - exact| / sum w, w the part of V in the window"),
             MEMBER("l2", "sqrt(sum V (q - exact)^2 / sum V)"), MEMBER("linf", "max |q - exact|"),
             MEMBER("particle_mean", "sum |q - exact| / number of particles"),
-            MEMBER("l1_cut", "L1 with volumes cut at the window's edge")),
+            MEMBER("l1_whole", "sum V |q - exact| / sum V of the particles in the window")),
     NORMS};
 
 const char *field_unit(enum field field, int dim)

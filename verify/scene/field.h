@@ -8,7 +8,7 @@
 #include "window.h"
 
 enum field { FIELD_DENSITY, FIELD_VELOCITY, FIELD_PRESSURE, FIELD_INTERNAL_ENERGY, FIELDS };
-enum norm { NORM_L1, NORM_L2, NORM_LINF, NORM_PARTICLE_MEAN, NORM_L1_CUT, NORMS };
+enum norm { NORM_L1, NORM_L2, NORM_LINF, NORM_PARTICLE_MEAN, NORM_L1_WHOLE, NORMS };
 extern const struct family field_family, field_norm_family;
 
 /* In code units, by dimension: densities are per length, area or volume. */

@@ -90,7 +90,7 @@ static double signal_of(const struct run_result *result, enum field field)
 void judged_of(const struct case_file *file, const struct run_result *result, struct judged *judged)
 {
     const char *names[JUDGED_MAX];
-    *judged = (struct judged){"density", result->errors[FIELD_DENSITY].l1_cut, (double)NAN};
+    *judged = (struct judged){"density", result->errors[FIELD_DENSITY].l1, (double)NAN};
     if (result->problem.domain.dim == 1) return;
     *judged = (struct judged){"", (double)NAN, (double)NAN};
     if (!judged_names_of(file, result, names)) return;

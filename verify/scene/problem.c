@@ -98,6 +98,34 @@ double problem_radius(const struct prepared *p, const double x[3])
     return sqrt(square);
 }
 
+/* Length of [x - side/2, x + side/2] in the window along d, over side; also of its images. */
+static double part_along(const struct prepared *p, int d, double x, double side)
+{
+    const double lo = p->window.lo[d], hi = p->window.hi[d];
+    const bool periodic = p->boundary[d] == BOUNDARY_PERIODIC;
+    double sum = 0;
+    if (lo <= p->domain.lo[d] && hi >= p->domain.hi[d] && p->boundary[d] != BOUNDARY_OPEN) return 1;
+    for (int image = periodic ? -1 : 0; image <= periodic; image++) {
+        const double centre = x + image * domain_length(&p->domain, d);
+        sum += fmax(0, fmin(centre + side / 2, hi) - fmax(centre - side / 2, lo));
+    }
+    return sum / side;
+}
+
+double problem_window_part(const struct prepared *p, const struct snapshot *s, size_t i)
+{
+    const double side = pow(s->volume[i], 1. / p->domain.dim);
+    double x[3], part = s->volume[i];
+    problem_place(p, s, i, x);
+    for (int d = 0; d < p->domain.dim; d++) {
+        if (!isfinite(x[d])) return (double)NAN; /* fmin and fmax ignore it */
+        part *= part_along(p, d, x[d], side);
+    }
+    if (!(p->window.radius > 0) || !isfinite(part)) return part;
+    const double inside = (p->window.radius - problem_radius(p, x)) / side + 0.5;
+    return part * fmin(1, fmax(0, inside));
+}
+
 bool problem_is_circular(const struct prepared *p)
 {
     return p->problem->circular && p->domain.dim > 1;

@@ -153,6 +153,12 @@ enum status problem_check_state(const struct settings *settings, enum setting ke
 void problem_place(const struct prepared *p, const struct snapshot *s, size_t i, double x[3]);
 void problem_velocity(const struct prepared *p, const struct snapshot *s, size_t i, double v[3]);
 
+/* How much of the volume of particle i lies in the window; continuous in its position. The particle
+ * is a cube along the axes; where the box is periodic its images count, too, and along a direction
+ * in which the window is as long as a box that gas cannot leave nothing is cut. The surface of a
+ * disc or a ball cuts a cube as a plane across the radius does. NaN: it is nowhere. */
+double problem_window_part(const struct prepared *p, const struct snapshot *s, size_t i);
+
 /* Distance from the window's centre of a place as problem_place gives it. */
 double problem_radius(const struct prepared *p, const double x[3]);
 

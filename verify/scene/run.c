@@ -501,6 +501,6 @@ double run_error(const struct run_result *result, enum field field, enum norm no
 {
     const struct norms *errors = &result->errors[field];
     const double values[NORMS] = {errors->l1, errors->l2, errors->linf, errors->particle_mean,
-                                  errors->l1_cut};
+                                  errors->l1_whole};
     return values[norm];
 }

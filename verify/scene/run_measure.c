@@ -12,6 +12,7 @@ struct comparison {
     double *exact[FIELDS];            /* of the fields at the particles; velocity: along x */
     double *place;                    /* 0 in the window, 2 beside it, NaN nowhere */
     double *none;                     /* 0 */
+    double *part;                     /* volume in the window */
     double *jump;                     /* |v - exact v| */
     double *azimuthal[2], *radial[2]; /* measured, exact */
     double *storage;
@@ -40,9 +41,10 @@ static bool compare(struct comparison *of, const struct run_result *result)
 {
     const struct prepared *p = &result->problem;
     const struct snapshot *s = &result->snapshot;
-    double *next = of->storage = calloc((FIELDS + 7) * s->n, sizeof *next);
-    double **const arrays[] = {&of->place,        &of->none,      &of->jump,     &of->azimuthal[0],
-                               &of->azimuthal[1], &of->radial[0], &of->radial[1]};
+    double *next = of->storage = calloc((FIELDS + 8) * s->n, sizeof *next);
+    double **const arrays[] = {&of->place,     &of->none,         &of->part,
+                               &of->jump,      &of->azimuthal[0], &of->azimuthal[1],
+                               &of->radial[0], &of->radial[1]};
     if (!next) return false;
     for (int f = 0; f < FIELDS; f++, next += s->n) of->exact[f] = next;
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++, next += s->n) *arrays[k] = next;
@@ -62,6 +64,7 @@ static bool compare(struct comparison *of, const struct run_result *result)
         }
         of->place[i] = window_contains(&p->window, place) ? 0 : 2;
         for (int d = 0; d < p->domain.dim; d++) of->place[i] += 0 * x[d]; /* NaN: nowhere */
+        of->part[i] = problem_window_part(p, s, i);
         of->jump[i] = sqrt(squares);
         if (!problem_is_circular(p)) continue;
         problem_circular(p, place, v, &of->azimuthal[0][i], &of->radial[0][i]);
@@ -104,9 +107,19 @@ static const struct norms no_norms = {.l1 = (double)NAN,
                                       .l2 = (double)NAN,
                                       .linf = (double)NAN,
                                       .particle_mean = (double)NAN,
-                                      .l1_cut = (double)NAN};
+                                      .l1_whole = (double)NAN};
 
-/* On a line: also what bins and regions say. */
+/* One norm of all: of particles in the window, and L1 of what of all volumes lies in it. */
+static struct norms norms_of(const struct snapshot *s, const struct comparison *of,
+                             const double *value, const double *exact)
+{
+    static const double window[2] = {-1, 1};
+    struct norms norms = norm_errors(s->n, of->place, window, s->volume, value, exact);
+    if (norms.n) norms.l1 = norm_l1(s->n, of->part, value, exact);
+    return norms;
+}
+
+/* On a line: also what bins say. */
 static void measure_line(struct run_result *result, const double *const *measured,
                          const struct comparison *of)
 {
@@ -114,12 +127,7 @@ static void measure_line(struct run_result *result, const double *const *measure
     const double window[2] = {result->problem.window.lo[0], result->problem.window.hi[0]};
     double means[NORM_BINS];
     for (int field = 0; field < FIELDS; field++)
-        result->errors[field] =
-            norm_errors(s->n, s->x[0], window, s->volume, measured[field], of->exact[field]);
-    for (int field = 0; field < FIELDS; field++)
-        result->errors[field].l1_cut =
-            norm_l1_cut(s->n, s->x[0], window, domain_length(&result->problem.domain, 0), s->volume,
-                        measured[field], of->exact[field]);
+        result->errors[field] = norms_of(s, of, measured[field], of->exact[field]);
     problem_means(&result->problem, FIELD_DENSITY, result->time, NORM_BINS, means);
     result->binned_density_l1 =
         norm_binned_l1(s->n, s->x[0], window, s->volume, s->rho, NORM_BINS, means);
@@ -128,18 +136,15 @@ static void measure_line(struct run_result *result, const double *const *measure
 static void measure_cloud(struct run_result *result, const double *const *measured,
                           const struct comparison *of)
 {
-    static const double window[2] = {-1, 1};
     const struct snapshot *s = &result->snapshot;
     for (int field = 0; field < FIELDS; field++) {
         const bool vector = field == FIELD_VELOCITY;
-        result->errors[field] =
-            norm_errors(s->n, of->place, window, s->volume, vector ? of->jump : measured[field],
-                        vector ? of->none : of->exact[field]);
+        result->errors[field] = norms_of(s, of, vector ? of->jump : measured[field],
+                                         vector ? of->none : of->exact[field]);
     }
     if (!problem_is_circular(&result->problem)) return;
-    result->azimuthal =
-        norm_errors(s->n, of->place, window, s->volume, of->azimuthal[0], of->azimuthal[1]);
-    result->radial = norm_errors(s->n, of->place, window, s->volume, of->radial[0], of->radial[1]);
+    result->azimuthal = norms_of(s, of, of->azimuthal[0], of->azimuthal[1]);
+    result->radial = norms_of(s, of, of->radial[0], of->radial[1]);
 }
 
 void run_measure_nothing(struct run_result *result)

@@ -19,7 +19,7 @@ static void set_number(json_t *object, const char *name, double value)
 
 static json_t *norms_json(const struct norms *of, bool known)
 {
-    const double values[NORMS] = {of->l1, of->l2, of->linf, of->particle_mean, of->l1_cut};
+    const double values[NORMS] = {of->l1, of->l2, of->linf, of->particle_mean, of->l1_whole};
     json_t *norms = json_object();
     for (int norm = 0; norm < NORMS; norm++)
         json_object_set_new(norms, field_norm_family.members[norm]->name,

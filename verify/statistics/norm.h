@@ -1,8 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Error norms over the measure window M of a case: with w_i the volumes,
- *   L1 = sum w_i |q_i - e_i| / sum w_i,  L2 = sqrt(sum w_i (q_i - e_i)^2 / sum w_i),
- *   Linf = max |q_i - e_i|,  particle mean = sum |q_i - e_i| / number in M;
- * in the units of the field q. One definition for every command and report. */
+ * Error norms over the measure window M of a case, in the units of the field q:
+ *   L1 = sum w_i |q_i - e_i| / sum w_i, w_i the part of the volume V_i that lies in M;
+ * and of the particles that lie in M, with their whole volumes
+ *   L1 whole = sum V_i |q_i - e_i| / sum V_i,  L2 = sqrt(sum V_i (q_i - e_i)^2 / sum V_i),
+ *   Linf = max |q_i - e_i|,  particle mean = sum |q_i - e_i| / number in M.
+ * L1 is continuous in all positions; the others jump where a particle crosses the edge of M. One
+ * definition for every command and report. */
 #ifndef SPHPROOF_NORM_H
 #define SPHPROOF_NORM_H
 
@@ -12,20 +15,19 @@ enum { NORM_BINS = 20, NORM_BINS_MAX = 64 };
 
 struct norms {
     double l1, l2, linf, particle_mean; /* NaN where no particle lies in the window */
-    double l1_cut;                      /* see norm_l1_cut; where nobody has cut anything: l1 */
-    size_t n;                           /* particles in the window */
+    double l1_whole;
+    size_t n; /* particles in the window */
 };
 
 /* x, volume, value, exact: n each; exact[i] belongs to the particle's own position. In the window:
- * window[0] <= x <= window[1]. A NaN among the values makes every norm NaN. */
+ * window[0] <= x <= window[1]. A NaN among the values makes every norm NaN. l1 is l1_whole, which a
+ * caller who knows the w_i replaces. */
 struct norms norm_errors(size_t n, const double *x, const double window[2], const double *volume,
                          const double *value, const double *exact);
 
-/* L1 with volumes cut at the window's edge (on a line): each particle fills the cell of the length
- * volume[i] about x[i], and w_i is what of it lies in the window, also of its images a period away.
- * L1 jumps where a particle crosses the edge, by its volume times its error; this does not. */
-double norm_l1_cut(size_t n, const double *x, const double window[2], double period,
-                   const double *volume, const double *value, const double *exact);
+/* L1 with the weights w_i. A particle without weight counts for nothing, even where it has no
+ * value; a weight that is no number, or weights that are all 0, give NaN. */
+double norm_l1(size_t n, const double *weight, const double *value, const double *exact);
 
 /* An exact solution at one instant. */
 typedef double norm_field(const void *context, double x);

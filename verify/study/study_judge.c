@@ -51,7 +51,7 @@ static enum status fit_cloud_orders(struct study_result *result, struct error *e
     const size_t n = result->level_count;
     for (size_t l = 0; l < n; l++) spacing[l] = result->levels[l].spacing;
     for (int part = 0; part < STUDY_PARTS; part++) {
-        for (size_t l = 0; l < n; l++) errors[l] = result->levels[l].parts[part][NORM_L1_CUT];
+        for (size_t l = 0; l < n; l++) errors[l] = result->levels[l].parts[part][NORM_L1];
         if (isfinite(errors[0]) && order_fit(n, spacing, errors, NULL, &result->parts[part], error))
             return error->status;
     }

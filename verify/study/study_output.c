@@ -162,7 +162,7 @@ static void add_result(const struct study *study, const struct study_result *res
                            field_norm_family.members[m]->name),
                 varied);
     for (int part = 0; part < STUDY_PARTS; part++)
-        add_fit(document, &result->parts[part], study_part_names[part], "l1_cut", varied);
+        add_fit(document, &result->parts[part], study_part_names[part], "l1", varied);
     for (size_t i = 0; i < result->functional_count; i++)
         if (result->functional_errors[i].fit.n)
             add(document, "orders",

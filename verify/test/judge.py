@@ -85,7 +85,7 @@ def against_script(hdf5):
         assert got["n"] == want["n"] and got["time"] == want["time"], name
         assert got["settings"]["gamma"] == want["gamma"], (name, got["settings"]["gamma"])
         for field, figures in want.get("L1", {}).items():
-            near(name + " L1 of " + field, got["errors"][field]["l1"], figures["vol"], 1e-6)
+            near(name + " L1 of " + field, got["errors"][field]["l1_whole"], figures["vol"], 1e-6)
             near(name + " particle mean of " + field, got["errors"][field]["particle_mean"], figures["part"], 1e-6)
         if "mode_amplitude" in want:
             values = {f["name"]: f["value"] for f in got["functionals"]}

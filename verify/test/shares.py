@@ -10,7 +10,7 @@ import tempfile
 
 from studying import expect, faults, program
 
-CHECKS = ["verify", "riemann", "norms/l1_cut", "gradients/ia_assumption", "conservation", "--mutants"]
+CHECKS = ["verify", "riemann", "norms/window_parts", "gradients/ia_assumption", "conservation", "--mutants"]
 SHARES = 3
 
 

@@ -29,7 +29,7 @@ static void everything(void **state)
     struct error error;
     const char *text = HEAD "; a comment\n[measure]\nfields = density, pressure\nexact = velocity\n"
                             "window = -0.25 0.5\n"
-                            "[converge]\nn = 10 2e1 6^2 100\ndensity_l1_cut = 0.75 1.25 2e-3\n"
+                            "[converge]\nn = 10 2e1 6^2 100\ndensity_l1 = 0.75 1.25 2e-3\n"
                             "velocity_linf =  0.5\t1 3 known:  it jumps \n"
                             "[report]\nbench = no\nquick = 50\nnight = 200 400 800\n";
     if (parse(&file, text, &error)) fail_msg("%s", error.message);
@@ -56,7 +56,7 @@ static void everything(void **state)
     assert_false(file.bench);
     assert_int_equal(file.gate_count, 2);
     const struct case_gate *a = &file.gates[0], *b = &file.gates[1];
-    assert_true(a->field == FIELD_DENSITY && a->norm == NORM_L1_CUT && !a->known.why[0]);
+    assert_true(a->field == FIELD_DENSITY && a->norm == NORM_L1 && !a->known.why[0]);
     assert_true(a->gate.low == 0.75 && a->gate.high == 1.25 && a->gate.bound == 2e-3);
     assert_true(b->field == FIELD_VELOCITY && b->norm == NORM_LINF);
     assert_true(b->gate.low == 0.5 && b->gate.high == 1 && b->gate.bound == 3);

@@ -29,8 +29,8 @@ static json_t *report(const char *mode, const char *git, double error, double or
         json_pack("[{s:s, s:s, s:s, s:[{s:i, s:{s:{s:f, s:f}}, s:f}], s:[{s:s, s:s, s:f, s:f, "
                   "s:f}], s:[s,s]}]",
                   "case", "sod", "label", "ia", "status", "pass", "levels", "n", 400, "errors",
-                  "density", "l1_cut", error, "l2", 2 * error, "cpu_s", 5 * error, "orders",
-                  "field", "density", "norm", "l1_cut", "order", order, "low", order - 0.01, "high",
+                  "density", "l1", error, "l2", 2 * error, "cpu_s", 5 * error, "orders", "field",
+                  "density", "norm", "l1", "order", order, "low", order - 0.01, "high",
                   order + 0.01, "measured", "mode_amplitude", "density"));
     json_object_set_new(
         results, "verify",
@@ -42,7 +42,7 @@ static json_t *report(const char *mode, const char *git, double error, double or
     return results;
 }
 
-static const char error_path[] = "studies[sod, ia].levels[n 400].errors.density.l1_cut";
+static const char error_path[] = "studies[sod, ia].levels[n 400].errors.density.l1";
 
 /* Tells the history of a night, adds its line, and returns what it told. */
 static json_t *night(const char *path, const char *mode, const char *git, double l1, double order)

@@ -198,7 +198,7 @@ static void gates(void **state)
 {
     static const char *const fields[] = {"density",         "velocity",  "pressure",
                                          "internal_energy", "azimuthal", "radial"},
-                             *const norms[] = {"l1", "l2", "linf", "particle_mean", "l1_cut"};
+                             *const norms[] = {"l1", "l2", "linf", "particle_mean", "l1_whole"};
     struct judged judged = made(50, 0.2, 2);
     struct judge_gate found[JUDGE_GATES_MAX + 1];
     size_t count;

@@ -515,7 +515,7 @@ static void document(const struct study *study)
                            field_family.members[f]->name, field_norm_family.members[m]->name);
         for (int part = 0; part < STUDY_PARTS && cloud; part++)
             fit_says(json_array_get(orders, order++), &result->parts[part], study_part_names[part],
-                     "l1_cut");
+                     "l1");
         if (cloud)
             fit_says(json_array_get(orders, order++), &result->functional_errors[0].fit,
                      result->functional_names[0], "error");
@@ -588,7 +588,7 @@ static void circular(void **state)
                     near_relative(result->levels[l].parts[part][m],
                                   exp(sums_of(&study, c, l, 5 + part, m).y / 2), 1e-12);
             for (size_t l = 0; l < LEVELS; l++)
-                errors[l] = exp(sums_of(&study, c, l, 5 + part, NORM_L1_CUT).y / 2);
+                errors[l] = exp(sums_of(&study, c, l, 5 + part, NORM_L1).y / 2);
             assert_int_equal(order_fit(LEVELS, spacing, errors, NULL, &want, NULL), STATUS_OK);
             same_fit(&result->parts[part], &want);
         }
@@ -715,7 +715,7 @@ static void floors(void **state)
             const struct study_result *result = &study.results[0];
             near_relative(result->floor_density, density, 1e-14);
             near_relative(result->floor_gradient, gradient, 1e-14);
-            assert_int_equal(result->orders[FIELD_DENSITY][NORM_L1_CUT].status, GATE_FAIL);
+            assert_int_equal(result->orders[FIELD_DENSITY][NORM_L1].status, GATE_FAIL);
             assert_int_equal(result->floor_explains, side < 0);
             study_free(&study);
         }

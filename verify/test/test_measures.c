@@ -170,11 +170,13 @@ static void test_budget(void **state)
     const double *const values[] = {exact[0], exact[1], exact[2], exact[3]};
     struct budget budget;
     budget_measure(&p, &snapshot, values, &budget);
-    static const double expected[2][FIELDS] = {{0.5, 2.5, 1.5, 3.5}, {2.5, 7, 0.5, 0.75}};
+    /* of the volumes 0.25, 1, 2, 0.125 and 2 lie in the window */
+    static const double expected[2][FIELDS] = {{0.25, 2.25, 1.25, 3.25},
+                                               {16.25, 16.5, 180.25, 172.375}};
     for (int r = 0; r < 2; r++)
         for (int f = 0; f < FIELDS; f++)
-            near_relative(budget.l1[r][f], expected[r][f] / 3.75, 1e-15);
-    assert_true(seen_reach == BUDGET_REACH * 4 && seen_time == 0);
+            near_relative(budget.l1[r][f], expected[r][f] / 5.375, 1e-15);
+    assert_true(seen_reach == BUDGET_REACH * 5 && seen_time == 0);
     assert_true(budget.still == 1.25 && budget.regions == &regions);
 
     json_t *json = budget_json(&budget);
@@ -189,7 +191,7 @@ static void test_budget(void **state)
     budget_add(&sum, &regions, json, 0.5);
     for (int r = 0; r < 2; r++)
         for (int f = 0; f < FIELDS; f++)
-            near_relative(sum.l1[r][f], 0.75 * expected[r][f] / 3.75, 1e-12);
+            near_relative(sum.l1[r][f], 0.75 * expected[r][f] / 5.375, 1e-12);
     assert_true(sum.still == 1.25);
     json_decref(json);
 

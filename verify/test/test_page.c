@@ -20,16 +20,16 @@ static const char *const results_text =
     " 0, 1e-9], 'regularity': {'time': [0, 0.2], 'spread': [0, 0.1], 'paired': [0, 0]}}, 'case': "
     "'sod', 'title': 'a <b> & c', 'label': 'ia', 'reproduce': 'sphproof run "
     "sod',"
-    " 'n': 4, 'status': 'ok', 'errors': {'density': {'l1_cut': 0.00461}}, 'profile': {'x': [0, 1, "
+    " 'n': 4, 'status': 'ok', 'errors': {'density': {'l1': 0.00461}}, 'profile': {'x': [0, 1, "
     "2],"
     " 'density': [1, 1, 2], 'velocity': [0, 0, 'nan'], 'pressure': [1, 1, 1], 'exact_density':"
     " [1, 1, 1], 'exact_velocity': [0, 0, 0], 'exact_pressure': [1, 1, 1], 'exact': {'x': [0, 2],"
     " 'density': [1, 1], 'velocity': [0, 0], 'pressure': [1, 1]}}}],"
     "'studies': [{'case': 'sod', 'label': 'ia', 'reproduce': 'sphproof converge sod',"
-    " 'levels': [{'n': 100, 'errors': {'density': {'l1_cut': 0.01}}, 'replicates': 9, 'spread':"
-    " {'density': {'l1_cut': 0.151}}}, {'n': 200, 'errors': {'density': {'l1_cut': 0.005}},"
-    " 'replicates': 9, 'spread': {'density': {'l1_cut': 0.02}}}], 'orders': [{'field': 'density', "
-    "'norm': 'l1_cut', 'order': 1.0, 'low': "
+    " 'levels': [{'n': 100, 'errors': {'density': {'l1': 0.01}}, 'replicates': 9, 'spread':"
+    " {'density': {'l1': 0.151}}}, {'n': 200, 'errors': {'density': {'l1': 0.005}},"
+    " 'replicates': 9, 'spread': {'density': {'l1': 0.02}}}], 'orders': [{'field': 'density', "
+    "'norm': 'l1', 'order': 1.0, 'low': "
     "0.9,"
     " 'high': 1.1, 'pairwise': [1.0], 'gate': {'low': 0.9, 'high': 1.1, 'bound': 0.02},"
     " 'status': 'pass'}], 'functionals': [{'name': 'mean_pressure', 'values': [0.97050, 0.96854,"
@@ -489,7 +489,7 @@ static void cause_first(void **state)
                     {"kernels: sign", "worst: "},
                     {"hydro: rates", "cubic: "},
                     {"sod", "too good to be true: the same error twice"},
-                    {"sod, ia: order of l1_cut(density)", "1"},
+                    {"sod, ia: order of l1(density)", "1"},
                     {"sod", "broke down: "}};
     const json_t *failures =
         json_object_get(json_object_get(judged(results), "verdict"), "failures");

@@ -70,12 +70,12 @@ static void make(struct run_settings *settings, struct run_result *result, const
 static json_t *norms(double first)
 {
     return json_pack("{s:f, s:f, s:f, s:f, s:f}", "l1", first, "l2", first + 1, "linf", first + 2,
-                     "particle_mean", first + 3, "l1_cut", first + 4);
+                     "particle_mean", first + 3, "l1_whole", first + 4);
 }
 
 static json_t *no_norms(void)
 {
-    return json_pack("{s:n, s:n, s:n, s:n, s:n}", "l1", "l2", "linf", "particle_mean", "l1_cut");
+    return json_pack("{s:n, s:n, s:n, s:n, s:n}", "l1", "l2", "linf", "particle_mean", "l1_whole");
 }
 
 /* Takes want; known: what it is called in a message. */

@@ -173,23 +173,23 @@ static void neighbours(void **state)
         snprintf(n, sizeof n, "n=%d", (int[]){60, 62, 58}[r]);
         struct run_result run = ran("sod", 2, (char *[]){"t_end=0.1", n});
         x[r] = log(run.spacing);
-        y[r] = log(run.errors[FIELD_VELOCITY].l1_cut);
+        y[r] = log(run.errors[FIELD_VELOCITY].l1);
         spacing += x[r] / 3;
         error += y[r] / 3;
         run_free(&run);
     }
     near_relative(level->spacing, exp(spacing), 1e-13);
-    near_relative(level->errors[FIELD_VELOCITY][NORM_L1_CUT], exp(error), 1e-13);
-    const double slope = log(coarsest->errors[FIELD_VELOCITY][NORM_L1_CUT] /
-                             finest->errors[FIELD_VELOCITY][NORM_L1_CUT]) /
+    near_relative(level->errors[FIELD_VELOCITY][NORM_L1], exp(error), 1e-13);
+    const double slope = log(coarsest->errors[FIELD_VELOCITY][NORM_L1] /
+                             finest->errors[FIELD_VELOCITY][NORM_L1]) /
                          log(coarsest->spacing / finest->spacing);
     double squares = 0;
     for (int r = 0; r < 3; r++) squares += pow(y[r] - error - slope * (x[r] - spacing), 2);
-    near_relative(level->spread[FIELD_VELOCITY][NORM_L1_CUT], sqrt(squares / 2), 1e-6);
+    near_relative(level->spread[FIELD_VELOCITY][NORM_L1], sqrt(squares / 2), 1e-6);
     study_free(&study);
     /* errors that fall with n and do nothing else do not scatter */
     struct study smooth = made("sound_wave", "t_end=0.1", NULL, 3, 2);
-    near_below(smooth.results[0].levels[2].spread[FIELD_DENSITY][NORM_L1_CUT], 5e-3);
+    near_below(smooth.results[0].levels[2].spread[FIELD_DENSITY][NORM_L1], 5e-3);
     study_free(&smooth);
 }
 
@@ -235,7 +235,7 @@ static void mirrored(void **state)
         for (size_t i = 0; i < run[0].n; i++)
             near_relative(run[0].snapshot.m[i], run[1].snapshot.m[run[1].n - 1 - i], 1e-12);
         for (int f = 0; f < FIELDS; f++)
-            near_relative(run[0].errors[f].l1_cut, run[1].errors[f].l1_cut, 1e-6);
+            near_relative(run[0].errors[f].l1, run[1].errors[f].l1, 1e-6);
         run_free(&run[0]);
         run_free(&run[1]);
     }
@@ -345,32 +345,32 @@ static void set_error(json_t *run, const char *field, const char *norm, double v
 static void of_first_order(json_t *run, size_t level)
 {
     (void)level;
-    set_error(run, "density", "l1_cut", 1e-3 * json_number_value(json_object_get(run, "spacing")));
+    set_error(run, "density", "l1", 1e-3 * json_number_value(json_object_get(run, "spacing")));
 }
 
 static void of_half_order(json_t *run, size_t level)
 {
     (void)level;
     const double spacing = json_number_value(json_object_get(run, "spacing"));
-    set_error(run, "density", "l1_cut", 1e-3 * sqrt(spacing));
+    set_error(run, "density", "l1", 1e-3 * sqrt(spacing));
 }
 
 static void too_large(json_t *run, size_t level)
 {
     (void)level;
-    set_error(run, "density", "l1_cut", 9 * json_number_value(json_object_get(run, "spacing")));
+    set_error(run, "density", "l1", 9 * json_number_value(json_object_get(run, "spacing")));
 }
 
 static void nan_at_one_level(json_t *run, size_t level)
 {
     of_first_order(run, level);
-    if (level == 1) set_error(run, "density", "l1_cut", (double)NAN);
+    if (level == 1) set_error(run, "density", "l1", (double)NAN);
 }
 
 static void nan_at_the_finest(json_t *run, size_t level)
 {
     of_half_order(run, level);
-    if (level == 3) set_error(run, "density", "l1_cut", (double)NAN);
+    if (level == 3) set_error(run, "density", "l1", (double)NAN);
 }
 
 static void zero_at_one_level(json_t *run, size_t level)
@@ -433,7 +433,7 @@ static void judges_see(void **state)
         tampering = NULL;
         known = "";
         const struct study_result *result = &study.results[0];
-        const struct study_order *order = &result->orders[FIELD_DENSITY][NORM_L1_CUT];
+        const struct study_order *order = &result->orders[FIELD_DENSITY][NORM_L1];
         if (study.status != cases[i].status || result->status != cases[i].status ||
             order->status != cases[i].gate || result->still_status != cases[i].still ||
             strncmp(result->suspicion, cases[i].suspicion, strlen(cases[i].suspicion)) != 0 ||
@@ -443,7 +443,7 @@ static void judges_see(void **state)
         /* the bound belongs to the case's own finest level, 1584: farther up it is wider */
         near_relative(order->gate.bound, 1.5e-3 * pow(1584. / 120, 0.85), 1e-12);
         assert_true(order->gate.low == 0.85 && order->gate.high == 1.1);
-        assert_int_equal(result->orders[FIELD_VELOCITY][NORM_L1_CUT].status, GATE_NONE);
+        assert_int_equal(result->orders[FIELD_VELOCITY][NORM_L1].status, GATE_NONE);
         study_free(&study);
     }
     /* one bad combination of many is not lost */
@@ -486,7 +486,7 @@ static void floors(void **state)
     near_inside(result->floor_density, 5.1e-4, 5.2e-4);
     near_inside(result->floor_gradient, 3.0e-3, 3.2e-3);
     assert_true(result->floor_explains);
-    assert_int_equal(result->orders[FIELD_DENSITY][NORM_L1_CUT].fit.class, ORDER_FLOOR_LIMITED);
+    assert_int_equal(result->orders[FIELD_DENSITY][NORM_L1].fit.class, ORDER_FLOOR_LIMITED);
     bool seen = false;
     for (size_t i = 0; i < result->functional_count; i++)
         if (strcmp(result->functional_names[i], "mean_pressure") == 0) {

@@ -132,7 +132,7 @@ static void clouds_have_more_orders(void **state)
         for (int part = 0; part < STUDY_PARTS; part++) {
             for (size_t l = 0; l < LEVELS; l++) {
                 spacing[l] = exp(mean_log_spacing(l, replicates));
-                errors[l] = exp(mean_log(4 + part, NORM_L1_CUT, l, replicates));
+                errors[l] = exp(mean_log(4 + part, NORM_L1, l, replicates));
                 for (int m = 0; m < NORMS; m++)
                     near_relative(result->levels[l].parts[part][m],
                                   exp(mean_log(4 + part, m, l, replicates)), 1e-13);

@@ -15,7 +15,7 @@ static json_t *pack_norms(const double values[NORMS])
 {
     return json_pack("{s:o, s:o, s:o, s:o, s:o}", "l1", result_number(values[0]), "l2",
                      result_number(values[1]), "linf", result_number(values[2]), "particle_mean",
-                     result_number(values[3]), "l1_cut", result_number(values[4]));
+                     result_number(values[3]), "l1_whole", result_number(values[4]));
 }
 
 static json_t *pack_fields(const double values[FIELDS][NORMS])
@@ -142,8 +142,7 @@ static void documents_have_it_all(void **state)
         if (k == 1) {
             for (int part = 0; part < 2; part++)
                 same(orders, n++,
-                     pack_order(&result->parts[part], part ? "radial" : "azimuthal", "l1_cut",
-                                NULL));
+                     pack_order(&result->parts[part], part ? "radial" : "azimuthal", "l1", NULL));
             for (size_t i = 0; i < 2; i++)
                 same(orders, n++,
                      pack_order(&result->functional_errors[i].fit, result->functional_names[i],
