@@ -92,7 +92,11 @@ setup_missing() {
         # elsewhere than with apt a test is skipped where there is no cluster
         setup_cluster || ! setup_has apt-get || echo slurm-wlm munge ;;
     esac
-    case $1 in nightly) setup_has valgrind || echo valgrind ;; esac
+    case $1 in nightly)
+        setup_has valgrind || echo valgrind
+        setup_has faketime || echo faketime
+        [ -e /usr/share/i18n/locales/de_DE ] || echo locales ;;
+    esac
 }
 
 # setup_install PACKAGES: exit 4 where they cannot be installed.

@@ -3,20 +3,36 @@
 
 #include <ctype.h>
 #include <limits.h>
+#include <locale.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { WORD_MAX = 64 };
+enum { WORD_MAX = 64, NUMBER_MAX = 1024 };
+
+/* The C library reads numbers as the locale of the calling program has it: one that uses our
+ * library may have set a decimal comma. Our numbers have a point. */
+static bool read_number(const char *text, double *number)
+{
+    const char *point = localeconv()->decimal_point, *dot = strchr(text, '.');
+    char word[NUMBER_MAX], *end;
+    if (dot && strcmp(point, ".") != 0) {
+        const int length =
+            snprintf(word, sizeof word, "%.*s%s%s", (int)(dot - text), text, point, dot + 1);
+        if (length < 0 || (size_t)length >= sizeof word) return false;
+        text = word;
+    }
+    *number = strtod(text, &end);
+    return !*end && end != text;
+}
 
 bool text_real(const char *text, double *value)
 {
     /* strtod also takes blanks, hex, inf and nan: the alphabet is checked first. */
     if (!*text || text[strspn(text, "0123456789.eE+-")]) return false;
-    char *end;
-    const double number = strtod(text, &end);
-    if (*end || end == text || !isfinite(number)) return false;
+    double number;
+    if (!read_number(text, &number) || !isfinite(number)) return false;
     *value = number;
     return true;
 }

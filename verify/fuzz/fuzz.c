@@ -65,7 +65,7 @@ const char *fuzz_named_file(const uint8_t *bytes, size_t size)
     static int file = -1;
     if (!*named) {
         snprintf(named, sizeof named, "%s/sphproof-fuzz.XXXXXX",
-                 access("/dev/shm", W_OK) ? "/tmp" : "/dev/shm");
+                 access("/dev/shm", W_OK) ? "." : "/dev/shm");
         file = mkstemp(named);
         atexit(forget_named);
     }

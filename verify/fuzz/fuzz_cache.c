@@ -24,7 +24,7 @@ static void leave(void)
 
 static void begin(void)
 {
-    static char folder[] = "/tmp/sphproof-fuzz.XXXXXX";
+    static char folder[] = "sphproof-fuzz.XXXXXX";
     struct error error = {0};
     if (!mkdtemp(folder) || cache_open(&cache, folder, false, &error)) {
         fprintf(stderr, "fuzz: no folder: %s\n", error.message);

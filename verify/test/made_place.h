@@ -1,17 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * A folder of a test's own, as fixtures of a group: cmocka_run_group_tests(tests, make_place,
- * remove_place). Include after cmocka.h. */
+ * A folder of a test's own, beside what was built, as fixtures of a group:
+ * cmocka_run_group_tests(tests, make_place, remove_place). Include after cmocka.h. */
 #ifndef MADE_PLACE_H
 #define MADE_PLACE_H
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <unistd.h>
 
-static char place[] = "/tmp/sphproof_place_XXXXXX";
+#include "output.h"
+
+static char place[] = "sphproof_place_XXXXXX";
 
 static inline int make_place(void **state)
 {
     (void)state;
+    output_prepare_process(); /* as the program does: no file gets the number of a closed stream */
     return !mkdtemp(place);
 }
 
@@ -29,6 +33,15 @@ static inline char *path_of(const char *name)
 {
     static char path[256];
     snprintf(path, sizeof path, "%s/%s", place, name);
+    return path;
+}
+
+/* The same from the top, for variables that must not depend on the working folder. */
+static inline char *whole_path_of(const char *name)
+{
+    static char path[4500];
+    char here[4096];
+    snprintf(path, sizeof path, "%s/%s", getcwd(here, sizeof here) ? here : "", path_of(name));
     return path;
 }
 

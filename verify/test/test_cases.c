@@ -16,7 +16,7 @@
 
 enum { LARGEST = 65536 };
 
-static char folder[] = "/tmp/sphproof_cases_XXXXXX";
+static char folder[] = "./sphproof_cases_XXXXXX";
 
 static const char *path_of(const char *name)
 {

@@ -216,7 +216,7 @@ static void places_of_particles(void **state)
 
 /* ---- files and maps ---- */
 
-static char path[] = "/tmp/sphproof_memory_XXXXXX.ini";
+static char path[] = "sphproof_memory_XXXXXX.ini";
 
 static enum status mapped(struct error *error)
 {

@@ -16,7 +16,7 @@
 #include "particle_file.h"
 #include "problem.h"
 
-static char path[] = "/tmp/sphproof_particles_XXXXXX";
+static char path[] = "sphproof_particles_XXXXXX";
 
 static const char *written(const char *text)
 {

@@ -19,7 +19,7 @@
 #include "profile.h"
 #include "value.h"
 
-static char path[] = "/tmp/sphproof_particles_XXXXXX";
+static char path[] = "sphproof_particles_XXXXXX";
 
 static void written(const char *text)
 {

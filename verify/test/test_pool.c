@@ -19,6 +19,7 @@
 
 #include "made_jobs.h"
 #include "near.h"
+#include "output.h"
 
 static void any_number_of_processes(void **state)
 {
@@ -450,6 +451,7 @@ static void no_pipe(void **state)
     struct error error = {0};
     const struct pool_settings settings = {.jobs = 4};
     (void)state;
+    output_prepare_process(); /* standard input is open, as in the program */
     const int next = dup(0);
     close(next);
     assert_int_equal(getrlimit(RLIMIT_NOFILE, &usual), 0);

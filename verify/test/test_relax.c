@@ -236,11 +236,14 @@ static void large_glasses_are_kept(void **state)
     (void)state;
     enum { N = 1000 };
     static double x[3][N];
-    char folder[] = "/tmp/sphproof_glass_XXXXXX", command[64];
+    char folder[] = "sphproof_glass_XXXXXX", command[64];
     assert_non_null(mkdtemp(folder));
     const char *old = getenv("XDG_CACHE_HOME");
     char *before = old ? strdup(old) : NULL;
-    setenv("XDG_CACHE_HOME", folder, 1);
+    char *whole = realpath(folder, NULL);
+    assert_non_null(whole);
+    setenv("XDG_CACHE_HOME", whole, 1);
+    free(whole);
     double *const places[] = {x[0], x[1], x[2]};
     static double kept[2][N];
     static const struct {

@@ -42,8 +42,8 @@ static void they_come_back(void **state)
 {
     (void)state;
     double kept[3][N + 1];
-    set("XDG_CACHE_HOME", path_of("xdg"));
-    set("HOME", path_of("home"));
+    set("XDG_CACHE_HOME", whole_path_of("xdg"));
+    set("HOME", whole_path_of("home"));
     for (int dim = 2; dim <= 3; dim++) {
         for (int d = 0; d < 3; d++)
             for (int i = 0; i <= N; i++) points[d][i] = (i + 1) / (3. + d) + 1e-13 * dim;
@@ -72,8 +72,8 @@ static void they_come_back(void **state)
 static void folders(void **state)
 {
     (void)state;
-    char home[256];
-    snprintf(home, sizeof home, "%s", path_of("own"));
+    char home[4500];
+    snprintf(home, sizeof home, "%s", whole_path_of("own"));
     static const struct {
         const char *cached;
         bool home, kept;
@@ -104,7 +104,7 @@ static void numbers(void **state)
         char name[32], folder[64];
         snprintf(name, sizeof name, "number%zu", k);
         snprintf(folder, sizeof folder, "%s/sphproof/glass", name);
-        set("XDG_CACHE_HOME", path_of(name));
+        set("XDG_CACHE_HOME", whole_path_of(name));
         assert_false(relax_store_find(1, 2, rows[k].n, all));
         assert_int_equal(is_there(folder), rows[k].kept);
     }
@@ -118,7 +118,7 @@ static void old_ones_go(void **state)
     const time_t now = time(NULL);
     const struct timespec times[2] = {{.tv_sec = now - 31 * 24 * 3600},
                                       {.tv_sec = now - 31 * 24 * 3600}};
-    set("XDG_CACHE_HOME", path_of("old"));
+    set("XDG_CACHE_HOME", whole_path_of("old"));
     relax_store_keep(1, 2, N, all);
     mkdir(path_of("old/sphproof/glass/00"), 0777);
     fclose(fopen(path_of(old), "w"));

@@ -408,7 +408,7 @@ static void what_is_left_on_the_way(void **state)
 {
     static struct trace trace;
     static struct told told = {.stop = 1000};
-    char folder[] = "/tmp/sphproof_run_XXXXXX", path[64], file[80];
+    char folder[] = "sphproof_run_XXXXXX", path[64], file[80];
     struct run run = resolved("sod", "n=40 t_end=0.06");
     struct run_result plain = executed(&run);
     struct snapshots snapshots = {.path = path, .every = 0.001875};

@@ -10,13 +10,14 @@
 
 #include <cmocka.h>
 
+#include "output.h"
 #include "run.h"
 #include "snapshot_file.h"
 
 #ifdef HAVE_HDF5
 #include <hdf5.h>
 
-static char folder[] = "/tmp/sphproof_snapshot_XXXXXX";
+static char folder[] = "sphproof_snapshot_XXXXXX";
 
 static const char *path_of(const char *name)
 {
@@ -183,6 +184,7 @@ int main(void)
         cmocka_unit_test(periods),
     };
     char command[96];
+    output_prepare_process(); /* as the program does: no file gets the number of a closed stream */
     if (!mkdtemp(folder)) return 1;
     const int failed = cmocka_run_group_tests(tests, NULL, NULL);
     snprintf(command, sizeof command, "rm -r %s", folder);

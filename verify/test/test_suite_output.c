@@ -138,7 +138,7 @@ static void junit(void **state)
 {
     (void)state;
     static char text[1 << 15];
-    char path[] = "/tmp/sphproof-junit-XXXXXX";
+    char path[] = "sphproof-junit-XXXXXX";
     const int file = mkstemp(path);
     assert_true(file >= 0);
     close(file);
@@ -152,7 +152,7 @@ static void junit(void **state)
 static void failures(void **state)
 {
     (void)state;
-    char place[] = "/tmp/sphproof-failures-XXXXXX", path[128];
+    char place[] = "sphproof-failures-XXXXXX", path[128];
     static char text[1 << 14];
     static const struct {
         const char *name;

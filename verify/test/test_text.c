@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Words and numbers as people type them, and files that appear whole. */
+#include <locale.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -32,6 +33,25 @@ static void numbers_are_strict(void **state)
     near_relative(value, 1000, 1e-16);
     assert_false(text_integer("1.0", &value));
     assert_false(text_integer("1e-3", &value));
+}
+
+/* A program that uses the library may have set a locale that writes a comma: nothing changes. */
+static void a_comma_changes_nothing(void **state)
+{
+    static const char *const names[] = {"", "de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8",
+                                        "pl_PL.UTF-8"};
+    double value = 0;
+    bool comma = false;
+    for (size_t i = 0; i < sizeof names / sizeof *names && !comma; i++)
+        comma = setlocale(LC_NUMERIC, names[i]) && *localeconv()->decimal_point == ',';
+    if (!comma) {
+        print_message("no locale with a decimal comma here\n");
+        skip();
+    }
+    numbers_are_strict(state);
+    assert_true(text_real("-12.25e1", &value));
+    near_relative(value, -122.5, 1e-16);
+    setlocale(LC_NUMERIC, "C");
 }
 
 static void lists_have_their_length(void **state)
@@ -105,7 +125,7 @@ static void expect_text(const char *path, const char *text)
 
 static void files_appear_whole(void **state)
 {
-    char folder[] = "/tmp/sphproof-test-XXXXXX", path[64], link[64];
+    char folder[] = "sphproof-test-XXXXXX", path[64], link[64];
     struct output output;
     struct error error;
     (void)state;
@@ -113,7 +133,7 @@ static void files_appear_whole(void **state)
     snprintf(path, sizeof path, "%s/file", folder);
     snprintf(link, sizeof link, "%s/link", folder);
     write_text(path, "old");
-    assert_int_equal(symlink(path, link), 0);
+    assert_int_equal(symlink("file", link), 0);
 
     assert_int_equal(output_open(&output, path, &error), STATUS_OK);
     fputs("new", output.stream);
@@ -141,6 +161,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(numbers_are_strict),
+        cmocka_unit_test(a_comma_changes_nothing),
         cmocka_unit_test(lists_have_their_length),
         cmocka_unit_test(distances),
         cmocka_unit_test(near_misses),
