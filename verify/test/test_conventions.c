@@ -1,0 +1,371 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What kernel and h of a snapshot are, where its densities have been summed here: with every kernel
+ * and both sums, in all dimensions, periodic or not; and what is no proof. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "conventions.h"
+#include "made_place.h"
+#include "near.h"
+#include "snapshot_csv.h"
+
+enum { MOST = 10000 };
+
+static uint64_t seed = 26;
+static double uniform(double lo, double hi)
+{
+    seed = seed * 6364136223846793005u + 1442695040888963407u;
+    return lo + (hi - lo) * (double)(seed >> 11) / 9007199254740992.;
+}
+
+static double storage[SNAPSHOT_COLUMNS][MOST];
+static const double boxed[3] = {1, 1, 1}, open_box[3] = {0, 0, 0};
+
+/* Particles at random in a unit box, with widths that differ; the last tenth is no gas. */
+static struct snapshot_file scatter(int dim, size_t n, double h, double masses)
+{
+    struct snapshot_file file = {.dim = dim, .columns = dim, .n = n, .gas = n - n / 10};
+    for (int c = 0; c < SNAPSHOT_COLUMNS; c++)
+        if (c < dim || (c >= SNAPSHOT_VX && c < SNAPSHOT_VX + dim) ||
+            (c >= SNAPSHOT_M && c <= SNAPSHOT_H))
+            file.column[c] = storage[c];
+    for (size_t i = 0; i < n; i++) {
+        for (int d = 0; d < dim; d++) storage[d][i] = uniform(0, 1);
+        for (int d = 0; d < dim; d++) storage[SNAPSHOT_VX + d][i] = uniform(-1, 1);
+        storage[SNAPSHOT_M][i] = (1 + uniform(0, masses)) / (double)n;
+        storage[SNAPSHOT_H][i] = h * uniform(0.9, 1.1);
+        storage[SNAPSHOT_U][i] = storage[SNAPSHOT_P][i] = 1;
+    }
+    return file;
+}
+
+static double apart(const struct snapshot_file *file, const double box[3], size_t i, size_t j)
+{
+    double squares = 0;
+    for (int d = 0; d < file->dim; d++) {
+        double x = fabs(file->column[d][i] - file->column[d][j]);
+        if (box[d] > 0) x = fmin(x, box[d] - x);
+        squares += x * x;
+    }
+    return sqrt(squares);
+}
+
+/* Densities as a code with this kernel sums them, W = 0 beyond ratio h. */
+static void sum_densities(const struct snapshot_file *file, const double box[3],
+                          const struct kernel *kernel, double ratio, enum density_sum sum)
+{
+    for (size_t i = 0; i < file->n; i++) {
+        const double H = ratio * file->column[SNAPSHOT_H][i];
+        double rho = 0;
+        for (size_t j = 0; j < file->n; j++) {
+            const double r = apart(file, box, i, j);
+            if (r < H)
+                rho += file->column[SNAPSHOT_M][sum == DENSITY_MASSES ? j : i] *
+                       kernel->w(kernel, r / H, file->dim);
+        }
+        file->column[SNAPSHOT_RHO][i] = rho * kernel->constant[file->dim] / pow(H, file->dim);
+    }
+}
+
+static struct kernel kernel_called(const char *name)
+{
+    struct kernel kernel;
+    struct error error = {0};
+    if (kernel_select(&kernel, name, 5, &error)) fail_msg("%s", error.message);
+    return kernel;
+}
+
+static struct conventions found_in(const struct snapshot_file *file, const double box[3],
+                                   const struct kernel *only, const struct width_meaning *meaning)
+{
+    static const struct width_meaning unknown;
+    struct conventions found;
+    struct error error = {0};
+    assert_int_equal(
+        conventions_find(file, box, only, meaning ? meaning : &unknown, &found, &error), STATUS_OK);
+    for (size_t k = 1; k < found.count; k++)
+        assert_true(found.candidate[k - 1].residual <= found.candidate[k].residual);
+    return found;
+}
+
+static const size_t numbers[4] = {0, 120, 250, 400};
+static const double widths[4] = {0, 0.08, 0.2, 0.4}; /* support radii */
+
+static void is_found(const struct conventions *found, const char *name, double ratio,
+                     enum density_sum sum)
+{
+    const struct convention *best = &found->candidate[0];
+    if (!found->known || strcmp(best->kernel.member.name, name) != 0)
+        fail_msg("%s: %s", name, found->why);
+    near_relative(best->ratio, ratio, 1e-6);
+    near_below(best->residual, 1e-7);
+    assert_int_equal(best->sum, sum);
+    assert_non_null(strstr(found->why, "summed again"));
+}
+
+static void every_kernel(void **state)
+{
+    (void)state;
+    for (int dim = 1; dim <= 3; dim++)
+        for (size_t k = 0; k < kernel_family.n; k++) {
+            if (dim > 1 && k % 3 != (size_t)dim % 3) continue; /* all of them on a line */
+            const char *name = kernel_family.members[k]->name;
+            const struct kernel kernel = kernel_called(name);
+            const enum density_sum sum = k % 2 ? DENSITY_NUMBER : DENSITY_MASSES;
+            const double ratio = k == 0 ? 0.83 : k == 1 ? 4.5 : uniform(0.9, 4);
+            const double *box = (k + (size_t)dim) % 3 ? boxed : open_box;
+            const struct snapshot_file file = scatter(dim, numbers[dim], widths[dim] / ratio, 1);
+            sum_densities(&file, box, &kernel, ratio, sum);
+            const struct conventions found = found_in(&file, box, NULL, NULL);
+            is_found(&found, name, ratio, sum);
+            assert_int_equal(found.count, 2 * kernel_family.n);
+            assert_true(found.tried && !found.same_masses && found.sample > 0);
+            if (box == boxed) assert_int_equal(found.sample, CONVENTIONS_SAMPLE);
+        }
+}
+
+/* Densities near the ends of what is not periodic are nobody's: walls, layers, a vacuum. */
+static void ends(void **state)
+{
+    const struct kernel kernel = kernel_called("cubic_spline");
+    (void)state;
+    for (int dim = 1; dim <= 3; dim++)
+        for (int across = 0; across < dim; across++)
+            for (int far = 0; far < 2; far++) {
+                double box[3] = {1, 1, 1};
+                const struct snapshot_file file = scatter(dim, numbers[dim], 0.06, 0);
+                box[across] = 0;
+                sum_densities(&file, box, &kernel, 2, DENSITY_MASSES);
+                double lo = 1, hi = 0;
+                for (size_t i = 0; i < file.n; i++)
+                    lo = fmin(lo, storage[across][i]), hi = fmax(hi, storage[across][i]);
+                for (size_t i = 0; i < file.n; i++) {
+                    const double gap = fmin(storage[across][i] - lo, hi - storage[across][i]);
+                    if (gap <= (far ? 3.4 : 2.999) * storage[SNAPSHOT_H][i])
+                        storage[SNAPSHOT_RHO][i] *= 1.5;
+                }
+                const struct conventions found = found_in(&file, box, &kernel, NULL);
+                assert_true(found.known == !far);
+                assert_int_equal(found.count, 1);
+                assert_true(found.same_masses);
+            }
+    /* where none is so far inside, those one h inside do, and then all */
+    for (int margin = 0; margin < 2; margin++) {
+        const struct snapshot_file file = scatter(1, 200, margin ? 0.4 : 0.9, 0);
+        storage[0][0] = 0, storage[0][1] = 1;
+        sum_densities(&file, open_box, &kernel, 1, DENSITY_MASSES);
+        for (size_t i = 0; i < file.n && margin; i++)
+            if (fmin(storage[0][i], 1 - storage[0][i]) <= storage[SNAPSHOT_H][i])
+                storage[SNAPSHOT_RHO][i] *= 1.5;
+        const struct conventions found = found_in(&file, open_box, &kernel, NULL);
+        assert_true(found.known && found.sample > 0 && found.sample <= CONVENTIONS_SAMPLE);
+        near_relative(found.candidate[0].ratio, 1, 1e-6);
+    }
+}
+
+/* On a lattice any kernel fits; densities that nobody has summed are nobody's; what is near is none
+ * either, and how near is. */
+static void no_proof(void **state)
+{
+    const struct kernel kernel = kernel_called("wendland_c4");
+    (void)state;
+    struct snapshot_file file = scatter(1, 100, 0.02, 0);
+    for (size_t i = 0; i < file.n; i++)
+        storage[0][i] = (double)i / 100, storage[SNAPSHOT_RHO][i] = 1,
+        storage[SNAPSHOT_H][i] = 0.02;
+    struct conventions found = found_in(&file, boxed, NULL, NULL);
+    assert_false(found.known);
+    assert_non_null(strstr(found.why, "not 10 times more"));
+    for (size_t i = 0; i < file.n; i++) storage[SNAPSHOT_RHO][i] = uniform(1, 2);
+    found = found_in(&file, boxed, NULL, NULL);
+    assert_false(found.known);
+    assert_non_null(strstr(found.why, "no kernel's sum agrees with the density: the best, "));
+    for (int worse = 0; worse < 2; worse++) { /* 1e-3 is the most */
+        file = scatter(2, 400, 0.15, 0);
+        sum_densities(&file, boxed, &kernel, 1, DENSITY_MASSES);
+        for (size_t i = 0; i < file.n; i++)
+            storage[SNAPSHOT_RHO][i] *=
+                1 + (worse ? 1.3e-3 : 0.7e-3) * (uniform(0, 1) < 0.5 ? 1 : -1);
+        found = found_in(&file, boxed, &kernel, NULL);
+        assert_true(found.known == !worse);
+        near_inside(found.candidate[0].residual, worse ? 1.1e-3 : 0.5e-3, worse ? 1.4e-3 : 0.8e-3);
+    }
+    file.column[SNAPSHOT_H] = NULL;
+    found = found_in(&file, boxed, NULL, NULL);
+    assert_true(!found.known && !found.tried && found.count == 0);
+    assert_string_equal(found.why, "the file has no smoothing lengths");
+}
+
+static void masses(void **state)
+{
+    (void)state;
+    for (int more = 0; more < 2; more++)
+        for (int sign = -1; sign < 2; sign += 2) {
+            const struct snapshot_file file = scatter(1, 100, 0.05, 0);
+            storage[SNAPSHOT_M][99] *= 1 + sign * (more ? 1.01e-6 : 0.99e-6);
+            for (size_t i = 0; i < file.n; i++) storage[SNAPSHOT_RHO][i] = 1;
+            assert_true(found_in(&file, boxed, NULL, NULL).same_masses == !more);
+        }
+}
+
+/* What the user says is taken, and how well it does is said. */
+static void said(void **state)
+{
+    const struct kernel cubic = kernel_called("cubic_spline"),
+                        quintic = kernel_called("quintic_spline");
+    const struct snapshot_file file = scatter(2, 400, 0.075, 1);
+    (void)state;
+    sum_densities(&file, boxed, &cubic, 2, DENSITY_MASSES);
+    struct conventions found = found_in(&file, boxed, &cubic, NULL); /* h is sought */
+    assert_int_equal(found.count, 2);
+    near_relative(found.candidate[0].ratio, 2, 1e-6);
+    assert_true(found.known);
+    found = found_in(&file, boxed, &quintic, NULL);
+    assert_false(found.known);
+    found = found_in(&file, boxed, &cubic, &(struct width_meaning){.ratio = 2});
+    assert_true(found.known && found.candidate[0].ratio == 2);
+    near_below(found.candidate[0].residual, 1e-13);
+    assert_non_null(strstr(found.why, "as given; density is summed again to "));
+    found = found_in(&file, boxed, &cubic, &(struct width_meaning){.ratio = 2.5});
+    assert_true(found.known && found.candidate[0].ratio == 2.5 &&
+                found.candidate[0].residual > 0.01);
+    found = found_in(&file, boxed, &cubic, &(struct width_meaning){.deviations = 2});
+    near_relative(found.candidate[0].ratio, 1.778002, 1e-6);
+    found = found_in(&file, boxed, NULL, &(struct width_meaning){.ratio = 2}); /* any kernel */
+    assert_int_equal(found.count, 2 * kernel_family.n);
+    is_found(&found, "cubic_spline", 2, DENSITY_MASSES);
+    found =
+        found_in(&file, boxed, NULL, &(struct width_meaning){.ratio = 6}); /* beyond the scale */
+    for (size_t k = 0; k < found.count; k++) assert_true(found.candidate[k].ratio == 6);
+    assert_int_equal(found.count, 2 * kernel_family.n);
+    /* standard deviations of B-splines of n pieces on a line: sqrt(n/12) of one piece */
+    static const char *const splines[] = {"quadratic_spline", "cubic_spline", "quartic_spline",
+                                          "quintic_spline"};
+    for (int n = 3; n <= 6; n++) {
+        const struct kernel spline = kernel_called(splines[n - 3]);
+        near_relative(conventions_deviation(&spline, 1), sqrt(n / 12.) * 2 / n, 1e-7);
+    }
+    near_relative(conventions_deviation(&cubic, 2), 0.5 / 1.778002, 1e-6);
+    near_relative(conventions_deviation(&cubic, 3), 0.5 / 1.825742, 1e-6);
+}
+
+/* Sums over more than 4096 neighbours end the search: nearer ratios are still found. */
+static void crowds(void **state)
+{
+    const struct kernel cubic = kernel_called("cubic_spline");
+    struct snapshot_file file = scatter(1, MOST, 0.1, 0);
+    (void)state;
+    for (size_t i = 0; i < file.n; i++)
+        storage[SNAPSHOT_H][i] = 0.1, storage[0][i] = ((double)i + 0.4 * uniform(0, 1)) / MOST;
+    for (size_t i = 0; i < file.n; i++) storage[SNAPSHOT_RHO][i] = 1;
+    struct conventions found =
+        found_in(&file, boxed, &cubic, &(struct width_meaning){.ratio = 2.04});
+    assert_true(found.known && found.count == 1 && found.candidate[0].residual < 1e-3);
+    found = found_in(&file, boxed, &cubic, &(struct width_meaning){.ratio = 2.06});
+    assert_true(!found.known && found.count == 0);
+    assert_string_equal(found.why, "no sum is finite");
+    for (size_t i = 0; i < file.n; i++) storage[SNAPSHOT_H][i] = 0.3; /* none is within reach */
+    found = found_in(&file, boxed, &cubic, NULL);
+    assert_true(!found.known && found.count == 0);
+}
+
+/* ---- as columns ---- */
+
+static void as_columns(void **state)
+{
+    (void)state;
+    for (int dim = 1; dim <= 3; dim++)
+        for (int proved = 0; proved < 3; proved++) { /* 2: there is no h */
+            const struct kernel kernel = kernel_called("quintic_spline");
+            const struct snapshot_file made = scatter(dim, numbers[dim], widths[dim] / 3, 1);
+            struct snapshot_file file;
+            struct csv csv;
+            struct error error = {0};
+            char why[200] = "";
+            sum_densities(&made, boxed, &kernel, 3, DENSITY_MASSES);
+            FILE *out = fopen(path_of("c.csv"), "w");
+            assert_non_null(out);
+            fprintf(out, "# box = 1\nm,rho,u,%s", proved < 2 ? "h," : "");
+            for (int d = 0; d < dim; d++) fprintf(out, "%c,v%c,a%c,", 'x' + d, 'x' + d, 'x' + d);
+            fprintf(out, "du,itype\n");
+            for (size_t i = 0; i < made.n; i++) {
+                const double rho = storage[SNAPSHOT_RHO][i] * (proved == 1 ? 1 : uniform(1, 2));
+                fprintf(out, "%.17g,%.17g,2,", storage[SNAPSHOT_M][i], rho);
+                if (proved < 2) fprintf(out, "%.17g,", storage[SNAPSHOT_H][i]);
+                for (int d = 0; d < dim; d++)
+                    fprintf(out, "%.17g,%.17g,%d,", storage[d][i], storage[SNAPSHOT_VX + d][i], d);
+                fprintf(out, "7,%d\n", i < made.gas ? 1 : 2);
+            }
+            fclose(out);
+            if (snapshot_csv(path_of("c.csv"), &file, &csv, why, &error))
+                fail_msg("%s", error.message);
+            assert_int_equal(csv.rows, made.gas);
+            assert_int_equal(csv.columns, 3 * dim + 4 + (proved == 1));
+            for (size_t i = 0; i < csv.rows; i++) assert_int_equal(csv.line[i], i + 1);
+            for (size_t c = 0; c < csv.columns; c++) {
+                const int at = snapshot_column_of(csv.names[c]);
+                assert_string_equal(csv.names[c], snapshot_column_names[at]);
+                assert_null(file.column[at]);
+                for (size_t i = 0; i < csv.rows && at < SNAPSHOT_U && at != SNAPSHOT_RHO; i++)
+                    assert_true(csv.values[c][i] == storage[at][i]);
+                for (size_t i = 0; i < csv.rows; i++) {
+                    if (at == SNAPSHOT_H) near_relative(csv.values[c][i], 3 * storage[at][i], 1e-6);
+                    if (at >= SNAPSHOT_AX && at < SNAPSHOT_DU)
+                        assert_true(csv.values[c][i] == at - SNAPSHOT_AX);
+                    if (at == SNAPSHOT_DU) assert_true(csv.values[c][i] == 7);
+                }
+            }
+            assert_non_null(strstr(why, proved == 1 ? "summed again"
+                                        : proved    ? "no smoothing"
+                                                    : "no kernel's sum"));
+            csv_free(&csv);
+            snapshot_file_free(&file);
+        }
+    struct snapshot_file file;
+    struct csv csv;
+    struct error error = {0};
+    char why[200];
+    assert_int_equal(snapshot_csv(path_of("none.csv"), &file, &csv, why, &error), STATUS_BAD_INPUT);
+    csv_free(&csv);
+    snapshot_file_free(&file);
+}
+
+/* ---- notes ---- */
+
+static void notes(void **state)
+{
+    struct snapshot_notes notes = {0};
+    (void)state;
+    for (int k = 0; k < SNAPSHOT_NOTES_MAX + 2; k++)
+        snapshot_note(&notes, "what", k % 2 ? "\x01" : "value", "%d\n%s", k, "evidence");
+    assert_int_equal(notes.count, SNAPSHOT_NOTES_MAX);
+    for (int k = 0; k < SNAPSHOT_NOTES_MAX; k++) {
+        char evidence[40];
+        snprintf(evidence, sizeof evidence, "%d", k);
+        assert_string_equal(notes.note[k].what, "what");
+        if (k % 2 == 0) assert_string_equal(notes.note[k].value, "value");
+        assert_null(strchr(notes.note[k].value, '\x01'));
+        assert_true(strncmp(notes.note[k].evidence, evidence, strlen(evidence)) == 0);
+        assert_null(strchr(notes.note[k].evidence, '\n'));
+        assert_non_null(strstr(notes.note[k].evidence, "evidence"));
+    }
+    struct snapshot_file file = {.n = SNAPSHOT_ROWS_MAX + (size_t)1};
+    assert_false(snapshot_file_make(&file, SNAPSHOT_X));
+    assert_null(file.column[SNAPSHOT_X]);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_kernel), cmocka_unit_test(ends),  cmocka_unit_test(no_proof),
+        cmocka_unit_test(masses),       cmocka_unit_test(said),  cmocka_unit_test(crowds),
+        cmocka_unit_test(as_columns),   cmocka_unit_test(notes),
+    };
+    return cmocka_run_group_tests(tests, make_place, remove_place);
+}
