@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Snapshots of any format, as the bytes are: binaries of GADGET, ASCII of SPLASH, tables. HDF5,
- * which is read in another process, takes far longer: one size in 512, the rest is left to
- * fuzz_hdf5.c and fuzz_damage.c. */
+ * Snapshots of any format, as the bytes are: binaries of GADGET and Phantom, ASCII of SPLASH,
+ * tables. HDF5, which is read in another process, takes far longer: one size in 512, the rest is
+ * left to fuzz_hdf5.c and fuzz_damage.c. */
 #include <string.h>
 
 #include "fuzz.h"

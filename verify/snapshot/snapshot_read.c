@@ -47,8 +47,8 @@ static enum status read_source(struct snapshot_source *source,
     }
     return error_set(error, STATUS_BAD_INPUT,
                      "%.200s: no snapshot that is read: begins neither as HDF5, nor as a binary of "
-                     "GADGET (a count of 256 or 8), nor as text; `sphproof list snapshots` names "
-                     "all",
+                     "GADGET (a count of 256 or 8) or Phantom (its magic numbers), nor as text; "
+                     "`sphproof list snapshots` names all",
                      source->path);
 }
 

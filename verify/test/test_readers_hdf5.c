@@ -92,6 +92,12 @@ static double fault_of(int fault)
     return faults[fault];
 }
 
+/* Phantom's particles without width are none. */
+static bool is_dead(const struct layout *l, const struct field *f, double h)
+{
+    return strcmp(l->name, "phantom_hdf5") == 0 && f->column == SNAPSHOT_H && h <= 0;
+}
+
 /* Columns of another shape, of words, a group in their place, and values that cannot be. */
 static void spoilt_columns(void **state)
 {
@@ -136,6 +142,7 @@ static void spoilt_columns(void **state)
                 for (int c = 0; c < f->width; c++) {
                     items_of(l, items);
                     items[k].values[5 * f->width + c] = fault_of(fault);
+                    if (is_dead(l, f, fault_of(fault))) continue;
                     snprintf(says, sizeof says, "%s of particle %d is",
                              snapshot_column_names[f->column + (unsigned)c],
                              field_of(l, items, TYPES) ? 3 : 5);
@@ -147,6 +154,7 @@ static void spoilt_columns(void **state)
                            below = f->column == SNAPSHOT_U || f->column == SNAPSHOT_P;
                 items_of(l, items);
                 items[k].values[5 * f->width] = fault ? -DBL_MIN : 0;
+                if (is_dead(l, f, 0)) continue;
                 if (above || (below && fault))
                     refuses(l, items, f->path, above ? "above 0" : "0 or above");
             }

@@ -154,6 +154,42 @@ static void boxes(void **state)
     }
 }
 
+/* Phantom's dead, of which h is not above 0, are left out; its box counts if all others lie in it.
+ */
+static void phantom(void **state)
+{
+    static const char *const ends[] = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"};
+    (void)state;
+    for (int dead = 0; dead < 3; dead++)
+        for (int end = 0; end < 13; end++) { /* one is left out, or lies within; the last: none */
+            struct layout l = layouts[3];
+            struct snapshot_file file;
+            struct error error = {0};
+            struct item items[ITEMS_MAX];
+            size_t n = items_of(&l, items);
+            struct item *h = item_called(items, "particles/h");
+            if (dead) h->values[5] = dead == 1 ? 0 : -3;
+            for (int k = 0; k < 6; k++) {
+                char path[40];
+                snprintf(path, sizeof path, "header/%s", ends[k]);
+                add_number(&items[n], path, k % 2 ? 20 + k : -k);
+                items[n].attribute = dead;
+                if (end == k) items[n].path[0] = '\0';
+                if (end == 6 + k) items[n].values[0] = 6;
+                n++;
+            }
+            write_items(path_of("p.h5"), items, n);
+            if (snapshot_read(path_of("p.h5"), &here, &file, &error)) fail_msg("%s", error.message);
+            assert_int_equal(file.n, dead ? N - 1 : N);
+            assert_int_equal(file.gas, dead ? N - 4 : N - 3);
+            assert_true(file.boxed == (end == 12) && file.placed == file.boxed);
+            for (int d = 0; d < 3 && file.boxed; d++)
+                assert_true(file.corner[d] == -2 * d && file.box[d] == 21 + 4 * d);
+            if (dead) assert_true(file.column[SNAPSHOT_X][3] == 6); /* after rows 0, 1, 3 */
+            snapshot_file_free(&file);
+        }
+}
+
 /* Precision is that of the coarsest column, positions apart. */
 static void precision(void **state)
 {
@@ -240,8 +276,9 @@ static void unknown(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(other_names), cmocka_unit_test(comoving),   cmocka_unit_test(boxes),
-        cmocka_unit_test(precision),   cmocka_unit_test(dimensions), cmocka_unit_test(unknown),
+        cmocka_unit_test(other_names), cmocka_unit_test(comoving),  cmocka_unit_test(boxes),
+        cmocka_unit_test(phantom),     cmocka_unit_test(precision), cmocka_unit_test(dimensions),
+        cmocka_unit_test(unknown),
     };
     return cmocka_run_group_tests(tests, make_place, remove_place);
 }

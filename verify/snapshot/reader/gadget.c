@@ -10,8 +10,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "fortran.h"
 #include "snapshot_file.h"
-#include "source.h"
 
 enum { HEADER = 256, RECORDS_MAX = 64, TYPES = 6 };
 
@@ -34,34 +34,17 @@ struct binary {
 
 static uint64_t integer(const struct binary *b, const unsigned char *bytes, size_t size)
 {
-    uint64_t value = 0;
-    const uint16_t one = 1;
-    const bool little = *(const unsigned char *)&one == 1;
-    for (size_t k = 0; k < size; k++) {
-        const size_t at = little != b->swapped ? size - 1 - k : k;
-        value = value << 8 | bytes[at];
-    }
-    return value;
+    return fortran_unsigned(bytes, size, b->swapped);
 }
 
 static double real(const struct binary *b, const unsigned char *bytes, size_t size)
 {
-    const uint64_t bits = integer(b, bytes, size);
-    if (size == 8) {
-        double value;
-        memcpy(&value, &bits, sizeof value);
-        return value;
-    }
-    const uint32_t half = (uint32_t)bits;
-    float value;
-    memcpy(&value, &half, sizeof value);
-    return (double)value;
+    return fortran_real(bytes, size, b->swapped);
 }
 
 static uint32_t word(const unsigned char *bytes, bool swapped)
 {
-    const struct binary b = {.swapped = swapped};
-    return (uint32_t)integer(&b, bytes, 4);
+    return (uint32_t)fortran_unsigned(bytes, 4, swapped);
 }
 
 /* Does the file begin with a record of 256 bytes, or with the name of a block? */
@@ -86,22 +69,10 @@ static enum status cut_records(struct binary *b, struct error *error)
     const struct snapshot_source *s = b->source;
     char tag[5] = "";
     for (size_t at = 0; at < s->size;) {
-        const size_t left = s->size - at;
-        const size_t size = left >= 4 ? word(s->bytes + at, b->swapped) : 0;
-        if (left < 8 || size > left - 8)
-            return error_set(
-                error, STATUS_BAD_INPUT,
-                "%.200s: cut off: record %zu at byte %zu needs %zu bytes, %zu are left", s->path,
-                b->count + 1, at, size + 8, left);
-        if (word(s->bytes + at + 4 + size, b->swapped) != size)
-            return error_set(
-                error, STATUS_BAD_INPUT,
-                "%.200s: damaged: record %zu at byte %zu begins with %zu and ends with "
-                "%u",
-                s->path, b->count + 1, at, size,
-                (unsigned)word(s->bytes + at + 4 + size, b->swapped));
-        const unsigned char *bytes = s->bytes + at + 4;
-        at += size + 8;
+        struct fortran_record next;
+        if (fortran_next(s, b->swapped, b->count + 1, &at, &next, error)) return error->status;
+        const size_t size = next.size;
+        const unsigned char *bytes = next.bytes;
         if (b->tagged && size == 8 && !tag[0]) {
             for (int k = 0; k < 4; k++)
                 tag[k] = bytes[k] > ' ' && bytes[k] < 127 ? (char)bytes[k] : ' ';

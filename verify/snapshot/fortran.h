@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Files that Fortran wrote without format: records, each between two counts of its bytes, and
+ * numbers in either byte order. */
+#ifndef SPHPROOF_FORTRAN_H
+#define SPHPROOF_FORTRAN_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "source.h"
+
+struct fortran_record {
+    const unsigned char *bytes;
+    size_t size;
+};
+
+/* swapped: not in this machine's order. size: 1, 2, 4 or 8 bytes; of a real 4 or 8. */
+uint64_t fortran_unsigned(const unsigned char *bytes, size_t size, bool swapped);
+double fortran_integer(const unsigned char *bytes, size_t size, bool swapped);
+double fortran_real(const unsigned char *bytes, size_t size, bool swapped);
+
+/* The record at *at, which is then behind it; number: for messages, from 1. STATUS_BAD_INPUT: the
+ * file ends before, or the counts differ. */
+enum status fortran_next(const struct snapshot_source *source, bool swapped, size_t number,
+                         size_t *at, struct fortran_record *record, struct error *error);
+
+#endif
