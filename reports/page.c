@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "fold.h"
 #include "html.h"
 #include "page_part.h"
 #include "style.h"
@@ -163,19 +164,25 @@ bool page_make(struct page *page, const json_t *results)
                        " <a href=\"#detection\">Detection</a>");
     buffer_add(to, " <a href=\"#environment\">Environment</a></nav>\n<main>\n");
     failures(to, verdict);
-    if (history) page_history(&writer, history);
-    page_overview(&writer, results);
+    page_strip(&writer, results);
     page_cases(&writer, results);
-    page_bench(&writer, bench);
-    if (gradients) page_gradients(&writer, gradients);
-    if (stress) page_stress(&writer, stress);
-    if (claims) page_claims(&writer, claims);
-    if (json_object_get(results, "faults")) page_faults(&writer, results);
-    if (json_object_get(results, "score")) page_score(&writer, json_object_get(results, "score"));
-    if (kernels) page_kernels(&writer, kernels);
-    if (verify) page_checks(&writer, verify);
-    if (verify) page_detection(&writer, verify);
-    environment(to, results);
+    size_t start = to->size;
+#define FOLDED(part) start = to->size, part, fold_section(to, start)
+    if (history) FOLDED(page_history(&writer, history));
+    FOLDED(page_overview(&writer, results));
+    FOLDED(page_bench(&writer, bench));
+    if (gradients) FOLDED(page_gradients(&writer, gradients));
+    if (stress) FOLDED(page_stress(&writer, stress));
+    if (claims) FOLDED(page_claims(&writer, claims));
+    if (json_object_get(results, "faults")) FOLDED(page_faults(&writer, results));
+    if (json_object_get(results, "score"))
+        FOLDED(page_score(&writer, json_object_get(results, "score")));
+    if (kernels) FOLDED(page_kernels(&writer, kernels));
+    if (verify) FOLDED(page_checks(&writer, verify));
+    if (verify) FOLDED(page_detection(&writer, verify));
+    FOLDED(environment(to, results));
+#undef FOLDED
+    buffer_add(to, fold_script);
     buffer_add(to, "</main></body></html>\n");
     *page = (struct page){.html = buffer_take(to), .plots = writer.plots};
     if (page->html) return true;

@@ -5,11 +5,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "fold.h"
 #include "html.h"
 #include "page_cloud.h"
 #include "page_part.h"
 #include "page_study.h"
 #include "page_time.h"
+#include "case_state.h"
 #include "value.h"
 
 enum { QUANTITIES = 4, PRESSURE = 2, ENERGY = 3 };
@@ -258,36 +260,22 @@ static void shape_table(struct buffer *to, const struct curves *curves, const js
 
 /* ---- one case ---- */
 
-static bool is_well(const json_t *const *runs, size_t run_count, const json_t *const *studies,
-                    size_t study_count)
+static bool is_failure(const char *state)
 {
-    bool well = true;
-    for (size_t i = 0; i < run_count; i++) {
-        size_t k;
-        const json_t *gate;
-        well = well && !strcmp(value_text(runs[i], "status"), "ok");
-        json_array_foreach(json_object_get(runs[i], "gates"), k, gate)
-            well = well && strcmp(value_text(gate, "status"), "fail") != 0;
-    }
-    for (size_t i = 0; i < study_count; i++) {
-        const char *status = value_text(studies[i], "status");
-        well = well && !*value_text(studies[i], "suspicion") && strcmp(status, "fail") != 0 &&
-               strcmp(status, "broke_down") != 0;
-    }
-    return well;
+    return !strcmp(state, "fail") || !strcmp(state, "broke_down");
 }
 
 /* What is seen of a case that is folded. */
 static void case_head(struct buffer *to, const char *name, const json_t *title,
-                      const json_t *const *studies, size_t study_count, bool well)
+                      const json_t *const *studies, size_t study_count, const char *state)
 {
-    buffer_format(to, "<details class=\"case\"%s><summary><h3><code>",
-                  well ? "" : " open=\"open\"");
+    buffer_format(to, "<details class=\"case\" id=\"case-%s\"%s><summary><h3><code>", name,
+                  is_failure(state) ? " open=\"open\"" : "");
     buffer_escape(to, name);
     buffer_add(to, "</code> <span>");
     buffer_escape(to, title ? json_string_value(title) : "");
     buffer_add(to, "</span></h3>");
-    html_status(to, well ? "ok" : "fail");
+    html_status(to, state);
     for (size_t k = 0; k < study_count; k++) {
         const json_t *order = page_study_main(studies[k]);
         if (!k) buffer_add(to, " <span class=\"note\">order of ");
@@ -297,9 +285,7 @@ static void case_head(struct buffer *to, const char *name, const json_t *title,
         buffer_format(to, " %.2f ± %.2f", value_member(order, "order"),
                       (value_member(order, "high") - value_member(order, "low")) / 2);
     }
-    /* the link to a case ends within it, which opens it */
-    buffer_format(to, "%s</summary>\n<div class=\"figures\" id=\"case-%s\">\n",
-                  study_count ? "</span>" : "", name);
+    buffer_format(to, "%s</summary>\n", study_count ? "</span>" : "");
 }
 
 static int dimension_of(const json_t *document)
@@ -330,8 +316,10 @@ static void one_case(struct page_writer *writer, const json_t *results, const ch
         if (strcmp(value_text(entry, "case"), name) || study_count == PAGE_SCHEMES) continue;
         studies[study_count++] = entry;
     }
-    case_head(to, name, title, studies, study_count,
-              is_well(runs, run_count, studies, study_count));
+    const char *state = case_state(results, name);
+    case_head(to, name, title, studies, study_count, state);
+    const size_t inside = to->size;
+    buffer_add(to, "<div class=\"figures\">\n");
     if (is_cloud(runs, run_count)) {
         buffer_add(to, "</div>\n");
         page_cloud_plots(writer, name, runs, run_count);
@@ -358,7 +346,9 @@ static void one_case(struct page_writer *writer, const json_t *results, const ch
         html_command(to, value_text(runs[i], "label"), value_text(runs[i], "reproduce"));
     for (i = 0; i < study_count; i++)
         html_command(to, "convergence", value_text(studies[i], "reproduce"));
-    buffer_add(to, "</div></div></details>\n");
+    buffer_add(to, "</div></div>\n");
+    if (!is_failure(state)) fold_seal(to, inside);
+    buffer_add(to, "</details>\n");
     free_curves(&curves);
 }
 
@@ -375,14 +365,17 @@ static void cases_in(struct page_writer *writer, const json_t *results, int dime
     const json_t *runs = json_object_get(results, "runs"), *entry;
     const json_t *studies = json_object_get(results, "studies");
     size_t i, count = 0;
-    json_array_foreach(runs, i, entry)
-        count +=
-            dimension_of(entry) == dimension && !seen_before(runs, i, value_text(entry, "case"));
+    bool failed = false;
+    json_array_foreach(runs, i, entry) {
+        if (dimension_of(entry) != dimension || seen_before(runs, i, value_text(entry, "case")))
+            continue;
+        count++;
+        failed = failed || is_failure(case_state(results, value_text(entry, "case")));
+    }
     if (folded && count)
         buffer_format(&writer->to,
-                      "<details class=\"dimension\" open=\"open\"><summary>In %dD: %zu case%s"
-                      "</summary>\n",
-                      dimension, count, count == 1 ? "" : "s");
+                      "<details class=\"dimension\"%s><summary>In %dD: %zu case%s</summary>\n",
+                      failed ? " open=\"open\"" : "", dimension, count, count == 1 ? "" : "s");
     json_array_foreach(runs, i, entry) {
         const char *name = value_text(entry, "case");
         if (dimension_of(entry) == dimension && !seen_before(runs, i, name))

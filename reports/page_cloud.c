@@ -66,34 +66,26 @@ static struct plot_panel map_panel(const struct map *map, const struct plot_heat
                                .heat = heat};
 }
 
-/* Wide boxes are stacked, others stand side by side. */
-static void map_size(struct plot *plot, const struct map *map)
+/* One map as a figure of its own: figures stand side by side where there is room. The name is that
+ * of the case, what, and number. */
+static void plot_map(struct page_writer *writer, const char *case_name, const char *what,
+                     const struct map *map, const struct plot_heat *heat, const char *title,
+                     const char *caption)
 {
     const double x = edge(map->x, map->nx, true) - edge(map->x, map->nx, false);
     const double y = edge(map->y, map->ny, true) - edge(map->y, map->ny, false);
     const double scale = MAP_PIXELS / fmax(x, y);
-    const int panels = (int)plot->panel_count;
-    plot->beside = x <= 1.5 * y;
-    if (plot->beside) {
-        plot->width = panels * (int)(188 + fmax(scale * x, 150));
-        plot->height = (int)(84 + scale * y);
-    } else {
-        plot->width = 188 + 2 * MAP_PIXELS;
-        plot->height = 20 + panels * (int)(72 + 2 * scale * y);
-    }
-}
-
-static void plot_maps(struct page_writer *writer, const char *case_name, const char *what,
-                      const char *title, const char *caption, const struct map *map,
-                      const struct plot_panel *panels, size_t count)
-{
+    const struct plot_panel panel = map_panel(map, heat, title);
     char name[96];
     page_plot_name(name, sizeof name, case_name, what);
-    struct plot plot = {.name = name, .title = title, .panels = panels, .panel_count = count};
-    map_size(&plot, map);
-    buffer_add(&writer->to, "<div class=\"wide\">");
+    const struct plot plot = {.name = name,
+                              .title = title,
+                              .panels = &panel,
+                              .panel_count = 1,
+                              .beside = true,
+                              .width = 188 + (int)fmax(scale * x, 150),
+                              .height = 84 + (int)(scale * y)};
     page_plot(writer, &plot, caption);
-    buffer_add(&writer->to, "</div>\n");
 }
 
 static struct plot_heat heat_of(const struct map *map, int k)
@@ -102,52 +94,69 @@ static struct plot_heat heat_of(const struct map *map, int k)
         .nx = map->nx, .ny = map->ny, .x = map->x, .y = map->y, .z = map->z[k], .image = true};
 }
 
+static bool has_voids(const struct map *map, int k)
+{
+    for (size_t c = 0; c < map->cells; c++)
+        if (!isfinite(map->z[k][c])) return true;
+    return false;
+}
+
 /* Of the first scheme: density, speed, error. */
 static void plot_first(struct page_writer *writer, const char *case_name, const json_t *run,
                        const struct map *map)
 {
     static const char *const titles[MAPS] = {"density", "speed |v|", "error |v − exact v|"};
-    struct plot_heat heats[MAPS];
-    struct plot_panel panels[MAPS];
-    char caption[256], slice[96] = "";
-    size_t n = 0;
+    char what[32], slice[96] = "", caption[256];
     const json_t *z =
         json_object_get(json_object_get(json_object_get(run, "profile"), "map"), "slice");
-    for (int k = 0; k < MAPS; k++) {
-        if (!map->z[k]) continue;
-        heats[n] = heat_of(map, k);
-        panels[n] = map_panel(map, &heats[n], titles[k]);
-        n++;
-    }
     if (json_array_size(z) == 2)
         snprintf(slice, sizeof slice, " in the slice z = %.3g to %.3g",
                  value_real(json_array_get(z, 0)), value_real(json_array_get(z, 1)));
-    snprintf(caption, sizeof caption,
-             "%s, n = %.0f, t = %.3g: means over the particles of each cell%s.",
-             value_text(run, "label"), value_member(run, "n"), value_member(run, "time"), slice);
-    if (n) plot_maps(writer, case_name, "maps", "Maps at the end", caption, map, panels, n);
+    buffer_add(&writer->to, "<div class=\"maps\">\n");
+    for (int k = 0; k < MAPS; k++) {
+        if (!map->z[k]) continue;
+        const struct plot_heat heat = heat_of(map, k);
+        snprintf(what, sizeof what, "map-%s", map_names[k]);
+        snprintf(caption, sizeof caption,
+                 "%s, n = %.0f, t = %.3g: means over the particles of each cell%s.%s",
+                 value_text(run, "label"), value_member(run, "n"), value_member(run, "time"), slice,
+                 has_voids(map, k) ? k == 2 ? " White: no particles, or outside the measure window."
+                                            : " White: no particle is near."
+                                   : "");
+        plot_map(writer, case_name, what, map, &heat, titles[k], caption);
+    }
+    buffer_add(&writer->to, "</div>\n");
 }
 
-/* One map of every scheme, on one colour scale each: the error, or speed where nothing is exact. */
+/* One map of every scheme, on one colour scale: the error, or density where nothing is exact. */
 static void plot_others(struct page_writer *writer, const char *case_name,
                         const json_t *const *runs, const struct map *maps, size_t count)
 {
-    struct plot_heat heats[PAGE_SCHEMES];
-    struct plot_panel panels[PAGE_SCHEMES];
     const int k = maps[0].z[2] ? 2 : 0;
+    double low = (double)INFINITY, high = -(double)INFINITY;
     size_t n = 0;
     for (size_t r = 0; r < count; r++) {
-        if (!maps[r].cells || !maps[r].z[k]) continue;
-        heats[n] = heat_of(&maps[r], k);
-        panels[n] = map_panel(&maps[r], &heats[n], value_text(runs[r], "label"));
-        n++;
+        n += maps[r].cells && maps[r].z[k];
+        for (size_t c = 0; maps[r].z[k] && c < maps[r].cells; c++) {
+            low = fmin(low, maps[r].z[k][c]);
+            high = fmax(high, maps[r].z[k][c]);
+        }
     }
-    if (n > 1)
-        plot_maps(writer, case_name, "schemes", "The same map for each scheme",
-                  k == 2 ? "The error |v − exact v| of each scheme, with the same number of "
-                           "particles. Each map has its own colour scale: read its numbers."
-                         : "Density of each scheme, with the same number of particles.",
-                  &maps[0], panels, n);
+    if (n < 2) return;
+    buffer_add(&writer->to, k == 2 ? "<h4>The error |v − exact v| of each scheme</h4>"
+                                   : "<h4>Density of each scheme</h4>");
+    buffer_add(&writer->to, "<p class=\"note\">With the same number of particles, on one colour "
+                            "scale.</p><div class=\"maps\">\n");
+    for (size_t r = 0; r < count; r++) {
+        char what[32];
+        if (!maps[r].cells || !maps[r].z[k]) continue;
+        struct plot_heat heat = heat_of(&maps[r], k);
+        heat.low = low, heat.high = high;
+        snprintf(what, sizeof what, "scheme-%zu", r + 1);
+        plot_map(writer, case_name, what, &maps[r], &heat, value_text(runs[r], "label"),
+                 value_text(runs[r], "label"));
+    }
+    buffer_add(&writer->to, "</div>\n");
 }
 
 /* ---- particles over the exact curve ---- */

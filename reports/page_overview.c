@@ -6,20 +6,8 @@
 #include "html.h"
 #include "page_part.h"
 #include "page_study.h"
+#include "case_state.h"
 #include "value.h"
-
-/* The document in a list for a case and a scheme, or NULL. */
-static const json_t *find(const json_t *list, const char *case_name, const char *label)
-{
-    size_t i;
-    const json_t *entry;
-    json_array_foreach(list, i, entry) {
-        if (!strcmp(value_text(entry, "case"), case_name) &&
-            !strcmp(value_text(entry, "label"), label))
-            return entry;
-    }
-    return NULL;
-}
 
 static bool is_cloud(const json_t *document)
 {
@@ -39,13 +27,6 @@ static size_t schemes(const json_t *list, bool clouds, const char **labels)
         if (k == n && n < PAGE_SCHEMES) labels[n++] = label;
     }
     return n;
-}
-
-static const char *status_of(const json_t *study, const json_t *run)
-{
-    const char *judged = value_text(study, "status"), *ran = value_text(run, "status");
-    if (!strcmp(judged, "fail") || !strcmp(judged, "broke_down")) return judged;
-    return !strcmp(ran, "broke_down") ? ran : "ok";
 }
 
 static void case_cells(struct buffer *to, const char *name, double n)
@@ -71,58 +52,42 @@ static void row(struct buffer *to, const json_t *results, const json_t *first,
     const json_t *runs = json_object_get(results, "runs");
     const char *name = value_text(first, "case");
     const json_t *levels = json_object_get(first, "levels");
-    const json_t *run = find(runs, name, labels[0]);
+    const json_t *run = case_state_find(runs, name, labels[0]);
     case_cells(to, name, value_member(json_array_get(levels, json_array_size(levels) - 1), "n"));
-    const char *status = "ok";
     for (size_t k = 0; k < count; k++) {
-        const json_t *study = find(studies, name, labels[k]);
+        const json_t *study = case_state_find(studies, name, labels[k]);
         levels = json_object_get(study, "levels");
         const json_t *finest = json_array_get(levels, json_array_size(levels) - 1);
         html_cell_number(to, value_inner(json_object_get(finest, "errors"), "density", "l1"));
-        const char *now = status_of(study, find(runs, name, labels[k]));
-        if (strcmp(now, "ok")) status = now;
     }
     order_cell(to, page_study_order(first, "density", "l1"));
     html_cell_number(to, value_inner(run, "conservation", "momentum"));
     html_cell_number(to, value_inner(run, "conservation", "energy"));
     buffer_add(to, "<td>");
-    html_status(to, status);
+    html_status(to, case_state(results, name));
     buffer_add(to, "</td></tr>\n");
 }
 
 /* ---- 2D and 3D: by their runs, whatever they are judged by ---- */
 
-/* What a run is judged by: L1 of a field, or the distance of a scalar from its exact value. *name:
- * what it is. */
-static double run_error(const json_t *run, const char **name)
-{
-    const char *measured = json_string_value(json_array_get(json_object_get(run, "measured"), 0));
-    *name = measured ? measured : "";
-    const double error = value_inner(json_object_get(run, "errors"), *name, "l1");
-    if (isfinite(error)) return error;
-    const json_t *scalar = value_named(json_object_get(run, "functionals"), *name);
-    return fabs(value_member(scalar, "value") - value_member(scalar, "reference"));
-}
-
 static void cloud_row(struct buffer *to, const json_t *results, const json_t *run,
                       const char *const *labels, size_t count)
 {
     const json_t *runs = json_object_get(results, "runs");
-    const char *case_name = value_text(run, "case"), *what, *status = "ok";
-    const json_t *study = find(json_object_get(results, "studies"), case_name, labels[0]);
-    run_error(run, &what);
+    const char *case_name = value_text(run, "case"), *what;
+    const json_t *study =
+        case_state_find(json_object_get(results, "studies"), case_name, labels[0]);
+    case_state_error(run, &what);
     case_cells(to, case_name, value_member(run, "n"));
     buffer_add(to, "<td>");
     html_words(to, what);
     buffer_add(to, "</td>");
     for (size_t k = 0; k < count; k++) {
-        const json_t *one = find(runs, case_name, labels[k]);
-        const json_t *of = find(json_object_get(results, "studies"), case_name, labels[k]);
+        const json_t *one = case_state_find(runs, case_name, labels[k]);
         if (one)
-            html_cell_number(to, run_error(one, &what));
+            html_cell_number(to, case_state_error(one, &what));
         else
             buffer_add(to, "<td class=\"n\">—</td>");
-        if (one && strcmp(status_of(of, one), "ok")) status = status_of(of, one);
     }
     if (page_study_main(study))
         order_cell(to, page_study_main(study));
@@ -131,7 +96,7 @@ static void cloud_row(struct buffer *to, const json_t *results, const json_t *ru
     html_cell_number(to, value_inner(run, "conservation", "momentum"));
     html_cell_number(to, value_inner(run, "conservation", "energy"));
     buffer_add(to, "<td>");
-    html_status(to, status);
+    html_status(to, case_state(results, case_name));
     buffer_add(to, "</td></tr>\n");
 }
 

@@ -13,6 +13,7 @@ extern const char *const page_styles[]; /* parts of the style sheet; ends with N
 void page_since(struct buffer *to, const json_t *results);
 void page_history(struct page_writer *writer, const json_t *history);
 
+void page_strip(struct page_writer *writer, const json_t *results);
 void page_overview(struct page_writer *writer, const json_t *results);
 void page_cases(struct page_writer *writer, const json_t *results);
 void page_bench(struct page_writer *writer, const json_t *bench);

@@ -57,8 +57,9 @@ struct plot_heat {
     bool log;          /* logarithmic colour scale */
     const char *const *categories;
     size_t category_count;
-    bool image;     /* cells are even on linear axes: drawn as an image, kept as a bare matrix */
-    bool diverging; /* the middle of the colours is 0, and both signs reach equally far */
+    bool image;       /* cells are even on linear axes: drawn as an image, kept as a bare matrix */
+    bool diverging;   /* the middle of the colours is 0, and both signs reach equally far */
+    double low, high; /* of the colour scale; equal: from the data */
 };
 
 enum plot_key {

@@ -348,7 +348,9 @@ static void color_scale(struct buffer *to, const struct plot_heat *heat,
     for (size_t k = 0; k < heat->nx * heat->ny; k++)
         if (isfinite(heat->z[k])) reach = fmax(reach, fabs(heat->z[k]));
     buffer_add(to, heat->diverging ? blue_to_red : viridis);
-    if (heat->diverging && reach > 0)
+    if (heat->high > heat->low)
+        buffer_format(to, "set cbrange [%.10g:%.10g]\n", heat->low, heat->high);
+    else if (heat->diverging && reach > 0)
         buffer_format(to, "set cbrange [%.10g:%.10g]\n", -reach, reach);
     else
         buffer_add(to, "set cbrange [*:*]\n");

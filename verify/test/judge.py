@@ -382,7 +382,7 @@ def together(folder, hdf5):
         with open(page, encoding="utf-8") as text:
             html = text.read()
         ElementTree.fromstring(html.split("\n", 1)[1])
-        assert html.count("<svg") == 2 and "azimuthal v" in html and "error |v" in html, "no maps or no curve"
+        assert html.count("<svg") == 4 and "azimuthal v" in html and "error |v" in html, "no maps or no curve"
     # two times of one run; the second has a mass more by 1e-3 and energies to match
     early = os.path.join(folder, "early.csv")
     subprocess.run([PROGRAM, "run", "sod", "n=60", "t_end=0.1", "--snapshot", early, "--quiet"], check=True)

@@ -9,6 +9,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#ifdef HAVE_ZLIB
+#include <zlib.h>
+#endif
 
 enum { MARKUP_DEPTH = 64, MARKUP_IDS = 20000 };
 
@@ -112,13 +115,65 @@ static bool markup_well_formed(const char *document, char *fault, size_t size)
     return well;
 }
 
+#ifdef HAVE_ZLIB
+static inline size_t markup_base64(const char *text, size_t n, unsigned char *bytes)
+{
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    size_t count = 0;
+    for (size_t i = 0; i + 3 < n; i += 4) {
+        unsigned word = 0;
+        int left = 0;
+        for (size_t k = 0; k < 4; k++) {
+            const char *at = text[i + k] == '=' ? NULL : strchr(digits, text[i + k]);
+            word = word << 6 | (at ? (unsigned)(at - digits) : 0);
+            left += text[i + k] == '=';
+        }
+        for (int k = 0; k < 3 - left; k++) bytes[count++] = (unsigned char)(word >> (16 - 8 * k));
+    }
+    return count;
+}
+#endif
+
+/* The page with everything in it that is folded, as its script would inflate it; malloced. *sealed:
+ * how many parts. NULL: one of them cannot be inflated. */
+static inline char *markup_unsealed(const char *document, size_t *sealed)
+{
+    static const char head[] = "<div class=\"sealed\" data-z=\"";
+    char *whole = strdup(document);
+    *sealed = 0;
+#ifdef HAVE_ZLIB
+    enum { MOST = 1 << 24 };
+    unsigned char *text = malloc(MOST), *bytes = malloc(strlen(document) + 1);
+    for (char *at; whole && text && bytes && (at = strstr(whole, head)); ++*sealed) {
+        const char *data = at + sizeof head - 1, *end = strchr(data, '"');
+        uLongf size = MOST - 1;
+        const size_t n = markup_base64(data, (size_t)(end - data), bytes);
+        const size_t before = (size_t)(at - whole), after = strlen(end + 2);
+        char *opened = NULL;
+        if (uncompress(text, &size, bytes, (uLong)n) == Z_OK &&
+            (opened = malloc(before + size + after + 64))) {
+            memcpy(opened, whole, before);
+            memcpy(opened + before, "<div class=\"opened\">", 20);
+            memcpy(opened + before + 20, text, size);
+            memcpy(opened + before + 20 + size, end + 2, after + 1);
+        }
+        free(whole);
+        whole = opened;
+    }
+    free(text);
+    free(bytes);
+#endif
+    return whole;
+}
+
 /* The first thing that would make a browser ask the network, NULL if nothing does. Names of XML
  * namespaces are not addresses. */
 static inline const char *markup_network(const char *document)
 {
     static const char *const asks[] = {"src=\"http", "href=\"http", "url(http", "@import",
-                                       "src=\"//",   "href=\"//",   "url(//",   "<script",
-                                       "<iframe",    "<link"};
+                                       "src=\"//",   "href=\"//",   "url(//",   "<script ",
+                                       "<iframe",    "<link",       "fetch(",   "XMLHttpRequest",
+                                       "import(",    "WebSocket"};
     for (size_t k = 0; k < sizeof asks / sizeof *asks; k++) {
         const char *at = strstr(document, asks[k]);
         if (at) return at;

@@ -3,6 +3,7 @@
 unchanged night, and repeated with damaged entries, what is found and that results are the same; its
 history; its files, that it stands alone, that each plot can be drawn again, that kept results are the
 computed ones, and what happens when things fail."""
+import base64
 import glob
 import json
 import os
@@ -12,6 +13,7 @@ import signal
 import subprocess
 import sys
 import time
+import zlib
 import xml.etree.ElementTree as xml
 
 program, folder = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
@@ -31,6 +33,12 @@ def report(*arguments, **environment):
 def read(*path):
     with open(os.path.join(folder, *path), encoding="utf-8") as file:
         return file.read()
+
+
+def unsealed(page):
+    """The page with what is folded, as its script inflates it."""
+    return re.sub(r'(<div class="sealed") data-z="([^"]*)">',
+                  lambda part: part[1] + ">" + zlib.decompress(base64.b64decode(part[2])).decode(), page)
 
 
 def lasting(value):
@@ -115,12 +123,18 @@ expect("the headline's counts:", results["verdict"]["gates"] in results["verdict
 itself = os.path.join(folder, "results.json")
 done = subprocess.run([program, "diff", itself, itself], capture_output=True, text=True)
 expect("a figure that nobody can compare:", done.returncode == 0 and "\nwell: " in done.stdout, done)
-expect("asks the network:", not re.search(r"(src|href)=\"(https?:)?//|url\(|@import|<script", page))
-xml.fromstring(page.replace("<!DOCTYPE html>", ""))
+closed, page = page, unsealed(page)
+for text in closed, page:
+    expect("asks the network:", not re.search(r"(src|href)=\"(https?:)?//|url\(|@import|<script |<link|<iframe|fetch\(|XMLHttpRequest|import\(|WebSocket", text))
+    xml.fromstring(text.replace("<!DOCTYPE html>", ""))
+if closed != page:
+    expect("size of the page:", len(closed.encode()) < 3e6, len(closed.encode()))
+cases = {d["case"] for d in results["runs"] + results["studies"]}
+expect("pictures on the closed page:", closed.count('<svg class="mini"') == len(cases), (closed.count("<svg "), len(cases)))
 xml.fromstring(read("junit.xml"))
 expect("summary:", results["verdict"]["headline"] in read("summary.md"))
 plots = [name[:-3] for name in os.listdir(os.path.join(folder, "plots")) if name.endswith(".gp")]
-expect("plots:", len(plots) == page.count("<svg ") > 10, len(plots))
+expect("plots:", len(plots) == page.count('<svg class="plot"') > 10, (len(plots), page.count('<svg class="plot"')))
 for name in plots:
     expect("links of a plot:", 'href="plots/%s.dat"' % name in page, name)
 subprocess.run(["gnuplot", plots[0] + ".gp"], cwd=os.path.join(folder, "plots"), check=True)
@@ -151,7 +165,7 @@ alone = os.path.join(folder, "alone")
 shutil.copytree(os.path.join(folder, "cache"), os.path.join(alone, "cache"))
 done = report("--out", alone, "--jobs", "1", PATH="/nowhere")
 expect("exit status without gnuplot:", done.returncode == 4 and "gnuplot" in done.stderr, done)
-expect("page without gnuplot:", "<svg" not in read("alone", "index.html")
+expect("page without gnuplot:", '<svg class="plot"' not in unsealed(read("alone", "index.html"))
        and results["verdict"]["headline"] in read("alone", "index.html"))
 expect("what was kept is not what was computed:",
        lasting(json.loads(read("alone", "results.json"))) == lasting(results))

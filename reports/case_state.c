@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "case_state.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <string.h>
+
+#include "value.h"
+
+/* From well to worst. */
+static const char *const states[] = {"ok", "known", "undetermined", "smoke", "fail", "broke_down"};
+enum { STATES = sizeof states / sizeof *states, OPEN = 1, FAILED = 4 };
+
+static int rank(const char *status)
+{
+    for (int k = STATES; k-- > 0;)
+        if (!strcmp(status, states[k])) return k;
+    return 0;
+}
+
+const json_t *case_state_find(const json_t *list, const char *case_name, const char *label)
+{
+    size_t i;
+    const json_t *entry;
+    json_array_foreach(list, i, entry) {
+        if (!strcmp(value_text(entry, "case"), case_name) &&
+            (!label || !strcmp(value_text(entry, "label"), label)))
+            return entry;
+    }
+    return NULL;
+}
+
+/* The worst of a document and of its gates; of a scheme that does not speak for the case failures
+ * count alone. */
+static int worst_of(const json_t *document, bool speaks)
+{
+    static const char *const lists[] = {"gates", "orders"};
+    int worst = *value_text(document, "suspicion") ? FAILED : rank(value_text(document, "status"));
+    for (int k = 0; k < 2; k++) {
+        size_t i;
+        const json_t *gate;
+        json_array_foreach(json_object_get(document, lists[k]), i, gate) {
+            const int now = rank(value_text(gate, "status"));
+            if (now > worst && (speaks || now >= FAILED)) worst = now;
+        }
+    }
+    return worst;
+}
+
+const char *case_state(const json_t *results, const char *case_name)
+{
+    static const char *const lists[] = {"runs", "studies"};
+    const char *speaker = NULL;
+    int worst = 0;
+    for (int k = 0; k < 2; k++) {
+        size_t i;
+        const json_t *entry;
+        json_array_foreach(json_object_get(results, lists[k]), i, entry) {
+            if (strcmp(value_text(entry, "case"), case_name) != 0) continue;
+            if (!speaker) speaker = value_text(entry, "label");
+            const int now = worst_of(entry, !strcmp(value_text(entry, "label"), speaker));
+            if (now > worst) worst = now;
+        }
+    }
+    return states[worst];
+}
+
+double case_state_error(const json_t *run, const char **name)
+{
+    const char *measured = json_string_value(json_array_get(json_object_get(run, "measured"), 0));
+    *name = measured ? measured : "density";
+    const json_t *errors = json_object_get(run, "errors");
+    const double cut = value_inner(errors, *name, "l1_cut"),
+                 whole = value_inner(errors, *name, "l1");
+    if (isfinite(cut) && !measured) return cut;
+    if (isfinite(whole)) return whole;
+    const json_t *scalar = value_named(json_object_get(run, "functionals"), *name);
+    return fabs(value_member(scalar, "value") - value_member(scalar, "reference"));
+}

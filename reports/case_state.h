@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What a report says of a case as a whole, and of the scheme that speaks for it. Internal to
+ * pages. */
+#ifndef SPHPROOF_CASE_STATE_H
+#define SPHPROOF_CASE_STATE_H
+
+#include <jansson.h>
+
+/* The document in a list of runs or studies for a case and a scheme; label NULL: the first one of
+ * the case. NULL: there is none. */
+const json_t *case_state_find(const json_t *list, const char *case_name, const char *label);
+
+/* "broke_down" or "fail" if anything of the case did, with any scheme; else what became of its
+ * first scheme: smoke, undetermined or known if one of its gates is, else ok. */
+const char *case_state(const json_t *results, const char *case_name);
+
+/* What a run is judged by: L1 of a field, or the distance of a scalar from its exact value. *name:
+ * what it is. */
+double case_state_error(const json_t *run, const char **name);
+
+#endif

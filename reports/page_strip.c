@@ -1,0 +1,280 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * All cases as a strip of small pictures: particles over the exact solution, or a map, with the
+ * error and the order of the first scheme. Each picture leads to its case. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base64.h"
+#include "html.h"
+#include "page_part.h"
+#include "page_study.h"
+#include "case_state.h"
+#include "value.h"
+
+enum { WIDTH = 150, HEIGHT = 84, MARGIN = 3, DOTS = 220, COLORS = 64 };
+
+struct frame {
+    double x0, x1, y0, y1;
+};
+
+static void widen(const double *values, size_t n, double *low, double *high)
+{
+    for (size_t i = 0; values && i < n; i++) {
+        if (!isfinite(values[i])) continue;
+        *low = fmin(*low, values[i]);
+        *high = fmax(*high, values[i]);
+    }
+}
+
+static double across(const struct frame *f, double x)
+{
+    return MARGIN + (WIDTH - 2 * MARGIN) * (f->x1 > f->x0 ? (x - f->x0) / (f->x1 - f->x0) : 0.5);
+}
+
+static double down(const struct frame *f, double y)
+{
+    return HEIGHT - MARGIN -
+           (HEIGHT - 2 * MARGIN) * (f->y1 > f->y0 ? (y - f->y0) / (f->y1 - f->y0) : 0.5);
+}
+
+/* A path through points (joined), or of dots; what falls on the same half pixel is drawn once. */
+static void path(struct buffer *to, const char *class, const struct frame *f, const double *x,
+                 const double *y, size_t n, size_t most, bool joined)
+{
+    const size_t stride = n > most ? (n + most - 1) / most : 1;
+    double last_x = -1, last_y = -1;
+    bool pen = false;
+    buffer_format(to, "<path class=\"%s\" d=\"", class);
+    for (size_t i = 0; i < n; i += stride) {
+        if (!isfinite(x[i]) || !isfinite(y[i])) {
+            pen = false;
+            continue;
+        }
+        const double px = round(2 * across(f, x[i])) / 2, py = round(2 * down(f, y[i])) / 2;
+        if (px == last_x && py == last_y) continue;
+        buffer_format(to, "%s%.4g %.4g%s", joined && pen ? "L" : "M", px, py, joined ? "" : "h0");
+        pen = true;
+        last_x = px, last_y = py;
+    }
+    buffer_add(to, "\"/>");
+}
+
+static void svg_begin(struct buffer *to, const char *title)
+{
+    buffer_format(to, "<svg class=\"mini\" viewBox=\"0 0 %d %d\" role=\"img\"><title>", WIDTH,
+                  HEIGHT);
+    html_words(to, title);
+    buffer_add(to, "</title>");
+}
+
+/* Do the values of a curve differ by more than noise would? */
+static bool varies(const json_t *curve, const char *name)
+{
+    size_t n;
+    double *y = value_numbers(json_object_get(curve, name), &n);
+    double low = (double)INFINITY, high = -(double)INFINITY;
+    widen(y, n, &low, &high);
+    free(y);
+    return high - low > 0.02 * fmax(fabs(low), fabs(high));
+}
+
+/* What a picture shows of a profile: what the case is judged by, else the first quantity whose
+ * exact curve varies. In 1D density. */
+static const char *quantity_of(const json_t *run, const json_t *from)
+{
+    const json_t *list = json_object_get(from, "quantities"), *entry;
+    const char *measured = json_string_value(json_array_get(json_object_get(run, "measured"), 0));
+    const char *found = json_string_value(json_array_get(list, 0));
+    size_t i;
+    if (!found) return value_member(run, "dimension") > 1 ? "" : "density";
+    json_array_foreach(list, i, entry) {
+        if (measured && !strcmp(measured, json_string_value(entry))) return measured;
+    }
+    json_array_foreach(list, i, entry) {
+        if (varies(json_object_get(from, "exact"), json_string_value(entry)))
+            return json_string_value(entry);
+    }
+    return found;
+}
+
+/* Particles over the exact curve; false: the run has none. */
+static bool profile(struct buffer *to, const json_t *run)
+{
+    const json_t *from = json_object_get(run, "profile"), *exact = json_object_get(from, "exact");
+    const char *name = quantity_of(run, from);
+    size_t n, values, exact_n, exact_values;
+    double *x = value_numbers(json_object_get(from, "x"), &n);
+    double *y = value_numbers(json_object_get(from, name), &values);
+    double *exact_x = value_numbers(json_object_get(exact, "x"), &exact_n);
+    double *exact_y = value_numbers(json_object_get(exact, name), &exact_values);
+    struct frame f = {(double)INFINITY, -(double)INFINITY, (double)INFINITY, -(double)INFINITY};
+    n = values < n ? values : n;
+    exact_n = exact_values < exact_n ? exact_values : exact_n;
+    if (n && exact_n) {
+        widen(x, n, &f.x0, &f.x1);
+        widen(y, n, &f.y0, &f.y1);
+        for (size_t i = 0; i < exact_n; i++) {
+            if (!(exact_x[i] >= f.x0 && exact_x[i] <= f.x1))
+                exact_x[i] = (double)NAN;
+            else
+                widen(&exact_y[i], 1, &f.y0, &f.y1);
+        }
+        /* what hardly varies is drawn flat: noise of a thousandth is none of a half */
+        const double flat = 0.05 * fmax(fabs(f.y0), fabs(f.y1)) - (f.y1 - f.y0) / 2,
+                     up = fmax(0, flat);
+        f.y0 -= up, f.y1 += up;
+        svg_begin(to, name);
+        path(to, "exact", &f, exact_x, exact_y, exact_n, exact_n, true);
+        path(to, "dots", &f, x, y, n, DOTS, false);
+        buffer_add(to, "</svg>");
+    }
+    free(x), free(y), free(exact_x), free(exact_y);
+    return n && exact_n;
+}
+
+static void put(unsigned char *at, size_t bytes, size_t value)
+{
+    for (size_t k = 0; k < bytes; k++) at[k] = (unsigned char)(value >> 8 * k);
+}
+
+/* Dark violet to yellow, as the large maps are. */
+static void palette(unsigned char *at)
+{
+    static const unsigned char anchors[][3] = {
+        {68, 1, 84}, {59, 82, 139}, {33, 145, 140}, {94, 201, 98}, {253, 231, 37}};
+    for (int c = 0; c < COLORS; c++) {
+        const double place = 4. * c / (COLORS - 1);
+        const int k = place < 4 ? (int)place : 3;
+        for (int rgb = 0; rgb < 3; rgb++)
+            at[4 * c + 2 - rgb] = (unsigned char)lround(
+                anchors[k][rgb] + (place - k) * (anchors[k + 1][rgb] - anchors[k][rgb]));
+        at[4 * c + 3] = 0;
+    }
+}
+
+/* A bitmap of nx by ny cells, from the lowest row up; voids have the lowest colour. */
+static void bitmap(struct buffer *to, const double *z, size_t nx, size_t ny)
+{
+    enum { HEAD = 54, PALETTE = 4 * COLORS };
+    const size_t row = (nx + 3) / 4 * 4, size = HEAD + PALETTE + row * ny;
+    unsigned char *bytes = calloc(size, 1);
+    double low = (double)INFINITY, high = -(double)INFINITY;
+    if (!bytes) {
+        to->failed = true;
+        return;
+    }
+    widen(z, nx * ny, &low, &high);
+    bytes[0] = 'B', bytes[1] = 'M';
+    put(bytes + 2, 4, size), put(bytes + 10, 4, HEAD + PALETTE), put(bytes + 14, 4, 40);
+    put(bytes + 18, 4, nx), put(bytes + 22, 4, ny), put(bytes + 26, 2, 1), put(bytes + 28, 2, 8);
+    put(bytes + 34, 4, row * ny), put(bytes + 46, 4, COLORS);
+    palette(bytes + HEAD);
+    for (size_t j = 0; j < ny; j++)
+        for (size_t i = 0; i < nx; i++) {
+            const double part = high > low ? (z[j * nx + i] - low) / (high - low) : 0.5;
+            if (isfinite(part))
+                bytes[HEAD + PALETTE + j * row + i] = (unsigned char)lround(part * (COLORS - 1));
+        }
+    base64_add(to, bytes, size);
+    free(bytes);
+}
+
+/* A map: of density, or of speed where density hardly varies. */
+static bool map(struct buffer *to, const json_t *run)
+{
+    const json_t *from = json_object_get(json_object_get(run, "profile"), "map");
+    size_t nx, ny, cells, speeds;
+    double *x = value_numbers(json_object_get(from, "x"), &nx);
+    double *y = value_numbers(json_object_get(from, "y"), &ny);
+    double *rho = value_numbers(json_object_get(from, "density"), &cells);
+    double *speed = value_numbers(json_object_get(from, "speed"), &speeds);
+    const bool there = cells && cells == nx * ny;
+    if (there) {
+        double low = (double)INFINITY, high = -(double)INFINITY;
+        widen(rho, cells, &low, &high);
+        const bool flat = speeds == cells && high - low < 0.02 * fabs(high);
+        const double scale = fmin((double)WIDTH / (double)nx, (double)HEIGHT / (double)ny);
+        const double w = scale * (double)nx, h = scale * (double)ny;
+        svg_begin(to, flat ? "map of the speed" : "map of the density");
+        buffer_format(to,
+                      "<image x=\"%.4g\" y=\"%.4g\" width=\"%.4g\" height=\"%.4g\" "
+                      "preserveAspectRatio=\"none\" href=\"data:image/bmp;base64,",
+                      (WIDTH - w) / 2, (HEIGHT - h) / 2, w, h);
+        bitmap(to, flat ? speed : rho, nx, ny);
+        buffer_add(to, "\"/></svg>");
+    }
+    free(x), free(y), free(rho), free(speed);
+    return there;
+}
+
+static void figures(struct buffer *to, const json_t *run, const json_t *study)
+{
+    const json_t *order = page_study_main(study);
+    const char *what;
+    buffer_add(to, "<span>");
+    if (order) {
+        html_number(to, page_study_finest(study));
+        buffer_add(to, " ");
+        page_study_name(to, order);
+    } else if (run) {
+        const double error = case_state_error(run, &what);
+        if (isfinite(error)) html_number(to, error);
+        buffer_add(to, isfinite(error) ? " off in " : "no error of ");
+        html_words(to, what);
+    }
+    buffer_add(to, "</span><span>");
+    if (order)
+        buffer_format(to, "order %.2f ± %.2f", value_member(order, "order"),
+                      (value_member(order, "high") - value_member(order, "low")) / 2);
+    else
+        buffer_add(to, "one run");
+    buffer_add(to, "</span>");
+}
+
+static void card(struct buffer *to, const json_t *results, const char *name)
+{
+    const json_t *run = case_state_find(json_object_get(results, "runs"), name, NULL);
+    const json_t *study = case_state_find(json_object_get(results, "studies"), name, NULL);
+    const char *state = case_state(results, name);
+    buffer_format(to, "<a class=\"card %s\" href=\"#case-", state);
+    buffer_escape(to, name);
+    buffer_add(to, "\">");
+    if (!profile(to, run) && !map(to, run)) {
+        svg_begin(to, "no picture");
+        buffer_add(to, "</svg>");
+    }
+    buffer_add(to, "<span class=\"name\"><b>");
+    html_words(to, name);
+    buffer_add(to, "</b>");
+    html_status(to, state);
+    buffer_add(to, "</span>");
+    figures(to, run, study);
+    buffer_add(to, "</a>\n");
+}
+
+void page_strip(struct page_writer *writer, const json_t *results)
+{
+    static const char *const lists[] = {"runs", "studies"};
+    struct buffer *to = &writer->to;
+    const json_t *runs = json_object_get(results, "runs"), *entry;
+    bool any = false;
+    for (int k = 0; k < 2; k++) {
+        size_t i;
+        json_array_foreach(json_object_get(results, lists[k]), i, entry) {
+            const char *name = value_text(entry, "case");
+            /* once: of runs the first, of studies without a run */
+            if (case_state_find(json_object_get(results, lists[k]), name, NULL) != entry ||
+                (k && case_state_find(runs, name, NULL)))
+                continue;
+            if (!any) buffer_add(to, "<section id=\"strip\"><div class=\"strip\">\n");
+            any = true;
+            card(to, results, name);
+        }
+    }
+    if (!any) return;
+    buffer_add(to, "</div><p class=\"note\">Points are particles of the first scheme, the line is "
+                   "the exact solution; maps show density, or speed where density hardly varies. "
+                   "A picture opens its case. Smoke: too coarse to say. Undetermined: the order's "
+                   "interval is wider than its gate. Known: a known weakness.</p></section>\n");
+}
