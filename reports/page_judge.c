@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The page of `sphproof judge`: verdict, what was assumed and why, errors, the kernel's candidates,
- * particles over the exact solution. */
+ * The page of `sphproof judge`: verdict, gates, orders, what was assumed and why, errors, the
+ * kernel's candidates, particles over the exact solution. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "html.h"
 #include "page.h"
@@ -161,6 +163,73 @@ static void snapshot(struct page_writer *writer, const json_t *judged, size_t nu
     buffer_add(to, "</section>\n");
 }
 
+/* What must hold, of the snapshot with most particles. */
+static void gates(struct buffer *to, const json_t *list)
+{
+    const json_t *gate;
+    size_t k;
+    if (!json_array_size(list)) return;
+    buffer_add(to, "<section id=\"gates\"><h2>Gates</h2>\n");
+    html_table(to, "gates", "error|#found|#allowed|");
+    json_array_foreach(list, k, gate) {
+        buffer_add(to, "<tr>");
+        html_cell_code(to, value_text(gate, "name"));
+        html_cell_number(to, value_member(gate, "value"));
+        html_cell_number(to, value_member(gate, "bound"));
+        buffer_add(to, "<td>");
+        html_status(to, value_text(gate, "status"));
+        buffer_add(to, "</td></tr>\n");
+    }
+    html_table_end(to);
+    buffer_add(to, "</section>\n");
+}
+
+/* Of several snapshots: orders where numbers of particles differ, what is conserved where times
+ * do. */
+static void together(struct buffer *to, const json_t *document)
+{
+    static const char *const kept[] = {"mass", "momentum", "angular_momentum", "energy"};
+    const json_t *orders = json_object_get(document, "orders"), *order, *one;
+    const json_t *drift = json_object_get(document, "conservation");
+    size_t k, i;
+    if (json_array_size(orders)) {
+        buffer_add(to, "<section id=\"orders\"><h2>Orders</h2>\n");
+        html_table(to, "orders", "L1 of|#order|#95 % interval|pairwise");
+        json_array_foreach(orders, k, order) {
+            const bool fitted = json_is_number(json_object_get(order, "order"));
+            buffer_add(to, "<tr><td>");
+            html_words(to, value_text(order, "field"));
+            if (fitted)
+                buffer_format(to,
+                              "</td><td class=\"n\">%.3f</td><td class=\"n\">%.3f to %.3f</td><td>",
+                              value_member(order, "order"), value_member(order, "low"),
+                              value_member(order, "high"));
+            else
+                buffer_add(to, "</td><td class=\"n\">—</td><td class=\"n\">—</td><td>");
+            json_array_foreach(json_object_get(order, "pairwise"), i, one)
+                buffer_format(to, "%s%.3f", i ? ", " : "", value_real(one));
+            buffer_add(to, "</td></tr>\n");
+        }
+        html_table_end(to);
+        buffer_add(to, "</section>\n");
+    }
+    if (!json_is_object(drift)) return;
+    buffer_add(to, "<section id=\"conservation\"><h2>Conservation</h2><p>From ");
+    for (k = 0; k < 2; k++) {
+        const char *file = json_string_value(json_array_get(json_object_get(drift, "between"), k));
+        buffer_escape(to, file ? file : "");
+        buffer_add(to, k ? ":" : " to ");
+    }
+    for (k = 0; k < sizeof kept / sizeof *kept; k++) {
+        if (!isfinite(value_member(drift, kept[k]))) continue;
+        buffer_add(to, k ? ", " : " ");
+        html_words(to, kept[k]);
+        buffer_add(to, " ");
+        html_number(to, value_member(drift, kept[k]));
+    }
+    buffer_add(to, " have changed.</p></section>\n");
+}
+
 bool page_make_judge(struct page *page, const json_t *document)
 {
     struct page_writer writer = {0};
@@ -175,11 +244,13 @@ bool page_make_judge(struct page *page, const json_t *document)
     for (k = 0; page_styles[k]; k++) buffer_add(to, page_styles[k]);
     buffer_format(to, "%s</style></head><body>\n", style_css());
     buffer_format(to, "<header class=\"%s\"><p class=\"kind\">sphproof judge, case ",
-                  json_is_true(json_object_get(document, "foreign")) ? "unwell" : "well");
+                  strcmp(value_text(document, "status"), "pass") ? "unwell" : "well");
     buffer_escape(to, value_text(document, "case"));
     buffer_add(to, "</p><h1>");
-    buffer_escape(to, value_text(document, "verdict"));
+    buffer_escape(to, value_text(document, "headline"));
     buffer_add(to, "</h1></header>\n<main>\n");
+    gates(to, json_object_get(document, "gates"));
+    together(to, document);
     if (json_array_size(snapshots))
         json_array_foreach(snapshots, k, one) snapshot(&writer, one, k);
     else

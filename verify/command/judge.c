@@ -9,9 +9,12 @@
 #include "judge.h"
 #include "output.h"
 #include "page.h"
+#include "picture.h"
 #include "result.h"
+#include "run_plot.h"
 #include "table.h"
 #include "text.h"
+#include "value.h"
 
 /* ---- what is asked ---- */
 
@@ -137,65 +140,66 @@ static void print_one(const struct judged *judged, const struct table_style *sty
     printf("\n%s%s%s\n\n", judged->foreign ? style->bad : style->bold, judged->verdict, style->end);
 }
 
-static void print_together(const struct judged *judged, size_t n)
+/* What the document says of several snapshots, of gates, and in one line. */
+static void print_together(const json_t *document, const struct table_style *style)
 {
-    struct trace_drift drift;
-    size_t pair[2], k;
-    json_t *orders = judge_orders(judged, n), *order;
-    json_array_foreach(orders, k, order) {
-        const json_t *fitted = json_object_get(order, "order"), *one;
-        size_t i;
-        printf("order of %-16s", json_string_value(json_object_get(order, "field")));
-        if (json_is_number(fitted))
-            printf(" %.3f, 95 %% interval %.3f to %.3f;", json_number_value(fitted),
-                   json_number_value(json_object_get(order, "low")),
-                   json_number_value(json_object_get(order, "high")));
+    const json_t *order, *gate, *one, *drift = json_object_get(document, "conservation");
+    const json_t *gates = json_object_get(document, "gates");
+    size_t k, i;
+    json_array_foreach(json_object_get(document, "orders"), k, order) {
+        printf("order of %-16s", value_text(order, "field"));
+        if (json_is_number(json_object_get(order, "order")))
+            printf(" %.3f, 95 %% interval %.3f to %.3f;", value_member(order, "order"),
+                   value_member(order, "low"), value_member(order, "high"));
         printf(" pairwise");
         json_array_foreach(json_object_get(order, "pairwise"), i, one)
-            printf(" %.3f", json_number_value(one));
+            printf(" %.3f", value_real(one));
         printf("\n");
     }
-    json_decref(orders);
-    if (judge_drift(judged, n, &drift, pair))
+    if (json_is_object(drift)) {
+        const json_t *between = json_object_get(drift, "between");
         printf("from %s to %s: mass %.2g, momentum %.2g, energy %.2g have changed\n",
-               judged[pair[0]].path, judged[pair[1]].path, drift.mass, drift.momentum,
-               drift.energy);
-}
-
-static void print_gates(const struct judge_gate *gates, size_t n, const struct table_style *style)
-{
-    for (size_t k = 0; k < n; k++)
-        printf("gate %-28s %.6g, bound %.6g: %s%s%s\n", gates[k].name, gates[k].value,
-               gates[k].bound, gates[k].good ? style->good : style->bad,
-               gates[k].good ? "pass" : "FAIL", style->end);
+               json_string_value(json_array_get(between, 0)),
+               json_string_value(json_array_get(between, 1)), value_member(drift, "mass"),
+               value_member(drift, "momentum"), value_member(drift, "energy"));
+    }
+    json_array_foreach(gates, k, gate) {
+        const bool good = !strcmp(value_text(gate, "status"), "pass");
+        printf("gate %-28s %.6g, bound %.6g: %s%s%s\n", value_text(gate, "name"),
+               value_member(gate, "value"), value_member(gate, "bound"),
+               good ? style->good : style->bad, good ? "pass" : "FAIL", style->end);
+    }
+    if (json_array_size(gates)) {
+        const bool well = !strcmp(value_text(document, "status"), "pass");
+        printf("%s%s%s\n", well ? style->good : style->bad, value_text(document, "headline"),
+               style->end);
+    }
 }
 
 /* ---- the command ---- */
 
-static enum status write_results(const struct options *options, const struct judged *judged,
-                                 size_t n, const struct judge_gate *gates, size_t gate_count,
+/* content: of judge_json. */
+static enum status write_results(const struct options *options, const json_t *content,
                                  struct error *error)
 {
-    json_t *document = result_new("judge"),
-           *content = judge_json(judged, n, gates, gate_count, false);
+    json_t *document = result_new("judge");
     enum status status = STATUS_OK;
-    if (!document || !content || json_object_update(document, content))
+    if (!options->json) goto end;
+    if (!document || json_object_update(document, (json_t *)content))
         status = error_set(error, STATUS_ENVIRONMENT, "no memory for the result");
-    if (!status && options->json) status = result_write(document, options->json, error);
-    json_decref(document), json_decref(content);
+    if (!status) status = result_write(document, options->json, error);
+end:
+    json_decref(document);
     return status;
 }
 
-static enum status write_page(const char *path, const struct judged *judged, size_t n,
-                              const struct judge_gate *gates, size_t gate_count,
-                              struct error *error)
+/* document: with profiles. */
+static enum status write_page(const char *path, const json_t *document, struct error *error)
 {
     struct page page = {0};
     struct output output;
-    json_t *document = judge_json(judged, n, gates, gate_count, true);
-    const bool made = document && page_make_judge(&page, document);
-    json_decref(document);
-    if (!made) return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", path);
+    if (!document || !page_make_judge(&page, document))
+        return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", path);
     enum status status = output_open(&output, path, error);
     if (!status) {
         fputs(page.html, output.stream);
@@ -205,15 +209,38 @@ static enum status write_page(const char *path, const struct judged *judged, siz
     return status;
 }
 
+/* The same document in the terminal, as JSON and as a page; the picture is that of the main
+ * snapshot. */
+static enum status tell(const struct options *options, const struct judged *judged, size_t count,
+                        const struct judge_gate *gates, size_t gate_count, struct error *error)
+{
+    const struct table_style style = table_style(options->color);
+    const struct judged *main = judge_main(judged, count);
+    const char *html = options_value(options, "html"), *plot = options_value(options, "plot");
+    json_t *content = judge_json(judged, count, gates, gate_count, false);
+    if (!content) return error_set(error, STATUS_ENVIRONMENT, "no memory for the result");
+    for (size_t i = 0; i < count && options->speak; i++) print_one(&judged[i], &style);
+    if (options->speak) print_together(content, &style);
+    enum status status = write_results(options, content, error);
+    json_decref(content);
+    if (!status && html) {
+        json_t *document = judge_json(judged, count, gates, gate_count, true);
+        status = write_page(html, document, error);
+        json_decref(document);
+    }
+    if (!status && plot) status = run_plot(&main->run.asked, &main->result, plot, error);
+    return status;
+}
+
 static enum status run(const struct options *options, int n, char **arguments, struct error *error)
 {
     struct judge_request request = {0};
     struct judge_gate gates[JUDGE_GATES_MAX];
     size_t gate_count = 0, count = 0;
-    const struct table_style style = table_style(options->color);
     enum status status = take_request(options, n, &request, error);
-    const char *html = options_value(options, "html");
+    const char *html = options_value(options, "html"), *plot = options_value(options, "plot");
     if (!status && html) status = output_probe(html, error);
+    if (!status && plot) status = picture_probe(plot, error);
     if (status) return status;
     struct judged *judged = calloc((size_t)n, sizeof *judged);
     if (!judged) return error_set(error, STATUS_ENVIRONMENT, "no memory");
@@ -223,11 +250,7 @@ static enum status run(const struct options *options, int n, char **arguments, s
     if (!status)
         status = judge_gates(options_value(options, "gate"), main, gates, &gate_count, error);
     if (!status) {
-        for (size_t i = 0; i < count && options->speak; i++) print_one(&judged[i], &style);
-        if (options->speak) print_together(judged, count);
-        if (options->speak) print_gates(gates, gate_count, &style);
-        status = write_results(options, judged, count, gates, gate_count, error);
-        if (!status && html) status = write_page(html, judged, count, gates, gate_count, error);
+        status = tell(options, judged, count, gates, gate_count, error);
         for (size_t k = 0; k < gate_count && !status; k++)
             if (!gates[k].good) status = STATUS_CHECK_FAILED;
     }
@@ -248,7 +271,8 @@ static const struct command_option own_options[] = {
     {"kernel", "K", "the code's kernel, in place of finding it"},
     {"h-is", "MEANING", "support, half, sigma, 2sigma, or support radius over h"},
     {"gate", "FIELD_NORM=BOUND,...", "exit 1 beyond: density_l1=2e-3"},
-    {"html", "F.html", "write a page: verdict, assumptions, errors, profiles"},
+    {"html", "F.html", "write a page: verdict, gates, orders, assumptions, errors, profiles"},
+    {"plot", "FILE.svg|.png", "draw it as `sphproof run --plot` does; of several the finest"},
     {NULL, NULL, NULL},
 };
 

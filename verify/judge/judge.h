@@ -71,7 +71,8 @@ enum status judge_gates(const char *text, const struct judged *judged, struct ju
 /* The snapshot that gates look at: of most particles, of these the last. */
 const struct judged *judge_main(const struct judged *judged, size_t n);
 
-/* The document of the command, without its head; with profiles it is what page.h draws. New
+/* The document of the command, without its head, and what terminal and page show of several
+ * snapshots, of gates and in one line ("status", "headline"); with profiles it is what page.h draws. New
  * reference; NULL: no memory. */
 json_t *judge_json(const struct judged *judged, size_t n, const struct judge_gate *gates,
                    size_t gate_count, bool profiles);

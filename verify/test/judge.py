@@ -9,6 +9,7 @@ import math
 import os
 import random
 import struct
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -377,6 +378,7 @@ def together(folder, hdf5):
     ElementTree.fromstring(html.split("\n", 1)[1])
     assert all("<h2>%s</h2>" % name in html for name in paths[2:]), "a snapshot is missing"
     assert "quadratic_spline" in html and "not identifiable" not in html
+    page_says_what_the_terminal_says(paths[2:], page)
     if hdf5:
         judge(os.path.join(DATA, "gizmo_gresho2d_mfm_32.hdf5"), "--case", "gresho", "--gamma", "1.4", "--html", page)
         with open(page, encoding="utf-8") as text:
@@ -521,6 +523,32 @@ def hostile(folder, blocks, hdf5):
                 for _ in range(200):
                     changed[draw.randrange(len(data))] = draw.randrange(256)
                 call(write(folder, "damaged.hdf5", bytes(changed)), "--case", "sod")
+
+
+def page_says_what_the_terminal_says(paths, page):
+    """Gates and orders of several snapshots, their verdict, and a picture."""
+    for gates, color in (("density_l1=1,velocity_l1=1e-9", "unwell"), ("density_l1=1", "well")):
+        picture = page[:-5] + ".svg"
+        done = subprocess.run([PROGRAM, "judge", *paths, "--case", "sod", "--time", "0.2", "--gate", gates, "--html",
+                               page, "--plot", picture, "--json", page + ".json"], capture_output=True, text=True, timeout=120)
+        with open(page, encoding="utf-8") as text:
+            html = text.read()
+        with open(page + ".json", encoding="utf-8") as text:
+            got = json.load(text)
+        assert (done.returncode == 1) == (color == "unwell") == (got["status"] == "fail"), done
+        assert '<header class="%s">' % color in html, "the colour of the headline"
+        title = html.split("<h1>")[1].split("</h1>")[0].replace("&lt;", "<")
+        assert title == got["headline"] and done.stdout.endswith(title + "\n"), (title, got["headline"], done.stdout[-300:])
+        assert ("1 of 2 gates failed: velocity_l1" in title) == (color == "unwell"), title
+        for gate in got["gates"]:
+            assert "<code>%s</code>" % gate["name"] in html, gate
+        assert len(got["orders"]) == 4, got["orders"]
+        for order in got["orders"]:
+            numbers = ", ".join("%.3f" % p for p in order["pairwise"])
+            assert numbers in html and numbers.replace(",", "") in done.stdout, (numbers, done.stdout)
+        if shutil.which("gnuplot"):
+            with open(picture, encoding="utf-8") as text:
+                assert "particles" in text.read(), "no particles in the picture"
 
 
 def main():
