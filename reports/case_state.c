@@ -69,11 +69,8 @@ double case_state_error(const json_t *run, const char **name)
 {
     const char *measured = json_string_value(json_array_get(json_object_get(run, "measured"), 0));
     *name = measured ? measured : "density";
-    const json_t *errors = json_object_get(run, "errors");
-    const double cut = value_inner(errors, *name, "l1_cut"),
-                 whole = value_inner(errors, *name, "l1");
-    if (isfinite(cut) && !measured) return cut;
-    if (isfinite(whole)) return whole;
+    const double error = value_inner(json_object_get(run, "errors"), *name, "l1");
+    if (isfinite(error)) return error;
     const json_t *scalar = value_named(json_object_get(run, "functionals"), *name);
     return fabs(value_member(scalar, "value") - value_member(scalar, "reference"));
 }

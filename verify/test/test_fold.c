@@ -129,8 +129,8 @@ static const char flow[] =
     " {'case': 'tube', 'label': 'one', 'dimension': 1, 'status': 'ok', 'n': 3, 'profile': {'x': [0,"
     " 1, 2], 'density': [1, 1, 2], 'exact': {'x': [0, 2], 'density': [1, 2]}}}],"
     " 'studies': [{'case': 'tube', 'label': 'one', 'status': 'pass', 'levels': [{'n': 100,"
-    " 'errors': {'density': {'l1_cut': 0.0625}}}], 'orders': [{'field': 'density', 'norm': "
-    "'l1_cut',"
+    " 'errors': {'density': {'l1': 0.0625}}}], 'orders': [{'field': 'density', 'norm': "
+    "'l1',"
     " 'order': 1.25, 'low': 1, 'high': 1.5, 'gate': {'low': 1}, 'status': 'pass'}]}]}";
 
 static struct page page; /* of flow */
