@@ -154,7 +154,7 @@ size_t plan_explain(const struct scene *scene, struct plan_line *lines, size_t m
         line(&writer, "gravity", plan.gravity, "added to the forces", "gravity=0");
     }
     line(&writer, "sleep", plan.sleep,
-         "skip=auto: no sums where no signal has been; equal to tolerance 1e-10",
+         "skip=auto: no sums where no signal has been; acts as a start changed by 1e-11",
          plan.gravity ? "gravity: nobody is at rest" : "skip=none: every particle at every step");
     line(&writer, "final state", !scheme->integrator->ends_evaluated,
          "density and equation of state once more at t_end", "the last evaluation was at t_end");

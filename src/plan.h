@@ -33,7 +33,7 @@ struct scene; /* see simulation.h */
 /* What a scene needs. */
 struct plan plan_of_scene(const struct scene *scene);
 
-/* What the scheme needs in dim dimensions; skip: leave out work that cannot change the result. */
+/* What the scheme needs in dim dimensions; skip: leave out work: sleep.h. */
 struct plan plan_make(const struct scheme *scheme, int dim, bool skip, bool stamped);
 
 #endif

@@ -27,7 +27,7 @@ struct scene {
     const double *u;    /* n: specific internal energies, > 0 */
     const double *rho;  /* n: first guess of the density, or NULL */
     struct scheme scheme;
-    bool skip;      /* leave out work that cannot change the result */
+    bool skip;      /* leave out work: sleep.h */
     bool unstamped; /* the oracle: loops with every choice looked up at run time */
     int threads;    /* >= 1 */
 };

@@ -24,13 +24,11 @@ void sleep_scale(struct simulation *simulation)
     simulation->sleep.sound = energy > 0 ? sqrt(gamma * (gamma - 1) * energy / mass) : 0;
 }
 
-/* Tubes in 1D may amplify round-off by 1e9, and their signals die out within fewer particles.
- * Positions of order 1 are known to eps, spacings to n^(1/d) eps. */
+/* Positions of order 1 are known to eps, spacings to n^(1/d) eps. */
 double sleep_tolerance(const struct simulation *simulation)
 {
-    const int dim = simulation->plan.dim;
-    return fmax(dim == 1 ? 1e-11 : 1e-9,
-                30 * DBL_EPSILON * pow((double)simulation->particles.n, 1. / dim));
+    const double across = pow((double)simulation->particles.n, 1. / simulation->plan.dim);
+    return fmax(1e-11, 30 * DBL_EPSILON * across);
 }
 
 double sleep_disturbance(const struct simulation *simulation, ptrdiff_t first, ptrdiff_t len)

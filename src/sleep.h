@@ -43,7 +43,7 @@ struct sleep {
  * last neighbours of neighbours do, as what comes so far within one step is no more than 1e-4 of
  * it. */
 #define SLEEP_CALM    0.25
-#define SLEEP_VIOLENT 1e4
+#define SLEEP_VIOLENT 1e5
 
 /* Sets sleep.sound from the state. */
 void sleep_scale(struct simulation *simulation);

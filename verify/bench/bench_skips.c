@@ -8,6 +8,7 @@
 
 #include "bench_cells.h"
 #include "bench_loops.h"
+#include "bench_possible.h"
 #include "integrator.h"
 
 /* Work that keys bring back; where the case's own scheme does not leave it out, nothing is shown.
@@ -168,6 +169,7 @@ static struct bench_skip *new_skip(struct bench *bench, size_t c, const char *na
                                 .difference = (double)NAN,
                                 .l1 = {(double)NAN, (double)NAN},
                                 .skipped = (double)NAN,
+                                .possible = (double)NAN,
                                 .kept = true};
     return skip;
 }
@@ -306,9 +308,9 @@ static enum status add_case(struct bench *bench, size_t c, struct error *error)
 
 /* --- all of them ------------------------------------------------------------------------------ */
 
-/* What steps that are longer by a part of 1e-11 (the disturbance below which particles sleep) do to
- * the answer: strong shocks amplify round-off, and no promise can be kept to less. 0 where it
- * cannot be measured. */
+/* What steps that are longer by a part of the tolerance of sleep do to the answer: strong shocks
+ * and noise behind them amplify round-off, and no promise can be kept to less. 0 where it cannot be
+ * measured. */
 static double sensitivity(const struct job *job)
 {
     struct error ignored = {0};
@@ -331,9 +333,11 @@ static void judge(struct bench_skip *skip, const struct job *job)
     const struct run_result *a = &job[BENCH_WITHOUT].last, *b = &job[BENCH_WITH].last;
     skip->l1[BENCH_WITHOUT] = a->errors[FIELD_DENSITY].l1;
     skip->l1[BENCH_WITH] = b->errors[FIELD_DENSITY].l1;
-    if (a->cost.skipped_particle_updates)
-        skip->skipped = (double)a->cost.skipped_particle_updates /
-                        (double)(a->cost.skipped_particle_updates + a->cost.particle_updates);
+    struct bench_shares shares;
+    struct error ignored;
+    if (a->cost.skipped_particle_updates &&
+        !bench_possible(job[BENCH_WITHOUT].run, &shares, &ignored))
+        skip->skipped = shares.skipped, skip->possible = shares.possible;
     skip->difference = skip->promise == PROMISE_ERROR
                            ? skip->l1[BENCH_WITHOUT] / skip->l1[BENCH_WITH] - 1
                            : bench_skips_difference(&a->snapshot, &b->snapshot,

@@ -38,6 +38,7 @@ struct bench_skip {
     double cpu_s[BENCH_SIDES]; /* of a run, or of a particle's update */
     double spread;             /* the larger of both */
     double skipped;            /* fraction of particle updates left out; NaN: no such thing */
+    double possible;           /* the fraction that could be: bench_possible.h; NaN: not known */
     bool kept;                 /* the promise */
 };
 
