@@ -421,7 +421,7 @@ static void fit_says(const json_t *json, const struct order_fit *fit, const char
 static void order_says(const json_t *json, const struct study_order *order, const char *what,
                        const char *norm)
 {
-    static const char *const names[] = {"none", "pass", "fail", "known"};
+    static const char *const names[] = {"none", "pass", "fail", "known", "smoke", "undetermined"};
     const json_t *gate = json_object_get(json, "gate"), *why = json_object_get(json, "why");
     fit_says(json, &order->fit, what, norm);
     assert_string_equal(value_text(json, "status"), names[order->status]);

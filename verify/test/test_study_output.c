@@ -52,7 +52,7 @@ static json_t *pack_level(const struct study *study, const struct study_level *l
 static json_t *pack_order(const struct order_fit *fit, const char *what, const char *norm,
                           const struct study_order *judged)
 {
-    static const char *const words[] = {"none", "pass", "fail", "known"};
+    static const char *const words[] = {"none", "pass", "fail", "known", "smoke", "undetermined"};
     const enum study_gate status = judged ? judged->status : GATE_NONE;
     json_t *packed =
         json_pack("{s:s, s:s, s:o, s:o, s:o, s:[o, o, o], s:s, s:s}", "field", what, "norm", norm,
@@ -75,7 +75,7 @@ static json_t *pack_order(const struct order_fit *fit, const char *what, const c
 static json_t *pack_budget(const struct study_result *result)
 {
     const struct study_level *finest = &result->levels[LEVELS - 1];
-    static const char *const words[] = {"none", "pass", "fail", "known"};
+    static const char *const words[] = {"none", "pass", "fail", "known", "smoke", "undetermined"};
     json_t *regions = json_array();
     double whole = 0;
     for (size_t k = 0; finest->budget.regions->names[k]; k++) whole += finest->budget.l1[k][0];
