@@ -151,7 +151,7 @@ static void drawn(json_t *document)
         if (rand() % 6 == 0) continue;
         json_array_append_new(
             studies, json_pack("{s:s, s:s, s:{s:{s:f, s:f, s:f}}, s:{s:f}}", "case", "sod", "label",
-                               label, "errors", "density", "l1", 1e-3 * (1 + rand() % 3), "l1_cut",
+                               label, "errors", "density", "l1", 1e-3 * (1 + rand() % 3), "l1_whole",
                                1e-3 * (1 + rand() % 3), "linf", 0.1 * (1 + rand() % 3), "cost",
                                "cpu_s", 1. + rand() % 5));
     }

@@ -21,8 +21,8 @@
 
 enum { NIGHTS_MOST = 500, KEPT = 120 };
 
-static const char error_path[] = "studies[sod, ia].levels[n 400].errors.density.l1_cut",
-                  order_path[] = "studies[sod, ia].orders[density, l1_cut].order";
+static const char error_path[] = "studies[sod, ia].levels[n 400].errors.density.l1",
+                  order_path[] = "studies[sod, ia].orders[density, l1].order";
 
 /* What a night says; a field that is NULL or NaN is missing in its line. */
 struct night {
@@ -42,7 +42,7 @@ static json_t *results_of(const struct night *night)
         results, "studies",
         json_pack("[{s:s, s:s, s:s, s:[{s:i, s:{s:{s:f}}}], s:[{s:s, s:s, s:f, s:f, s:f}], s:[s]}]",
                   "case", "sod", "label", "ia", "status", "pass", "levels", "n", 400, "errors",
-                  "density", "l1_cut", night->error, "orders", "field", "density", "norm", "l1_cut",
+                  "density", "l1", night->error, "orders", "field", "density", "norm", "l1",
                   "order", night->order, "low", night->order - 0.01, "high", night->order + 0.01,
                   "measured", "density"));
     return results;
