@@ -134,7 +134,8 @@ def march(name, rows, dim, words, status=0, t_end=1e-6):
         if status:
             return done.stderr
         with open(end, encoding="ascii") as f:
-            lines = [[float(x) for x in line.split(",")] for line in f.read().split()[1:]]
+            lines = [[float(x) for x in line.split(",")] for line in f.read().split("\n")[1:-1]
+                     if line[0] != "#"]
     return json.loads(done.stdout), lines
 
 

@@ -46,9 +46,14 @@ def read(path):
         return f.read()
 
 
+def rows(path):
+    """The names and the particles, without what the snapshot says of its run."""
+    return [line for line in read(path).split("\n")[:-1] if line[0] != "#"]
+
+
 def apart(first, second):
     """The largest difference of two snapshots."""
-    pairs = list(zip(read(first).split("\n")[1:-1], read(second).split("\n")[1:-1]))
+    pairs = list(zip(rows(first)[1:], rows(second)[1:]))
     demand(len(pairs) == 576, "%d particles" % len(pairs))
     return max(abs(float(a) - float(b)) for one, two in pairs for a, b in zip(one.split(","), two.split(",")))
 
@@ -107,7 +112,7 @@ def ends(folder):
 
 
 def columns(path):
-    lines = read(path).split()
+    lines = rows(path)
     return {name: [float(line.split(",")[k]) for line in lines[1:]] for k, name in enumerate(lines[0].split(","))}
 
 
