@@ -350,6 +350,25 @@ static enum status take_checkpoint(struct kept *kept, const struct options *opti
     return STATUS_OK;
 }
 
+/* A picture of each snapshot on the way: F_0000.svg, F_0001.svg ... of F.svg. */
+struct pictures {
+    const struct run_settings *settings;
+    const char *path;
+};
+
+static void show_moment(void *context, const struct run_result *moment, size_t number,
+                        struct error *error)
+{
+    const struct pictures *pictures = context;
+    const struct snapshots named = {.path = pictures->path};
+    char *path = snapshots_path(&named, number);
+    if (path)
+        run_plot(pictures->settings, moment, path, error);
+    else
+        error_set(error, STATUS_ENVIRONMENT, "no memory for a path");
+    free(path);
+}
+
 static enum status run_case(const struct options *options, int n, char **arguments,
                             struct error *error)
 {
@@ -363,6 +382,8 @@ static enum status run_case(const struct options *options, int n, char **argumen
     struct snapshots snapshots;
     if (take_snapshots(&snapshots, options, &run, error)) return error->status;
     if (snapshots.path) run.asked.snapshots = &snapshots;
+    struct pictures pictures = {&settings, options_value(options, "plot")};
+    if (pictures.path) snapshots.show = show_moment, snapshots.context = &pictures;
     if (options_value(options, "explain")) return explain(options, &run, error);
     if (check_files(options, &snapshots, error)) return error->status;
 
@@ -393,13 +414,14 @@ static const struct command_option own_options[] = {
      "write the particles at the end: x,vx,m,rho,u,P,h (x,y,vx,vy ...), one line each;\n"
      "F.hdf5 or F.h5: HDF5 in GADGET's layout"},
     {"snapshot-every", "TIME",
-     "also F_0000.csv at the start, F_0001.csv after TIME of the simulation, and so on"},
+     "also F_0000.csv at the start, F_0001.csv after TIME of the simulation, and so on; with\n"
+     "--plot P.png P_0000.png ..., of which ffmpeg -i P_%04d.png P.mp4 makes a film"},
     {"checkpoint", "FILE", "keep the run's state there, to go on from it to the last bit"},
     {"every", "SECONDS", "so often (default 60)"},
     {"resume", NULL, "go on from the checkpoint; from the start where there is none"},
     {"plot", "FILE.svg|.png",
-     "draw the profiles over the exact solution; in 2D and 3D maps, with FILE.dat and\n"
-     "FILE.gp beside them: edit, and `gnuplot FILE.gp` draws FILE.svg again (needs gnuplot)"},
+     "draw profiles over the exact solution and the error; in 2D and 3D maps, with FILE.dat\n"
+     "and FILE.gp beside them: edit, and `gnuplot FILE.gp` draws FILE.svg again (needs gnuplot)"},
     {"explain", NULL,
      "print the plan: what would run and why, memory and time it would take; run nothing"},
     {NULL, NULL, NULL},

@@ -4,9 +4,12 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
+#include "cloud_profile.h"
 #include "map.h"
 #include "picture.h"
+#include "value.h"
 
 enum { PLOT_POINTS_EXACT = 1001 };
 
@@ -50,6 +53,27 @@ static bool profile_fill(struct profile *profile, const struct run_result *resul
     return true;
 }
 
+/* The first field that the case asks for. */
+static enum field main_field(const struct run_settings *settings)
+{
+    int field = 0;
+    while (field + 1 < FIELDS && !settings->file.fields[field]) field++;
+    return (enum field)field;
+}
+
+/* SPH - exact at each particle of a series, malloced. NULL: no memory. */
+static double *profile_errors(const struct plot_series *particles, const struct run_result *result,
+                              enum field field)
+{
+    double *off = malloc((particles->n + 1) * sizeof *off);
+    for (size_t i = 0; off && i < particles->n; i++) {
+        struct problem_state state;
+        problem_sample(&result->problem, (double[3]){particles->x[i]}, result->time, &state);
+        off[i] = particles->y[i] - problem_field(&state, field);
+    }
+    return off;
+}
+
 static enum status draw_profiles(const struct run_settings *settings,
                                  const struct run_result *result, const char *path,
                                  struct error *error)
@@ -57,7 +81,10 @@ static enum status draw_profiles(const struct run_settings *settings,
     static const char *const labels[FIELDS] = {"density", "velocity", "pressure",
                                                "internal energy"};
     struct profile profiles[FIELDS] = {0};
-    struct plot_panel panels[FIELDS] = {0};
+    struct plot_panel panels[FIELDS + 1] = {0};
+    struct plot_series off = {.label = NULL};
+    const struct plot_mark zero = {0, true, NULL};
+    char error_label[64];
     const bool known = !result->problem.problem->fieldless;
     size_t n = 0;
     char title[256];
@@ -75,13 +102,31 @@ static enum status draw_profiles(const struct run_settings *settings,
                                         .series_count = known ? 2 : 1};
         n++;
     }
-    snprintf(title, sizeof title, "%s, n = %zu, t = %g", settings->file.title, result->n,
-             result->time);
+    if (known && n) {
+        const enum field field = main_field(settings);
+        if (!(off.y = profile_errors(&profiles[0].series[1], result, field))) {
+            status = error_set(error, STATUS_ENVIRONMENT, "--plot %.150s: no memory", path);
+            goto end;
+        }
+        off.x = profiles[0].series[1].x, off.n = profiles[0].series[1].n;
+        off.kind = PLOT_POINTS, off.size = 0.5, off.color = 1;
+        snprintf(error_label, sizeof error_label, "error of %s", labels[field]);
+        panels[n++] = (struct plot_panel){.x_label = "x (code units)",
+                                          .y_label = error_label,
+                                          .key = PLOT_KEY_NONE,
+                                          .series = &off,
+                                          .series_count = 1,
+                                          .marks = &zero,
+                                          .mark_count = 1};
+    }
+    snprintf(title, sizeof title, "%s, n = %zu, t = %g%s", settings->file.title, result->n,
+             result->time, known ? "" : "; no exact solution, no error");
     const struct plot plot = {
         .name = "run", .title = title, .show_title = true, .panels = panels, .panel_count = n};
     status = picture_write(&plot, path, error);
 end:
     for (size_t i = 0; i < FIELDS; i++) free(profiles[i].storage);
+    free((void *)off.y);
     return status;
 }
 
@@ -114,14 +159,6 @@ static void map_values(const struct run_result *result, int panel, enum field fi
     }
 }
 
-/* The first field that the case asks for. */
-static enum field main_field(const struct run_settings *settings)
-{
-    int field = 0;
-    while (field + 1 < FIELDS && !settings->file.fields[field]) field++;
-    return (enum field)field;
-}
-
 static void map_titles(const struct run_result *result, enum field field, char titles[MAPS][96])
 {
     static const char *const names[FIELDS] = {"density", "velocity", "pressure", "internal energy"};
@@ -149,6 +186,66 @@ static void map_size(struct plot *plot, const struct map *map)
     }
 }
 
+/* Particles over the exact curve, where the solution has one coordinate: the field that the case is
+ * measured by, of circular flows the part of the velocity that is not nothing. Arrays are owned. */
+struct scatter {
+    struct plot_series series[2];
+    double *arrays[4];
+    char label[64];
+    const char *over;
+};
+
+static bool varies(const json_t *exact, const char *name)
+{
+    size_t n;
+    double *y = value_numbers(json_object_get(exact, name), &n), low = 0, high = 0;
+    for (size_t i = 0; i < n; i++) low = fmin(low, y[i]), high = fmax(high, y[i]);
+    free(y);
+    return high > low;
+}
+
+/* False: there is no such curve, or no memory. */
+static bool scatter_fill(struct scatter *scatter, const struct run_result *result, enum field field)
+{
+    static const char *const names[FIELDS] = {"density", "velocity", "pressure", "pressure"};
+    json_t *profile = cloud_profile_json(result);
+    const json_t *exact = json_object_get(profile, "exact");
+    const char *name = names[field];
+    size_t n[4];
+    if (field == FIELD_VELOCITY && !json_object_get(profile, name))
+        name = varies(exact, "azimuthal") ? "azimuthal" : "radial";
+    const json_t *from[4] = {json_object_get(exact, "x"), json_object_get(exact, name),
+                             json_object_get(profile, "x"), json_object_get(profile, name)};
+    for (int k = 0; k < 4; k++) scatter->arrays[k] = value_numbers(from[k], &n[k]);
+    const bool there = n[0] && n[0] == n[1] && n[2] && n[2] == n[3];
+    snprintf(scatter->label, sizeof scatter->label, "%s%s", name,
+             field == FIELD_VELOCITY && name != names[field] ? " velocity" : "");
+    scatter->over = !strcmp(value_text(profile, "over"), "R") ? "distance from the middle [length]"
+                                                              : "x [length]";
+    json_decref(profile);
+    scatter->series[0] = (struct plot_series){.label = "particles",
+                                              .kind = PLOT_POINTS,
+                                              .n = n[2],
+                                              .x = scatter->arrays[2],
+                                              .y = scatter->arrays[3],
+                                              .color = 1,
+                                              .size = 0.4};
+    scatter->series[1] = (struct plot_series){.label = "exact",
+                                              .kind = PLOT_LINES,
+                                              .n = n[0],
+                                              .x = scatter->arrays[0],
+                                              .y = scatter->arrays[1],
+                                              .color = PLOT_NEUTRAL};
+    return there;
+}
+
+static bool has_void(const double *z, size_t cells)
+{
+    for (size_t c = 0; c < cells; c++)
+        if (!isfinite(z[c])) return true;
+    return false;
+}
+
 static enum status draw_maps(const struct run_settings *settings, const struct run_result *result,
                              const char *path, struct error *error)
 {
@@ -157,8 +254,11 @@ static enum status draw_maps(const struct run_settings *settings, const struct r
     const size_t panels_used = result->problem.problem->fieldless ? MAPS - 1 : MAPS;
     struct map map;
     struct plot_heat heats[MAPS];
-    struct plot_panel panels[MAPS];
-    char titles[MAPS][96], title[256], slice[64] = "";
+    struct plot_panel panels[MAPS + 1];
+    struct scatter scatter = {.over = ""};
+    size_t panels_drawn = panels_used;
+    bool voids = false;
+    char titles[MAPS][96], title[400], slice[64] = "";
     if (map_create(&map, &result->problem.domain, s, MAP_CELLS, error)) return error->status;
     const size_t cells = map.nx * map.ny;
     double *values = malloc((s->n + MAPS * cells) * sizeof *values);
@@ -171,6 +271,7 @@ static enum status draw_maps(const struct run_settings *settings, const struct r
         double *z = values + s->n + k * cells;
         map_values(result, (int)k, field, values);
         map_mean(&map, values, z);
+        voids = voids || has_void(z, cells);
         heats[k] = (struct plot_heat){.nx = map.nx,
                                       .ny = map.ny,
                                       .x = map.x,
@@ -192,16 +293,27 @@ static enum status draw_maps(const struct run_settings *settings, const struct r
     }
     if (result->problem.domain.dim == 3)
         snprintf(slice, sizeof slice, ", slice z = %.3g to %.3g", map.slice[0], map.slice[1]);
-    snprintf(title, sizeof title, "%.120s, n = %zu, t = %g%s", settings->file.title, result->n,
-             result->time, slice);
+    if (panels_used == MAPS && scatter_fill(&scatter, result, field))
+        panels[panels_drawn++] = (struct plot_panel){.title = "particles (points) and exact (line)",
+                                                     .x_label = scatter.over,
+                                                     .y_label = scatter.label,
+                                                     .own_x = true,
+                                                     .key = PLOT_KEY_NONE,
+                                                     .series = scatter.series,
+                                                     .series_count = 2};
+    snprintf(title, sizeof title, "%.120s, n = %zu, t = %g%s%s%s", settings->file.title, result->n,
+             result->time, slice,
+             voids ? "; white: outside the measure window, or no particle near" : "",
+             panels_used < MAPS ? "; no exact solution, no error" : "");
     struct plot plot = {.name = "run",
                         .title = title,
                         .show_title = true,
                         .panels = panels,
-                        .panel_count = panels_used};
+                        .panel_count = panels_drawn};
     map_size(&plot, &map);
     enum status status = picture_write(&plot, path, error);
     if (!status) status = picture_source(&plot, path, error);
+    for (int k = 0; k < 4; k++) free(scatter.arrays[k]);
     free(values);
     map_free(&map);
     return status;

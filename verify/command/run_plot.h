@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What sphproof run --plot draws: on a line profiles over the exact solution, in 2D maps of
- * density, speed and the error of the case's first field where it is known, in 3D a slice of two
- * mean distances of particles through the middle of the box. */
+ * What sphproof run --plot draws: on a line profiles over the exact solution and the error of the
+ * case's first field; in 2D maps of density, speed and the error of that field where it is known,
+ * and beside them particles over the exact curve where the solution has one coordinate; in 3D the
+ * same of a slice of two mean distances of particles through the middle of the box. */
 #ifndef SPHPROOF_RUN_PLOT_H
 #define SPHPROOF_RUN_PLOT_H
 

@@ -323,6 +323,8 @@ static void leave_snapshot(const struct watch *watch, size_t number)
         error_set(&error, STATUS_ENVIRONMENT, "no memory for a path");
     else if (!keep_snapshot(&moment, &seen, &error))
         run_write_snapshot(&moment, path, &error);
+    if (!error.status && snapshots->show)
+        snapshots->show(snapshots->context, &moment, number, &error);
     if (error.status) snapshots_fail(snapshots, &error);
     run_free(&moment);
     free(path);

@@ -13,9 +13,15 @@
 
 enum { SNAPSHOTS_MOST = 10000 }; /* files; their numbers have four digits */
 
+struct run_result;
+
 struct snapshots {
-    const char *path;     /* of the one at the end */
-    double every;         /* interval, of the run's time */
+    const char *path; /* of the one at the end */
+    double every;     /* interval, of the run's time */
+    /* Called with each that was made on the way; may be NULL. */
+    void (*show)(void *context, const struct run_result *moment, size_t number,
+                 struct error *error);
+    void *context;
     struct error trouble; /* why the first that could not be written was not */
     /* kept by the functions below: */
     size_t next, count; /* number of the next one; how many there are beside the one at the end */

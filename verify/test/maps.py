@@ -27,7 +27,15 @@ def main():
         subprocess.run([PROGRAM, "run", "sound_wave_2d", "n=16^2", "t_end=0", "--plot", picture, "--quiet"], check=True,
                        timeout=60)
         found = blocks(os.path.join(folder, NAME + ".dat"))
-        assert len(found) == 3, "density, speed and error: %d blocks" % len(found)
+        assert len(found) == 5, "density, speed, error, particles and the exact curve: %d blocks" % len(found)
+        particles, exact = found[3], found[4]
+        assert len(particles) > 100 and len(exact) > 100, (len(particles), len(exact))
+        # at the start both are the wave of the density, about 1
+        mean = sum(point[1] for point in exact) / len(exact)
+        assert math.isclose(mean, 1, rel_tol=1e-4), mean
+        for x, v in particles:
+            near = min(exact, key=lambda point: abs(point[0] - x))
+            assert abs(v - near[1]) <= 0.003, (x, v, near)
         density = found[0]
         assert len(density) == len(density[0]) == 16, "rows of cells: %d" % len(density)
         # the wave runs along x: rows are alike, columns are not
@@ -39,8 +47,21 @@ def main():
         subprocess.run(["gnuplot", NAME + ".gp"], cwd=folder, check=True, timeout=60)
         with open(picture, encoding="utf-8") as f:
             again = f.read()
-        assert "<svg" in again and again.count("<image") == 3 and len(again) > 0.3 * size, "drawn again: %d" % len(again)
-    print("a map's data and script draw it again")
+        assert "<svg" in again and again.count("<image") == 3 and "exact (line)" in again and len(again) > 0.3 * size, "drawn again: %d" % len(again)
+        # of snapshots on the way a picture each, each with its time; on a line with a panel of the error
+        film = os.path.join(folder, "film.svg")
+        subprocess.run([PROGRAM, "run", "sod", "n=99", "t_end=0.1", "--snapshot", os.path.join(folder, "s.csv"),
+                        "--snapshot-every", "0.04", "--plot", film, "--quiet"], check=True, timeout=60)
+        for name, time in (("film_0000", "t = 0<"), ("film_0001", "t = 0.04<"), ("film_0002", "t = 0.08<"), ("film", "t = 0.1<")):
+            with open(os.path.join(folder, name + ".svg"), encoding="utf-8") as f:
+                picture = f.read()
+            assert time in picture and "error of density" in picture, (name, time)
+        assert not os.path.exists(os.path.join(folder, "film_0003.svg"))
+        # where nothing is exact it says so
+        subprocess.run([PROGRAM, "run", "kelvin_helmholtz", "n=16^2", "t_end=0.1", "--plot", film, "--quiet"], check=True, timeout=60)
+        with open(film, encoding="utf-8") as f:
+            assert "no exact solution, no error" in f.read()
+    print("a map's data and script draw it again; a picture of each moment")
 
 
 main()
