@@ -55,6 +55,9 @@ static enum status next_line(struct reader *reader, bool *more)
     *more = c != EOF || n > 0;
     if (n > 0 && reader->text[n - 1] == '\r') n--;
     reader->text[n] = '\0';
+    const size_t mark = reader->line == 1 && strncmp(reader->text, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
+    memmove(reader->text, reader->text + mark, n + 1 - mark);
+    n -= mark;
     if (memchr(reader->text, '\r', n))
         return fail(reader, (size_t)(strchr(reader->text, '\r') - reader->text) + 1,
                     "carriage return inside a line; allowed: LF or CRLF at its end");
@@ -105,8 +108,7 @@ static bool read_number(const char *text, double *value)
 static enum status read_names(struct reader *reader, struct csv *csv)
 {
     reader->separators = strchr(reader->text, ',') ? "," : " \t";
-    const char *mark = "\xef\xbb\xbf";
-    char *rest = reader->text + (strncmp(reader->text, mark, 3) ? 0 : 3);
+    char *rest = reader->text;
     while (rest) {
         size_t character;
         double number;

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 
 #include "made_hdf5.h"
+#include "made_notes.h"
 #include "made_place.h"
 #include "snapshot_file.h"
 
@@ -249,6 +250,37 @@ static void is_read(const struct layout *l, const struct item *items,
     assert_string_equal(file->code, l->code);
 }
 
+/* What is said about them. */
+static void is_noted(const struct layout *l, const struct item *items,
+                     const struct snapshot_file *file)
+{
+    const struct field *gamma = field_of(l, items, GAMMA), *dim = field_of(l, items, DIMENSION);
+    const bool exa = strcmp(l->name, "sph_exa") == 0, swift = strcmp(l->name, "swift") == 0,
+               phantom = strcmp(l->name, "phantom_hdf5") == 0;
+    bool masses = false, density = false;
+    char word[80] = "";
+    for (size_t k = 0; k < l->count; k++) {
+        if (l->fields[k].meaning == GAMMA) snprintf(word, sizeof word, "%s", items[k].path);
+        masses = masses || (l->fields[k].column == SNAPSHOT_M && items[k].path[0]);
+        density = density || (l->fields[k].column == SNAPSHOT_RHO && items[k].path[0]);
+    }
+    if (strcmp(l->name, "gadget_hdf5") == 0 && gamma) *strchr(word, '/') = ':';
+    noted(file, "gamma", gamma ? "in the file" : NULL,
+          swift     ? "HydroScheme/Adiabatic index, in float32 2"
+          : phantom ? "its header"
+                    : word);
+    noted(file, "masses", masses || exa || phantom ? NULL : "from MassTable",
+          "Header/MassTable[0] = 7");
+    noted(file, "density", phantom && !density ? "m (hfact/h)^3" : NULL, "hfact = 3");
+    noted(file, "step", exa ? "Step#10" : NULL, "the last one of the file");
+    noted(file, "origin", field_of(l, items, BOX_ENDS) ? "lower corner of the box" : NULL,
+          "(-8, -2, 4)");
+    noted(file, "files", NULL, "");
+    snprintf(word, sizeof word, "%d", file->dim);
+    noted(file, "dimensions", word,
+          dim || phantom ? "the file says so, and positions" : "positions differ along");
+}
+
 static const struct snapshot_options here = {.here = true};
 
 static inline void reads(const struct layout *l, const struct item *items, const char *what)
@@ -260,6 +292,7 @@ static inline void reads(const struct layout *l, const struct item *items, const
     if (snapshot_read(path, &here, &file, &error))
         fail_msg("%s: %s: %s", l->name, what, error.message);
     is_read(l, items, &file);
+    is_noted(l, items, &file);
     snapshot_file_free(&file);
 }
 

@@ -11,8 +11,8 @@
 #include <string.h>
 #include <cmocka.h>
 
+#include "made_notes.h"
 #include "made_place.h"
-#include "snapshot_file.h"
 
 enum { TYPES = 6, MOST = 40, BYTES = 1 << 16 };
 enum { POS, VEL, ID, MASS, U, RHO, HSML, ACCE, BLOCKS };
@@ -163,6 +163,32 @@ static enum status read_bytes(size_t size, struct snapshot_file *file, struct er
     return snapshot_read(path_of("a.gadget"), &plain, file, error);
 }
 
+static void is_noted(const struct binary *b, const struct snapshot_file *file)
+{
+    char words[80], value[80];
+    size_t records = 1 + b->extra;
+    for (int k = 0; k < BLOCKS; k++) records += b->there[k];
+    snprintf(words, sizeof words, "%s byte order, %zu records",
+             b->swapped ? "the other" : "this machine's", records);
+    noted(file, "format", b->tagged ? "2" : "1", words);
+    snprintf(value, sizeof value, "%.9g", b->table[0]);
+    noted(file, "masses", b->table[0] > 0 ? "from the header's table" : NULL, value);
+    noted(file, "positions", file->precision[0] < file->precision[1] ? "float64" : NULL,
+          "24 bytes a particle");
+    snprintf(value, sizeof value, "%s from record %zu on", b->there[MASS] ? "masses" : "energies",
+             5 + b->extra);
+    snprintf(words, sizeof words, "of %zu records only these", records);
+    noted(file, "blocks", b->tagged ? NULL : value, words);
+    if (b->tagged) return;
+    const char *evidence = "";
+    for (size_t k = 0; k < file->notes.count; k++)
+        if (strcmp(file->notes.note[k].what, "blocks") == 0)
+            evidence = file->notes.note[k].evidence;
+    snprintf(words, sizeof words, "of the volume %.4g, and", pow(SIDE, b->dim));
+    assert_non_null(strstr(evidence, words));
+    assert_true(!strstr(evidence, "the records before them are the code's own") == !b->extra);
+}
+
 static void is_read(const struct binary *b, const char *what)
 {
     struct snapshot_file file;
@@ -195,6 +221,7 @@ static void is_read(const struct binary *b, const char *what)
             }
     }
     for (int k = 0; k < 2; k++) assert_true(file.precision[k] == precision[k]);
+    is_noted(b, &file);
     snapshot_file_free(&file);
 }
 

@@ -66,6 +66,8 @@ static void every_order(void **state)
             }
             if (read_parts("run.05.0.hdf5", &file, &error)) fail_msg("%s", error.message);
             assert_true(file.n == n && file.gas == n && file.parts == parts);
+            snprintf(name, sizeof name, "%d", parts);
+            noted(&file, "files", parts > 1 ? name : NULL, "the header says so; read as one");
             size_t at = 0;
             for (int k = 0; k < parts; k++)
                 for (int i = 0; i < N - order[k]; i++, at++)

@@ -9,8 +9,8 @@
 #include <string.h>
 #include <cmocka.h>
 
+#include "made_notes.h"
 #include "made_place.h"
-#include "snapshot_file.h"
 #ifdef HAVE_ZLIB
 #include <zlib.h>
 #endif
@@ -209,6 +209,7 @@ static void random_styles(void **state)
                 for (int i = 0; i < 5; i++) t.value[c][i] = 1; /* at least four are gas */
         reads(&t, NULL, &file);
         assert_string_equal(file.layout, "csv");
+        assert_string_equal(file.code, "unknown");
         snapshot_file_free(&file);
     }
 }
@@ -282,6 +283,7 @@ static void remarks(void **state)
             reads(&t, NULL, &file);
             assert_true(file.time.known == rows[k].timed && file.time.value == rows[k].time);
             assert_true(file.gamma.known == rows[k].known && file.gamma.value == rows[k].gamma);
+            noted(&file, "gamma", rows[k].known ? "in the file" : NULL, "its line '");
             assert_true(file.boxed == rows[k].boxed);
             for (int d = 0; d < dim; d++) assert_true(file.box[d] == rows[k].box[d]);
             snapshot_file_free(&file);
@@ -516,6 +518,10 @@ static void splash(void **state)
         snprintf(t.head, sizeof t.head, "%s", rows[k].head);
         reads(&t, NULL, &file);
         assert_string_equal(file.layout, "splash");
+        assert_string_equal(file.code, "unknown, through SPLASH");
+        char value[40];
+        snprintf(value, sizeof value, "%zu of %d rows", file.gas, ROWS);
+        noted(&file, "gas", file.gas < ROWS ? value : NULL, "1 is gas as SPLASH numbers types");
         assert_true(file.time.known == rows[k].timed &&
                     file.time.value == (rows[k].timed ? 0.25 : 0));
         snapshot_file_free(&file);

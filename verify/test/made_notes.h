@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What a reader says that it assumed. Include after cmocka.h. */
+#ifndef MADE_NOTES_H
+#define MADE_NOTES_H
+
+#include <stdio.h>
+#include <string.h>
+
+#include "snapshot_file.h"
+
+/* There is one such note, and it has this value and evidence that holds these words; value NULL:
+ * there is none. */
+static inline void noted(const struct snapshot_file *file, const char *what, const char *value,
+                         const char *words)
+{
+    const struct snapshot_note *found = NULL;
+    for (size_t k = 0; k < file->notes.count; k++)
+        if (strcmp(file->notes.note[k].what, what) == 0) {
+            if (found) fail_msg("%s is said twice", what);
+            found = &file->notes.note[k];
+        }
+    if (!found != !value) fail_msg("%s is %ssaid", what, found ? "" : "not ");
+    if (!value) return;
+    if (strcmp(found->value, value) != 0 || !strstr(found->evidence, words))
+        fail_msg("%s: '%s', '%s'; not '%s', '%s'", what, found->value, found->evidence, value,
+                 words);
+}
+
+#endif
