@@ -1,0 +1,106 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Snapshots as text with values that a test plants, and what judge says of them. Include after
+ * cmocka.h. */
+#ifndef MADE_SNAPSHOT_H
+#define MADE_SNAPSHOT_H
+
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+#include "judge.h"
+#include "made_place.h"
+
+enum { N = 240 };
+
+static uint64_t seed = 26;
+static inline double uniform(double lo, double hi)
+{
+    seed = seed * 6364136223846793005u + 1442695040888963407u;
+    return lo + (hi - lo) * (double)(seed >> 11) / 9007199254740992.;
+}
+
+/* A snapshot as text: only those columns that are set. */
+struct planted {
+    int dim;
+    char head[200];
+    bool has_u, has_P, has_h;
+    double x[3][N], v[3][N], m[N], rho[N], u[N], P[N], h[N];
+};
+
+static struct planted gas;
+
+/* Gas at random places in [lo, lo + (2, 1, 1)], at rest and in equilibrium. */
+static inline void plant(int dim, double lo, const char *head)
+{
+    gas = (struct planted){.dim = dim, .has_u = true};
+    snprintf(gas.head, sizeof gas.head, "%s", head);
+    for (int i = 0; i < N; i++) {
+        for (int d = 0; d < dim; d++) gas.x[d][i] = uniform(lo, lo + (d ? 1 : 2));
+        gas.m[i] = uniform(1, 2) / N;
+        gas.rho[i] = 1, gas.u[i] = 2.5, gas.P[i] = 1;
+    }
+    for (int d = 0; d < dim; d++) gas.x[d][0] = lo, gas.x[d][1] = lo + (d ? 1 : 2);
+}
+
+static inline char *put(const char *name)
+{
+    char *path = path_of(name);
+    FILE *out = fopen(path, "w");
+    assert_non_null(out);
+    fprintf(out, "%s", gas.head);
+    for (int d = 0; d < gas.dim; d++) fprintf(out, "%c,v%c,", 'x' + d, 'x' + d);
+    fprintf(out, "m%s%s%s,rho\n", gas.has_u ? ",u" : "", gas.has_P ? ",P" : "",
+            gas.has_h ? ",h" : "");
+    for (int i = 0; i < N; i++) {
+        for (int d = 0; d < gas.dim; d++) fprintf(out, "%.17g,%.17g,", gas.x[d][i], gas.v[d][i]);
+        fprintf(out, "%.17g", gas.m[i]);
+        if (gas.has_u) fprintf(out, ",%.17g", gas.u[i]);
+        if (gas.has_P) fprintf(out, ",%.17g", gas.P[i]);
+        if (gas.has_h) fprintf(out, ",%.17g", gas.h[i]);
+        fprintf(out, ",%.17g\n", gas.rho[i]);
+    }
+    fclose(out);
+    return path;
+}
+
+/* Two gases that are the same. */
+static inline struct judge_request uniform_gas(void)
+{
+    return (struct judge_request){.case_name = "sod",
+                                  .left = "1 0 1",
+                                  .right = "1 0 1",
+                                  .gamma = {true, 1.4},
+                                  .time = {true, 0.1},
+                                  .kernel = -1};
+}
+
+static inline void judges(const struct judge_request *request, struct judged *judged)
+{
+    struct error error = {0};
+    if (judge_snapshot(put("a.csv"), request, judged, &error)) fail_msg("%s", error.message);
+}
+
+static inline void refuses(const struct judge_request *request, const char *says)
+{
+    struct judged judged;
+    struct error error = {0};
+    const enum status status = judge_snapshot(put("a.csv"), request, &judged, &error);
+    judge_free(&judged);
+    if (status != STATUS_BAD_INPUT || !strstr(error.message, says))
+        fail_msg("status %d, '%s' is not in: %s", (int)status, says, error.message);
+}
+
+static inline const struct snapshot_note *note(const struct judged *judged, const char *what)
+{
+    const struct snapshot_notes *notes = &judged->file.notes;
+    for (size_t k = notes->count; k-- > 0;)
+        if (strcmp(notes->note[k].what, what) == 0) return &notes->note[k];
+    fail_msg("nothing is said about %s", what);
+    return NULL;
+}
+
+__attribute__((unused)) static const char *const boxes[] = {"", "# box = 2\n", "# box = 2 1\n",
+                                                            "# box = 2 1 1\n"};
+
+#endif

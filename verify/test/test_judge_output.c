@@ -1,0 +1,184 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The document of judged snapshots says what was found, of each of them and of all. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "made_snapshot.h"
+#include "near.h"
+
+/* Two gases that are one in 2D, off by so much in density; later by so much, with more mass. */
+static void judged_of(double rho, double time, double mass, struct judged *judged)
+{
+    struct judge_request request = uniform_gas();
+    static char names[4][256];
+    static int next;
+    struct error error = {0};
+    plant(2, 0, "# box = 2 1\n");
+    gas.has_P = gas.has_h = true;
+    for (int i = 0; i < N; i++) {
+        gas.m[i] = mass / N, gas.rho[i] = rho, gas.h[i] = 0.2;
+        gas.u[i] = 1 / (0.4 * rho);
+        gas.v[1][i] = 0.01;
+    }
+    request.time.value = time;
+    snprintf(names[next], sizeof names[0], "%s",
+             put(next == 0   ? "a.csv"
+                 : next == 1 ? "b.csv"
+                             : "c.csv"));
+    if (judge_snapshot(names[next], &request, judged, &error)) fail_msg("%s", error.message);
+    next++;
+}
+
+static const json_t *at(const json_t *from, const char *a, const char *b)
+{
+    const json_t *found = json_object_get(from, a);
+    if (found && b) found = json_object_get(found, b);
+    if (!found) fail_msg("no %s %s", a, b ? b : "");
+    return found;
+}
+
+static double real_at(const json_t *from, const char *a, const char *b)
+{
+    return json_number_value(at(from, a, b));
+}
+
+static void is_one(const json_t *one, const struct judged *judged, double rho)
+{
+    const struct conventions *c = &judged->conventions;
+    assert_string_equal(json_string_value(at(one, "file", NULL)), judged->path);
+    assert_string_equal(json_string_value(at(one, "layout", NULL)), "csv");
+    assert_string_equal(json_string_value(at(one, "code", NULL)), "unknown");
+    assert_string_equal(json_string_value(at(one, "verdict", NULL)), judged->verdict);
+    assert_int_equal(json_integer_value(at(one, "n", NULL)), N);
+    assert_int_equal(json_integer_value(at(one, "dim", NULL)), 2);
+    assert_true(real_at(one, "time", NULL) == judged->result.time);
+    assert_true(real_at(one, "precision", "positions") == judged->file.precision[0]);
+    assert_true(real_at(one, "precision", "fields") == judged->file.precision[1]);
+    near_relative(json_number_value(at(at(one, "errors", "density"), "l1", NULL)), rho - 1, 1e-12);
+    near_relative(real_at(one, "noise", "transverse_velocity"), 0.01, 1e-12);
+    assert_true(json_boolean_value(at(one, "foreign", NULL)) == judged->foreign);
+    const json_t *notes = at(one, "assumptions", NULL);
+    assert_int_equal(json_array_size(notes), judged->file.notes.count);
+    for (size_t k = 0; k < json_array_size(notes); k++) {
+        const struct snapshot_note *note_of = &judged->file.notes.note[k];
+        const json_t *got = json_array_get(notes, k);
+        assert_string_equal(json_string_value(at(got, "what", NULL)), note_of->what);
+        assert_string_equal(json_string_value(at(got, "value", NULL)), note_of->value);
+        assert_string_equal(json_string_value(at(got, "evidence", NULL)), note_of->evidence);
+    }
+    const json_t *kernel = at(one, "kernel", NULL), *candidates = at(kernel, "candidates", NULL);
+    assert_string_equal(json_string_value(at(kernel, "name", NULL)), "not identifiable");
+    assert_true(json_is_null(at(kernel, "ratio", NULL)) && json_is_null(at(kernel, "said", NULL)) &&
+                json_is_null(at(kernel, "said_ratio", NULL)));
+    assert_true(real_at(kernel, "residual", NULL) == c->candidate[0].residual);
+    assert_string_equal(json_string_value(at(kernel, "why", NULL)), c->why);
+    assert_int_equal(json_array_size(candidates), c->count);
+    for (size_t k = 0; k < c->count; k++) {
+        const json_t *got = json_array_get(candidates, k);
+        assert_string_equal(json_string_value(at(got, "name", NULL)),
+                            c->candidate[k].kernel.member.name);
+        assert_string_equal(json_string_value(at(got, "density", NULL)), "masses");
+        assert_true(real_at(got, "ratio", NULL) == c->candidate[k].ratio);
+        assert_true(real_at(got, "residual", NULL) == c->candidate[k].residual);
+    }
+}
+
+static void documents(void **state)
+{
+    struct judged judged[2];
+    struct judge_gate gates[] = {{"density_l1", 0.25, 0.5, true}, {"velocity_l2", 3, 2, false}};
+    (void)state;
+    judged_of(1.01, 0.05, 2, &judged[0]);
+    judged_of(1.02, 0.1, 2.5, &judged[1]);
+    for (size_t n = 1; n <= 2; n++) {
+        json_t *document = judge_json(judged, n, gates, 2, n == 2);
+        assert_non_null(document);
+        is_one(document, &judged[n - 1], n == 1 ? 1.01 : 1.02);
+        assert_string_equal(json_string_value(at(document, "case", NULL)), "sod");
+        assert_true(real_at(document, "settings", "gamma") == 1.4);
+        assert_int_equal(json_array_size(at(document, "orders", NULL)), 0);
+        const json_t *list = at(document, "gates", NULL);
+        assert_int_equal(json_array_size(list), 2);
+        for (size_t k = 0; k < 2; k++) {
+            const json_t *one = json_array_get(list, k);
+            assert_string_equal(json_string_value(at(one, "name", NULL)), gates[k].name);
+            assert_true(real_at(one, "value", NULL) == gates[k].value &&
+                        real_at(one, "bound", NULL) == gates[k].bound);
+            assert_string_equal(json_string_value(at(one, "status", NULL)), k ? "fail" : "pass");
+        }
+        assert_true(!json_object_get(document, "profile") == (n == 1));
+        assert_true(!json_object_get(document, "snapshots") == (n == 1));
+        const json_t *conservation = at(document, "conservation", NULL);
+        assert_true(json_is_null(conservation) == (n == 1));
+        if (n == 2) {
+            near_relative(real_at(conservation, "mass", NULL), 0.25, 1e-12);
+            near_relative(real_at(conservation, "momentum", NULL), 0.2, 1e-9);
+            assert_true(real_at(conservation, "angular_momentum", NULL) >= 0);
+            near_relative(real_at(conservation, "energy", NULL),
+                          fabs(judged[1].sums.energy / judged[0].sums.energy - 1), 1e-9);
+            const json_t *between = at(conservation, "between", NULL);
+            assert_string_equal(json_string_value(json_array_get(between, 0)), judged[0].path);
+            assert_string_equal(json_string_value(json_array_get(between, 1)), judged[1].path);
+            const json_t *all = at(document, "snapshots", NULL);
+            assert_int_equal(json_array_size(all), 2);
+            for (size_t k = 0; k < 2; k++) {
+                is_one(json_array_get(all, k), &judged[k], k ? 1.02 : 1.01);
+                assert_non_null(json_object_get(json_array_get(all, k), "profile"));
+            }
+        }
+        json_decref(document);
+    }
+    /* a kernel that is known, and what the file says of it */
+    judged[0].conventions.known = true;
+    judged[0].conventions.candidate[0].sum = DENSITY_NUMBER;
+    strcpy(judged[0].file.kernel, "a spline");
+    judged[0].file.ratio = 1.75;
+    json_t *document = judge_json(judged, 1, NULL, 0, false);
+    const json_t *kernel = at(document, "kernel", NULL);
+    assert_string_equal(json_string_value(at(kernel, "name", NULL)),
+                        judged[0].conventions.candidate[0].kernel.member.name);
+    assert_true(real_at(kernel, "ratio", NULL) == judged[0].conventions.candidate[0].ratio);
+    assert_string_equal(json_string_value(at(kernel, "said", NULL)), "a spline");
+    assert_true(real_at(kernel, "said_ratio", NULL) == 1.75);
+    assert_string_equal(
+        json_string_value(at(json_array_get(at(kernel, "candidates", NULL), 0), "density", NULL)),
+        "number");
+    assert_int_equal(json_array_size(at(document, "gates", NULL)), 0);
+    judged[0].conventions.count = 0;
+    json_decref(document);
+    document = judge_json(judged, 1, NULL, 0, false);
+    assert_true(json_is_null(at(document, "kernel", "residual")));
+    json_decref(document);
+    for (int k = 0; k < 2; k++) judge_free(&judged[k]);
+}
+
+/* On a line there is neither noise nor angular momentum. */
+static void on_a_line(void **state)
+{
+    const struct judge_request request = uniform_gas();
+    struct judged judged[2];
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        struct judge_request later = request;
+        later.time.value = 0.1 + 0.1 * k;
+        plant(1, 0, "# box = 2\n");
+        judges(&later, &judged[k]);
+    }
+    json_t *document = judge_json(judged, 2, NULL, 0, false);
+    assert_true(json_is_null(at(document, "noise", "transverse_velocity")));
+    assert_true(json_is_null(at(document, "conservation", "angular_momentum")));
+    json_decref(document);
+    for (int k = 0; k < 2; k++) judge_free(&judged[k]);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(documents),
+        cmocka_unit_test(on_a_line),
+    };
+    return cmocka_run_group_tests(tests, make_place, remove_place);
+}

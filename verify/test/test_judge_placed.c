@@ -1,0 +1,228 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Gamma and time, the place of the case in the box of a snapshot, columns that it lacks, and what
+ * is asked for in vain. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "made_snapshot.h"
+#include "near.h"
+
+/* ---- gamma, time ---- */
+
+static void gammas(void **state)
+{
+    static const struct {
+        double said, in_file, planted, scatter, want; /* 0: not there */
+        const char *evidence;
+    } rows[] = {
+        {1.3, 1.5, 1.2, 0, 1.3, "--gamma; but the file's own P/(rho u)"},
+        {1.3, 1.5, 1.3, 0, 1.3, "--gamma"},
+        {0, 1.5, 1.2, 0, 1.5, "the file says so; but the file's own P/(rho u)"},
+        {0, 1.5, 1.5, 0, 1.5, "the file says so"},
+        {0, (double)1.4f, 0, 0, 1.4, "the file says so"},
+        {0, (double)(5 / 3.f), 0, 0, 5 / 3., "the file says so"},
+        {0, 1.4 * (1 + 1.4e-7), 0, 0, 1.4, "the file says so"},
+        {0, 1.4 * (1 + 1.6e-7), 0, 0, 1.4 * (1 + 1.6e-7), "the file says so"},
+        {0, 1.23456, 0, 0, 1.23456, "the file says so"},
+        {0, 0, 1.25, 0, 1.25, "the file has none, but P = (gamma - 1) rho u of its particles"},
+        {0, 0, 1.25, 9e-6, 1.25, "the file has none, but P = (gamma - 1) rho u"},
+        {0, 0, 1.25, 3e-5, 1.4, "the file has none: the case's"},
+        {0, 0, 0, 0, 1.4, "the file has none: the case's"}};
+    (void)state;
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        struct judge_request request = uniform_gas();
+        struct judged judged;
+        plant(1, 0, "");
+        gas.has_P = rows[k].planted > 0;
+        if (rows[k].in_file > 0)
+            snprintf(gas.head, sizeof gas.head, "# gamma = %.17g\n", rows[k].in_file);
+        for (int i = 0; i < N; i++) {
+            gas.rho[i] = uniform(1, 1.5), gas.u[i] = i == 5 ? 0 : uniform(2, 3);
+            gas.P[i] = (rows[k].planted - 1) * gas.rho[i] * gas.u[i];
+        }
+        gas.P[9] *= 1 + rows[k].scatter * 1.25 / 0.25; /* of gamma itself */
+        request.gamma = (struct snapshot_value){rows[k].said > 0, rows[k].said};
+        judges(&request, &judged);
+        near_relative(judged.run.problem.gamma, rows[k].want, 1e-15);
+        const char *evidence = note(&judged, "gamma")->evidence;
+        if (strncmp(evidence, rows[k].evidence, strlen(rows[k].evidence)) != 0 ||
+            (!strstr(rows[k].evidence, ";") && strstr(evidence, ";")))
+            fail_msg("row %zu: %s", k, evidence);
+        judge_free(&judged);
+    }
+}
+
+static void times(void **state)
+{
+    struct judge_request request = uniform_gas();
+    struct judged judged;
+    (void)state;
+    plant(1, 0, "# time = 0.125\n");
+    judges(&request, &judged);
+    assert_true(judged.result.time == 0.1 && judged.file.time.value == 0.1);
+    assert_string_equal(note(&judged, "time")->evidence, "--time");
+    judge_free(&judged);
+    request.time.known = false;
+    judges(&request, &judged);
+    assert_true(judged.result.time == 0.125 && judged.run.problem.problem);
+    assert_string_equal(note(&judged, "time")->evidence, "the file says so");
+    judge_free(&judged);
+    gas.head[0] = '\0';
+    refuses(&request, "says no time; --time T helps");
+    request.time = (struct snapshot_value){true, -1e-9};
+    refuses(&request, "allowed: 0 or above");
+    request.time.value = 0;
+    judges(&request, &judged);
+    assert_true(judged.result.time == 0);
+    judge_free(&judged);
+    snprintf(gas.head, sizeof gas.head, "# time = -1\n");
+    request.time.known = false;
+    refuses(&request, "time = -1; allowed: 0 or above");
+}
+
+/* ---- place ---- */
+
+static void places(void **state)
+{
+    static const struct {
+        double lo, hi; /* of the particles */
+        const char *head;
+        double x0; /* asked; 9: not */
+        double want_lo, want_hi, window[2];
+        bool periodic;
+        const char *box;
+    } rows[] = {
+        {0, 2, "# box = 2\n", 9, 0, 2, {0.5, 1.5}, true, "positions lie in it"},
+        {0, 2, "# box = 2\n", 0.75, -0.25, 1.75, {0.25, 1.25}, true, "positions lie in it"},
+        {0.1, 1.9, "# box = 2\n", 9, 0, 2, {0.5, 1.5}, true, "positions lie in it"},
+        {-1e-6, 2, "# box = 2\n", 9, 0, 2, {0.5, 1.5}, true, "positions lie in it"},
+        {-1, 1, "# box = 2\n", 9, -1, 1, {-0.5, 0.5}, true, "about the middle of the particles"},
+        {-0.9, 1, "# box = 2\n", 9, -1, 1, {-0.5, 0.5}, true, "about the middle of the particles"},
+        {-0.7,
+         1.1,
+         "# box = 2\n",
+         9,
+         -0.8,
+         1.2,
+         {-0.3, 0.7},
+         true,
+         "about the middle of the particles"},
+        {0, 4, "# box = 4\n", 9, 0, 4, {1, 3}, true, "positions lie in it"},
+        {-1, 1, "", 9, -1, 1, {-0.5, 0.5}, true, "all positions lie in the case's and fill it"},
+        {-0.8, 0.8, "", 9, -1, 1, {-0.5, 0.5}, true, "all positions lie in the case's and fill it"},
+        {-0.79, 0.8, "", 9, -0.795, 0.795, {-0.3975, 0.3975}, false, "as far as particles reach"},
+        {-1.01, 1, "", 9, -1.005, 1.005, {-0.5025, 0.5025}, false, "as far as particles reach"},
+        {-1, 1.01, "", 9, -1.005, 1.005, {-0.5025, 0.5025}, false, "as far as particles reach"},
+        {0, 2, "", 9, 0, 2, {0.5, 1.5}, false, "as far as particles reach"},
+        {0, 2, "", 1.25, 0.25, 2.25, {0.75, 1.75}, false, "as far as particles reach"},
+        {-1.5, 2.1, "", 9, -1.8, 1.8, {-0.9, 0.9}, false, "as far as particles reach"},
+        {-1.5, 2.3, "", 9, -1.5, 2.3, {-0.55, 1.35}, false, "as far as particles reach"},
+    };
+    (void)state;
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        struct judge_request request = uniform_gas();
+        struct judged judged;
+        plant(1, 0, rows[k].head);
+        for (int i = 0; i < N; i++)
+            gas.x[0][i] = i == 0   ? rows[k].lo
+                          : i == 1 ? rows[k].hi
+                                   : rows[k].lo + (rows[k].hi - rows[k].lo) * (i + 0.5) / N;
+        if (rows[k].x0 < 9) request.x0 = (struct snapshot_value){true, rows[k].x0};
+        judges(&request, &judged);
+        const struct prepared *p = &judged.run.problem;
+        const double middle = 0.5 * (rows[k].want_lo + rows[k].want_hi);
+        near_absolute(p->domain.lo[0] - rows[k].want_lo, 0, 1e-14);
+        near_absolute(p->domain.hi[0] - rows[k].want_hi, 0, 1e-14);
+        near_absolute(p->window.lo[0] - rows[k].window[0], 0, 1e-14);
+        near_absolute(p->window.hi[0] - rows[k].window[1], 0, 1e-14);
+        if (!strstr(note(&judged, "box")->evidence, rows[k].box))
+            fail_msg("row %zu: %s", k, note(&judged, "box")->evidence);
+        near_absolute(atof(note(&judged, "x0")->value) - middle, 0, 1e-8);
+        judge_free(&judged);
+    }
+    struct judge_request request = uniform_gas();
+    for (int more = 0; more < 2; more++) /* ends are allowed, what lies beyond is not */
+        for (int end = 0; end < 2; end++) {
+            plant(1, 0, "# box = 2\n");
+            request.x0 = (struct snapshot_value){true, end ? 2 + 1e-9 * more : -1e-9 * more};
+            if (more) {
+                refuses(&request, "allowed: in its box, 0 to 2");
+            } else {
+                struct judged judged;
+                judges(&request, &judged);
+                assert_true(judged.run.problem.domain.lo[0] == (end ? 1 : -1));
+                judge_free(&judged);
+            }
+        }
+    request = uniform_gas();
+    plant(1, 0, "# box = 1.99\n");
+    refuses(&request, "positions reach from 0 to 2");
+    plant(2, 0, "# box = 2 0.99\n");
+    refuses(&request, "long along y, but positions reach from 0 to 1");
+}
+
+/* ---- what is not there, what is asked for in vain ---- */
+
+static void completed(void **state)
+{
+    (void)state;
+    for (int which = 0; which < 4; which++) {
+        struct judge_request request = uniform_gas();
+        struct judged judged;
+        plant(1, 0, "# box = 2\n");
+        gas.has_u = which != 1, gas.has_P = which != 0;
+        for (int i = 0; i < N; i++) {
+            gas.rho[i] = uniform(1, 1.5), gas.u[i] = uniform(2, 3);
+            gas.P[i] = 0.4 * gas.rho[i] * gas.u[i];
+        }
+        if (which == 3) gas.P[7] *= 1 + 1e-3;
+        if (which == 2) gas.P[7] *= 1 + 2e-16;
+        judges(&request, &judged);
+        for (int i = 0; i < N; i++) {
+            near_relative(judged.file.column[SNAPSHOT_P][i], gas.P[i], 1e-15);
+            near_relative(judged.file.column[SNAPSHOT_U][i], gas.u[i], 1e-15);
+        }
+        if (which == 1)
+            assert_string_equal(note(&judged, "internal energy")->value, "P/((gamma - 1) rho)");
+        else
+            assert_string_equal(note(&judged, "pressure")->value,
+                                which == 3 ? "as stored" : "(gamma - 1) rho u");
+        judge_free(&judged);
+    }
+}
+
+static void in_vain(void **state)
+{
+    struct judge_request request = uniform_gas();
+    (void)state;
+    plant(2, 0, "# box = 2 1\n");
+    request.case_name = "gresho", request.left = request.right = NULL;
+    request.x0 = (struct snapshot_value){true, 0};
+    refuses(&request, "belong to two gases that meet");
+    request.x0.known = false, request.left = "1 0 1";
+    refuses(&request, "belong to two gases that meet");
+    request.left = NULL, request.right = "1 0 1";
+    refuses(&request, "belong to two gases that meet");
+    plant(1, 0, "# box = 2\n");
+    request.right = NULL;
+    refuses(&request, "particles in 1 dimensions; the case gresho has 2");
+    plant(3, 0, "# box = 2 1 1\n");
+    refuses(&request, "particles in 3 dimensions; the case gresho has 2");
+    request = uniform_gas();
+    plant(1, 0, "# box = 2\n");
+    for (int i = 2; i < N; i++) gas.x[0][i] = uniform(0, 0.4);
+    gas.x[0][1] = 0.4;
+    refuses(&request, "no particle lies in the window; --x0");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(gammas),    cmocka_unit_test(times),   cmocka_unit_test(places),
+        cmocka_unit_test(completed), cmocka_unit_test(in_vain),
+    };
+    return cmocka_run_group_tests(tests, make_place, remove_place);
+}
