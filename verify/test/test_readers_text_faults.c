@@ -1,0 +1,151 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Tables of text that are spoilt at one place, which the message names, and columns that the user
+ * names, rightly and wrongly. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "made_table.h"
+
+/* ---- columns by the user's names ---- */
+
+static void maps(void **state)
+{
+    struct table t = table_of(1, true);
+    struct snapshot_file file;
+    static char text[TEXT_MAX];
+    (void)state;
+    t.columns -= 2;
+    for (size_t c = 0; c < t.columns; c++) {
+        struct table other = t;
+        char map[80];
+        snprintf(other.name[c], sizeof other.name[c], "some thing");
+        snprintf(map, sizeof map, "%s=some thing", snapshot_column_names[t.meaning[c]]);
+        reads(&other, map, &file);
+        snapshot_file_free(&file);
+    }
+    struct table swapped = t; /* rho and P, each by the other's name */
+    size_t rho = 0, P = 0;
+    for (size_t c = 0; c < t.columns; c++) {
+        if (t.meaning[c] == SNAPSHOT_RHO) rho = c;
+        if (t.meaning[c] == SNAPSHOT_P) P = c;
+    }
+    strcpy(swapped.name[rho], "P"), strcpy(swapped.name[P], "rho");
+    reads(&swapped, "rho=P,P=rho", &file);
+    snapshot_file_free(&file);
+    const size_t size = text_of(&t, text, -1, -1, NULL);
+    refuses(text, size, "rho=Density", "has no column 'Density'; it has 'x' 'vx'");
+    refuses(text, size, "rho=rh", "has no column 'rh'");
+    refuses(text, size, "rho=rhoo", "has no column 'rhoo'");
+    refuses(text, size, "rho", "NAME one of");
+    refuses(text, size, "rho,P=P", "NAME one of");
+    refuses(text, size, "density=rho", "NAME one of");
+    refuses(text, size, "P=P,rho", "NAME one of");
+    refuses(text, size, "=rho", "NAME one of");
+    for (size_t c = 1; c < t.columns; c++) { /* called twice */
+        struct table twice = t;
+        char says[80];
+        strcpy(twice.name[c], "X");
+        snprintf(says, sizeof says, "columns 'x' and 'X' both look like x");
+        refuses(text, text_of(&twice, text, -1, -1, NULL), NULL, says);
+    }
+    struct table unknown = t;
+    strcpy(unknown.name[0], "entropy"), strcpy(unknown.name[1], "entropy");
+    refuses(text, text_of(&unknown, text, -1, -1, NULL), NULL, "no x; found: m rho u P");
+}
+
+/* ---- faults at one place ---- */
+
+static void spoilt(void **state)
+{
+    static const char *const words[] = {
+        "hot",  "nan",  "inf", "-",     "1e400",
+        "1..2", "0x10", "1e",  "\"1\"", "1.00000000000000000000000000000000000000000000001",
+        "1;2"};
+    static char text[TEXT_MAX];
+    (void)state;
+    for (int draw = 0; draw < 220; draw++) {
+        struct table t = table_of(1 + draw % 3, true);
+        char says[80];
+        t.separator = draw % 2 ? ',' : ' ';
+        t.wide = draw / 2 % 2, t.comments = draw / 4 % 2, t.returns = draw / 8 % 2;
+        const int row = (int)drawn(ROWS), column = (int)drawn((unsigned)t.columns);
+        const char *word = words[draw % (int)(sizeof words / sizeof *words)];
+        snprintf(says, sizeof says, ":%d: column %d, '%s': no number",
+                 2 + row + (t.comments ? 2 + 2 * ((row + 2) / 3) : 0), column + 1, t.name[column]);
+        refuses(text, text_of(&t, text, row, column, word), NULL, says);
+        if (t.separator == ',') refuses(text, text_of(&t, text, row, column, ""), NULL, says);
+        const bool next = t.separator == ',' && column + 1 < (int)t.columns;
+        if (next)
+            snprintf(says, sizeof says, "column %d, '%s': no number", column + 2,
+                     t.name[column + 1]);
+        else
+            snprintf(says, sizeof says, "more than %zu numbers", t.columns);
+        refuses(text, text_of(&t, text, row, column, "1 2"), NULL, says);
+    }
+    for (int c = 0; c < 2; c++) { /* a line that is too short */
+        struct table t = table_of(2, true);
+        t.separator = c ? ',' : ' ', t.open_end = true;
+        size_t size = text_of(&t, text, -1, -1, NULL);
+        while (text[size - 1] != t.separator) size--;
+        refuses(text, size, NULL, "no number (or a row that is too short)");
+        refuses(text, size - 1, NULL, "no number (or a row that is too short)");
+    }
+}
+
+static void heads(void **state)
+{
+    static const struct {
+        const char *text, *says;
+    } rows[] = {
+        {"1,2\n3,4\n", "'1' is a number"},
+        {"x,1\n3,4\n", "'1' is a number"},
+        {"# time = 3\n1 2\n", "'3' is a number"},
+        {"#\n1 2\n", "'1' is a number"},
+        {"#  \n1 2\n", "no line with the names"},
+        {"\n \t\n\r\n", "no line with the names"},
+        {"# x vx\n", "no line with the names"},
+        {"x,,m\n1,2,3\n", "of 1 to 47 letters"},
+        {"x, ,m\n1,2,3\n", "of 1 to 47 letters"},
+        {"x,\n1\n", "of 1 to 47 letters"},
+        {"x,\r\n1\r\n", "of 1 to 47 letters"},
+        {"x,vx\n1,2,\n", ":2: more than 2 numbers"},
+        {"x,vx,m,rho,u\n", "0 gas particles"},
+        {"x,vx,m,rho,u\n1,2,3,4,5\n2,2,3,4,5\n3,2,3,4,5\n", "3 gas particles; allowed: at least 4"},
+        {"x,vx,m,rho,u\n1,2,3,4,5\n1,2,3,4,5\n1,2,3,4,5\n1,2,3,4,5\n",
+         "all particles are at one place"},
+        {"x\x01,vx\n1,2\n", "no snapshot that is read"},
+        {"x\x7f,vx\n1,2\n", "no snapshot that is read"},
+        {"\n\x1f\x7f", "no snapshot that is read"}};
+    char text[8000] = "";
+    (void)state;
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
+        refuses(rows[k].text, strlen(rows[k].text), NULL, rows[k].says);
+    for (int more = 0; more < 2; more++) { /* 64 columns, of 47 letters */
+        size_t at = 0;
+        for (int c = 0; c < 64 + more; c++)
+            at += (size_t)sprintf(text + at, "%sc%d", c ? "," : "", c);
+        at += (size_t)sprintf(text + at, "\n");
+        refuses(text, at, NULL, more ? "at most 64" : "no x");
+        memset(text, 'n', 47 + (size_t)more);
+        at = 47 + (size_t)more + (size_t)sprintf(text + 47 + more, " x\n");
+        refuses(text, at, NULL, more ? "of 1 to 47 letters" : "no vx");
+    }
+    memset(text, ' ', sizeof text); /* only its beginning is asked whether it is text */
+    text[4096] = '\x01';
+    refuses(text, 4097, NULL, "no x");
+    text[4095] = '\x01';
+    refuses(text, 4097, NULL, "no snapshot that is read");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(maps),
+        cmocka_unit_test(spoilt),
+        cmocka_unit_test(heads),
+    };
+    return cmocka_run_group_tests(tests, make_place, remove_place);
+}
