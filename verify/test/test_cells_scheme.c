@@ -418,14 +418,58 @@ static void test_awake_in_flow(void **state)
     }
 }
 
+/* The step after which somebody slept for the first time; 0: nobody has. */
+struct seen {
+    struct simulation *simulation;
+    uint64_t first;
+};
+
+static bool note_asleep(void *context, double time, uint64_t steps)
+{
+    struct seen *seen = context;
+    (void)time;
+    if (!seen->first && seen->simulation->sleep.awake_count < seen->simulation->particles.n)
+        seen->first = steps;
+    return true;
+}
+
+/* Gas in which neighbours move against each other is awake, and falls asleep once viscosity has
+ * brought it to rest; with and without sleep it comes to the same. */
+static void test_asleep_again(void **state)
+{
+    (void)state;
+    double ends[2][256];
+    for (int skip = 0; skip < 2; skip++) {
+        const struct scheme scheme = made_scheme();
+        struct scene scene = scene_of(2, 16, 0, &scheme);
+        struct seen seen = {0};
+        struct snapshot s;
+        scene.skip = skip;
+        for (size_t i = 0; i < 256; i++) {
+            x[0][i] = ((double)(i % 16) + 0.5) / 16, x[1][i] = ((double)(i / 16) + 0.5) / 16;
+            m[i] = 1. / 256, u[i] = 1, v[1][i] = 0;
+            v[0][i] = (i + i / 16) % 2 ? 1e-9 : -1e-9;
+        }
+        seen.simulation = made_of(&scene);
+        assert_int_equal(seen.simulation->sleep.awake_count, 256);
+        assert_int_equal(simulation_run(seen.simulation, 2, note_asleep, &seen, NULL), STATUS_OK);
+        assert_true(skip ? seen.first > 1 : seen.first == 0);
+        simulation_snapshot(seen.simulation, &s);
+        for (size_t i = 0; i < s.n; i++) ends[skip][s.id[i]] = s.x[0][i];
+        simulation_destroy(seen.simulation);
+    }
+    for (size_t i = 0; i < 256; i++) near_below(fabs(ends[1][i] - ends[0][i]), 1e-11);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_beta),         cmocka_unit_test(test_balsara),
-        cmocka_unit_test(test_signals),      cmocka_unit_test(test_fallen_back),
-        cmocka_unit_test(test_lagrangian),   cmocka_unit_test(test_alone),
-        cmocka_unit_test(test_equal_masses), cmocka_unit_test(test_axes_are_alike),
-        cmocka_unit_test(test_awake),        cmocka_unit_test(test_awake_in_flow),
+        cmocka_unit_test(test_asleep_again),   cmocka_unit_test(test_beta),
+        cmocka_unit_test(test_balsara),        cmocka_unit_test(test_signals),
+        cmocka_unit_test(test_fallen_back),    cmocka_unit_test(test_lagrangian),
+        cmocka_unit_test(test_alone),          cmocka_unit_test(test_equal_masses),
+        cmocka_unit_test(test_axes_are_alike), cmocka_unit_test(test_awake),
+        cmocka_unit_test(test_awake_in_flow),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
