@@ -232,7 +232,7 @@ static void together(struct buffer *to, const json_t *document)
 
 bool page_make_judge(struct page *page, const json_t *document)
 {
-    struct page_writer writer = {0};
+    struct page_writer writer = {.alone = true};
     struct buffer *to = &writer.to;
     const json_t *snapshots = json_object_get(document, "snapshots"), *one;
     size_t k;

@@ -41,10 +41,13 @@ void page_plot(struct page_writer *writer, const struct plot *plot, const char *
     free(svg);
     buffer_add(to, "<figcaption>");
     buffer_escape(to, caption);
-    buffer_format(to,
-                  " <span class=\"files\"><a href=\"plots/%s.dat\">data</a>, "
-                  "<a href=\"plots/%s.gp\">script</a></span></figcaption></figure>\n",
-                  plot->name, plot->name);
+    if (!writer->alone)
+        buffer_format(to,
+                      " <span class=\"files\"><a href=\"plots/%s.dat\">data</a>, "
+                      "<a href=\"plots/%s.gp\">script</a></span>",
+                      plot->name, plot->name);
+    buffer_add(to, "</figcaption></figure>\n");
+    if (writer->alone) return;
     if (!plot_source(plot, &script, &data)) {
         to->failed = true;
         return;

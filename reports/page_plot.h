@@ -26,6 +26,7 @@ void page_plots_free(struct page_plots *plots);
 struct page_writer {
     struct buffer to;
     struct page_plots plots;
+    bool alone; /* nothing will lie beside the page */
 };
 
 /* Draws and inlines a plot as <figure>; keeps its sources for beside the page. One that cannot be

@@ -76,7 +76,7 @@ static bool varies(const json_t *curve, const char *name)
     double low = (double)INFINITY, high = -(double)INFINITY;
     widen(y, n, &low, &high);
     free(y);
-    return high - low > 0.02 * fmax(fabs(low), fabs(high));
+    return high - low > 1e-9 * fmax(fabs(low), fabs(high));
 }
 
 /* What a picture shows of a profile: what the case is judged by, else the first quantity whose
@@ -120,10 +120,11 @@ static bool profile(struct buffer *to, const json_t *run)
             else
                 widen(&exact_y[i], 1, &f.y0, &f.y1);
         }
-        /* what hardly varies is drawn flat: noise of a thousandth is none of a half */
-        const double flat = 0.05 * fmax(fabs(f.y0), fabs(f.y1)) - (f.y1 - f.y0) / 2,
-                     up = fmax(0, flat);
-        f.y0 -= up, f.y1 += up;
+        /* noise about what is constant is not blown up to the whole picture */
+        if (!varies(exact, name)) {
+            const double most = fmax(fabs(f.y0), fabs(f.y1));
+            f.y0 = fmin(f.y0, -0.1 * most), f.y1 += 0.1 * most;
+        }
         svg_begin(to, name);
         path(to, "exact", &f, exact_x, exact_y, exact_n, exact_n, true);
         path(to, "dots", &f, x, y, n, DOTS, false);
@@ -244,11 +245,10 @@ static void card(struct buffer *to, const json_t *results, const char *name)
         svg_begin(to, "no picture");
         buffer_add(to, "</svg>");
     }
-    buffer_add(to, "<span class=\"name\"><b>");
-    html_words(to, name);
-    buffer_add(to, "</b>");
     html_status(to, state);
-    buffer_add(to, "</span>");
+    buffer_add(to, "<span><b>");
+    html_words(to, name);
+    buffer_add(to, "</b></span>");
     figures(to, run, study);
     buffer_add(to, "</a>\n");
 }

@@ -536,6 +536,7 @@ def page_says_what_the_terminal_says(paths, page):
         with open(page + ".json", encoding="utf-8") as text:
             got = json.load(text)
         assert (done.returncode == 1) == (color == "unwell") == (got["status"] == "fail"), done
+        assert 'href="plots/' not in html, "a link to what is not there"
         assert '<header class="%s">' % color in html, "the colour of the headline"
         title = html.split("<h1>")[1].split("</h1>")[0].replace("&lt;", "<")
         assert title == got["headline"] and done.stdout.endswith(title + "\n"), (title, got["headline"], done.stdout[-300:])
