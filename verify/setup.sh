@@ -94,7 +94,6 @@ setup_missing() {
     esac
     case $1 in nightly)
         setup_has valgrind || echo valgrind
-        setup_has faketime || echo faketime
         [ -e /usr/share/i18n/locales/de_DE ] || echo locales ;;
     esac
 }

@@ -133,9 +133,8 @@ def march(name, rows, dim, words, status=0, t_end=1e-6):
             sys.exit("run %dD %s: exit status %d, not %d: %s" % (dim, name, done.returncode, status, done.stderr))
         if status:
             return done.stderr
-        with open(end, encoding="ascii") as f:
-            lines = [[float(x) for x in line.split(",")] for line in f.read().split("\n")[1:-1]
-                     if line[0] != "#"]
+        with open(end, encoding="utf-8", errors="surrogateescape") as f:
+            lines = [[float(x) for x in line.split(",")] for line in f.read().splitlines()[1:] if line[0] != "#"]
     return json.loads(done.stdout), lines
 
 

@@ -33,7 +33,7 @@ def run(program, words):
                               capture_output=True, text=True, timeout=120)
         if done.returncode:
             sys.exit("%s: exit %d: %s" % (" ".join(words), done.returncode, done.stderr))
-        with open(path, encoding="ascii") as file:
+        with open(path, encoding="utf-8", errors="surrogateescape") as file:
             rows = [{key: float(value) for key, value in row.items()} for row in csv.DictReader(line for line in file if line[0] != "#")]
     return json.loads(done.stdout), rows
 

@@ -13,7 +13,7 @@ NAME = "a wave's map"  # a blank and a quote
 
 
 def blocks(path):
-    with open(path, encoding="ascii") as f:
+    with open(path, encoding="utf-8", errors="surrogateescape") as f:
         parts = f.read().split("\n\n\n")
     return [[[float(x) for x in line.split()] for line in part.split("\n") if line and line[0] != "#"]
             for part in parts if part.strip()]

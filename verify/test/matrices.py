@@ -117,7 +117,7 @@ def judge(document, m, gradient, where):
 
 
 def particles(path):
-    with open(path, newline="", encoding="ascii") as f:
+    with open(path, newline="", encoding="utf-8", errors="surrogateescape") as f:
         return list(csv.DictReader(line for line in f if not line.startswith("#")))
 
 
@@ -136,7 +136,7 @@ def flat(folder, dim):
     for row in rows:
         x = float(row["x"])
         row["x"] = repr(x if x < 0.2 else 0.6 + 1e-4 * (x - 0.6))
-    with open(pressed, "w", newline="", encoding="ascii") as f:
+    with open(pressed, "w", newline="", encoding="utf-8", errors="surrogateescape") as f:
         writer = csv.DictWriter(f, rows[0].keys())
         writer.writeheader()
         writer.writerows(rows)
@@ -145,9 +145,9 @@ def flat(folder, dim):
     count = judge(document, [float(row["m"]) for row in rows], "ia", "%dD, flat" % dim)
     assert 0 < count < len(rows), count
     case = os.path.join(folder, "flat%d.ini" % dim)
-    with open(case, "w", encoding="ascii") as f:
+    with open(case, "w", encoding="utf-8", errors="surrogateescape") as f:
         f.write("[case]\ntitle = particles of a file\ndimension = %d\nreference = none\n[domain]\nlo = 0\nhi = 1\n"
-                "[initial]\nkind = particles\nfile = %s\n[run]\ngamma = 1.4\nt_end = 1e-9\n" % (dim, pressed))
+                "[initial]\nkind = particles\nfile = %s\n[run]\ngamma = 1.4\nt_end = 1e-9\n" % (dim, os.path.basename(pressed)))
     run = sphproof("run", case, *scheme)["matrix"]
     if run["fallen_back"] != count or run["fallen_back_most"] != count:
         sys.exit("%dD: in a run %r have fallen back, not %d" % (dim, run, count))

@@ -36,7 +36,7 @@ def particles(dim):
 
 
 def table(path):
-    with open(path, newline="", encoding="ascii") as f:
+    with open(path, newline="", encoding="utf-8", errors="surrogateescape") as f:
         return list(csv.DictReader(line for line in f if not line.startswith("#")))
 
 

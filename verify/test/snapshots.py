@@ -94,7 +94,7 @@ def test_interval():
 
 
 def rows(path):
-    with open(path, encoding="ascii") as file:
+    with open(path, encoding="utf-8", errors="surrogateescape") as file:
         return [[float(value) for value in line] for line in list(csv.reader(file))[1:]
                 if line[0][0] != "#"]
 

@@ -42,7 +42,7 @@ def write(path, text):
 
 
 def read(path):
-    with open(path, encoding="ascii") as f:
+    with open(path, encoding="utf-8", errors="surrogateescape") as f:
         return f.read()
 
 

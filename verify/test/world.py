@@ -23,7 +23,8 @@ import subprocess
 import sys
 import time
 
-import worlds
+sys.dont_write_bytecode = True  # the source tree may be read-only, and stays clean
+import worlds  # noqa: E402
 
 
 def clean_environment():
