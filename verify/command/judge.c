@@ -106,10 +106,27 @@ static void print_kernels(const struct conventions *c)
     printf("\n");
 }
 
+enum { CELL = 24 };
+
+/* What is no number is a dash. */
+static const char *cell(char text[CELL], double value)
+{
+    snprintf(text, CELL, isnan(value) ? "-" : "%.6g", value);
+    return text;
+}
+
+static void print_norms(const char *name, const struct norms *of)
+{
+    char text[4][CELL];
+    printf("%-16s %12s %12s %12s %14s\n", name, cell(text[0], of->l1), cell(text[1], of->l2),
+           cell(text[2], of->linf), cell(text[3], of->particle_mean));
+}
+
 static void print_one(const struct judged *judged, const struct table_style *style)
 {
     const struct run_result *r = &judged->result;
     const struct snapshot_notes *notes = &judged->file.notes;
+    char text[2][CELL];
     printf("%s%s%s: %s, %s, %zu particles in %dD at t = %.6g\n", style->bold, judged->path,
            style->end, judged->file.layout, judged->file.code, r->n, judged->file.dim, r->time);
     printf("\nassumed:\n");
@@ -119,23 +136,20 @@ static void print_one(const struct judged *judged, const struct table_style *sty
     print_kernels(&judged->conventions);
     if (!r->problem.problem->fieldless) {
         printf("\n%-16s %12s %12s %12s %14s\n", "errors", "l1", "l2", "linf", "particle_mean");
-        for (int f = 0; f < FIELDS; f++)
-            printf("%-16s %12.6g %12.6g %12.6g %14.6g\n", field_family.members[f]->name,
-                   r->errors[f].l1, r->errors[f].l2, r->errors[f].linf, r->errors[f].particle_mean);
-        if (r->problem.problem->circular)
-            printf("%-16s %12.6g %12.6g %12.6g %14.6g\n", "azimuthal", r->azimuthal.l1,
-                   r->azimuthal.l2, r->azimuthal.linf, r->azimuthal.particle_mean);
+        for (int f = 0; f < FIELDS; f++) print_norms(field_family.members[f]->name, &r->errors[f]);
+        if (r->problem.problem->circular) print_norms("azimuthal", &r->azimuthal);
     }
     if (r->problem.problem->fieldless) printf("\n");
     for (size_t k = 0; k < r->functional_count; k++)
-        printf("%-24s %.6g (exact %.6g)\n", r->functionals[k].name, r->functionals[k].value,
-               r->functionals[k].exact);
+        printf("%-24s %s (exact %s)\n", r->functionals[k].name,
+               cell(text[0], r->functionals[k].value), cell(text[1], r->functionals[k].exact));
     const struct regions *regions = r->budget.regions;
     if (regions) printf("\nwhere the L1 of density comes from:");
     for (size_t k = 0; regions && regions->names[k]; k++)
         printf(" %s %.3g", regions->names[k], r->budget.l1[k][FIELD_DENSITY]);
     if (regions) printf("\n");
-    if (judged->file.dim > 1) printf("noise across the flow: %.3g\n", judged->transverse);
+    if (judged->file.dim > 1)
+        printf("noise across the flow: %s\n", cell(text[0], judged->transverse));
     if (r->suspicion[0]) printf("suspicious: %s\n", r->suspicion);
     printf("\n%s%s%s\n\n", judged->foreign ? style->bad : style->bold, judged->verdict, style->end);
 }

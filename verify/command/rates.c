@@ -57,7 +57,8 @@ static enum status take_boundaries(const char *text, int dim, enum boundary boun
     for (char *rest = words, *word; (word = strtok_r(rest, " \t,", &rest)) && count < 4; count++) {
         const int member = family_index(&scheme_boundary_family, word);
         if (member < 0)
-            return text_unknown_member(error, "rates", "boundary", word, &scheme_boundary_family);
+            return error_set(error, STATUS_BAD_INPUT,
+                             "rates: boundary=%.40s: allowed: periodic open reflecting", word);
         if (count < 3) boundary[count] = (enum boundary)member;
     }
     for (int a = 1; count == 1 && a < dim; a++) boundary[a] = boundary[0];

@@ -260,16 +260,17 @@ struct watch {
     double until; /* where the present call of simulation_run ends */
 };
 
-/* Sums of what a run shall conserve: no momentum along a direction where walls, layers or gravity
- * push. */
+/* Sums of what a run shall conserve: no momentum along a direction where walls or gravity push, and
+ * none at all beside layers that are kept: they also drag what flows along them. */
 static void take_sums(const struct run *run, const struct simulation *simulation,
                       struct conservation *sums)
 {
     const struct prepared *p = &run->problem;
+    bool layers = false;
     simulation_conservation(simulation, sums);
+    for (int d = 0; d < p->domain.dim; d++) layers |= p->boundary[d] == BOUNDARY_FIXED;
     for (int d = 0; d < p->domain.dim; d++)
-        if (p->boundary[d] == BOUNDARY_REFLECTING || p->boundary[d] == BOUNDARY_FIXED ||
-            p->gravity[d] != 0)
+        if (layers || p->boundary[d] == BOUNDARY_REFLECTING || p->gravity[d] != 0)
             sums->momentum[d] = 0;
 }
 

@@ -149,7 +149,8 @@ void gates_add_conserved(const json_t *run, json_t *list)
     if (!walls && !is_heavy(run))
         add(list, json_string("momentum"), value_member(conserved, "momentum"), conserved_bound,
             &none, GATE_PASS, "");
-    if (says(run, "energy", "total") && !is_heavy(run))
+    /* layers that are kept give and take energy */
+    if (says(run, "energy", "total") && !is_heavy(run) && !says(run, "boundary", "fixed"))
         add(list, json_string("energy"), value_member(conserved, "energy"), conserved_bound, &none,
             GATE_PASS, "");
 }

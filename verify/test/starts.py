@@ -109,6 +109,10 @@ def ends(folder):
     # momentum that walls take is no error: along them it is kept
     run = call("run", "rest_2d", "n=16^2", "t_end=0.2", "boundary=periodic,reflecting")
     demand(run["conservation"]["momentum"] <= 1e-13, "momentum along walls")
+    # layers that are kept drag what is beside them: nobody asks for momentum along them
+    keys = ["kernel=cubic_spline", "eta=1.8", "gradient=standard", "viscosity=constant"]
+    run = call("run", "rest_2d", "n=28^2", "t_end=0.05", "boundary=periodic,fixed", *keys)
+    demand(run["conservation"]["momentum"] == 0, "momentum along layers")
 
 
 def columns(path):

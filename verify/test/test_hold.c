@@ -11,6 +11,7 @@
 
 #include "hold.h"
 #include "near.h"
+#include "settings.h"
 #include "solver.h"
 
 enum { N = 16 };
@@ -137,11 +138,54 @@ static void layers_are_kept(void **state)
     assert_true(outermost > 100 && inner > 100 && moving > 100);
 }
 
+/* Where half of the energy has come or gone a run has broken down, but not beside layers that are
+ * kept, which give it and take it. */
+static void energy_of_layers(void **state)
+{
+    enum { SIDE = 32, ALL = SIDE * SIDE };
+    static double x[2][ALL], v[2][ALL], m[ALL], u[ALL], rho[ALL];
+    (void)state;
+    for (int i = 0; i < ALL; i++) {
+        x[0][i] = (i % SIDE + 0.5) / SIDE, x[1][i] = ((double)(i / SIDE) + 0.5) / SIDE;
+        v[0][i] = 0.1, v[1][i] = 0, m[i] = 1. / ALL, u[i] = 1, rho[i] = 1;
+    }
+    for (int fixed = 0; fixed < 2; fixed++) {
+        struct scene scene = {
+            .dim = 2,
+            .hi = {1, 1, 1},
+            .boundary = {BOUNDARY_PERIODIC, fixed ? BOUNDARY_FIXED : BOUNDARY_OPEN},
+            .gamma = 1.4,
+            .t_end = 1e-3,
+            .n = ALL,
+            .x = {x[0], x[1]},
+            .v = {v[0], v[1]},
+            .m = m,
+            .u = u,
+            .rho = rho,
+            .threads = 1};
+        struct settings settings;
+        struct simulation *simulation = NULL;
+        struct error error = {0};
+        settings_init(&settings);
+        if (settings_set(&settings, SETTING_kernel, "cubic_spline", SOURCE_USER, NULL, &error) ||
+            settings_set(&settings, SETTING_eta, "2", SOURCE_USER, NULL, &error) ||
+            settings_scheme(&settings, 2, &scene.scheme, &error) ||
+            simulation_create(&scene, &simulation, &error))
+            fail_msg("%s", error.message);
+        assert_true(!simulation->held == !fixed);
+        simulation->start_energy *= 3;
+        assert_int_equal(simulation_run(simulation, 1e-3, NULL, NULL, &error),
+                         fixed ? STATUS_OK : STATUS_BROKE_DOWN);
+        simulation_destroy(simulation);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(nothing_where_no_end_is_fixed),
         cmocka_unit_test(layers_are_kept),
+        cmocka_unit_test(energy_of_layers),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
