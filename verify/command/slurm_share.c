@@ -27,6 +27,13 @@ static bool of_the_caller(const char *name)
     return false;
 }
 
+static bool takes(const struct command *command, const char *name)
+{
+    for (size_t i = 0; command->options && command->options[i].name; i++)
+        if (strcmp(command->options[i].name, name) == 0) return true;
+    return false;
+}
+
 /* A word as the shell reads it back. */
 static void put_quoted(FILE *line, const char *before, const char *word)
 {
@@ -53,8 +60,9 @@ static char *line_of(const struct slurm_share *share)
     if (!line) return NULL;
     fputs("exec", line);
     put_quoted(line, "", program);
-    fprintf(line, " %s --shard $SLURM_ARRAY_TASK_ID/%d --only-build %s --jobs %d --threads %d",
-            options->command->name, share->of, share->cache->build, share->jobs, options->threads);
+    fprintf(line, " %s --shard $SLURM_ARRAY_TASK_ID/%d --only-build %s --threads %d",
+            options->command->name, share->of, share->cache->build, options->threads);
+    if (takes(options->command, "jobs")) fprintf(line, " --jobs %d", share->jobs);
     for (size_t i = 0; list && list[i].name; i++) {
         if (!options->values[i] || of_the_caller(list[i].name)) continue;
         snprintf(before, sizeof before, "--%s%s", list[i].name, list[i].argument ? "=" : "");

@@ -14,8 +14,8 @@
 enum { N = 8, SHARES = 3 };
 
 static const struct command_option list[] = {
-    {"n", "N", ""},       {"words", "WORDS", ""}, {"flag", NULL, ""}, {"jobs", "J", ""},
-    {"plot", "FILE", ""}, SHARING_OPTIONS,        {NULL, NULL, NULL},
+    {"jobs", "J", ""},    {"n", "N", ""},  {"words", "WORDS", ""}, {"flag", NULL, ""},
+    {"plot", "FILE", ""}, SHARING_OPTIONS, {NULL, NULL, NULL},
 };
 static const struct command command = {.name = "converge", .options = list};
 

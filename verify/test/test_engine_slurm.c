@@ -260,8 +260,8 @@ static void the_line_of_a_share(void **state)
     set("engine-options", "--partition=main  --time=1:00\t--mem=1G");
     assert_int_equal(compute_all(), STATUS_OK);
     snprintf(text, sizeof text,
-             "exec '%s' converge --shard $SLURM_ARRAY_TASK_ID/3 --only-build %s --jobs 2 --threads "
-             "3 '--n=1,2,3' '--words=it'\\''s \"$HOME\" `x`\n2' '--flag' '--cache=a b' -- 'sod' "
+             "exec '%s' converge --shard $SLURM_ARRAY_TASK_ID/3 --only-build %s --threads 3 --jobs "
+             "2 '--n=1,2,3' '--words=it'\\''s \"$HOME\" `x`\n2' '--flag' '--cache=a b' -- 'sod' "
              "'-1'\\'''",
              program, call.place.cache.build);
     assert_string_equal(made.wrap, text);
@@ -273,6 +273,24 @@ static void the_line_of_a_share(void **state)
     snprintf(text, sizeof text, "/slurm/%s-%%A_%%a.log", made.name);
     assert_non_null(strstr(made.output, text));
     assert_true(made.output[0] == '/'); /* from wherever the task starts */
+}
+
+/* One that knows no --jobs is not told any. */
+static void a_command_without_jobs(void **state)
+{
+    static const struct command bench = {.name = "bench", .options = list + 1};
+    char text[100];
+    (void)state;
+    again();
+    call.options.command = &bench;
+    call.options.values = call.values + 1;
+    set("n", "7");
+    assert_int_equal(compute_all(), STATUS_OK);
+    snprintf(text, sizeof text,
+             "' bench --shard $SLURM_ARRAY_TASK_ID/3 --only-build %s --threads "
+             "1 '--n=7' -- 'sod'",
+             call.place.cache.build);
+    assert_non_null(strstr(made.wrap, text));
 }
 
 static void too_many_words(void **state)
@@ -323,6 +341,7 @@ int main(void)
         IN_ITS_PLACE(only_what_is_missing),
         IN_ITS_PLACE(how_many_shares),
         IN_ITS_PLACE(the_line_of_a_share),
+        IN_ITS_PLACE(a_command_without_jobs),
         IN_ITS_PLACE(too_many_words),
         IN_ITS_PLACE(its_name),
     };

@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""exits.py SPHPROOF [all]: what a study ends with is the same alone, from a cache that is cold or warm, after its
+shares in either order, after one that is missing, and through an engine. A share itself ends with 0 whatever it finds,
+unless its input is bad (2) or it cannot keep what it computes (4). With `all` of every command that has shares."""
+import json
+import os
+import subprocess
+import sys
+import tempfile
+
+from studying import expect, faults, program, without_times
+
+TUBE = """[case]
+title = A tube
+dimension = 1
+reference = riemann
+[initial]
+kind = riemann
+left = 1 0 1
+right = 0.125 0 0.1
+[run]
+t_end = 0.05
+[measure]
+window = -0.5 0.5
+"""
+LADDER = ["--n", "40,44,50,60", "--replicates", "1"]
+STUDIES = [
+    (0, ["converge", "./tube.ini", *LADDER]),
+    (1, ["converge", "sod", *LADDER, "t_end=0.05"]),
+    (2, ["converge", "sod", *LADDER, "kernel=none"]),
+    (3, ["converge", "sod", *LADDER, "cfl=50", "viscosity=none"]),
+]
+OTHERS = [
+    (0, ["verify", "riemann/star_states", "norms", "--mutants"]),
+    (2, ["verify", "nonsense"]),
+    (0, ["bench", "sod", "--n", "40,60", "--samples", "1", "--time", "1e-4"]),
+    (2, ["bench", "sod", "--n", "40,60", "kernel=none"]),
+    (0, ["stress", "leblanc"]),
+    (2, ["stress", "nonsense"]),
+]
+TIMED = {"date", "seconds", "found", "cost", "on_front", "cheapest", "figure_of_merit", "seed_plain_over_this"}
+# both tasks of the array, at once; then both have ended
+FAKE = """#!/bin/sh
+case ${0##*/} in
+squeue) [ ! -e submitted ] || printf '7 1 COMPLETED None\\n7 2 COMPLETED None\\n' ;;
+sbatch)
+    for wrap; do :; done
+    for task in 1 2; do (SLURM_ARRAY_TASK_ID=$task; eval "$wrap") >/dev/null 2>&1; done
+    : >submitted
+    echo 7 ;;
+esac
+"""
+
+
+def fixed(value):
+    """Without what differs from one call to the next."""
+    if isinstance(value, dict):
+        return {k: fixed(v) for k, v in value.items() if k not in TIMED and not k.endswith("_s")}
+    return [fixed(v) for v in value] if isinstance(value, list) else value
+
+
+def call(*words):
+    """Exit status, what is in the document and what was said about an error."""
+    if os.path.exists("out.json"):
+        os.remove("out.json")
+    done = subprocess.run([program, *words, "--quiet", "--json", "out.json"], capture_output=True, text=True, timeout=100)
+    document = None
+    if os.path.exists("out.json"):
+        with open("out.json", encoding="utf-8") as file:
+            document = fixed(without_times(json.load(file)))
+    return done.returncode, document, done.stderr
+
+
+def share(words, cache, number, code):
+    status, document, said = call(*words, "--cache", cache, "--shard", "%d/2" % number)
+    expect("%s, share %d" % (words, number), status == (2 if code == 2 else 0) and document is None, (status, said))
+
+
+def try_study(number, code, words):
+    alone = call(*words)
+    what = "exit %d, %s" % (code, " ".join(words[:2]))
+    expect(what, alone[0] == code and bool(alone[2]) == (code > 1), alone)
+    for how, shares in (("cold", ()), ("warm", ()), ("joined", (2, 1)), ("one is missing", (2,))):
+        cache = "%d-%s" % (number, "warm" if how == "cold" else how)
+        for one in shares:
+            share(words, cache, one, code)
+        expect("%s: %s" % (what, how), call(*words, "--cache", cache) == alone, how)
+        if code == 2:
+            expect("%s: a cache is made" % what, not os.path.exists(cache) or not os.listdir(cache), how)
+    if os.path.exists("submitted"):
+        os.remove("submitted")
+    engine = call(*words, "--cache", "%d-engine" % number, "--engine", "slurm", "--engine-tasks", "2")
+    expect("%s: an engine" % what, engine == alone, engine)
+    expect("%s: an engine was asked" % what, os.path.exists("submitted") == (code != 2))
+
+
+def test_environment():
+    """Where nothing can be kept, and where there is no Slurm, every way ends with 4."""
+    words = STUDIES[0][1]
+    for more in ((), ("--shard", "1/2"), ("--engine", "slurm")):
+        status, document, said = call(*words, "--cache", "/dev/null/cache", *more)
+        expect("no place for a cache %s" % (more,), status == 4 and document is None and "/dev/null" in said, said)
+    os.rename("bin", "gone")
+    status, document, said = call(*words, "--cache", "none", "--engine", "slurm")
+    expect("no Slurm", status == 4 and document is None and "no command squeue" in said, said)
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        with open("tube.ini", "w", encoding="ascii") as file:
+            file.write(TUBE)
+        os.makedirs("bin")
+        for name in ("sbatch", "squeue", "scancel"):
+            with open("bin/" + name, "w", encoding="ascii") as file:
+                file.write(FAKE)
+            os.chmod("bin/" + name, 0o755)
+        os.environ["PATH"] = os.path.abspath("bin")  # nothing of a Slurm that may be here
+        for number, (code, words) in enumerate(STUDIES + (OTHERS if "all" in sys.argv else [])):
+            try_study(number, code, words)
+        test_environment()
+        os.chdir("/")
+    print("\n".join(faults) or "a study ends as it ends alone")
+    return bool(faults)
+
+
+sys.exit(main())
