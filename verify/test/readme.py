@@ -41,11 +41,7 @@ PLACES = {
         "sphproof converge sod kernel=cubic_spline eta=4.8  # exit 1",  # its gate is not for this scheme
     "sphproof run CASE": "sphproof run sod",
     "sphproof rates": "sphproof rates --help",
-    "sphproof converge CASE": "sphproof converge lax",
-    "sphproof run CASE n=...": "sphproof run yee n=16^2 t_end=0.1",
     "sphproof run CASE n=64^2": "sphproof run gresho n=24^2 t_end=0.1",
-    "sphproof run sound_wave n=512 [KEYS]": "sphproof run sound_wave n=512 viscosity=fading",
-    "sphproof converge CASE --n 402,804,1206,1602 [KEYS]": "sphproof converge sod --n 402,804,1206,1602",
     "sphproof diff OLD.json NEW.json": "sphproof run sod --json try/a.json; sphproof diff try/a.json try/a.json",
     "sphproof kernel ./mine.so --dim 3": "sphproof kernel build/verify/examples/wendland_c8.so --dim 3",
     "sphproof converge sod kernel=./mine.so":
