@@ -130,6 +130,10 @@ static void alone(void **state)
          "pass",
          "All that could be judged is well: 1 judged, 2 too coarse to judge, 1 undetermined, "
          "2 known weaknesses"},
+        {"{'runs': [{'status': 'ok', 'gates': [{'status': 'smoke'}, {'status': 'pass'}]}]}", "pass",
+         "All that could be judged is well: 1 judged, 1 too coarse to judge"},
+        {"{'studies': [{'orders': [{'status': 'undetermined'}, {'status': 'pass'}]}]}", "pass",
+         "All that could be judged is well: 1 judged, 1 undetermined"},
         {"{'studies': [{'orders': [{'status': 'undetermined'}]}]}", "fail", "Nothing was checked"},
         {"{'studies': [{'orders': [{'status': 'smoke'}]}]}", "fail", "Nothing was checked"},
         {"{'runs': [{'status': 'ok', 'case': 'c', 'label': 'l', 'gates': [{'status': 'fail', "
