@@ -339,6 +339,23 @@ static void curve(struct buffer *to, const struct plot_series *series, const cha
     }
 }
 
+/* Ticks of a colour bar of so many pixels; those of a low one are as far apart as its labels ask
+ * for. */
+static void color_ticks(struct buffer *to, const struct plot_heat *heat, double pixels)
+{
+    const double label = 1.5 * LAYOUT_FONT;
+    double low = (double)INFINITY, high = -(double)INFINITY;
+    buffer_add(to, "set cbtics autofreq\n");
+    if (heat->log || heat->diverging || pixels > 8 * label) return;
+    for (size_t k = 0; k < heat->nx * heat->ny; k++)
+        if (isfinite(heat->z[k])) low = fmin(low, heat->z[k]), high = fmax(high, heat->z[k]);
+    if (heat->high > heat->low) low = heat->low, high = heat->high;
+    const double least = (high - low) / fmax(1, floor(pixels / label));
+    if (!(least > 0 && isfinite(least))) return;
+    const double ten = pow(10, floor(log10(least))), part = least / ten;
+    buffer_format(to, "set cbtics %.10g\n", ten * (part <= 2 ? 2 : part <= 5 ? 5 : 10));
+}
+
 /* The bar is 14 pixels wide, as high as the panel. */
 static void color_scale(struct buffer *to, const struct plot_heat *heat,
                         const struct layout *layout, const struct layout_panel *at)
@@ -361,6 +378,7 @@ static void color_scale(struct buffer *to, const struct plot_heat *heat,
                   "screen %.5f, screen %.5f noborder\nset cbtics textcolor rgb '%s'\n",
                   ink, (at->right + 12) / layout->width, 1 - at->bottom / layout->height,
                   14.0 / layout->width, (at->bottom - at->top) / layout->height, ink);
+    color_ticks(to, heat, at->bottom - at->top);
 }
 
 static void panel_script(struct buffer *to, const struct plot *plot, const struct layout *layout,

@@ -360,13 +360,42 @@ static void images(void **state)
     free(svg);
 }
 
+/* Beside a low map the colour bar has ticks as far apart as their labels are high; a high one's are
+ * gnuplot's own. */
+static void low_color_bars(void **state)
+{
+    (void)state;
+    static const double at[] = {0.5, 1.5}, values[] = {0, 1, 0.25, 0.75};
+    const struct plot_heat square = {
+        .nx = 2, .ny = 2, .x = at, .y = at, .z = values, .image = true};
+    const struct plot_panel panel = {.x_label = "x", .y_label = "y", .heat = &square};
+    for (int tall = 0; tall < 2; tall++) {
+        const struct plot plot = {.name = "bar",
+                                  .title = "bar",
+                                  .panels = &panel,
+                                  .panel_count = 1,
+                                  .beside = true,
+                                  .width = 400,
+                                  .height = tall ? 500 : 140};
+        char *script, *data;
+        assert_true(plot_source(&plot, &script, &data));
+        assert_non_null(strstr(script, "set cbtics autofreq"));
+        assert_int_equal(!strstr(script, "set cbtics 0.5\n"), tall);
+        free(script);
+        free(data);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(inline_svg),      cmocka_unit_test(one_value), cmocka_unit_test(documents),
-        cmocka_unit_test(source),          cmocka_unit_test(formats),   cmocka_unit_test(processes),
-        cmocka_unit_test(missing_gnuplot), cmocka_unit_test(markup),    cmocka_unit_test(gap),
-        cmocka_unit_test(map_counts),      cmocka_unit_test(map_means), cmocka_unit_test(images),
+        cmocka_unit_test(low_color_bars), cmocka_unit_test(inline_svg),
+        cmocka_unit_test(one_value),      cmocka_unit_test(documents),
+        cmocka_unit_test(source),         cmocka_unit_test(formats),
+        cmocka_unit_test(processes),      cmocka_unit_test(missing_gnuplot),
+        cmocka_unit_test(markup),         cmocka_unit_test(gap),
+        cmocka_unit_test(map_counts),     cmocka_unit_test(map_means),
+        cmocka_unit_test(images),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
