@@ -35,7 +35,7 @@ static const struct {
     const char *section, *name;
 } extras[EXTRAS] = {EXTRA_LIST(EXTRA_ENTRY)};
 static const char *const sections[] = {"case",    "domain",   "initial",  "scheme", "run",
-                                       "measure", "converge", "compared", "report"};
+                                       "measure", "converge", "compared", "finer",  "report"};
 
 struct parser {
     struct case_file *file;
@@ -45,7 +45,7 @@ struct parser {
     char reference[64];
     /* lines */
     int seen_settings[SETTINGS], seen_extras[EXTRAS], seen_gates[CASE_GATES_MAX],
-        seen_compared[CASE_GATES_MAX];
+        seen_compared[CASE_GATES_MAX], seen_finer[CASE_GATES_MAX];
     struct error *error;
     bool failed;
 };
@@ -108,8 +108,8 @@ static void set_ladder(struct parser *parser, const char *name, const char *valu
     for (char *word = strtok_r(copy, " \t,", &rest); word; word = strtok_r(NULL, " \t,", &rest)) {
         double n;
         int exponent;
-        if (!text_count(word, &n, &exponent) || n < key->lo || n > key->hi || *count == CASE_LADDER_MAX ||
-            (*count && n <= (double)ladder[*count - 1])) {
+        if (!text_count(word, &n, &exponent) || n < key->lo || n > key->hi ||
+            *count == CASE_LADDER_MAX || (*count && n <= (double)ladder[*count - 1])) {
             fail_value(parser, name, value, allowed);
             return;
         }
@@ -263,28 +263,44 @@ static bool read_absence(const char *value, double *bound, const char **why)
     return read_known(value, text, why) && **why && strcmp(text, "none") == 0;
 }
 
-/* What compared schemes are held to at a gate above: `BOUND`, or `BOUND known: WHY`. */
-static void set_compared(struct parser *parser, const char *functional, int field, int norm,
-                         const char *name, const char *value)
+/* What compared schemes are held to: `BOUND`, or `BOUND known: WHY`. */
+static void set_compared(struct parser *parser, struct case_gate *gate, const char *name,
+                         const char *value)
+{
+    struct case_weakness *compared = &gate->compared;
+    const char *why;
+    if (!read_absence(value, &compared->bound, &why) &&
+        !read_gate(value, 1, &compared->bound, &why))
+        fail_value(parser, name, value,
+                   "bound of the finest error, or none where there is nothing to be "
+                   "measured" KNOWN_FAILURE);
+    else
+        snprintf(compared->why, sizeof compared->why, "%s", why);
+}
+
+/* A bound beyond the case's own ladder. */
+static void set_finer(struct parser *parser, struct case_gate *gate, const char *name,
+                      const char *value)
+{
+    if (!text_real(value, &gate->finer) || !(gate->finer > 0))
+        fail_value(parser, name, value, "bound of the error beyond the case's own ladder");
+}
+
+/* A key of [compared] or [finer] belongs to a gate of [converge]. */
+static void amend_gate(struct parser *parser, const char *section, const char *functional,
+                       int field, int norm, const char *name, const char *value)
 {
     struct case_file *file = parser->file;
     const size_t i = find_gate(file, functional, functional ? 0 : (enum field)field,
                                functional ? 0 : (enum norm)norm);
-    struct case_weakness *compared = &file->gates[i].compared;
-    const char *why;
+    const bool finer = strcmp(section, "finer") == 0;
     char what[120];
     if (i == file->gate_count) {
-        snprintf(what, sizeof what, "key %.40s in [compared] has no gate above, in [converge]",
-                 name);
+        snprintf(what, sizeof what, "key %.40s in [%.10s] has no gate above, in [converge]", name,
+                 section);
         fail(parser, what, "");
-    } else if (first_time(parser, &parser->seen_compared[i], name)) {
-        if (!read_absence(value, &compared->bound, &why) &&
-            !read_gate(value, 1, &compared->bound, &why))
-            fail_value(parser, name, value,
-                       "bound of the finest error, or none where there is nothing to be "
-                       "measured" KNOWN_FAILURE);
-        else
-            snprintf(compared->why, sizeof compared->why, "%s", why);
+    } else if (first_time(parser, &(finer ? parser->seen_finer : parser->seen_compared)[i], name)) {
+        (finer ? set_finer : set_compared)(parser, &file->gates[i], name, value);
     }
 }
 
@@ -343,7 +359,8 @@ static void unknown(struct parser *parser, const char *section, const char *name
         if (strcmp(setting_keys[i].section, section) == 0) names[n++] = setting_keys[i].name;
     for (int i = 0; i < EXTRAS; i++)
         if (strcmp(extras[i].section, section) == 0) names[n++] = extras[i].name;
-    if (strcmp(section, "converge") == 0 || strcmp(section, "compared") == 0)
+    if (strcmp(section, "converge") == 0 || strcmp(section, "compared") == 0 ||
+        strcmp(section, "finer") == 0)
         names[n++] = "density_l1";
     snprintf(what, sizeof what, "key in [%.20s]", section);
     text_unknown(parser->error, where, what, name, names, n);
@@ -384,9 +401,9 @@ static int take_pair(void *context, const char *section, const char *name, const
         set_gate(parser, NULL, field, norm, name, value);
     } else if (strcmp(section, "converge") == 0 && problem_functional_name(name)) {
         set_gate(parser, problem_functional_name(name), 0, 0, name, value);
-    } else if (strcmp(section, "compared") == 0 &&
+    } else if ((strcmp(section, "compared") == 0 || strcmp(section, "finer") == 0) &&
                (gate_name(name, &field, &norm) || problem_functional_name(name))) {
-        set_compared(parser, problem_functional_name(name), field, norm, name, value);
+        amend_gate(parser, section, problem_functional_name(name), field, norm, name, value);
     } else {
         unknown(parser, section, name);
     }

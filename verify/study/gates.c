@@ -21,7 +21,9 @@ const char *const gate_names[] = {"none", "pass", "fail", "known", "smoke", "und
 double gates_raise(const struct case_file *file, const struct case_gate *gate, size_t n)
 {
     if (!file->ladder_count) return 1;
-    const double coarser = (double)file->ladder[file->ladder_count - 1] / (double)n;
+    const size_t finest = file->ladder[file->ladder_count - 1];
+    if (n > finest && gate->finer > 0) return gate->finer / gate->gate.bound;
+    const double coarser = (double)finest / (double)n;
     return pow(fmax(1, coarser), gate->gate.low / file->dimension);
 }
 
@@ -59,10 +61,13 @@ void gates_compare(struct case_file *file)
     for (size_t i = 0; i < file->gate_count; i++) {
         struct case_gate *gate = &file->gates[i];
         if (*gate->compared.why) gate->known = gate->compared;
-        if (gate->compared.bound > 0 && !*gate->compared.why)
+        if (gate->compared.bound > 0 && !*gate->compared.why) {
             gate->gate.bound = gate->compared.bound;
-        else
+            gate->finer = 0; /* theirs holds at every n */
+        } else {
             gate->gate.bound *= compared_bound;
+            gate->finer *= compared_bound;
+        }
     }
 }
 

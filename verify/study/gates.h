@@ -22,8 +22,8 @@ enum { GATE_WHY = ORDER_GATE_TEXT };
 enum study_gate gates_weigh(const struct case_file *file, const struct case_gate *gate, size_t n,
                             double bound, double exact, const struct order_fit *fit, char *why);
 
-/* What a gate's bound is multiplied by for a level of n particles: at the case's own finest level
- * and beyond 1, below as the least order allows. */
+/* What a gate's bound is multiplied by for a level of n particles: at the case's own finest level 1,
+ * beyond it what [finer] says (else 1), below it as the least order allows. */
 double gates_raise(const struct case_file *file, const struct case_gate *gate, size_t n);
 
 /* Is an error that fails a gate the weakness that is known? raise: of its bound, see gates_raise.

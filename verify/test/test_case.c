@@ -179,6 +179,27 @@ static void compared(void **state)
 #undef COMPARED
 }
 
+/* A bound of its own beyond the case's ladder. */
+static void finer(void **state)
+{
+    struct case_file file;
+    struct error error;
+    (void)state;
+#define BOUNDED FLAT "[converge]\nvelocity_l1 = 0.5 3 0.125\ndisc_error = 0 2e-2\n"
+    if (parse(&file, BOUNDED "[finer]\ndisc_error = 0.25\n", &error)) fail_msg("%s", error.message);
+    assert_true(file.gates[1].finer == 0.25 && file.gates[0].finer == 0);
+    refused(BOUNDED "[finer]\npressure_l1 = 1\n",
+            AT("16") "key pressure_l1 in [finer] has no gate above, in [converge]");
+    refused(BOUNDED "[finer]\ndisc_error = 0\n",
+            AT("16") "disc_error = 0; allowed: bound of the error beyond the case's own ladder");
+    refused(BOUNDED "[finer]\ndisc_error = 1 known: x\n",
+            AT("16") "disc_error = 1 known: x; allowed: bound of the error beyond the case's own "
+                     "ladder");
+    refused(BOUNDED "[finer]\ndisc_error = 1\ndisc_error = 1\n",
+            AT("17") "key disc_error is given twice, first in line 16");
+#undef BOUNDED
+}
+
 static void bad_lines(void **state)
 {
     (void)state;
@@ -217,7 +238,7 @@ static void bad_lines(void **state)
                                    "sections");
     begins("[cases]\ntitle = a\n",
            AT("2") "no section 'cases'; did you mean 'case'? allowed: case "
-                   "domain initial scheme run measure converge compared report");
+                   "domain initial scheme run measure converge compared finer report");
     refused("[run]\neta = 2\n", AT("2") "key eta stands in the section [scheme], not in [run]");
     refused("[case]\nkernel = 2\n",
             AT("2") "key kernel stands in the section [scheme], not in [case]");
@@ -324,6 +345,7 @@ int main(void)
         cmocka_unit_test(everything),
         cmocka_unit_test(functionals),
         cmocka_unit_test(compared),
+        cmocka_unit_test(finer),
         cmocka_unit_test(bad_lines),
         cmocka_unit_test(whole_files),
         cmocka_unit_test(built_in_cases_are_sound),

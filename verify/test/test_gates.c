@@ -2,6 +2,7 @@
  * Gates of one run, of made documents: what bounds are at n, what compared schemes are held to,
  * what is conserved and by whom. */
 #include <math.h>
+#include <stdio.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -74,6 +75,28 @@ static void errors(void **state)
         says(list, "peak_velocity", fabs(rows[k].peak - 1), rows[k].bounds[2], rows[k].status[2]);
         json_decref(list);
         json_decref(run);
+    }
+}
+
+/* Beyond the case's own ladder a bound may be another one; a compared scheme's own holds
+ * everywhere. */
+static void beyond_the_ladder(void **state)
+{
+    (void)state;
+    static const char more[] = "[finer]\nvelocity_l1 = 0.25\ndisc_error = 0.5\n";
+    char whole[sizeof text + sizeof more];
+    struct case_file file;
+    struct error error;
+    snprintf(whole, sizeof whole, "%s%s", text, more);
+    if (case_parse(&file, "vortex.ini", whole, strlen(whole), &error))
+        fail_msg("%s", error.message);
+    for (int compared = 0; compared < 2; compared++) {
+        near_relative(gates_raise(&file, &file.gates[0], 401), 2, 1e-14);
+        near_relative(gates_raise(&file, &file.gates[0], 400), 1, 1e-14);
+        near_relative(gates_raise(&file, &file.gates[0], 100), M_SQRT2, 1e-14);
+        near_relative(gates_raise(&file, &file.gates[1], 401), compared ? 1 : 2, 1e-14);
+        near_relative(gates_raise(&file, &file.gates[2], 401), 1, 1e-14);
+        gates_compare(&file);
     }
 }
 
@@ -176,9 +199,13 @@ static void conserved(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(errors),           cmocka_unit_test(no_number_is_not_known),
-        cmocka_unit_test(absence_is_known), cmocka_unit_test(odd),
-        cmocka_unit_test(conserved),        cmocka_unit_test(what_is_missing_fails),
+        cmocka_unit_test(errors),
+        cmocka_unit_test(beyond_the_ladder),
+        cmocka_unit_test(no_number_is_not_known),
+        cmocka_unit_test(absence_is_known),
+        cmocka_unit_test(odd),
+        cmocka_unit_test(conserved),
+        cmocka_unit_test(what_is_missing_fails),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
