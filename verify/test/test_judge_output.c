@@ -131,6 +131,11 @@ static void documents(void **state)
         }
         json_decref(document);
     }
+    assert_string_equal(note(&judged[0], "kernel")->value, "not identifiable");
+    assert_string_equal(note(&judged[0], "kernel")->evidence, judged[0].conventions.why);
+    assert_string_equal(note(&judged[0], "precision")->value, "float64");
+    assert_string_equal(note(&judged[0], "precision")->evidence,
+                        "as stored; nothing below 1e-16 of a value is meant");
     /* a kernel that is known, and what the file says of it */
     judged[0].conventions.known = true;
     judged[0].conventions.candidate[0].sum = DENSITY_NUMBER;

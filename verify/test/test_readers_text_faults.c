@@ -51,6 +51,15 @@ static void maps(void **state)
         snprintf(says, sizeof says, "columns 'x' and 'X' both look like x");
         refuses(text, text_of(&twice, text, -1, -1, NULL), NULL, says);
     }
+    struct table typed = table_of(1, true);
+    strcpy(typed.name[0], "itype");
+    refuses(text, text_of(&typed, text, -1, -1, NULL), NULL, "both look like itype");
+    char map[80], says[80]; /* of long names the beginning is said */
+    for (int more = 0; more < 2; more++) {
+        snprintf(map, sizeof map, "rho=%0*d", 40 + more, 0);
+        snprintf(says, sizeof says, "has no column '%040d'", 0);
+        refuses(text, text_of(&t, text, -1, -1, NULL), map, says);
+    }
     struct table unknown = t;
     strcpy(unknown.name[0], "entropy"), strcpy(unknown.name[1], "entropy");
     refuses(text, text_of(&unknown, text, -1, -1, NULL), NULL, "no x; found: m rho u P");
@@ -121,6 +130,16 @@ static void heads(void **state)
         {"\n\x1f\x7f", "no snapshot that is read"}};
     char text[8000] = "";
     (void)state;
+    static const char *const needed[] = {"x", "vx", "m", "rho"}; /* each of them */
+    for (int k = 0; k < 4; k++) {
+        char says[80], head[40];
+        snprintf(says, sizeof says, "no %s; found:", needed[k]);
+        snprintf(head, sizeof head, "%s%s%s%su\n1 1 1 1\n", k == 0 ? "" : "x ", k == 1 ? "" : "vx ",
+                 k == 2 ? "" : "m ", k == 3 ? "" : "rho ");
+        refuses(head, strlen(head), NULL, says);
+        snprintf(says, sizeof says, "--map %s=NAME tells its column", needed[k]);
+        refuses(head, strlen(head), NULL, says);
+    }
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
         refuses(rows[k].text, strlen(rows[k].text), NULL, rows[k].says);
     for (int more = 0; more < 2; more++) { /* 64 columns, of 47 letters */
