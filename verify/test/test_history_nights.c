@@ -215,6 +215,31 @@ static void which_way_is_better(void **state)
     }
 }
 
+/* Faults first, then what has moved most, up or down, and what has no ratio before it; counts of
+ * work last; by path where two have moved alike. */
+static void in_order_of_since(const json_t *figures)
+{
+    const json_t *figure, *last = NULL;
+    size_t i;
+    json_array_foreach(figures, i, figure) {
+        int group[2] = {0};
+        double moved[2];
+        const json_t *const both[] = {last, figure};
+        for (int k = last ? 0 : 1; k < 2; k++) {
+            const double ratio = value_member(both[k], "ratio");
+            group[k] = json_is_true(json_object_get(both[k], "fault"))  ? 0
+                       : json_is_true(json_object_get(both[k], "work")) ? 2
+                                                                        : 1;
+            moved[k] = ratio > 0 ? fabs(log(ratio)) : HUGE_VAL;
+        }
+        if (last && (group[0] > group[1] || (group[0] == group[1] && moved[0] < moved[1]) ||
+                     (group[0] == group[1] && moved[0] == moved[1] &&
+                      strcmp(value_text(last, "path"), value_text(figure, "path")) >= 0)))
+            fail_msg("%s stands before %s", value_text(last, "path"), value_text(figure, "path"));
+        last = figure;
+    }
+}
+
 /* Since last night: each figure's verdict, what is a fault first, and how many there are of each.
  */
 static void since_says_which_way(void **state)
@@ -228,7 +253,9 @@ static void since_says_which_way(void **state)
         {1e-3, 1.50, "same", "worse"},      {5e-4, 0.50, "worse", "better"},
         {2e-3, 1.50, "better", "worse"},    {5e-4, 1.50, "worse", "worse"},
         {2e-3, 0.50, "better", "better"},   {(double)NAN, 0.95, "new", "same"},
-        {1e-3, (double)NAN, "same", "new"},
+        {1e-3, (double)NAN, "same", "new"}, {1.2e-3, 0.20, "better", "better"},
+        {9e-3, 0.50, "better", "better"},   {8e-4, 4, "worse", "worse"},
+        {1e-4, 1.50, "worse", "worse"},     {9e-3, -0.95, "better", "better"},
     };
     static const char *const words[] = {"same", "better", "worse", "new"};
     (void)state;
@@ -254,6 +281,7 @@ static void since_says_which_way(void **state)
             assert_string_not_equal(value_text(figure, "verdict"), "same");
             assert_int_equal(fault, strcmp(value_text(figure, "verdict"), "worse") == 0);
         }
+        in_order_of_since(figures);
         assert_string_equal(of_error, rows[r].of_error);
         assert_string_equal(of_order, rows[r].of_order);
         for (size_t w = 1; w < sizeof words / sizeof *words; w++) {

@@ -339,9 +339,35 @@ static void a_simulation_conserves(void **state)
     const struct sphproof_sums after = sphproof_simulations_sums(simulation);
     assert_true(fabs(after.momentum[0] - before.momentum[0]) < 1e-14);
     assert_true(fabs(after.energy - before.energy) < 1e-6 && fabs(after.mass - 1) < 1e-14);
-    assert_int_equal(sphproof_simulations_run(simulation, 0.01, &error), SPHPROOF_BAD_INPUT);
     sphproof_simulations_free(simulation);
     sphproof_simulations_free(NULL);
+}
+
+/* Up to its own time there is nothing to compute, and earlier ones are past. */
+static void times_of_a_simulation(void **state)
+{
+    (void)state;
+    const double refused[] = {-1e-300, 0.01, nextafter(0.02, 0), (double)NAN, HUGE_VAL, -HUGE_VAL};
+    struct sphproof_scene scene = scene_of_a_wave();
+    struct sphproof_simulation *simulation;
+    struct sphproof_error error;
+    double place[N], later[N], speed[N], faster[N];
+    const struct sphproof_state at_first = {.x = {place}, .v = {speed}},
+                                at_last = {.x = {later}, .v = {faster}};
+    assert_int_equal(sphproof_simulations_create(&scene, &simulation, &error), SPHPROOF_OK);
+    for (int step = 0; step < 2; step++) {
+        const double time = step ? 0.02 : 0;
+        assert_int_equal(sphproof_simulations_run(simulation, time, &error), SPHPROOF_OK);
+        assert_true(sphproof_simulations_state(simulation, &at_first) == time);
+        assert_int_equal(sphproof_simulations_run(simulation, time, &error), SPHPROOF_OK);
+        for (size_t k = step ? 0 : 3; k < sizeof refused / sizeof *refused; k++)
+            assert_int_equal(sphproof_simulations_run(simulation, refused[k], &error),
+                             SPHPROOF_BAD_INPUT);
+        assert_true(sphproof_simulations_state(simulation, &at_last) == time);
+        assert_memory_equal(place, later, sizeof place);
+        assert_memory_equal(speed, faster, sizeof speed);
+    }
+    sphproof_simulations_free(simulation);
 }
 
 static void a_scene_that_is_none_is_refused(void **state)
@@ -383,6 +409,7 @@ int main(void)
         cmocka_unit_test(an_order_passes_its_gate),
         cmocka_unit_test(rates_conserve),
         cmocka_unit_test(a_simulation_conserves),
+        cmocka_unit_test(times_of_a_simulation),
         cmocka_unit_test(a_scene_that_is_none_is_refused),
     };
     return cmocka_run_group_tests_name("library", tests, NULL, NULL);

@@ -26,6 +26,23 @@ static void maps(void **state)
         reads(&other, map, &file);
         snapshot_file_free(&file);
     }
+    /* beside a column that by its own name would be taken, before it or behind it */
+    for (size_t c = 0; c < t.columns; c++)
+        for (int before = 0; before < 2; before++) {
+            struct table beside = t;
+            const size_t guessed = before ? t.columns : c, meant = before ? c : t.columns;
+            char map[80];
+            beside.columns++;
+            strcpy(beside.name[guessed], t.name[c]), strcpy(beside.name[meant], "some thing");
+            beside.meaning[guessed] = OTHER, beside.meaning[meant] = t.meaning[c];
+            for (int i = 0; i < ROWS; i++) {
+                beside.value[guessed][i] = t.value[c][i];
+                beside.value[meant][i] = 1.25 * t.value[c][i];
+            }
+            snprintf(map, sizeof map, "%s=some thing", snapshot_column_names[t.meaning[c]]);
+            reads(&beside, map, &file);
+            snapshot_file_free(&file);
+        }
     struct table swapped = t; /* rho and P, each by the other's name */
     size_t rho = 0, P = 0;
     for (size_t c = 0; c < t.columns; c++) {

@@ -1,12 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Reading JSON: numbers and words, lenient and needed. */
+ * Reading JSON: numbers and words, lenient and needed; and numbers that were written. */
+#include <float.h>
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <cmocka.h>
 
 #include "near.h"
+#include "result.h"
 #include "value.h"
 
 static json_t *document(void)
@@ -73,8 +77,34 @@ static void words(void **state)
     json_decref(d);
 }
 
+/* What result_number writes is read again, to the last bit, with the signs of zeros and infinities.
+ */
+static void what_is_written_is_read(void **state)
+{
+    (void)state;
+    static const double edges[] = {0, 1, 0.1, 1e15, 1e22, DBL_MIN, DBL_MIN / 3, DBL_MAX, INFINITY};
+    for (size_t k = 0; k < sizeof edges / sizeof *edges; k++)
+        for (int sign = -1; sign <= 1; sign += 2) {
+            const double value = sign * edges[k];
+            json_t *list = json_pack("[o]", result_number(value));
+            char *text = result_text(list);
+            json_t *again = json_loads(text, JSON_DECODE_INT_AS_REAL, NULL);
+            const double read = value_real(json_array_get(again, 0));
+            assert_true(read == value && !signbit(read) == !signbit(value));
+            json_t *same = result_number_or_null(value);
+            assert_true(json_equal(same, json_array_get(list, 0)));
+            json_decref(same), json_decref(list), json_decref(again);
+            free(text);
+        }
+    json_t *none = result_number((double)NAN), *null = result_number_or_null((double)NAN);
+    assert_true(value_is_real(none) && isnan(value_real(none)));
+    assert_true(json_is_null(null));
+    json_decref(none), json_decref(null);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(numbers), cmocka_unit_test(words)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(numbers), cmocka_unit_test(words),
+                                       cmocka_unit_test(what_is_written_is_read)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

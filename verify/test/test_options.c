@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Options that several commands share: every kernel by its name, and what is none. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "command.h"
+#include "kernel.h"
+
+static const struct command_option list[] = {
+    {"eta", "ETA", ""}, {"kernel", "NAME", ""}, {NULL, NULL, NULL}};
+static const struct command command = {.name = "judge", .synopsis = "FILE", .options = list};
+
+static void values_by_name(void **state)
+{
+    (void)state;
+    const struct command bare = {.name = "list"};
+    const char *values[] = {"2.385", "sinc"}, *none[] = {NULL, NULL};
+    const struct options given = {.command = &command, .values = values},
+                         absent = {.command = &command, .values = none},
+                         without = {.command = &bare};
+    assert_string_equal(options_value(&given, "eta"), "2.385");
+    assert_string_equal(options_value(&given, "kernel"), "sinc");
+    assert_null(options_value(&given, "kern"));
+    assert_null(options_value(&given, "kernels"));
+    assert_null(options_value(&absent, "kernel"));
+    assert_null(options_value(&without, "kernel"));
+}
+
+static void kernels_by_name(void **state)
+{
+    (void)state;
+    const char *values[] = {"2.385", NULL};
+    const struct options options = {.command = &command, .values = values};
+    struct error error = {0};
+    int index = 7;
+    assert_int_equal(options_kernel(&options, &index, &error), STATUS_OK);
+    assert_int_equal(index, -1);
+    for (size_t k = 0; k < kernel_family.n; k++) {
+        values[1] = kernel_family.members[k]->name;
+        assert_int_equal(options_kernel(&options, &index, &error), STATUS_OK);
+        assert_int_equal(index, k);
+    }
+    static const char *const wrong[] = {"cubic", "", "Sinc", "cubic_spline ",
+                                        "./no_such_kernel.so"};
+    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) {
+        values[1] = wrong[k];
+        assert_int_equal(options_kernel(&options, &index, &error), STATUS_BAD_INPUT);
+        assert_non_null(strstr(error.message, wrong[k]));
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(values_by_name),
+                                       cmocka_unit_test(kernels_by_name)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
