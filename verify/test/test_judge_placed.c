@@ -120,6 +120,8 @@ static void places(void **state)
         {0, 2, "", 1.25, 0.25, 2.25, {0.75, 1.75}, false, "as far as particles reach"},
         {-1.5, 2.1, "", 9, -1.8, 1.8, {-0.9, 0.9}, false, "as far as particles reach"},
         {-1.5, 2.3, "", 9, -1.5, 2.3, {-0.55, 1.35}, false, "as far as particles reach"},
+        {-0.9, 1, "# box = -0.95:1.05\n", 9, -0.95, 1.05, {-0.45, 0.55}, true, "the file says so"},
+        {-1.1, 0.8, "# box = -1.1:0.9\n", 9, -1.1, 0.9, {-0.6, 0.4}, true, "the file says so"},
     };
     (void)state;
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {

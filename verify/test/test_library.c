@@ -370,6 +370,36 @@ static void times_of_a_simulation(void **state)
     sphproof_simulations_free(simulation);
 }
 
+/* Gas that fills a periodic box falls freely, along each direction as that direction's gravity
+ * says. */
+static void gas_falls(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        enum { SIDE = 10, MOST = SIDE * SIDE * SIDE };
+        static double place[3][MOST], mass[MOST], energy[MOST];
+        const double gravity[] = {0.25, -0.5, 0.75}, time = 0.03;
+        struct sphproof_scene scene = {.dim = dim, .n = 1, .m = mass, .u = energy, .gamma = 1.4};
+        struct sphproof_simulation *simulation;
+        struct sphproof_error error;
+        for (int a = 0; a < dim; a++) {
+            scene.x[a] = place[a], scene.hi[a] = 1, scene.gravity[a] = gravity[a];
+            scene.n *= SIDE;
+        }
+        for (size_t i = 0; i < scene.n; i++) {
+            const size_t cell[] = {i % SIDE, i / SIDE % SIDE, i / SIDE / SIDE};
+            for (int a = 0; a < dim; a++) place[a][i] = ((double)cell[a] + 0.5) / SIDE;
+            mass[i] = 1. / (double)scene.n, energy[i] = 1;
+        }
+        if (sphproof_simulations_create(&scene, &simulation, &error)) fail_msg("%s", error.message);
+        if (sphproof_simulations_run(simulation, time, &error)) fail_msg("%s", error.message);
+        const struct sphproof_sums sums = sphproof_simulations_sums(simulation);
+        for (int a = 0; a < 3; a++)
+            assert_true(fabs(sums.momentum[a] - (a < dim ? time * gravity[a] : 0)) < 1e-14);
+        sphproof_simulations_free(simulation);
+    }
+}
+
 static void a_scene_that_is_none_is_refused(void **state)
 {
     (void)state;
@@ -410,6 +440,7 @@ int main(void)
         cmocka_unit_test(rates_conserve),
         cmocka_unit_test(a_simulation_conserves),
         cmocka_unit_test(times_of_a_simulation),
+        cmocka_unit_test(gas_falls),
         cmocka_unit_test(a_scene_that_is_none_is_refused),
     };
     return cmocka_run_group_tests_name("library", tests, NULL, NULL);

@@ -17,7 +17,8 @@ static void every_form(void **state)
         struct binary b = made(1 + draw % 3);
         b.tagged = draw % 2, b.swapped = draw / 2 % 2;
         b.extra = drawn(3);
-        if (drawn(4) == 0) b.box = drawn(2) ? 0 : -1;
+        if (drawn(4) == 0)
+            b.box = (const double[]){0, -1, 2.5 * SIDE}[drawn(3)]; /* or thin in it */
         if (drawn(4) == 0) b.parts = 0;
         b.there[ID] = !b.tagged || drawn(2);
         b.there[ACCE] = b.tagged && drawn(2); /* nobody can tell what it is without its name */

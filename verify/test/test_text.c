@@ -68,6 +68,10 @@ static void lists_have_their_length(void **state)
     assert_false(text_reals("1 2 3 4", " \t,", 3, v));
     assert_false(text_reals("1 2 x", " \t,", 3, v));
     assert_false(text_reals("1:2:", ":", 3, v));
+    static const char *const ends[] = {"1:2:", "1,2,", "1,2 ,", "1,2, ",
+                                       ":1:2", ",1,2", "1::2",  "1,,2"};
+    for (size_t i = 0; i < sizeof ends / sizeof *ends; i++)
+        assert_false(text_reals(ends[i], i % 2 || i == 2 ? "," : ":", 2, v));
     assert_false(text_reals("", " \t,", 1, v));
 }
 

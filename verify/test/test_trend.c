@@ -73,6 +73,27 @@ static void odd_nights(void **state)
     assert_int_equal(changes[0].at, NIGHTS - 1);
 }
 
+/* An odd night beside a step, on its far side and further than it jumps, does not date it. */
+static void odd_nights_beside_a_step(void **state)
+{
+    (void)state;
+    static const double past[] = {0.5, 1.2, 1.5};
+    double value[NIGHTS];
+    struct trend_change changes[MOST];
+    for (size_t at = 6; at < NIGHTS - 6; at++)
+        for (size_t night = at - 4; night < at + 4; night++)
+            for (size_t k = 0; k < sizeof past / sizeof *past; k++) {
+                if (night == at - 1 || night == at) continue; /* it may be the step's own */
+                level(value, 0, at, 1);
+                level(value, at, NIGHTS, 2);
+                value[night] = night < at ? 1 - past[k] : 2 + past[k];
+                assert_int_equal(changes_of(value, changes), 1);
+                assert_int_equal(changes[0].at, at);
+                near_absolute(changes[0].before, 1, 0);
+                near_absolute(changes[0].after, 2, 0);
+            }
+}
+
 static void several_steps(void **state)
 {
     (void)state;
@@ -127,7 +148,8 @@ static void noise(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(nothing_changes), cmocka_unit_test(one_step), cmocka_unit_test(odd_nights),
+        cmocka_unit_test(nothing_changes), cmocka_unit_test(one_step),
+        cmocka_unit_test(odd_nights),      cmocka_unit_test(odd_nights_beside_a_step),
         cmocka_unit_test(several_steps),   cmocka_unit_test(noise),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
