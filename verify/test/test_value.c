@@ -82,7 +82,8 @@ static void words(void **state)
 static void what_is_written_is_read(void **state)
 {
     (void)state;
-    static const double edges[] = {0, 1, 0.1, 1e15, 1e22, DBL_MIN, DBL_MIN / 3, DBL_MAX, INFINITY};
+    static const double edges[] = {
+        0, 1, 0.1, 1e15, 1e22, DBL_MIN, DBL_MIN / 3, DBL_MAX, (double)INFINITY};
     for (size_t k = 0; k < sizeof edges / sizeof *edges; k++)
         for (int sign = -1; sign <= 1; sign += 2) {
             const double value = sign * edges[k];
