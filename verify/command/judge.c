@@ -74,6 +74,7 @@ static enum status take_request(const struct options *options, int n, struct jud
     request->left = options_value(options, "left");
     request->right = options_value(options, "right");
     request->options.map = options_value(options, "map");
+    request->allow_far = options_value(options, "allow-far");
     if (n < 1) return command_usage(options, error, "a snapshot is needed");
     if (n > JUDGE_SNAPSHOTS_MAX)
         return command_usage(options, error, "%d snapshots; allowed: up to %d", n,
@@ -267,6 +268,8 @@ static enum status run(const struct options *options, int n, char **arguments, s
         status = tell(options, judged, count, gates, gate_count, error);
         for (size_t k = 0; k < gate_count && !status; k++)
             if (!gates[k].good) status = STATUS_CHECK_FAILED;
+        for (size_t i = 0; i < count && !status; i++)
+            if (!judged[i].passes) status = STATUS_CHECK_FAILED;
     }
     for (size_t i = 0; i < count; i++) judge_free(&judged[i]);
     free(judged);
@@ -285,6 +288,8 @@ static const struct command_option own_options[] = {
     {"kernel", "K", "the code's kernel, in place of finding it"},
     {"h-is", "MEANING", "support, half, sigma, 2sigma, or support radius over h"},
     {"gate", "FIELD_NORM=BOUND,...", "exit 1 beyond: density_l1=2e-3"},
+    {"allow-far", NULL,
+     "do not exit 1 because a snapshot is far from the solution, or of another gas"},
     {"html", "F.html", "write a page: verdict, gates, orders, assumptions, errors, profiles"},
     {"plot", "FILE.svg|.png", "draw it as `sphproof run --plot` does; of several the finest"},
     {NULL, NULL, NULL},
@@ -301,7 +306,9 @@ const struct command command_judge = {
         "density again. Everything that had to be assumed is said, with the evidence for it.\n"
         "Snapshots of `sphproof run` name their case, and need no option.\n"
         "Several snapshots: orders where numbers of particles differ, conservation where only\n"
-        "times do; gates look at the one of most particles.",
+        "times do; gates look at the one of most particles.\n"
+        "Exit status 1: a gate failed, or a snapshot is far from the case's solution or of another "
+        "gas.",
     .run = run,
     .options = own_options,
     .examples =

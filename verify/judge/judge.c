@@ -222,15 +222,16 @@ static double value_of(const struct problem_state *state, int f, int dim)
     return problem_field(state, (enum field)f);
 }
 
-/* Median error of a field where the flow has changed it, over the range of its exact values (where
- * gas rests, velocities over the speed of sound): a scheme errs at jumps, another solution nearly
- * everywhere. */
+/* Median error of a field where the flow has changed it, over the range of its exact values: a
+ * scheme errs at jumps, another solution nearly everywhere. Where gas rests, velocities are
+ * measured in the speed of sound; where gas is cold, pressure and energy also in what its motion
+ * could make of them. */
 static double median_error(const struct judged *judged, int f, double *errors, double *range)
 {
     const struct snapshot *s = &judged->result.snapshot;
     const int dim = judged->run.problem.domain.dim;
     const double *const values[FIELDS] = {s->rho, s->v[0], s->P, s->u};
-    double least = INFINITY, most = -INFINITY, sound = 0;
+    double least = INFINITY, most = -INFINITY, sound = 0, motion = 0;
     for (int all = 0; all < 2; all++) {
         size_t n = 0;
         for (size_t i = 0; i < s->n; i++) {
@@ -239,6 +240,8 @@ static double median_error(const struct judged *judged, int f, double *errors, d
             const double exact = value_of(&now, f, dim);
             least = fmin(least, exact), most = fmax(most, exact);
             sound = fmax(sound, sqrt(judged->run.problem.gamma * now.P / now.rho));
+            const double speed = value_of(&now, FIELD_VELOCITY, 3);
+            motion = fmax(motion, (f == FIELD_PRESSURE ? now.rho : 1) * speed * speed);
             if (near_jump(judged, i)) continue;
             if (!all && fabs(exact - value_of(&before, f, dim)) <= 1e-3 * fabs(exact)) continue;
             double squares = 0;
@@ -248,6 +251,7 @@ static double median_error(const struct judged *judged, int f, double *errors, d
         }
         *range = fmax(most - least, 0.2 * fmax(fabs(most), fabs(least)));
         if (f == FIELD_VELOCITY && *range == 0) *range = sound;
+        if (f == FIELD_PRESSURE || f == FIELD_INTERNAL_ENERGY) *range = fmax(*range, 0.1 * motion);
         if (n < 8 && judged->run.problem.problem->regions) return 0; /* nothing to go by */
         if (n < 8) continue;
         qsort(errors, n, sizeof *errors, ascending);
@@ -309,24 +313,28 @@ static void write_verdict(struct judged *judged)
 {
     const struct run_result *r = &judged->result;
     const struct convention *best = &judged->conventions.candidate[0];
-    char kernel[100];
+    char kernel[100], gas[120] = "";
+    if (judged->case_gamma > 0)
+        snprintf(gas, sizeof gas,
+                 "another gas: gamma = %.6g, the case has %.6g (--gamma %.6g judges it as that); ",
+                 r->problem.gamma, judged->case_gamma, r->problem.gamma);
     if (judged->conventions.known)
         snprintf(kernel, sizeof kernel, "%s with H = %.6g h", best->kernel.member.name,
                  best->ratio);
     else
         snprintf(kernel, sizeof kernel, "kernel not identifiable");
     if (r->problem.problem->fieldless)
-        snprintf(judged->verdict, sizeof judged->verdict, "%s = %.4g, the case says %.4g; %s",
-                 r->functional_count ? r->functionals[0].name : "nothing",
+        snprintf(judged->verdict, sizeof judged->verdict, "%s%s = %.4g, the case says %.4g; %s",
+                 gas, r->functional_count ? r->functionals[0].name : "nothing",
                  r->functional_count ? r->functionals[0].value : (double)NAN,
                  r->functional_count ? r->functionals[0].exact : (double)NAN, kernel);
     else
         snprintf(judged->verdict, sizeof judged->verdict,
-                 "%sL1 of density %.3g, velocity %.3g, pressure %.3g; %s",
-                 judged->foreign ? "far from the solution of this case: " : "",
+                 "%s%sL1 of density %.3g, velocity %.3g, pressure %.3g; %s", gas,
+                 judged->wrong > JUDGE_FOREIGN ? "far from the solution of this case: " : "",
                  r->errors[FIELD_DENSITY].l1, r->errors[FIELD_VELOCITY].l1,
                  r->errors[FIELD_PRESSURE].l1, kernel);
-    if (judged->foreign)
+    if (judged->wrong > JUDGE_FOREIGN)
         snapshot_note(&judged->file.notes, "solution", "far from this case's",
                       "%s is off also away from jumps, by %.2g times what a scheme may be: another "
                       "gamma, time, x0 or case, too few particles, or a scheme that fails",
@@ -367,6 +375,8 @@ enum status judge_snapshot(const char *path, const struct judge_request *request
                       "%.200s: no particle lies in the window; --x0 tells where the case is", path);
     if (!status) status = measure_wrong(judged, error);
     if (!status) {
+        judged->foreign |= judged->case_gamma > 0;
+        judged->passes = !judged->foreign || request->allow_far;
         measure_sums(judged);
         judged->transverse = measure_noise(judged);
         note_kernel(judged);

@@ -21,6 +21,7 @@ struct judge_request {
     double ends[2], radius;                /* radius > 0: a disc or ball about the middle */
     int kernel;                            /* place in kernel_family.members; -1: found */
     struct width_meaning width;
+    bool allow_far; /* what is foreign passes */
     struct snapshot_options options;
 };
 
@@ -35,7 +36,9 @@ struct judged {
     double transverse;        /* rms of velocities across x, by volume, in the window; NaN in 1D */
     double wrong;             /* worst median error of a field over the range of its exact values */
     enum field wrong_field;
-    bool foreign; /* far from this case's solution */
+    bool foreign;      /* far from this case's solution, or of another gas */
+    bool passes;       /* not foreign, or that was allowed */
+    double case_gamma; /* where the user named the case and the file has another gamma; else 0 */
     char verdict[400];
 };
 
@@ -72,13 +75,13 @@ enum status judge_gates(const char *text, const struct judged *judged, struct ju
 const struct judged *judge_main(const struct judged *judged, size_t n);
 
 /* The document of the command, without its head, and what terminal and page show of several
- * snapshots, of gates and in one line ("status", "headline"); with profiles it is what page.h draws. New
- * reference; NULL: no memory. */
+ * snapshots, of gates and in one line ("status", "headline"); with profiles it is what page.h
+ * draws. New reference; NULL: no memory. */
 json_t *judge_json(const struct judged *judged, size_t n, const struct judge_gate *gates,
                    size_t gate_count, bool profiles);
 
-/* Orders of L1 against n^(1/d), of all fields, from the last snapshot of each n: [{"field", "norm", "order", "low", "high",
- * "pairwise"}], [] where there are no two different n. New reference. */
+/* Orders of L1 against n^(1/d), of all fields, from the last snapshot of each n: [{"field", "norm",
+ * "order", "low", "high", "pairwise"}], [] where there are no two different n. New reference. */
 json_t *judge_orders(const struct judged *judged, size_t n);
 
 #endif

@@ -61,13 +61,15 @@ static json_t *one_json(const struct judged *judged, bool profiles)
     return one;
 }
 
-/* What it comes to: "fail" where a gate does, or the snapshot is far from the solution; and in
- * words, gates that fail first. */
-static void add_conclusion(json_t *document, const struct judged *main,
+/* What it comes to: "fail" where a gate does, or a snapshot does not pass; and in words, gates that
+ * fail first. */
+static void add_conclusion(json_t *document, const struct judged *judged, size_t n,
                            const struct judge_gate *gates, size_t gate_count)
 {
     char text[1024] = "";
     size_t failed = 0, used = 0;
+    bool pass = true;
+    for (size_t i = 0; i < n; i++) pass &= judged[i].passes;
     for (size_t k = 0; k < gate_count; k++) failed += !gates[k].good;
     if (failed)
         used = (size_t)snprintf(text, sizeof text, "%zu of %zu gate%s failed: ", failed, gate_count,
@@ -78,8 +80,9 @@ static void add_conclusion(json_t *document, const struct judged *main,
                                  said++ ? ", " : "", gates[k].name, gates[k].value, gates[k].bound);
     }
     if (used < sizeof text)
-        snprintf(text + used, sizeof text - used, "%s%s", failed ? "; " : "", main->verdict);
-    json_object_set_new(document, "status", json_string(failed || main->foreign ? "fail" : "pass"));
+        snprintf(text + used, sizeof text - used, "%s%s", failed ? "; " : "",
+                 judge_main(judged, n)->verdict);
+    json_object_set_new(document, "status", json_string(failed || !pass ? "fail" : "pass"));
     json_object_set_new(document, "headline", json_string(text));
 }
 
@@ -109,7 +112,7 @@ json_t *judge_json(const struct judged *judged, size_t n, const struct judge_gat
                                               result_number(gates[k].bound), "status",
                                               gates[k].good ? "pass" : "fail"));
     json_object_set_new(document, "gates", list);
-    add_conclusion(document, main, gates, gate_count);
+    add_conclusion(document, judged, n, gates, gate_count);
     if (n > 1) {
         json_t *all = json_array();
         for (size_t i = 0; i < n; i++) json_array_append_new(all, one_json(&judged[i], profiles));

@@ -49,6 +49,7 @@ static enum status take_gamma(const struct judge_request *request, struct judged
     double scatter, gamma = settings_real(settings, SETTING_gamma);
     const double stored = stored_gamma(file, &scatter);
     const bool proved = stored > 1 && scatter < 1e-5 * stored;
+    const double case_gamma = gamma;
     const char *evidence = "the file has none: the case's";
     if (request->gamma.known)
         gamma = request->gamma.value, evidence = "--gamma";
@@ -57,6 +58,8 @@ static enum status take_gamma(const struct judge_request *request, struct judged
     else if (proved)
         gamma = unrounded(round(stored * 1e6) / 1e6),
         evidence = "the file has none, but P = (gamma - 1) rho u of its particles";
+    if (request->case_name && !request->gamma.known && fabs(gamma - case_gamma) > 1e-3)
+        judged->case_gamma = case_gamma;
     snprintf(value, sizeof value, "%.9g", gamma);
     snapshot_note(&file->notes, "gamma", value, "%s%s", evidence,
                   proved && fabs(stored - gamma) > 1e-4
