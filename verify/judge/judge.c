@@ -223,9 +223,9 @@ static double value_of(const struct problem_state *state, int f, int dim)
 }
 
 /* Median error of a field where the flow has changed it, over the range of its exact values: a
- * scheme errs at jumps, another solution nearly everywhere. Where gas rests, velocities are
- * measured in the speed of sound; where gas is cold, pressure and energy also in what its motion
- * could make of them. */
+ * scheme errs at jumps, another solution nearly everywhere. A uniform field is measured in half of
+ * its value. Where gas rests, velocities are measured in the speed of sound; where gas is cold,
+ * pressure and energy also in what its motion could make of them. */
 static double median_error(const struct judged *judged, int f, double *errors, double *range)
 {
     const struct snapshot *s = &judged->result.snapshot;
@@ -249,7 +249,7 @@ static double median_error(const struct judged *judged, int f, double *errors, d
                 squares += (s->v[d][i] - now.v[d]) * (s->v[d][i] - now.v[d]);
             errors[n++] = f == FIELD_VELOCITY ? sqrt(squares) : fabs(values[f][i] - exact);
         }
-        *range = fmax(most - least, 0.2 * fmax(fabs(most), fabs(least)));
+        *range = fmax(most - least, (most > least ? 0.2 : 0.5) * fmax(fabs(most), fabs(least)));
         if (f == FIELD_VELOCITY && *range == 0) *range = sound;
         if (f == FIELD_PRESSURE || f == FIELD_INTERNAL_ENERGY) *range = fmax(*range, 0.1 * motion);
         if (n < 8 && judged->run.problem.problem->regions) return 0; /* nothing to go by */
