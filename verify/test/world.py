@@ -87,6 +87,8 @@ def try_condition(condition, place, selection):
             return missing or run_tests(world, selection)
     except worlds.NotTried as reason:
         return str(reason)
+    except worlds.NotBuilt as reason:
+        return Outcome(0, [("(the tree does not build: %s)" % reason, "FAIL")])
 
 
 def print_row(name, outcome, plain):

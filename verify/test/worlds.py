@@ -19,6 +19,10 @@ class NotTried(Exception):
     """Why a condition cannot be set up here."""
 
 
+class NotBuilt(Exception):
+    """The tree does not build under a condition: that is a failure."""
+
+
 class Place:
     """Where the tree, its build and our own folder are, and the environment to start from."""
 
@@ -88,8 +92,7 @@ class World:
             done = subprocess.run(command, env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                                   text=True, errors="replace", check=False)
             if done.returncode:
-                sys.stdout.write(done.stdout[-3000:])
-                raise RuntimeError("%s: the tree does not build" % self.name)
+                raise NotBuilt(done.stdout.strip()[-300:].replace("\n", " | "))
 
     def free_of(self, folder):
         """What is mounted over this folder hides neither tree nor build."""
