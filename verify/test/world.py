@@ -172,8 +172,10 @@ def complaints_about(name, outcome, so_already):
 
 def try_all(arguments):
     work = os.path.realpath(arguments.work)
-    place = worlds.Place(os.path.join(work, "planted"), os.path.join(work, "planted-build"), work, clean_environment())
-    shutil.rmtree(place.build, ignore_errors=True)
+    build = os.path.join(work, "planted-build")
+    shutil.rmtree(build, ignore_errors=True)
+    # Our folder is in the build, as it is by night.
+    place = worlds.Place(os.path.join(work, "planted"), build, os.path.join(build, "worlds"), clean_environment())
     plant(place)
     outcomes = go_through(worlds.chosen(arguments.only), place, planted_for)
     # A machine may be so already: then the fault shows as things are, too, and must.
