@@ -187,7 +187,7 @@ TAGS = ["HEAD", "POS ", "VEL ", "ID  ", "CHLD", "GENE", "MASS", "U   ", "RHO ", 
 def write(folder, name, data):
     path = os.path.join(folder, name)
     with open(path, "wb") as file:
-        file.write(data if isinstance(data, bytes) else data.encode())
+        file.write(data if isinstance(data, bytes) else os.fsencode(data))
     return path
 
 
