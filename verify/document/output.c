@@ -180,6 +180,23 @@ enum status output_folder(const char *path, struct error *error)
     }
 }
 
+FILE *output_temporary(void)
+{
+    const char *folder = getenv("TMPDIR");
+    char path[PATH_MAX];
+    if (!folder || !*folder) return tmpfile();
+    if (snprintf(path, sizeof path, "%s/sphproof.XXXXXX", folder) >= (int)sizeof path) {
+        errno = ENAMETOOLONG;
+        return NULL;
+    }
+    const int file = mkstemp(path);
+    if (file < 0) return NULL;
+    unlink(path);
+    FILE *stream = fdopen(file, "w+b");
+    if (!stream) close(file);
+    return stream;
+}
+
 void output_prepare_process(void)
 {
     /* A closed standard stream is replaced by one that fails, so that no data file gets its

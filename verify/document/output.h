@@ -30,6 +30,10 @@ enum status output_probe(const char *path, struct error *error);
 /* Makes a folder and those above it; one that is there is fine. */
 enum status output_folder(const char *path, struct error *error);
 
+/* A file without a name, in $TMPDIR if that is set, else where the system has such files; NULL:
+ * errno says why there is none. */
+FILE *output_temporary(void);
+
 /* An interrupt also ends this group of processes; 0: none. */
 void output_guard(int group);
 

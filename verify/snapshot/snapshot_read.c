@@ -10,6 +10,7 @@
 
 #include "guard.h"
 #include "hdf5_file.h"
+#include "output.h"
 #include "snapshot_file.h"
 #include "source.h"
 
@@ -115,7 +116,7 @@ static enum status read_hdf5(struct snapshot_source *source, const struct snapsh
 {
     enum { SECONDS = 60 };
     struct guard_verdict verdict = {0};
-    const struct errand errand = {source, options, tmpfile()};
+    const struct errand errand = {source, options, output_temporary()};
     if (!errand.results)
         return error_set(error, STATUS_ENVIRONMENT, "no temporary file for what %.200s holds",
                          source->path);

@@ -397,7 +397,7 @@ def together(folder, hdf5):
     with open(page, encoding="utf-8") as text:
         html = text.read()
     headings = [heading.text for heading in ElementTree.fromstring(html.split("\n", 1)[1]).iter() if heading.tag.endswith("h2")]
-    assert set(paths[2:]) <= set(headings), "a snapshot is missing"
+    assert {os.fsencode(path).decode(errors="replace") for path in paths[2:]} <= set(headings), "a snapshot is missing"
     assert "quadratic_spline" in html and "not identifiable" not in html
     page_says_what_the_terminal_says(paths[2:], page)
     if hdf5:

@@ -161,6 +161,31 @@ static void files_appear_whole(void **state)
     assert_int_equal(rmdir(folder), 0); /* nothing else is left in it */
 }
 
+/* A file without a name comes where TMPDIR says, and nowhere else where there is no such folder. */
+static void temporaries(void **state)
+{
+    char folder[] = "sphproof-test-XXXXXX", text[8] = "";
+    const char *old = getenv("TMPDIR");
+    char *before = old ? strdup(old) : NULL;
+    (void)state;
+    assert_non_null(mkdtemp(folder));
+    setenv("TMPDIR", folder, 1);
+    FILE *file = output_temporary();
+    assert_non_null(file);
+    assert_true(fputs("here", file) >= 0);
+    rewind(file);
+    assert_int_equal(fread(text, 1, sizeof text, file), 4);
+    assert_memory_equal(text, "here", 4);
+    fclose(file);
+    assert_int_equal(rmdir(folder), 0); /* nothing stays */
+    assert_null(output_temporary());
+    if (before)
+        setenv("TMPDIR", before, 1);
+    else
+        unsetenv("TMPDIR");
+    free(before);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -171,6 +196,7 @@ int main(void)
         cmocka_unit_test(near_misses),
         cmocka_unit_test(messages_are_printable),
         cmocka_unit_test(files_appear_whole),
+        cmocka_unit_test(temporaries),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
