@@ -74,6 +74,13 @@ static enum status take_request(const struct options *options, int n, struct jud
     request->left = options_value(options, "left");
     request->right = options_value(options, "right");
     request->options.map = options_value(options, "map");
+    request->box = options_value(options, "box");
+    request->boundary = options_value(options, "boundary");
+    if (request->boundary && strcmp(request->boundary, "periodic") != 0 &&
+        strcmp(request->boundary, "open") != 0 && strcmp(request->boundary, "reflecting") != 0)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "judge: --boundary '%.40s': allowed: periodic open reflecting",
+                         request->boundary);
     request->allow_far = options_value(options, "allow-far");
     if (n < 1) return command_usage(options, error, "a snapshot is needed");
     if (n > JUDGE_SNAPSHOTS_MAX)
@@ -283,6 +290,8 @@ static const struct command_option own_options[] = {
     {"gamma", "G", "ratio of specific heats; else the file's, or the case's"},
     {"x0", "X", "where the gases met, as the file counts x; else the middle of its box"},
     {"time", "T", "else the file's"},
+    {"box", "LO:HI[,LO:HI...]", "ends of the box along x, y, z; else the file's, or found"},
+    {"boundary", "WORD", "periodic, open or reflecting: what is at the ends along x; else found"},
     {"window", "A:B|R", "where errors are measured: along x, or a disc; else as a run does"},
     {"map", "NAME=THEIRS,...", "text: which column is x, vx, m, rho, u, P, h"},
     {"kernel", "K", "the code's kernel, in place of finding it"},

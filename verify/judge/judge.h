@@ -17,6 +17,8 @@ struct judge_request {
     const char *case_name;                 /* NULL: the file's; with left and right: of its box */
     const char *left, *right;              /* "rho v P"; NULL: the case's */
     struct snapshot_value gamma, x0, time; /* where the user says them */
+    const char *box;                       /* as snapshot_take_box reads it; NULL: the file's */
+    const char *boundary;                  /* periodic, open or reflecting; NULL: found */
     bool window;                           /* between ends[] along x */
     double ends[2], radius;                /* radius > 0: a disc or ball about the middle */
     int kernel;                            /* place in kernel_family.members; -1: found */

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "judge.h"
+#include "judge_tube.h"
 #include "problem_list.h"
 
 static enum status set_real(struct settings *settings, enum setting key, double value,
@@ -117,8 +117,8 @@ static bool fits_case(const struct snapshot_file *file, const struct settings *s
     return true;
 }
 
-static enum status take_box(struct judged *judged, const struct settings *settings, struct box *box,
-                            struct error *error)
+static enum status take_box(const struct judge_request *request, struct judged *judged,
+                            const struct settings *settings, struct box *box, struct error *error)
 {
     struct snapshot_file *file = &judged->file;
     char value[80];
@@ -165,6 +165,7 @@ static enum status take_box(struct judged *judged, const struct settings *settin
         snprintf(value, sizeof value, "%.6g to %.6g along x", box->lo[0], box->hi[0]);
         snapshot_note(&file->notes, "box", value, "%s",
                       !file->boxed   ? "the file says none: as far as particles reach; not periodic"
+                      : request->box ? "--box"
                       : file->placed ? "the file says so"
                       : inside ? "the header's length, from 0; positions lie in it; taken for "
                                  "periodic"
@@ -174,12 +175,14 @@ static enum status take_box(struct judged *judged, const struct settings *settin
     return STATUS_OK;
 }
 
-/* Where the two gases met: the box is then about that. */
+/* Where the two gases met: the box is then about that. A tube that has ends (*ended) has its
+ * window, too, and *period becomes 0. */
 static enum status place_tube(const struct judge_request *request, struct judged *judged,
-                              struct box *box, struct error *error)
+                              struct settings *settings, struct box *box, double *period,
+                              bool *ended, struct error *error)
 {
     struct snapshot_notes *notes = &judged->file.notes;
-    const double length = box->hi[0] - box->lo[0];
+    const double ends[2] = {box->lo[0], box->hi[0]}, length = ends[1] - ends[0];
     double x0 = 0.5 * (box->lo[0] + box->hi[0]);
     char value[32];
     const char *evidence = "the middle of the box; --x0 says otherwise";
@@ -194,7 +197,16 @@ static enum status place_tube(const struct judge_request *request, struct judged
     snprintf(value, sizeof value, "%.9g", x0);
     snapshot_note(notes, "x0", value, "%s", evidence);
     box->lo[0] = x0 - 0.5 * length, box->hi[0] = x0 + 0.5 * length;
-    return STATUS_OK;
+    *ended = judge_tube_ends(request, judged, settings, ends);
+    if (!*ended) return STATUS_OK;
+    double window[2], about[2];
+    char text[SETTING_TEXT_MAX];
+    if (judge_tube_place(request, judged, settings, x0, ends, window, about, error))
+        return error->status;
+    *period = 0;
+    box->lo[0] = about[0], box->hi[0] = about[1];
+    snprintf(text, sizeof text, "%.17g %.17g", window[0], window[1]);
+    return settings_set(settings, SETTING_window, text, SOURCE_USER, NULL, error);
 }
 
 static enum status set_ends(struct settings *settings, enum setting key, const double *ends,
@@ -285,8 +297,13 @@ enum status judge_place(const struct judge_request *request, struct judged *judg
 {
     struct run_settings asked;
     struct box box;
+    bool ended = false;
     struct settings *settings = &asked.settings;
     const char *said = judged->file.case_name;
+    if (request->box && !(judged->file.boxed = snapshot_take_box(request->box, &judged->file)))
+        return error_set(error, STATUS_BAD_INPUT,
+                         "judge: --box '%.80s': allowed: LO:HI, one for each direction, or lengths",
+                         request->box);
     const char *name = request->case_name ? request->case_name : said;
     if (!*name)
         return error_set(error, STATUS_BAD_INPUT,
@@ -313,15 +330,19 @@ enum status judge_place(const struct judge_request *request, struct judged *judg
                  case_hi = settings_along(settings, SETTING_hi, 0);
     if (check_dimension(judged, &asked, problem, error) ||
         take_gamma(request, judged, settings, error) ||
-        take_time(request, judged, settings, error) || take_box(judged, settings, &box, error))
+        take_time(request, judged, settings, error) ||
+        take_box(request, judged, settings, &box, error))
         return error->status;
+    if (request->boundary && !tube)
+        snprintf(judged->file.boundary, sizeof judged->file.boundary, "%s", request->boundary);
     for (int d = 0; d < 3; d++) period[d] = snapshot_period(&judged->file, d);
-    if (tube && place_tube(request, judged, &box, error)) return error->status;
+    if (tube && place_tube(request, judged, settings, &box, &period[0], &ended, error))
+        return error->status;
     const int dim = judged->file.dim;
     for (int d = 1; d < dim; d++) /* of particles that stand on one line there is no box */
         if (!(box.hi[d] > box.lo[d])) box.hi[d] = box.lo[d] + 1;
-    if (set_window(request, judged, settings, &box, case_hi - case_lo, 0.5 * (case_lo + case_hi),
-                   error) ||
+    if ((!ended && set_window(request, judged, settings, &box, case_hi - case_lo,
+                              0.5 * (case_lo + case_hi), error)) ||
         set_ends(settings, SETTING_lo, box.lo, dim, error) ||
         set_ends(settings, SETTING_hi, box.hi, dim, error))
         return error->status;

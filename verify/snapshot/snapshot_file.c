@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "text.h"
+
 const char *const snapshot_column_names[SNAPSHOT_COLUMNS] = {
     "x", "y", "z", "vx", "vy", "vz", "m", "rho", "u", "P", "h", "ax", "ay", "az", "du"};
 
@@ -56,6 +58,32 @@ bool snapshot_file_make(struct snapshot_file *file, enum snapshot_column column)
 void snapshot_file_free(struct snapshot_file *file)
 {
     for (int c = 0; c < SNAPSHOT_COLUMNS; c++) free(file->column[c]), file->column[c] = NULL;
+}
+
+bool snapshot_take_box(const char *text, struct snapshot_file *file)
+{
+    double numbers[3], ends[2];
+    char copy[160], *rest = copy;
+    int count = 0;
+    file->placed = false;
+    if (!strchr(text, ':')) {
+        if (text_real(text, numbers)) {
+            for (int d = 0; d < 3; d++) file->box[d] = numbers[0];
+            return true;
+        }
+        count = text_reals(text, " \t,", 3, numbers)   ? 3
+                : text_reals(text, " \t,", 2, numbers) ? 2
+                                                       : 0;
+        for (int d = 0; d < count; d++) file->box[d] = numbers[d];
+        return count > 0;
+    }
+    if (strlen(text) >= sizeof copy) return false;
+    strcpy(copy, text);
+    for (char *word; (word = strtok_r(rest, " \t,", &rest)); count++) {
+        if (count == 3 || !text_reals(word, ":", 2, ends)) return false;
+        file->corner[count] = ends[0], file->box[count] = ends[1] - ends[0];
+    }
+    return file->placed = count > 0;
 }
 
 double snapshot_period(const struct snapshot_file *file, int d)

@@ -95,6 +95,10 @@ bool snapshot_file_make(struct snapshot_file *file, enum snapshot_column column)
 void snapshot_note(struct snapshot_notes *notes, const char *what, const char *value,
                    const char *format, ...) __attribute__((format(printf, 4, 5)));
 
+/* Reads a box: one length for all directions, a length each, or LO:HI for each; false: none of
+ * these. */
+bool snapshot_take_box(const char *text, struct snapshot_file *file);
+
 /* The length of the box along d where it is known and periodic, else 0. */
 double snapshot_period(const struct snapshot_file *file, int d);
 

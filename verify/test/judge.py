@@ -573,6 +573,59 @@ def page_says_what_the_terminal_says(paths, page):
                 assert "particles" in text.read(), "no particles in the picture"
 
 
+def tube(path, t, lo=0.0, hi=1.0, n=400):
+    """Sod's tube as textbooks draw it: exact, between two ends."""
+    step = (hi - lo) / n
+    said = subprocess.run([PROGRAM, "riemann", "1", "0", "1", "0.125", "0", "0.1", "--time", repr(t), "--x0", "0.5",
+                           "--sample", "%r:%r:%d" % (lo + step / 2, hi - step / 2, n), "--json", "-"],
+                          capture_output=True, text=True, check=True)
+    with open(path, "w", encoding="ascii") as file:
+        file.write("x,vx,m,rho,u,P\n")
+        for s in json.loads(said.stdout)["samples"]:
+            file.write("%r,%r,%r,%r,%r,%r\n" % (s["x"], s["velocity"], s["density"] * step, s["density"],
+                                               s["pressure"] / (0.4 * s["density"]), s["pressure"]))
+    return path
+
+
+def assumed(document, what):
+    return [note["value"] for note in document["assumptions"] if note["what"] == what]
+
+
+def tubes_with_ends(folder):
+    early, late, after = (tube(os.path.join(folder, "tube%g.csv" % t), t) for t in (0.14, 0.2, 0.3))
+    asked = ["--case", "sod", "--time"]
+    for path, t, more in ((early, "0.14", []), (late, "0.2", []), (late, "0.2", ["--x0", "0.5"]),
+                          (late, "0.2", ["--box", "0:1"]), (late, "0.2", ["--boundary", "reflecting"]),
+                          (late, "0.2", ["--boundary", "open", "--box", "0:1"])):
+        got = judge(path, *asked, t, *more, status=0)
+        assert got["errors"]["density"]["l1"] < 1e-15, (t, more, got["errors"]["density"])
+        assert got["window"][0] < 0.002 and got["window"][1] > 0.998, (t, more, got["window"])
+    assert judge(late, *asked, "0.2", "--window", "0.3:0.8", status=0)["window"] == [0.3, 0.8]
+    # a shift of the whole tube, or a later time, is told
+    assert judge(late, *asked, "0.25", "--allow-far")["errors"]["density"]["l1"] > 0.02
+    assert judge(late, *asked, "0.2", "--x0", "0.45", "--allow-far")["errors"]["density"]["l1"] > 0.02
+    # once the shock has come back from a wall, the window keeps clear of what it may have reached
+    got = judge(after, *asked, "0.3", "--boundary", "reflecting", status=0)
+    assert got["window"][0] < 0.002 and 0.9 < got["window"][1] < 0.98, got["window"]
+    refused(after, *asked, "3", "--boundary", "open", says=("waves may have come back", "--window"))
+    # gas that moves at an end is spoilt from the start
+    got = judge(late, *asked, "0.2", "--left", "1 0.1 1", "--boundary", "open", "--allow-far")
+    assert got["window"][0] > 0.2, got["window"]
+    # a mirrored tube that says nothing of its box is still one: its ends are disturbed
+    ours = os.path.join(folder, "ours.csv")
+    subprocess.run([PROGRAM, "run", "sod", "n=400", "--snapshot", ours, "--quiet"], check=True)
+    with open(ours, encoding="utf-8") as file:
+        rows = [line for line in file if line[0] != "#"]
+    for shift in (0, 1):
+        moved = [rows[0]] + ["%r,%s" % (float(row.split(",")[0]) + shift, row.split(",", 1)[1]) for row in rows[1:]]
+        got = judge(write(folder, "mirrored.csv", "".join(moved)), *asked, "0.2")
+        assert not assumed(got, "ends") and got["window"][1] - got["window"][0] < 1.01, got["window"]
+    refused(late, *asked, "0.2", "--boundary", "periodic", says="mirrored tube")
+    refused(late, *asked, "0.2", "--boundary", "wall", says=("--boundary 'wall'", "reflecting"))
+    refused(late, *asked, "0.2", "--box", "1:x", says=("--box '1:x'", "LO:HI"))
+    refused(late, *asked, "0.2", "--box", "0:0.5", says="positions")
+
+
 def main():
     hdf5 = with_hdf5()
     against_script(hdf5)
@@ -584,6 +637,7 @@ def main():
             phantom_dump(folder)
         blocks = formats(folder, zlib)
         files_of_ours(folder, hdf5)
+        tubes_with_ends(folder)
         own(folder)
         together(folder, hdf5)
         forces(folder)

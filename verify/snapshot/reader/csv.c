@@ -11,33 +11,6 @@
 #include "text.h"
 #include "text_table.h"
 
-/* One length for all directions, a length each, or LO:HI for each; false: none of these. */
-static bool take_box(const char *text, struct snapshot_file *file)
-{
-    double numbers[3], ends[2];
-    char copy[160], *rest = copy;
-    int count = 0;
-    file->placed = false;
-    if (!strchr(text, ':')) {
-        if (text_real(text, numbers)) {
-            for (int d = 0; d < 3; d++) file->box[d] = numbers[0];
-            return true;
-        }
-        count = text_reals(text, " \t,", 3, numbers)   ? 3
-                : text_reals(text, " \t,", 2, numbers) ? 2
-                                                       : 0;
-        for (int d = 0; d < count; d++) file->box[d] = numbers[d];
-        return count > 0;
-    }
-    if (strlen(text) >= sizeof copy) return false;
-    strcpy(copy, text);
-    for (char *word; (word = strtok_r(rest, " \t,", &rest)); count++) {
-        if (count == 3 || !text_reals(word, ":", 2, ends)) return false;
-        file->corner[count] = ends[0], file->box[count] = ends[1] - ends[0];
-    }
-    return file->placed = count > 0;
-}
-
 static void take_remark(const char *line, size_t length, struct snapshot_file *file)
 {
     char text[1200], key[16];
@@ -52,7 +25,7 @@ static void take_remark(const char *line, size_t length, struct snapshot_file *f
     memcpy(key, text + begin, size);
     key[size] = '\0';
     double number;
-    if (strcmp(key, "box") == 0) file->boxed = take_box(text + value, file);
+    if (strcmp(key, "box") == 0) file->boxed = snapshot_take_box(text + value, file);
     if (strcmp(key, "case") == 0)
         snprintf(file->case_name, sizeof file->case_name, "%s", text + value);
     if (strcmp(key, "boundary") == 0)

@@ -1,0 +1,141 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "judge_tube.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "riemann.h"
+
+/* How near to an end gas is asked whether it is undisturbed, over the length of the tube; how far
+ * it may be off, over density and sound speed; and how far sound must have come to tell anything.
+ */
+static const double near_end = 0.02, undisturbed = 0.03, far_enough = 0.05;
+/* No signal, reflected ones among them, is faster than this times the greatest |v| + c. */
+static const double safety = 1.5;
+
+struct tube {
+    struct riemann_solution main;
+    double time;
+    double fastest; /* of all signals */
+};
+
+static double sound(const struct riemann_solution *s, const struct riemann_state *gas)
+{
+    return gas->rho > 0 ? sqrt(s->gamma * gas->P / gas->rho) : 0;
+}
+
+static double fastest_of(const struct riemann_solution *s)
+{
+    const struct riemann_state states[] = {s->left,
+                                           s->right,
+                                           {s->rho_star_left, s->v_star, s->p_star},
+                                           {s->rho_star_right, s->v_star, s->p_star}};
+    const double heads[] = {s->left_head, s->left_tail, s->right_head, s->right_tail};
+    double most = 0;
+    for (size_t i = 0; i < (s->vacuum ? 2 : 4); i++)
+        most = fmax(most, fabs(states[i].v) + sound(s, &states[i]));
+    for (size_t i = 0; i < 4; i++) most = fmax(most, fabs(heads[i])); /* NaN is passed over */
+    return most;
+}
+
+static bool solve(const struct settings *settings, struct tube *tube)
+{
+    struct riemann_state sides[2];
+    struct riemann_solution mirror;
+    const double gamma = settings_real(settings, SETTING_gamma);
+    for (int side = 0; side < 2; side++) {
+        const double *given = settings->value[side ? SETTING_right : SETTING_left].real;
+        sides[side] = (struct riemann_state){given[0], given[1], given[2]};
+    }
+    tube->time = settings_real(settings, SETTING_t_end);
+    if (riemann_solve(gamma, &sides[0], &sides[1], &tube->main) ||
+        riemann_solve(gamma, &sides[1], &sides[0], &mirror))
+        return false;
+    tube->fastest = safety * fmax(fastest_of(&tube->main), fastest_of(&mirror));
+    return true;
+}
+
+/* Is the gas near one end as it was? False where hardly anything is there. */
+static bool still_there(const struct judged *judged, const struct tube *tube, const double ends[2],
+                        int side)
+{
+    const struct snapshot_file *file = &judged->file;
+    const double *x = file->column[SNAPSHOT_X], *v = file->column[SNAPSHOT_VX],
+                 *rho = file->column[SNAPSHOT_RHO];
+    const struct riemann_state *gas = side ? &tube->main.right : &tube->main.left;
+    const double reach = near_end * (ends[1] - ends[0]), c = sound(&tube->main, gas);
+    size_t there = 0;
+    for (size_t i = 0; i < file->n; i++) {
+        /* density is often lower at an end, where a code sums over half a neighbourhood */
+        const double from = fabs(x[i] - ends[side]);
+        if (!(from <= 2 * reach && from >= reach / 2)) continue;
+        if (!(fabs(v[i] - gas->v) <= undisturbed * c)) return false;
+        if (rho && !(fabs(rho[i] - gas->rho) <= undisturbed * gas->rho)) return false;
+        there++;
+    }
+    return there >= 2;
+}
+
+bool judge_tube_ends(const struct judge_request *request, struct judged *judged,
+                     const struct settings *settings, const double ends[2])
+{
+    struct tube tube;
+    if (request->boundary) {
+        snapshot_note(&judged->file.notes, "ends", request->boundary, "--boundary");
+        return strcmp(request->boundary, "periodic") != 0;
+    }
+    if (judged->file.boundary[0] || !solve(settings, &tube)) return false;
+    const struct riemann_state *l = &tube.main.left, *r = &tube.main.right;
+    const double c = fmin(sound(&tube.main, l), sound(&tube.main, r));
+    const bool differ = fabs(l->rho - r->rho) > 0.1 * fmax(l->rho, r->rho) ||
+                        fabs(l->P - r->P) > 0.1 * fmax(l->P, r->P);
+    if (!differ || !(c * tube.time > far_enough * (ends[1] - ends[0])) ||
+        !still_there(judged, &tube, ends, 0) || !still_there(judged, &tube, ends, 1))
+        return false;
+    snapshot_note(&judged->file.notes, "ends", "open or walls",
+                  "the gas at both is undisturbed: no mirrored tube begins there; --boundary says "
+                  "otherwise");
+    return true;
+}
+
+/* How far from one end waves may have come: those that the end makes of gas that moves, or sends
+ * back once they have arrived. */
+static double spoilt(const struct tube *tube, double x0, const double ends[2], int side)
+{
+    const struct riemann_state *gas = side ? &tube->main.right : &tube->main.left;
+    const double head = side ? tube->main.right_head : -tube->main.left_head;
+    double arrival = head > 0 ? fabs(ends[side] - x0) / head : (double)INFINITY;
+    if (!(fabs(gas->v) <= 1e-9 * sound(&tube->main, gas)) || isnan(head)) arrival = 0;
+    return tube->fastest * fmax(0, tube->time - arrival);
+}
+
+enum status judge_tube_place(const struct judge_request *request, struct judged *judged,
+                             const struct settings *settings, double x0, const double ends[2],
+                             double window[2], double box[2], struct error *error)
+{
+    struct tube tube;
+    char value[80];
+    if (!solve(settings, &tube))
+        return error_set(error, STATUS_BAD_INPUT, "%.200s: its tube has no exact solution",
+                         judged->path);
+    const double from[2] = {spoilt(&tube, x0, ends, 0), spoilt(&tube, x0, ends, 1)};
+    window[0] = request->window ? request->ends[0] : ends[0] + from[0];
+    window[1] = request->window ? request->ends[1] : ends[1] - from[1];
+    if (!(window[0] < window[1]))
+        return error_set(
+            error, STATUS_BAD_INPUT,
+            "%.200s: at t = %g waves may have come back from the ends to everywhere in "
+            "[%g, %g]; --window A:B measures all the same",
+            judged->path, tube.time, ends[0], ends[1]);
+    snprintf(value, sizeof value, "%.6g to %.6g", window[0], window[1]);
+    snapshot_note(&judged->file.notes, "window", value, "%s",
+                  request->window         ? "--window"
+                  : from[0] + from[1] > 0 ? "but for what waves from the ends may have reached"
+                                          : "from end to end: no wave has reached one");
+    const double half = fmax(fabs(ends[0] - x0), fabs(ends[1] - x0)) +
+                        fmax(fabs(window[0] - x0), fabs(window[1] - x0)) +
+                        4 * tube.fastest * tube.time;
+    box[0] = x0 - half, box[1] = x0 + half;
+    return STATUS_OK;
+}
