@@ -13,6 +13,7 @@ enum { SINC_ORDER = 5 };
 /* A median error above this part of the range of the exact values is no error at jumps. */
 #define JUDGE_FOREIGN      0.06
 #define JUDGE_FOREIGN_MEAN 0.2 /* and an L1 above this none of jumps that are a few h wide */
+#define JUDGE_FOREIGN_PART 0.5 /* and a functional that is off by more than this of its value */
 
 /* A stored pressure that is that of the gas law to the file's precision is taken from it: it has
  * been rounded once more. */
@@ -260,9 +261,21 @@ static double median_error(const struct judged *judged, int f, double *errors, d
     return 0;
 }
 
+/* How much of its exact value the first functional is off by, of problems without fields to
+ * compare; 0 where there is none. */
+static double wrong_part(const struct run_result *result)
+{
+    const struct run_functional *f = result->functionals;
+    if (!result->functional_count || !(fabs(f->exact) > 0)) return 0;
+    return isfinite(f->value) ? fabs(f->value / f->exact - 1) : (double)INFINITY;
+}
+
 static enum status measure_wrong(struct judged *judged, struct error *error)
 {
-    if (judged->run.problem.problem->fieldless) return STATUS_OK;
+    if (judged->run.problem.problem->fieldless) {
+        judged->wrong = JUDGE_FOREIGN * wrong_part(&judged->result) / JUDGE_FOREIGN_PART;
+        return STATUS_OK;
+    }
     double *errors = malloc((judged->result.snapshot.n + 1) * sizeof *errors);
     if (!errors) return error_set(error, STATUS_ENVIRONMENT, "no memory for errors");
     for (int f = 0; f < FIELDS; f++) {
@@ -272,7 +285,6 @@ static enum status measure_wrong(struct judged *judged, struct error *error)
         const double part = fmax(median, mean * JUDGE_FOREIGN / JUDGE_FOREIGN_MEAN);
         if (part > judged->wrong) judged->wrong = part, judged->wrong_field = (enum field)f;
     }
-    judged->foreign = judged->wrong > JUDGE_FOREIGN;
     free(errors);
     return STATUS_OK;
 }
@@ -324,8 +336,9 @@ static void write_verdict(struct judged *judged)
     else
         snprintf(kernel, sizeof kernel, "kernel not identifiable");
     if (r->problem.problem->fieldless)
-        snprintf(judged->verdict, sizeof judged->verdict, "%s%s = %.4g, the case says %.4g; %s",
-                 gas, r->functional_count ? r->functionals[0].name : "nothing",
+        snprintf(judged->verdict, sizeof judged->verdict, "%s%s%s = %.4g, the case says %.4g; %s",
+                 gas, judged->wrong > JUDGE_FOREIGN ? "far from the solution of this case: " : "",
+                 r->functional_count ? r->functionals[0].name : "nothing",
                  r->functional_count ? r->functionals[0].value : (double)NAN,
                  r->functional_count ? r->functionals[0].exact : (double)NAN, kernel);
     else
@@ -334,7 +347,7 @@ static void write_verdict(struct judged *judged)
                  judged->wrong > JUDGE_FOREIGN ? "far from the solution of this case: " : "",
                  r->errors[FIELD_DENSITY].l1, r->errors[FIELD_VELOCITY].l1,
                  r->errors[FIELD_PRESSURE].l1, kernel);
-    if (judged->wrong > JUDGE_FOREIGN)
+    if (judged->wrong > JUDGE_FOREIGN && !r->problem.problem->fieldless)
         snapshot_note(&judged->file.notes, "solution", "far from this case's",
                       "%s is off also away from jumps, by %.2g times what a scheme may be: another "
                       "gamma, time, x0 or case, too few particles, or a scheme that fails",
@@ -375,6 +388,7 @@ enum status judge_snapshot(const char *path, const struct judge_request *request
                       "%.200s: no particle lies in the window; --x0 tells where the case is", path);
     if (!status) status = measure_wrong(judged, error);
     if (!status) {
+        judged->foreign = judged->wrong > JUDGE_FOREIGN;
         judged->foreign |= judged->case_gamma > 0;
         judged->passes = !judged->foreign || request->allow_far;
         measure_sums(judged);

@@ -68,7 +68,26 @@ static bool error_called(const struct judged *judged, const char *name, double *
             return f < FIELDS || r->problem.problem->circular;
         }
     }
+    for (size_t k = 0; k < r->functional_count; k++)
+        if (strcmp(r->functionals[k].name, name) == 0 && isfinite(r->functionals[k].exact)) {
+            *value = fabs(r->functionals[k].value - r->functionals[k].exact);
+            return true;
+        }
     return false;
+}
+
+static enum status no_such_error(const struct judged *judged, const char *name, struct error *error)
+{
+    const struct run_result *r = &judged->result;
+    char values[200] = "";
+    for (size_t k = 0, used = 0; k < r->functional_count && used < sizeof values; k++)
+        if (isfinite(r->functionals[k].exact))
+            used += (size_t)snprintf(values + used, sizeof values - used, "%s%s",
+                                     used ? " " : ", or one of ", r->functionals[k].name);
+    return error_set(error, STATUS_BAD_INPUT,
+                     "--gate %.48s: no such error; FIELD: density velocity pressure "
+                     "internal_energy%s, NORM: l1 l2 linf particle_mean l1_whole%s",
+                     name, r->problem.problem->circular ? " azimuthal radial" : "", values);
 }
 
 enum status judge_gates(const char *text, const struct judged *judged, struct judge_gate *gates,
@@ -94,11 +113,7 @@ enum status judge_gates(const char *text, const struct judged *judged, struct ju
             return error_set(error, STATUS_BAD_INPUT, "--gate %.48s=%.40s: allowed: above 0",
                              gate->name, bound);
         if (!error_called(judged, gate->name, &gate->value))
-            return error_set(error, STATUS_BAD_INPUT,
-                             "--gate %.48s: no such error; FIELD: density velocity pressure "
-                             "internal_energy%s, NORM: l1 l2 linf particle_mean l1_whole",
-                             gate->name,
-                             judged->result.problem.problem->circular ? " azimuthal radial" : "");
+            return no_such_error(judged, gate->name, error);
         gate->good = gate->value <= gate->bound;
         at += length + (at[length] == ',');
     }
