@@ -19,7 +19,7 @@
 #include "snapshot_csv.h"
 #include "text.h"
 
-enum { ROWS_SHOWN = 20, KEYS_MAX = 256 };
+enum { ROWS_SHOWN = 20, ROWS_CHECKED = 5, KEYS_MAX = 256 };
 
 struct request {
     const char *source;
@@ -219,7 +219,7 @@ static enum status take_request(const struct options *options, int n, char **arg
 
 /* ---- output ---- */
 
-static void print_table(const struct request *r, const struct rate_table *t)
+static void print_table(const struct request *r, const struct rate_table *t, size_t rows)
 {
     char matrix[DESCRIPTION_TEXT];
     printf("%s, %dD, %zu particles; one evaluation, code units\n", r->source, t->dim, t->n);
@@ -228,7 +228,7 @@ static void print_table(const struct request *r, const struct rate_table *t)
     printf("\n%8s %13s %13s %13s", "particle", "h", "rho", "P");
     for (int a = 0; a < t->dim; a++) printf("        dp%c/dt", "xyz"[a]);
     printf(" %13s %6s %9s %6s\n", "dU/dt", "neighb", "condition", "angle");
-    for (size_t i = 0; i < t->n && i < ROWS_SHOWN; i++) {
+    for (size_t i = 0; i < t->n && i < rows; i++) {
         printf("%8zu %13.6g %13.6g %13.6g", i, t->h[i], t->rho[i], t->P[i]);
         for (int a = 0; a < t->dim; a++) printf(" %13.6g", t->force[a][i]);
         printf(" %13.6g %6.0f", t->dU[i], t->described[i].neighbours);
@@ -236,8 +236,7 @@ static void print_table(const struct request *r, const struct rate_table *t)
         if (!isnan(t->described[i].angle)) printf(" %6.2f", t->described[i].angle);
         printf("\n");
     }
-    if (t->n > ROWS_SHOWN)
-        printf("     ... %zu more; all of them with --csv or --json\n", t->n - ROWS_SHOWN);
+    if (t->n > rows) printf("     ... %zu more; all of them with --csv or --json\n", t->n - rows);
     printf("\nsums: force (");
     for (int a = 0; a < t->dim; a++) printf("%s%.3g", a ? ", " : "", t->sum_force[a]);
     printf("), power %.3g\n", t->power);
@@ -245,13 +244,37 @@ static void print_table(const struct request *r, const struct rate_table *t)
     if (matrix[0]) printf("matrices: %s\n", matrix);
 }
 
-static void print_check(const struct rate_check *check)
+/* The verdict in one sentence: of what departs most among those whose cause is known, that one. */
+static void print_verdict(const struct rate_check *check, double tolerance)
 {
-    printf("\n%-8s %10s %10s %9s  %s\n", "quantity", "worst", "rms", "particle", "likely cause");
+    const struct rate_comparison *told = NULL;
+    size_t failed = 0;
     for (size_t k = 0; k < check->count; k++) {
         const struct rate_comparison *c = &check->columns[k];
-        printf("%-8s %10.3g %10.3g %9zu  %s%s\n", c->quantity, c->worst, c->rms, c->particle,
-               c->good ? "" : "FAIL ", c->cause);
+        if (c->good) continue;
+        failed++;
+        if (!told || (!told->cause[0] && c->cause[0])) told = c;
+    }
+    if (!failed)
+        printf("\nAll %zu quantities agree within %g.\n", check->count, tolerance);
+    else if (told->cause[0])
+        printf("\n%zu of %zu quantities depart by more than %g; likely cause, from %s: %s.\n",
+               failed, check->count, tolerance, told->quantity, told->cause);
+    else
+        printf(
+            "\n%zu of %zu quantities depart by more than %g, %s by %.3g at particle %zu; no single "
+            "choice of the scheme that was tried explains it.\n",
+            failed, check->count, tolerance, told->quantity, told->worst, told->particle);
+}
+
+static void print_check(const struct rate_check *check)
+{
+    printf("\n%-8s %10s %10s %9s  %-4s  %s\n", "quantity", "worst", "rms", "particle", "",
+           "likely cause");
+    for (size_t k = 0; k < check->count; k++) {
+        const struct rate_comparison *c = &check->columns[k];
+        printf("%-8s %10.3g %10.3g %9zu  %-4s  %s\n", c->quantity, c->worst, c->rms, c->particle,
+               c->good ? "pass" : "FAIL", c->cause);
     }
 }
 
@@ -373,8 +396,8 @@ static enum status run(const struct options *options, int n, char **arguments, s
         status = rate_check_make(&check, theirs, &r.theirs, &r.scene, &table, r.tolerance, error);
     if (!status) {
         if (options->speak) {
-            print_table(&r, &table);
-            if (theirs) print_check(&check);
+            print_table(&r, &table, theirs ? ROWS_CHECKED : ROWS_SHOWN);
+            if (theirs) print_check(&check), print_verdict(&check, r.tolerance);
         }
         if (csv) status = write_csv(csv, &r, &table, error);
         if (!status && options->json) status = write_json(options, &r, &table, &check, error);

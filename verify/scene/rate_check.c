@@ -103,6 +103,18 @@ CHANGE(half_eta, scheme.eta, 0.5 * scene->scheme.eta)
 CHANGE(twice_eta, scheme.eta, 2 * scene->scheme.eta)
 #undef CHANGE
 
+static void twice_viscosity(struct scene *scene)
+{
+    twice_alpha(scene);
+    scene->scheme.beta *= 2;
+}
+
+static void half_viscosity(struct scene *scene)
+{
+    half_alpha(scene);
+    scene->scheme.beta *= 0.5;
+}
+
 static void open_box(struct scene *scene)
 {
     for (int a = 0; a < scene->dim; a++) scene->boundary[a] = BOUNDARY_OPEN;
@@ -118,6 +130,8 @@ static const struct {
     {beta_alpha, "viscosity: beta = alpha in theirs"},
     {twice_alpha, "viscosity: alpha is twice ours"},
     {half_alpha, "viscosity: alpha is half of ours"},
+    {twice_viscosity, "viscosity: alpha and beta are twice ours"},
+    {half_viscosity, "viscosity: alpha and beta are half of ours"},
     {mu_form, "viscosity: theirs is of the form mu"},
     {signal_form, "viscosity: theirs is of the form signal"},
     {with_balsara, "viscosity: theirs has a Balsara factor"},

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""rates.py SPHPROOF DATA: `sphproof rates` against rates that independent code computed (DATA,
+"""rates.py SPHPROOF: `sphproof rates` against rates that independent code computed (data:
 rates_2d.csv and rates_3d.csv: one evaluation on rates_*_particles.csv, h to 1e-14), in any order of
 columns, in 1D, and what --check says of rates that are wrong."""
 import csv
@@ -10,7 +10,7 @@ import subprocess
 import sys
 import tempfile
 
-PROGRAM, DATA = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
+PROGRAM, DATA = os.path.abspath(sys.argv[1]), os.path.join(os.path.dirname(os.path.abspath(__file__)), "data")
 SETS = {"a": ("cubic_spline", "standard", "vanilla_ice", "mass"),
         "b": ("wendland_c2", "ia", "vanilla_ice", "mass"),
         "c": ("quintic_spline", "standard", "lagrangian", "energy")}
@@ -79,6 +79,21 @@ def check(folder, dim, ours, theirs, cause, quantity="ax"):
     said = {c["quantity"]: c["likely_cause"] for c in document["comparison"]}
     if document["status"] != "fail" or not said[quantity] or cause not in said[quantity]:
         sys.exit("--check: of %s it says %r, not %r" % (quantity, said, cause))
+
+
+def verdicts(folder, dim):
+    """The last line of --check is one sentence: that all is well, or what it comes from."""
+    theirs = os.path.join(folder, "verdict.csv")
+    words = ["rates", os.path.join(DATA, "rates_%dd_particles.csv" % dim), "lo=0", "hi=1", "kernel=cubic_spline", "eta=2.4"]
+    subprocess.run([PROGRAM, *words, "--csv", theirs, "--quiet"], check=True)
+    for more, status, phrase in (([], 0, "quantities agree within 1e-09."),
+                                 (["alpha=2"], 1, "likely cause, from ax: viscosity: alpha and beta are half of ours."),
+                                 (["alpha=1.3"], 1, "no single choice")):
+        done = subprocess.run([PROGRAM, *words, *more, "--check", theirs], capture_output=True, text=True, check=False)
+        last = done.stdout.strip().split("\n")[-1]
+        if done.returncode != status or phrase not in last or len(done.stdout.split("\n")) > 28:
+            sys.exit("rates --check %s: exit %d, %d lines, the last: %s"
+                     % (more, done.returncode, len(done.stdout.split("\n")), last))
 
 
 def edited(folder, dim, ours, column, change, cause):
@@ -182,6 +197,7 @@ def main():
             against_data(dim)
             sums_and_neighbours(dim)
         causes(folder, 2)
+        verdicts(folder, 2)
         without_grad_h(folder)
         any_order(folder)
         line(folder)

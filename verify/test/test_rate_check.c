@@ -350,6 +350,8 @@ static void each_choice_is_named(void **state)
         {"", "beta=1", "ay", "viscosity: beta = alpha in theirs"},
         {"", "alpha=2", "ax", "viscosity: alpha is twice ours"},
         {"", "alpha=0.5", "du", "viscosity: alpha is half of ours"},
+        {"", "alpha=2 beta=6", "ax", "viscosity: alpha and beta are twice ours"},
+        {"", "alpha=0.5 beta=1.5", "du", "viscosity: alpha and beta are half of ours"},
         {"viscosity_form=signal", "viscosity_form=mu", "ax", "viscosity: theirs is of the form mu"},
         {"", "viscosity_form=signal", "ax", "viscosity: theirs is of the form signal"},
         {"", "balsara=on", "ax", "viscosity: theirs has a Balsara factor"},
