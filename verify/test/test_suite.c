@@ -42,6 +42,26 @@ static void test_good(void **state)
     suite_free(&suite);
 }
 
+/* What another process kept of a check is joined; kept without a single figure it is refused. */
+static void test_join(void **state)
+{
+    (void)state;
+    const struct check *const checks[] = {&good};
+    struct error error;
+    struct suite suite = run(&good, false, STATUS_OK);
+    const size_t figures = suite.figure_count;
+    json_t *document = suite_keep(&suite);
+    suite_free(&suite);
+    const json_t *const documents[] = {document};
+    assert_int_equal(suite_join(&suite, checks, documents, 1, &error), STATUS_OK);
+    assert_true(figures > 0 && suite.figure_count == figures);
+    suite_free(&suite);
+    json_array_clear(json_object_get(document, "checks"));
+    assert_int_equal(suite_join(&suite, checks, documents, 1, &error), STATUS_ENVIRONMENT);
+    assert_non_null(strstr(error.message, good.name));
+    json_decref(document);
+}
+
 static void test_failing(void **state)
 {
     (void)state;
@@ -483,6 +503,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_mutant_value),
         cmocka_unit_test(test_groups_are_listed_once),
         cmocka_unit_test(test_good),
+        cmocka_unit_test(test_join),
         cmocka_unit_test(test_failing),
         cmocka_unit_test(test_undetected_mutant),
         cmocka_unit_test(test_vacuous),
