@@ -146,7 +146,7 @@ static void drawn(json_t *document)
                                 "floor", 0., "status", fails ? "fail" : "pass"));
         }
     for (int s = 0; s < 6; s++) {
-        char label[16];
+        char label[32];
         snprintf(label, sizeof label, "label %d", s);
         if (rand() % 6 == 0) continue;
         json_array_append_new(

@@ -76,7 +76,7 @@ static void thrice(void **state)
     (void)state;
     for (int r = 0; r < ROWS; r++) {
         if (!rows[r].state) continue;
-        char text[400], what[200], name[32] = "";
+        char text[400], what[200], name[64] = "";
         again();
         for (int t = 0; t < 3; t++) made.fates[2][t] = rows[r].fate;
         assert_int_equal(compute_all(), STATUS_ENVIRONMENT);

@@ -173,7 +173,7 @@ static void a_share_ends_as_its_computations(void **state)
                 pool_free(&call.pool);
             }
             assert_int_equal(mine, N);
-            char key[16];
+            char key[32];
             snprintf(key, sizeof key, "task %d", i);
             assert_int_equal(cache_has(&call.place.cache, key), outcomes[k].kept);
         }
@@ -197,7 +197,7 @@ static void joined_in_every_order(void **state)
             pool_free(&call.pool);
         }
         for (int i = 0; i < N; i++) {
-            char key[16];
+            char key[32];
             snprintf(key, sizeof key, "task %d", i);
             there += cache_has(&call.place.cache, key);
         }

@@ -155,7 +155,7 @@ static void test_same_figures(void **state)
         if (dim == 3) scheme.eta = 2.4; /* a third of the neighbours */
         for (int k = 0; k < draws[dim - 1]; k++) {
             const double hot = pow(10, dim == 1 ? draw(0.5, 4) : draw(0.5, 6));
-            struct scene scene = draw_scene(dim, k % KINDS, hot, k / KINDS % 2);
+            struct scene scene = draw_scene(dim, (enum kind)(k % KINDS), hot, k / KINDS % 2);
             scene.scheme = scheme;
             compare(&scene);
             if (k % KINDS == PULSE) skip_enough_of_pulse(&scene);
