@@ -160,7 +160,8 @@ size_t plan_explain(const struct scene *scene, struct plan_line *lines, size_t m
     line(&writer, "sleep", plan.sleep,
          "skip=auto: no sums where no signal has been; equal to tolerance 1e-10",
          plan.gravity ? "gravity: nobody is at rest"
-         : plan.local ? "steps=local: where little happens steps are long" : "skip=none: every particle at every step");
+         : plan.local ? "steps=local: where little happens steps are long"
+                      : "skip=none: every particle at every step");
     line(&writer, "final state", !scheme->integrator->ends_evaluated,
          "density and equation of state once more at t_end", "the last evaluation was at t_end");
     if (warnings && warnings_size) find_warnings(scheme, scene->dim, warnings, warnings_size);
