@@ -250,7 +250,9 @@ static double median_error(const struct judged *judged, int f, double *errors, d
                 squares += (s->v[d][i] - now.v[d]) * (s->v[d][i] - now.v[d]);
             errors[n++] = f == FIELD_VELOCITY ? sqrt(squares) : fabs(values[f][i] - exact);
         }
-        *range = fmax(most - least, (most > least ? 0.2 : 0.5) * fmax(fabs(most), fabs(least)));
+        const double size = fmax(fabs(most), fabs(least));
+        const bool varies = most - least > 1e-9 * size;
+        *range = fmax(most - least, (varies ? 0.2 : 0.5) * size);
         if (f == FIELD_VELOCITY && *range == 0) *range = sound;
         if (f == FIELD_PRESSURE || f == FIELD_INTERNAL_ENERGY) *range = fmax(*range, 0.1 * motion);
         if (n < 8 && judged->run.problem.problem->regions) return 0; /* nothing to go by */
@@ -388,8 +390,7 @@ enum status judge_snapshot(const char *path, const struct judge_request *request
                       "%.200s: no particle lies in the window; --x0 tells where the case is", path);
     if (!status) status = measure_wrong(judged, error);
     if (!status) {
-        judged->foreign = judged->wrong > JUDGE_FOREIGN;
-        judged->foreign |= judged->case_gamma > 0;
+        judged->foreign = judged->wrong > JUDGE_FOREIGN || judged->case_gamma > 0;
         judged->passes = !judged->foreign || request->allow_far;
         measure_sums(judged);
         judged->transverse = measure_noise(judged);

@@ -66,6 +66,7 @@ bool snapshot_take_box(const char *text, struct snapshot_file *file)
     char copy[160], *rest = copy;
     int count = 0;
     file->placed = false;
+    for (int d = 0; d < 3; d++) file->corner[d] = 0;
     if (!strchr(text, ':')) {
         if (text_real(text, numbers)) {
             for (int d = 0; d < 3; d++) file->box[d] = numbers[0];

@@ -629,6 +629,11 @@ def tubes_with_ends(folder):
         moved = [rows[0]] + ["%r,%s" % (float(row.split(",")[0]) + shift, row.split(",", 1)[1]) for row in rows[1:]]
         got = judge(write(folder, "mirrored.csv", "".join(moved)), *asked, "0.2")
         assert "ends" not in [note["what"] for note in got["assumptions"]] and got["window"][1] - got["window"][0] < 1.01, got["window"]
+    # a length alone takes the place of the file's ends, too
+    with open(late, encoding="ascii") as file:
+        placed = file.read().replace("\n", "\n# box = -0.5:1.5\n", 1)
+    got = judge(write(folder, "placed.csv", placed), *asked, "0.2", "--box", "1", "--boundary", "open", status=0)
+    assert got["window"] == [0, 1], got["window"]
     refused(late, *asked, "0.2", "--boundary", "periodic", says="mirrored tube")
     refused(late, *asked, "0.2", "--boundary", "wall", says=("--boundary 'wall'", "reflecting"))
     refused(late, *asked, "0.2", "--box", "1:x", says=("--box '1:x'", "LO:HI"))
