@@ -311,7 +311,7 @@ const struct command command_judge = {
     .help =
         "errors of ANY code's snapshots against the exact solution of a case\n"
         "Reads HDF5 of GADGET, AREPO, GIZMO, SWIFT, SPH-EXA and Phantom, binaries of GADGET\n"
-        "(formats 1 and 2, either byte order), SPLASH's ASCII and CSV, also compressed\n"
+        "(formats 1 and 2, either byte order), XML of VTK, SPLASH's ASCII and CSV, also compressed\n"
         "(`sphproof list snapshots`). The kernel and the meaning of h are found by summing the\n"
         "density again. Everything that had to be assumed is said, with the evidence for it.\n"
         "Snapshots of `sphproof run` name their case, and need no option.\n"

@@ -16,6 +16,7 @@
 #include "result.h"
 #include "settings.h"
 #include "snapshot_file.h"
+#include "snapshot_writer.h"
 #include "stress.h"
 #include "suite.h"
 #include "table.h"
@@ -130,6 +131,7 @@ PLAIN(h_method, scheme_h_method)
 PLAIN(field, field)
 PLAIN(norm, field_norm)
 PLAIN(snapshot, snapshot_reader)
+PLAIN(writer, snapshot_writer)
 
 static const struct family *(*const lists[])(void) = {cases,
                                                       problem_list,
@@ -149,6 +151,7 @@ static const struct family *(*const lists[])(void) = {cases,
                                                       field_list,
                                                       norm_list,
                                                       snapshot_list,
+                                                      writer_list,
                                                       checks,
                                                       mutants,
                                                       stress,
@@ -279,7 +282,7 @@ const struct command command_list = {
         "the names of cases, kernels, gradients, keys ..., one line each\n"
         "FAMILY: cases problems kernels gradients operators formulations volume_elements\n"
         "integrators viscosities viscosity_forms balsara_factors lattices energies pair_widths\n"
-        "h_methods fields norms snapshots checks mutants stress keys",
+        "h_methods fields norms snapshots writers checks mutants stress keys",
     .run = run,
     .options = own_options,
     .examples = "sphproof list\nsphproof list kernels\nsphproof list keys",

@@ -16,7 +16,7 @@
 #include "result.h"
 #include "run_job.h"
 #include "run_plot.h"
-#include "snapshot_hdf5.h"
+#include "snapshot_writer.h"
 #include "table.h"
 #include "text.h"
 
@@ -168,8 +168,9 @@ static enum status check_files(const struct options *options, const struct snaps
     if (snapshot && options->json && strcmp(snapshot, options->json) == 0)
         return error_set(error, STATUS_BAD_INPUT,
                          "--json and --snapshot name the same file '%.150s'", snapshot);
-    if (snapshot && snapshot_hdf5_wanted(snapshot) && snapshot_hdf5_possible(snapshot, error))
-        return error->status;
+    const struct snapshot_writer *writer = snapshot ? snapshot_writer_of(snapshot, error) : NULL;
+    if (snapshot && !writer) return error->status;
+    if (writer && writer->possible && writer->possible(snapshot, error)) return error->status;
     if (plot && picture_probe(plot, error)) return error->status;
     if (snapshot && output_probe(snapshot, error)) return error->status;
     if (!snapshots->path) return STATUS_OK;
@@ -283,11 +284,14 @@ static enum status present(const struct options *options, const struct run_setti
             print_snapshots(snapshots, settings_real(&result->settings, SETTING_t_end));
     }
     /* what cannot be written takes nothing else with it; the first trouble is told */
-    struct error trouble[4] = {0};
+    struct error trouble[5] = {0};
     if (snapshots) trouble[0] = snapshots->trouble;
     write_json(options, settings, result, &trouble[1]);
     if (snapshot) run_write_snapshot(result, snapshot, &trouble[2]);
     if (plot) run_plot(settings, result, plot, &trouble[3]);
+    const struct snapshot_writer *writer =
+        snapshots ? snapshot_writer_of(snapshots->path, &trouble[4]) : NULL;
+    if (writer && writer->collect) writer->collect(result, snapshots, &trouble[4]);
     for (size_t i = 0; i < sizeof trouble / sizeof *trouble; i++)
         if (trouble[i].status) {
             *error = trouble[i];
@@ -412,9 +416,10 @@ static enum status run_case(const struct options *options, int n, char **argumen
 static const struct command_option own_options[] = {
     {"snapshot", "FILE",
      "write the particles at the end: x,vx,m,rho,u,P,h (x,y,vx,vy ...), one line each;\n"
-     "F.hdf5 or F.h5: HDF5 in GADGET's layout"},
+     "F.hdf5 or F.h5: HDF5 in GADGET's layout; F.vtu: XML of VTK, for ParaView"},
     {"snapshot-every", "TIME",
-     "also F_0000.csv at the start, F_0001.csv after TIME of the simulation, and so on; with\n"
+     "also F_0000.csv at the start, F_0001.csv after TIME of the simulation, and so on, of\n"
+     "F.vtu with a collection F.pvd; with\n"
      "--plot P.png P_0000.png ..., of which ffmpeg -i P_%04d.png P.mp4 makes a film"},
     {"checkpoint", "FILE", "keep the run's state there, to go on from it to the last bit"},
     {"every", "SECONDS", "so often (default 60)"},

@@ -133,9 +133,8 @@ void run_add_plan(const struct run_settings *settings, const struct run_result *
 
 double run_error(const struct run_result *result, enum field field, enum norm norm);
 
-/* Header, comment lines `# KEY = VALUE` (see snapshot_remarks.h) and one line a particle:
- * x,vx,m,rho,u,P,h; in 2D and 3D x,y,vx,vy, ..., in the order in which particles have started; a
- * path that ends in .hdf5 or .h5: see snapshot_hdf5.h. */
+/* The state at the end in the format that the ending of path means, of those in snapshot_writer.h.
+ * STATUS_BAD_INPUT: an ending that means none; STATUS_ENVIRONMENT: it cannot be written. */
 enum status run_write_snapshot(const struct run_result *result, const char *path,
                                struct error *error);
 

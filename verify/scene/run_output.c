@@ -6,11 +6,8 @@
 
 #include "description_output.h"
 #include "judged.h"
-#include "output.h"
 #include "result.h"
 #include "settings_output.h"
-#include "snapshot_hdf5.h"
-#include "snapshot_remarks.h"
 
 static void set_number(json_t *object, const char *name, double value)
 {
@@ -144,30 +141,4 @@ void run_add_json(const struct run_settings *settings, const struct run_result *
     set_number(document, "h", result->h);
     json_object_set_new(document, "budget", budget_json(&result->budget));
     json_object_set_new(document, "suspicion", json_string(result->suspicion));
-}
-
-enum status run_write_snapshot(const struct run_result *result, const char *path,
-                               struct error *error)
-{
-    const struct snapshot *s = &result->snapshot;
-    struct output output;
-    if (snapshot_hdf5_wanted(path)) return snapshot_hdf5_write(result, path, error);
-    if (output_open(&output, path, error)) return error->status;
-    const int dim = result->problem.domain.dim;
-    const double *columns[12];
-    int count = 0;
-    for (int d = 0; d < dim; d++) columns[count++] = s->x[d];
-    for (int d = 0; d < dim; d++) columns[count++] = s->v[d];
-    const double *const rest[] = {s->m, s->rho, s->u, s->P, s->h};
-    for (size_t k = 0; k < sizeof rest / sizeof *rest; k++) columns[count++] = rest[k];
-    static const char *const names[] = {"x,vx", "x,y,vx,vy", "x,y,z,vx,vy,vz"};
-    fprintf(output.stream, "%s,m,rho,u,P,h\n", names[dim - 1]);
-    struct snapshot_remark remarks[SNAPSHOT_REMARKS];
-    const size_t said = snapshot_remarks(result, remarks);
-    for (size_t k = 0; k < said; k++)
-        fprintf(output.stream, "# %s = %s\n", remarks[k].key, remarks[k].value);
-    for (size_t i = 0; i < s->n; i++)
-        for (int k = 0; k < count; k++)
-            fprintf(output.stream, "%.17g%c", columns[k][i], k + 1 < count ? ',' : '\n');
-    return output_close(&output, error);
 }

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "snapshot_hdf5.h"
+#include "snapshot_writer.h"
 
 /* Steps before a snapshot's time: the last two are made equal, and one prepares the next. */
 static const double steps_aside = 4;
@@ -47,8 +47,9 @@ char *snapshots_path(const struct snapshots *snapshots, size_t number)
 double snapshots_memory(const struct snapshots *snapshots, int dim, double n)
 {
     static const double kept[] = {0, 180, 350, 480}; /* a particle's state, measured */
-    const double image = 250;                        /* of a file that is made in memory */
-    return n * (kept[dim] + (snapshot_hdf5_wanted(snapshots->path) ? image : 0));
+    struct error error;
+    const struct snapshot_writer *writer = snapshot_writer_of(snapshots->path, &error);
+    return n * (kept[dim] + (writer ? writer->memory : 0));
 }
 
 void snapshots_begin(struct snapshots *snapshots, double time, double last, double t_end)

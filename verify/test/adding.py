@@ -397,6 +397,24 @@ n = 32 48 64 96
 """
 
 
+@row("format of snapshots that are written")
+def writer(tree):
+    csv = tree.read("verify/scene/writer/csv.c")
+    tree.new("verify/scene/writer/table.c", csv.replace("_csv", "_table").replace('{"csv"', '{"table"')
+             .replace('".csv .txt .dat"', '".table"').replace("','", "';'"))
+    tree.append("verify/scene/writers.def", "WRITER(table)")
+    tree.build()
+    tree.listed("writers", "table")
+    path = os.path.join(tree.work, "s.table")
+    tree.program("run", "sod", "n=64", "t_end=0", "--quiet", "--snapshot", path)
+    with open(path) as f:
+        if f.read().count(";") < 300:
+            raise Failed("not written by the new member")
+    if ".table" not in tree.program("run", "sod", "--snapshot", "s.tables", status=2):
+        raise Failed("the message does not name the new ending")
+    tree.keep()
+
+
 @row("case")
 def case(tree):
     sod = tree.read("cases/sod.ini")

@@ -12,18 +12,29 @@
 #include <cmocka.h>
 
 #include "made_place.h"
-#include "snapshot_hdf5.h"
+#include "snapshot_writer.h"
+
+extern const struct snapshot_writer snapshot_writer_hdf5;
 
 static void names(void **state)
 {
     static const struct {
-        const char *path;
-        bool wanted;
-    } rows[] = {{"a.hdf5", true},   {"a.h5", true},      {"a/b.c.h5", true}, {"a.csv", false},
-                {"a.hdf5x", false}, {"a.h5.csv", false}, {"hdf5", false},    {"", false}};
+        const char *path, *writer; /* NULL: refused */
+    } rows[] = {{"a.hdf5", "hdf5"},     {"a.h5", "hdf5"},    {"a/b.c.h5", "hdf5"}, {"a.csv", "csv"},
+                {"a.vtu", "vtu"},       {"a.h5.csv", "csv"}, {"hdf5", "csv"},      {"", "csv"},
+                {"-", "csv"},           {"a.b/c", "csv"},    {"a.txt", "csv"},     {"a.dat", "csv"},
+                {"a.hdf5x", NULL},      {"a.vtk", NULL},     {"a.", NULL},         {"a.h", NULL},
+                {"a.hdf5 .h5", "hdf5"}, {"a.VTU", NULL}};
     (void)state;
-    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
-        assert_true(snapshot_hdf5_wanted(rows[k].path) == rows[k].wanted);
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        struct error error = {0};
+        const struct snapshot_writer *writer = snapshot_writer_of(rows[k].path, &error);
+        assert_true(!writer == !rows[k].writer);
+        if (writer)
+            assert_string_equal(writer->member.name, rows[k].writer);
+        else if (!strstr(error.message, "allowed: .csv .txt .dat .hdf5 .h5 .vtu, or no ending"))
+            fail_msg("%s", error.message);
+    }
 }
 
 /* ---- calls that fail ---- */
@@ -179,7 +190,7 @@ static void whole_files(void **state)
         struct error error;
         char path[256];
         snprintf(path, sizeof path, "%s", path_of("s.hdf5"));
-        assert_int_equal(snapshot_hdf5_write(&result, path, &error), STATUS_OK);
+        assert_int_equal(snapshot_writer_hdf5.write(&result, path, &error), STATUS_OK);
         const hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
         assert_true(file >= 0 && members(file, "/") == 2 && members(file, "Header") == 0);
         const double count[6] = {N}, none[6] = {0}, *lo = result.problem.domain.lo;
@@ -228,23 +239,23 @@ static void failures(void **state)
     char path[256];
     (void)state;
     snprintf(path, sizeof path, "%s", path_of("f.h5"));
-    assert_int_equal(snapshot_hdf5_possible(path, &error), STATUS_OK);
+    assert_null(snapshot_writer_hdf5.possible);
     const long open = open_things();
     calls = refused = 0;
-    assert_int_equal(snapshot_hdf5_write(&result, path, &error), STATUS_OK);
+    assert_int_equal(snapshot_writer_hdf5.write(&result, path, &error), STATUS_OK);
     const long all = calls;
     assert_true(all > 50 && open_things() == open);
     unlink(path);
     for (long k = 1; k <= all; k++) {
         calls = 0, refused = k;
         error = (struct error){0};
-        const enum status status = snapshot_hdf5_write(&result, path, &error);
+        const enum status status = snapshot_writer_hdf5.write(&result, path, &error);
         refused = 0;
         if (status != STATUS_ENVIRONMENT || !error.message[0] || access(path, F_OK) == 0)
             fail_msg("call %ld of %ld: status %d", k, all, (int)status);
         assert_int_equal(open_things(), open);
     }
-    assert_int_equal(snapshot_hdf5_write(&result, path_of("no/such/folder.h5"), &error),
+    assert_int_equal(snapshot_writer_hdf5.write(&result, path_of("no/such/folder.h5"), &error),
                      STATUS_ENVIRONMENT);
     assert_int_equal(open_things(), open);
 }
@@ -259,8 +270,8 @@ static void failures(void **state)
     struct run_result result = {0};
     struct error error = {0};
     (void)state;
-    assert_int_equal(snapshot_hdf5_possible("a.h5", &error), STATUS_ENVIRONMENT);
-    assert_int_equal(snapshot_hdf5_write(&result, "a.h5", &error), STATUS_ENVIRONMENT);
+    assert_int_equal(snapshot_writer_hdf5.possible("a.h5", &error), STATUS_ENVIRONMENT);
+    assert_int_equal(snapshot_writer_hdf5.write(&result, "a.h5", &error), STATUS_ENVIRONMENT);
     assert_non_null(strstr(error.message, "a.h5: built without HDF5"));
 }
 #endif

@@ -1,27 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The file is made in memory and written as any other one: whole, or not at all. */
-#include "snapshot_hdf5.h"
-
+ * HDF5 as GADGET's snapshots are laid out (Springel 2005): what yt, pynbody and ParaView read.
+ * Header: NumPart_*, MassTable, Time, BoxSize (one number, or one each where sides differ),
+ * Dimension, Gamma, Origin, and as text Case, Boundary and Keys (see snapshot_remarks.h);
+ * PartType0: Coordinates (from the lower corner of the box, `Origin`, z = 0 in 2D), Velocities,
+ * Masses, Density, InternalEnergy, Pressure, SmoothingLength (support radius), ParticleIDs (from 1,
+ * in the order of the start). The file is made in memory and written as any other one. */
 #include <stdlib.h>
 #include <string.h>
 
 #include "output.h"
 #include "snapshot_remarks.h"
-
-bool snapshot_hdf5_wanted(const char *path)
-{
-    const char *dot = strrchr(path, '.');
-    return dot && (strcmp(dot, ".hdf5") == 0 || strcmp(dot, ".h5") == 0);
-}
+#include "snapshot_writer.h"
 
 #ifdef HAVE_HDF5
 #include <hdf5.h>
-
-enum status snapshot_hdf5_possible(const char *path, struct error *error)
-{
-    (void)path, (void)error;
-    return STATUS_OK;
-}
 
 /* A file in memory; what failed stays false. */
 struct image {
@@ -148,8 +140,8 @@ static void set_gas(struct image *image, const struct run_result *result)
     free(number);
 }
 
-enum status snapshot_hdf5_write(const struct run_result *result, const char *path,
-                                struct error *error)
+static enum status write_hdf5(const struct run_result *result, const char *path,
+                              struct error *error)
 {
     struct image image = {.good = true};
     struct output output;
@@ -184,7 +176,7 @@ enum status snapshot_hdf5_write(const struct run_result *result, const char *pat
 
 #else
 
-enum status snapshot_hdf5_possible(const char *path, struct error *error)
+static enum status possible(const char *path, struct error *error)
 {
     return error_set(error, STATUS_ENVIRONMENT,
                      "%.200s: built without HDF5 (Debian: libhdf5-dev); a snapshot in CSV needs "
@@ -192,11 +184,21 @@ enum status snapshot_hdf5_possible(const char *path, struct error *error)
                      path);
 }
 
-enum status snapshot_hdf5_write(const struct run_result *result, const char *path,
-                                struct error *error)
+static enum status write_hdf5(const struct run_result *result, const char *path,
+                              struct error *error)
 {
     (void)result;
-    return snapshot_hdf5_possible(path, error);
+    return possible(path, error);
 }
 
 #endif
+
+const struct snapshot_writer snapshot_writer_hdf5 = {
+    .member = {"hdf5", "HDF5 in GADGET's layout: .hdf5 .h5", "Springel 2005"},
+    .endings = ".hdf5 .h5",
+    .memory = 250, /* of a file that is made in memory */
+#ifndef HAVE_HDF5
+    .possible = possible,
+#endif
+    .write = write_hdf5,
+};

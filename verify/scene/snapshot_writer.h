@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Formats in which the state of a run is written: a family, one file in writer/ and one line in
+ * writers.def each. A file's name says by its ending which one is meant. Code units, double
+ * precision; each file appears whole or not at all. */
+#ifndef SPHPROOF_SNAPSHOT_WRITER_H
+#define SPHPROOF_SNAPSHOT_WRITER_H
+
+#include "family.h"
+#include "run.h"
+#include "snapshots.h"
+
+struct snapshot_writer {
+    struct member member;
+    const char *endings; /* of the names of its files: ".hdf5 .h5" */
+    double memory;       /* bytes for each particle that writing takes beside the state */
+    /* NULL: always possible. STATUS_ENVIRONMENT: this program was built without it. */
+    enum status (*possible)(const char *path, struct error *error);
+    /* STATUS_ENVIRONMENT: it cannot be written. */
+    enum status (*write)(const struct run_result *result, const char *path, struct error *error);
+    /* Writes what lists the files of a series, those on the way and the one at the end; NULL: this
+     * format has no such file. STATUS_ENVIRONMENT: it cannot be written. */
+    enum status (*collect)(const struct run_result *result, const struct snapshots *snapshots,
+                           struct error *error);
+};
+extern const struct family snapshot_writer_family;
+
+/* The one that path means; csv for "-" and a name without an ending. NULL: STATUS_BAD_INPUT in
+ * error, which names the endings that there are. */
+const struct snapshot_writer *snapshot_writer_of(const char *path, struct error *error);
+
+#endif

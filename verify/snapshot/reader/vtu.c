@@ -1,0 +1,474 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * XML of VTK with the particles as points of one piece (.vtu, .vtp), as sphproof, ParaView, meshio
+ * and WriteVTK write it: numbers as text, in base64 or appended, plain or compressed by zlib. Field
+ * data say what belongs to all particles: TimeValue or time, gamma, ndims, and in our own also box,
+ * case, boundary and keys. */
+#include <ctype.h>
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#ifdef HAVE_ZLIB
+#include <zlib.h>
+#endif
+
+#include "text.h"
+#include "text_table.h"
+
+enum { WORD = 64, FIELD_MOST = 1200 };
+
+struct vtk {
+    const struct snapshot_source *source;
+    struct error *error;
+    bool swapped, compressed;     /* byte order; zlib */
+    size_t head;                  /* bytes of a size: 4 or 8 */
+    const char *appended, *ended; /* behind its '_'; NULL: none */
+    bool raw;                     /* appended bytes are no base64 */
+};
+
+/* <NAME KEY="VALUE" ...>, or </NAME> */
+struct tag {
+    const char *name, *behind; /* the character after '>' */
+    size_t length;             /* from the name up to '>' */
+    bool closes;
+};
+
+struct array {
+    char name[WORD], type[WORD];
+    const char *at, *end;
+    size_t components;
+    bool text, raw;
+};
+
+static bool refuse(const struct vtk *vtk, const char *what, const char *found)
+{
+    error_set(vtk->error, STATUS_BAD_INPUT, "%.200s: XML of VTK: %s '%.60s'", vtk->source->path,
+              what, found);
+    return false;
+}
+
+static bool next_tag(const char *at, const char *end, struct tag *tag)
+{
+    while (at < end && (at = memchr(at, '<', (size_t)(end - at)))) {
+        const char *stop = memchr(at, '>', (size_t)(end - at));
+        if (!stop) return false;
+        tag->closes = at[1] == '/';
+        tag->name = at + 1 + tag->closes;
+        tag->length = stop > tag->name ? (size_t)(stop - tag->name) : 0;
+        tag->behind = at = stop + 1;
+        if (tag->length && isalpha((unsigned char)tag->name[0])) return true;
+    }
+    return false;
+}
+
+static bool is_tag(const struct tag *tag, const char *name)
+{
+    const size_t n = strlen(name);
+    return tag->length >= n && !strncmp(tag->name, name, n) &&
+           !isalnum((unsigned char)tag->name[n]);
+}
+
+/* The value of a key; "" where there is none or where it is longer than a word. */
+static const char *value_of(const struct tag *tag, const char *key, char value[WORD])
+{
+    const size_t n = strlen(key);
+    const char *at = tag->name, *end = at + tag->length;
+    *value = '\0';
+    while (at < end) {
+        const char *equals = memchr(at, '=', (size_t)(end - at));
+        if (!equals || equals + 1 >= end) break;
+        const char *stop = memchr(equals + 2, equals[1], (size_t)(end - equals - 2));
+        if (!stop) break;
+        const char *from = equals;
+        while (from > at && isspace((unsigned char)from[-1])) from--;
+        if ((size_t)(from - at) > n && !strncmp(from - n, key, n) &&
+            isspace((unsigned char)from[-(long)n - 1]) && stop - equals - 2 < WORD) {
+            memcpy(value, equals + 2, (size_t)(stop - equals - 2));
+            value[stop - equals - 2] = '\0';
+            status_clean(value);
+            return value;
+        }
+        at = stop + 1;
+    }
+    return value;
+}
+
+/* ---- bytes ---- */
+
+static int digit_of(char c)
+{
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    const char *found = c ? strchr(digits, c) : NULL;
+    return found ? (int)(found - digits) : -1;
+}
+
+/* n bytes of what begins at array->at, and the place behind them; false: it is too short. */
+static bool fetch(const struct array *array, size_t n, unsigned char *to, const char **behind)
+{
+    const size_t length = array->raw ? n : (n + 2) / 3 * 4;
+    unsigned word = 0;
+    if (n > SIZE_MAX / 2 || length > (size_t)(array->end - array->at)) return false;
+    const char *at = array->at;
+    if (behind) *behind = at + length;
+    if (array->raw) {
+        memcpy(to, at, n);
+        return true;
+    }
+    for (size_t k = 0, made = 0; made < n; k++) {
+        const int digit = digit_of(at[k]);
+        if (digit < 0) return false;
+        word = word << 6 | (unsigned)digit;
+        if (k % 4) to[made++] = (unsigned char)(word >> (6 - k % 4 * 2) & 255);
+    }
+    return true;
+}
+
+static void turn(unsigned char *bytes, size_t count, size_t width)
+{
+    for (size_t i = 0; i < count; i++)
+        for (size_t a = i * width, b = a + width - 1; a < b; a++, b--) {
+            const unsigned char one = bytes[a];
+            bytes[a] = bytes[b], bytes[b] = one;
+        }
+}
+
+static uint64_t size_at(const struct vtk *vtk, unsigned char *at)
+{
+    uint32_t small;
+    uint64_t large;
+    if (vtk->swapped) turn(at, 1, vtk->head);
+    memcpy(&small, at, sizeof small);
+    memcpy(&large, at, sizeof large);
+    return vtk->head == sizeof small ? small : large;
+}
+
+#ifdef HAVE_ZLIB
+/* Number of blocks, their size, the size of the last (0: the same), and what each is packed into.
+ */
+static bool unpack(const struct vtk *vtk, struct array array, size_t blocks, unsigned char *to,
+                   size_t want)
+{
+    if (blocks > want) return false;
+    const size_t sizes = (3 + blocks) * vtk->head;
+    unsigned char *head = malloc(sizes + sizeof(uint64_t));
+    bool well = head && fetch(&array, sizes, head, &array.at);
+    const size_t left = (size_t)(array.end - array.at);
+    const uint64_t block = well ? size_at(vtk, head + vtk->head) : 0;
+    const uint64_t last = well ? size_at(vtk, head + 2 * vtk->head) : 0;
+    uint64_t *packed = well ? malloc((blocks + 1) * sizeof *packed) : NULL;
+    well = packed != NULL;
+    size_t all = 0, made = 0;
+    for (size_t k = 0; well && k < blocks; k++) {
+        packed[k] = size_at(vtk, head + (3 + k) * vtk->head);
+        well = packed[k] <= left - all;
+        all += well ? packed[k] : 0;
+    }
+    unsigned char *bytes = well ? malloc(all + 1) : NULL;
+    well = bytes && fetch(&array, all, bytes, NULL);
+    for (size_t k = 0, taken = 0; well && k < blocks; taken += packed[k++]) {
+        const uint64_t full = k + 1 < blocks || !last ? block : last;
+        uLongf size = (uLongf)(want - made);
+        well =
+            uncompress(to + made, &size, bytes + taken, (uLong)packed[k]) == Z_OK && size == full;
+        made += size;
+    }
+    free(packed);
+    free(head), free(bytes);
+    return well && made == want;
+}
+#else
+static bool unpack(const struct vtk *vtk, struct array array, size_t blocks, unsigned char *to,
+                   size_t want)
+{
+    (void)array, (void)blocks, (void)to, (void)want;
+    return refuse(vtk, "this program was built without zlib, which packed", "the numbers");
+}
+#endif
+
+/* to: room for `want` bytes and a size; they begin behind that size. */
+static bool take_bytes(const struct vtk *vtk, const struct array *array, unsigned char *to,
+                       size_t want)
+{
+    unsigned char head[sizeof(uint64_t)] = {0};
+    if (!fetch(array, vtk->head, head, NULL)) return false;
+    const uint64_t size = size_at(vtk, head);
+    if (vtk->compressed) return unpack(vtk, *array, size, to + vtk->head, want);
+    return size == want && fetch(array, vtk->head + want, to, NULL);
+}
+
+/* ---- numbers ---- */
+
+#define KINDS                                                                                      \
+    KIND("Float64", double)                                                                        \
+    KIND("Float32", float)                                                                         \
+    KIND("Int8", int8_t)                                                                           \
+    KIND("UInt8", uint8_t)                                                                         \
+    KIND("Int16", int16_t)                                                                         \
+    KIND("UInt16", uint16_t)                                                                       \
+    KIND("Int32", int32_t)                                                                         \
+    KIND("UInt32", uint32_t)                                                                       \
+    KIND("Int64", int64_t)                                                                         \
+    KIND("UInt64", uint64_t)
+
+static size_t width_of(const char *type)
+{
+#define KIND(word, c_type)                                                                         \
+    if (!strcmp(type, word)) return sizeof(c_type);
+    KINDS
+#undef KIND
+    return 0;
+}
+
+static double number_at(const char *type, const unsigned char *at)
+{
+#define KIND(word, c_type)                                                                         \
+    if (!strcmp(type, word)) {                                                                     \
+        c_type value;                                                                              \
+        memcpy(&value, at, sizeof value);                                                          \
+        return (double)value;                                                                      \
+    }
+    KINDS
+#undef KIND
+    return NAN;
+}
+
+static bool take_text(const struct array *array, double *to, size_t n)
+{
+    const char *at = array->at;
+    for (size_t i = 0; i < n; i++) {
+        char word[WORD];
+        size_t length = 0;
+        while (at < array->end && isspace((unsigned char)*at)) at++;
+        while (at < array->end && !isspace((unsigned char)*at) && length + 1 < sizeof word)
+            word[length++] = *at++;
+        word[length] = '\0';
+        if (!text_table_number(word, to + i)) return false;
+    }
+    return true;
+}
+
+/* n numbers; false: error says why not. */
+static bool take_numbers(const struct vtk *vtk, const struct array *array, double *to, size_t n)
+{
+    const size_t width = width_of(array->type);
+    if (!width) return refuse(vtk, "numbers of the type", array->type);
+    if (array->text)
+        return take_text(array, to, n) || refuse(vtk, "too few numbers in the array", array->name);
+    unsigned char *bytes = malloc(width * n + sizeof(uint64_t));
+    bool well = bytes && take_bytes(vtk, array, bytes, width * n);
+    if (well && vtk->swapped) turn(bytes + vtk->head, n, width);
+    for (size_t i = 0; well && i < n; i++)
+        to[i] = number_at(array->type, bytes + vtk->head + i * width);
+    free(bytes);
+    if (!well && !vtk->error->status)
+        refuse(vtk, "not the numbers that its points need: the array", array->name);
+    return well;
+}
+
+/* ---- what they mean ---- */
+
+static bool take_array(const struct vtk *vtk, const struct tag *tag, struct array *array)
+{
+    char format[WORD], number[WORD];
+    double value;
+    const char *end = (const char *)vtk->source->bytes + vtk->source->size;
+    value_of(tag, "Name", array->name), value_of(tag, "type", array->type);
+    value_of(tag, "format", format);
+    array->components =
+        text_real(value_of(tag, "NumberOfComponents", number), &value) && value >= 1 && value <= 9
+            ? (size_t)value
+            : 1;
+    array->text = !strcmp(format, "ascii"), array->raw = false;
+    array->at = tag->behind;
+    array->end = memchr(array->at, '<', (size_t)(end - array->at));
+    if (!array->end) return refuse(vtk, "cut off in the array", array->name);
+    if (!strcmp(format, "appended")) {
+        if (!vtk->appended || !text_real(value_of(tag, "offset", number), &value) || value < 0 ||
+            value > (double)(vtk->ended - vtk->appended))
+            return refuse(vtk, "no appended data of the array", array->name);
+        array->at = vtk->appended + (size_t)value, array->end = vtk->ended;
+        array->raw = vtk->raw;
+    } else if (!array->text && strcmp(format, "binary"))
+        return refuse(vtk, "allowed: ascii, binary, appended; found: format", format);
+    while (!array->raw && array->at < array->end && isspace((unsigned char)*array->at)) array->at++;
+    return true;
+}
+
+static bool take_points(const struct vtk *vtk, const struct array *array, int column,
+                        struct snapshot_file *file)
+{
+    const bool vector = column == SNAPSHOT_X || column == SNAPSHOT_VX || column == SNAPSHOT_AX;
+    if (column < 0 || (!vector && array->components > 1) || array->components > 3) return true;
+    double *all = malloc((file->n * array->components + 1) * sizeof *all);
+    bool well = all != NULL;
+    if (well && !take_numbers(vtk, array, all, file->n * array->components)) {
+        free(all);
+        return false;
+    }
+    for (size_t c = 0; well && c < array->components; c++) {
+        const enum snapshot_column to = (enum snapshot_column)(column + (int)c);
+        if (file->column[to]) {
+            free(all);
+            return refuse(vtk, "two arrays for one quantity; the second is", array->name);
+        }
+        well = snapshot_file_make(file, to);
+        for (size_t i = 0; well && i < file->n; i++)
+            file->column[to][i] = all[i * array->components + c];
+    }
+    free(all);
+    if (!well) error_set(vtk->error, STATUS_ENVIRONMENT, "no memory for %.200s", vtk->source->path);
+    const double epsilon = !strcmp(array->type, "Float32") ? 6e-8 : 1.2e-16;
+    double *precision = &file->precision[column != SNAPSHOT_X];
+    *precision = fmax(*precision, epsilon);
+    return well;
+}
+
+static void take_letters(const double *numbers, size_t n, char *to, size_t room)
+{
+    size_t used = 0;
+    for (size_t i = 0; i < n && used + 1 < room; i++)
+        if (numbers[i] >= ' ' && numbers[i] < 256) to[used++] = (char)(unsigned char)numbers[i];
+    to[used] = '\0';
+}
+
+static bool take_field(const struct vtk *vtk, const struct tag *tag, const struct array *array,
+                       struct snapshot_file *file)
+{
+    static const char *const known[] = {"TimeValue", "TIME", "time", "gamma",    "ndims",
+                                        "box",       "case", "keys", "boundary", NULL};
+    double numbers[FIELD_MOST], tuples = 1;
+    char word[WORD];
+    int which = 0;
+    while (known[which] && strcmp(known[which], array->name)) which++;
+    if (!known[which] || !width_of(array->type)) return true;
+    text_real(value_of(tag, "NumberOfTuples", word), &tuples);
+    if (!(tuples >= 1 && tuples * (double)array->components <= FIELD_MOST))
+        return refuse(vtk, "too many numbers, or none: the field", array->name);
+    const size_t n = (size_t)tuples * array->components;
+    if (!take_numbers(vtk, array, numbers, n)) return false;
+    const struct snapshot_value value = {true, numbers[0]};
+    switch (which) {
+    case 0:
+    case 1:
+    case 2:
+        file->time = value;
+        break;
+    case 3:
+        file->gamma = value;
+        snapshot_note(&file->notes, "gamma", "in the file", "its field gamma");
+        break;
+    case 4:
+        if (numbers[0] == 1 || numbers[0] == 2 || numbers[0] == 3) file->dim = (int)numbers[0];
+        break;
+    case 5:
+        file->boxed = file->placed = n == 2 || n == 4 || n == 6;
+        for (size_t d = 0; file->boxed && d < n / 2; d++) {
+            file->corner[d] = numbers[2 * d], file->box[d] = numbers[2 * d + 1] - numbers[2 * d];
+            if (!(file->box[d] > 0 && isfinite(file->box[d])))
+                return refuse(vtk, "no lower and upper ends: the field", array->name);
+        }
+        break;
+    case 6:
+        take_letters(numbers, n, file->case_name, sizeof file->case_name);
+        break;
+    case 7:
+        take_letters(numbers, n, file->keys, sizeof file->keys);
+        break;
+    default:
+        take_letters(numbers, n, file->boundary, sizeof file->boundary);
+    }
+    return true;
+}
+
+static bool begin(struct vtk *vtk, const struct tag *tag)
+{
+    const uint16_t one = 1;
+    char word[WORD];
+    value_of(tag, "byte_order", word);
+    vtk->swapped = !strcmp(word, *(const unsigned char *)&one ? "BigEndian" : "LittleEndian");
+    vtk->head = strcmp(value_of(tag, "header_type", word), "UInt64") ? 4 : 8;
+    vtk->compressed = *value_of(tag, "compressor", word);
+    if (vtk->compressed && strcmp(word, "vtkZLibDataCompressor"))
+        return refuse(vtk, "allowed: vtkZLibDataCompressor, or none; found: compressor", word);
+    struct tag appended = *tag;
+    const char *end = (const char *)vtk->source->bytes + vtk->source->size;
+    while (next_tag(appended.behind, end, &appended))
+        if (is_tag(&appended, "AppendedData")) {
+            vtk->raw = !strcmp(value_of(&appended, "encoding", word), "raw");
+            vtk->appended = memchr(appended.behind, '_', (size_t)(end - appended.behind));
+            vtk->ended = end;
+            if (!vtk->appended) return refuse(vtk, "no '_' in", "AppendedData");
+            vtk->appended++;
+            break;
+        }
+    return true;
+}
+
+static bool take_tag(struct vtk *vtk, const struct tag *tag, const char **section,
+                     struct snapshot_file *file)
+{
+    static const char *const sections[] = {"FieldData", "PointData", "Points",
+                                           "CellData",  "Cells",     "Verts"};
+    struct array array;
+    char word[WORD];
+    double n;
+    if (is_tag(tag, "VTKFile") && !tag->closes) return begin(vtk, tag);
+    if (is_tag(tag, "Piece") && !tag->closes) {
+        if (file->n) return refuse(vtk, "more than one", "Piece");
+        /* nothing is packed more than 1032 fold by zlib */
+        const double most = (double)vtk->source->size * (vtk->compressed ? 1032 : 1);
+        if (!text_real(value_of(tag, "NumberOfPoints", word), &n) || !(n >= 1) ||
+            n > fmin(SNAPSHOT_ROWS_MAX, most) || n != floor(n))
+            return refuse(vtk,
+                          "no number of points that the file has room for: NumberOfPoints =", word);
+        file->n = file->gas = (size_t)n;
+    }
+    for (size_t k = 0; k < sizeof sections / sizeof *sections; k++)
+        if (is_tag(tag, sections[k])) *section = tag->closes ? "" : sections[k];
+    if (!is_tag(tag, "DataArray") || tag->closes || !**section || **section == 'C') return true;
+    if (!take_array(vtk, tag, &array)) return false;
+    if (!strcmp(*section, "FieldData")) return take_field(vtk, tag, &array, file);
+    if (!file->n) return refuse(vtk, "before any Piece: the array", array.name);
+    if (!strcmp(*section, "Points")) return take_points(vtk, &array, SNAPSHOT_X, file);
+    if (!strcmp(*section, "PointData"))
+        return take_points(vtk, &array, snapshot_column_of(array.name), file);
+    return true;
+}
+
+static bool recognises(const struct snapshot_source *source)
+{
+    char start[400];
+    snprintf(start, sizeof start, "%.*s", (int)(source->size < 399 ? source->size : 399),
+             source->hdf5 ? "" : (const char *)source->bytes);
+    return start[strspn(start, " \t\r\n\xef\xbb\xbf")] == '<' && strstr(start, "<VTKFile");
+}
+
+static enum status read_vtu(const struct snapshot_source *source,
+                            const struct snapshot_options *options, struct snapshot_file *file,
+                            struct error *error)
+{
+    struct vtk vtk = {.source = source, .error = error};
+    struct tag tag = {.behind = (const char *)source->bytes};
+    static const char last[] = "</VTKFile>";
+    const char *section = "", *end = tag.behind + source->size;
+    (void)options;
+    error->status = STATUS_OK;
+    while (end > tag.behind && isspace((unsigned char)end[-1])) end--;
+    if ((size_t)(end - tag.behind) < strlen(last) || memcmp(end - strlen(last), last, strlen(last)))
+        return error_set(error, STATUS_BAD_INPUT, "%.200s: is cut off: does not end with %s",
+                         source->path, last);
+    while (next_tag(tag.behind, vtk.appended ? vtk.appended : end, &tag))
+        if (!take_tag(&vtk, &tag, &section, file)) return error->status;
+    if (!file->n) {
+        refuse(&vtk, "no points: no", "Piece");
+        return error->status;
+    }
+    file->columns = !file->column[1] ? 1 : !file->column[2] ? 2 : 3;
+    file->parts = 1;
+    snprintf(file->code, sizeof file->code, "unknown");
+    return STATUS_OK;
+}
+
+const struct snapshot_reader reader_vtu = {
+    {"vtu", "XML of VTK: points of one piece", ""}, recognises, read_vtu};
