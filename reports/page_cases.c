@@ -64,7 +64,7 @@ static void add_curve(struct curves *curves, const json_t *run)
     const json_t *exact = json_object_get(profile, "exact");
     if (curves->exact_x || !exact) return;
     curves->exact_x = value_numbers(json_object_get(exact, "x"), &curves->exact_n);
-    for (int q = 0; q < ENERGY; q++) {
+    for (int q = 0; q < ENERGY && curves->exact_x; q++) {
         curves->exact[q] = value_numbers(json_object_get(exact, quantities[q]), &n);
         if (n < curves->exact_n) curves->exact_n = n;
     }

@@ -49,8 +49,11 @@ void page_faults(struct page_writer *writer, const json_t *results)
                    "streams, no memory, and kill -9: each time the exit status and the message "
                    "must be right, and nothing may be lost or left half-written. Tried ");
     buffer_escape(to, value_text(faults, "date"));
-    if (strcmp(git, value_text(results, "git")))
-        buffer_format(to, ", with another build (git %.40s)", git);
+    if (strcmp(git, value_text(results, "git"))) {
+        buffer_add(to, ", with another build (git ");
+        buffer_escape(to, git);
+        buffer_add(to, ")");
+    }
     buffer_add(to, ".</p>\n");
     for (int round = 0; round < 2; round++) { /* first what went wrong */
         bool open = false;

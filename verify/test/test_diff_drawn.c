@@ -1,0 +1,262 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Result documents drawn from data/drawn/figures.json: their figures, what diff and history say of
+ * two or many of them, and where series of figures move, are what they were, byte for byte:
+ * data/drawn/diffs.txt; kept as test_page_drawn.c says. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "buffer.h"
+#include "diff.h"
+#include "history.h"
+#include "made_document.h"
+#include "made_place.h"
+#include "report_piece.h"
+#include "trend.h"
+
+enum { DOCUMENTS = 150, HISTORIES = 12, SERIES = 400, KEPT_TOGETHER = 10 };
+
+static const char *folder;
+
+static void keep(struct made_kept *kept, const char *what, size_t number, struct buffer *text)
+{
+    char name[64], *all = buffer_take(text);
+    assert_non_null(all);
+    snprintf(name, sizeof name, "%s-%zu", what, number);
+    made_compare(kept, name, all);
+    free(all);
+}
+
+static void add_json(struct buffer *to, json_t *document)
+{
+    char *text = json_dumps(document, JSON_INDENT(1) | JSON_REAL_PRECISION(12) | JSON_ENCODE_ANY);
+    buffer_format(to, "%s\n", text);
+    free(text);
+    json_decref(document);
+}
+
+/* A document as it may be after a change: figures moved by nothing, little and much, words others,
+ * members gone. */
+static json_t *changed(struct made_draw *draw, const json_t *of, const char *name)
+{
+    static const double factors[] = {1,         1,      1,      1,    1,   1.0000000005,
+                                     1.0000005, 1.0005, 1.0015, 1.04, 1.3, 0.9985,
+                                     0.9,       0.6667, 1.06,   2.9,  3.2, 0.3};
+    static const char *const words[] = {"pass", "ok",         "fail", "skip",
+                                        "none", "broke_down", "odd",  "smoke"};
+    const char *key;
+    json_t *member, *made;
+    size_t i;
+    if (json_is_array(of)) {
+        made = json_array();
+        json_array_foreach(of, i, member)
+            if (made_below(draw, 20)) json_array_append_new(made, changed(draw, member, name));
+        return made;
+    }
+    if (json_is_object(of)) {
+        made = json_object();
+        json_object_foreach((json_t *)of, key, member)
+            if (made_below(draw, 40)) json_object_set_new(made, key, changed(draw, member, key));
+        return made;
+    }
+    if (json_is_real(of) && !made_below(draw, 3))
+        return json_real(json_real_value(of) *
+                         factors[made_below(draw, sizeof factors / sizeof *factors)]);
+    if (json_is_integer(of) && !made_below(draw, 8) && strcmp(name, "n") && strcmp(name, "dim"))
+        return json_integer(json_integer_value(of) + 1);
+    if (json_is_string(of) &&
+        (!strcmp(name, "status") || !strcmp(name, "outcome") || !strcmp(name, "state")) &&
+        !made_below(draw, 4))
+        return json_string(words[made_below(draw, sizeof words / sizeof *words)]);
+    return json_deep_copy(of);
+}
+
+/* What a function prints on standard output, added to a text. */
+static void add_printed(struct buffer *to, const struct diff *diff, bool exact, bool color)
+{
+    char text[4096];
+    fflush(stdout);
+    const int before = dup(1);
+    FILE *file = tmpfile();
+    dup2(fileno(file), 1);
+    diff_print(diff, DIFF_THRESHOLD, exact, color);
+    fflush(stdout);
+    dup2(before, 1);
+    close(before);
+    rewind(file);
+    for (size_t n; (n = fread(text, 1, sizeof text, file));) buffer_add_bytes(to, text, n);
+    fclose(file);
+}
+
+static void add_readings(struct buffer *to, const json_t *document)
+{
+    struct readings readings;
+    struct error error = {0};
+    assert_int_equal(reading_collect(document, &readings, &error), STATUS_OK);
+    for (size_t i = 0; i < readings.count; i++) {
+        const struct reading *r = &readings.list[i];
+        buffer_format(to, "%s %d %.10g %.6g %.6g %.10g %s %d\n", r->path, r->kind, r->value,
+                      r->noise, r->floor, r->exact, r->word ? r->word : "-", r->headline);
+        assert_ptr_equal(reading_find(&readings, r->path), r);
+    }
+    buffer_format(to, "%s\n", readings.trouble);
+    reading_free(&readings);
+}
+
+static void diffs(void **state)
+{
+    (void)state;
+    static const char *const kinds[] = {"report", "report", "other", "other", "anything_else"};
+    json_t *template = made_template(folder, "figures.json");
+    struct made_kept kept;
+    struct buffer text = {0};
+    made_open(&kept, folder, "diffs.txt");
+    for (size_t k = 0; k < DOCUMENTS; k++) {
+        struct made_draw draw = {k, template};
+        struct error error = {0};
+        struct diff diff;
+        const json_t *kind = json_object_get(template, kinds[made_below(&draw, 5)]);
+        json_t *old = made_document(&draw, kind),
+               *new = made_below(&draw, 6) ? changed(&draw, old, "") : made_document(&draw, kind);
+        if (!made_below(&draw, 15)) json_object_set_new(new, "command", json_string("kernel"));
+        add_readings(&text, old);
+        const enum status status = diff_documents(old, new, DIFF_THRESHOLD, &diff, &error);
+        buffer_format(&text, "%d %s\n", status, error.message);
+        if (status == STATUS_OK || status == STATUS_CHECK_FAILED) {
+            json_t *document = json_object();
+            diff_add_json(&diff, document);
+            add_json(&text, document);
+            add_json(&text, diff_figures_json(&diff, 2));
+            add_printed(&text, &diff, k % 2, k % 3 == 0);
+            diff_free(&diff);
+        }
+        json_decref(old);
+        json_decref(new);
+        if (k % KEPT_TOGETHER == KEPT_TOGETHER - 1) keep(&kept, "diffs", k / KEPT_TOGETHER, &text);
+    }
+    made_close(&kept);
+    json_decref(template);
+}
+
+/* Nights of one document that changes by and by; other modes and damaged lines between them. */
+static void histories(void **state)
+{
+    (void)state;
+    json_t *template = made_template(folder, "figures.json");
+    struct made_kept kept;
+    struct buffer text = {0};
+    made_open(&kept, folder, "histories.txt");
+    for (size_t k = 0; k < HISTORIES; k++) {
+        static const char *const damage[] = {"\n", "damaged\n", "{\"schema\": \"other\"}\n",
+                                             "{\"schema\": \"sphproof-his"};
+        struct made_draw draw = {k, template};
+        struct error error = {0};
+        char path[4096];
+        snprintf(path, sizeof path, "%s", path_of("nights"));
+        remove(path);
+        const size_t nights = k % 3 ? 2 + made_below(&draw, 12)
+                              : k   ? 119 + made_below(&draw, 4)
+                                    : 0;
+        json_t *results = made_document(&draw, json_object_get(template, "report")), *history;
+        for (size_t i = 0; i < nights; i++) {
+            if (!made_below(&draw, 3)) {
+                json_t *next = changed(&draw, results, "");
+                json_decref(results);
+                results = next;
+            }
+            json_object_set_new(results, "mode",
+                                json_string(made_below(&draw, 6) ? "quick" : "nightly"));
+            assert_int_equal(history_append(results, path, &error), STATUS_OK);
+            if (made_below(&draw, 12)) continue;
+            FILE *file = fopen(path, "a");
+            fputs(damage[made_below(&draw, 4)], file);
+            fclose(file);
+        }
+        assert_int_equal(history_tell(results, path, &history, &error), STATUS_OK);
+        add_json(&text, history);
+        json_decref(results);
+        FILE *file = fopen(path, "r");
+        char lines[4096];
+        for (size_t n; file && (n = fread(lines, 1, sizeof lines, file));)
+            buffer_add_bytes(&text, lines, n);
+        if (file) fclose(file);
+        keep(&kept, "histories", k, &text);
+    }
+    made_close(&kept);
+    json_decref(template);
+}
+
+/* Levels with scatter, odd nights and steps. */
+static void series(void **state)
+{
+    (void)state;
+    struct made_kept kept;
+    struct buffer text = {0};
+    made_open(&kept, folder, "series.txt");
+    for (size_t k = 0; k < SERIES; k++) {
+        struct made_draw draw = {k, NULL};
+        struct trend_change changes[8];
+        double value[64], level = 0;
+        const size_t n = made_below(&draw, k % 2 ? 12 : 64),
+                     most = k % 7 ? 8 : made_below(&draw, 3);
+        const double scatter = (double)made_below(&draw, 3) / 64;
+        for (size_t i = 0; i < n; i++) {
+            if (!made_below(&draw, 6)) level += (double)made_below(&draw, 33) / 16 - 1;
+            value[i] = level + scatter * (double)made_below(&draw, 9);
+            if (!made_below(&draw, 15)) value[i] += 1;
+        }
+        const size_t count =
+            trend_changes(n, value, (double)made_below(&draw, 4) / 8, changes, most);
+        for (size_t c = 0; c < count; c++)
+            buffer_format(&text, "%zu %.10g %.10g\n", changes[c].at, changes[c].before,
+                          changes[c].after);
+        buffer_format(&text, "%zu\n", count);
+        if (k % 50 == 49) keep(&kept, "series", k / 50, &text);
+    }
+    made_close(&kept);
+}
+
+/* Parts of the checks, joined in any order of their mutants. */
+static void joined(void **state)
+{
+    (void)state;
+    struct made_kept kept;
+    struct buffer text = {0};
+    static const char *const names[] = {"a", "b", "c"};
+    made_open(&kept, folder, "joined.txt");
+    for (size_t k = 0; k < 20; k++) {
+        struct made_draw draw = {k, NULL};
+        json_t *all = json_object();
+        for (size_t parts = made_below(&draw, 4); parts > 0; parts--) {
+            json_t *part =
+                json_pack("{s:[i], s:[], s:{s:i, s:i}}", "checks", (int)parts, "mutants", "summary",
+                          "passed", (int)made_below(&draw, 5), "failed", (int)made_below(&draw, 3));
+            for (size_t m = made_below(&draw, 4); m > 0; m--)
+                json_array_append_new(json_object_get(part, "mutants"),
+                                      json_pack("{s:s, s:b}", "mutant", names[made_below(&draw, 3)],
+                                                "detected", made_below(&draw, 4) > 0));
+            report_piece_join(all, part);
+            json_decref(part);
+        }
+        add_json(&text, all);
+    }
+    keep(&kept, "joined", 0, &text);
+    made_close(&kept);
+}
+
+int main(int argc, char **argv)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(diffs), cmocka_unit_test(histories),
+                                       cmocka_unit_test(series), cmocka_unit_test(joined)};
+    if (argc != 2) return 2;
+    folder = argv[1];
+    return cmocka_run_group_tests(tests, make_place, remove_place);
+}

@@ -1,0 +1,101 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Pages of documents drawn from data/drawn/report.json, with what lies beside them, are those that
+ * were made before, byte for byte: data/drawn/pages.txt. Of gnuplot only the scripts and the data,
+ * so that it needs none. A change of pages that is meant is looked at and kept by
+ *   SPHPROOF_KEEP=FOLDER test_page_drawn .../verify/test/data/drawn
+ * before and after it, diff -r of the two folders, and a copy of FOLDER/pages.txt to data/drawn. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "junit.h"
+#include "made_document.h"
+#include "markup.h"
+#include "page.h"
+#include "summary.h"
+#include "verdict.h"
+
+enum { PAGES = 100 };
+
+static const char *folder;
+
+/* The page, opened, without its style sheet and its script, and the files beside it. */
+static char *whole(struct page *page)
+{
+    size_t sealed;
+    struct buffer text = {0};
+    char *html = markup_unsealed(page->html, &sealed), fault[256];
+    const char *style = strstr(html, "<style>"), *body = strstr(html, "</style>"),
+               *end = strstr(html, "<noscript>");
+    if (!markup_well_formed(html, fault, sizeof fault)) fail_msg("%s", fault);
+    buffer_add_bytes(&text, html, (size_t)(style - html));
+    buffer_add_bytes(&text, body, end ? (size_t)(end - body) : strlen(body));
+    for (size_t k = 0; k < page->plots.file_count; k++)
+        buffer_format(&text, "--- %s\n%s", page->plots.files[k].name, page->plots.files[k].bytes);
+    free(html);
+    page_free(page);
+    return buffer_take(&text);
+}
+
+static void compare(struct made_kept *kept, const char *what, size_t number, char *text)
+{
+    char name[64];
+    assert_non_null(text);
+    snprintf(name, sizeof name, "%s-%zu", what, number);
+    made_compare(kept, name, text);
+    free(text);
+}
+
+/* As JSON, for JUnit, and in short. */
+static char *verdict_in_words(const json_t *results)
+{
+    struct buffer text = {0};
+    char *parts[] = {json_dumps(json_object_get(results, "verdict"), JSON_INDENT(1)),
+                     junit_text(results), summary_text(results)};
+    for (int k = 0; k < 3; k++) {
+        assert_non_null(parts[k]);
+        buffer_add(&text, parts[k]);
+        free(parts[k]);
+    }
+    return buffer_take(&text);
+}
+
+static void pages(void **state)
+{
+    (void)state;
+    json_t *template = made_template(folder, "report.json");
+    char *path = strdup(getenv("PATH") ? getenv("PATH") : "");
+    struct made_kept kept;
+    struct page page;
+    made_open(&kept, folder, "pages.txt");
+    setenv("PATH", "/nowhere", 1);
+    for (size_t k = 0; k < PAGES; k++) {
+        struct made_draw draw = {k, template};
+        json_t *results = made_document(&draw, json_object_get(template, "report"));
+        json_object_set_new(results, "verdict", verdict_make(results));
+        assert_true(page_make(&page, results));
+        compare(&kept, "page", k, whole(&page));
+        compare(&kept, "verdict", k, verdict_in_words(results));
+        json_decref(results);
+        json_t *judged = made_document(&draw, json_object_get(template, "judge"));
+        assert_true(page_make_judge(&page, judged));
+        compare(&kept, "judge", k, whole(&page));
+        json_decref(judged);
+    }
+    setenv("PATH", path, 1);
+    free(path);
+    json_decref(template);
+    made_close(&kept);
+}
+
+int main(int argc, char **argv)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(pages)};
+    if (argc != 2) return 2;
+    folder = argv[1];
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
