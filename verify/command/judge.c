@@ -250,7 +250,7 @@ static enum status tell(const struct options *options, const struct judged *judg
         status = write_page(html, document, error);
         json_decref(document);
     }
-    if (!status && plot) status = run_plot(&main->run.asked, &main->result, plot, error);
+    if (!status && plot) status = run_plot(&main->run.asked, &main->result, plot, NULL, error);
     return status;
 }
 

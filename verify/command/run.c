@@ -11,6 +11,7 @@
 #include "command.h"
 #include "description_output.h"
 #include "output.h"
+#include "movie.h"
 #include "picture.h"
 #include "progress.h"
 #include "result.h"
@@ -171,7 +172,12 @@ static enum status check_files(const struct options *options, const struct snaps
     const struct snapshot_writer *writer = snapshot ? snapshot_writer_of(snapshot, error) : NULL;
     if (snapshot && !writer) return error->status;
     if (writer && writer->possible && writer->possible(snapshot, error)) return error->status;
-    if (plot && picture_probe(plot, error)) return error->status;
+    const bool movie = plot && movie_wanted(plot);
+    if (movie && !snapshots->path)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "--plot '%.150s': a movie needs --snapshot-every TIME and --snapshot FILE",
+                         plot);
+    if (plot && (movie ? movie_probe : picture_probe)(plot, error)) return error->status;
     if (snapshot && output_probe(snapshot, error)) return error->status;
     if (!snapshots->path) return STATUS_OK;
     char *first = snapshots_path(snapshots, 0);
@@ -262,6 +268,39 @@ static void print_snapshots(const struct snapshots *snapshots, double t_end)
     free(last);
 }
 
+/* A picture of each snapshot on the way: F_0000.svg, F_0001.svg ... of F.svg, or one of a movie. */
+struct pictures {
+    const struct run_settings *settings;
+    const char *path;
+    struct movie movie;
+};
+
+static void show_moment(void *context, const struct run_result *moment, size_t number,
+                        struct error *error)
+{
+    struct pictures *pictures = context;
+    const struct snapshots named = {.path = pictures->path};
+    if (movie_wanted(pictures->path)) {
+        run_plot(pictures->settings, moment, NULL, &pictures->movie, error);
+        return;
+    }
+    char *path = snapshots_path(&named, number);
+    if (path)
+        run_plot(pictures->settings, moment, path, NULL, error);
+    else
+        error_set(error, STATUS_ENVIRONMENT, "no memory for a path");
+    free(path);
+}
+
+static void draw_end(const struct run_settings *settings, const struct snapshots *snapshots,
+                     const struct run_result *result, const char *path, struct error *error)
+{
+    struct pictures *pictures = snapshots ? snapshots->context : NULL;
+    struct movie *movie = pictures && movie_wanted(path) ? &pictures->movie : NULL;
+    const enum status status = run_plot(settings, result, path, movie, error);
+    if (!status && movie) movie_write(movie, path, error);
+}
+
 /* snapshots: NULL where there is none. */
 static enum status present(const struct options *options, const struct run_settings *settings,
                            const struct snapshots *snapshots, const struct run_result *result,
@@ -288,7 +327,7 @@ static enum status present(const struct options *options, const struct run_setti
     if (snapshots) trouble[0] = snapshots->trouble;
     write_json(options, settings, result, &trouble[1]);
     if (snapshot) run_write_snapshot(result, snapshot, &trouble[2]);
-    if (plot) run_plot(settings, result, plot, &trouble[3]);
+    if (plot) draw_end(settings, snapshots, result, plot, &trouble[3]);
     const struct snapshot_writer *writer =
         snapshots ? snapshot_writer_of(snapshots->path, &trouble[4]) : NULL;
     if (writer && writer->collect) writer->collect(result, snapshots, &trouble[4]);
@@ -354,25 +393,6 @@ static enum status take_checkpoint(struct kept *kept, const struct options *opti
     return STATUS_OK;
 }
 
-/* A picture of each snapshot on the way: F_0000.svg, F_0001.svg ... of F.svg. */
-struct pictures {
-    const struct run_settings *settings;
-    const char *path;
-};
-
-static void show_moment(void *context, const struct run_result *moment, size_t number,
-                        struct error *error)
-{
-    const struct pictures *pictures = context;
-    const struct snapshots named = {.path = pictures->path};
-    char *path = snapshots_path(&named, number);
-    if (path)
-        run_plot(pictures->settings, moment, path, error);
-    else
-        error_set(error, STATUS_ENVIRONMENT, "no memory for a path");
-    free(path);
-}
-
 static enum status run_case(const struct options *options, int n, char **arguments,
                             struct error *error)
 {
@@ -386,7 +406,7 @@ static enum status run_case(const struct options *options, int n, char **argumen
     struct snapshots snapshots;
     if (take_snapshots(&snapshots, options, &run, error)) return error->status;
     if (snapshots.path) run.asked.snapshots = &snapshots;
-    struct pictures pictures = {&settings, options_value(options, "plot")};
+    struct pictures pictures = {.settings = &settings, .path = options_value(options, "plot")};
     if (pictures.path) snapshots.show = show_moment, snapshots.context = &pictures;
     if (options_value(options, "explain")) return explain(options, &run, error);
     if (check_files(options, &snapshots, error)) return error->status;
@@ -403,12 +423,16 @@ static enum status run_case(const struct options *options, int n, char **argumen
     progress_end(&of_run.progress);
     if (kept.checkpoint.trouble.status) remark(options, kept.checkpoint.trouble.message);
     free(kept.run);
-    if (status != STATUS_OK && status != STATUS_BROKE_DOWN) return status;
+    if (status != STATUS_OK && status != STATUS_BROKE_DOWN) {
+        movie_free(&pictures.movie);
+        return status;
+    }
     struct error trouble = {0};
     if (present(options, &settings, run.asked.snapshots, &result, &trouble)) {
         *error = trouble;
         status = trouble.status;
     }
+    movie_free(&pictures.movie);
     run_free(&result);
     return status;
 }
@@ -420,11 +444,11 @@ static const struct command_option own_options[] = {
     {"snapshot-every", "TIME",
      "also F_0000.csv at the start, F_0001.csv after TIME of the simulation, and so on, of\n"
      "F.vtu with a collection F.pvd; with\n"
-     "--plot P.png P_0000.png ..., of which ffmpeg -i P_%04d.png P.mp4 makes a film"},
+     "--plot P.png P_0000.png ...; --plot P.gif or P.mp4: a movie (needs ffmpeg)"},
     {"checkpoint", "FILE", "keep the run's state there, to go on from it to the last bit"},
     {"every", "SECONDS", "so often (default 60)"},
     {"resume", NULL, "go on from the checkpoint; from the start where there is none"},
-    {"plot", "FILE.svg|.png",
+    {"plot", "FILE.svg|.png|.gif|.mp4",
      "draw profiles over the exact solution and the error; in 2D and 3D maps, with FILE.dat\n"
      "and FILE.gp beside them: edit, and `gnuplot FILE.gp` draws FILE.svg again (needs gnuplot)"},
     {"explain", NULL,

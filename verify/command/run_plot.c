@@ -76,7 +76,7 @@ static double *profile_errors(const struct plot_series *particles, const struct 
 
 static enum status draw_profiles(const struct run_settings *settings,
                                  const struct run_result *result, const char *path,
-                                 struct error *error)
+                                 struct movie *movie, struct error *error)
 {
     static const char *const labels[FIELDS] = {"density", "velocity", "pressure",
                                                "internal energy"};
@@ -123,7 +123,7 @@ static enum status draw_profiles(const struct run_settings *settings,
              result->time, known ? "" : "; no exact solution, no error");
     const struct plot plot = {
         .name = "run", .title = title, .show_title = true, .panels = panels, .panel_count = n};
-    status = picture_write(&plot, path, error);
+    status = movie ? movie_add(movie, &plot, error) : picture_write(&plot, path, error);
 end:
     for (size_t i = 0; i < FIELDS; i++) free(profiles[i].storage);
     free((void *)off.y);
@@ -247,7 +247,7 @@ static bool has_void(const double *z, size_t cells)
 }
 
 static enum status draw_maps(const struct run_settings *settings, const struct run_result *result,
-                             const char *path, struct error *error)
+                             const char *path, struct movie *movie, struct error *error)
 {
     const struct snapshot *s = &result->snapshot;
     const enum field field = main_field(settings);
@@ -311,8 +311,8 @@ static enum status draw_maps(const struct run_settings *settings, const struct r
                         .panels = panels,
                         .panel_count = panels_drawn};
     map_size(&plot, &map);
-    enum status status = picture_write(&plot, path, error);
-    if (!status) status = picture_source(&plot, path, error);
+    enum status status = movie ? movie_add(movie, &plot, error) : picture_write(&plot, path, error);
+    if (!status && !movie) status = picture_source(&plot, path, error);
     for (int k = 0; k < 4; k++) free(scatter.arrays[k]);
     free(values);
     map_free(&map);
@@ -320,8 +320,8 @@ static enum status draw_maps(const struct run_settings *settings, const struct r
 }
 
 enum status run_plot(const struct run_settings *settings, const struct run_result *result,
-                     const char *path, struct error *error)
+                     const char *path, struct movie *movie, struct error *error)
 {
     return (result->problem.domain.dim == 1 ? draw_profiles : draw_maps)(settings, result, path,
-                                                                         error);
+                                                                         movie, error);
 }

@@ -6,10 +6,12 @@
 #ifndef SPHPROOF_RUN_PLOT_H
 #define SPHPROOF_RUN_PLOT_H
 
+#include "movie.h"
 #include "run.h"
 
-/* STATUS_ENVIRONMENT: no gnuplot, no memory, or path cannot be written. */
+/* movie: of which this is one more picture; NULL: it goes to path. STATUS_ENVIRONMENT: no gnuplot,
+ * no memory, or path cannot be written. */
 enum status run_plot(const struct run_settings *settings, const struct run_result *result,
-                     const char *path, struct error *error);
+                     const char *path, struct movie *movie, struct error *error);
 
 #endif

@@ -11,7 +11,9 @@ enum status picture_probe(const char *path, struct error *error)
 {
     enum plot_format format;
     if (!plot_format_of(path, &format))
-        return error_set(error, STATUS_BAD_INPUT, "--plot '%.150s': allowed: FILE.svg or FILE.png",
+        return error_set(error, STATUS_BAD_INPUT,
+                         "--plot '%.150s': allowed: FILE.svg or FILE.png, of `run "
+                         "--snapshot-every` also FILE.gif or FILE.mp4",
                          path);
     return output_probe(path, error);
 }
