@@ -133,10 +133,28 @@ static void faults(struct buffer *to, const json_t *faults)
     suite_end(to, "faults around it", &suite);
 }
 
+static const char head[] =
+    "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<testsuites name=\"sphproof\">\n";
+
+char *junit_judge_text(const json_t *document)
+{
+    struct buffer to = {0};
+    struct suite_writer suite = {0};
+    size_t i;
+    const json_t *finding;
+    buffer_add(&to, head);
+    json_array_foreach(json_object_get(document, "findings"), i, finding)
+        test_case(&suite, value_text(document, "case"), value_text(finding, "name"),
+                  value_text(finding, "status"), value_text(finding, "message"));
+    suite_end(&to, "judge", &suite);
+    buffer_add(&to, "</testsuites>\n");
+    return buffer_take(&to);
+}
+
 char *junit_text(const json_t *results)
 {
     struct buffer to = {0};
-    buffer_add(&to, "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<testsuites name=\"sphproof\">\n");
+    buffer_add(&to, head);
     runs(&to, results);
     checks(&to, json_object_get(results, "verify"));
     others(&to, json_object_get(results, "verdict"));

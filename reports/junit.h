@@ -9,4 +9,7 @@
 /* results: with its verdict. Malloced; NULL: no memory. */
 char *junit_text(const json_t *results);
 
+/* The findings of judge's document as one suite. Malloced; NULL: no memory. */
+char *junit_judge_text(const json_t *document);
+
 #endif

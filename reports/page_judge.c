@@ -170,14 +170,18 @@ static void gates(struct buffer *to, const json_t *list)
     size_t k;
     if (!json_array_size(list)) return;
     buffer_add(to, "<section id=\"gates\"><h2>Gates</h2>\n");
-    html_table(to, "gates", "error|#found|#allowed|");
+    html_table(to, "gates", "gate|#found|#allowed||why|");
     json_array_foreach(list, k, gate) {
+        const char *relation = value_text(gate, "relation"), *why = value_text(gate, "why");
         buffer_add(to, "<tr>");
         html_cell_code(to, value_text(gate, "name"));
         html_cell_number(to, value_member(gate, "value"));
-        html_cell_number(to, value_member(gate, "bound"));
-        buffer_add(to, "<td>");
+        buffer_format(to, "<td class=\"n\">%s ", strcmp(relation, ">=") ? "≤" : "≥");
+        html_number(to, value_member(gate, "bound"));
+        buffer_add(to, "</td><td>");
         html_status(to, value_text(gate, "status"));
+        buffer_add(to, "</td><td>");
+        buffer_escape(to, *why ? why : value_text(gate, "source"));
         buffer_add(to, "</td></tr>\n");
     }
     html_table_end(to);

@@ -39,8 +39,6 @@ static void print_ladder(const struct study *study, const struct study_result *r
 static void print_gate(const struct study_result *result, const struct study_order *order,
                        const struct table_style *style)
 {
-    static const char *const words[] = {"",      "pass",        "FAIL", "known to fail",
-                                        "smoke", "undetermined"};
     const bool good = order->status == GATE_PASS, known = order->status == GATE_KNOWN;
     if (order->status == GATE_NONE) return;
     printf("    gate: ");
@@ -50,7 +48,7 @@ static void print_gate(const struct study_result *result, const struct study_ord
     const char *color = good                          ? style->good
                         : order->status >= GATE_SMOKE ? style->faint
                                                       : style->bad;
-    printf("at most %.3g: %s%s%s%s%s\n", order->gate.bound, color, words[order->status], style->end,
+    printf("at most %.3g: %s%s%s%s%s\n", order->gate.bound, color, gate_names[order->status], style->end,
            good ? "" : ": ", order->why);
     if (known) printf("    known: %s\n", order->known);
 }

@@ -6,7 +6,9 @@
 #include <string.h>
 
 #include "command.h"
+#include "gates.h"
 #include "judge.h"
+#include "junit.h"
 #include "output.h"
 #include "page.h"
 #include "picture.h"
@@ -186,13 +188,17 @@ static void print_together(const json_t *document, const struct table_style *sty
                value_member(drift, "momentum"), value_member(drift, "energy"));
     }
     json_array_foreach(gates, k, gate) {
-        const bool good = !strcmp(value_text(gate, "status"), "pass");
-        printf("gate %-28s %.6g, bound %.6g: %s%s%s\n", value_text(gate, "name"),
-               value_member(gate, "value"), value_member(gate, "bound"),
-               good ? style->good : style->bad, good ? "pass" : "FAIL", style->end);
+        const char *status = value_text(gate, "status"), *why = value_text(gate, "why");
+        const char *color = !strcmp(status, gate_names[GATE_PASS])   ? style->good
+                            : !strcmp(status, gate_names[GATE_FAIL]) ? style->bad
+                                                                     : style->faint;
+        printf("gate %-28s %.6g %s %.6g: %s%s%s%s%s  %s%s%s\n", value_text(gate, "name"),
+               value_member(gate, "value"), value_text(gate, "relation"),
+               value_member(gate, "bound"), color, status, style->end, *why ? ", " : "", why,
+               style->faint, value_text(gate, "source"), style->end);
     }
     if (json_array_size(gates)) {
-        const bool well = !strcmp(value_text(document, "status"), "pass");
+        const bool well = !strcmp(value_text(document, "status"), gate_names[GATE_PASS]);
         printf("%s%s%s\n", well ? style->good : style->bad, value_text(document, "headline"),
                style->end);
     }
@@ -231,53 +237,78 @@ static enum status write_page(const char *path, const json_t *document, struct e
     return status;
 }
 
-/* The same document in the terminal, as JSON and as a page; the picture is that of the main
- * snapshot. */
+static enum status write_junit(const char *path, const json_t *document, struct error *error)
+{
+    char *text = junit_judge_text(document);
+    struct output output;
+    if (!text) return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", path);
+    enum status status = output_open(&output, path, error);
+    if (!status) {
+        fputs(text, output.stream);
+        status = output_close(&output, error);
+    }
+    free(text);
+    return status;
+}
+
+/* The same document in the terminal, as JSON, as JUnit and as a page; the picture is that of the
+ * main snapshot. What it says is the status. */
 static enum status tell(const struct options *options, const struct judged *judged, size_t count,
-                        const struct judge_gate *gates, size_t gate_count, struct error *error)
+                        json_t *gates, struct error *error)
 {
     const struct table_style style = table_style(options->color);
     const struct judged *main = judge_main(judged, count);
-    const char *html = options_value(options, "html"), *plot = options_value(options, "plot");
-    json_t *content = judge_json(judged, count, gates, gate_count, false);
+    const char *html = options_value(options, "html"), *plot = options_value(options, "plot"),
+               *junit = options_value(options, "junit");
+    json_t *content = judge_json(judged, count, gates, false);
     if (!content) return error_set(error, STATUS_ENVIRONMENT, "no memory for the result");
     for (size_t i = 0; i < count && options->speak; i++) print_one(&judged[i], &style);
     if (options->speak) print_together(content, &style);
     enum status status = write_results(options, content, error);
-    json_decref(content);
+    if (!status && junit) status = write_junit(junit, content, error);
     if (!status && html) {
-        json_t *document = judge_json(judged, count, gates, gate_count, true);
+        json_t *document = judge_json(judged, count, gates, true);
         status = write_page(html, document, error);
         json_decref(document);
     }
     if (!status && plot) status = run_plot(&main->run.asked, &main->result, plot, NULL, error);
+    if (!status && strcmp(value_text(content, "status"), gate_names[GATE_PASS]) != 0)
+        status = STATUS_CHECK_FAILED;
+    json_decref(content);
     return status;
+}
+
+static enum status probe(const struct options *options, struct error *error)
+{
+    const char *html = options_value(options, "html"), *plot = options_value(options, "plot"),
+               *junit = options_value(options, "junit"), *gates = options_value(options, "gates");
+    if (gates && strcmp(gates, "case") != 0)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "judge: --gates '%.40s': allowed: case (--gate NAME=BOUND for your own)",
+                         gates);
+    if ((html && output_probe(html, error)) || (junit && output_probe(junit, error)) ||
+        (plot && picture_probe(plot, error)))
+        return error->status;
+    return STATUS_OK;
 }
 
 static enum status run(const struct options *options, int n, char **arguments, struct error *error)
 {
     struct judge_request request = {0};
-    struct judge_gate gates[JUDGE_GATES_MAX];
-    size_t gate_count = 0, count = 0;
+    json_t *gates = NULL;
+    size_t count = 0;
     enum status status = take_request(options, n, &request, error);
-    const char *html = options_value(options, "html"), *plot = options_value(options, "plot");
-    if (!status && html) status = output_probe(html, error);
-    if (!status && plot) status = picture_probe(plot, error);
+    if (!status) status = probe(options, error);
     if (status) return status;
     struct judged *judged = calloc((size_t)n, sizeof *judged);
     if (!judged) return error_set(error, STATUS_ENVIRONMENT, "no memory");
     for (; count < (size_t)n && !status; count++)
         status = judge_snapshot(arguments[count], &request, &judged[count], error);
-    const struct judged *main = judge_main(judged, count);
     if (!status)
-        status = judge_gates(options_value(options, "gate"), main, gates, &gate_count, error);
-    if (!status) {
-        status = tell(options, judged, count, gates, gate_count, error);
-        for (size_t k = 0; k < gate_count && !status; k++)
-            if (!gates[k].good) status = STATUS_CHECK_FAILED;
-        for (size_t i = 0; i < count && !status; i++)
-            if (!judged[i].passes) status = STATUS_CHECK_FAILED;
-    }
+        status = judge_gates(options_value(options, "gate"), options_value(options, "gates"),
+                             judged, count, &gates, error);
+    if (!status) status = tell(options, judged, count, gates, error);
+    json_decref(gates);
     for (size_t i = 0; i < count; i++) judge_free(&judged[i]);
     free(judged);
     return status;
@@ -296,10 +327,13 @@ static const struct command_option own_options[] = {
     {"map", "NAME=THEIRS,...", "text: which column is x, vx, m, rho, u, P, h"},
     {"kernel", "K", "the code's kernel, in place of finding it"},
     {"h-is", "MEANING", "support, half, sigma, 2sigma, or support radius over h"},
-    {"gate", "FIELD_NORM=BOUND,...",
-     "exit 1 beyond: density_l1=2e-3; of a value, its error: disc_error=0.03"},
+    {"gate", "NAME=BOUND,...",
+     "exit 1 beyond, of all that is printed: density_l1=2e-3, disc_error=0.03 (a value's error), "
+     "energy=1e-3 (what has changed), order.density>=0.9"},
+    {"gates", "case", "the case's own bounds, for this many particles, and conservation"},
     {"allow-far", NULL,
      "do not exit 1 because a snapshot is far from the solution, or of another gas"},
+    {"junit", "F.xml", "what was found, for a CI server"},
     {"html", "F.html", "write a page: verdict, gates, orders, assumptions, errors, profiles"},
     {"plot", "FILE.svg|.png", "draw it as `sphproof run --plot` does; of several the finest"},
     {NULL, NULL, NULL},

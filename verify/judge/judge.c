@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "guest.h"
+#include "initial_create.h"
 
 enum { SINC_ORDER = 5 };
 
@@ -133,34 +134,61 @@ static enum status gas_make(struct gas *gas, const struct judged *judged, const 
 
 /* ---- what is measured beside the errors ---- */
 
+/* One particle more; c: its sound speed. As of a run: no momentum where walls or gravity push. */
+static void add_to_sums(const struct prepared *problem, const double x[3], const double v[3],
+                        double m, double u, double c, struct conservation *sums)
+{
+    const struct domain *domain = &problem->domain;
+    double p[3] = {0}, r[3] = {0}, squares = 0, distance = 0, turning = 0;
+    for (int d = 0; d < domain->dim; d++) {
+        p[d] = m * v[d];
+        r[d] = x[d] - 0.5 * (domain->lo[d] + domain->hi[d]);
+        squares += v[d] * v[d];
+        distance += r[d] * r[d];
+        sums->energy -= m * problem->gravity[d] * x[d];
+        if (problem->boundary[d] != BOUNDARY_REFLECTING && problem->boundary[d] != BOUNDARY_FIXED &&
+            !(fabs(problem->gravity[d]) > 0))
+            sums->momentum[d] += p[d];
+    }
+    sums->mass += m;
+    sums->energy += m * (u + 0.5 * squares);
+    sums->momentum_scale += m * sqrt(squares);
+    sums->sound_scale += m * c;
+    for (int d = 0; d < 3 && domain->dim > 1; d++) {
+        const double L = r[(d + 1) % 3] * p[(d + 2) % 3] - r[(d + 2) % 3] * p[(d + 1) % 3];
+        sums->angular_momentum[d] += L;
+        turning += L * L;
+    }
+    sums->angular_scale += sqrt(turning);
+    sums->turning_scale += sqrt(distance) * m * c;
+}
+
+/* Of the snapshot, and of the particles that a run of the case in this box would begin with, on
+ * the case's own lattice; none where that is a glass, which takes its time. */
 static void measure_sums(struct judged *judged)
 {
+    const struct prepared *p = &judged->run.problem;
     const struct snapshot *s = &judged->result.snapshot;
-    const struct domain *domain = &judged->run.problem.domain;
-    struct conservation *sums = &judged->sums;
+    struct run_settings plain = judged->run.asked;
+    struct initial initial = {0};
+    struct error ignored = {0};
+    struct run start;
+    double x[3] = {0}, v[3] = {0};
     for (size_t i = 0; i < s->n; i++) {
-        const double m = s->m[i], c = sqrt(judged->run.problem.gamma * s->P[i] / s->rho[i]);
-        double p[3] = {0}, r[3] = {0}, squares = 0, distance = 0;
-        for (int d = 0; d < domain->dim; d++) {
-            p[d] = m * s->v[d][i];
-            r[d] = s->x[d][i] - 0.5 * (domain->lo[d] + domain->hi[d]);
-            squares += s->v[d][i] * s->v[d][i];
-            distance += r[d] * r[d];
-            sums->momentum[d] += p[d];
-        }
-        sums->mass += m;
-        sums->energy += m * (s->u[i] + 0.5 * squares);
-        sums->momentum_scale += m * sqrt(squares);
-        sums->sound_scale += m * c;
-        double turning = 0;
-        for (int d = 0; d < 3 && domain->dim > 1; d++) {
-            const double L = r[(d + 1) % 3] * p[(d + 2) % 3] - r[(d + 2) % 3] * p[(d + 1) % 3];
-            sums->angular_momentum[d] += L;
-            turning += L * L;
-        }
-        sums->angular_scale += sqrt(turning);
-        sums->turning_scale += sqrt(distance) * m * c;
+        for (int d = 0; d < p->domain.dim; d++) x[d] = s->x[d][i], v[d] = s->v[d][i];
+        add_to_sums(p, x, v, s->m[i], s->u[i], sqrt(p->gamma * s->P[i] / s->rho[i]), &judged->sums);
     }
+    if (!judged->boxed) return;
+    plain.settings.value[SETTING_lattice] = plain.file.settings.value[SETTING_lattice];
+    plain.settings.value[SETTING_equal_masses] = plain.file.settings.value[SETTING_equal_masses];
+    if (!run_resolve(&start, &plain, &ignored) &&
+        settings_choice(&start.settings, SETTING_lattice) != LATTICE_GLASS &&
+        !initial_create(&initial, &start.problem, &start.settings, &ignored))
+        for (size_t i = 0; i < initial.n; i++) {
+            for (int d = 0; d < p->domain.dim; d++) x[d] = initial.x[d][i], v[d] = initial.v[d][i];
+            add_to_sums(p, x, v, initial.m[i], initial.u[i], 0, &judged->start);
+        }
+    initial_free(&initial);
 }
 
 /* Velocity across x of planar flows, the radial one of circular ones. */
@@ -179,6 +207,19 @@ static double measure_noise(const struct judged *judged)
         volume += s->volume[i];
     }
     return volume > 0 ? sqrt(sum / volume) : (double)NAN;
+}
+
+/* Of what grows, one snapshot says its mean rate since the start, whose amplitude is known. The
+ * first functional of such a problem is the amplitude. */
+static void measure_growth(struct judged *judged)
+{
+    const struct growing *growing = judged->run.problem.problem->growing;
+    struct run_result *r = &judged->result;
+    const struct run_functional *amplitude = r->functionals;
+    for (size_t k = 1; k < r->functional_count && growing; k++)
+        if (strcmp(r->functionals[k].name, growing->name) == 0)
+            r->functionals[k].value =
+                r->functionals[k].exact + log(amplitude->value / amplitude->exact) / r->time;
 }
 
 static int ascending(const void *a, const void *b)
@@ -388,6 +429,7 @@ enum status judge_snapshot(const char *path, const struct judge_request *request
         status =
             error_set(error, STATUS_BAD_INPUT,
                       "%.200s: no particle lies in the window; --x0 tells where the case is", path);
+    if (!status) measure_growth(judged);
     if (!status) status = measure_wrong(judged, error);
     if (!status) {
         judged->foreign = judged->wrong > JUDGE_FOREIGN || judged->case_gamma > 0;

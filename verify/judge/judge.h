@@ -10,7 +10,7 @@
 #include "run.h"
 #include "snapshot_file.h"
 
-enum { JUDGE_SNAPSHOTS_MAX = 64, JUDGE_GATES_MAX = 24 };
+enum { JUDGE_SNAPSHOTS_MAX = 64 };
 
 /* What is asked. */
 struct judge_request {
@@ -34,9 +34,14 @@ struct judged {
     struct conventions conventions;
     struct run run;
     struct run_result result;
-    struct conservation sums; /* of the gas */
-    double transverse;        /* rms of velocities across x, by volume, in the window; NaN in 1D */
-    double wrong;             /* worst median error of a field over the range of its exact values */
+    struct conservation sums;  /* of the gas; no momentum where walls or gravity push */
+    struct conservation start; /* of the case at t = 0 in the same box; mass 0: not known */
+    double case_n;     /* as many particles as the case's own box would have of the same spacing */
+    int case_dim;      /* in which it is written */
+    bool altered;      /* another initial state than the case's */
+    bool boxed;        /* the gas fills a box that is known, and has no other ends */
+    double transverse; /* rms of velocities across x, by volume, in the window; NaN in 1D */
+    double wrong;      /* worst median error of a field over the range of its exact values */
     enum field wrong_field;
     bool foreign;      /* far from this case's solution, or of another gas */
     bool passes;       /* not foreign, or that was allowed */
@@ -62,28 +67,35 @@ enum status judge_place(const struct judge_request *request, struct judged *judg
  * different times. */
 bool judge_drift(const struct judged *judged, size_t n, struct trace_drift *drift, size_t pair[2]);
 
-/* A bound for an error: density_l1=2e-3. */
-struct judge_gate {
-    char name[48];
-    double value, bound;
-    bool good;
-};
-
-/* Reads "density_l1=2e-3,..." and judges. STATUS_BAD_INPUT: no such field or norm. */
-enum status judge_gates(const char *text, const struct judged *judged, struct judge_gate *gates,
-                        size_t *count, struct error *error);
+/* The same as JSON, {"mass", "momentum", "angular_momentum" (null in 1D), "energy", "between": two
+ * files}; where there are no two, from the case's initial state to judge_main; null where that is
+ * not known either. New reference. */
+json_t *judge_conservation(const struct judged *judged, size_t n);
 
 /* The snapshot that gates look at: of most particles, of these the last. */
 const struct judged *judge_main(const struct judged *judged, size_t n);
 
-/* The document of the command, without its head, and what terminal and page show of several
- * snapshots, of gates and in one line ("status", "headline"); with profiles it is what page.h
- * draws. New reference; NULL: no memory. */
-json_t *judge_json(const struct judged *judged, size_t n, const struct judge_gate *gates,
-                   size_t gate_count, bool profiles);
-
 /* Orders of L1 against n^(1/d), of all fields, from the last snapshot of each n: [{"field", "norm",
  * "order", "low", "high", "pairwise"}], [] where there are no two different n. New reference. */
 json_t *judge_orders(const struct judged *judged, size_t n);
+
+/* Gates: what is asked ("density_l1=2e-3,order.density>=0.9"; NULL: nothing) and, of_case, the
+ * case's own bounds at this many particles, its orders where there are enough of them, and
+ * conservation. [{"name", "relation": "<=" or ">=", "value", "bound", "status", "source"}], of
+ * orders also "low" and "high", of what does not simply pass or fail "why". status: one of
+ * gate_names; an order whose interval reaches across its bound is undetermined. New reference.
+ * STATUS_BAD_INPUT: nothing is called so, or the case's gates do not hold for this snapshot. */
+#define JUDGE_ASKED "--gate" /* the source of what is asked */
+enum status judge_gates(const char *asked, bool of_case, const struct judged *judged, size_t n,
+                        json_t **gates, struct error *error);
+
+/* What the command says of one snapshot alone. New reference; NULL: no memory. */
+json_t *judge_one_json(const struct judged *judged, bool profiles);
+
+/* The document of the command, without its head, and what terminal, page, JUnit and exit status
+ * show. "findings": [{"name", "status", "message"}], one of each snapshot (is it the case's
+ * solution?) and of each gate; "status" and "headline" follow from them. With profiles it is what
+ * page.h draws. New reference; NULL: no memory. */
+json_t *judge_json(const struct judged *judged, size_t n, json_t *gates, bool profiles);
 
 #endif

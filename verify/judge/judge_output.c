@@ -1,12 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "judge.h"
 #include "cloud_profile.h"
+#include "gates.h"
 #include "profile.h"
 #include "result.h"
 #include "settings_output.h"
+#include "value.h"
 
 static json_t *kernel_json(const struct judged *judged)
 {
@@ -39,7 +42,7 @@ static json_t *notes_json(const struct snapshot_notes *notes)
     return list;
 }
 
-static json_t *one_json(const struct judged *judged, bool profiles)
+json_t *judge_one_json(const struct judged *judged, bool profiles)
 {
     const struct run_result *r = &judged->result;
     const struct snapshot_file *file = &judged->file;
@@ -61,61 +64,98 @@ static json_t *one_json(const struct judged *judged, bool profiles)
     return one;
 }
 
-/* What it comes to: "fail" where a gate does, or a snapshot does not pass; and in words, gates that
- * fail first. */
-static void add_conclusion(json_t *document, const struct judged *judged, size_t n,
-                           const struct judge_gate *gates, size_t gate_count)
+/* Adds what was found: {"name", "status", "message"}; "undetermined" fails where it was asked for.
+ */
+static void add_finding(json_t *findings, const char *name, const char *status, const char *message)
 {
-    char text[1024] = "";
-    size_t failed = 0, used = 0;
-    bool pass = true;
-    for (size_t i = 0; i < n; i++) pass &= judged[i].passes;
-    for (size_t k = 0; k < gate_count; k++) failed += !gates[k].good;
-    if (failed)
-        used = (size_t)snprintf(text, sizeof text, "%zu of %zu gate%s failed: ", failed, gate_count,
-                                gate_count == 1 ? "" : "s");
-    for (size_t k = 0, said = 0; k < gate_count && used < sizeof text; k++) {
-        if (gates[k].good) continue;
-        used += (size_t)snprintf(text + used, sizeof text - used, "%s%s %.3g is not <= %.3g",
-                                 said++ ? ", " : "", gates[k].name, gates[k].value, gates[k].bound);
+    json_array_append_new(
+        findings, json_pack("{s:s, s:s, s:s}", "name", name, "status", status, "message", message));
+}
+
+static json_t *findings_json(const struct judged *judged, size_t n, const json_t *gates)
+{
+    json_t *findings = json_array();
+    const json_t *gate;
+    size_t i;
+    for (i = 0; i < n; i++)
+        add_finding(findings, judged[i].path, gate_names[judged[i].passes ? GATE_PASS : GATE_FAIL],
+                    judged[i].verdict);
+    json_array_foreach(gates, i, gate) {
+        const char *name = value_text(gate, "name"), *why = value_text(gate, "why"),
+                   *relation = value_text(gate, "relation"), *status = value_text(gate, "status");
+        char text[400];
+        snprintf(text, sizeof text, "%s %.3g is %s%s %.3g%s%s", name, value_member(gate, "value"),
+                 strcmp(status, gate_names[GATE_FAIL]) ? "" : "not ", relation,
+                 value_member(gate, "bound"), *why ? "; " : "", why);
+        if (!strcmp(status, gate_names[GATE_UNDETERMINED]))
+            snprintf(text, sizeof text, "%s %s %.3g: %s", name, relation,
+                     value_member(gate, "bound"), why);
+        add_finding(findings, name, status, text);
     }
-    if (used < sizeof text)
-        snprintf(text + used, sizeof text - used, "%s%s", failed ? "; " : "",
-                 judge_main(judged, n)->verdict);
-    json_object_set_new(document, "status", json_string(failed || !pass ? "fail" : "pass"));
+    return findings;
+}
+
+/* Does a finding fail? What was asked for and cannot be told does, too. */
+static bool fails(const char *status, const json_t *gate)
+{
+    return !strcmp(status, gate_names[GATE_FAIL]) ||
+           (!strcmp(status, gate_names[GATE_UNDETERMINED]) &&
+            !strcmp(value_text(gate, "source"), JUDGE_ASKED));
+}
+
+/* Status and headline: gates that fail first; then how many say nothing. */
+static void add_conclusion(json_t *document, const json_t *findings, const json_t *gates,
+                           const struct judged *main)
+{
+    const size_t all = json_array_size(gates), snapshots = json_array_size(findings) - all;
+    char failing[700] = "", text[1600];
+    size_t failed = 0, silent = 0, used = 0, i;
+    bool good = true;
+    const json_t *finding;
+    json_array_foreach(findings, i, finding) {
+        const char *status = value_text(finding, "status");
+        const json_t *gate = i < snapshots ? NULL : json_array_get(gates, i - snapshots);
+        if (!fails(status, gate)) {
+            silent += strcmp(status, gate_names[GATE_PASS]) != 0;
+            continue;
+        }
+        good = false;
+        if (gate && used < sizeof failing)
+            used += (size_t)snprintf(failing + used, sizeof failing - used, "%s%s",
+                                     failed ? ", " : "", value_text(finding, "message"));
+        failed += gate != NULL;
+    }
+    used = 0;
+    if (failed)
+        used = (size_t)snprintf(text, sizeof text, "%zu of %zu gate%s failed: %s; ", failed, all,
+                                all == 1 ? "" : "s", failing);
+    else if (silent)
+        used = (size_t)snprintf(text, sizeof text, "%zu of %zu gates pass, %zu cannot tell; ",
+                                all - silent, all, silent);
+    snprintf(text + used, sizeof text - used, "%s", main->verdict);
+    json_object_set_new(document, "status", json_string(gate_names[good ? GATE_PASS : GATE_FAIL]));
     json_object_set_new(document, "headline", json_string(text));
 }
 
-json_t *judge_json(const struct judged *judged, size_t n, const struct judge_gate *gates,
-                   size_t gate_count, bool profiles)
+json_t *judge_json(const struct judged *judged, size_t n, json_t *gates, bool profiles)
 {
-    struct trace_drift drift;
-    size_t pair[2];
     const struct judged *main = judge_main(judged, n);
-    json_t *document = one_json(main, profiles), *list = json_array();
-    if (!document || !list) return NULL;
+    json_t *document = judge_one_json(main, profiles), *findings = findings_json(judged, n, gates);
+    if (!document || !findings) return NULL;
     json_object_set_new(document, "case", json_string(main->run.asked.file.name));
     json_object_set_new(document, "settings", settings_json(&main->run.settings));
-    json_object_set_new(
-        document, "conservation",
-        !judge_drift(judged, n, &drift, pair)
-            ? json_null()
-            : json_pack("{s:o, s:o, s:o, s:o, s:[s, s]}", "mass", result_number(drift.mass),
-                        "momentum", result_number(drift.momentum), "angular_momentum",
-                        main->file.dim == 1 ? json_null() : result_number(drift.angular_momentum),
-                        "energy", result_number(drift.energy), "between", judged[pair[0]].path,
-                        judged[pair[1]].path));
+    json_object_set_new(document, "conservation", judge_conservation(judged, n));
     json_object_set_new(document, "orders", judge_orders(judged, n));
-    for (size_t k = 0; k < gate_count; k++)
-        json_array_append_new(list, json_pack("{s:s, s:o, s:o, s:s}", "name", gates[k].name,
-                                              "value", result_number(gates[k].value), "bound",
-                                              result_number(gates[k].bound), "status",
-                                              gates[k].good ? "pass" : "fail"));
-    json_object_set_new(document, "gates", list);
-    add_conclusion(document, judged, n, gates, gate_count);
+    if (gates)
+        json_object_set(document, "gates", gates);
+    else
+        json_object_set_new(document, "gates", json_array());
+    add_conclusion(document, findings, gates, main);
+    json_object_set_new(document, "findings", findings);
     if (n > 1) {
         json_t *all = json_array();
-        for (size_t i = 0; i < n; i++) json_array_append_new(all, one_json(&judged[i], profiles));
+        for (size_t i = 0; i < n; i++)
+            json_array_append_new(all, judge_one_json(&judged[i], profiles));
         json_object_set_new(document, "snapshots", all);
     }
     return document;

@@ -312,6 +312,7 @@ enum status judge_place(const struct judge_request *request, struct judged *judg
                          judged->path);
     if (!request->case_name) snapshot_note(&judged->file.notes, "case", name, "the file says so");
     if (run_prepare(&asked, name, 0, NULL, error)) return error->status;
+    judged->case_dim = asked.file.dimension;
     if (strcmp(name, said) == 0 && !request->x0.known && take_keys(judged, settings, error))
         return error->status;
     if ((request->left &&
@@ -319,6 +320,9 @@ enum status judge_place(const struct judge_request *request, struct judged *judg
         (request->right &&
          settings_set(settings, SETTING_right, request->right, SOURCE_USER, "--right", error)))
         return error->status;
+    for (int key = 0; key < SETTINGS; key++)
+        judged->altered |= settings->value[key].source == SOURCE_USER &&
+                           strcmp(setting_keys[key].section, "initial") == 0;
     const struct problem *problem = problem_of(settings);
     const bool tube = problem_reads(problem, SETTING_left);
     if (!tube && (request->x0.known || request->left || request->right))
@@ -336,13 +340,20 @@ enum status judge_place(const struct judge_request *request, struct judged *judg
     if (request->boundary && !tube)
         snprintf(judged->file.boundary, sizeof judged->file.boundary, "%s", request->boundary);
     for (int d = 0; d < 3; d++) period[d] = snapshot_period(&judged->file, d);
+    const int dim = judged->file.dim;
+    judged->case_n = (double)judged->file.gas;
+    for (int d = 0; d < dim; d++)
+        judged->case_n *=
+            (settings_along(settings, SETTING_hi, d) - settings_along(settings, SETTING_lo, d)) /
+            (box.hi[d] - box.lo[d]);
     if (tube && place_tube(request, judged, settings, &box, &period[0], &ended, error))
         return error->status;
-    const int dim = judged->file.dim;
+    judged->boxed = box.known && !ended && judged->file.gas == judged->file.n;
     for (int d = 1; d < dim; d++) /* of particles that stand on one line there is no box */
         if (!(box.hi[d] > box.lo[d])) box.hi[d] = box.lo[d] + 1;
     if ((!ended && set_window(request, judged, settings, &box, case_hi - case_lo,
                               0.5 * (case_lo + case_hi), error)) ||
+        set_real(settings, SETTING_n, fmin(1e7, (double)judged->file.gas), error) ||
         set_ends(settings, SETTING_lo, box.lo, dim, error) ||
         set_ends(settings, SETTING_hi, box.hi, dim, error))
         return error->status;

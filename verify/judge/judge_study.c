@@ -1,14 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What several snapshots say together: orders, conservation; and gates. */
+ * What several snapshots say together: orders, conservation. */
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "judge.h"
 #include "order.h"
 #include "result.h"
-#include "text.h"
 
 /* More particles; of as many, later; of one time, whichever comes first. */
 static bool better(const struct judged *a, const struct judged *b)
@@ -46,78 +43,22 @@ bool judge_drift(const struct judged *judged, size_t n, struct trace_drift *drif
     return true;
 }
 
-/* ---- gates ---- */
-
-static bool error_called(const struct judged *judged, const char *name, double *value)
+json_t *judge_conservation(const struct judged *judged, size_t n)
 {
-    const struct run_result *r = &judged->result;
-    const struct norms *of[FIELDS + 2];
-    const char *names[FIELDS + 2];
-    for (int f = 0; f < FIELDS; f++)
-        of[f] = &r->errors[f], names[f] = field_family.members[f]->name;
-    of[FIELDS] = &r->azimuthal, names[FIELDS] = "azimuthal";
-    of[FIELDS + 1] = &r->radial, names[FIELDS + 1] = "radial";
-    for (int f = 0; f < FIELDS + 2; f++) {
-        const double values[NORMS] = {of[f]->l1, of[f]->l2, of[f]->linf, of[f]->particle_mean,
-                                      of[f]->l1_whole};
-        for (int norm = 0; norm < NORMS; norm++) {
-            char full[64];
-            snprintf(full, sizeof full, "%s_%s", names[f], field_norm_family.members[norm]->name);
-            if (strcmp(full, name) != 0) continue;
-            *value = values[norm];
-            return f < FIELDS || r->problem.problem->circular;
-        }
-    }
-    for (size_t k = 0; k < r->functional_count; k++)
-        if (strcmp(r->functionals[k].name, name) == 0 && isfinite(r->functionals[k].exact)) {
-            *value = fabs(r->functionals[k].value - r->functionals[k].exact);
-            return true;
-        }
-    return false;
-}
-
-static enum status no_such_error(const struct judged *judged, const char *name, struct error *error)
-{
-    const struct run_result *r = &judged->result;
-    char values[200] = "";
-    for (size_t k = 0, used = 0; k < r->functional_count && used < sizeof values; k++)
-        if (isfinite(r->functionals[k].exact))
-            used += (size_t)snprintf(values + used, sizeof values - used, "%s%s",
-                                     used ? " " : ", or one of ", r->functionals[k].name);
-    return error_set(error, STATUS_BAD_INPUT,
-                     "--gate %.48s: no such error; FIELD: density velocity pressure "
-                     "internal_energy%s, NORM: l1 l2 linf particle_mean l1_whole%s",
-                     name, r->problem.problem->circular ? " azimuthal radial" : "", values);
-}
-
-enum status judge_gates(const char *text, const struct judged *judged, struct judge_gate *gates,
-                        size_t *count, struct error *error)
-{
-    *count = 0;
-    for (const char *at = text; at && *at;) {
-        const size_t length = strcspn(at, ","), name = strcspn(at, "=");
-        char bound[40];
-        if (*count == JUDGE_GATES_MAX)
-            return error_set(error, STATUS_BAD_INPUT, "--gate: allowed: at most %d",
-                             JUDGE_GATES_MAX);
-        struct judge_gate *gate = &gates[(*count)++];
-        *gate = (struct judge_gate){0};
-        if (name >= length || name >= sizeof gate->name || length - name - 1 >= sizeof bound)
-            return error_set(error, STATUS_BAD_INPUT,
-                             "--gate %.80s: allowed: FIELD_NORM=BOUND,..., such as density_l1=2e-3",
-                             text);
-        memcpy(gate->name, at, name);
-        memcpy(bound, at + name + 1, length - name - 1);
-        bound[length - name - 1] = '\0';
-        if (!text_real(bound, &gate->bound) || !(gate->bound > 0))
-            return error_set(error, STATUS_BAD_INPUT, "--gate %.48s=%.40s: allowed: above 0",
-                             gate->name, bound);
-        if (!error_called(judged, gate->name, &gate->value))
-            return no_such_error(judged, gate->name, error);
-        gate->good = gate->value <= gate->bound;
-        at += length + (at[length] == ',');
-    }
-    return STATUS_OK;
+    const struct judged *main = judge_main(judged, n);
+    const char *from = "the case's initial state", *to = main->path;
+    struct trace_drift drift;
+    size_t pair[2];
+    if (judge_drift(judged, n, &drift, pair))
+        from = judged[pair[0]].path, to = judged[pair[1]].path;
+    else if (main->start.mass > 0)
+        drift = trace_drift(&main->start, &main->sums, &main->sums);
+    else
+        return json_null();
+    return json_pack("{s:o, s:o, s:o, s:o, s:[s, s]}", "mass", result_number(drift.mass),
+                     "momentum", result_number(drift.momentum), "angular_momentum",
+                     main->file.dim == 1 ? json_null() : result_number(drift.angular_momentum),
+                     "energy", result_number(drift.energy), "between", from, to);
 }
 
 /* ---- orders ---- */

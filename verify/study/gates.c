@@ -72,8 +72,9 @@ void gates_compare(struct case_file *file)
 }
 
 /* Takes the name over. weighed: what is said of an error that passes, with its reason. */
-static void add(json_t *list, json_t *name, double value, double bound,
-                const struct case_weakness *known, enum study_gate weighed, const char *why)
+static json_t *weighed_json(json_t *name, double value, double bound,
+                            const struct case_weakness *known, enum study_gate weighed,
+                            const char *why)
 {
     const enum study_gate status = value <= bound                ? weighed
                                    : gates_know(known, 1, value) ? GATE_KNOWN
@@ -82,7 +83,7 @@ static void add(json_t *list, json_t *name, double value, double bound,
                              "bound", result_number(bound), "status", gate_names[status]);
     if (status == GATE_KNOWN) json_object_set_new(gate, "known", json_string(known->why));
     if (status == GATE_SMOKE) json_object_set_new(gate, "why", json_string(why));
-    json_array_append_new(list, gate);
+    return gate;
 }
 
 /* What a gate is of and its name, which is the caller's; NaN where the run does not have it, as is
@@ -105,20 +106,24 @@ static json_t *read_error(const struct case_gate *gate, const json_t *run, doubl
     return json_sprintf("%s_%s", field, norm);
 }
 
-void gates_add_errors(const struct case_file *file, const json_t *run, json_t *list)
+json_t *gates_error(const struct case_file *file, const struct case_gate *gate, const json_t *run)
 {
     const size_t n = (size_t)value_member(run, "n");
+    const double raise = gates_raise(file, gate, n), bound = raise * gate->gate.bound;
+    struct case_weakness known = gate->known;
+    double value, exact;
+    char why[GATE_WHY];
+    json_t *name = read_error(gate, run, &value, &exact);
+    known.bound *= raise;
+    const enum study_gate weighed = gates_weigh(file, gate, n, bound, exact, NULL, why);
+    return name ? weighed_json(name, value, bound, &known, weighed, why) : NULL;
+}
+
+void gates_add_errors(const struct case_file *file, const json_t *run, json_t *list)
+{
     for (size_t i = 0; i < file->gate_count; i++) {
-        const struct case_gate *gate = &file->gates[i];
-        const double raise = gates_raise(file, gate, n);
-        struct case_weakness known = gate->known;
-        double value, exact;
-        char why[GATE_WHY];
-        json_t *name = read_error(gate, run, &value, &exact);
-        known.bound *= raise;
-        const double bound = raise * gate->gate.bound;
-        const enum study_gate weighed = gates_weigh(file, gate, n, bound, exact, NULL, why);
-        if (name) add(list, name, value, bound, &known, weighed, why);
+        json_t *gate = gates_error(file, &file->gates[i], run);
+        if (gate) json_array_append_new(list, gate);
     }
 }
 
@@ -144,18 +149,20 @@ static bool is_heavy(const json_t *run)
     return false;
 }
 
-void gates_add_conserved(const json_t *run, json_t *list)
+static void add_conserved(const char *name, const json_t *run, json_t *list)
 {
     const struct case_weakness none = {.bound = 0};
-    const json_t *conserved = json_object_get(run, "conservation");
+    const double value = value_member(json_object_get(run, "conservation"), name);
+    json_array_append_new(
+        list, weighed_json(json_string(name), value, conserved_bound, &none, GATE_PASS, ""));
+}
+
+void gates_add_conserved(const json_t *run, json_t *list)
+{
     const bool walls = says(run, "boundary", "reflecting") || says(run, "boundary", "fixed");
-    add(list, json_string("mass"), value_member(conserved, "mass"), conserved_bound, &none,
-        GATE_PASS, "");
-    if (!walls && !is_heavy(run))
-        add(list, json_string("momentum"), value_member(conserved, "momentum"), conserved_bound,
-            &none, GATE_PASS, "");
+    add_conserved("mass", run, list);
+    if (!walls && !is_heavy(run)) add_conserved("momentum", run, list);
     /* layers that are kept give and take energy */
     if (says(run, "energy", "total") && !is_heavy(run) && !says(run, "boundary", "fixed"))
-        add(list, json_string("energy"), value_member(conserved, "energy"), conserved_bound, &none,
-            GATE_PASS, "");
+        add_conserved("energy", run, list);
 }

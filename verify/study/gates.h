@@ -34,9 +34,12 @@ bool gates_know(const struct case_weakness *known, double raise, double error);
  * other kernels and gradients have other errors. */
 void gates_compare(struct case_file *file);
 
-/* Adds to list, of a run's document, what its errors have to stay below: {"name", "value", "bound",
+/* What one gate says of a run's document ("n", "errors", "functionals"): {"name", "value", "bound",
  * "status": pass, fail, known, smoke, "known": WHY, "why": WHY (smoke)}. An error that is no number
- * fails. */
+ * fails. New reference; NULL: of a functional without an exact value. */
+json_t *gates_error(const struct case_file *file, const struct case_gate *gate, const json_t *run);
+
+/* Adds those of all gates to list. */
 void gates_add_errors(const struct case_file *file, const json_t *run, json_t *list);
 
 /* Likewise what a run in 2D or 3D conserves to round-off: mass, momentum in all directions unless

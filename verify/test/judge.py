@@ -18,6 +18,7 @@ from xml.etree import ElementTree
 PROGRAM = os.path.abspath(sys.argv[1])
 DATA = os.path.join(os.path.dirname(os.path.abspath(__file__)), "data", "snapshots")
 KERNELS = {"cubic": "cubic_spline"}
+CASES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "cases")
 BINARY = os.path.join(DATA, "gizmo_sod1d_dsph_n198.gadget1")
 PHANTOM = os.path.join(DATA, "phantom_sod3d_10368.ascii.gz")
 
@@ -583,7 +584,56 @@ def gates_of_values():
     judge(billow, "--case", "kelvin_helmholtz", "--gate", "mode_amplitude=0.1", "--allow-far", status=1)
     judge(vortex, "--case", "gresho", "--gate", "disc_error=0.06,velocity_l1=0.06", status=0)
     judge(vortex, "--case", "gresho", "--gate", "disc_error=0.04,velocity_l1=0.06", status=1)
-    refused(vortex, "--case", "gresho", "--gate", "disc_eror=1", says=("disc_eror", "or one of disc_error peak_velocity"))
+    refused(vortex, "--case", "gresho", "--gate", "disc_eror=1", says=("disc_eror", " disc_error peak_velocity"))
+
+
+def one_list_of_findings(folder):
+    """Exit status, JSON, JUnit, terminal and page say the same of gates, whatever they are of; and the case's own."""
+    ladder = []
+    for n in (100, 200, 400, 800):
+        ladder.append(os.path.join(folder, "sod%d.csv" % n))
+        subprocess.run([PROGRAM, "run", "sod", "n=%d" % n, "--snapshot", ladder[-1], "--quiet"], check=True)
+    for words, status, said in (
+            (["--gate", "order.density>=0.5,energy<=1e-9,density_l1.shock=1"], 0, ["pass"] * 3),
+            (["--gate", "order.density>=3"], 1, ["fail"]),
+            (["--gate", "order.velocity>=0.9"], 1, ["undetermined"]),
+            (["--gates", "case"], 0, ["pass", "undetermined", "pass", "pass", "pass"]),
+            (["--gates", "case", "--gate", "velocity_linf=1e-30"], 1, ["fail", "pass", "undetermined", "pass", "pass", "pass"])):
+        xml, page = os.path.join(folder, "j.xml"), os.path.join(folder, "j.html")
+        got = judge(*ladder, *words, "--junit", xml, "--html", page, status=status)
+        assert [g["status"] for g in got["gates"]] == said, (words, got["gates"])
+        assert [f["status"] for f in got["findings"]] == ["pass"] * 4 + said, (words, got["findings"])
+        tests = ElementTree.parse(xml).findall(".//testcase")
+        assert [t.get("name") for t in tests] == [f["name"] for f in got["findings"]], words
+        assert [{"failure": "fail", "skipped": "undetermined"}[t[0].tag] if len(t) else "pass" for t in tests] == \
+            [f["status"] for f in got["findings"]], words
+        told = subprocess.run([PROGRAM, "judge", *ladder, *words], capture_output=True, text=True, timeout=120).stdout
+        with open(page, encoding="utf-8") as file:
+            html = file.read()
+        for gate in got["gates"]:
+            assert ": %s" % gate["status"] in next(line for line in told.split("\n") if line.startswith("gate %s " % gate["name"]))
+            assert "<code>%s</code>" % gate["name"] in html, gate
+        assert told.endswith(got["headline"] + "\n") and got["headline"].replace("<", "&lt;").replace(">", "&gt;") in html, told
+    bound = next(g for g in judge(ladder[1], "--gates", "case")["gates"] if g["name"] == "density_l1")
+    near("the case's bound", bound["bound"], 1.5e-3 * (1584 / 200) ** 0.85, 1e-9)
+    assert bound["source"] == "case sod: 0.0015 at n = 1584, raised by order 0.85 to n = 200", bound
+    # a tube of half the length has particles as close at half their number
+    short = tube(os.path.join(folder, "short.csv"), 0.2, n=100)
+    asked = [short, "--case", "sod", "--time", "0.2", "--gates", "case", "--box", "0:1"]
+    assert judge(*asked)["gates"][0]["source"].endswith("to n = 200"), judge(*asked)["gates"][0]
+    refused(*asked[:4], "0.1", *asked[5:], "--allow-far", says=("t = 0.2", "at t = 0.1"))
+    refused(*asked, "--left", "1 0 2", "--allow-far", says=("another initial state", "[converge]"))
+    refused(*asked[:6], "all", "--box", "0:1", says=("--gates 'all'", "allowed: case"))
+    refused(write(folder, "three.csv", "x,y,z,vx,vy,vz,m,rho,u\n" + "".join("%r,%r,%r,0,0,0,1,1,2.5\n" % (i % 4, i // 4 % 4, i // 16) for i in range(64))),
+            "--case", "sod", "--gates", "case", "--time", "0.2", says=("in 1 dimensions", "for 3"))
+    # one's own bounds stand in one's own case
+    text = open(os.path.join(CASES, "sod.ini"), encoding="utf-8").read()
+    for bound, status in (("9e-3", 0), ("1e-5", 1)):
+        case = write(folder, "own.ini", text[:text.index("[converge]")] + "[converge]\nn = 100 200 400 800\ndensity_l1 = 0.8 1.2 %s\n" % bound)
+        got = judge(ladder[1], "--case", case, "--gates", "case", status=status)
+        assert got["gates"][0]["source"].startswith("case own: "), got["gates"][0]
+    case = write(folder, "own.ini", text[:text.index("[converge]")])
+    refused(ladder[1], "--case", case, "--gates", "case", says=("own has none", "[converge]"))
 
 
 def tube(path, t, lo=0.0, hi=1.0, n=400):
@@ -653,6 +703,7 @@ def main():
         files_of_ours(folder, hdf5)
         tubes_with_ends(folder)
         gates_of_values()
+        one_list_of_findings(folder)
         own(folder)
         together(folder, hdf5)
         forces(folder)

@@ -89,12 +89,17 @@ static void is_one(const json_t *one, const struct judged *judged, double rho)
 static void documents(void **state)
 {
     struct judged judged[2];
-    struct judge_gate gates[] = {{"density_l1", 0.25, 0.5, true}, {"velocity_l2", 3, 2, false}};
+    static const char *const statuses[] = {"pass", "fail"};
+    const double values[] = {0.25, 3}, bounds[] = {0.5, 2};
+    json_t *gates = json_pack("[{s:s,s:s,s:f,s:f,s:s,s:s},{s:s,s:s,s:f,s:f,s:s,s:s}]", "name",
+                              "density_l1", "relation", "<=", "value", 0.25, "bound", 0.5, "status",
+                              "pass", "source", "x", "name", "velocity_l2", "relation",
+                              "<=", "value", 3., "bound", 2., "status", "fail", "source", "x");
     (void)state;
     judged_of(1.01, 0.05, 2, &judged[0]);
     judged_of(1.02, 0.1, 2.5, &judged[1]);
     for (size_t n = 1; n <= 2; n++) {
-        json_t *document = judge_json(judged, n, gates, 2, n == 2);
+        json_t *document = judge_json(judged, n, gates, n == 2);
         assert_non_null(document);
         is_one(document, &judged[n - 1], n == 1 ? 1.01 : 1.02);
         assert_string_equal(json_string_value(at(document, "case", NULL)), "sod");
@@ -104,15 +109,30 @@ static void documents(void **state)
         assert_int_equal(json_array_size(list), 2);
         for (size_t k = 0; k < 2; k++) {
             const json_t *one = json_array_get(list, k);
-            assert_string_equal(json_string_value(at(one, "name", NULL)), gates[k].name);
-            assert_true(real_at(one, "value", NULL) == gates[k].value &&
-                        real_at(one, "bound", NULL) == gates[k].bound);
-            assert_string_equal(json_string_value(at(one, "status", NULL)), k ? "fail" : "pass");
+            assert_true(real_at(one, "value", NULL) == values[k] &&
+                        real_at(one, "bound", NULL) == bounds[k]);
+            /* after those of the snapshots */
+            const json_t *finding = json_array_get(at(document, "findings", NULL), n + k);
+            assert_string_equal(json_string_value(at(finding, "status", NULL)), statuses[k]);
+            assert_string_equal(json_string_value(at(finding, "message", NULL)),
+                                k ? "velocity_l2 3 is not <= 2" : "density_l1 0.25 is <= 0.5");
         }
+        assert_string_equal(json_string_value(at(document, "status", NULL)), "fail");
+        const char *headline = json_string_value(at(document, "headline", NULL));
+        assert_true(strstr(headline, "1 of 2 gates failed: velocity_l2 3 is not <= 2; ") ==
+                    headline);
         assert_true(!json_object_get(document, "profile") == (n == 1));
         assert_true(!json_object_get(document, "snapshots") == (n == 1));
         const json_t *conservation = at(document, "conservation", NULL);
-        assert_true(json_is_null(conservation) == (n == 1));
+        if (n == 1) { /* since the start, a box of 2 by 1 with P = 1 */
+            assert_string_equal(
+                json_string_value(json_array_get(at(conservation, "between", NULL), 0)),
+                "the case's initial state");
+            near_relative(judged[0].start.mass, 2, 1e-12);
+            near_relative(judged[0].start.energy, 5, 1e-12);
+            near_relative(real_at(conservation, "energy", NULL),
+                          fabs(judged[0].sums.energy / 5 - 1), 1e-9);
+        }
         if (n == 2) {
             near_relative(real_at(conservation, "mass", NULL), 0.25, 1e-12);
             near_relative(real_at(conservation, "momentum", NULL), 0.2, 1e-9);
@@ -131,6 +151,7 @@ static void documents(void **state)
         }
         json_decref(document);
     }
+    json_decref(gates);
     assert_string_equal(note(&judged[0], "kernel")->value, "not identifiable");
     assert_string_equal(note(&judged[0], "kernel")->evidence, judged[0].conventions.why);
     assert_string_equal(note(&judged[0], "precision")->value, "float64");
@@ -141,7 +162,7 @@ static void documents(void **state)
     judged[0].conventions.candidate[0].sum = DENSITY_NUMBER;
     strcpy(judged[0].file.kernel, "a spline");
     judged[0].file.ratio = 1.75;
-    json_t *document = judge_json(judged, 1, NULL, 0, false);
+    json_t *document = judge_json(judged, 1, NULL, false);
     const json_t *kernel = at(document, "kernel", NULL);
     assert_string_equal(json_string_value(at(kernel, "name", NULL)),
                         judged[0].conventions.candidate[0].kernel.member.name);
@@ -154,7 +175,7 @@ static void documents(void **state)
     assert_int_equal(json_array_size(at(document, "gates", NULL)), 0);
     judged[0].conventions.count = 0;
     json_decref(document);
-    document = judge_json(judged, 1, NULL, 0, false);
+    document = judge_json(judged, 1, NULL, false);
     assert_true(json_is_null(at(document, "kernel", "residual")));
     json_decref(document);
     for (int k = 0; k < 2; k++) judge_free(&judged[k]);
@@ -172,7 +193,7 @@ static void on_a_line(void **state)
         plant(1, 0, "# box = 2\n");
         judges(&later, &judged[k]);
     }
-    json_t *document = judge_json(judged, 2, NULL, 0, false);
+    json_t *document = judge_json(judged, 2, NULL, false);
     assert_true(json_is_null(at(document, "noise", "transverse_velocity")));
     assert_true(json_is_null(at(document, "conservation", "angular_momentum")));
     json_decref(document);

@@ -184,14 +184,23 @@ static void orders(void **state)
 
 /* ---- gates ---- */
 
-static enum status gate(const char *text, const struct judged *judged, struct judge_gate *gates,
-                        size_t *count, const char *says)
+/* What is found; NULL: refused, with these words. */
+static json_t *gate(const char *text, const struct judged *judged, size_t n, const char *says)
 {
     struct error error = {0};
-    const enum status status = judge_gates(text, judged, gates, count, &error);
+    json_t *found = NULL;
+    const enum status status = judge_gates(text, false, judged, n, &found, &error);
+    if (!says && status) fail_msg("%s: %s", text, error.message);
     if (says && (status != STATUS_BAD_INPUT || !strstr(error.message, says)))
         fail_msg("%s: '%s' is not in: %s", text, says, error.message);
-    return status;
+    if (!says) return found;
+    json_decref(found);
+    return NULL;
+}
+
+static const char *status_at(const json_t *gates, size_t k)
+{
+    return json_string_value(json_object_get(json_array_get(gates, k), "status"));
 }
 
 static void gates(void **state)
@@ -200,8 +209,6 @@ static void gates(void **state)
                                          "internal_energy", "azimuthal", "radial"},
                              *const norms[] = {"l1", "l2", "linf", "particle_mean", "l1_whole"};
     struct judged judged = made(50, 0.2, 2);
-    struct judge_gate found[JUDGE_GATES_MAX + 1];
-    size_t count;
     (void)state;
     for (int f = 0; f < 6; f++) {
         struct norms *of = f < FIELDS    ? &judged.result.errors[f]
@@ -213,73 +220,168 @@ static void gates(void **state)
         for (int f = 0; f < 6; f++)
             for (int k = 0; k < 5; k++) {
                 const double value = f + 1.1 + 0.1 * k;
-                char text[200], name[60];
+                char text[600], name[60];
                 problem.circular = circular ? CIRCULAR_ROUND : CIRCULAR_NOT;
                 snprintf(name, sizeof name, "%s_%s", fields[f], norms[k]);
-                snprintf(text, sizeof text, "%s=%.17g,%s=%.17g", name, value, name,
-                         nextafter(value, 0));
+                snprintf(text, sizeof text, "%s=%.17g", name, value);
                 if (f >= FIELDS && !circular) {
-                    gate(text, &judged, found, &count, "no such error");
+                    gate(text, &judged, 1, "nothing here is called so");
                     continue;
                 }
-                assert_int_equal(gate(text, &judged, found, &count, NULL), STATUS_OK);
-                assert_int_equal(count, 2);
-                for (int g = 0; g < 2; g++) {
-                    assert_string_equal(found[g].name, name);
-                    near_relative(found[g].value, value, 1e-15);
-                    near_relative(found[g].bound, value, 1e-15);
-                }
-                const double exact = found[0].value;
-                snprintf(text, sizeof text, "%s=%.17g,%s=%.17g", name, exact, name,
-                         nextafter(exact, 0));
-                gate(text, &judged, found, &count, NULL);
-                assert_true(found[0].good && !found[1].good);
+                json_t *found = gate(text, &judged, 1, NULL);
+                assert_int_equal(json_array_size(found), 1);
+                const json_t *one = json_array_get(found, 0);
+                assert_string_equal(json_string_value(json_object_get(one, "name")), name);
+                assert_string_equal(json_string_value(json_object_get(one, "source")), "--gate");
+                const double exact = json_number_value(json_object_get(one, "value"));
+                near_relative(exact, value, 1e-15);
+                json_decref(found);
+                const double less = nextafter(exact, 0), more = nextafter(exact, 10);
+                snprintf(text, sizeof text, "%s=%.17g,%s<=%.17g,%s=%.17g,%s>=%.17g,%s>=%.17g", name,
+                         exact, name, less, name, less, name, exact, name, more);
+                found = gate(text, &judged, 1, NULL);
+                for (size_t g = 0; g < 5; g++)
+                    assert_string_equal(status_at(found, g), g == 0 || g == 3 ? "pass" : "fail");
+                json_decref(found);
             }
     judged.result.errors[0].l1 = (double)NAN;
-    assert_int_equal(gate("density_l1=1e300", &judged, found, &count, NULL), STATUS_OK);
-    assert_false(found[0].good);
-    assert_int_equal(gate(NULL, &judged, found, &count, NULL), STATUS_OK);
-    assert_int_equal(count, 0);
-    assert_int_equal(gate("", &judged, found, &count, NULL), STATUS_OK);
-    assert_int_equal(count, 0);
-    static const char *const wrong[] = {"density_l1", "density_l1,velocity_l1=1",
-                                        "velocity_l1=1,,pressure_l1=1", "=1", "density_l1=1,x"};
-    for (int k = 0; k < 5; k++)
-        gate(wrong[k], &judged, found, &count, k == 3 ? "no such error" : "FIELD_NORM=BOUND,...");
-    static const char *const bounds[] = {"density_l1=0",   "density_l1=-1",
-                                         "density_l1=",    "density_l1=a",
-                                         "density_l1=nan", "velocity_l1=1,density_l1=1x"};
-    for (int k = 0; k < 6; k++) gate(bounds[k], &judged, found, &count, "allowed: above 0");
-    static const char *const names[] = {"l1=1", "density=1", "density_l3=1", "densit_l1=1",
-                                        "density_l1x=1"};
-    for (int k = 0; k < 5; k++) gate(names[k], &judged, found, &count, "no such error");
-    /* as many as there is room for, and names and bounds as long as there is room for */
-    char text[2000] = "";
-    for (int k = 0; k < JUDGE_GATES_MAX; k++)
-        snprintf(text + strlen(text), sizeof text - strlen(text), "%svelocity_l1=%d", k ? "," : "",
-                 k + 1);
-    assert_int_equal(gate(text, &judged, found, &count, NULL), STATUS_OK);
-    assert_int_equal(count, JUDGE_GATES_MAX);
-    for (int k = 0; k < JUDGE_GATES_MAX; k++) assert_true(found[k].bound == k + 1);
-    snprintf(text + strlen(text), sizeof text - strlen(text), ",velocity_l1=1");
-    gate(text, &judged, found, &count, "at most 24");
+    json_t *found = gate("density_l1=1e300,density_l1>=1e-300", &judged, 1, NULL);
+    for (size_t g = 0; g < 2; g++) assert_string_equal(status_at(found, g), "fail");
+    json_decref(found);
+    for (int k = 0; k < 2; k++) {
+        found = gate(k ? "" : NULL, &judged, 1, NULL);
+        assert_int_equal(json_array_size(found), 0);
+        json_decref(found);
+    }
+    static const struct {
+        const char *text, *says;
+    } wrong[] = {
+        {"density_l1", "NAME=BOUND,..."},
+        {"density_l1,velocity_l1=1", "NAME=BOUND,..."},
+        {"velocity_l1=1,,pressure_l1=1", "NAME=BOUND,..."},
+        {"velocity_l1=1,x", "NAME=BOUND,..."},
+        {"density_l1<==1", "NAME=BOUND,..."},
+        {"=1", "nothing here is called so; allowed: density_l1 velocity_l1 pressure_l1"},
+        {"l1=1", "nothing here"},
+        {"density=1", "nothing here"},
+        {"density_l3=1", "nothing here"},
+        {"density_l1x=1", "nothing here"},
+        {"order.density>=1", "several numbers of particles"},
+        {"density_l1<1", "allowed: = <= >="},
+        {"density_l1=>1", "allowed: = <= >="},
+        {"order.density=1", "gated by >= or <="},
+        {"order.density>=x", "allowed: a number"},
+        {"density_l1=0", "allowed: above 0"},
+        {"density_l1=-1", "allowed: above 0"},
+        {"density_l1=", "allowed: above 0"},
+        {"density_l1=a", "allowed: above 0"},
+        {"density_l1=nan", "allowed: above 0"},
+        {"density_l1>=inf", "allowed: above 0"},
+        {"velocity_l1=1,density_l1=1x", "allowed: above 0"},
+    };
+    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++)
+        gate(wrong[k].text, &judged, 1, wrong[k].says);
+    /* names and bounds as long as there is room for */
+    char text[200];
     snprintf(text, sizeof text, "velocity_l1=1.%0*d", 37, 0); /* a bound of 39 letters */
-    assert_int_equal(gate(text, &judged, found, &count, NULL), STATUS_OK);
+    json_decref(gate(text, &judged, 1, NULL));
     snprintf(text, sizeof text, "velocity_l1=1.%0*d", 38, 0);
-    gate(text, &judged, found, &count, "FIELD_NORM=BOUND,...");
+    gate(text, &judged, 1, "NAME=BOUND,...");
     snprintf(text, sizeof text, "%047d=1", 0);
-    gate(text, &judged, found, &count, "no such error");
+    gate(text, &judged, 1, "nothing here");
     snprintf(text, sizeof text, "%048d=1", 0);
-    gate(text, &judged, found, &count, "FIELD_NORM=BOUND,...");
+    gate(text, &judged, 1, "NAME=BOUND,...");
+}
+
+/* What is no error of a field: values, parts of an error, noise, what is conserved. */
+static void other_gates(void **state)
+{
+    static const struct regions regions = {.names = {"fan", "shock"}};
+    struct judged judged = made(50, 0.2, 2);
+    (void)state;
+    problem.circular = CIRCULAR_NOT;
+    judged.result.functional_count = 2;
+    judged.result.functionals[0] = (struct run_functional){"peak", 3, 3.5};
+    judged.result.functionals[1] = (struct run_functional){"middle", 7, (double)NAN};
+    judged.result.budget.regions = &regions;
+    judged.result.budget.l1[0][FIELD_DENSITY] = 0.5, judged.result.budget.l1[1][FIELD_DENSITY] = 2;
+    judged.transverse = 0.125;
+    judged.start = judged.sums;
+    judged.start.mass *= 0.5;
+    judged.start.energy *= 0.8;
+    judged.start.momentum[0] = 0, judged.start.angular_momentum[2] = 0;
+    static const struct {
+        const char *name;
+        double value;
+    } known[] = {{"peak", 0.5},           {"middle", 7},     {"density_l1.fan", 0.5},
+                 {"density_l1.shock", 2}, {"noise", 0.125},  {"mass", 1},
+                 {"energy", 0.25},        {"momentum", 0.1}, {"angular_momentum", 0.25}};
+    for (size_t k = 0; k < sizeof known / sizeof *known; k++) {
+        char text[200];
+        snprintf(text, sizeof text, "%s=%.17g,%s=%.17g", known[k].name, known[k].value * 1.0001,
+                 known[k].name, known[k].value * 0.9999);
+        json_t *found = gate(text, &judged, 1, NULL);
+        assert_string_equal(status_at(found, 0), "pass");
+        assert_string_equal(status_at(found, 1), "fail");
+        json_decref(found);
+    }
+    judged.start.mass = 0; /* nothing is known of the start */
+    gate("mass=1", &judged, 1, "nothing here");
+    judged.file.dim = 1;
+    gate("noise=1", &judged, 1, "nothing here");
+}
+
+/* An order passes where its whole interval does, and fails where none of it does. */
+static void gates_of_orders(void **state)
+{
+    struct judged judged[MOST];
+    char text[200];
+    (void)state;
+    for (int i = 0; i < MOST; i++) {
+        judged[i] = made((size_t)(100 << i), 0.2, 1);
+        for (int f = 0; f < FIELDS; f++)
+            judged[i].result.errors[f].l1 = (1 + 0.05 * (i % 2)) * pow(2, -i);
+    }
+    json_t *orders = judge_orders(judged, MOST);
+    const json_t *one = json_array_get(orders, FIELD_VELOCITY);
+    const double low = json_real_value(json_object_get(one, "low")),
+                 high = json_real_value(json_object_get(one, "high"));
+    assert_true(low < 0.99 && high > 1);
+    for (int least = 0; least < 2; least++) {
+        const char *sign = least ? ">=" : "<=";
+        snprintf(text, sizeof text,
+                 "order.velocity%s%.17g,order.velocity%s%.17g,"
+                 "order.velocity%s%.17g,order.velocity%s%.17g",
+                 sign, low - 0.01, sign, low + 0.01, sign, high - 0.01, sign, high + 0.01);
+        json_t *found = gate(text, judged, MOST, NULL);
+        assert_string_equal(status_at(found, 0), least ? "pass" : "fail");
+        assert_string_equal(status_at(found, 1), "undetermined");
+        assert_string_equal(status_at(found, 2), "undetermined");
+        assert_string_equal(status_at(found, 3), least ? "fail" : "pass");
+        const json_t *first = json_array_get(found, 1);
+        assert_true(json_real_value(json_object_get(first, "low")) == low &&
+                    json_real_value(json_object_get(first, "high")) == high);
+        assert_non_null(strstr(json_string_value(json_object_get(first, "why")), "interval"));
+        json_decref(found);
+    }
+    json_t *found = gate("order.density>=0.1", judged, 3, NULL);
+    assert_string_equal(status_at(found, 0), "undetermined");
+    assert_string_equal(json_string_value(json_object_get(json_array_get(found, 0), "why")),
+                        "an interval needs 4 numbers of particles, there are 3");
+    json_decref(found);
+    judged[2].result.errors[0].l1 = 0;
+    found = gate("order.density>=0.1", judged, MOST, NULL);
+    assert_string_equal(status_at(found, 0), "undetermined");
+    json_decref(found);
+    json_decref(orders);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_order),
-        cmocka_unit_test(ties),
-        cmocka_unit_test(orders),
-        cmocka_unit_test(gates),
+        cmocka_unit_test(every_order), cmocka_unit_test(ties),
+        cmocka_unit_test(orders),      cmocka_unit_test(gates),
+        cmocka_unit_test(other_gates), cmocka_unit_test(gates_of_orders),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,272 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Gates of judge: of everything that it prints, and those of the case. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "gates.h"
+#include "judge.h"
+#include "result.h"
+#include "text.h"
+#include "value.h"
+
+enum { NAME = 48, SOURCE = 200 };
+
+/* Conservation in `--gates case`: what other codes' starts and float32 may differ by; of angular
+ * momentum, which a square box does not conserve to the last bit, where all of the flow turns. */
+static const double conserved_bound = 2e-3, turning_bound = 0.02;
+/* A weakness that is known without a number reaches this far beyond the bound. */
+static const double weakness = 1.5;
+/* A snapshot within this part of the case's time is at that time. */
+static const double same_time = 0.01;
+
+/* ---- what may be gated ---- */
+
+static void add_figure(json_t *figures, const char *prefix, const char *name, double value)
+{
+    char full[2 * NAME];
+    snprintf(full, sizeof full, "%s%s", prefix, name);
+    json_object_set_new(figures, full, result_number(value));
+}
+
+static void add_norms(json_t *figures, const char *name, const struct norms *of)
+{
+    const double values[NORMS] = {of->l1, of->l2, of->linf, of->particle_mean, of->l1_whole};
+    char prefix[NAME];
+    snprintf(prefix, sizeof prefix, "%s_", name);
+    for (int norm = 0; norm < NORMS; norm++)
+        add_figure(figures, prefix, field_norm_family.members[norm]->name, values[norm]);
+}
+
+/* {NAME: number, or of an order {"order", "low", "high" ...}}. New reference. */
+static json_t *figures_of(const struct judged *judged, size_t n)
+{
+    static const char *const kept[] = {"mass", "momentum", "angular_momentum", "energy"};
+    const struct judged *main = judge_main(judged, n);
+    const struct run_result *r = &main->result;
+    const struct problem *problem = r->problem.problem;
+    json_t *figures = json_object(), *conserved = judge_conservation(judged, n),
+           *orders = judge_orders(judged, n), *order;
+    size_t i;
+    for (int f = 0; f < FIELDS && !problem->fieldless; f++)
+        add_norms(figures, field_family.members[f]->name, &r->errors[f]);
+    if (problem->circular) {
+        add_norms(figures, "azimuthal", &r->azimuthal);
+        add_norms(figures, "radial", &r->radial);
+    }
+    for (size_t k = 0; k < r->functional_count; k++)
+        if (isfinite(r->functionals[k].exact))
+            add_figure(figures, "", r->functionals[k].name,
+                       fabs(r->functionals[k].value - r->functionals[k].exact));
+        else
+            add_figure(figures, "", r->functionals[k].name, r->functionals[k].value);
+    for (size_t k = 0; r->budget.regions && r->budget.regions->names[k]; k++)
+        add_figure(figures, "density_l1.", r->budget.regions->names[k],
+                   r->budget.l1[k][FIELD_DENSITY]);
+    if (main->file.dim > 1) add_figure(figures, "", "noise", main->transverse);
+    for (size_t k = 0; json_is_object(conserved) && k < sizeof kept / sizeof *kept; k++)
+        if (!json_is_null(json_object_get(conserved, kept[k])))
+            add_figure(figures, "", kept[k], value_member(conserved, kept[k]));
+    json_array_foreach(orders, i, order) {
+        char name[NAME];
+        snprintf(name, sizeof name, "order.%s", value_text(order, "field"));
+        json_object_set(figures, name, order);
+    }
+    json_decref(conserved);
+    json_decref(orders);
+    return figures;
+}
+
+/* ---- one gate ---- */
+
+static enum study_gate compare(double low, double high, bool least, double bound)
+{
+    if (least ? low >= bound : high <= bound) return GATE_PASS;
+    return (least ? high >= bound : low <= bound) ? GATE_UNDETERMINED : GATE_FAIL;
+}
+
+static json_t *gate_json(const char *name, const json_t *figure, bool least, double bound,
+                         const char *source)
+{
+    const bool order = json_is_object(figure);
+    const double value = order ? value_member(figure, "order") : value_real(figure),
+                 low = order ? value_member(figure, "low") : value,
+                 high = order ? value_member(figure, "high") : value;
+    enum study_gate status = compare(low, high, least, bound);
+    char why[GATE_WHY] = "";
+    if (order && isnan(low)) {
+        status = GATE_UNDETERMINED;
+        snprintf(why, sizeof why, "an interval needs %d numbers of particles, there are %zu",
+                 ORDER_LEVELS_MIN, json_array_size(json_object_get(figure, "pairwise")) + 1);
+        if (json_is_number(json_object_get(figure, "order")))
+            snprintf(why, sizeof why, "errors that have no order");
+    } else if (status == GATE_UNDETERMINED) {
+        snprintf(why, sizeof why, "the order is %.3f, its 95 %% interval %.3f to %.3f", value, low,
+                 high);
+    }
+    json_t *gate = json_pack("{s:s, s:s, s:o, s:o, s:s, s:s}", "name", name, "relation",
+                             least ? ">=" : "<=", "value", result_number(value), "bound",
+                             result_number(bound), "status", gate_names[status], "source", source);
+    if (order) {
+        json_object_set_new(gate, "low", result_number(low));
+        json_object_set_new(gate, "high", result_number(high));
+    }
+    if (*why) json_object_set_new(gate, "why", json_string(why));
+    return gate;
+}
+
+/* ---- those that are asked for ---- */
+
+static enum status no_such_figure(const json_t *figures, const char *name, struct error *error)
+{
+    char names[360] = "";
+    const char *key;
+    size_t used = 0;
+    json_t *value;
+    json_object_foreach((json_t *)figures, key, value) {
+        const char *norm = strrchr(key, '_');
+        bool of_field = false; /* said once, with all norms */
+        for (int k = 1; k < NORMS && norm; k++)
+            of_field |= strstr(key, field_norm_family.members[k]->name) != NULL;
+        if (of_field || used >= sizeof names) continue;
+        used += (size_t)snprintf(names + used, sizeof names - used, " %s", key);
+    }
+    return error_set(error, STATUS_BAD_INPUT,
+                     "--gate %.48s: nothing here is called so; allowed:%s; for l1 also l2 linf "
+                     "particle_mean l1_whole%s",
+                     name, names,
+                     strncmp(name, "order", 5) ? "" : "; orders need several numbers of particles");
+}
+
+static enum status ask(const char *text, const json_t *figures, json_t *gates, struct error *error)
+{
+    for (const char *at = text; at && *at;) {
+        const size_t length = strcspn(at, ","), end = strcspn(at, "<>=");
+        const size_t sign = strspn(at + end, "<>=");
+        char name[NAME], relation[3] = "", number[40];
+        double bound;
+        if (end >= length || end >= sizeof name || sign >= sizeof relation ||
+            length - end - sign >= sizeof number)
+            return error_set(error, STATUS_BAD_INPUT,
+                             "--gate %.80s: allowed: NAME=BOUND,... or NAME>=BOUND, such as "
+                             "density_l1=2e-3 or order.density>=0.9",
+                             text);
+        snprintf(name, sizeof name, "%.*s", (int)end, at);
+        snprintf(relation, sizeof relation, "%.*s", (int)sign, at + end);
+        snprintf(number, sizeof number, "%.*s", (int)(length - end - sign), at + end + sign);
+        const bool least = !strcmp(relation, ">="), order = !strncmp(name, "order.", 6);
+        if (!least && strcmp(relation, "=") && strcmp(relation, "<="))
+            return error_set(error, STATUS_BAD_INPUT, "--gate %.48s%s%.40s: allowed: = <= >=", name,
+                             relation, number);
+        if (order && !strcmp(relation, "="))
+            return error_set(error, STATUS_BAD_INPUT,
+                             "--gate %.48s=%.40s: an order is gated by >= or <=", name, number);
+        if (!text_real(number, &bound) || !isfinite(bound) || !(order || bound > 0))
+            return error_set(error, STATUS_BAD_INPUT, "--gate %.48s%s%.40s: allowed: %s", name,
+                             relation, number, order ? "a number" : "above 0");
+        const json_t *figure = json_object_get(figures, name);
+        if (!figure) return no_such_figure(figures, name, error);
+        json_array_append_new(gates, gate_json(name, figure, least, bound, JUDGE_ASKED));
+        at += length + (at[length] == ',');
+    }
+    return STATUS_OK;
+}
+
+/* ---- those of the case ---- */
+
+/* Why the case's bounds say nothing of this snapshot. */
+static enum status check_case(const struct judged *main, struct error *error)
+{
+    const struct case_file *file = &main->run.asked.file;
+    const double t_end = settings_real(&file->settings, SETTING_t_end);
+    if (main->file.dim != main->case_dim)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "--gates case: %.60s is written in %d dimensions and has no bounds for %d",
+                         file->name, main->case_dim, main->file.dim);
+    if (!(fabs(main->result.time - t_end) <= same_time * t_end))
+        return error_set(error, STATUS_BAD_INPUT,
+                         "--gates case: the bounds of %.60s are for t = %g, %.160s is at t = %g; "
+                         "allowed: --gate",
+                         file->name, t_end, main->path, main->result.time);
+    if (main->altered)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "--gates case: %.160s has another initial state than %.60s; allowed: "
+                         "--gate, or a case file of its own, with bounds in [converge]",
+                         main->path, file->name);
+    if (!file->gate_count)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "--gates case: %.60s has none; in [converge] of a case file stands "
+                         "density_l1 = LOWEST_ORDER HIGHEST_ORDER BOUND",
+                         file->name);
+    return STATUS_OK;
+}
+
+static void say_source(const struct judged *main, const struct case_gate *gate, char text[SOURCE])
+{
+    const struct case_file *file = &main->run.asked.file;
+    const double n = main->case_n, raise = gates_raise(file, gate, (size_t)n);
+    const size_t finest = file->ladder_count ? file->ladder[file->ladder_count - 1] : 0;
+    int used = snprintf(text, SOURCE, "case %s: %.3g", file->name, gate->gate.bound);
+    if (finest) used += snprintf(text + used, SOURCE - (size_t)used, " at n = %zu", finest);
+    if (raise > 1 && n < (double)finest)
+        snprintf(text + used, SOURCE - (size_t)used, ", raised by order %g to n = %.0f",
+                 gate->gate.low, n);
+    else if (fabs(raise - 1) > 0)
+        snprintf(text + used, SOURCE - (size_t)used, ", beyond it %.3g", raise * gate->gate.bound);
+}
+
+static void add_case(const struct judged *main, const json_t *figures, json_t *gates)
+{
+    static const char *const kept[] = {"mass", "momentum", "energy", "angular_momentum"};
+    const bool round = main->result.problem.problem->circular == CIRCULAR_ROUND;
+    const struct case_file *file = &main->run.asked.file;
+    json_t *run = judge_one_json(main, false);
+    char text[SOURCE], name[NAME];
+    json_object_set_new(run, "n", json_real(floor(main->case_n + 0.5)));
+    for (size_t i = 0; i < file->gate_count; i++) {
+        struct case_gate gate = file->gates[i];
+        if (isinf(gate.known.bound)) gate.known.bound = weakness * gate.gate.bound;
+        json_t *found = gates_error(file, &gate, run);
+        if (!found) continue;
+        say_source(main, &gate, text);
+        json_object_set_new(found, "relation", json_string("<="));
+        json_object_set_new(found, "source", json_string(text));
+        const json_t *known = json_object_get(found, "known");
+        if (known) json_object_set(found, "why", (json_t *)known);
+        json_array_append_new(gates, found);
+    }
+    for (size_t i = 0; i < file->gate_count; i++) {
+        const struct case_gate *gate = &file->gates[i];
+        snprintf(name, sizeof name, "order.%s", field_family.members[gate->field]->name);
+        const json_t *order = json_object_get(figures, name);
+        if (gate->functional || gate->norm != NORM_L1 || !isfinite(gate->gate.high) || !order)
+            continue;
+        snprintf(text, sizeof text, "case %s: its ladder's order", file->name);
+        json_t *found = gate_json(name, order, true, gate->gate.low, text);
+        if (*gate->known.why && strcmp(value_text(found, "status"), gate_names[GATE_PASS])) {
+            json_object_set_new(found, "status", json_string(gate_names[GATE_KNOWN]));
+            json_object_set_new(found, "why", json_string(gate->known.why));
+        }
+        json_array_append_new(gates, found);
+    }
+    for (size_t k = 0; k < (round ? 4 : 3); k++)
+        if (json_object_get(figures, kept[k]))
+            json_array_append_new(
+                gates, gate_json(kept[k], json_object_get(figures, kept[k]), false,
+                                 k == 3 ? turning_bound : conserved_bound,
+                                 "of every case: what starts of other codes may differ by"));
+    json_decref(run);
+}
+
+enum status judge_gates(const char *asked, bool of_case, const struct judged *judged, size_t n,
+                        json_t **gates, struct error *error)
+{
+    const struct judged *main = judge_main(judged, n);
+    json_t *figures = figures_of(judged, n);
+    *gates = json_array();
+    enum status status = ask(asked, figures, *gates, error);
+    if (!status && of_case) status = check_case(main, error);
+    if (!status && of_case) add_case(main, figures, *gates);
+    json_decref(figures);
+    return status;
+}
