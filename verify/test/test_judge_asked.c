@@ -1,0 +1,465 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What is judged as what: the case, its keys, box, window and ends, as the file or the user says
+ * them; and what is refused. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "made_snapshot.h"
+#include "near.h"
+#include "riemann.h"
+
+#define TIMED "# time = 0.1\n# box = 2\n"
+#define KEYED "# keys = left=1 0 1; right=0.9 0 0.9\n" TIMED
+
+static void noted(const struct judged *judged, const char *what, const char *value,
+                  const char *evidence)
+{
+    const struct snapshot_note *found = note(judged, what);
+    assert_string_equal(found->value, value);
+    if (!strstr(found->evidence, evidence)) fail_msg("%s: %s", what, found->evidence);
+}
+
+static bool is_noted(const struct judged *judged, const char *what)
+{
+    bool found = false;
+    for (size_t k = 0; k < judged->file.notes.count; k++)
+        found = found || strcmp(judged->file.notes.note[k].what, what) == 0;
+    return found;
+}
+
+/* ---- case and keys ---- */
+
+static void said(void **state)
+{
+    static const struct {
+        const char *head, *name;
+        bool x0;
+        double right; /* pressure of the gas there */
+        bool keys;
+    } rows[] = {{"# case = sod\n" TIMED, NULL, false, 0.1, false},
+                {"# case = lax\n" TIMED, NULL, false, 0.571, false},
+                {"# case = sod\n" KEYED, NULL, false, 0.9, true},
+                {"# case = sod\n" KEYED, "sod", false, 0.9, true},
+                {"# case = sod\n" KEYED, "lax", false, 0.571, false},
+                {"# case = sod\n" KEYED, NULL, true, 0.1, false}};
+    (void)state;
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        const struct judge_request request = {
+            .case_name = rows[k].name, .kernel = -1, .x0 = {rows[k].x0, 1}};
+        struct judged judged;
+        plant(1, 0, rows[k].head);
+        judges(&request, &judged);
+        const struct setting_value *value = judged.run.settings.value;
+        near_relative(value[SETTING_right].real[2], rows[k].right, 1e-14);
+        assert_true(value[SETTING_left].real[1] ==
+                    (value[SETTING_right].real[2] > 0.5 && !rows[k].keys ? 0.698 : 0));
+        assert_true(is_noted(&judged, "keys") == rows[k].keys);
+        if (rows[k].keys)
+            noted(&judged, "keys", "of its run", "the file says left=1 0 1; right=0.9 0 0.9");
+        assert_true(is_noted(&judged, "case") == !rows[k].name);
+        if (!rows[k].name)
+            noted(&judged, "case", strstr(rows[k].head, "lax") ? "lax" : "sod", "the file says so");
+        judge_free(&judged);
+    }
+}
+
+/* Boundaries of a plane are the file's or the user's; those of a line are no key of its run. */
+static void boundaries(void **state)
+{
+    static const struct {
+        int dim;
+        const char *said, *asked;
+        enum boundary want[2];
+        bool window;
+    } rows[] = {
+        {2, "reflecting reflecting", NULL, {BOUNDARY_REFLECTING, BOUNDARY_REFLECTING}, false},
+        {2, "periodic reflecting", NULL, {BOUNDARY_PERIODIC, BOUNDARY_REFLECTING}, false},
+        {2, "", NULL, {BOUNDARY_PERIODIC, BOUNDARY_PERIODIC}, false}};
+    (void)state;
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        const struct judge_request request = {.boundary = rows[k].asked, .kernel = -1};
+        struct judged judged;
+        char head[200];
+        snprintf(head, sizeof head, "# case = rest_2d\n# boundary = %s\n# time = 0\n# box = 2 1\n",
+                 rows[k].said);
+        plant(2, 0, head);
+        judges(&request, &judged);
+        for (int d = 0; d < 2; d++)
+            assert_int_equal(judged.run.problem.boundary[d], rows[k].want[d]);
+        judge_free(&judged);
+    }
+}
+
+static void refused(void **state)
+{
+    static const struct {
+        int dim;
+        const char *head, *name, *left, *right, *box, *says;
+    } rows[] = {
+        {1, TIMED, NULL, NULL, NULL, NULL, "what should it be? It names no case: --case CASE"},
+        {1, TIMED, "no_such", NULL, NULL, NULL, "no_such"},
+        {1, TIMED, "sod", "1 0", NULL, NULL, "--left"},
+        {1, TIMED, "sod", NULL, "1 0 1 2 3", NULL, "--right"},
+        {1, TIMED, "sod", "1 0 -1", NULL, NULL, "a.csv: "},
+        {1, TIMED, "sod", NULL, NULL, "1 2 3 4", "judge: --box '1 2 3 4': allowed: LO:HI"},
+        {1, TIMED, "sod", NULL, NULL, "", "judge: --box '': allowed: LO:HI"},
+        {1, "# case = sod\n# keys = fancy=1\n" TIMED, NULL, NULL, NULL, NULL,
+         "a.csv: what it says of its run: "},
+        {1, "# case = sod\n# keys = left=1 0 1; fancy=1; n=100\n" TIMED, NULL, NULL, NULL, NULL,
+         "fancy"},
+        {2, "# case = rest_2d\n# boundary = sideways\n# box = 2 1\n", NULL, NULL, NULL, NULL,
+         "what it says of its run: "},
+        {1, "# time = 0.1\n# box = 0.01:2.01\n", "sod", NULL, NULL, NULL,
+         "a.csv: the file's box reaches from 0.01 to 2.01 along x, but positions from 0 to 2"},
+        {2, "# time = 0.1\n# box = 0:2 0.01:1.01\n", "sod", NULL, NULL, NULL,
+         "a.csv: the file's box reaches from 0.01 to 1.01 along y, but positions from 0 to 1"},
+        {1, "# time = 50\n# box = 2\n", "sod", NULL, NULL, NULL, "(t_end: the snapshot's time)"}};
+    (void)state;
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        const struct judge_request request = {.case_name = rows[k].name,
+                                              .left = rows[k].left,
+                                              .right = rows[k].right,
+                                              .box = rows[k].box,
+                                              .kernel = -1};
+        plant(rows[k].dim, 0, rows[k].head);
+        refuses(&request, rows[k].says);
+    }
+}
+
+/* ---- box and window ---- */
+
+/* Of a case of ours whose window is not about the middle of its box, which is not at 0. */
+static char *own_case(void)
+{
+    static char path[256];
+    snprintf(path, sizeof path, "%s", path_of("own.ini"));
+    FILE *out = fopen(path, "w");
+    assert_non_null(out);
+    fputs("[case]\ntitle = Own\ndimension = 1\nreference = riemann\n[domain]\nlo = 1\nhi = 3\n"
+          "[initial]\nkind = riemann\nleft = 1 0 1\nright = 1 0 1\n[run]\nt_end = 0.1\nn = 100\n"
+          "[measure]\nwindow = 1.5 2.25\nfields = density velocity pressure\n"
+          "[converge]\nn = 100 200 400 800\ndensity_l1 = 0 1\n",
+          out);
+    fclose(out);
+    return path;
+}
+
+static void windows(void **state)
+{
+    static const struct {
+        const char *head, *asked, *name;
+        double lo, hi, want[2];
+        const char *note, *value, *evidence; /* note NULL: none of the window */
+    } rows[] = {
+        {"# box = 2\n", NULL, NULL, 0, 2, {0.5, 1.25}, NULL, NULL, NULL},
+        {"# box = -2:0\n", NULL, NULL, -2, 0, {-1.5, -0.75}, NULL, NULL, NULL},
+        {"# box = 2.001\n",
+         NULL,
+         NULL,
+         0,
+         2.001,
+         {0.50025, 1.50075},
+         "window",
+         "the middle half",
+         "the case's box is 2 long, the file's 2.001"},
+        {"# box = 4\n",
+         NULL,
+         NULL,
+         0,
+         4,
+         {1, 3},
+         "window",
+         "the middle half",
+         "the case's box is 2 long, the file's 4"},
+        {"# box = 2.000001\n", NULL, NULL, 0, 2, {0.5, 1.25}, NULL, NULL, NULL},
+        {"# box = 2\n", "0.7 1.9", NULL, 0, 2, {0.7, 1.9}, "window", NULL, "--window"},
+        {"# box = 9\n", "0.7 1.9", NULL, 0, 9, {0.7, 1.9}, "window", NULL, "--window"},
+    };
+    (void)state;
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        struct judge_request request = {.case_name = own_case(), .time = {true, 0}, .kernel = -1};
+        struct judged judged;
+        char text[80];
+        if (rows[k].asked) {
+            request.window = true;
+            sscanf(rows[k].asked, "%lf %lf", &request.ends[0], &request.ends[1]);
+        }
+        plant(1, rows[k].lo, rows[k].head);
+        gas.x[0][1] = rows[k].lo + fmin(2, rows[k].hi - rows[k].lo);
+        judges(&request, &judged);
+        const struct prepared *p = &judged.run.problem;
+        near_absolute(p->window.lo[0], rows[k].want[0], 2e-6);
+        near_absolute(p->window.hi[0], rows[k].want[1], 2e-6);
+        near_absolute(p->domain.lo[0], rows[k].lo, 2e-6);
+        near_absolute(p->domain.hi[0], rows[k].hi, 2e-6);
+        assert_true(is_noted(&judged, "window") == !!rows[k].note);
+        snprintf(text, sizeof text, "%.17g %.17g", request.ends[0], request.ends[1]);
+        if (rows[k].note)
+            noted(&judged, "window", rows[k].value ? rows[k].value : text, rows[k].evidence);
+        judge_free(&judged);
+    }
+}
+
+/* A disc or a ball; the size of the box is said where it is not the case's. */
+static void sizes(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 4; k++) {
+        const double length = k < 2 ? 1 : k == 2 ? 1 + 1e-4 : 2;
+        struct judge_request request = {
+            .case_name = "gresho", .time = {true, 0}, .kernel = -1, .radius = k % 2 ? 0.3125 : 0};
+        struct judged judged;
+        char head[80], says[80];
+        snprintf(head, sizeof head, "# box = %.17g\n", length);
+        plant(2, 0, head);
+        for (int i = 0; i < N; i++) gas.x[0][i] /= 2;
+        judges(&request, &judged);
+        if (request.radius > 0) {
+            assert_true(judged.run.problem.window.radius == 0.3125);
+            noted(&judged, "window", "radius 0.3125", "--window");
+        }
+        assert_true(is_noted(&judged, "size") == (k > 1));
+        snprintf(says, sizeof says, "the case's box is 1 long, the file's %.6g", length);
+        if (k > 1) noted(&judged, "size", "not the case's", says);
+        judge_free(&judged);
+    }
+}
+
+/* Of a flow along x alone, in more dimensions than its case has; also of particles on one line. */
+static void dimensions(void **state)
+{
+    (void)state;
+    for (int dim = 1; dim <= 3; dim++) {
+        const struct judge_request request = uniform_gas();
+        struct judged judged;
+        char value[40];
+        plant(dim, 0, "");
+        judges(&request, &judged);
+        assert_int_equal(judged.run.problem.domain.dim, dim);
+        for (int d = 0; d < dim; d++)
+            near_absolute(judged.run.problem.domain.hi[d], d ? 1 : 2, 1e-15);
+        assert_true(is_noted(&judged, "case") == (dim > 1));
+        snprintf(value, sizeof value, "in %d dimensions", dim);
+        if (dim > 1)
+            noted(&judged, "case", value,
+                  "it is written in 1, but its solution varies along x alone");
+        judge_free(&judged);
+    }
+}
+
+/* Particles that the box takes back stand in the order of a line. */
+static void wraps(void **state)
+{
+    struct judge_request request = uniform_gas();
+    struct judged judged;
+    (void)state;
+    request.x0 = (struct snapshot_value){true, 0.75};
+    request.box = "0:2";
+    plant(1, 0, "");
+    judges(&request, &judged);
+    noted(&judged, "box", "0 to 2 along x", "--box");
+    noted(&judged, "x0", "0.75", "--x0");
+    const struct snapshot *s = &judged.result.snapshot;
+    int beyond = 0;
+    for (size_t i = 0; i < N; i++) {
+        if (i) assert_true(s->x[0][i] >= s->x[0][i - 1]);
+        assert_true(s->x[0][i] >= -0.25 && s->x[0][i] < 1.75);
+        beyond += s->x[0][i] < 0;
+    }
+    assert_true(beyond > 10);
+    judge_free(&judged);
+}
+
+/* ---- ends of a tube ---- */
+
+static void put_tube(const struct riemann_state sides[2], double x0)
+{
+    for (int i = 0; i < N; i++) {
+        const struct riemann_state *side = &sides[gas.x[0][i] > x0];
+        gas.rho[i] = side->rho, gas.v[0][i] = side->v, gas.u[i] = side->P / (0.4 * side->rho);
+    }
+}
+
+#define USUAL                                                                                      \
+    {                                                                                              \
+        {1, 0.25, 1},                                                                              \
+        {                                                                                          \
+            0.125, 0.25, 0.1                                                                       \
+        }                                                                                          \
+    }
+
+/* Ends that are open or walls are found where gas beside both is as it was. */
+static void found_ends(void **state)
+{
+    static const struct {
+        struct riemann_state sides[2];
+        double time, at[2]; /* of two particles, from both ends, over the length */
+        double rho, v;      /* one of them is off, over density and sound speed */
+        bool ended;
+    } rows[] = {
+        {USUAL, 0.1, {0.0101, 0.0399}, 0, 0, true},
+        {USUAL, 0.1, {0.0099, 0.0399}, 0, 0, false},
+        {USUAL, 0.1, {0.0101, 0.0401}, 0, 0, false},
+        {USUAL, 0.1, {0.02, 0.03}, 0.0299, 0, true},
+        {USUAL, 0.1, {0.02, 0.03}, 0.0301, 0, false},
+        {USUAL, 0.1, {0.02, 0.03}, -0.0301, 0, false},
+        {USUAL, 0.1, {0.02, 0.03}, 0, 0.0299, true},
+        {USUAL, 0.1, {0.02, 0.03}, 0, 0.0301, false},
+        {USUAL, 0.1, {0.02, 0.03}, 0, -0.0301, false},
+        /* the slower sound has to come 0.05 of the length */
+        {USUAL, 0.0946, {0.02, 0.03}, 0, 0, true},
+        {USUAL, 0.0944, {0.02, 0.03}, 0, 0, false},
+        /* a tenth of density or pressure makes two gases */
+        {{{1, 0.25, 1}, {1, 0.25, 0.89}}, 0.2, {0.02, 0.03}, 0, 0, true},
+        {{{1, 0.25, 1}, {1, 0.25, 0.91}}, 0.2, {0.02, 0.03}, 0, 0, false},
+        {{{1, 0.25, 0.89}, {1, 0.25, 1}}, 0.2, {0.02, 0.03}, 0, 0, true},
+        {{{1, 0.25, 0.91}, {1, 0.25, 1}}, 0.2, {0.02, 0.03}, 0, 0, false},
+        {{{1, 0.25, 1}, {0.89, 0.25, 1}}, 0.2, {0.02, 0.03}, 0, 0, true},
+        {{{1, 0.25, 1}, {0.91, 0.25, 1}}, 0.2, {0.02, 0.03}, 0, 0, false},
+        {{{0.89, 0.25, 1}, {1, 0.25, 1}}, 0.2, {0.02, 0.03}, 0, 0, true},
+        {{{0.91, 0.25, 1}, {1, 0.25, 1}}, 0.2, {0.02, 0.03}, 0, 0, false},
+    };
+    (void)state;
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
+        for (int side = 0; side < 2; side++) {
+            const struct riemann_state *sides = rows[k].sides;
+            char left[80], right[80];
+            struct judge_request request = uniform_gas();
+            struct judged judged;
+            request.left = left, request.right = right, request.time.value = rows[k].time;
+            snprintf(left, 80, "%.17g %.17g %.17g", sides[0].rho, sides[0].v, sides[0].P);
+            snprintf(right, 80, "%.17g %.17g %.17g", sides[1].rho, sides[1].v, sides[1].P);
+            plant(1, 1, "# box = 1:3\n");
+            for (int i = 0; i < N; i++) gas.x[0][i] = uniform(1.1, 2.9);
+            for (int end = 0; end < 2; end++)
+                for (int i = 0; i < 2; i++)
+                    gas.x[0][2 * end + i] = end ? 3 - 2 * rows[k].at[i] : 1 + 2 * rows[k].at[i];
+            put_tube(sides, 2);
+            const struct riemann_state *gas_there = &sides[side];
+            gas.rho[2 * side + 1] *= 1 + rows[k].rho;
+            gas.v[0][2 * side + 1] += rows[k].v * sqrt(1.4 * gas_there->P / gas_there->rho);
+            judges(&request, &judged);
+            if (is_noted(&judged, "ends") != rows[k].ended) fail_msg("row %zu, %d", k, side);
+            if (rows[k].ended)
+                noted(&judged, "ends", "open or walls", "the gas at both is undisturbed");
+            judge_free(&judged);
+        }
+    /* not where the user or the file says so */
+    struct judge_request request = uniform_gas();
+    struct judged judged;
+    request.right = "0.125 0 0.1", request.boundary = "periodic";
+    plant(1, 0, "# box = 2\n# boundary = open\n");
+    judges(&request, &judged);
+    noted(&judged, "ends", "periodic", "--boundary");
+    judge_free(&judged);
+    request.boundary = NULL;
+    judges(&request, &judged);
+    assert_false(is_noted(&judged, "ends"));
+    judge_free(&judged);
+}
+
+/* No signal is faster than what moves and sounds, and half of that again. */
+static double fastest(const struct riemann_state sides[2], bool mirrored)
+{
+    struct riemann_solution s;
+    assert_null(riemann_solve(1.4, &sides[mirrored], &sides[!mirrored], &s));
+    const double speeds[] = {s.left_head, s.left_tail, s.right_head, s.right_tail};
+    double most = 0;
+    for (int k = 0; k < 2; k++)
+        most = fmax(most, fabs(sides[k].v) + sqrt(1.4 * sides[k].P / sides[k].rho));
+    if (!s.vacuum) {
+        most = fmax(most, fabs(s.v_star) + sqrt(1.4 * s.p_star / s.rho_star_left));
+        most = fmax(most, fabs(s.v_star) + sqrt(1.4 * s.p_star / s.rho_star_right));
+    }
+    for (int k = 0; k < 4; k++) most = fmax(most, fabs(speeds[k]));
+    return 1.5 * most;
+}
+
+/* The window leaves out what waves from the ends may have reached; the box holds all of them. */
+static void drawn_tubes(void **state)
+{
+    int clean = 0, cut = 0, spoilt = 0;
+    (void)state;
+    for (int k = 0; k < 60; k++) {
+        struct judge_request request = uniform_gas();
+        struct riemann_state sides[2];
+        struct riemann_solution solution;
+        struct judged judged;
+        char texts[2][100], head[80], value[80];
+        const double lo = uniform(-1, 1), length = uniform(1, 2), time = uniform(0.01, 0.3);
+        const double ends[2] = {lo, lo + length}, x0 = lo + length * uniform(0.2, 0.8);
+        for (int side = 0; side < 2; side++) {
+            sides[side] = (struct riemann_state){
+                uniform(0.1, 1), k % 3 ? 0 : uniform(-1, 1) * (k % 2 ? 6 : 0.5), uniform(0.1, 1)};
+            snprintf(texts[side], sizeof texts[side], "%.17g %.17g %.17g", sides[side].rho,
+                     sides[side].v, sides[side].P);
+        }
+        request.left = texts[0], request.right = texts[1], request.time.value = time;
+        request.boundary = "open", request.x0 = (struct snapshot_value){true, x0};
+        request.window = k % 7 == 6;
+        request.ends[0] = lo + 0.1 * length, request.ends[1] = lo + 0.9 * length;
+        snprintf(head, sizeof head, "# box = %.17g:%.17g\n", lo, lo + length);
+        plant(1, 0, head);
+        for (int i = 0; i < N; i++) gas.x[0][i] = uniform(ends[0], ends[1]);
+        put_tube(sides, x0);
+        assert_null(riemann_solve(1.4, &sides[0], &sides[1], &solution));
+        const double speed = fmax(fastest(sides, false), fastest(sides, true));
+        double window[2], from[2];
+        for (int side = 0; side < 2; side++) {
+            const double head_speed = side ? solution.right_head : -solution.left_head;
+            const double c = sqrt(1.4 * sides[side].P / sides[side].rho);
+            const bool waits = fabs(sides[side].v) <= 1e-9 * c && !isnan(head_speed);
+            const double arrival = !waits           ? 0
+                                   : head_speed > 0 ? fabs(ends[side] - x0) / head_speed
+                                                    : (double)INFINITY;
+            from[side] = speed * fmax(0, time - arrival);
+            window[side] = ends[side] + (side ? -from[side] : from[side]);
+            if (request.window) window[side] = request.ends[side];
+        }
+        if (!(window[0] < window[1])) {
+            refuses(&request, "waves may have come back from the ends to everywhere in [");
+            snprintf(value, sizeof value, "at t = %g waves", time);
+            refuses(&request, value);
+            snprintf(value, sizeof value, "[%g, %g]; --window", ends[0], ends[1]);
+            refuses(&request, value);
+            spoilt++;
+            continue;
+        }
+        struct error error = {0};
+        if (judge_snapshot(put("a.csv"), &request, &judged, &error)) {
+            judge_free(&judged); /* a window that holds no particle */
+            if (!strstr(error.message, "no particle lies in the window"))
+                fail_msg("%s", error.message);
+            continue;
+        }
+        const struct prepared *p = &judged.run.problem;
+        const double half = fmax(x0 - ends[0], ends[1] - x0) +
+                            fmax(fabs(window[0] - x0), fabs(window[1] - x0)) + 4 * speed * time;
+        near_absolute(p->domain.lo[0] - (x0 - half), 0, 1e-12 * half);
+        near_absolute(p->domain.hi[0] - (x0 + half), 0, 1e-12 * half);
+        near_absolute(p->window.lo[0] - window[0], 0, 1e-12 * half);
+        near_absolute(p->window.hi[0] - window[1], 0, 1e-12 * half);
+        snprintf(value, sizeof value, "%.6g to %.6g", window[0], window[1]);
+        noted(&judged, "window", value,
+              request.window          ? "--window"
+              : from[0] + from[1] > 0 ? "but for what waves from the ends may have reached"
+                                      : "from end to end: no wave has reached one");
+        noted(&judged, "ends", "open", "--boundary");
+        if (!request.window) from[0] + from[1] > 0 ? cut++ : clean++;
+        judge_free(&judged);
+    }
+    if (clean < 5 || cut < 5 || spoilt < 3) fail_msg("%d, %d, %d", clean, cut, spoilt);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(said),    cmocka_unit_test(boundaries), cmocka_unit_test(refused),
+        cmocka_unit_test(windows), cmocka_unit_test(sizes),      cmocka_unit_test(dimensions),
+        cmocka_unit_test(wraps),   cmocka_unit_test(found_ends), cmocka_unit_test(drawn_tubes),
+    };
+    return cmocka_run_group_tests(tests, make_place, remove_place);
+}
