@@ -9,9 +9,11 @@
     sphproof.rates(x, v, m, u, lo=0, hi=1, kernel="wendland_c4")["force"]
 
 Nothing is compiled: `run`, `judge` and `rates` call the program and read its JSON (what a document holds: see the
-schema, `sphproof list --where`); exact solutions come from libsphproof through ctypes. Both are looked for where
-this file was installed, then where the system looks; SPHPROOF and SPHPROOF_LIBRARY name others. Units: any
-consistent ones. What fails raises sphproof.Error."""
+schema, `sphproof list --where`); exact solutions come from libsphproof through ctypes. The program is what SPHPROOF
+names, else where this file was installed with it, else in a build folder `build` of the tree that this file is in, else
+on the PATH (as after `pip install verify/python`). The library is what SPHPROOF_LIBRARY names, else that of the
+program's own installation or build folder, else where the system looks. Units: any consistent ones. What fails raises
+sphproof.Error."""
 import collections
 import ctypes
 import ctypes.util
@@ -52,9 +54,9 @@ def _beside(*patterns):
 
 
 def _program():
-    path = os.environ.get("SPHPROOF") or _beside("bin/sphproof") or shutil.which("sphproof")
+    path = os.environ.get("SPHPROOF") or _beside("bin/sphproof", "build/sphproof") or shutil.which("sphproof")
     if not path:
-        raise Error("no program sphproof: neither installed with this module nor in PATH")
+        raise Error("no program sphproof: neither installed with this module, nor on the PATH, nor named by SPHPROOF")
     return path
 
 
@@ -171,13 +173,24 @@ class _Star(ctypes.Structure):
 _loaded = None
 
 
+def _of_program():
+    """The library of the program's installation, or of its build folder; None where there is none."""
+    try:
+        folder = os.path.dirname(os.path.realpath(_program()))
+    except Error:
+        return None
+    for pattern in ("verify/package/libsphproof.so.0", "../lib/libsphproof.so.0", "../lib*/libsphproof.so.0", "../lib/*/libsphproof.so.0"):
+        for path in sorted(glob.glob(os.path.join(glob.escape(folder), pattern))):
+            return os.path.normpath(path)
+    return None
+
+
 def _library():
     global _loaded
     if _loaded is None:
-        path = (os.environ.get("SPHPROOF_LIBRARY") or _beside("lib/libsphproof.so.0", "lib*/libsphproof.so.0", "lib/*/libsphproof.so.0")
-                or ctypes.util.find_library("sphproof"))
+        path = os.environ.get("SPHPROOF_LIBRARY") or _of_program() or ctypes.util.find_library("sphproof")
         if not path:
-            raise Error("no library libsphproof: neither installed with this module nor known to the system")
+            raise Error("no library libsphproof: neither beside the program, nor known to the system, nor named by SPHPROOF_LIBRARY")
         _loaded = ctypes.CDLL(path)
     return _loaded
 
