@@ -53,8 +53,15 @@ def _beside(*patterns):
     return None
 
 
+def _built():
+    """Of a file that is in the source tree: what is in its folder `build`."""
+    tree, place = os.path.abspath(__file__).rsplit(os.sep, 3)[0], os.path.join("verify", "python", "sphproof.py")
+    path = os.path.join(tree, "build", "sphproof")
+    return path if os.path.abspath(__file__) == os.path.join(tree, place) and os.path.exists(path) else None
+
+
 def _program():
-    path = os.environ.get("SPHPROOF") or _beside("bin/sphproof", "build/sphproof") or shutil.which("sphproof")
+    path = os.environ.get("SPHPROOF") or _beside("bin/sphproof") or _built() or shutil.which("sphproof")
     if not path:
         raise Error("no program sphproof: neither installed with this module, nor on the PATH, nor named by SPHPROOF")
     return path
