@@ -1,0 +1,362 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What commands print and write, and how they end, is what data/transcripts says: word for word,
+ * numbers to seven digits; round-off counts as 0, and what depends on the build and the machine is
+ * left out. Arguments: the folder, and names of transcripts.
+ *
+ * A transcript: "$ WORDS" runs a command, its output follows, and "exit N" unless N is 0; of a long
+ * output the number of its lines and a digest. "< FILE" writes what follows up to a line "." into
+ * FILE. "$ show FILE" prints a file; of rows of numbers their sums. There is a gnuplot that keeps
+ * its script as drawn.gp. With SPHPROOF_KEEP=FOLDER the transcripts are written there as they
+ * should be, and NAME.whole with the outputs whole, to be compared with those of another build. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <ctype.h>
+#include <errno.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "buffer.h"
+#include "command.h"
+#include "made_document.h"
+
+enum { SHORT = 6, WORDS = 48, COLUMNS = 12, LINE_MAX = 1 << 16 };
+
+static const char *folder;
+static char place[] = "sphproof_transcripts_XXXXXX";
+
+/* ---- files ---- */
+
+static char *read_all(const char *path)
+{
+    struct buffer text = {0};
+    char part[4096];
+    FILE *file = fopen(path, "r");
+    if (!file) return NULL;
+    for (size_t n; (n = fread(part, 1, sizeof part, file));) buffer_add_bytes(&text, part, n);
+    fclose(file);
+    return buffer_take(&text);
+}
+
+static void write_all(const char *path, const char *text)
+{
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs(text, file);
+    fclose(file);
+}
+
+/* A row of numbers, separated by blanks or commas; their count, 0: it is none. */
+static size_t numbers_of(const char *line, double values[COLUMNS])
+{
+    size_t n = 0;
+    for (char *end; *line && *line != '\n'; line = end) {
+        const double value = strtod(line, &end);
+        if (end == line || n == COLUMNS) return 0;
+        values[n++] = value;
+        while (*end == ' ' || *end == ',') end++;
+    }
+    return n;
+}
+
+/* Sums of the columns, and of the columns times the row's number, so that order matters. */
+static void show(struct buffer *to, const char *path)
+{
+    double sum[2 * COLUMNS] = {0}, values[COLUMNS];
+    size_t rows = 0, width = 0, missing = 0;
+    char *text = read_all(path);
+    if (!text) {
+        buffer_format(to, "no file %s\n", path);
+        return;
+    }
+    for (char *line = text, *next; *line; line = next) {
+        next = line + strcspn(line, "\n");
+        if (*next) next++;
+        const size_t n = numbers_of(line, values);
+        if (rows && n != width) {
+            buffer_format(to, "[%zu rows, %zu not a number:", rows, missing);
+            for (size_t k = 0; k < 2 * width; k++) buffer_format(to, " %.12g", sum[k]);
+            buffer_add(to, "]\n");
+            rows = missing = 0;
+            memset(sum, 0, sizeof sum);
+        }
+        if (!n) buffer_add_bytes(to, line, (size_t)(next - line));
+        for (size_t k = 0; k < n; k++) {
+            missing += isnan(values[k]) ? 1 : 0;
+            if (isnan(values[k])) continue;
+            sum[k] += values[k];
+            sum[n + k] += values[k] * (double)(rows + 1);
+        }
+        if (n) width = n, rows++;
+        if (n && !*next) buffer_format(to, "[%zu rows, %.12g, %.12g]\n", rows, sum[0], sum[n - 1]);
+    }
+    free(text);
+}
+
+/* ---- commands ---- */
+
+/* "a 'b c' d": words, quotes taken away. */
+static int split(char *line, char *words[WORDS])
+{
+    int n = 0;
+    for (char *c = line; *c;) {
+        while (*c == ' ') c++;
+        if (!*c) break;
+        assert_true(n < WORDS);
+        char *to = words[n++] = c;
+        for (char quote = 0; *c && (quote || *c != ' '); c++)
+            if (quote ? *c == quote : *c == '\'' || *c == '"')
+                quote = quote ? 0 : *c;
+            else
+                *to++ = *c;
+        c += *c != 0;
+        *to = 0;
+    }
+    return n;
+}
+
+/* What depends on the machine, the day, the build: what follows these words on a line is left out.
+ */
+static const char *const left_out[] = {"\"version\": ",
+                                       "\"git\": ",
+                                       "\"compiler\": ",
+                                       "\"flags\": ",
+                                       "\"system\": ",
+                                       "\"architecture\": ",
+                                       "\"processor\": ",
+                                       "\"cores\": ",
+                                       "\"date\": ",
+                                       "\"wall_s\": ",
+                                       "\"cpu_s\": ",
+                                       "\"peak_rss_bytes\": ",
+                                       "\"memory_bytes\": ",
+                                       "\ncost ",
+                                       "pair interactions, ",
+                                       "\nit would take ",
+                                       "\"old_git\": ",
+                                       "\"new_git\": ",
+                                       "sphproof 0",
+                                       "\"subject\": ",
+                                       "\"floor\": ",
+                                       "\"seconds\": ",
+                                       "\"bytes\": ",
+                                       " results, ",
+                                       "\nold  ",
+                                       "\nnew  ",
+                                       "\"git_before\": "};
+
+/* Where the blanks before the last word begin. */
+static char *last_column(char *line)
+{
+    char *at = strrchr(line, ' ');
+    while (at > line && at[-1] == ' ') at--;
+    return at;
+}
+
+static void add_filtered(struct buffer *to, const char *text)
+{
+    bool cpu_column = false;
+    int closed = -1; /* what was asked for, and what grows with every new key: its indentation */
+    char line[LINE_MAX];
+    for (const char *next; *text; text = next) {
+        size_t length = strcspn(text, "\n");
+        next = text + length + (text[length] == '\n');
+        assert_true(length + 2 < sizeof line);
+        snprintf(line, sizeof line, "\n%.*s", (int)length, text);
+        const int indentation = (int)strspn(line + 1, " ");
+        if (closed >= 0) {
+            if (indentation == closed) closed = -1;
+            continue;
+        }
+        if (strstr(line, "\"settings\": {") || strstr(line, "\"plan\": [")) closed = indentation;
+        for (size_t k = 0; k < sizeof left_out / sizeof *left_out; k++) {
+            char *at = strstr(line, left_out[k]);
+            if (at) strcpy(at + strlen(left_out[k]), "~");
+        }
+        if (strncmp(line, "\n  ok   ", 8) == 0 && strlen(line) > 26)
+            strcpy(line + 26, "~"); /* round-off */
+        const size_t end = strlen(line);
+        if (cpu_column && isdigit((unsigned char)line[end - 1]) && line[1] == ' ')
+            strcpy(last_column(line), " ~");
+        else
+            cpu_column = end > 5 && strcmp(line + end - 5, "CPU s") == 0;
+        buffer_add(to, line + 1);
+        if (text[length]) buffer_add(to, "\n");
+    }
+}
+
+/* Without what differs from one machine to the next: numbers to seven digits, what is below 1e-11
+ * is 0, one blank before a number that has many. Long lines are cut: lists of names grow. */
+static char *plain(const char *text)
+{
+    enum { LONGEST = 200 };
+    struct buffer to = {0};
+    char before = '\n';
+    for (size_t column = 0; *text; before = text[-1]) {
+        const char *word = text + strspn(text, " ");
+        const bool sign = *word == '-' || *word == '+';
+        const bool begins =
+            word > text || !(isalnum((unsigned char)before) || strchr("_.", before));
+        if (begins && isdigit((unsigned char)word[sign])) {
+            char *end;
+            const double value = strtod(word, &end);
+            if (column < LONGEST)
+                buffer_format(&to, fabs(value) < 1e-11 ? "%s0" : "%s%.7g", word > text ? " " : "",
+                              value);
+            column += (size_t)(end - text), text = end;
+        } else {
+            const size_t n = word > text ? (size_t)(word - text) : 1;
+            if (column < LONGEST || *text == '\n') buffer_add_bytes(&to, text, n);
+            column = *text == '\n' ? 0 : column + n;
+            text += n;
+        }
+    }
+    return buffer_take(&to);
+}
+
+/* What is added to a transcript: a short output as it is, of a long one the number of its lines and
+ * a digest of it. The whole of it goes to the file, if there is one. */
+static void add_output(struct buffer *to, FILE *whole, const char *text)
+{
+    size_t lines = 0;
+    char *same = plain(text);
+    for (const char *c = text; *c; c++) lines += *c == '\n';
+    if (whole) fputs(same, whole);
+    if (lines > SHORT)
+        buffer_format(to, "[%zu lines, %016" PRIx64 "]\n", lines, made_digest(0, same));
+    else
+        buffer_add(to, same);
+    free(same);
+}
+
+/* In this process; both streams go to one file. */
+static void run(struct buffer *result, FILE *whole, char *line)
+{
+    struct buffer output = {0}, shown = {0}, *to = &output;
+    char *text;
+    char program[] = "sphproof", *words[WORDS + 1] = {program};
+    const int n = 1 + split(line, words + 1);
+    if (n > 2 && !strcmp(words[1], "show")) {
+        show(&shown, words[2]);
+        text = buffer_take(&shown);
+        add_filtered(to, text);
+        free(text);
+        goto end;
+    }
+    words[n] = NULL;
+    fflush(NULL);
+    const int out = dup(1), err = dup(2);
+    assert_non_null(freopen("output", "w", stdout));
+    dup2(1, 2);
+    const int status = command_main(n, words);
+    fflush(NULL);
+    dup2(out, 1), dup2(err, 2);
+    close(out), close(err);
+    text = read_all("output");
+    add_filtered(to, text);
+    if (to->size && to->data[to->size - 1] != '\n') buffer_add(to, "\n");
+    if (status) buffer_format(to, "exit %d\n", status);
+    free(text);
+end:
+    text = buffer_take(to);
+    add_output(result, whole, text);
+    free(text);
+}
+
+/* ---- transcripts ---- */
+
+static void transcript(void **state)
+{
+    const char *name = *state, *keep = getenv("SPHPROOF_KEEP");
+    char path[4096], line[LINE_MAX];
+    struct buffer made = {0}, file = {0};
+    bool skipping = false, writing = false;
+    FILE *whole = NULL;
+    if (keep) {
+        snprintf(path, sizeof path, "%s/%s.whole", keep, name);
+        whole = fopen(path, "w");
+        assert_non_null(whole);
+    }
+    snprintf(path, sizeof path, "%s/%s.txt", folder, name);
+    char *expected = read_all(path), written[128] = "";
+    if (!expected) fail_msg("%s: %s", path, strerror(errno));
+    for (const char *text = expected, *next; *text; text = next) {
+        const size_t length = strcspn(text, "\n");
+        next = text + length + (text[length] == '\n');
+        snprintf(line, sizeof line, "%.*s", (int)length, text);
+        const bool command = !writing && !strncmp(line, "$ ", 2),
+                   input = !writing && !strncmp(line, "< ", 2);
+        if (command || input) skipping = false;
+        if (!skipping) buffer_add_bytes(&made, text, (size_t)(next - text));
+        if (command) {
+            skipping = true;
+            if (whole) fprintf(whole, "%s\n", line);
+            run(&made, whole, line + 2);
+        } else if (input) {
+            writing = true;
+            snprintf(written, sizeof written, "%.100s", line + 2);
+        } else if (writing && !strcmp(line, ".")) {
+            char *content = buffer_take(&file);
+            write_all(written, content);
+            free(content);
+            writing = false;
+        } else if (writing) {
+            buffer_add_bytes(&file, text, (size_t)(next - text));
+        }
+    }
+    char *found = buffer_take(&made);
+    assert_non_null(found);
+    if (keep) {
+        snprintf(path, sizeof path, "%s/%s.txt", keep, name);
+        write_all(path, found);
+    } else {
+        size_t at = 0, command = 0;
+        while (found[at] && found[at] == expected[at]) at++;
+        for (size_t k = 0; k < at; k++)
+            if (!strncmp(found + k, "\n$ ", 3)) command = k + 1;
+        if (found[at] != expected[at])
+            fail_msg("%s: is not what it was:\n%.600s", name, found + command);
+    }
+    free(found);
+    free(expected);
+    if (whole) fclose(whole);
+}
+
+/* In a folder of its own, with a gnuplot that draws nothing. */
+static int begin(void **state)
+{
+    (void)state;
+    char path[8192], here[4096];
+    if (!mkdtemp(place) || chdir(place) || !getcwd(here, sizeof here)) return 1;
+    write_all("gnuplot", "#!/bin/sh\ncat >drawn.gp\necho \"<svg viewBox='0 0 1 1'>\n</svg>\"\n");
+    chmod("gnuplot", 0755);
+    snprintf(path, sizeof path, "%s:%s", here, getenv("PATH") ? getenv("PATH") : "/usr/bin:/bin");
+    return setenv("PATH", path, 1) || setenv("TERM", "dumb", 1);
+}
+
+static int end(void **state)
+{
+    (void)state;
+    char command[64];
+    snprintf(command, sizeof command, "rm -r %s", place);
+    return chdir("..") || system(command);
+}
+
+int main(int argc, char **argv)
+{
+    struct CMUnitTest tests[32] = {{0}};
+    if (argc < 3 || argc > 34 || argv[1][0] != '/') return 2;
+    folder = argv[1];
+    for (int k = 2; k < argc; k++)
+        tests[k - 2] =
+            (struct CMUnitTest){.name = argv[k], .test_func = transcript, .initial_state = argv[k]};
+    return _cmocka_run_group_tests("transcripts", tests, (size_t)argc - 2, begin, end);
+}
