@@ -6,6 +6,13 @@
 
 #include "solver.h"
 
+enum { DUE_EVERY = 16 /* steps: a look at every particle that is awake */ };
+
+bool sleep_due(const struct simulation *simulation)
+{
+    return simulation->cost.steps % DUE_EVERY == DUE_EVERY - 1;
+}
+
 void sleep_scale(struct simulation *simulation)
 {
     const struct particles *a = &simulation->particles;
@@ -27,7 +34,8 @@ void sleep_scale(struct simulation *simulation)
 /* Positions of order 1 are known to eps, spacings to n^(1/d) eps. */
 double sleep_tolerance(const struct simulation *simulation)
 {
-    const double across = pow((double)simulation->particles.n, 1. / simulation->plan.dim);
+    const double n = (double)simulation->particles.n;
+    const double across = simulation->plan.dim == 1 ? n : pow(n, 1. / simulation->plan.dim);
     return fmax(1e-11, 30 * DBL_EPSILON * across);
 }
 

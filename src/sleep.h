@@ -45,6 +45,9 @@ struct sleep {
 #define SLEEP_CALM    0.25
 #define SLEEP_VIOLENT 1e5
 
+/* Whether it is time, now and then, to look for particles that may fall asleep again. */
+bool sleep_due(const struct simulation *simulation);
+
 /* Sets sleep.sound from the state. */
 void sleep_scale(struct simulation *simulation);
 

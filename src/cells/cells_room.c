@@ -514,9 +514,6 @@ static void describe(const struct simulation *simulation, description_visit *vis
 
 /* --- sleep ------------------------------------------------------------------------------------ */
 
-/* Steps from one look for who may sleep again to the next. */
-enum { LULL_EVERY = 16 };
-
 /* Finds everybody's level. Only what moves with its neighbours may sleep: in a shear flow on a
  * lattice forces vanish, too, and neighbours change all the same. */
 static struct cells_quiet find_quiet(struct simulation *simulation)
@@ -588,7 +585,7 @@ static void update_sleep(struct simulation *simulation)
 {
     struct room *room = room_of(simulation);
     const ptrdiff_t n = simulation->particles.n;
-    const bool due = simulation->cost.steps % LULL_EVERY == LULL_EVERY - 1;
+    const bool due = sleep_due(simulation);
     if (!room->asleep || (simulation->sleep.awake_count == n && !due)) return;
     const struct cells_quiet quiet = find_quiet(simulation);
     cells_wake(room->cells, &room->fields, &quiet, room->asleep);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Sleep in 1D: groups of successive particles, spans of awake groups, ranges of the spans. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,19 +14,45 @@ static int group_len(const struct simulation *simulation, ptrdiff_t group)
     return left < GROUP ? (int)left : GROUP;
 }
 
-static bool group_disturbed(const struct simulation *simulation, ptrdiff_t group)
+/* The largest disturbance of these particles, in tolerances: their rates, and the speeds at which
+ * they and their right neighbours move against each other. Cold gas that streams apart has no
+ * rates, but its density changes. NaN where a value is no number. */
+static double disturbance_of(const struct simulation *simulation, ptrdiff_t first, ptrdiff_t len)
 {
-    return !(sleep_disturbance(simulation, group * GROUP, group_len(simulation, group)) <= 1);
+    const struct particles *a = &simulation->particles;
+    const double in_tolerances = 1 / sleep_tolerance(simulation);
+    double worst = sleep_disturbance(simulation, first, len);
+    for (ptrdiff_t i = first; i < first + len; i++) {
+        const double right = a->v[0][i + 1 < a->n ? i + 1 : 0];
+        const double sound = simulation->sleep.sound;
+        const double against = fabs(right - a->v[0][i]) / (a->c[i] < sound ? sound : a->c[i]);
+        if (!(against * in_tolerances <= worst || isnan(worst))) worst = against * in_tolerances;
+    }
+    return worst;
 }
 
-/* Groups around a disturbed one that must be awake: a disturbance passes through density and forces
- * in one step, so it comes twice the reach of pairs closer. */
+static bool group_disturbed(const struct simulation *simulation, ptrdiff_t group)
+{
+    return !(disturbance_of(simulation, group * GROUP, group_len(simulation, group)) <= 1);
+}
+
+/* Most gas that is awake shows it in its first particle. */
+static bool group_calm(const struct simulation *simulation, ptrdiff_t group)
+{
+    const ptrdiff_t first = group * GROUP;
+    return disturbance_of(simulation, first, 1) <= SLEEP_CALM &&
+           disturbance_of(simulation, first, group_len(simulation, group)) <= SLEEP_CALM;
+}
+
+/* How many groups on either side of a disturbed one are kept awake: in one step a disturbance
+ * passes through the sum of density and that of forces, each of which carries it by the reach of
+ * pairs. */
 static ptrdiff_t margin(ptrdiff_t reach)
 {
     return 2 * reach / GROUP + 1;
 }
 
-/* A group and its neighbours, across the ends of the box. */
+/* Wakes a group and `reach` groups on either side of it, across the ends of the periodic box. */
 static void wake(struct groups *groups, ptrdiff_t group, ptrdiff_t reach)
 {
     const ptrdiff_t count = groups->count;
@@ -36,8 +63,8 @@ static void wake(struct groups *groups, ptrdiff_t group, ptrdiff_t reach)
     }
 }
 
-/* The next group from the given one on that is awake, or asleep; their number where there is none.
- */
+/* The first group from the given one on that is awake (or that sleeps, as `awake` says); the number
+ * of groups where there is none. */
 static ptrdiff_t find_group(const struct groups *groups, ptrdiff_t from, bool awake)
 {
     const unsigned char *found =
@@ -80,7 +107,8 @@ static void lay_out(struct simulation *simulation)
         }
 }
 
-/* A group falls asleep, with a limit of the time step that stays. */
+/* Sends a group to sleep. It keeps the limit that its signal speed sets to the time step: nothing
+ * about it changes while it sleeps. Ghosts of positions and velocities are up to date. */
 static void fall_asleep(struct simulation *simulation, ptrdiff_t group, ptrdiff_t reach)
 {
     const struct particles *a = &simulation->particles;
@@ -98,10 +126,11 @@ static enum status allocate(struct simulation *simulation, struct error *error)
     const ptrdiff_t n = simulation->particles.n;
     groups->count = (n + GROUP - 1) / GROUP;
     groups->awake = calloc((size_t)groups->count, 1);
+    groups->stirred = calloc((size_t)groups->count, 1);
     /* whole vectors */
     groups->rate = calloc((size_t)(groups->count + 7), sizeof *groups->rate);
     sleep->spans = malloc((size_t)groups->count * sizeof *sleep->spans);
-    return groups->awake && groups->rate && sleep->spans
+    return groups->awake && groups->stirred && groups->rate && sleep->spans
                ? STATUS_OK
                : error_set(error, STATUS_ENVIRONMENT, "no memory for %td particles", n);
 }
@@ -131,11 +160,13 @@ void groups_wake_all(struct simulation *simulation)
     struct groups *groups = &line_of(simulation)->groups;
     memset(groups->awake, 1, (size_t)groups->count);
     memset(groups->rate, 0, (size_t)groups->count * sizeof *groups->rate);
+    if (simulation->plan.sleep) simulation->sleep.at_rest = true; /* there are no sleepers */
     lay_out(simulation);
 }
 
-/* Disturbances come from inside: looks from one end of a span inwards, in the direction step, for
- * the outermost disturbed group. Returns whether it woke anybody. */
+/* Disturbances reach sleepers from inside the awake spans. Looks from one end of a span inwards, in
+ * the direction `step`, for the outermost disturbed group, and wakes the groups around it. Returns
+ * whether there was one. */
 static bool wake_beyond(struct simulation *simulation, ptrdiff_t end, ptrdiff_t step,
                         ptrdiff_t reach, ptrdiff_t count)
 {
@@ -147,10 +178,10 @@ static bool wake_beyond(struct simulation *simulation, ptrdiff_t end, ptrdiff_t 
     return false;
 }
 
-void groups_update(struct simulation *simulation)
+/* Wakes the sleepers that a disturbance inside an awake span is about to reach. */
+static bool wake_ahead(struct simulation *simulation)
 {
     const struct sleep *sleep = &simulation->sleep;
-    if (!sleep->on) return;
     bool woken = false;
     const struct range *range = line_of(simulation)->ranges;
     for (ptrdiff_t s = 0; s < sleep->span_count; s++) {
@@ -162,5 +193,40 @@ void groups_update(struct simulation *simulation)
         woken |= wake_beyond(simulation, last, -1, margin(range->force_reach), last - first + 1);
         range++;
     }
-    if (woken) lay_out(simulation);
+    return woken;
+}
+
+/* Sends every awake group to sleep that has only calm groups within the margin, calm being well
+ * below what wakes. Returns whether there was one. */
+static bool sleep_again(struct simulation *simulation)
+{
+    const struct particles *a = &simulation->particles;
+    struct line *line = line_of(simulation);
+    struct groups *groups = &line->groups;
+    const ptrdiff_t around = margin(line->reach);
+    memset(groups->stirred, 0, (size_t)groups->count);
+    for (ptrdiff_t group = 0; group < groups->count; group++) {
+        if (!groups->awake[group] || group_calm(simulation, group)) continue;
+        for (ptrdiff_t k = -around; k <= around; k++)
+            groups->stirred[((group + k) % groups->count + groups->count) % groups->count] = 1;
+    }
+    bool found = false;
+    for (ptrdiff_t group = 0; group < groups->count; group++) {
+        if (!groups->awake[group] || groups->stirred[group]) continue;
+        if (!found) { /* particles have moved since the last sums */
+            ghosts_fill(a, a->x[0], line->reach + 1, a->period[0]);
+            ghosts_fill(a, a->v[0], line->reach + 1, 0);
+        }
+        groups->awake[group] = 0;
+        fall_asleep(simulation, group, line->reach);
+        found = true;
+    }
+    return found;
+}
+
+void groups_update(struct simulation *simulation)
+{
+    bool changed = simulation->sleep.on && wake_ahead(simulation);
+    if (simulation->plan.sleep && sleep_due(simulation)) changed |= sleep_again(simulation);
+    if (changed) lay_out(simulation);
 }

@@ -22,8 +22,9 @@ enum { GROUP = 8 }; /* particles that sleep and wake together */
 
 struct groups {
     ptrdiff_t count;
-    unsigned char *awake; /* of each group */
-    double *rate;         /* signal speed / h of each group when it fell asleep, 0 awake */
+    unsigned char *awake;   /* of each group */
+    unsigned char *stirred; /* of each group: too near a disturbance to fall asleep; scratch */
+    double *rate;           /* signal speed / h of each group when it fell asleep, 0 awake */
 };
 
 /* The room of a simulation in 1D. */
@@ -91,7 +92,7 @@ enum status forces_reserve_scratch(struct simulation *simulation, ptrdiff_t reac
                                    struct error *error);
 enum status groups_begin(struct simulation *simulation, struct error *error);
 void groups_update(struct simulation *simulation);
-/* Everybody wakes (the order has changed). */
+/* Wakes all groups: the order of particles has changed, and groups are others now. */
 void groups_wake_all(struct simulation *simulation);
 
 #endif

@@ -555,8 +555,7 @@ static void disturbed_beyond_a_limit(void **state)
                         struct error error;
                         struct particles *a = &s.particles;
                         if (particles_create(a, dim, n, 0, &error)) fail_msg("%s", error.message);
-                        const double limit =
-                            fmax(1e-11, 30 * DBL_EPSILON * pow(n, 1. / dim));
+                        const double limit = fmax(1e-11, 30 * DBL_EPSILON * pow(n, 1. / dim));
                         if (mean) s.sleep.sound = 20;
                         for (int i = 0; i < 9; i++) {
                             a->P[i] = 3 + i, a->c[i] = 2 + i, a->h[i] = 0.25 + 0.125 * i;
@@ -615,7 +614,8 @@ static void sleeps(const struct simulation *s, const bool *awake)
         double rate_of = 0; /* of gas that moves as one */
         for (ptrdiff_t i = g * GROUP; i < n && i < (g + 1) * GROUP; i++)
             rate_of = fmax(rate_of, 2 * s->particles.h_inverse[i]);
-        assert_true(line->groups.rate[g] == (awake[g] ? 0 : rate_of));
+        if (awake[g]) rate_of = 0;
+        assert_true(fabs(line->groups.rate[g] - rate_of) <= 1e-10 * rate_of);
         rate = fmax(rate, line->groups.rate[g]);
         for (ptrdiff_t i = g * GROUP; !awake[g] && i < n && i < (g + 1) * GROUP; i++)
             assert_true(s->particles.F[0][i] == 0 && s->particles.de[i] == 0);
@@ -655,6 +655,39 @@ static ptrdiff_t margin_of(ptrdiff_t reach)
     ptrdiff_t margin = 0;
     while (margin * GROUP < 2 * reach + 2) margin++;
     return margin;
+}
+
+/* Awake groups fall asleep again far from those that are not calm (above a quarter of the
+ * tolerance, in a rate or in a velocity beside its neighbour's), and look for it in one step of 16.
+ */
+static void sleep_once_calm(struct simulation *s, ptrdiff_t reach, bool sheared)
+{
+    const ptrdiff_t n = s->particles.n, groups = (n + GROUP - 1) / GROUP;
+    bool awake[100] = {false};
+    const double limit = fmax(1e-11, 30 * DBL_EPSILON * (double)n), v = s->particles.v[0][0];
+    for (ptrdiff_t i = 0; i < n; i++) s->particles.F[0][i] = 0.24 * limit, s->particles.de[i] = 0;
+    for (ptrdiff_t g = 0; g < groups; g++) {
+        const ptrdiff_t at = g * GROUP + draw_count(0, GROUP - 1);
+        if (draw(0, 1) > 0.06 || at >= n) continue;
+        if (sheared) {
+            s->particles.v[0][at] = v + 0.3 * limit;
+            if (at % GROUP == 0) wake_around(awake, groups, g - 1, margin_of(reach));
+        } else {
+            s->particles.F[0][at] = -0.26 * limit;
+        }
+        wake_around(awake, groups, g, margin_of(reach));
+    }
+    line_of(s)->ranges[0].reach = 1; /* as laid out anew */
+    s->cost.steps = 14;
+    groups_update(s);
+    assert_int_equal(s->sleep.awake_count, n);
+    s->cost.steps = 31;
+    groups_update(s);
+    for (ptrdiff_t i = 0; i < n; i++) {
+        if (!awake[i / GROUP]) assert_true(s->particles.F[0][i] == 0);
+        s->particles.v[0][i] = v;
+    }
+    sleeps(s, awake);
 }
 
 /* Who falls asleep at the start, and who wakes when a signal comes near the end of a span. */
@@ -718,6 +751,7 @@ static void groups_sleep_and_wake(void **state)
         s.particles.F[0][3] = 1, line->ranges[0].reach = 5;
         groups_update(&s); /* all are awake: nothing to do */
         assert_int_equal(line->ranges[0].reach, 5);
+        sleep_once_calm(&s, reach, scene % 2);
         unmade(&s);
     }
 }
