@@ -281,7 +281,7 @@ static void is_noted(const struct layout *l, const struct item *items,
           dim || phantom ? "the file says so, and positions" : "positions differ along");
 }
 
-static const struct snapshot_options here = {.here = true};
+static struct snapshot_options here = {.here = true};
 
 static inline void reads(const struct layout *l, const struct item *items, const char *what)
 {

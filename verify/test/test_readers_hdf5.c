@@ -11,6 +11,9 @@
 #ifdef HAVE_HDF5
 #include <float.h>
 
+#include <signal.h>
+#include <sys/resource.h>
+
 #include "made_layouts.h"
 
 static void left_out(void **state)
@@ -47,6 +50,38 @@ static void left_out(void **state)
                 items[k].path[0] = '\0';
         refuses(l, items, "no energies", "neither u nor P");
     }
+}
+
+/* The same, read in a process of its own; and where that cannot hand over what it has read. */
+static void apart(void **state)
+{
+    struct rlimit usual, none;
+    struct snapshot_file file;
+    struct error error = {0};
+    struct item items[ITEMS_MAX];
+    char folder[] = "TMPDIR=no_such_folder";
+    here.here = false;
+    left_out(state);
+    write_items(path_of("a.hdf5"), items, items_of(&layouts[0], items));
+    assert_int_equal(getrlimit(RLIMIT_FSIZE, &usual), 0);
+    none = usual, none.rlim_cur = 1000;
+    signal(SIGXFSZ, SIG_IGN);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &none), 0);
+    const enum status full = snapshot_read(path_of("a.hdf5"), &here, &file, &error);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &usual), 0);
+    assert_int_equal(full, STATUS_ENVIRONMENT);
+    if (!strstr(error.message, "no space for what")) fail_msg("%s", error.message);
+    snapshot_file_free(&file);
+    const char *usual_folder = getenv("TMPDIR");
+    putenv(folder);
+    assert_int_equal(snapshot_read(path_of("a.hdf5"), &here, &file, &error), STATUS_ENVIRONMENT);
+    if (!strstr(error.message, "no temporary file for what")) fail_msg("%s", error.message);
+    snapshot_file_free(&file);
+    if (usual_folder)
+        setenv("TMPDIR", usual_folder, 1);
+    else
+        unsetenv("TMPDIR");
+    here.here = true;
 }
 
 /* Numbers may be stored in any way: nothing that is read differs. */
@@ -200,9 +235,8 @@ static void spoilt_numbers(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(left_out),
-        cmocka_unit_test(other_forms),
-        cmocka_unit_test(spoilt_columns),
+        cmocka_unit_test(left_out),       cmocka_unit_test(apart),
+        cmocka_unit_test(other_forms),    cmocka_unit_test(spoilt_columns),
         cmocka_unit_test(spoilt_numbers),
     };
     return cmocka_run_group_tests(tests, make_place, remove_place);

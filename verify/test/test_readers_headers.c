@@ -190,6 +190,47 @@ static void phantom(void **state)
         }
 }
 
+/* Our own say where their box begins, from which positions count, and what they are of. */
+static void placed(void **state)
+{
+    (void)state;
+    for (int numbers = 0; numbers <= 4; numbers++) /* of the corner; 4: without a box */
+        for (int columns = 1; columns <= 3; columns += 2) {
+            struct layout l = layouts[0];
+            struct item items[ITEMS_MAX];
+            struct snapshot_file file;
+            struct error error = {0};
+            size_t n = items_of(&l, items);
+            const bool counts = numbers == 3;
+            struct item *x = item_called(items, "PartType0/Coordinates");
+            x->shape[1] = (hsize_t)columns;
+            for (int i = 0; i < N * columns; i++) x->values[i] = (7 * i) % 13;
+            item_called(items, "Header/Dimension")->path[0] = '\0';
+            if (numbers == 4) item_called(items, "Header/BoxSize")->path[0] = '\0';
+            items[n] = (struct item){"Header/Origin", true, F64, 1, {3}, false, {-3, 40, 5}, ""};
+            items[n++].shape[0] = numbers && numbers < 4 ? (hsize_t)numbers : 3;
+            if (!numbers) n--;
+            items[n++] = (struct item){"Header/Case", true, TEXT, 0, {0}, false, {0}, "sod"};
+            items[n++] = (struct item){"Header/Keys", true, TEXT, 0, {0}, false, {0}, "n=3; eta=4"};
+            items[n++] = (struct item){"Header/Boundary", true, TEXT, 0, {0}, false, {0}, "open"};
+            write_items(path_of("o.hdf5"), items, n);
+            if (snapshot_read(path_of("o.hdf5"), &here, &file, &error))
+                fail_msg("%s", error.message);
+            assert_true(file.placed == counts);
+            for (int d = 0; d < 3; d++) {
+                const double corner = d ? d == 1 ? 40 : 5 : -3;
+                assert_true(file.corner[d] == (counts && d < columns ? corner : 0));
+                for (int i = 0; i < N && d < columns; i++)
+                    assert_true(file.column[d][i] ==
+                                (7 * (columns * i + d)) % 13 + (counts ? corner : 0));
+            }
+            assert_string_equal(file.case_name, "sod");
+            assert_string_equal(file.keys, "n=3; eta=4");
+            assert_string_equal(file.boundary, "open");
+            snapshot_file_free(&file);
+        }
+}
+
 /* Precision is that of the coarsest column, positions apart. */
 static void precision(void **state)
 {
@@ -277,8 +318,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(other_names), cmocka_unit_test(comoving),  cmocka_unit_test(boxes),
-        cmocka_unit_test(phantom),     cmocka_unit_test(precision), cmocka_unit_test(dimensions),
-        cmocka_unit_test(unknown),
+        cmocka_unit_test(phantom),     cmocka_unit_test(precision), cmocka_unit_test(placed),
+        cmocka_unit_test(dimensions),  cmocka_unit_test(unknown),
     };
     return cmocka_run_group_tests(tests, make_place, remove_place);
 }
