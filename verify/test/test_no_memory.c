@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What is said where there is no memory. The linker's --wrap brings every call for some of the
- * project here first, where the first one fails, then the second one, and so on until all goes
- * well. */
+ * What is said where there is no memory: places of particles, checks, jobs. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -11,7 +9,6 @@
 #include <gsl/gsl_qrng.h>
 #include <gsl/gsl_rng.h>
 #include <math.h>
-#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,6 +22,7 @@
 #include "initial_fill.h"
 #include "junit.h"
 #include "line/line.h"
+#include "made_no_memory.h"
 #include "map.h"
 #include "particle_file.h"
 #include "pool.h"
@@ -36,65 +34,9 @@
 #include "suite.h"
 #include "suite_output.h"
 
-static atomic_int left = -1; /* calls until one fails; < 0: none does */
-static atomic_long held;     /* pieces that nobody has given back */
-
-static bool fails(void)
-{
-    return left >= 0 && left-- == 0;
-}
-
-/* WRAP(name, parameters, arguments, new): the name that the linker gives to calls of name; is it
- * one piece more? */
-#define WRAP(name, parameters, arguments, new)                                                     \
-    void *__real_##name parameters;                                                                \
-    void *__wrap_##name parameters;                                                                \
-    void *__wrap_##name parameters                                                                 \
-    {                                                                                              \
-        const bool more = new;                                                                     \
-        void *given = fails() ? NULL : __real_##name arguments;                                    \
-        if (given && more) held++;                                                                 \
-        return given;                                                                              \
-    }
-WRAP(malloc, (size_t size), (size), true)
-WRAP(calloc, (size_t n, size_t size), (n, size), true)
-WRAP(realloc, (void *memory, size_t size), (memory, size), !memory)
-WRAP(aligned_alloc, (size_t alignment, size_t size), (alignment, size), true)
-WRAP(strdup, (const char *text), (text), true)
-
 /* These are given back elsewhere. */
 WRAP(gsl_rng_alloc, (const gsl_rng_type *type), (type), false)
 WRAP(gsl_qrng_alloc, (const gsl_qrng_type *type, unsigned dim), (type, dim), false)
-
-void __real_free(void *memory);
-void __wrap_free(void *memory);
-void __wrap_free(void *memory)
-{
-    if (memory) held--;
-    __real_free(memory);
-}
-
-/* Each call for memory of `work` fails once: it says so, and of all it asked for nothing is left.
- * There are at least so many calls; where what comes after those can do without, not all. */
-static void without_memory(enum status work(struct error *error), int least, bool all)
-{
-    for (int k = 0;; k++) {
-        struct error error = {0};
-        const long before = held;
-        left = k;
-        const enum status status = work(&error);
-        const bool done = left >= 0 || (!all && k >= least);
-        left = -1;
-        if (held != before) fail_msg("call %d: %ld pieces are left", k, held - before);
-        if (done) {
-            if (all) assert_int_equal(status, STATUS_OK);
-            assert_true(k >= least);
-            return;
-        }
-        if (status != STATUS_ENVIRONMENT || !strstr(error.message, "no memory"))
-            fail_msg("call %d: status %d: %s", k, status, error.message);
-    }
-}
 
 /* ---- where particles start ---- */
 

@@ -1,0 +1,161 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What is said where there is no memory: for snapshots of any format, for judging them, and by the
+ * library. The argument is the folder of the fuzzers' examples. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "made_no_memory.h"
+#include "made_snapshot.h"
+#include "snapshot_csv.h"
+#include "sphproof/convergence.h"
+#include "sphproof/gradients.h"
+#include "sphproof/kernels.h"
+#include "sphproof/rates.h"
+#include "sphproof/simulations.h"
+
+static const char *corpus, *read_path;
+
+static enum status read_file(struct error *error)
+{
+    const struct snapshot_options here = {.here = true};
+    struct snapshot_file file;
+    const enum status status = snapshot_read(read_path, &here, &file, error);
+    snapshot_file_free(&file);
+    return status;
+}
+
+static void formats(void **state)
+{
+    static const char *const names[] = {
+        "csv/table.csv",       "splash/splash.ascii",     "gadget/one.gadget", "gadget/two.gadget",
+        "gadget/plain.gadget", "gadget/two_other.gadget", "phantom/big"};
+    (void)state;
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
+        char path[4096];
+        snprintf(path, sizeof path, "%s/%s", corpus, names[k]);
+        read_path = path;
+        without_memory(read_file, 3, true);
+    }
+}
+
+static enum status as_csv(struct error *error)
+{
+    struct snapshot_file file;
+    struct csv csv;
+    char why[200];
+    const enum status status = snapshot_csv(read_path, &file, &csv, why, error);
+    snapshot_file_free(&file);
+    csv_free(&csv);
+    return status;
+}
+
+static enum status judged(struct error *error)
+{
+    const struct judge_request request = uniform_gas();
+    struct judged judged;
+    const enum status status = judge_snapshot(read_path, &request, &judged, error);
+    judge_free(&judged);
+    return status;
+}
+
+static void judging(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 3; k++) { /* without u, without P, with both */
+        plant(1, 0, "");          /* without a box the case's own start is not asked for */
+        gas.has_u = k != 0, gas.has_P = k != 1, gas.has_h = k == 2;
+        for (int i = 0; i < N; i++) gas.h[i] = 0.004;
+        read_path = put("a.csv");
+        spared = 1; /* a case does without its reference */
+        without_memory(judged, 10, true);
+    }
+    without_memory(as_csv, 20, true);
+}
+
+/* ---- the library ---- */
+
+static enum status passed(enum sphproof_status status, const struct sphproof_error *theirs,
+                          struct error *error)
+{
+    return status ? error_set(error, (enum status)status, "%s", theirs->message) : STATUS_OK;
+}
+
+static double shape_w(double q, int dim)
+{
+    (void)dim;
+    return q < 1 ? (1 - q * q) * (1 - q * q) : 0;
+}
+
+static double shape_dw(double q, int dim)
+{
+    (void)dim;
+    return q < 1 ? -4 * q * (1 - q * q) : 0;
+}
+
+static enum status kernels(struct error *error)
+{
+    const struct sphproof_shape shape = {
+        .w = shape_w, .dw = shape_dw, .dim = 1, .smoothness = -1, .knot_count = -1};
+    struct sphproof_kernel *kernel = NULL;
+    struct sphproof_error theirs;
+    enum sphproof_status status = sphproof_kernels_find("cubic_spline", &kernel, &theirs);
+    assert_true(!kernel == !!status);
+    sphproof_kernels_free(kernel);
+    if (!status) {
+        status = sphproof_kernels_own(&shape, &kernel, &theirs);
+        assert_true(!kernel == !!status);
+        sphproof_kernels_free(kernel);
+    }
+    return passed(status, &theirs, error);
+}
+
+static enum status scenes(struct error *error)
+{
+    static const char *const keys[] = {"kernel=cubic_spline", NULL};
+    double arrays[4][16], norms[16];
+    struct sphproof_scene scene = {.dim = 1,
+                                   .n = 16,
+                                   .gamma = 1.4,
+                                   .hi = {1},
+                                   .x = {arrays[0]},
+                                   .v = {arrays[1]},
+                                   .m = arrays[2],
+                                   .u = arrays[3],
+                                   .keys = keys};
+    const struct sphproof_rates rates = {.rho = norms};
+    struct sphproof_simulation *simulation;
+    struct sphproof_norms found;
+    struct sphproof_error theirs;
+    for (int i = 0; i < 16; i++)
+        arrays[0][i] = (i + 0.5) / 16, arrays[1][i] = 0, arrays[2][i] = arrays[3][i] = 1. / 16;
+    enum sphproof_status status = sphproof_rates_evaluate(&scene, &rates, &theirs);
+    if (!status)
+        status = sphproof_convergence_norms(16, NULL, arrays[0], arrays[1], &found, &theirs);
+    if (!status) {
+        status = sphproof_simulations_create(&scene, &simulation, &theirs);
+        assert_true(!simulation == !!status);
+        sphproof_simulations_free(simulation);
+    }
+    return passed(status, &theirs, error);
+}
+
+static void library(void **state)
+{
+    (void)state;
+    without_memory(kernels, 2, true);
+    without_memory(scenes, 8, true);
+}
+
+int main(int argc, char **argv)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(formats),
+        cmocka_unit_test(judging),
+        cmocka_unit_test(library),
+    };
+    corpus = argc > 1 ? argv[1] : "";
+    return cmocka_run_group_tests(tests, make_place, remove_place);
+}
