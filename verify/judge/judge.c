@@ -350,7 +350,9 @@ static void note_kernel(struct judged *judged)
         snapshot_note(notes, "density",
                       best->sum == DENSITY_MASSES ? "sum of m_j W_ij" : "m_i times the sum of W_ij",
                       "%s",
-                      c->same_masses ? "masses are equal: the other sum is the same" : c->why);
+                      c->same_masses ? "masses are equal: the other sum is the same"
+                      : c->any_sum   ? "or the other sum: masses hardly differ, both fit"
+                                     : c->why);
 }
 
 static void note_precision(struct judged *judged)
@@ -398,8 +400,8 @@ static void write_verdict(struct judged *judged)
                       judged->wrong / JUDGE_FOREIGN);
 }
 
-enum status judge_snapshot(const char *path, const struct judge_request *request,
-                           struct judged *judged, struct error *error)
+enum status judge_as(const char *path, const struct judge_request *request, bool glance,
+                     struct judged *judged, struct error *error)
 {
     struct gas gas = {0};
     double period[3] = {0};
@@ -410,7 +412,7 @@ enum status judge_snapshot(const char *path, const struct judge_request *request
     if (!status) status = complete(judged, judged->run.problem.gamma, error);
     if (!status && request->kernel >= 0)
         status = guest_select(&kernel, request->kernel, SINC_ORDER, judged->file.dim, error);
-    if (!status)
+    if (!status && !glance)
         status = conventions_find(&judged->file, period, request->kernel < 0 ? NULL : &kernel,
                                   &request->width, &judged->conventions, error);
     if (!status)
@@ -432,15 +434,30 @@ enum status judge_snapshot(const char *path, const struct judge_request *request
     if (!status) measure_growth(judged);
     if (!status) status = measure_wrong(judged, error);
     if (!status) {
-        judged->foreign = judged->wrong > JUDGE_FOREIGN || judged->case_gamma > 0;
+        judged->far = judged->wrong > JUDGE_FOREIGN;
+        judged->foreign = judged->far || judged->case_gamma > 0;
         judged->passes = !judged->foreign || request->allow_far;
         measure_sums(judged);
         judged->transverse = measure_noise(judged);
-        note_kernel(judged);
+        if (!glance) note_kernel(judged);
         note_precision(judged);
         write_verdict(judged);
     }
     free(gas.storage), free(gas.id);
+    return status;
+}
+
+enum status judge_snapshot(const char *path, const struct judge_request *request,
+                           struct judged *judged, struct error *error)
+{
+    char meant[JUDGE_MEANT];
+    const enum status status = judge_as(path, request, false, judged, error);
+    if (status == STATUS_BAD_INPUT ? !judged->file.n : status || !judged->far) return status;
+    judge_meant(path, request, judged, !status, meant);
+    char *text = status ? error->message : judged->verdict;
+    const size_t size = status ? sizeof error->message : sizeof judged->verdict,
+                 used = strlen(text);
+    if (meant[0]) snprintf(text + used, size - used, "; %s", meant);
     return status;
 }
 

@@ -43,18 +43,33 @@ struct judged {
     double transverse; /* rms of velocities across x, by volume, in the window; NaN in 1D */
     double wrong;      /* worst median error of a field over the range of its exact values */
     enum field wrong_field;
+    bool far;          /* from this case's solution */
     bool foreign;      /* far from this case's solution, or of another gas */
     bool passes;       /* not foreign, or that was allowed */
     double case_gamma; /* where the user named the case and the file has another gamma; else 0 */
-    char verdict[400];
+    char meant[64];    /* the case of ours that it fits, where it is far from the one asked for */
+    char verdict[600];
 };
 
-/* STATUS_BAD_INPUT: what the file holds and what would help. */
+/* A snapshot that is far from its case is compared with our other cases as well. STATUS_BAD_INPUT:
+ * what the file holds and what would help. */
 enum status judge_snapshot(const char *path, const struct judge_request *request,
                            struct judged *judged, struct error *error);
 void judge_free(struct judged *judged);
 
 /* ---- steps of it ---- */
+
+/* judge_snapshot without a word about other cases; glance: without looking for the kernel. */
+enum status judge_as(const char *path, const struct judge_request *request, bool glance,
+                     struct judged *judged, struct error *error);
+
+enum { JUDGE_MEANT = 240 };
+
+/* Tries all other built-in cases that fit the dimension, box, gamma and time of a snapshot that is
+ * far from the case asked for, or could not be judged as it (sound: false). meant: a question with
+ * figures, or that none is near; "" where a snapshot that could not be judged fits none. */
+void judge_meant(const char *path, const struct judge_request *request, struct judged *judged,
+                 bool sound, char meant[JUDGE_MEANT]);
 
 /* Gamma, time, box and place of the case in it: resolves judged->run. */
 enum status judge_place(const struct judge_request *request, struct judged *judged,

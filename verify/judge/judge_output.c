@@ -49,7 +49,7 @@ json_t *judge_one_json(const struct judged *judged, bool profiles)
     const bool plane = judged->file.dim > 1;
     json_t *one = json_pack(
         "{s:s, s:s, s:s, s:o, s:I, s:o, s:i, s:{s:o, s:o}, s:o, s:o, s:o, s:o, s:o, s:{s:o, s:o}, "
-        "s:b, s:s}",
+        "s:b, s:s, s:s?}",
         "file", judged->path, "layout", file->layout, "code", file->code, "assumptions",
         notes_json(&file->notes), "n", (json_int_t)r->n, "time", result_number(r->time), "dim",
         file->dim, "precision", "positions", result_number(file->precision[0]), "fields",
@@ -58,7 +58,8 @@ json_t *judge_one_json(const struct judged *judged, bool profiles)
         run_functionals_json(r), "budget", budget_json(&r->budget), "noise", "transverse_velocity",
         plane ? result_number(judged->transverse) : json_null(), "undisturbed",
         r->budget.regions ? result_number(r->budget.still) : json_null(), "foreign",
-        judged->foreign, "verdict", judged->verdict);
+        judged->foreign, "verdict", judged->verdict, "meant",
+        judged->meant[0] ? judged->meant : NULL);
     if (one && profiles)
         json_object_set_new(one, "profile", plane ? cloud_profile_json(r) : profile_json(r));
     return one;

@@ -175,10 +175,38 @@ static void insert(struct conventions *found, const struct convention *candidate
     found->count++;
 }
 
-static void decide(struct conventions *found, bool forced)
+/* One kernel is the other, whatever their names: a plug-in may be a built-in one written again. */
+static bool same_kernel(const struct kernel *a, const struct kernel *b, int dim)
 {
-    const struct convention *best = &found->candidate[0], *other = NULL;
-    for (size_t k = 1; k < found->count && !other; k++) other = &found->candidate[k];
+    enum { POINTS = 64 };
+    const double top = a->constant[dim] * a->w(a, 0, dim);
+    bool same = true;
+    for (int k = 0; k < POINTS && same; k++) {
+        const double q = (k + 0.5) / POINTS;
+        same = fabs(a->constant[dim] * a->w(a, q, dim) - b->constant[dim] * b->w(b, q, dim)) <=
+               1e-9 * fabs(top);
+    }
+    return same;
+}
+
+/* The best fit of another kernel, or (other_sum) of the same kernel by another sum; NULL: none. */
+static const struct convention *second(const struct conventions *found, int dim, bool other_sum)
+{
+    const struct convention *best = &found->candidate[0];
+    for (size_t k = 1; k < found->count; k++) {
+        const struct convention *c = &found->candidate[k];
+        const bool same = same_kernel(&best->kernel, &c->kernel, dim);
+        if (same == other_sum && (!same || c->sum != best->sum)) return c;
+    }
+    return NULL;
+}
+
+static void decide(struct conventions *found, int dim, bool forced)
+{
+    const struct convention *best = &found->candidate[0];
+    const struct convention *other = found->count ? second(found, dim, false) : NULL;
+    const struct convention *sum = found->count ? second(found, dim, true) : NULL;
+    found->any_sum = sum && !(sum->residual >= CONVENTIONS_BETTER * best->residual);
     if (found->count == 0) {
         snprintf(found->why, sizeof found->why, "no sum is finite");
         return;
@@ -200,10 +228,12 @@ static void decide(struct conventions *found, bool forced)
                  other->residual, CONVENTIONS_BETTER);
     else {
         found->known = true;
-        snprintf(found->why, sizeof found->why,
-                 "the density of %zu particles summed again misses by %.2g; the next, %s, by %.2g",
-                 found->sample, best->residual, other ? other->kernel.member.name : "none",
-                 other ? other->residual : (double)INFINITY);
+        int used = snprintf(found->why, sizeof found->why,
+                            "the density of %zu particles summed again misses by %.2g",
+                            found->sample, best->residual);
+        if (other)
+            snprintf(found->why + used, sizeof found->why - (size_t)used,
+                     "; the next kernel, %s, by %.2g", other->kernel.member.name, other->residual);
     }
 }
 
@@ -246,7 +276,7 @@ enum status conventions_find(const struct snapshot_file *file, const double box[
         }
     }
     if (found->tried && !status)
-        decide(found, only && (meaning->ratio > 0 || meaning->deviations > 0));
+        decide(found, file->dim, only && (meaning->ratio > 0 || meaning->deviations > 0));
     for (size_t k = 0; k < sample->n; k++) free(sample->near[k].neighbour);
     free(sample);
     return status;

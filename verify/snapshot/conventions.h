@@ -39,6 +39,7 @@ struct conventions {
     struct convention candidate[CONVENTIONS_CANDIDATES]; /* best first */
     size_t count;
     bool same_masses;
+    bool any_sum; /* the best kernel's other sum fits about as well */
     size_t sample;
 };
 

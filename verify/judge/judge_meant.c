@@ -1,0 +1,109 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Which of our cases a snapshot is of that does not fit the one it was said to be of. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "judge.h"
+#include "problem_list.h"
+
+/* Two that are nearer to each other than this tell nothing apart; the time at which a case ends
+ * decides between them. */
+static const double alike = 1e-3;
+/* Of what is wrong with the case asked for: a case that is far as well is named below this. */
+static const double much_nearer = 0.3;
+
+/* The file's box is as long as the case's, but for particles that do not reach its ends; a tube may
+ * have any length. */
+static bool same_box(const struct judged *judged, const struct settings *of_case)
+{
+    const struct settings *of_file = &judged->run.settings;
+    const double margin = judged->file.boxed ? 1e-6 : 0.15;
+    if (problem_reads(problem_of(of_case), SETTING_left)) return true;
+    for (int d = 0; d < judged->file.dim; d++) {
+        const double length =
+            settings_along(of_case, SETTING_hi, d) - settings_along(of_case, SETTING_lo, d);
+        const double found =
+            settings_along(of_file, SETTING_hi, d) - settings_along(of_file, SETTING_lo, d);
+        if (!(fabs(found - length) <= margin * length)) return false;
+    }
+    return true;
+}
+
+struct candidate {
+    const char *name;
+    double wrong, late; /* |time - t_end| over t_end */
+    enum field field;
+    bool fieldless, far;
+};
+
+/* What fits comes first; of that, cases of which fields can be compared come before those that are
+ * known by one value alone. */
+static bool nearer(const struct candidate *a, const struct candidate *b)
+{
+    if (!b->name) return true;
+    if (a->far != b->far) return b->far;
+    if (a->fieldless != b->fieldless) return b->fieldless;
+    if (fabs(a->wrong - b->wrong) > alike * fmax(a->wrong, b->wrong)) return a->wrong < b->wrong;
+    return a->late < b->late;
+}
+
+/* False: the file is not of such a box, gas or dimension, or nothing can be compared. */
+static bool try_case(const char *path, const struct judge_request *request,
+                     const struct case_file *file, struct candidate *found)
+{
+    struct judge_request as = *request;
+    struct judged judged;
+    struct error ignored = {0};
+    as.case_name = found->name, as.left = as.right = NULL;
+    const bool fits = !judge_as(path, &as, true, &judged, &ignored) &&
+                      same_box(&judged, &file->settings) && judged.case_gamma == 0;
+    if (fits) {
+        const double t_end = settings_real(&file->settings, SETTING_t_end);
+        found->far = judged.far, found->wrong = judged.wrong, found->field = judged.wrong_field;
+        found->late = fabs(judged.file.time.value - t_end) / t_end;
+        found->fieldless = judged.run.problem.problem->fieldless;
+    }
+    const bool compared =
+        fits && (!found->fieldless || (!found->far && judged.result.functional_count &&
+                                       isfinite(judged.result.functionals[0].exact)));
+    judge_free(&judged);
+    return compared;
+}
+
+void judge_meant(const char *path, const struct judge_request *request, struct judged *judged,
+                 bool sound, char meant[JUDGE_MEANT])
+{
+    struct candidate best = {0};
+    const char *asked = request->case_name ? request->case_name : judged->file.case_name;
+    meant[0] = '\0';
+    if (!request->time.known && !judged->file.time.known) return; /* it fits none */
+    for (const struct case_builtin *c = case_builtins; c->name; c++) {
+        struct case_file file;
+        struct error ignored = {0};
+        struct candidate found = {.name = c->name};
+        if (strcmp(c->name, asked) == 0 || case_load(&file, c->name, &ignored) ||
+            file.dimension != judged->file.dim || !try_case(path, request, &file, &found))
+            continue;
+        if (nearer(&found, &best)) best = found;
+    }
+    const bool fields = sound && !judged->run.problem.problem->fieldless;
+    if (best.far && !(fields && best.wrong < much_nearer * judged->wrong)) best.name = NULL;
+    if (!best.name && sound)
+        snprintf(meant, JUDGE_MEANT, "none of our other cases in %dD is near either",
+                 judged->file.dim);
+    if (!best.name) return;
+    if (!best.far) snprintf(judged->meant, sizeof judged->meant, "%s", best.name);
+    int used = snprintf(meant, JUDGE_MEANT,
+                        best.far ? "nearer, though far as well, is %s (" : "did you mean %s? (",
+                        best.name);
+    if (best.fieldless)
+        used += snprintf(meant + used, JUDGE_MEANT - (size_t)used, "its value is the case's");
+    else
+        used += snprintf(meant + used, JUDGE_MEANT - (size_t)used, "%s off by %.2g of its range",
+                         field_family.members[best.field]->name, best.wrong);
+    if (fields && !best.fieldless)
+        used += snprintf(meant + used, JUDGE_MEANT - (size_t)used, ", against %.2g here",
+                         judged->wrong);
+    snprintf(meant + used, JUDGE_MEANT - (size_t)used, ")");
+}

@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""meant.py SPHPROOF [full]: where a snapshot is judged as another case than it is of, or as none, `sphproof judge`
+names the right one, with figures, or says that none is near; never a wrong one. full: every case of ours as every
+other one of its dimension."""
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+
+PROGRAM, FULL = os.path.abspath(sys.argv[1]), "full" in sys.argv
+CASES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "cases")
+SIZE = {1: "100", 2: "24^2", 3: "10^3"}
+LARGER = {"sod_2d": "1400", "sod_3d": "9216", "rayleigh_taylor_mode": "1152"}
+QUICK = (("gresho", "sod_2d"), ("gresho", "yee"), ("gresho", None), ("sod", "lax"), ("lax", "sod"), ("sound_wave", "sod"))
+# One gas at two times; two modes of layers, measured alike; what grows has an exact value at its own time alone.
+PASS = {("sod", "sod_standard"), ("sod_standard", "sod"), ("kelvin_helmholtz_mode", "rayleigh_taylor_mode")}
+
+
+def output(*words):
+    done = subprocess.run([PROGRAM, *words], capture_output=True, text=True, timeout=120)
+    assert done.returncode in (0, 1, 2), (words, done)
+    return done.returncode, done.stdout + done.stderr
+
+
+def judged(path, case):
+    status, text = output("judge", path, *(["--case", case] if case else []), "--quiet", "--json", "-")
+    got = json.loads(text) if status < 2 else None
+    return status, got["verdict"] if got else text.strip(), got and got["meant"]
+
+
+def look(path, true, asked, fits):
+    """fits: the snapshot is near the solution of its own case, so that this must be named."""
+    status, text, meant = judged(path, asked)
+    told = re.search(r"did you mean (\w+)\? \((.*)\)$", text)
+    nearer = re.search(r"nearer, though far as well, is (\w+) \((.*)\)$", text)
+    if status == 0:
+        assert (true, asked) in PASS or asked == "kelvin_helmholtz", (true, asked, text)
+        return 0
+    if "another gas" in text and "far from" not in text:
+        return 0
+    assert (bool(told) if fits else not told), (true, asked, text)
+    for found in filter(None, (told, nearer)):
+        assert found[1] == true, (true, asked, text)
+        numbers = [float(x) for x in re.findall(r"(?:by|against) (\S+?)(?: |$)", found[2])]
+        assert "its value is" in found[2] or numbers and sorted(numbers) == numbers, (true, asked, text)
+    assert meant == (true if told and status < 2 else None), (true, asked, meant)
+    assert fits or nearer or status == 2 or "none of our other cases" in text, (true, asked, text)
+    return 1
+
+
+def main():
+    cases = {}
+    for name in sorted(os.listdir(CASES)):
+        if name.endswith(".ini"):
+            with open(os.path.join(CASES, name), encoding="ascii") as text:
+                found = re.search(r"(?s)dimension = (\d).*t_end = (\S+)", text.read())
+            cases[name[:-4]] = int(found[1]), float(found[2])
+    pairs = [(a, b) for a in cases for b in cases if a != b and cases[a][0] == cases[b][0]] if FULL else QUICK
+    told, own = 0, {}
+    with tempfile.TemporaryDirectory() as folder:
+        for true, asked in pairs:
+            path = os.path.join(folder, true + ".csv")
+            if true not in own:
+                dim, end = cases[true]
+                status, text = output("run", true, "n=" + LARGER.get(true, SIZE[dim]), "t_end=%r" % (0.3 * end),
+                                      "--snapshot", path, "--quiet")
+                assert status == 0, text
+                with open(path, encoding="utf-8") as file:
+                    lines = [line for line in file if not re.match("# (case|keys)", line)]
+                with open(path, "w", encoding="utf-8") as file:
+                    file.writelines(lines)
+                own[true] = judged(path, true)[0] == 0
+            told += look(path, true, asked, own[true])
+    assert told >= 0.8 * len(pairs) and sum(own.values()) >= 0.7 * len(own), (told, len(pairs), own)
+    print("%d pairs of cases: %d told apart" % (len(pairs), told))
+
+
+main()
