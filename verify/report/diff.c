@@ -25,7 +25,7 @@ static const struct {
     {"", "case"},        {"", "mode"},         {"kernel", "kernel"},     {"kernel", "dim"},
     {"kernel", "h"},     {"gradient", "dim"},  {"gradient", "operator"}, {"gradient", "kernel"},
     {"riemann", "left"}, {"riemann", "right"}, {"riemann", "gamma"},     {"riemann", "time"},
-    {"riemann", "x0"},
+    {"riemann", "x0"},   {"judge", "n"},       {"judge", "time"},
 };
 
 static bool differs(const json_t *a, const json_t *b)

@@ -265,6 +265,8 @@ static void walk_list(struct readings *readings, const struct place *at, const c
         struct place inside = *at;
         if (!json_is_object(entry)) continue; /* raw data */
         name_entry(entry, name);
+        if (strcmp(key, "snapshots") == 0) /* of one run as a rule, each at its time */
+            add_name(name, "time %.10g", value_member(entry, "time"));
         const int length = snprintf(inside.path, sizeof inside.path, "%s%s%.80s[%s]", at->path,
                                     *at->path ? "." : "", key, name);
         if (length >= (int)sizeof inside.path || strlen(name) + 1 >= sizeof name) {

@@ -39,7 +39,11 @@ static const struct reading_rule rules[] = {
     {"faults", "*", OUT},
     {"score", "score", 0, READING_ORDER, 0.05, 0}, /* another sample each night */
     {"score", "*", OUT},
+    {"findings", "*", OUT}, /* named by files; the status is all of them */
     {"", "status", 0, READING_STATUS, 0, 0},
+    {"kernel", "*", OUT},   /* of a snapshot: found, not judged */
+    {"", "foreign", OUT},   /* its status says whether that passes */
+    {"noise", "*", 0, READING_PART, 0.1, 1e-12},
     {"gates", "*", OUT}, /* bounds, and errors that are read where they stand */
     {"", "detected", 0, READING_STATUS, 0, 0},
     {"", "suspicion", 0, READING_STATUS, 0, 0},

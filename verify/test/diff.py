@@ -199,6 +199,27 @@ def test_rewritten(documents):
     expect("a large integer", got == 0, whole)
 
 
+def test_judged():
+    """Snapshots judged, one and several: errors are compared, what was found about them is not."""
+    for k, words in enumerate((["n=100"], ["n=100", "t_end=0.1"], ["n=150"])):
+        made_by("run", "sod", *words, "--snapshot", "judged%d.csv" % k)
+    for files, name in ((["judged0.csv"], "errors.density.l1"),
+                        (["judged0.csv", "judged1.csv", "judged2.csv"], "snapshots[dim 1, n 100, time 0.2].errors.density.l1")):
+        document = made_by("judge", *files, "--gate", "density_l1=1")
+        place = ["snapshots", 0] if len(files) > 1 else []
+        # the errors of the one with most particles stand at the top as well
+        verdict("judged, an error", document, [*place, "errors", "density", "l1"], name, times(1.2), 1, "worse")
+        verdict("judged, an error", document, [*place, "errors", "density", "l1"], name, times(0.8), 0, "better")
+        same = moved(document, [*place, "kernel", "ratio"], times(2))
+        same = moved(same, ["findings", 0, "name"], lambda v: "elsewhere/" + v)
+        got, figures, whole = diff(document, moved(same, ["foreign"], lambda v: not v))
+        expect("judged, what was found", got == 0 and figures, whole)
+        got, _, whole = diff(document, moved(document, ["time"], times(2)))
+        expect("judged at another time", got == 1 and "time" in whole["problem"], whole)
+    got, figures, _ = diff(document, moved(document, ["status"], lambda v: "fail"))
+    expect("judged and failed", got == 1 and figures["status"]["verdict"] == "worse", figures)
+
+
 def test_studies(study):
     order = next(o for o in study["orders"] if (o["field"], o["norm"]) == ("density", "l1"))
     name = "orders[density, l1].order"
@@ -343,6 +364,7 @@ def main():
         test_breakdowns(run)
         test_identity(made_by("stress", "few", "start"))
         test_alike()
+        test_judged()
         test_studies(study)
         test_checks(made_by("verify", "norms"))
         test_kinds()
