@@ -53,6 +53,7 @@ static void fall(struct simulation *simulation)
     for (int k = 0; k < a->dim; k++) {
         const double g = simulation->gravity[k];
         for (ptrdiff_t i = 0; i < a->n; i++) {
+            if (!simulation_evaluates(simulation, i)) continue;
             a->F[k][i] += a->m[i] * g;
             if (total) a->de[i] += a->m[i] * g * a->v[k][i];
         }

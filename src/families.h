@@ -95,6 +95,14 @@
            "extrapolated from the last steps; one density sum, and a Newton step for the next",    \
            "", __VA_ARGS__)
 
+#define STEPS_LINE_LIST(CHOICE, ...)                                                               \
+    CHOICE(STEPS_GLOBAL, "global", "one time step for all particles", "", __VA_ARGS__)
+#define STEPS_LIST(CHOICE, ...)                                                                    \
+    STEPS_LINE_LIST(CHOICE, __VA_ARGS__)                                                           \
+    CHOICE(STEPS_LOCAL, "local",                                                                   \
+           "one for each particle, by powers of two; pairs exchange impulses and energy", "",      \
+           __VA_ARGS__)
+
 /* FAMILY(name, list, number of members, plural, title): enum name, scheme_name_family. */
 #define FAMILY_LIST(FAMILY)                                                                        \
     FAMILY(gradient, GRADIENT_LIST, GRADIENTS, "gradients",                                        \
@@ -110,7 +118,8 @@
     FAMILY(energy, ENERGY_LIST, ENERGIES, "energies", "the energy that is integrated")             \
     FAMILY(pair_width, PAIR_WIDTH_LIST, PAIR_WIDTHS, "pair_widths",                                \
            "width at which a pair's gradient is taken")                                            \
-    FAMILY(h_method, H_METHOD_LIST, H_METHODS, "h_methods", "how the smoothing length is found")
+    FAMILY(h_method, H_METHOD_LIST, H_METHODS, "h_methods", "how the smoothing length is found")                                                           \
+    FAMILY(time_steps, STEPS_LIST, TIME_STEPS, "time_steps", "whose time step it is")
 
 #define FAMILY_SYMBOL(symbol, ...) symbol,
 #define FAMILY_COUNTED(...)        +1

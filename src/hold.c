@@ -79,6 +79,9 @@ void hold_rates(struct simulation *simulation)
         if (held[a->id[i]] == 0) continue;
         for (int k = 0; k < a->dim; k++) a->F[k][i] = 0;
         a->de[i] = a->dalpha[i] = 0;
+        if (!simulation->plan.local) continue;
+        for (int k = 0; k < a->dim; k++) a->impulse[k][i] = 0;
+        a->heat[i] = 0;
     }
 }
 

@@ -43,7 +43,17 @@
     SCALAR(de, "de/dt")                                                                            \
     SCALAR(dalpha, "dalpha/dt")                                                                    \
     SCALAR(div_v, "divergence of v")                                                               \
-    SCALAR(signal, "largest signal speed")
+    SCALAR(signal, "largest signal speed")                                                         \
+    SCALAR(level, "local steps: of the particle")                                                  \
+    SCALAR(pace, "inverse of the time step that is asked for, times cfl")                          \
+    SCALAR(near_pace, "the largest one of its neighbours")                                         \
+    SCALAR(before, "its last step")                                                                \
+    SCALAR(ratio, "time since its last density sum, over that between the last two")                   \
+    SCALAR(span, "from its last density sum but one to its last one")                              \
+    VECTOR(F_mean, "mean dp/dt, for predictions")                                                  \
+    SCALAR(de_mean, "mean de/dt")                                                                  \
+    VECTOR(impulse, "from pairs of finer levels, since the step began")                            \
+    SCALAR(heat, "and the energy")
 
 struct particles {
     int dim; /* components of vectors; the others are NULL */

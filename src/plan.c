@@ -29,7 +29,8 @@ struct plan plan_make(const struct scheme *scheme, int dim, bool skip, bool stam
         .viscosity = scheme->viscosity != VISCOSITY_NONE,
         .alpha = scheme->viscosity == VISCOSITY_TIME_DEPENDENT,
         .jump = scheme->viscosity == VISCOSITY_CULLEN_DEHNEN,
-        .sleep = skip,
+        .local = scheme->steps == STEPS_LOCAL,
+        .sleep = skip && scheme->steps == STEPS_GLOBAL,
         .signal_pass = scheme->integrator->signal_pass,
     };
 }
@@ -149,13 +150,18 @@ size_t plan_explain(const struct scene *scene, struct plan_line *lines, size_t m
     line(&writer, "signal speed", plan.signal_pass,
          "the integrator changes velocities after the last force", "comes with the pair forces");
     if (scene->dim > 1) {
+        line(&writer, "local steps", plan.local,
+             "each particle's own, by powers of two; a pair has the shorter one of its two",
+             "steps=global: the shortest one is everybody's");
         line(&writer, "conductivity", scheme->alpha_u > 0, "alpha_u > 0, inside the pair loop",
              "alpha_u=0");
         line(&writer, "gravity", plan.gravity, "added to the forces", "gravity=0");
     }
     line(&writer, "sleep", plan.sleep,
          "skip=auto: no sums where no signal has been; acts as a start changed by 1e-11",
-         plan.gravity ? "gravity: nobody is at rest" : "skip=none: every particle at every step");
+         plan.gravity ? "gravity: nobody is at rest"
+         : plan.local ? "steps=local: where little happens steps are long"
+                      : "skip=none: every particle at every step");
     line(&writer, "final state", !scheme->integrator->ends_evaluated,
          "density and equation of state once more at t_end", "the last evaluation was at t_end");
     if (warnings && warnings_size) find_warnings(scheme, scene->dim, warnings, warnings_size);

@@ -23,6 +23,7 @@ struct plan {
     bool viscosity;          /* artificial viscosity in the pair expression */
     bool alpha;              /* evolution of alpha, with div v */
     bool jump;               /* alpha by a switch, once a step */
+    bool local;              /* local steps */
     bool gravity;            /* a constant acceleration */
     bool signal_pass;        /* a pass of its own for the time step */
     bool sleep;              /* leave out particles that no signal has reached */

@@ -77,6 +77,7 @@ size_t scheme_members(const struct family *family, int dim)
     if (family == &scheme_viscosity_form_family) return VISCOSITY_FORM_SIGNAL;
     if (family == &scheme_balsara_family) return BALSARA_ON;
     if (family == &scheme_boundary_family) return BOUNDARY_OPEN;
+    if (family == &scheme_time_steps_family) return STEPS_LOCAL;
     return family->n;
 }
 
@@ -91,7 +92,8 @@ static enum status check_members(const struct scheme *scheme, int dim, struct er
                    {"volume_element", &scheme_volume_element_family, scheme->volume_element},
                    {"viscosity", &scheme_viscosity_family, scheme->viscosity},
                    {"viscosity_form", &scheme_viscosity_form_family, scheme->viscosity_form},
-                   {"balsara", &scheme_balsara_family, scheme->balsara}};
+                   {"balsara", &scheme_balsara_family, scheme->balsara},
+                   {"steps", &scheme_time_steps_family, scheme->steps}};
     for (size_t k = 0; k < sizeof choices / sizeof *choices; k++)
         if (choices[k].member >= scheme_members(choices[k].family, dim))
             return error_set(error, STATUS_BAD_INPUT,
@@ -105,6 +107,33 @@ static enum status check_members(const struct scheme *scheme, int dim, struct er
                          "and 3 dimensions",
                          scheme->alpha_u);
     return STATUS_OK;
+}
+
+/* What local steps go together with. */
+static enum status check_steps(const struct scheme *scheme, struct error *error)
+{
+    const char *key = NULL, *name = NULL, *why = NULL;
+    if (scheme->steps != STEPS_LOCAL) return STATUS_OK;
+    if (!scheme->integrator->local) {
+        key = "integrator", name = scheme->integrator->member.name;
+        why = "local steps are those of predicted_midpoint";
+    } else if (scheme->h_method != H_PREDICTED) {
+        key = "h_method", name = scheme_h_method_family.members[scheme->h_method]->name;
+        why = "widths are predicted between a particle's sums";
+    } else if (scheme->formulation != FORMULATION_VANILLA_ICE) {
+        key = "formulation", name = scheme_formulation_family.members[scheme->formulation]->name;
+        why = "grad-h factors cannot be predicted";
+    } else if (scheme->volume_element == VOLUME_ENERGY) {
+        key = "volume_element", name = "energy";
+        why = "the volume does not follow from the width";
+    } else if (scheme->viscosity == VISCOSITY_TIME_DEPENDENT ||
+               scheme->viscosity == VISCOSITY_CULLEN_DEHNEN) {
+        key = "viscosity", name = scheme_viscosity_family.members[scheme->viscosity]->name;
+        why = "alpha evolves in global steps alone";
+    }
+    if (!key) return STATUS_OK;
+    return error_set(error, STATUS_BAD_INPUT, "steps=local and %s=%s exclude each other: %s", key,
+                     name, why);
 }
 
 /* Reports a value that is not in (least, most]. */
@@ -144,5 +173,5 @@ enum status scheme_check(const struct scheme *scheme, int dim, struct error *err
                          "pair_width=%s and formulation=lagrangian exclude each other: the "
                          "lagrangian form needs both particles' own gradients",
                          scheme_pair_width_family.members[scheme->pair_width]->name);
-    return STATUS_OK;
+    return check_steps(scheme, error);
 }

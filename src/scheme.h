@@ -25,6 +25,7 @@ struct scheme {
     enum energy energy;
     enum pair_width pair_width;
     enum h_method h_method;
+    enum time_steps steps;
     const struct integrator *integrator;
     double alpha, beta;          /* viscosity; time_dependent: beta/alpha is the ratio kept */
     double alpha_min, alpha_max; /* time_dependent and cullen_dehnen only */

@@ -160,6 +160,7 @@ enum status simulation_take(const struct scene *scene, struct simulation **resul
     simulation->scheme = scene->scheme;
     simulation->plan = plan_of_scene(scene);
     simulation->gamma = scene->gamma;
+    simulation->steps.level = -1;
     team_begin(&simulation->team, scene->threads > 1 ? scene->threads : 1);
     status = allocate(simulation, (ptrdiff_t)scene->n, error);
     if (!status) status = copy_scene(simulation, scene, error);
@@ -274,16 +275,19 @@ static enum status check_energy(const struct simulation *simulation, struct erro
 /* One step. STATUS_BROKE_DOWN: the state is the last sound one. */
 static enum status advance(struct simulation *simulation, struct error *error)
 {
-    const double dt = simulation_next_step(simulation, simulation->time);
-    const bool last = simulation_time_after(simulation, dt) >= simulation->t_end;
+    const bool local = simulation->plan.local;
+    double dt = simulation_next_step(simulation, simulation->time);
     simulation->largest_dt = fmax(simulation->largest_dt, dt);
+    if (local) dt = steps_begin_block(simulation, dt, simulation->t_end - simulation->time);
+    const bool last = simulation_time_after(simulation, dt) >= simulation->t_end;
     /* in the last step t_end alone decides, however near it is */
     if (!last && collapsed(simulation, dt))
         return breakdown_of(simulation, limiting_particle(simulation), "collapsed time step", dt,
                             error);
     simulation->dt_before = simulation->dt;
     simulation->dt = dt;
-    const enum status status = simulation->scheme.integrator->step(simulation, dt, error);
+    const enum status status = local ? steps_block(simulation, dt, error)
+                                     : simulation->scheme.integrator->step(simulation, dt, error);
     if (status) return status;
     if (simulation->plan.jump) simulation->plan.sums->apply_switch(simulation, dt);
     simulation->time = simulation_time_after(simulation, dt);
@@ -291,10 +295,13 @@ static enum status advance(struct simulation *simulation, struct error *error)
         evaluate_signal(simulation);
     simulation->plan.sums->sleep_update(simulation); /* makes new ranges, whose reach is unknown */
     struct simulation_cost *cost = &simulation->cost;
-    cost->steps++;
-    cost->particle_updates += (uint64_t)simulation->sleep.awake_count;
-    cost->skipped_particle_updates +=
-        (uint64_t)(simulation->particles.n - simulation->sleep.awake_count);
+    const uint64_t steps = local ? 1u << simulation->steps.depth : 1;
+    const uint64_t all = steps * (uint64_t)simulation->particles.n;
+    const uint64_t done =
+        local ? simulation->steps.updates : (uint64_t)simulation->sleep.awake_count;
+    cost->steps += steps;
+    cost->particle_updates += done;
+    cost->skipped_particle_updates += all > done ? all - done : 0;
     if (check_work(simulation, error)) return error->status;
     const bool look = simulation->scheme.energy == ENERGY_INTERNAL && cost->steps % 128 == 0;
     return look ? check_energy(simulation, error) : STATUS_OK;
@@ -333,6 +340,7 @@ void simulation_carry(struct simulation *simulation, struct carrier *carrier)
     CARRY(carrier, simulation->largest_dt);
     CARRY(carrier, simulation->start_energy);
     CARRY(carrier, simulation->cost);
+    CARRY(carrier, simulation->steps);
     CARRY(carrier, sleep->on);
     CARRY(carrier, sleep->at_rest);
     CARRY(carrier, sleep->rate);

@@ -10,6 +10,7 @@
 #include "plan.h"
 #include "simulation.h"
 #include "sleep.h"
+#include "steps.h"
 #include "sums.h"
 #include "team.h"
 
@@ -32,10 +33,18 @@ struct simulation {
     double start_energy;  /* total */
     struct team team;     /* threads that work together */
     struct sleep sleep;
+    struct steps steps;
     struct simulation_cost cost;
     double wall_start, cpu_start;
     double *wrapped[3]; /* positions of the snapshot, n each */
 };
+
+/* Does the evaluation in progress find the rates of particle i? */
+static inline bool simulation_evaluates(const struct simulation *simulation, ptrdiff_t i)
+{
+    const int level = simulation->steps.level;
+    return level < 0 || (int)simulation->particles.level[i] == level;
+}
 
 /* --- the evaluation (evaluate.c) ---------------------------------------------------------------
  */

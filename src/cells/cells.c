@@ -47,6 +47,7 @@ static void lay_out_force(struct lanes_layout *force, const struct cells_method 
     if (method->gradient == GRADIENT_BLENDED) add_field(force, FIELD_STEEP, 1);
     if (method->viscosity == VISCOSITY_RECONSTRUCTED) add_field(force, FIELD_SLOPE, dim * dim);
     if (method->projected) add_field(force, FIELD_PROJECTOR, symmetric);
+    if (method->local) add_field(force, FIELD_PACE, 1);
 }
 
 /* Which values each pass needs of a neighbour. */
@@ -87,11 +88,13 @@ static bool reserve_records(struct cells *cells, size_t n)
 {
     if (n + 1 <= cells->capacity) return true;
     free(cells->records);
+    free(cells->kinds);
     const size_t size = (size_t)lanes_longest_record(cells);
     cells->capacity = n + n / 4 + 8;
     cells->records = aligned_alloc(64, (cells->capacity * size * sizeof(double) + 63) / 64 * 64);
-    if (!cells->records) cells->capacity = 0;
-    return cells->records != NULL;
+    cells->kinds = malloc(cells->capacity);
+    if (!cells->records || !cells->kinds) cells->capacity = 0;
+    return cells->capacity > 0;
 }
 
 struct cells *cells_create(const struct cells_method *method, size_t n)
@@ -118,10 +121,12 @@ void cells_destroy(struct cells *cells)
     if (!cells) return;
     for (int t = 0; cells->lanes && t < cells->method.threads; t++) {
         free(cells->lanes[t].block);
+        free(cells->lanes[t].slots);
         grid_reader_free(&cells->lanes[t].reader);
     }
     free(cells->lanes);
     free(cells->records);
+    free(cells->kinds);
     free(cells->images.source);
     free(cells->images.mirrored);
     free(cells->images.radius);
@@ -212,7 +217,7 @@ static bool find_images(struct cells *cells, const struct cells_fields *fields,
 }
 
 enum status cells_arrange(struct cells *cells, const struct cells_fields *fields,
-                          const double *radius, const unsigned char *asleep, struct error *error)
+                          const double *radius, const unsigned char *parts, struct error *error)
 {
     const bool walls = cells->method.wall[0] || cells->method.wall[1] || cells->method.wall[2];
     const struct cells_images *images = &cells->images;
@@ -222,8 +227,9 @@ enum status cells_arrange(struct cells *cells, const struct cells_fields *fields
     const double *const all[3] = {images->x[0], images->x[1], images->x[2]};
     const enum status status =
         grid_search(cells->grid, cells->points, fields->n, walls ? all : fields->x,
-                    walls ? images->radius : radius, asleep, error);
+                    walls ? images->radius : radius, parts, error);
     if (status) return status;
+    cells->parts = parts;
     cells->lists = grid_lists(cells->grid);
     cells->place = grid_positions(cells->grid);
     cells->order = grid_order(cells->grid);

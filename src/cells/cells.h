@@ -44,10 +44,20 @@ struct cells_method {
     double noise;           /* nu of `projected` */
     double
         worst_condition; /* of a moment matrix; beyond it the pair's gradient is the standard one */
+    bool local;          /* local steps: paces of neighbours are looked at */
     bool jump;           /* alpha by the switch: */
     double alpha_min, alpha_max;
     struct pair_numbers numbers;
     int threads; /* at most */
+};
+
+/* What a particle has to do with an evaluation that is of some particles alone. Its value is the
+ * grid's. */
+enum cells_part {
+    CELLS_ACTIVE = GRID_LISTED,     /* has sums and forces */
+    CELLS_IDLE = GRID_UNLISTED,     /* is seen by active particles */
+    CELLS_RECEIVES = GRID_BESIDE,   /* and receives the impulses of its pairs with active ones */
+    CELLS_SUMMED = GRID_UNLISTED + 2 /* is seen by their sums, but has no forces with them */
 };
 
 /* Arrays of the particles, n each, in the caller's order; NULL where the method needs none. */
@@ -65,6 +75,13 @@ struct cells_fields {
     double *steep;                      /* blended: the standard gradient's share */
     double *slope[CELLS_SQUARE];        /* (grad v): d v_a/d x_b at a dim + b */
     double *alpha_local, *decay;        /* of the switch */
+    /* local steps */
+    const double *pace;                  /* cfl over the step that a particle asks for */
+    /* what inactive particles show is extrapolated: by ratio times the last change */
+    const double *ratio, *balsara_before;
+    double *matrix_before[CELLS_SYMMETRIC], *slope_before[CELLS_SQUARE];
+    double *near_pace;                   /* the largest of its pairs */
+    double *impulse[3], *heat, span;     /* receivers gain span times their rates */
     double *F[3], *de, *div_v, *signal; /* signal: largest speed of the particle's pairs */
 };
 
@@ -80,10 +97,10 @@ double cells_bytes(const struct cells_method *method, double n, double neighbour
 /* So many threads, no more than the method's, do the work from here on. */
 void cells_team(struct cells *cells, int size);
 
-/* Finds who is near whom, to max(radius_i, radius_j); particles that sleep (NULL: nobody) get no
- * sums until the next call. Errors as grid_search. */
+/* Finds who is near whom, to max(radius_i, radius_j); parts: an enum cells_part of each, or NULL
+ * where all are active; kept until the next call. Errors as grid_search. */
 enum status cells_arrange(struct cells *cells, const struct cells_fields *fields,
-                          const double *radius, const unsigned char *asleep, struct error *error);
+                          const double *radius, const unsigned char *parts, struct error *error);
 
 /* sum_m ... at the widths 1/h_inverse. */
 void cells_density(struct cells *cells, const struct cells_fields *fields);

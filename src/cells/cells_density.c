@@ -9,15 +9,18 @@ static void fill_records(struct cells *cells, const struct cells_fields *fields)
 {
     const struct lanes_layout *layout = &cells->density;
     const int weight = layout->offset[FIELD_WEIGHT], energy = layout->offset[FIELD_ENERGY];
+    size_t count;
+    const struct grid_run *runs = grid_runs(cells->grid, &count);
 #pragma omp parallel for num_threads(cells->team) if (cells->team > 1)
-    for (size_t s = 0; s <= cells->points; s++) {
-        double *record = lanes_record(cells, layout, s);
-        const bool sentinel = s == cells->points;
-        int mirrored;
-        const size_t i = sentinel ? 0 : lanes_source(cells, fields->n, s, &mirrored);
-        record[weight] = sentinel ? 0 : cells->method.number ? 1 : fields->m[i];
-        if (energy) record[energy] = sentinel ? 0 : fields->U[i];
-    }
+    for (size_t r = 0; r < count; r++)
+        for (size_t s = runs[r].begin; s < runs[r].end; s++) {
+            double *record = lanes_record(cells, layout, s);
+            int mirrored;
+            const size_t i = lanes_source(cells, fields->n, s, &mirrored);
+            record[weight] = cells->method.number ? 1 : fields->m[i];
+            if (energy) record[energy] = fields->U[i];
+        }
+    lanes_sentinel(cells, layout);
 }
 
 /* The sums over lanes that are gathered, at another width each time. */
@@ -54,6 +57,7 @@ static void density_pass(struct cells *cells, const struct cells_fields *fields,
 {
     const size_t i = cells->order[slot];
     double sums[4];
+    if (lanes_part(cells, i) != CELLS_ACTIVE) return;
     const int count = lanes_gather(cells, &cells->density, slot, lanes);
     sum_at(cells, lanes, count, cells->method.number ? 1 : fields->m[i],
            cells->method.energy_element ? fields->U[i] : 0, fields->h_inverse[i], sums);

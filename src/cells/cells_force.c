@@ -22,24 +22,52 @@ static void fill_sentinel(struct cells *cells)
     if (at[FIELD_MATRIX]) record[at[FIELD_MATRIX]] = 1;
 }
 
+/* Values of an inactive particle, extrapolated from its last two evaluations. */
+ALWAYS_INLINE void extrapolate(int count, double ratio, double *const *now, double *const *before,
+                               size_t i, double *values)
+{
+    for (int k = 0; k < count; k++) values[k] = now[k][i] + ratio * (now[k][i] - before[k][i]);
+}
+
+/* The matrix by a quarter of its trace at most; one that is not to be used, or was not, as it is.
+ */
+ALWAYS_INLINE void extrapolate_matrix(int dim, double ratio, const struct cells_fields *fields,
+                                      size_t i, double *C)
+{
+    const int count = dim * (dim + 1) / 2;
+    double trace = 0, before = 0, change = 0;
+    for (int k = 0; k < count; k++)
+        change += ratio * fabs(fields->matrix[k][i] - fields->matrix_before[k][i]);
+    for (int a = 0; a < dim; a++) {
+        const int k = symmetric_at(dim, a, a);
+        trace += fields->matrix[k][i];
+        before += fields->matrix_before[k][i];
+    }
+    const bool both = trace > 0 && before > 0;
+    if (change > 0.25 * trace) ratio *= 0.25 * trace / change;
+    extrapolate(count, both ? ratio : 0, fields->matrix, fields->matrix_before, i, C);
+}
+
 /* Matrices of a particle, or of its image. */
 ALWAYS_INLINE void fill_matrices(int dim, int mirrored, const struct cells *cells,
                                  const struct cells_fields *fields, size_t i, double *record)
 {
-    const int *at = cells->force.offset;
-    double projector[CELLS_SYMMETRIC] = {0};
-    if (at[FIELD_PROJECTOR]) {
-        double L[CELLS_SQUARE];
-        for (int k = 0; k < dim * dim; k++) L[k] = fields->slope[k][i];
-        cells_project(dim, L, projector);
-    }
+    const int *at = cells->force.offset, symmetric = dim * (dim + 1) / 2;
+    const bool active = lanes_part(cells, i) == CELLS_ACTIVE;
+    double projector[CELLS_SYMMETRIC] = {0}, C[CELLS_SYMMETRIC] = {0}, L[CELLS_SQUARE] = {0};
+    for (int k = 0; at[FIELD_MATRIX] && active && k < symmetric; k++) C[k] = fields->matrix[k][i];
+    if (at[FIELD_MATRIX] && !active) extrapolate_matrix(dim, fields->ratio[i], fields, i, C);
+    for (int k = 0; at[FIELD_SLOPE] && active && k < dim * dim; k++) L[k] = fields->slope[k][i];
+    if (at[FIELD_SLOPE] && !active)
+        extrapolate(dim * dim, fields->ratio[i], fields->slope, fields->slope_before, i, L);
+    if (at[FIELD_PROJECTOR]) cells_project(dim, L, projector);
     for (int a = 0; a < dim; a++)
         for (int b = 0; b < dim; b++) {
             const double sign = lanes_sign(mirrored, a) * lanes_sign(mirrored, b);
             const int ab = symmetric_at(dim, a, b), full = a * dim + b;
-            if (at[FIELD_SLOPE]) record[at[FIELD_SLOPE] + full] = sign * fields->slope[full][i];
+            if (at[FIELD_SLOPE]) record[at[FIELD_SLOPE] + full] = sign * L[full];
             if (b < a) continue;
-            if (at[FIELD_MATRIX]) record[at[FIELD_MATRIX] + ab] = sign * fields->matrix[ab][i];
+            if (at[FIELD_MATRIX]) record[at[FIELD_MATRIX] + ab] = sign * C[ab];
             if (at[FIELD_PROJECTOR]) record[at[FIELD_PROJECTOR] + ab] = sign * projector[ab];
         }
 }
@@ -59,7 +87,12 @@ ALWAYS_INLINE void fill_record(int dim, const struct cells *cells,
     record[at[FIELD_SOUND]] = fields->c[i];
     if (at[FIELD_DENSITY]) record[at[FIELD_DENSITY]] = fields->rho[i];
     if (at[FIELD_ALPHA]) record[at[FIELD_ALPHA]] = fields->alpha[i];
-    if (at[FIELD_BALSARA]) record[at[FIELD_BALSARA]] = fields->balsara[i];
+    if (at[FIELD_BALSARA]) {
+        double f = fields->balsara[i];
+        if (lanes_part(cells, i) != CELLS_ACTIVE)
+            f = largest(0, least(1, f + fields->ratio[i] * (f - fields->balsara_before[i])));
+        record[at[FIELD_BALSARA]] = f;
+    }
     if (at[FIELD_HEAT]) record[at[FIELD_HEAT]] = fields->U[i] / fields->m[i];
     if (at[FIELD_LAGRANGIAN]) {
         double *group = record + at[FIELD_LAGRANGIAN];
@@ -67,29 +100,41 @@ ALWAYS_INLINE void fill_record(int dim, const struct cells *cells,
         group[1] = fields->grad_h[i];
         group[2] = method->energy_element ? fields->U[i] : method->number ? 1 : fields->m[i];
     }
+    if (at[FIELD_PACE]) record[at[FIELD_PACE]] = fields->pace[i];
     if (at[FIELD_STEEP]) record[at[FIELD_STEEP]] = fields->steep[i];
     fill_matrices(dim, mirrored, cells, fields, i, record);
 }
 
+static void find_kinds(struct cells *cells, size_t n)
+{
+    int mirrored;
+    for (size_t s = 0; cells->parts && s < cells->points; s++)
+        cells->kinds[s] = cells->parts[lanes_source(cells, n, s, &mirrored)];
+}
+
 static void fill_records(struct cells *cells, const struct cells_fields *fields)
 {
+    size_t count;
+    const struct grid_run *runs = grid_runs(cells->grid, &count);
+    find_kinds(cells, fields->n);
 #pragma omp parallel for num_threads(cells->team) if (cells->team > 1)
-    for (size_t s = 0; s < cells->points; s++) {
-        double *record = lanes_record(cells, &cells->force, s);
-        int mirrored;
-        const size_t i = lanes_source(cells, fields->n, s, &mirrored);
-        if (cells->method.box.dim == 2)
-            fill_record(2, cells, fields, i, mirrored, record);
-        else
-            fill_record(3, cells, fields, i, mirrored, record);
-    }
+    for (size_t r = 0; r < count; r++)
+        for (size_t s = runs[r].begin; s < runs[r].end; s++) {
+            double *record = lanes_record(cells, &cells->force, s);
+            int mirrored;
+            const size_t i = lanes_source(cells, fields->n, s, &mirrored);
+            if (cells->method.box.dim == 2)
+                fill_record(2, cells, fields, i, mirrored, record);
+            else
+                fill_record(3, cells, fields, i, mirrored, record);
+        }
     fill_sentinel(cells);
 }
 
 /* --- sums ------------------------------------------------------------------------------------- */
 
 struct totals {
-    double F[3], de, div_v, signal;
+    double F[3], de, div_v, signal, pace;
 };
 
 /* Signal speeds of pairs within max(h_i, h_j), the largest of each lane, and how many there are. */
@@ -217,6 +262,24 @@ ALWAYS_INLINE void add_body(enum formulation formulation, int dim, enum energy e
 ADD(add_vanilla_ice, FORMULATION_VANILLA_ICE)
 ADD(add_lagrangian, FORMULATION_LAGRANGIAN)
 
+/* The largest pace of pairs within max(h_i, h_j). */
+CLONES static double find_pace(const struct pairs *pairs)
+{
+    const double *restrict r = lane(pairs->lanes, LANE_R),
+                           *restrict pace = pairs_theirs(pairs, FIELD_PACE),
+                           *restrict h_inverse = pairs_theirs(pairs, FIELD_H_INVERSE);
+    const double own_h_inverse = *pairs_own(pairs, FIELD_H_INVERSE);
+    double top[GRID_LANES] = {0}, most = 0;
+    for (int k = 0; k < pairs->count; k += GRID_LANES)
+#pragma omp simd
+        for (int l = 0; l < GRID_LANES; l++) {
+            const double near = pair_within(r[k + l], own_h_inverse, h_inverse[k + l]) ? 1 : 0;
+            top[l] = largest(top[l], near * pace[k + l]);
+        }
+    for (int l = 0; l < GRID_LANES; l++) most = largest(most, top[l]);
+    return most;
+}
+
 /* What the neighbours in the lanes do to a particle. */
 static void add_part(struct cells *cells, const struct pairs *pairs, int64_t *inside,
                      struct totals *totals)
@@ -227,24 +290,41 @@ static void add_part(struct cells *cells, const struct pairs *pairs, int64_t *in
     cells_viscosity(cells, pairs);
     (method->formulation == FORMULATION_VANILLA_ICE ? add_vanilla_ice : add_lagrangian)(
         method->box.dim, method->energy, pairs, &pressure, totals, inside);
+    if (method->local) totals->pace = largest(totals->pace, find_pace(pairs));
     if (method->conductivity > 0) totals->de += cells_conduction(cells, pairs);
     if (method->div_v) totals->div_v += cells_divergence(cells, pairs);
+}
+
+/* A particle on a coarser level has these pairs for the span of theirs. */
+static void receive(const struct cells *cells, const struct cells_fields *fields, size_t i,
+                    const struct totals *totals)
+{
+    for (int a = 0; a < cells->method.box.dim; a++)
+        fields->impulse[a][i] += fields->span * totals->F[a];
+    fields->heat[i] += fields->span * totals->de;
+    fields->signal[i] = largest(fields->signal[i], totals->signal);
+    fields->near_pace[i] = largest(fields->near_pace[i], totals->pace);
 }
 
 static void force_pass(struct cells *cells, const struct cells_fields *fields, size_t slot,
                        struct lanes *lanes)
 {
     const struct lanes_layout *layout = &cells->force;
-    const int neighbours = cells->lists[slot].count;
+    const struct lanes_list list = lanes_partners(cells, slot, lanes);
     struct pairs pairs = {.lanes = lanes,
                           .layout = layout,
                           .record = cells->records + (ptrdiff_t)slot * layout->size};
     struct totals totals = {.signal = 2 * *pairs_own(&pairs, FIELD_SOUND)};
-    for (int from = 0; from < neighbours; from += pairs.count) {
-        pairs.count = lanes_gather_part(cells, layout, slot, from, lanes);
+    for (int from = 0; from < list.count; from += pairs.count) {
+        pairs.count = lanes_gather_part(cells, layout, slot, &list, from, lanes);
         add_part(cells, &pairs, &lanes->pairs, &totals);
     }
     const size_t i = cells->order[slot];
+    if (lanes_part(cells, i) != CELLS_ACTIVE) {
+        receive(cells, fields, i, &totals);
+        return;
+    }
+    if (cells->method.local) fields->near_pace[i] = totals.pace;
     for (int a = 0; a < cells->method.box.dim; a++) fields->F[a][i] = totals.F[a];
     fields->de[i] = totals.de;
     if (cells->method.div_v) fields->div_v[i] = totals.div_v;

@@ -14,16 +14,19 @@ static void fill_records(struct cells *cells, const struct cells_fields *fields)
     const struct lanes_layout *layout = &cells->matrix;
     const int dim = cells->method.box.dim, weight = layout->offset[FIELD_WEIGHT],
               velocity = layout->offset[FIELD_VELOCITY], width = layout->offset[FIELD_H];
+    size_t count;
+    const struct grid_run *runs = grid_runs(cells->grid, &count);
 #pragma omp parallel for num_threads(cells->team) if (cells->team > 1)
-    for (size_t s = 0; s < cells->points; s++) {
-        double *record = lanes_record(cells, layout, s);
-        int mirrored;
-        const size_t i = lanes_source(cells, fields->n, s, &mirrored);
-        record[weight] = fields->V[i];
-        if (width) record[width] = 1 / fields->h_inverse[i];
-        for (int a = 0; velocity && a < dim; a++)
-            record[velocity + a] = lanes_sign(mirrored, a) * fields->v[a][i];
-    }
+    for (size_t r = 0; r < count; r++)
+        for (size_t s = runs[r].begin; s < runs[r].end; s++) {
+            double *record = lanes_record(cells, layout, s);
+            int mirrored;
+            const size_t i = lanes_source(cells, fields->n, s, &mirrored);
+            record[weight] = fields->V[i];
+            if (width) record[width] = 1 / fields->h_inverse[i];
+            for (int a = 0; velocity && a < dim; a++)
+                record[velocity + a] = lanes_sign(mirrored, a) * fields->v[a][i];
+        }
     lanes_sentinel(cells, layout);
 }
 
@@ -95,7 +98,10 @@ static void velocity_gradient(struct cells *cells, const struct cells_fields *fi
         moments_gradient(
             dim, count, lanes, weight, inverse, lane_of(lanes, layout, FIELD_VELOCITY),
             cells->records + (ptrdiff_t)slot * layout->size + layout->offset[FIELD_VELOCITY], L);
-    for (int k = 0; k < dim * dim; k++) fields->slope[k][i] = L[k];
+    for (int k = 0; k < dim * dim; k++) {
+        if (cells->method.local) fields->slope_before[k][i] = fields->slope[k][i];
+        fields->slope[k][i] = L[k];
+    }
 }
 
 /* The standard gradient's share, CONVENTIONS eq. 4.8: smoothstep((|grad h| - 0.05)/0.1), grad h by
@@ -118,6 +124,7 @@ static void matrix_pass(struct cells *cells, const struct cells_fields *fields, 
 {
     const struct cells_method *method = &cells->method;
     const size_t i = cells->order[slot];
+    if (lanes_part(cells, i) != CELLS_ACTIVE) return;
     const int dim = method->box.dim, count = lanes_gather(cells, &cells->matrix, slot, lanes);
     const double *V = lane_of(lanes, &cells->matrix, FIELD_WEIGHT),
                  h_inverse = fields->h_inverse[i];
@@ -144,9 +151,11 @@ static void matrix_pass(struct cells *cells, const struct cells_fields *fields, 
     fields->condition[i] = condition;
     int k = 0;
     for (int a = 0; a < dim; a++)
-        for (int b = a; b < dim; b++)
-            fields->matrix[k++][i] =
+        for (int b = a; b < dim; b++, k++) {
+            if (method->local) fields->matrix_before[k][i] = fields->matrix[k][i];
+            fields->matrix[k][i] =
                 sound ? 0.5 * (inverse[a * dim + b] + inverse[b * dim + a]) : 0;
+        }
 }
 
 size_t cells_matrix(struct cells *cells, const struct cells_fields *fields)
@@ -157,6 +166,8 @@ size_t cells_matrix(struct cells *cells, const struct cells_fields *fields)
     lanes_all(cells, fields, matrix_pass);
     size_t fallen_back = 0;
     for (size_t i = 0; method->gradient != GRADIENT_STANDARD && i < fields->n; i++)
-        if (!(fields->condition[i] <= method->worst_condition)) fallen_back++;
+        if (lanes_part(cells, i) == CELLS_ACTIVE &&
+            !(fields->condition[i] <= method->worst_condition))
+            fallen_back++;
     return fallen_back;
 }

@@ -23,11 +23,12 @@ struct room {
     struct cells *cells;
     struct cells_fields fields;
     double *block; /* what the room's own arrays live in */
-    double *radius, *balsara;
+    double *radius, *balsara, *balsara_before;
     double *sum_m, *sum_m_dh, *sum_Z, *sum_Z_dh;
     size_t arrays, stride; /* that lie in block, and from one to the next */
     unsigned char *outcome;
     unsigned char *level;  /* of who sleeps and who may: enum in cells.h; likewise */
+    unsigned char *parts;  /* local steps: of each particle, in the evaluation of a level */
     unsigned char *asleep; /* of each particle; NULL: nobody ever sleeps */
     double *kept;          /* 1/h of those who sleep; likewise */
     uint64_t sorted_at;    /* steps */
@@ -71,6 +72,7 @@ static struct cells_method method_of(const struct simulation *simulation)
         .conductivity = scheme->alpha_u,
         .noise = scheme->noise,
         .worst_condition = DESCRIPTION_CONDITION,
+        .local = plan->local,
         .jump = plan->jump,
         .alpha_min = scheme->alpha_min,
         .alpha_max = scheme->alpha_max,
@@ -91,7 +93,7 @@ static struct cells_method method_of(const struct simulation *simulation)
 
 /* --- memory ----------------------------------------------------------------------------------- */
 
-enum { ARRAYS_MAX = 11 + CELLS_SYMMETRIC + CELLS_SQUARE };
+enum { ARRAYS_MAX = 12 + 2 * (CELLS_SYMMETRIC + CELLS_SQUARE) };
 
 /* The arrays that a room has for the scheme. */
 static size_t list_arrays(const struct simulation *simulation, struct room *room,
@@ -109,6 +111,11 @@ static size_t list_arrays(const struct simulation *simulation, struct room *room
     if (simulation->scheme.gradient == GRADIENT_BLENDED) of[count++] = &room->fields.steep;
     for (size_t k = 0; plan->matrix && k < symmetric; k++) of[count++] = &room->fields.matrix[k];
     for (size_t k = 0; plan->slope && k < dim * dim; k++) of[count++] = &room->fields.slope[k];
+    if (plan->local && plan->balsara) of[count++] = &room->balsara_before;
+    for (size_t k = 0; plan->local && plan->matrix && k < symmetric; k++)
+        of[count++] = &room->fields.matrix_before[k];
+    for (size_t k = 0; plan->local && plan->slope && k < dim * dim; k++)
+        of[count++] = &room->fields.slope_before[k];
     if (plan->jump) of[count++] = &room->fields.alpha_local, of[count++] = &room->fields.decay;
     return count;
 }
@@ -123,7 +130,9 @@ static bool allocate_arrays(struct simulation *simulation, size_t n)
     room->arrays = count;
     room->block = calloc(count * stride, sizeof(double));
     room->outcome = calloc(n, 1);
+    room->parts = simulation->plan.local ? calloc(n, 1) : NULL;
     if (!room->block || !room->outcome) return false;
+    if (simulation->plan.local && !room->parts) return false;
     for (size_t k = 0; k < count; k++) *of[k] = room->block + k * stride;
     return true;
 }
@@ -140,11 +149,17 @@ static void connect_fields(struct simulation *simulation)
         fields->x[k] = a->x[k];
         fields->v[k] = a->v[k];
         fields->F[k] = a->F[k];
+        fields->impulse[k] = a->impulse[k];
     }
+    fields->heat = a->heat;
+    fields->pace = a->pace;
+    fields->near_pace = a->near_pace;
     fields->m = a->m;
     fields->U = a->U;
     fields->alpha = a->alpha;
     fields->balsara = room->balsara;
+    fields->balsara_before = room->balsara_before;
+    fields->ratio = a->ratio;
     fields->h_inverse = a->h_inverse;
     fields->P = a->P;
     fields->c = a->c;
@@ -199,6 +214,7 @@ static void free_room(struct simulation *simulation)
     cells_destroy(room->cells);
     free(room->block);
     free(room->outcome);
+    free(room->parts);
     forget_sleep(room);
     free(room);
 }
@@ -253,6 +269,23 @@ static double half_box(const struct simulation *simulation)
     return half;
 }
 
+/* Who takes part in the evaluation of a level; NULL: everybody. */
+static const unsigned char *find_parts(const struct simulation *simulation)
+{
+    const struct room *room = room_of(simulation);
+    const struct particles *a = &simulation->particles;
+    const double level = simulation->steps.level;
+    bool all = true;
+    if (level < 0) return room->asleep;
+    for (ptrdiff_t i = 0; i < a->n; i++) {
+        room->parts[i] = a->level[i] > level   ? CELLS_SUMMED
+                         : a->level[i] < level ? CELLS_RECEIVES
+                                               : CELLS_ACTIVE;
+        all &= room->parts[i] == CELLS_ACTIVE;
+    }
+    return all ? NULL : room->parts;
+}
+
 /* Finds neighbours within the radii. What is too wide for the box is bad input at the start and a
  * breakdown later. */
 static enum status search(struct simulation *simulation, struct error *error)
@@ -260,7 +293,7 @@ static enum status search(struct simulation *simulation, struct error *error)
     struct room *room = room_of(simulation);
     const struct particles *a = &simulation->particles;
     const enum status status =
-        cells_arrange(room->cells, &room->fields, room->radius, room->asleep, error);
+        cells_arrange(room->cells, &room->fields, room->radius, find_parts(simulation), error);
     if (status != STATUS_BAD_INPUT || simulation->cost.steps == 0) return status;
     ptrdiff_t widest = 0;
     for (ptrdiff_t i = 1; i < a->n; i++)
@@ -322,6 +355,29 @@ static void number_to_mass(const struct simulation *simulation, ptrdiff_t first,
     }
 }
 
+/* The equation of state of a batch. Those who are not being evaluated keep what was predicted. */
+static void close_batch(const struct simulation *simulation, ptrdiff_t first, int len,
+                        const struct gas *gas, const struct density_sums *sums)
+{
+    const struct particles *a = &simulation->particles;
+    double *const set[] = {a->h_inverse_found, a->V, a->rho, a->h, a->P, a->c};
+    enum { SET = sizeof set / sizeof *set };
+    double kept[SET][BATCH_MAX];
+    bool all = true, none = true;
+    for (ptrdiff_t i = first; i < first + len; i++) {
+        const bool evaluated = simulation_evaluates(simulation, i);
+        all &= evaluated;
+        none &= !evaluated;
+    }
+    if (none) return;
+    for (int k = 0; !all && k < SET; k++)
+        memcpy(kept[k], set[k] + first, (size_t)len * sizeof(double));
+    state_close(a, first, len, &simulation->plan, gas, sums);
+    for (int i = 0; !all && i < len; i++)
+        for (int k = 0; !simulation_evaluates(simulation, first + i) && k < SET; k++)
+            set[k][first + i] = kept[k][i];
+}
+
 /* The equation of state of all particles, from their sums. */
 static void close_all(struct simulation *simulation, bool predicted)
 {
@@ -347,7 +403,7 @@ static void close_all(struct simulation *simulation, bool predicted)
             memcpy(sums.Z_dh, room->sum_Z_dh + first, bytes);
         }
         if (number) number_to_mass(simulation, first, len, &sums);
-        state_close(a, first, len, &simulation->plan, &gas, &sums);
+        close_batch(simulation, first, len, &gas, &sums);
         /* b = Z P/y^2 with Z = 1, not m */
         for (int i = 0; number && simulation->plan.grad_h && i < len; i++)
             a->b[first + i] *= a->m[first + i];
@@ -409,7 +465,7 @@ static enum status predicted_widths(struct simulation *simulation, double ratio,
 {
     struct room *room = room_of(simulation);
     const struct particles *a = &simulation->particles;
-    for (ptrdiff_t first = 0; first < a->n; first += BATCH_MAX)
+    for (ptrdiff_t first = 0; !simulation->plan.local && first < a->n; first += BATCH_MAX)
         width_predict(a, first, batch_len(a, first), ratio);
     for (ptrdiff_t i = 0; room->asleep && i < a->n; i++)
         if (room->asleep[i]) a->h_inverse[i] = room->kept[i];
@@ -437,6 +493,7 @@ static void find_balsara(struct simulation *simulation)
     double *const *L = room->fields.slope;
     const double floor_of = simulation->scheme.balsara_floor;
     for (ptrdiff_t i = 0; i < a->n; i++) {
+        if (!simulation_evaluates(simulation, i)) continue;
         const double rate = a->c[i] * a->h_inverse[i];
         double div = 0, curl2 = 0;
         for (int k = 0; k < a->dim; k++) {
@@ -447,6 +504,7 @@ static void find_balsara(struct simulation *simulation)
             }
         }
         div = fabs(div);
+        if (simulation->plan.local) room->balsara_before[i] = room->balsara[i];
         room->balsara[i] = (div + floor_of * rate) / (div + sqrt(curl2) + (floor_of + 1e-4) * rate);
     }
 }
@@ -475,6 +533,7 @@ static enum status forces(struct simulation *simulation, double *rate, struct er
     struct room *room = room_of(simulation);
     const struct particles *a = &simulation->particles;
     (void)error;
+    room->fields.span = simulation->steps.span;
     simulation->cost.pair_interactions += cells_forces(room->cells, &room->fields);
     for (ptrdiff_t first = 0; simulation->plan.alpha && first < a->n; first += BATCH_MAX)
         state_dalpha(a, first, batch_len(a, first), &simulation->scheme);

@@ -59,6 +59,7 @@ void grid_destroy(struct grid *grid)
     free(grid->reach);
     free(grid->marks);
     free(grid->reached);
+    free(grid->runs);
     free(grid);
 }
 
@@ -146,7 +147,7 @@ static enum status lay_cells(struct grid *grid, size_t n, const double *radius, 
         free(grid->reach);
         grid->cell_capacity = 2 * grid->cell_count + 1;
         free(grid->marks);
-        grid->marks = malloc(2 * grid->cell_capacity);
+        grid->marks = malloc(4 * grid->cell_capacity);
         free(grid->reached);
         grid->reached = malloc(grid->cell_capacity * sizeof *grid->reached);
         grid->start = malloc(grid->cell_capacity * sizeof *grid->start);
@@ -326,7 +327,7 @@ void grid_team(struct grid *grid, int size)
 }
 
 enum status grid_search(struct grid *grid, size_t n, size_t active, const double *const x[],
-                        const double *radius, const unsigned char *asleep, struct error *error)
+                        const double *radius, const unsigned char *flags, struct error *error)
 {
     if (n == 0 || n >= INT32_MAX)
         return error_set(error, STATUS_BAD_INPUT, "%zu particles: allowed are 1 to 2^31 - 2", n);
@@ -339,7 +340,7 @@ enum status grid_search(struct grid *grid, size_t n, size_t active, const double
     sort_points(grid, n, x, radius);
     find_reaches(grid);
     cut_parts(grid);
-    grid->asleep = asleep;
+    grid->flags = flags;
     grid->active = active;
     return grid_make_lists(grid, error);
 }
@@ -411,6 +412,12 @@ size_t grid_parts(const struct grid *grid, const uint32_t **begin)
 {
     *begin = grid->part_begin;
     return grid->parts;
+}
+
+const struct grid_run *grid_runs(const struct grid *grid, size_t *count)
+{
+    *count = grid->run_count;
+    return grid->runs;
 }
 
 double grid_bytes(int dim, double n, double neighbours)

@@ -44,6 +44,13 @@ struct grid_reader {
 
 struct grid; /* private to grid.c but for what the functions below give */
 
+/* Which lists a search finds. */
+enum grid_flag {
+    GRID_LISTED,   /* this one */
+    GRID_UNLISTED, /* not this one; as every other value */
+    GRID_BESIDE    /* this one where a listed point may be near */
+};
+
 /* For n points at most at first; grows with the points. threads >= 1. NULL: no memory. */
 struct grid *grid_create(const struct grid_box *box, size_t n, int threads);
 void grid_destroy(struct grid *grid);
@@ -52,12 +59,13 @@ void grid_destroy(struct grid *grid);
 void grid_team(struct grid *grid, int size);
 
 /* Sorts n points and finds the list of each of the first `active` ones (the others are only found)
- * that does not sleep; asleep: a flag for each of those, or NULL. x: dim arrays of n, any real
+ * that is flagged so; flags: an enum
+ * grid_flag of each of those, or NULL: all are listed. x: dim arrays of n, any real
  * positions on periodic axes; radius: n search radii.
  * STATUS_BAD_INPUT: a position or a radius is not finite, or a radius exceeds half a periodic side
  * (the message names the point); STATUS_ENVIRONMENT: no memory. */
 enum status grid_search(struct grid *grid, size_t n, size_t active, const double *const x[],
-                        const double *radius, const unsigned char *asleep, struct error *error);
+                        const double *radius, const unsigned char *flags, struct error *error);
 
 /* Of the last search. Slots run over the points in the order of their cells; the sentinel is slot
  * n. position: slot -> {x, y, z (0 in 2D)}, wrapped into the box on periodic axes. */
@@ -85,6 +93,15 @@ static inline const int32_t *grid_neighbours(const struct grid *grid, struct gri
 {
     return lists[slot].marked ? grid_read(grid, reader, slot) : lists[slot].kept;
 }
+
+/* Slots begin .. end-1. */
+struct grid_run {
+    uint32_t begin, end;
+};
+
+/* The slots that lists of the last search may hold, in runs for threads to share, of at most 256 but for a
+ * cell that holds more. */
+const struct grid_run *grid_runs(const struct grid *grid, size_t *count);
 
 /* Parts of the slots for threads to share: at most 256 slots each, independent of the number of
  * threads. begin: parts + 1 slots. */

@@ -73,6 +73,10 @@ struct grid {
     float *reach;         /* how far its points and those of others reach across it */
     ptrdiff_t within[3];  /* cells that every reach covers; -1: not all the same */
     unsigned char *marks; /* two of each cell, for the rim */
+    unsigned char *listed, *seen; /* of each cell in a search: has it a listed point; is it near a
+                                     cell that has? */
+    struct grid_run *runs;
+    size_t run_count, run_capacity;
     uint16_t **reached;   /* 3D, of each cell with lists: marks of the points of the cells around
                              that its own may be near; NULL: of none is it known that they are not */
     uint32_t *order;
@@ -84,7 +88,7 @@ struct grid {
     int longest;
     size_t candidates_most;      /* of a cell */
     size_t active;               /* points that may have lists */
-    const unsigned char *asleep; /* of the last search */
+    const unsigned char *flags;  /* of the last search */
     struct pool *pools;
     struct candidates *candidates;
     take_loop *take;

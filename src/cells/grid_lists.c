@@ -197,12 +197,13 @@ static size_t fill_up(const struct candidates *candidates, size_t count)
 struct region {
     struct look along[3];
     bool across, all; /* images matter; a pair's image must be found for each pair */
+    bool few;         /* of the cells, those without listed points do not matter */
 };
 
 /* The cells that the points of the cell at c look through. */
 static struct region find_region(const struct grid *grid, const ptrdiff_t c[3], size_t cell)
 {
-    struct region region = {0};
+    struct region region = {.few = grid->flags && !grid->listed[cell]};
     for (int a = 0; a < 3; a++) {
         region.along[a] = grid_look_along(grid, a, c[a], grid->reach[cell]);
         region.across |= region.along[a].across;
@@ -233,6 +234,7 @@ static size_t find_candidates(const struct grid *grid, const ptrdiff_t c[3],
             for (ptrdiff_t kx = 0; kx < l[0].count; kx++) {
                 const size_t cell = row + (size_t)grid_folded(grid, 0, l[0].from + kx);
                 const size_t n = grid->start[cell + 1] - grid->start[cell];
+                if (region->few && !grid->listed[cell]) continue;
                 if (!reserve_candidates(candidates, seen, n + 64)) return SIZE_MAX;
                 moved[0] = (float)((double)(l[0].from + kx - c[0]) * grid->size[0] * scale);
                 if (cell == at) *own = count;
@@ -275,7 +277,7 @@ static size_t find_slots(const struct grid *grid, const struct region *region, i
 {
     const struct look *l = region->along;
     /* cells of a row are numbered one after the other, and so are their points */
-    const bool runs = l[0].from >= 0 && l[0].from + l[0].count <= grid->cells[0];
+    const bool runs = !region->few && l[0].from >= 0 && l[0].from + l[0].count <= grid->cells[0];
     const ptrdiff_t cells = runs ? l[0].count : 1;
     size_t count = 0;
     for (ptrdiff_t kz = 0; kz < l[2].count; kz++)
@@ -286,6 +288,7 @@ static size_t find_slots(const struct grid *grid, const struct region *region, i
             for (ptrdiff_t kx = 0; kx < l[0].count; kx += cells) {
                 const size_t cell = row + (size_t)grid_folded(grid, 0, l[0].from + kx);
                 const uint32_t begin = grid->start[cell], end = grid->start[cell + (size_t)cells];
+                if (region->few && !grid->listed[cell]) continue;
                 count_up(end - begin, (int32_t)begin, slots + count);
                 count += end - begin;
             }
@@ -441,10 +444,68 @@ read_loop *grid_read_choose(void)
 
 #endif
 
-static bool is_active(const struct grid *grid, uint32_t slot)
+/* beside: a listed point may be near. */
+static bool is_listed(const struct grid *grid, uint32_t slot, bool beside)
 {
     const uint32_t point = grid->order[slot];
-    return point < grid->active && !(grid->asleep && grid->asleep[point]);
+    if (point >= grid->active) return false;
+    const unsigned char flag = grid->flags ? grid->flags[point] : GRID_LISTED;
+    return flag == GRID_LISTED || (beside && flag == GRID_BESIDE);
+}
+
+/* Marks the cells with listed points, and those that they look through. Points beyond the active
+ * ones are images: of which, the caller knows, and so they count. */
+static void mark_cells(struct grid *grid)
+{
+    unsigned char *listed = grid->listed = grid->marks + 2 * grid->cell_capacity;
+    unsigned char *seen = grid->seen = grid->marks + 3 * grid->cell_capacity;
+    memset(seen, grid->flags == NULL, grid->cell_count);
+    memset(listed, grid->flags == NULL, grid->cell_count);
+    for (size_t cell = 0; grid->flags && cell < grid->cell_count; cell++) {
+        for (uint32_t s = grid->start[cell]; s < grid->start[cell + 1]; s++)
+            listed[cell] |=
+                grid->order[s] >= grid->active || grid->flags[grid->order[s]] == GRID_LISTED;
+        if (!listed[cell]) continue;
+        ptrdiff_t c[3];
+        grid_cell_coordinates(grid, cell, c);
+        const struct region region = find_region(grid, c, cell);
+        const struct look *l = region.along;
+        for (ptrdiff_t kz = 0; kz < l[2].count; kz++)
+            for (ptrdiff_t ky = 0; ky < l[1].count; ky++) {
+                const size_t row =
+                    grid_cell_at(grid, (ptrdiff_t[3]){0, grid_folded(grid, 1, l[1].from + ky),
+                                                      grid_folded(grid, 2, l[2].from + kz)});
+                for (ptrdiff_t kx = 0; kx < l[0].count; kx++)
+                    seen[row + (size_t)grid_folded(grid, 0, l[0].from + kx)] = 1;
+            }
+    }
+}
+
+/* The slots of cells that are seen. */
+static bool find_runs(struct grid *grid)
+{
+    const unsigned char *seen = grid->seen;
+    const size_t most = grid->n / PART + grid->cell_count + 1;
+    if (most > grid->run_capacity) {
+        free(grid->runs);
+        grid->run_capacity = 2 * most;
+        grid->runs = malloc(grid->run_capacity * sizeof *grid->runs);
+        if (!grid->runs) grid->run_capacity = 0;
+        if (!grid->runs) return false;
+    }
+    struct grid_run *last = NULL;
+    grid->run_count = 0;
+    for (size_t cell = 0; cell < grid->cell_count; cell++) {
+        const uint32_t begin = grid->start[cell], end = grid->start[cell + 1];
+        if (!seen[cell] || begin == end) continue;
+        if (last && last->end == begin && end - last->begin <= PART) {
+            last->end = end;
+            continue;
+        }
+        last = &grid->runs[grid->run_count++];
+        *last = (struct grid_run){begin, end};
+    }
+    return true;
 }
 
 /* Memory of lists to come: it is far away, and a vector waits until it may be written. */
@@ -469,14 +530,15 @@ static int search_cell(struct grid *grid, const ptrdiff_t c[3], struct candidate
     if (grid->start[cell] == grid->start[cell + 1]) return 0;
     const struct region region = find_region(grid, c, cell);
     const bool marked = grid->box.dim == 3;
+    const bool beside = grid->seen[cell];
     bool any = false;
     for (uint32_t s = grid->start[cell]; s < grid->start[cell + 1]; s++) {
         grid->lists[s] = (struct grid_list){NULL, 0, region.across, marked};
-        any |= is_active(grid, s);
+        any |= is_listed(grid, s, beside);
     }
     if (!any) return 0;
     float side[3];
-    size_t own = 0;
+    size_t own = SIZE_MAX; /* not among the candidates */
     for (int a = 0; a < 3; a++)
         side[a] = grid_wraps(grid, a) ? (float)(grid->side[a] / grid->unit) : HUGE_VALF;
     const bool drops = marked && !region.all;
@@ -497,9 +559,9 @@ static int search_cell(struct grid *grid, const ptrdiff_t c[3], struct candidate
         grid->reached[cell] = memcpy(room, candidates->marks, words * sizeof *room);
     }
     int longest = 0;
-    for (uint32_t s = grid->start[cell]; s < grid->start[cell + 1]; s++, own++) {
+    for (uint32_t s = grid->start[cell]; s < grid->start[cell + 1]; s++) {
         struct grid_list *list = &grid->lists[s];
-        if (!is_active(grid, s)) continue;
+        if (!is_listed(grid, s, beside)) continue;
         int32_t *kept = pool_take(pool, marked ? (count + 31) / 32 : count + BEYOND);
         if (!kept) return -1;
         uint16_t *marks = marked ? (uint16_t *)(void *)kept : candidates->marks;
@@ -510,9 +572,12 @@ static int search_cell(struct grid *grid, const ptrdiff_t c[3], struct candidate
         } else {
             list->count = grid->find(grid->box.dim, candidates, count, at, grid->radius2[s], marks);
         }
-        const uint16_t self = (uint16_t)(1u << own % 16);
-        list->count -= (marks[own / 16] & self) != 0;
-        marks[own / 16] &= (uint16_t)~self;
+        if (own != SIZE_MAX) {
+            const size_t at_own = own + (s - grid->start[cell]);
+            const uint16_t self = (uint16_t)(1u << at_own % 16);
+            list->count -= (marks[at_own / 16] & self) != 0;
+            marks[at_own / 16] &= (uint16_t)~self;
+        }
         list->kept = kept;
         size_t words = (count + 31) / 32;
         if (!marked) {
@@ -542,6 +607,8 @@ enum status grid_make_lists(struct grid *grid, struct error *error)
         grid->candidates[t].most = 0;
     }
     grid->candidates_most = 0;
+    mark_cells(grid);
+    if (!find_runs(grid)) return error_set(error, STATUS_ENVIRONMENT, "no memory for neighbours");
     int longest = 0;
     bool enough = true;
 #pragma omp parallel for num_threads(grid->team) schedule(dynamic) reduction(max : longest) \

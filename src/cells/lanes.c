@@ -26,6 +26,12 @@ bool lanes_reserve(struct cells *cells)
     for (int t = 0; t < cells->method.threads; t++) {
         struct lanes *lanes = &cells->lanes[t];
         if (!grid_reader_reserve(cells->grid, &lanes->reader)) return false;
+        if (cells->parts && lanes->room < stride) {
+            free(lanes->slots);
+            lanes->room = stride + stride / 2;
+            lanes->slots = malloc((size_t)lanes->room * sizeof *lanes->slots);
+            if (!lanes->slots) return false;
+        }
         if (lanes->block && stride <= lanes->stride) continue;
         free(lanes->block);
         /* half as much again, so that steps need not ask for more */
@@ -108,10 +114,9 @@ GEOMETRY(find_closing, LANES_CLOSING)
 #undef GEOMETRY
 
 static void gather(const struct cells *cells, const struct lanes_layout *layout, size_t slot,
-                   int from, int count, struct lanes *lanes)
+                   const int32_t *slots, int count, struct lanes *lanes)
 {
     const bool wrapped = cells->lists[slot].wrapped;
-    const int32_t *slots = grid_neighbours(cells->grid, &lanes->reader, cells->lists, slot);
     const int dim = cells->method.box.dim;
     struct geometry g = {.at = cells->place[slot],
                          .side = cells->side,
@@ -121,7 +126,7 @@ static void gather(const struct cells *cells, const struct lanes_layout *layout,
                          .r_inverse = lane(lanes, LANE_R_INVERSE),
                          .closing = lane(lanes, LANE_CLOSING),
                          .stride = lanes->stride};
-    layout->gather(cells->records, layout->size, slots + from, count, lane(lanes, LANES_OWN),
+    layout->gather(cells->records, layout->size, slots, count, lane(lanes, LANES_OWN),
                    lanes->stride);
     switch (layout->geometry) {
     case LANES_DISTANCE:
@@ -145,22 +150,41 @@ int lanes_gather(const struct cells *cells, const struct lanes_layout *layout, s
                  struct lanes *lanes)
 {
     const int count = whole_vectors(cells->lists[slot].count);
-    gather(cells, layout, slot, 0, count, lanes);
+    gather(cells, layout, slot,
+           grid_neighbours(cells->grid, &lanes->reader, cells->lists, slot), count, lanes);
     return count;
+}
+
+struct lanes_list lanes_partners(const struct cells *cells, size_t slot, struct lanes *lanes)
+{
+    const int32_t *slots = grid_neighbours(cells->grid, &lanes->reader, cells->lists, slot);
+    const int32_t count = cells->lists[slot].count;
+    if (!cells->parts) return (struct lanes_list){slots, count};
+    /* an active particle has forces with all but those on finer levels, others with active ones */
+    const unsigned char *kinds = cells->kinds;
+    const bool active = kinds[slot] == CELLS_ACTIVE;
+    int kept = 0;
+    for (int32_t k = 0; k < count; k++) {
+        const unsigned char kind = kinds[slots[k]];
+        lanes->slots[kept] = slots[k];
+        kept += active ? kind != CELLS_SUMMED : kind == CELLS_ACTIVE;
+    }
+    for (int k = kept; k < whole_vectors(kept); k++) lanes->slots[k] = (int32_t)cells->points;
+    return (struct lanes_list){lanes->slots, kept};
 }
 
 /* Bytes of lanes that the first-level cache holds beside records. */
 enum { LANES_BYTES = 24 << 10 };
 
 int lanes_gather_part(const struct cells *cells, const struct lanes_layout *layout, size_t slot,
-                      int from, struct lanes *lanes)
+                      const struct lanes_list *list, int from, struct lanes *lanes)
 {
     const int most = LANES_BYTES / (int)sizeof(double) / (LANES_OWN + layout->size);
-    const int whole = whole_vectors(cells->lists[slot].count);
+    const int whole = whole_vectors(list->count);
     const int parts = (whole + most - 1) / most;
     const int part = parts > 1 ? whole_vectors((whole + parts - 1) / parts) : whole;
     const int count = part < whole - from ? part : whole - from;
-    gather(cells, layout, slot, from, count, lanes);
+    gather(cells, layout, slot, list->slots + from, count, lanes);
     return count;
 }
 

@@ -31,6 +31,7 @@ enum lanes_field {
     FIELD_SLOPE,
     FIELD_PROJECTOR,    /* symmetric */
     FIELD_ACCELERATION, /* ax ay (az) */
+    FIELD_PACE,         /* local steps */
     FIELDS
 };
 
@@ -83,6 +84,8 @@ struct lanes {
     ptrdiff_t stride;
     int64_t pairs;
     struct grid_reader reader;
+    int32_t *slots; /* a list without those who take no part, in place of the grid's */
+    ptrdiff_t room; /* entries */
 };
 
 /* A search for widths: what each thread reads of it. */
@@ -99,6 +102,8 @@ struct cells {
     struct grid *grid;
     struct shapes shapes;
     double own_w;  /* w(0) */
+    const unsigned char *parts; /* enum cells_part of each particle; NULL: all are active */
+    unsigned char *kinds;       /* the same by slot; of the force pass */
     size_t points; /* particles and their mirror images: slots run over both */
     /* of the grid's last search */
     const struct grid_list *lists;
@@ -166,10 +171,24 @@ static inline double *lanes_sentinel(const struct cells *cells, const struct lan
 int lanes_gather(const struct cells *cells, const struct lanes_layout *layout, size_t slot,
                  struct lanes *lanes);
 
-/* The same for a part of the list, from its lane `from` on, that stays in the first-level cache
+/* A list of slots, and sentinels up to whole vectors. */
+struct lanes_list {
+    const int32_t *slots;
+    int count;
+};
+
+/* Those of a slot's list that it has forces with. */
+struct lanes_list lanes_partners(const struct cells *cells, size_t slot, struct lanes *lanes);
+
+/* Gathers a part of a slot's list, from its lane `from` on, that stays in the first-level cache
  * with all its lanes; parts depend on the list and the layout alone. Returns its lanes. */
 int lanes_gather_part(const struct cells *cells, const struct lanes_layout *layout, size_t slot,
-                      int from, struct lanes *lanes);
+                      const struct lanes_list *list, int from, struct lanes *lanes);
+
+static inline enum cells_part lanes_part(const struct cells *cells, size_t i)
+{
+    return cells->parts ? (enum cells_part)cells->parts[i] : CELLS_ACTIVE;
+}
 
 /* Doubles of the longest record of all layouts. */
 int lanes_longest_record(const struct cells *cells);
