@@ -118,7 +118,7 @@
     FAMILY(energy, ENERGY_LIST, ENERGIES, "energies", "the energy that is integrated")             \
     FAMILY(pair_width, PAIR_WIDTH_LIST, PAIR_WIDTHS, "pair_widths",                                \
            "width at which a pair's gradient is taken")                                            \
-    FAMILY(h_method, H_METHOD_LIST, H_METHODS, "h_methods", "how the smoothing length is found")                                                           \
+    FAMILY(h_method, H_METHOD_LIST, H_METHODS, "h_methods", "how the smoothing length is found")   \
     FAMILY(time_steps, STEPS_LIST, TIME_STEPS, "time_steps", "whose time step it is")
 
 #define FAMILY_SYMBOL(symbol, ...) symbol,

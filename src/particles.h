@@ -48,7 +48,7 @@
     SCALAR(pace, "inverse of the time step that is asked for, times cfl")                          \
     SCALAR(near_pace, "the largest one of its neighbours")                                         \
     SCALAR(before, "its last step")                                                                \
-    SCALAR(ratio, "time since its last density sum, over that between the last two")                   \
+    SCALAR(ratio, "time since its last density sum, over that between the last two")               \
     SCALAR(span, "from its last density sum but one to its last one")                              \
     VECTOR(F_mean, "mean dp/dt, for predictions")                                                  \
     SCALAR(de_mean, "mean de/dt")                                                                  \

@@ -21,7 +21,7 @@ static const double patience = 1.1;
 
 /* Time inside a block in ticks, two of which are a step of the finest level of all. */
 struct clock {
-    int finest;   /* that level */
+    int finest;    /* that level */
     long now, end; /* ticks */
     double tick;
 };
@@ -150,8 +150,8 @@ ALWAYS_INLINE void predict_gas(int dim, const struct simulation *simulation, ptr
     for (int i = 0; i < len; i++) {
         /* V = (h/eta)^d */
         const double hs = h_inverse[i], n = dim == 2 ? hs * hs : hs * hs * hs;
-        const double scale = dim == 2 ? eta_inverse * eta_inverse
-                                      : eta_inverse * eta_inverse * eta_inverse;
+        const double scale =
+            dim == 2 ? eta_inverse * eta_inverse : eta_inverse * eta_inverse * eta_inverse;
         const double volume = scale / n, V_inverse = n / scale;
         V[i] = volume;
         rho[i] = m[i] * V_inverse;
@@ -246,8 +246,7 @@ static void find_mean_rates(const struct simulation *simulation, const struct cl
         if ((int)a->level[i] > level) continue;
         a->pace[i] = pace_of(a, i);
         if ((int)a->level[i] < level) continue;
-        for (int k = 0; k < a->dim; k++)
-            a->F_mean[k][i] = a->F[k][i] + a->impulse[k][i] * inverse;
+        for (int k = 0; k < a->dim; k++) a->F_mean[k][i] = a->F[k][i] + a->impulse[k][i] * inverse;
         a->de_mean[i] = a->de[i] + a->heat[i] * inverse;
     }
 }
@@ -291,8 +290,8 @@ static double end_step(const struct simulation *simulation, double dt, ptrdiff_t
 }
 
 /* Ends the steps that end now, and chooses the next levels of their particles. */
-static enum status end_steps(struct simulation *simulation, const struct clock *clock,
-                             double block, struct error *error)
+static enum status end_steps(struct simulation *simulation, const struct clock *clock, double block,
+                             struct error *error)
 {
     const struct particles *a = &simulation->particles;
     const int coarsest = coarsest_at(clock);
@@ -334,8 +333,7 @@ enum status steps_block(struct simulation *simulation, double dt, struct error *
     while (clock.now < clock.end) {
         clock.now += length_of(&clock, finest_of(a)) / 2;
         enum status status = STATUS_OK;
-        if (coarsest_at(&clock) <= finest_of(a))
-            status = end_steps(simulation, &clock, dt, error);
+        if (coarsest_at(&clock) <= finest_of(a)) status = end_steps(simulation, &clock, dt, error);
         const int level = middle_at(&clock);
         if (!status && clock.now < clock.end && has_level(a, level))
             status = evaluate_level(simulation, &clock, level, error);

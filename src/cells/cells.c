@@ -229,7 +229,7 @@ enum status cells_arrange(struct cells *cells, const struct cells_fields *fields
         grid_search(cells->grid, cells->points, fields->n, walls ? all : fields->x,
                     walls ? images->radius : radius, parts, error);
     if (status) return status;
-    cells->parts = parts;
+    cells->parts = cells->method.local ? parts : NULL;
     cells->lists = grid_lists(cells->grid);
     cells->place = grid_positions(cells->grid);
     cells->order = grid_order(cells->grid);

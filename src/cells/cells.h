@@ -54,9 +54,9 @@ struct cells_method {
 /* What a particle has to do with an evaluation that is of some particles alone. Its value is the
  * grid's. */
 enum cells_part {
-    CELLS_ACTIVE = GRID_LISTED,     /* has sums and forces */
-    CELLS_IDLE = GRID_UNLISTED,     /* is seen by active particles */
-    CELLS_RECEIVES = GRID_BESIDE,   /* and receives the impulses of its pairs with active ones */
+    CELLS_ACTIVE = GRID_LISTED,      /* has sums and forces */
+    CELLS_IDLE = GRID_UNLISTED,      /* is seen by active particles */
+    CELLS_RECEIVES = GRID_BESIDE,    /* and receives the impulses of its pairs with active ones */
     CELLS_SUMMED = GRID_UNLISTED + 2 /* is seen by their sums, but has no forces with them */
 };
 
@@ -68,20 +68,20 @@ struct cells_fields {
     const double *P, *c, *rho, *V; /* of the equation of state, V = Z/y */
     const double *b, *grad_h;      /* lagrangian */
     /* found: without the factor C/h^d */
-    double *sum_m, *sum_m_dh;           /* sum m w and sum m (d w + q w'), number: m = 1 */
-    double *sum_Z, *sum_Z_dh;           /* energy element */
-    double *matrix[CELLS_SYMMETRIC];    /* C h^-d times C of eq. ia: gradient = matrix x w(q) */
-    double *condition;                  /* of the moment matrix */
-    double *steep;                      /* blended: the standard gradient's share */
-    double *slope[CELLS_SQUARE];        /* (grad v): d v_a/d x_b at a dim + b */
-    double *alpha_local, *decay;        /* of the switch */
+    double *sum_m, *sum_m_dh;        /* sum m w and sum m (d w + q w'), number: m = 1 */
+    double *sum_Z, *sum_Z_dh;        /* energy element */
+    double *matrix[CELLS_SYMMETRIC]; /* C h^-d times C of eq. ia: gradient = matrix x w(q) */
+    double *condition;               /* of the moment matrix */
+    double *steep;                   /* blended: the standard gradient's share */
+    double *slope[CELLS_SQUARE];     /* (grad v): d v_a/d x_b at a dim + b */
+    double *alpha_local, *decay;     /* of the switch */
     /* local steps */
-    const double *pace;                  /* cfl over the step that a particle asks for */
+    const double *pace; /* cfl over the step that a particle asks for */
     /* what inactive particles show is extrapolated: by ratio times the last change */
     const double *ratio, *balsara_before;
     double *matrix_before[CELLS_SYMMETRIC], *slope_before[CELLS_SQUARE];
-    double *near_pace;                   /* the largest of its pairs */
-    double *impulse[3], *heat, span;     /* receivers gain span times their rates */
+    double *near_pace;                  /* the largest of its pairs */
+    double *impulse[3], *heat, span;    /* receivers gain span times their rates */
     double *F[3], *de, *div_v, *signal; /* signal: largest speed of the particle's pairs */
 };
 

@@ -153,8 +153,7 @@ static void matrix_pass(struct cells *cells, const struct cells_fields *fields, 
     for (int a = 0; a < dim; a++)
         for (int b = a; b < dim; b++, k++) {
             if (method->local) fields->matrix_before[k][i] = fields->matrix[k][i];
-            fields->matrix[k][i] =
-                sound ? 0.5 * (inverse[a * dim + b] + inverse[b * dim + a]) : 0;
+            fields->matrix[k][i] = sound ? 0.5 * (inverse[a * dim + b] + inverse[b * dim + a]) : 0;
         }
 }
 

@@ -46,9 +46,9 @@ struct grid; /* private to grid.c but for what the functions below give */
 
 /* Which lists a search finds. */
 enum grid_flag {
-    GRID_LISTED,   /* this one */
-    GRID_UNLISTED, /* not this one; as every other value */
-    GRID_BESIDE    /* this one where a listed point may be near */
+    GRID_LISTED,     /* this one */
+    GRID_UNLISTED,   /* not this one; as every other value */
+    GRID_BESIDE = 16 /* this one where a listed point may be near */
 };
 
 /* For n points at most at first; grows with the points. threads >= 1. NULL: no memory. */
@@ -99,8 +99,8 @@ struct grid_run {
     uint32_t begin, end;
 };
 
-/* The slots that lists of the last search may hold, in runs for threads to share, of at most 256 but for a
- * cell that holds more. */
+/* The slots that lists of the last search may hold, in runs for threads to share, of at most 256
+ * but for a cell that holds more. */
 const struct grid_run *grid_runs(const struct grid *grid, size_t *count);
 
 /* Parts of the slots for threads to share: at most 256 slots each, independent of the number of

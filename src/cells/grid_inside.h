@@ -77,8 +77,8 @@ struct grid {
                                      cell that has? */
     struct grid_run *runs;
     size_t run_count, run_capacity;
-    uint16_t **reached;   /* 3D, of each cell with lists: marks of the points of the cells around
-                             that its own may be near; NULL: of none is it known that they are not */
+    uint16_t **reached; /* 3D, of each cell with lists: marks of the points of the cells around
+                           that its own may be near; NULL: of none is it known that they are not */
     uint32_t *order;
     double (*position)[3];
     float *place[3], *radius2; /* of each slot: from the middle of its cell; radius squared */
@@ -86,9 +86,9 @@ struct grid {
     uint32_t *part_begin, *part_cell;
     size_t parts;
     int longest;
-    size_t candidates_most;      /* of a cell */
-    size_t active;               /* points that may have lists */
-    const unsigned char *flags;  /* of the last search */
+    size_t candidates_most;     /* of a cell */
+    size_t active;              /* points that may have lists */
+    const unsigned char *flags; /* of the last search */
     struct pool *pools;
     struct candidates *candidates;
     take_loop *take;

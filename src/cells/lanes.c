@@ -150,8 +150,8 @@ int lanes_gather(const struct cells *cells, const struct lanes_layout *layout, s
                  struct lanes *lanes)
 {
     const int count = whole_vectors(cells->lists[slot].count);
-    gather(cells, layout, slot,
-           grid_neighbours(cells->grid, &lanes->reader, cells->lists, slot), count, lanes);
+    gather(cells, layout, slot, grid_neighbours(cells->grid, &lanes->reader, cells->lists, slot),
+           count, lanes);
     return count;
 }
 

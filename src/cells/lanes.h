@@ -101,10 +101,10 @@ struct cells {
     int team; /* threads at work */
     struct grid *grid;
     struct shapes shapes;
-    double own_w;  /* w(0) */
+    double own_w;               /* w(0) */
     const unsigned char *parts; /* enum cells_part of each particle; NULL: all are active */
     unsigned char *kinds;       /* the same by slot; of the force pass */
-    size_t points; /* particles and their mirror images: slots run over both */
+    size_t points;              /* particles and their mirror images: slots run over both */
     /* of the grid's last search */
     const struct grid_list *lists;
     const double (*place)[3];

@@ -328,7 +328,7 @@ static size_t check_lists(const struct grid *grid)
             across |= look[a].across, all |= look[a].all;
         }
         assert_true(list->wrapped == across);
-        if (i >= scene.active || (grid->asleep && scene.asleep[i])) {
+        if (i >= scene.active || (grid->flags && scene.asleep[i])) {
             assert_true(!list->kept && !list->count);
             continue;
         }

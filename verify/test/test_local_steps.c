@@ -1,0 +1,367 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * steps=local: what each particle's own step must not change (momentum, total energy, the order in
+ * time, the bits for any number of threads and after a resume), the steps of global where all
+ * particles are on one level, and that neighbours differ by one level. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "made_scheme.h"
+#include "near.h"
+#include "settings.h"
+#include "solver.h"
+
+enum { N = 1024 };
+
+static double x[3][N], v[3][N], m[N], u[N];
+static uint64_t seed;
+
+static double draw(double low, double high)
+{
+    seed = seed * 6364136223846793005u + 1442695040888963407u;
+    return low + (high - low) * (double)(seed >> 11) * 0x1p-53;
+}
+
+/* The default scheme with these keys. */
+static struct scheme scheme_with(int dim, const char *keys)
+{
+    struct settings settings;
+    struct scheme scheme;
+    struct error error = {0};
+    char text[200], *rest = text;
+    settings_init(&settings);
+    snprintf(text, sizeof text, "%s", keys);
+    for (char *key; (key = strtok_r(rest, " ", &rest));) {
+        char *value = strchr(key, '=');
+        *value++ = '\0';
+        int which = 0;
+        while (strcmp(setting_keys[which].name, key) != 0) which++;
+        if (settings_set(&settings, (enum setting)which, value, SOURCE_USER, NULL, &error))
+            fail_msg("%s", error.message);
+    }
+    if (settings_scheme(&settings, dim, &scheme, &error)) fail_msg("%s", error.message);
+    return scheme;
+}
+
+/* A lattice of side^dim particles in a periodic box, each off its place by so much of a spacing,
+ * with a hot ball in the middle: u rises by `heat`, within a spacing or (smooth) over the box. */
+static struct scene scene_of(int dim, size_t side, double jitter, double heat, bool smooth,
+                             const struct scheme *scheme)
+{
+    struct scene scene = {.dim = dim,
+                          .hi = {1, 1, 1},
+                          .gamma = 1.4,
+                          .t_end = 1,
+                          .m = m,
+                          .u = u,
+                          .scheme = *scheme,
+                          .threads = 1};
+    scene.n = dim == 2 ? side * side : side * side * side;
+    assert_true(scene.n <= N);
+    for (size_t i = 0, at = 0; i < scene.n; at = ++i) {
+        double r2 = 0;
+        for (int a = 0; a < dim; a++, at /= side) {
+            x[a][i] = ((double)(at % side) + 0.5 + draw(-jitter, jitter)) / (double)side;
+            v[a][i] = jitter * draw(-1, 1);
+            r2 += (x[a][i] - 0.5) * (x[a][i] - 0.5);
+        }
+        m[i] = (1 + jitter * draw(-1, 1)) / (double)scene.n;
+        u[i] = smooth ? 1 + heat * exp(-r2 / 0.03) : sqrt(r2) < 0.15 ? 1 + heat : 1;
+    }
+    for (int a = 0; a < dim; a++) scene.x[a] = x[a], scene.v[a] = v[a];
+    return scene;
+}
+
+static void run_to(struct simulation *simulation, double t_end, simulation_progress *progress)
+{
+    struct error error = {0};
+    if (simulation_run(simulation, t_end, progress, simulation, &error))
+        fail_msg("%s", error.message);
+}
+
+static bool alike(const struct simulation *a, const struct simulation *b)
+{
+    struct snapshot s, t;
+    simulation_snapshot(a, &s);
+    simulation_snapshot(b, &t);
+    bool same = s.n == t.n && s.time == t.time;
+    for (size_t i = 0; same && i < s.n; i++) {
+        same = s.id[i] == t.id[i] && s.u[i] == t.u[i] && s.rho[i] == t.rho[i] && s.h[i] == t.h[i];
+        for (int k = 0; k < a->plan.dim; k++)
+            same &= s.x[k][i] == t.x[k][i] && s.v[k][i] == t.v[k][i];
+    }
+    return same;
+}
+
+static const char *const schemes[] = {
+    "steps=local",
+    "steps=local alpha_u=0.5",
+    "steps=local gradient=standard viscosity=constant kernel=cubic_spline",
+    "steps=local gradient=blended viscosity=reconstructed balsara=on",
+};
+enum { SCHEMES = sizeof schemes / sizeof *schemes };
+
+/* --- conservation ----------------------------------------------------------------------------- */
+
+static void keeps_momentum_and_energy(void **state)
+{
+    (void)state;
+    for (size_t k = 0; k < 2 * SCHEMES; k++) {
+        const int dim = k % 2 ? 3 : 2;
+        seed = 31 + k;
+        const struct scheme scheme = scheme_with(dim, schemes[k / 2]);
+        const struct scene scene = scene_of(dim, dim == 2 ? 24 : 9, 0.2, 300, false, &scheme);
+        struct simulation *simulation = made_of(&scene);
+        struct conservation before, after;
+        struct simulation_cost cost;
+        simulation_conservation(simulation, &before);
+        run_to(simulation, 0.008, NULL);
+        simulation_conservation(simulation, &after);
+        simulation_cost(simulation, &cost);
+        for (int a = 0; a < dim; a++)
+            near_below(fabs(after.momentum[a] - before.momentum[a]), 1e-13 * after.momentum_scale);
+        near_below(fabs(after.energy - before.energy), 1e-13 * before.energy);
+        /* there were levels */
+        assert_true(cost.skipped_particle_updates > cost.particle_updates / 10);
+        assert_int_equal(cost.particle_updates + cost.skipped_particle_updates,
+                         cost.steps * scene.n);
+        simulation_destroy(simulation);
+    }
+}
+
+/* --- bits ------------------------------------------------------------------------------------- */
+
+static void threads_do_not_matter(void **state)
+{
+    (void)state;
+    const struct scheme scheme = scheme_with(2, "steps=local");
+    seed = 7;
+    struct scene scene = scene_of(2, 32, 0.2, 300, false, &scheme);
+    struct simulation *one = made_of(&scene);
+    run_to(one, 0.006, NULL);
+    for (int threads = 2; threads <= 3; threads++) {
+        scene.threads = threads;
+        struct simulation *more = made_of(&scene);
+        run_to(more, 0.006, NULL);
+        assert_true(alike(one, more));
+        simulation_destroy(more);
+    }
+    simulation_destroy(one);
+}
+
+static void one_level_is_global(void **state)
+{
+    (void)state;
+    for (size_t k = 0; k < SCHEMES; k++) {
+        struct simulation *both[2];
+        for (int local = 0; local < 2; local++) {
+            char keys[200];
+            snprintf(keys, sizeof keys, "%s%s", local ? "steps=local" : "steps=global",
+                     strlen(schemes[k]) > 11 ? schemes[k] + 11 : "");
+            const struct scheme scheme = scheme_with(2, keys);
+            seed = 5;
+            const struct scene scene = scene_of(2, 16, 0.02, 0, true, &scheme);
+            both[local] = made_of(&scene);
+            run_to(both[local], 0.2, NULL);
+        }
+        assert_int_equal(both[0]->cost.steps, both[1]->cost.steps);
+        assert_true(both[0]->cost.steps > 4);
+        assert_int_equal(both[1]->cost.skipped_particle_updates, 0);
+        assert_true(alike(both[0], both[1]));
+        for (int local = 0; local < 2; local++) simulation_destroy(both[local]);
+    }
+}
+
+struct bag {
+    unsigned char bytes[1 << 21];
+    size_t used, read;
+};
+
+static bool put(void *context, void *bytes, size_t n)
+{
+    struct bag *bag = context;
+    if (bag->used + n > sizeof bag->bytes) return false;
+    memcpy(bag->bytes + bag->used, bytes, n);
+    bag->used += n;
+    return true;
+}
+
+static bool take(void *context, void *bytes, size_t n)
+{
+    struct bag *bag = context;
+    if (bag->read + n > bag->used) return false;
+    memcpy(bytes, bag->bytes + bag->read, n);
+    bag->read += n;
+    return true;
+}
+
+static struct bag bag;
+static int blocks;
+
+static bool keep_the_fifth(void *context, double time, uint64_t steps)
+{
+    struct carrier out = {.bytes = put, .context = &bag};
+    (void)time, (void)steps;
+    if (++blocks == 5) simulation_carry(context, &out);
+    assert_false(out.failed);
+    return true;
+}
+
+static void goes_on_to_the_last_bit(void **state)
+{
+    (void)state;
+    const struct scheme scheme = scheme_with(2, "steps=local alpha_u=0.5");
+    seed = 11;
+    const struct scene scene = scene_of(2, 24, 0.2, 300, false, &scheme);
+    struct simulation *kept = made_of(&scene), *restored = made_of(&scene);
+    struct carrier back = {.bytes = take, .context = &bag, .back = true};
+    run_to(kept, 0.06, keep_the_fifth);
+    assert_true(blocks > 6);
+    simulation_carry(restored, &back);
+    assert_true(!back.failed && restored->time > 0 && restored->steps.depth > 0);
+    run_to(restored, 0.06, NULL);
+    assert_true(alike(kept, restored));
+    simulation_destroy(kept);
+    simulation_destroy(restored);
+}
+
+/* --- order in time ---------------------------------------------------------------------------- */
+
+/* Root mean square difference of positions and velocities, by identity. */
+static double difference(const struct simulation *a, const struct simulation *b)
+{
+    static double of[2][3][N];
+    const struct simulation *const both[] = {a, b};
+    double sum = 0;
+    for (int s = 0; s < 2; s++) {
+        const struct particles *p = &both[s]->particles;
+        for (ptrdiff_t i = 0; i < p->n; i++)
+            for (int k = 0; k < p->dim; k++)
+                of[s][k][p->id[i]] = p->x[k][i] + p->p[k][i] * p->m_inverse[i];
+    }
+    for (ptrdiff_t i = 0; i < a->particles.n; i++)
+        for (int k = 0; k < a->particles.dim; k++)
+            sum += (of[0][k][i] - of[1][k][i]) * (of[0][k][i] - of[1][k][i]);
+    return sqrt(sum / (double)a->particles.n);
+}
+
+/* A smooth hot spot, whose particles have steps of three levels. */
+static struct simulation *smooth_run(int dim, double cfl, enum time_steps steps)
+{
+    struct scheme scheme = scheme_with(dim, "steps=local");
+    scheme.steps = steps;
+    scheme.cfl = cfl;
+    seed = 3;
+    const struct scene scene = scene_of(dim, dim == 2 ? 20 : 9, 0, 30, true, &scheme);
+    struct simulation *simulation = made_of(&scene);
+    run_to(simulation, 0.02, NULL);
+    return simulation;
+}
+
+static void second_order_in_time(void **state)
+{
+    (void)state;
+    struct simulation *exact = smooth_run(2, 0.01, STEPS_GLOBAL);
+    double error[2];
+    for (int k = 0; k < 2; k++) {
+        struct simulation *run = smooth_run(2, k ? 0.08 : 0.16, STEPS_LOCAL);
+        assert_true(run->cost.skipped_particle_updates > run->cost.particle_updates / 4);
+        error[k] = difference(run, exact);
+        simulation_destroy(run);
+    }
+    near_inside(log2(error[0] / error[1]), 1.6, 3);
+    simulation_destroy(exact);
+}
+
+/* --- levels ----------------------------------------------------------------------------------- */
+
+/* After a block: of two particles within each other's reach hardly one has a pace of less than half
+ * of the other's (3 % in 2D, as paces rise from one evaluation to the next; 14 % where nobody looks
+ * at neighbours' paces). */
+static int violations, looked;
+
+static bool look_at_levels(void *context, double time, uint64_t steps)
+{
+    const struct simulation *simulation = context;
+    const struct particles *a = &simulation->particles;
+    (void)time, (void)steps;
+    if (simulation->steps.depth < 1) return true;
+    for (ptrdiff_t i = 0; i < a->n; i++)
+        for (ptrdiff_t j = 0; j < a->n; j++) {
+            double r2 = 0;
+            for (int k = 0; k < a->dim; k++) {
+                const double d = a->x[k][i] - a->x[k][j], near = d - round(d);
+                r2 += near * near;
+            }
+            const double reach = 0.9 * fmax(1 / a->h_inverse[i], 1 / a->h_inverse[j]);
+            if (!(r2 < reach * reach)) continue;
+            looked++;
+            violations += a->pace[j] < 0.4 * a->pace[i];
+        }
+    return true;
+}
+
+/* Cold gas beside a blast 10^4 times as hot has short steps before anything arrives. */
+static void neighbours_differ_by_one_level(void **state)
+{
+    (void)state;
+    const struct scheme scheme = scheme_with(2, "steps=local alpha_u=0.5");
+    seed = 17;
+    const struct scene scene = scene_of(2, 24, 0.02, 1e4, false, &scheme);
+    struct simulation *simulation = made_of(&scene);
+    violations = looked = 0;
+    run_to(simulation, 3e-3, look_at_levels);
+    assert_true(looked > 1000);
+    near_below((double)violations, 0.05 * (double)looked);
+    simulation_destroy(simulation);
+}
+
+static void says_what_excludes_it(void **state)
+{
+    (void)state;
+    static const char *const pairs[][2] = {
+        {"integrator=leapfrog", "integrator=leapfrog"},
+        {"h_method=newton", "h_method=newton"},
+        {"formulation=lagrangian h_method=predicted", "formulation=lagrangian"},
+        {"volume_element=energy viscosity=constant", "volume_element=energy"},
+        {"viscosity=time_dependent", "viscosity=time_dependent"},
+        {"viscosity=cullen_dehnen", "viscosity=cullen_dehnen"},
+    };
+    for (size_t k = 0; k < sizeof pairs / sizeof *pairs; k++) {
+        struct scheme scheme = scheme_with(2, pairs[k][0]);
+        struct error error = {0};
+        char start[100];
+        scheme.steps = STEPS_LOCAL;
+        assert_int_equal(scheme_check(&scheme, 2, &error), STATUS_BAD_INPUT);
+        snprintf(start, sizeof start, "steps=local and %s exclude each other: ", pairs[k][1]);
+        assert_int_equal(strncmp(error.message, start, strlen(start)), 0);
+    }
+    struct scheme line = scheme_with(1, "steps=global");
+    struct error error = {0};
+    line.steps = STEPS_LOCAL;
+    assert_int_equal(scheme_check(&line, 1, &error), STATUS_BAD_INPUT);
+    assert_string_equal(error.message, "steps=local and dimension=1 exclude each other: it is for "
+                                       "2 and 3 dimensions");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(keeps_momentum_and_energy),
+        cmocka_unit_test(threads_do_not_matter),
+        cmocka_unit_test(one_level_is_global),
+        cmocka_unit_test(goes_on_to_the_last_bit),
+        cmocka_unit_test(second_order_in_time),
+        cmocka_unit_test(neighbours_differ_by_one_level),
+        cmocka_unit_test(says_what_excludes_it),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
