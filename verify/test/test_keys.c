@@ -62,6 +62,7 @@ static void keys_are_as_they_were(void **state)
         {"alpha_min", SETTING_REAL, 1, false, 0, 100, "0.1"},
         {"alpha_max", SETTING_REAL, 1, false, 0, 100, "1.5"},
         {"pair_width", SETTING_CHOICE, 1, false, 0, 0, "auto"},
+        {"steps", SETTING_CHOICE, 1, false, 0, 0, "global"},
         {"h_method", SETTING_CHOICE, 1, false, 0, 0, "auto"},
         {"h_tolerance", SETTING_REAL, 1, false, 1e-15, 1e-2, "1e-10"},
         {"gamma", SETTING_REAL, 1, true, 1, 100, "1.4"},
