@@ -30,7 +30,7 @@ struct plan plan_make(const struct scheme *scheme, int dim, bool skip, bool stam
         .alpha = scheme->viscosity == VISCOSITY_TIME_DEPENDENT,
         .jump = scheme->viscosity == VISCOSITY_CULLEN_DEHNEN,
         .local = scheme->steps == STEPS_LOCAL,
-        .sleep = skip && scheme->steps == STEPS_GLOBAL,
+        .sleep = skip,
         .signal_pass = scheme->integrator->signal_pass,
     };
 }
@@ -160,7 +160,6 @@ size_t plan_explain(const struct scene *scene, struct plan_line *lines, size_t m
     line(&writer, "sleep", plan.sleep,
          "skip=auto: no sums where no signal has been; acts as a start changed by 1e-11",
          plan.gravity ? "gravity: nobody is at rest"
-         : plan.local ? "steps=local: where little happens steps are long"
                       : "skip=none: every particle at every step");
     line(&writer, "final state", !scheme->integrator->ends_evaluated,
          "density and equation of state once more at t_end", "the last evaluation was at t_end");

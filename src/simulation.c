@@ -275,10 +275,10 @@ static enum status check_energy(const struct simulation *simulation, struct erro
 /* One step. STATUS_BROKE_DOWN: the state is the last sound one. */
 static enum status advance(struct simulation *simulation, struct error *error)
 {
-    const bool local = simulation->plan.local;
     double dt = simulation_next_step(simulation, simulation->time);
     simulation->largest_dt = fmax(simulation->largest_dt, dt);
-    if (local) dt = steps_begin_block(simulation, dt, simulation->t_end - simulation->time);
+    if (simulation->plan.local) dt = steps_begin_block(simulation, dt, simulation->t_end - simulation->time);
+    const bool local = simulation->plan.local && !simulation->steps.single;
     const bool last = simulation_time_after(simulation, dt) >= simulation->t_end;
     /* in the last step t_end alone decides, however near it is */
     if (!last && collapsed(simulation, dt))
@@ -293,7 +293,7 @@ static enum status advance(struct simulation *simulation, struct error *error)
     simulation->time = simulation_time_after(simulation, dt);
     if (simulation->plan.signal_pass && simulation->time < simulation->t_end)
         evaluate_signal(simulation);
-    simulation->plan.sums->sleep_update(simulation); /* makes new ranges, whose reach is unknown */
+    if (!local) simulation->plan.sums->sleep_update(simulation); /* makes new ranges, whose reach is unknown */
     struct simulation_cost *cost = &simulation->cost;
     const uint64_t steps = local ? 1u << simulation->steps.depth : 1;
     const uint64_t all = steps * (uint64_t)simulation->particles.n;

@@ -19,20 +19,16 @@ static const double close_to = 0.5;
  * the next block will have shorter ones. */
 static const double patience = 1.1;
 
-/* Time inside a block in ticks, two of which are a step of the finest level of all. */
-struct clock {
-    int finest;    /* that level */
-    long now, end; /* ticks */
-    double tick;
-};
+/* In single steps: from one look at whether blocks pay to the next. */
+enum { LOOK_EVERY = 4 };
 
-static long length_of(const struct clock *clock, int level)
+static long length_of(const struct steps_clock *clock, int level)
 {
     return clock->end >> level;
 }
 
 /* The coarsest level with a step that ends now. */
-static int coarsest_at(const struct clock *clock)
+static int coarsest_at(const struct steps_clock *clock)
 {
     int level = 0;
     while (clock->now % length_of(clock, level) != 0) level++;
@@ -40,7 +36,7 @@ static int coarsest_at(const struct clock *clock)
 }
 
 /* The level that has the middle of a step now; beyond the finest: none. */
-static int middle_at(const struct clock *clock)
+static int middle_at(const struct steps_clock *clock)
 {
     int level = 0;
     while (level <= clock->finest &&
@@ -75,32 +71,80 @@ static double work_of(const struct simulation *simulation, double dt, int depth)
     return work / (double)a->n;
 }
 
-double steps_begin_block(struct simulation *simulation, double dt, double left)
+/* Does a block of that depth pay, against single steps of those who are awake? */
+static bool pays(const struct simulation *simulation, double dt, int depth)
 {
-    struct steps *steps = &simulation->steps;
+    const double awake = (double)simulation->sleep.awake_count / (double)simulation->particles.n;
+    return work_of(simulation, dt, depth) <= worth * awake;
+}
+
+/* Single steps, which keep nothing for local ones, have led up to here. Rates are their midpoint's.
+ */
+static void take_over(struct simulation *simulation)
+{
     const struct particles *a = &simulation->particles;
-    if (!(simulation->dt > 0)) /* the first step: everybody's, from rates that know no velocities */
-        for (ptrdiff_t i = 0; i < a->n; i++) {
-            for (int k = 0; k < a->dim; k++) {
-                a->F_mean[k][i] = a->F[k][i];
-                a->x_old[k][i] = a->x[k][i];
-            }
-            a->de_mean[i] = a->de[i];
-            a->near_pace[i] = 0;
-            a->pace[i] = pace_of(a, i);
+    simulation->scheme.integrator->synchronise(simulation);
+    for (ptrdiff_t i = 0; i < a->n; i++) {
+        for (int k = 0; k < a->dim; k++) {
+            a->F_mean[k][i] = a->F[k][i];
+            a->x_old[k][i] = a->x[k][i];
+            a->impulse[k][i] = 0;
         }
+        a->de_mean[i] = a->de[i];
+        a->heat[i] = 0;
+        a->before[i] = a->span[i] = simulation->dt;
+    }
+}
+
+/* Without what neighbours ask for. */
+static void find_own_paces(const struct simulation *simulation)
+{
+    const struct particles *a = &simulation->particles;
+    for (ptrdiff_t i = 0; i < a->n; i++) {
+        a->near_pace[i] = 0;
+        a->pace[i] = pace_of(a, i);
+    }
+}
+
+/* The depth of the next block. One level more than the last one at most: paces of neighbours'
+ * neighbours have come no further. */
+static int find_depth(const struct simulation *simulation, double dt, double left)
+{
+    const struct particles *a = &simulation->particles;
     double slowest = HUGE_VAL;
     for (ptrdiff_t i = 0; i < a->n; i++) slowest = fmin(slowest, a->pace[i]);
-    /* one level more than the last block at most: paces of neighbours' neighbours have come no
-     * further */
-    int depth = simulation->dt > 0 ? steps->depth + 1 : 0;
+    int depth = simulation->steps.depth + 1;
     if (depth > STEPS_DEPTH) depth = STEPS_DEPTH;
     while (depth > 0 && (ldexp(dt, depth) > left ||
                          slowest * ldexp(dt, depth) > simulation->scheme.cfl * (1 + 1e-9)))
         depth--;
-    if (depth > 0 && work_of(simulation, dt, depth) > worth) depth = 0;
-    steps->depth = depth;
-    return ldexp(dt, depth);
+    return depth > 0 && pays(simulation, dt, depth) ? depth : 0;
+}
+
+double steps_begin_block(struct simulation *simulation, double dt, double left)
+{
+    struct steps *steps = &simulation->steps;
+    if (!(simulation->dt > 0)) {
+        *steps = (struct steps){.level = -1, .single = true};
+        return dt;
+    }
+    if (steps->single) {
+        steps->depth = 0;
+        if (++steps->looked % LOOK_EVERY != 1) return dt;
+        find_own_paces(simulation);
+        if (2 * dt > left || !pays(simulation, dt, 1)) return dt;
+        take_over(simulation);
+        steps->single = false; /* this step still has one level, and finds neighbours' paces */
+        return dt;
+    }
+    const int before = steps->depth;
+    steps->depth = find_depth(simulation, dt, left);
+    /* widths of single steps are predicted from a last step of everybody's */
+    if (steps->depth == 0 && before == 0) {
+        steps->single = true;
+        steps->looked = 1;
+    }
+    return ldexp(dt, steps->depth);
 }
 
 /* --- prediction ------------------------------------------------------------------------------- */
@@ -118,8 +162,8 @@ ALWAYS_INLINE void predict_widths(const struct particles *a, ptrdiff_t first, in
 {
     const double *restrict before = a->before + first, *restrict span = a->span + first,
                            *restrict found = a->h_inverse_found + first;
-    double *restrict h_inverse = a->h_inverse + first, *restrict last = a->h_inverse_old + first,
-                     *restrict ratio_of = a->ratio + first;
+    const double *restrict last = a->h_inverse_old + first;
+    double *restrict h_inverse = a->h_inverse + first, *restrict ratio_of = a->ratio + first;
 #pragma omp simd
     for (int i = 0; i < len; i++) {
         const double half = at->half[i], s = at->s[i];
@@ -130,7 +174,6 @@ ALWAYS_INLINE void predict_widths(const struct particles *a, ptrdiff_t first, in
         ratio_of[i] = ratio;
         const double next = found[i] + ratio * (found[i] - last[i]);
         h_inverse[i] = largest(0.8 * found[i], least(1.25 * found[i], next));
-        last[i] = at->active[i] > 0 ? found[i] : last[i];
     }
 }
 
@@ -206,18 +249,18 @@ CLONES static void predict_3(const struct simulation *simulation, ptrdiff_t firs
     predict_body(3, simulation, first, len, at);
 }
 
-/* All particles now. Returns how many are active. */
-static uint64_t predict(const struct simulation *simulation, const struct clock *clock, int level)
+/* All particles now. */
+static void predict(const struct simulation *simulation)
 {
+    const struct steps_clock *clock = &simulation->steps.clock;
+    const int level = simulation->steps.level;
     const struct particles *a = &simulation->particles;
     double s[STEPS_DEPTH + STEPS_SPARE + 1], half[STEPS_DEPTH + STEPS_SPARE + 1];
-    double active = 0;
     for (int b = 0; b <= clock->finest; b++) {
         s[b] = clock->tick * (double)(clock->now % length_of(clock, b));
         half[b] = clock->tick * (double)(length_of(clock, b) / 2);
     }
-#pragma omp parallel for num_threads(simulation->team.size) reduction(+ : active)                  \
-    if (simulation->team.size > 1)
+#pragma omp parallel for num_threads(simulation->team.size) if (simulation->team.size > 1)
     for (ptrdiff_t first = 0; first < a->n; first += BATCH_MAX) {
         const int len = (int)(a->n - first < BATCH_MAX ? a->n - first : BATCH_MAX);
         struct places at;
@@ -226,85 +269,168 @@ static uint64_t predict(const struct simulation *simulation, const struct clock 
             at.s[i] = s[own];
             at.half[i] = half[own];
             at.active[i] = own == level ? 1 : 0;
-            active += at.active[i];
         }
         (a->dim == 2 ? predict_2 : predict_3)(simulation, first, len, &at);
     }
-    return (uint64_t)active;
 }
 
 /* --- evaluation ------------------------------------------------------------------------------- */
 
 /* The mean rates of the step that active particles are in the middle of: those of their own pairs,
  * and what finer pairs have given in the first half. */
-static void find_mean_rates(const struct simulation *simulation, const struct clock *clock)
+static void find_mean_rates(struct simulation *simulation)
 {
     const struct particles *a = &simulation->particles;
-    const int level = (int)simulation->steps.level;
+    const struct steps_clock *clock = &simulation->steps.clock;
+    const int level = simulation->steps.level;
     const double inverse = 1 / (0.5 * clock->tick * (double)length_of(clock, level));
     for (ptrdiff_t i = 0; i < a->n; i++) {
         if ((int)a->level[i] > level) continue;
         a->pace[i] = pace_of(a, i);
         if ((int)a->level[i] < level) continue;
+        simulation->steps.updates++;
         for (int k = 0; k < a->dim; k++) a->F_mean[k][i] = a->F[k][i] + a->impulse[k][i] * inverse;
         a->de_mean[i] = a->de[i] + a->heat[i] * inverse;
     }
 }
 
-static enum status evaluate_level(struct simulation *simulation, const struct clock *clock,
-                                  int level, struct error *error)
+static enum status evaluate_level(struct simulation *simulation, int level, struct error *error)
 {
     struct steps *steps = &simulation->steps;
-    const uint64_t active = predict(simulation, clock, level);
     steps->level = level;
-    steps->span = clock->tick * (double)length_of(clock, level);
-    steps->updates += active;
+    steps->span = steps->clock.tick * (double)length_of(&steps->clock, level);
+    predict(simulation);
     const enum status status = evaluate_rates_of_primitives(simulation, error);
-    if (!status) find_mean_rates(simulation, clock);
+    if (!status) find_mean_rates(simulation);
     steps->level = -1;
     return status;
 }
 
-/* --- steps ------------------------------------------------------------------------------------ */
-
-/* Ends the step of a particle. Returns its internal energy. */
-static double end_step(const struct simulation *simulation, double dt, ptrdiff_t i)
+void steps_begin_sums(struct simulation *simulation)
 {
     const struct particles *a = &simulation->particles;
-    const double kinetic = simulation->scheme.energy == ENERGY_TOTAL ? 0.5 : 0, inverse = 1 / dt;
-    a->e[i] = a->e[i] + a->de[i] * dt + a->heat[i];
-    a->de_mean[i] = a->de[i] + a->heat[i] * inverse;
+    for (ptrdiff_t i = 0; i < a->n; i++)
+        if (simulation_evaluates(simulation, i)) a->h_inverse_old[i] = a->h_inverse_found[i];
+}
+
+/* --- steps ------------------------------------------------------------------------------------ */
+
+/* Moves a particle by dt, to the end of its step, with its own rates for a time `own`; its impulse
+ * is that of a time `all`. Returns its internal energy. */
+static double end_step(const struct simulation *simulation, double dt, double own, double all,
+                       ptrdiff_t i)
+{
+    const struct particles *a = &simulation->particles;
+    const double kinetic = simulation->scheme.energy == ENERGY_TOTAL ? 0.5 : 0, inverse = 1 / all,
+                 share = own == all ? 1 : own * inverse;
+    a->e[i] = a->e[i] + a->de[i] * own + a->heat[i];
+    a->de_mean[i] = a->de[i] * share + a->heat[i] * inverse;
     a->heat[i] = 0;
     double U = a->e[i];
     for (int k = 0; k < a->dim; k++) {
-        const double p = a->p[k][i], p_now = p + a->F[k][i] * dt + a->impulse[k][i];
+        const double p = a->p[k][i], p_now = p + a->F[k][i] * own + a->impulse[k][i];
         a->x_old[k][i] = a->x[k][i] = a->x_old[k][i] + 0.5 * (p + p_now) * a->m_inverse[i] * dt;
         a->p[k][i] = p_now;
-        a->F_mean[k][i] = a->F[k][i] + a->impulse[k][i] * inverse;
+        a->F_mean[k][i] = a->F[k][i] * share + a->impulse[k][i] * inverse;
         a->impulse[k][i] = 0;
         U -= kinetic * p_now * (p_now * a->m_inverse[i]);
     }
-    a->span[i] = simulation->steps.depth > 0 ? 0.5 * (a->before[i] + dt) : dt;
-    a->before[i] = dt;
     return U;
 }
 
 /* Ends the steps that end now, and chooses the next levels of their particles. */
-static enum status end_steps(struct simulation *simulation, const struct clock *clock, double block,
-                             struct error *error)
+static enum status end_steps(struct simulation *simulation, double block, struct error *error)
 {
     const struct particles *a = &simulation->particles;
+    const struct steps_clock *clock = &simulation->steps.clock;
     const int coarsest = coarsest_at(clock);
     for (ptrdiff_t i = 0; i < a->n; i++) {
         const int level = (int)a->level[i];
         if (level < coarsest) continue;
-        const double U = end_step(simulation, clock->tick * (double)length_of(clock, level), i);
+        const double dt = clock->tick * (double)length_of(clock, level),
+                     U = end_step(simulation, dt, dt, dt, i);
         if (!(U > 0)) return breakdown_of(simulation, i, "internal energy", U, error);
+        a->span[i] = simulation->steps.depth > 0 ? 0.5 * (a->before[i] + dt) : dt;
+        a->before[i] = dt;
         const int next = level_for(simulation, a->pace[i], block, simulation->steps.depth);
         a->level[i] = next > coarsest ? next : coarsest;
     }
     return STATUS_OK;
 }
+
+/* --- waking ----------------------------------------------------------------------------------- */
+
+/* When the step of the level began in which the active particles' step did, and up to when its
+ * pairs have had their impulses by then. */
+static long began(const struct steps *steps, int level)
+{
+    const long then = steps->clock.now - length_of(&steps->clock, steps->level) / 2;
+    return then - then % length_of(&steps->clock, level);
+}
+
+static long covered(const struct steps *steps, int level)
+{
+    const long then = began(steps, steps->level), length = length_of(&steps->clock, level);
+    return began(steps, level) + (2 * (then % length) >= length ? length : 0);
+}
+
+int steps_woken_level(const struct simulation *simulation)
+{
+    return simulation->steps.level - 1;
+}
+
+bool steps_uncovered(const struct simulation *simulation, double *spans)
+{
+    const struct steps *steps = &simulation->steps;
+    const int to = steps_woken_level(simulation);
+    bool some = false;
+    for (int level = 0; level < to; level++) {
+        const long missing = covered(steps, to) - covered(steps, level);
+        spans[level] = steps->clock.tick * (double)missing;
+        some |= missing != 0;
+    }
+    return some;
+}
+
+/* Ends the step of a woken particle where its new one has begun. Returns its internal energy. */
+static double wake(const struct simulation *simulation, int to, ptrdiff_t i)
+{
+    const struct particles *a = &simulation->particles;
+    const struct steps *steps = &simulation->steps;
+    const int level = (int)a->level[i];
+    const double tick = steps->clock.tick;
+    const long start = began(steps, level), end = began(steps, to);
+    const double dt = tick * (double)(end - start),
+                 given = tick * (double)(covered(steps, level) - start),
+                 mean_of = tick * (double)(covered(steps, to) - start);
+    double U = a->U[i];
+    if (dt > 0) {
+        U = end_step(simulation, dt, given, mean_of, i);
+        /* the last density sum lies as far back as if the last step had been so long */
+        if (given > 0) a->span[i] = 0.5 * (a->before[i] + given);
+        a->before[i] = given > 0 ? 2 * dt - given : a->before[i] + 2 * dt;
+    }
+    /* pairs whose middle lies behind have been corrected */
+    for (int k = 0; k < a->dim; k++) a->F[k][i] = 0;
+    a->de[i] = 0;
+    a->level[i] = to;
+    return U;
+}
+
+enum status steps_wake(struct simulation *simulation, const unsigned char *woken,
+                       struct error *error)
+{
+    for (ptrdiff_t i = 0; i < simulation->particles.n; i++) {
+        if (!woken[i]) continue;
+        simulation->steps.woken++;
+        const double U = wake(simulation, woken[i], i);
+        if (!(U > 0)) return breakdown_of(simulation, i, "internal energy", U, error);
+    }
+    predict(simulation);
+    return STATUS_OK;
+}
+
+/* --- blocks ----------------------------------------------------------------------------------- */
 
 static int finest_of(const struct particles *a)
 {
@@ -324,23 +450,25 @@ enum status steps_block(struct simulation *simulation, double dt, struct error *
 {
     struct steps *steps = &simulation->steps;
     const struct particles *a = &simulation->particles;
-    struct clock clock = {.finest = steps->depth + STEPS_SPARE};
-    clock.end = 2L << clock.finest;
-    clock.tick = dt / (double)clock.end;
+    struct steps_clock *clock = &steps->clock;
+    *clock = (struct steps_clock){.finest = steps->depth + STEPS_SPARE};
+    clock->end = 2L << clock->finest;
+    clock->tick = dt / (double)clock->end;
     steps->updates = 0;
     for (ptrdiff_t i = 0; i < a->n; i++)
         a->level[i] = level_for(simulation, a->pace[i], dt, steps->depth);
-    while (clock.now < clock.end) {
-        clock.now += length_of(&clock, finest_of(a)) / 2;
+    while (clock->now < clock->end) {
+        clock->now += length_of(clock, finest_of(a)) / 2;
         enum status status = STATUS_OK;
-        if (coarsest_at(&clock) <= finest_of(a)) status = end_steps(simulation, &clock, dt, error);
-        const int level = middle_at(&clock);
-        if (!status && clock.now < clock.end && has_level(a, level))
-            status = evaluate_level(simulation, &clock, level, error);
+        if (coarsest_at(clock) <= finest_of(a)) status = end_steps(simulation, dt, error);
+        const int level = middle_at(clock);
+        if (!status && clock->now < clock->end && has_level(a, level))
+            status = evaluate_level(simulation, level, error);
         if (status) return status;
     }
     double rate = 0;
     for (ptrdiff_t i = 0; i < a->n; i++) rate = largest(rate, a->signal[i] * a->h_inverse[i]);
     simulation->time_step = simulation->scheme.cfl / rate;
+    simulation->sleep.awake_count = a->n;
     return STATUS_OK;
 }

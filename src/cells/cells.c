@@ -47,7 +47,6 @@ static void lay_out_force(struct lanes_layout *force, const struct cells_method 
     if (method->gradient == GRADIENT_BLENDED) add_field(force, FIELD_STEEP, 1);
     if (method->viscosity == VISCOSITY_RECONSTRUCTED) add_field(force, FIELD_SLOPE, dim * dim);
     if (method->projected) add_field(force, FIELD_PROJECTOR, symmetric);
-    if (method->local) add_field(force, FIELD_PACE, 1);
 }
 
 /* Which values each pass needs of a neighbour. */
@@ -89,11 +88,14 @@ static bool reserve_records(struct cells *cells, size_t n)
     if (n + 1 <= cells->capacity) return true;
     free(cells->records);
     free(cells->kinds);
+    free(cells->paces);
     const size_t size = (size_t)lanes_longest_record(cells);
     cells->capacity = n + n / 4 + 8;
     cells->records = aligned_alloc(64, (cells->capacity * size * sizeof(double) + 63) / 64 * 64);
-    cells->kinds = malloc(cells->capacity);
-    if (!cells->records || !cells->kinds) cells->capacity = 0;
+    cells->kinds = cells->method.local ? malloc(cells->capacity) : NULL;
+    cells->paces = cells->method.local ? malloc(cells->capacity * sizeof(double)) : NULL;
+    if (!cells->records || (cells->method.local && (!cells->kinds || !cells->paces)))
+        cells->capacity = 0;
     return cells->capacity > 0;
 }
 
@@ -102,6 +104,7 @@ struct cells *cells_create(const struct cells_method *method, size_t n)
     struct cells *cells = calloc(1, sizeof *cells);
     if (!cells) return NULL;
     cells->method = *method;
+    cells->pair_level = -1;
     cells->team = method->threads;
     cells->shapes = shapes_of(method->kernel, method->box.dim, method->stamped);
     cells->own_w = method->kernel->w(method->kernel, 0, method->box.dim);
@@ -127,6 +130,7 @@ void cells_destroy(struct cells *cells)
     free(cells->lanes);
     free(cells->records);
     free(cells->kinds);
+    free(cells->paces);
     free(cells->images.source);
     free(cells->images.mirrored);
     free(cells->images.radius);
@@ -229,7 +233,7 @@ enum status cells_arrange(struct cells *cells, const struct cells_fields *fields
         grid_search(cells->grid, cells->points, fields->n, walls ? all : fields->x,
                     walls ? images->radius : radius, parts, error);
     if (status) return status;
-    cells->parts = cells->method.local ? parts : NULL;
+    cells->parts = fields->local ? parts : NULL;
     cells->lists = grid_lists(cells->grid);
     cells->place = grid_positions(cells->grid);
     cells->order = grid_order(cells->grid);

@@ -44,7 +44,7 @@ struct cells_method {
     double noise;           /* nu of `projected` */
     double
         worst_condition; /* of a moment matrix; beyond it the pair's gradient is the standard one */
-    bool local;          /* local steps: paces of neighbours are looked at */
+    bool local;          /* local steps may be taken */
     bool jump;           /* alpha by the switch: */
     double alpha_min, alpha_max;
     struct pair_numbers numbers;
@@ -75,12 +75,15 @@ struct cells_fields {
     double *steep;                   /* blended: the standard gradient's share */
     double *slope[CELLS_SQUARE];     /* (grad v): d v_a/d x_b at a dim + b */
     double *alpha_local, *decay;     /* of the switch */
-    /* local steps */
+    bool local;         /* the evaluation is one of local steps: */
+    const double *level;
     const double *pace; /* cfl over the step that a particle asks for */
     /* what inactive particles show is extrapolated: by ratio times the last change */
     const double *ratio, *balsara_before;
     double *matrix_before[CELLS_SYMMETRIC], *slope_before[CELLS_SQUARE];
     double *near_pace;                  /* the largest of its pairs */
+    double coarsest;                    /* level that active particles have beside them */
+    unsigned char *woken, wake_to;      /* 0, or the level that a particle wakes to */
     double *impulse[3], *heat, span;    /* receivers gain span times their rates */
     double *F[3], *de, *div_v, *signal; /* signal: largest speed of the particle's pairs */
 };
@@ -101,6 +104,14 @@ void cells_team(struct cells *cells, int size);
  * where all are active; kept until the next call. Errors as grid_search. */
 enum status cells_arrange(struct cells *cells, const struct cells_fields *fields,
                           const double *radius, const unsigned char *parts, struct error *error);
+
+/* Marks in woken the neighbours of active particles that are on a level below the coarsest. */
+void cells_find_coarse(struct cells *cells, const struct cells_fields *fields);
+
+/* Impulse and heat of the pairs that leave a level for a finer one, as particles wake: over
+ * spans[level], levels of them, for what the level has given too little (> 0) or too much of. */
+void cells_correct(struct cells *cells, const struct cells_fields *fields, int levels,
+                   const double *spans);
 
 /* sum_m ... at the widths 1/h_inverse. */
 void cells_density(struct cells *cells, const struct cells_fields *fields);

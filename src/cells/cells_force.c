@@ -100,23 +100,26 @@ ALWAYS_INLINE void fill_record(int dim, const struct cells *cells,
         group[1] = fields->grad_h[i];
         group[2] = method->energy_element ? fields->U[i] : method->number ? 1 : fields->m[i];
     }
-    if (at[FIELD_PACE]) record[at[FIELD_PACE]] = fields->pace[i];
     if (at[FIELD_STEEP]) record[at[FIELD_STEEP]] = fields->steep[i];
     fill_matrices(dim, mirrored, cells, fields, i, record);
 }
 
-static void find_kinds(struct cells *cells, size_t n)
+/* By slot, what of local steps the force pass asks of neighbours. */
+static void find_kinds(struct cells *cells, const struct cells_fields *fields)
 {
-    int mirrored;
-    for (size_t s = 0; cells->parts && s < cells->points; s++)
-        cells->kinds[s] = cells->parts[lanes_source(cells, n, s, &mirrored)];
+    for (size_t s = 0; fields->local && s < cells->points; s++) {
+        int mirrored;
+        const size_t i = lanes_source(cells, fields->n, s, &mirrored);
+        cells->kinds[s] = (unsigned char)lanes_part(cells, i);
+        cells->paces[s] = fields->pace[i];
+    }
 }
 
 static void fill_records(struct cells *cells, const struct cells_fields *fields)
 {
     size_t count;
     const struct grid_run *runs = grid_runs(cells->grid, &count);
-    find_kinds(cells, fields->n);
+    find_kinds(cells, fields);
 #pragma omp parallel for num_threads(cells->team) if (cells->team > 1)
     for (size_t r = 0; r < count; r++)
         for (size_t s = runs[r].begin; s < runs[r].end; s++) {
@@ -262,21 +265,11 @@ ALWAYS_INLINE void add_body(enum formulation formulation, int dim, enum energy e
 ADD(add_vanilla_ice, FORMULATION_VANILLA_ICE)
 ADD(add_lagrangian, FORMULATION_LAGRANGIAN)
 
-/* The largest pace of pairs within max(h_i, h_j). */
-CLONES static double find_pace(const struct pairs *pairs)
+/* The largest pace among the particles of a list. */
+static double find_pace(const struct cells *cells, const struct lanes_list *list)
 {
-    const double *restrict r = lane(pairs->lanes, LANE_R),
-                           *restrict pace = pairs_theirs(pairs, FIELD_PACE),
-                           *restrict h_inverse = pairs_theirs(pairs, FIELD_H_INVERSE);
-    const double own_h_inverse = *pairs_own(pairs, FIELD_H_INVERSE);
-    double top[GRID_LANES] = {0}, most = 0;
-    for (int k = 0; k < pairs->count; k += GRID_LANES)
-#pragma omp simd
-        for (int l = 0; l < GRID_LANES; l++) {
-            const double near = pair_within(r[k + l], own_h_inverse, h_inverse[k + l]) ? 1 : 0;
-            top[l] = largest(top[l], near * pace[k + l]);
-        }
-    for (int l = 0; l < GRID_LANES; l++) most = largest(most, top[l]);
+    double most = 0;
+    for (int k = 0; k < list->count; k++) most = largest(most, cells->paces[list->slots[k]]);
     return most;
 }
 
@@ -290,7 +283,6 @@ static void add_part(struct cells *cells, const struct pairs *pairs, int64_t *in
     cells_viscosity(cells, pairs);
     (method->formulation == FORMULATION_VANILLA_ICE ? add_vanilla_ice : add_lagrangian)(
         method->box.dim, method->energy, pairs, &pressure, totals, inside);
-    if (method->local) totals->pace = largest(totals->pace, find_pace(pairs));
     if (method->conductivity > 0) totals->de += cells_conduction(cells, pairs);
     if (method->div_v) totals->div_v += cells_divergence(cells, pairs);
 }
@@ -320,11 +312,12 @@ static void force_pass(struct cells *cells, const struct cells_fields *fields, s
         add_part(cells, &pairs, &lanes->pairs, &totals);
     }
     const size_t i = cells->order[slot];
+    if (fields->local) totals.pace = find_pace(cells, &list);
     if (lanes_part(cells, i) != CELLS_ACTIVE) {
-        receive(cells, fields, i, &totals);
+        if (list.count > 0) receive(cells, fields, i, &totals);
         return;
     }
-    if (cells->method.local) fields->near_pace[i] = totals.pace;
+    if (fields->local) fields->near_pace[i] = totals.pace;
     for (int a = 0; a < cells->method.box.dim; a++) fields->F[a][i] = totals.F[a];
     fields->de[i] = totals.de;
     if (cells->method.div_v) fields->div_v[i] = totals.div_v;
@@ -339,6 +332,48 @@ uint64_t cells_forces(struct cells *cells, const struct cells_fields *fields)
     int64_t directed = 0;
     for (int t = 0; t < cells->method.threads; t++) directed += cells->lanes[t].pairs;
     return (uint64_t)directed / 2;
+}
+
+/* --- local steps ------------------------------------------------------------------------------ */
+
+static void coarse_pass(struct cells *cells, const struct cells_fields *fields, size_t slot,
+                        struct lanes *lanes)
+{
+    if (cells->parts[cells->order[slot]] != CELLS_ACTIVE) return;
+    const int32_t *slots = grid_neighbours(cells->grid, &lanes->reader, cells->lists, slot);
+    for (int32_t k = 0; k < cells->lists[slot].count; k++) {
+        int mirrored;
+        const size_t j = lanes_source(cells, fields->n, (size_t)slots[k], &mirrored);
+        if (!(fields->level[j] < fields->coarsest)) continue;
+#pragma omp atomic write
+        fields->woken[j] = fields->wake_to; /* whoever writes it */
+    }
+}
+
+void cells_find_coarse(struct cells *cells, const struct cells_fields *fields)
+{
+    if (cells->parts) lanes_all(cells, fields, coarse_pass);
+}
+
+void cells_correct(struct cells *cells, const struct cells_fields *fields, int levels,
+                   const double *spans)
+{
+    struct cells_fields of_level = *fields;
+    cells->pair_level = 0;
+    fill_records(cells, fields);
+    for (size_t s = 0; s < cells->points; s++) {
+        int mirrored;
+        const size_t i = lanes_source(cells, fields->n, s, &mirrored);
+        const unsigned before = (unsigned)fields->level[i],
+                       after = fields->woken[i] ? fields->woken[i] : before;
+        cells->kinds[s] = (unsigned char)(before | after << 4);
+    }
+    for (int level = 0; level < levels; level++) {
+        cells->pair_level = level;
+        of_level.span = spans[level];
+        if (spans[level] != 0) lanes_all(cells, &of_level, force_pass);
+    }
+    cells->pair_level = -1;
 }
 
 /* --- the time step alone ---------------------------------------------------------------------- */

@@ -99,7 +99,7 @@ static void velocity_gradient(struct cells *cells, const struct cells_fields *fi
             dim, count, lanes, weight, inverse, lane_of(lanes, layout, FIELD_VELOCITY),
             cells->records + (ptrdiff_t)slot * layout->size + layout->offset[FIELD_VELOCITY], L);
     for (int k = 0; k < dim * dim; k++) {
-        if (cells->method.local) fields->slope_before[k][i] = fields->slope[k][i];
+        if (fields->local) fields->slope_before[k][i] = fields->slope[k][i];
         fields->slope[k][i] = L[k];
     }
 }
@@ -152,7 +152,7 @@ static void matrix_pass(struct cells *cells, const struct cells_fields *fields, 
     int k = 0;
     for (int a = 0; a < dim; a++)
         for (int b = a; b < dim; b++, k++) {
-            if (method->local) fields->matrix_before[k][i] = fields->matrix[k][i];
+            if (fields->local) fields->matrix_before[k][i] = fields->matrix[k][i];
             fields->matrix[k][i] = sound ? 0.5 * (inverse[a * dim + b] + inverse[b * dim + a]) : 0;
         }
 }

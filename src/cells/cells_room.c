@@ -6,6 +6,7 @@
 
 #include "breakdown.h"
 #include "cells.h"
+#include "hold.h"
 #include "solver.h"
 #include "stamp.h"
 #include "state.h"
@@ -28,7 +29,8 @@ struct room {
     size_t arrays, stride; /* that lie in block, and from one to the next */
     unsigned char *outcome;
     unsigned char *level;  /* of who sleeps and who may: enum in cells.h; likewise */
-    unsigned char *parts;  /* local steps: of each particle, in the evaluation of a level */
+    unsigned char *parts;  /* local steps: of each particle, in the evaluation of a level; */
+    unsigned char *woken;  /* and the level that it wakes to, 0: none */
     unsigned char *asleep; /* of each particle; NULL: nobody ever sleeps */
     double *kept;          /* 1/h of those who sleep; likewise */
     uint64_t sorted_at;    /* steps */
@@ -130,7 +132,9 @@ static bool allocate_arrays(struct simulation *simulation, size_t n)
     room->arrays = count;
     room->block = calloc(count * stride, sizeof(double));
     room->outcome = calloc(n, 1);
-    room->parts = simulation->plan.local ? calloc(n, 1) : NULL;
+    room->parts = simulation->plan.local ? calloc(n, 2) : NULL;
+    room->woken = room->parts ? room->parts + n : NULL;
+    room->fields.woken = room->woken;
     if (!room->block || !room->outcome) return false;
     if (simulation->plan.local && !room->parts) return false;
     for (size_t k = 0; k < count; k++) *of[k] = room->block + k * stride;
@@ -152,6 +156,7 @@ static void connect_fields(struct simulation *simulation)
         fields->impulse[k] = a->impulse[k];
     }
     fields->heat = a->heat;
+    fields->level = a->level;
     fields->pace = a->pace;
     fields->near_pace = a->near_pace;
     fields->m = a->m;
@@ -193,9 +198,10 @@ static double bytes(const struct simulation *simulation, double n)
     const double arrays = (double)list_arrays(simulation, &room, of);
     /* the first search goes further, and lists hold who is within the wider of two widths */
     const double neighbours = width_neighbours(method.box.dim, simulation->scheme.eta * margin);
-    /* outcome; where somebody sleeps, kept, asleep and level */
-    const double sleepers = simulation->plan.sleep ? sizeof(double) + 2 : 0;
-    return n * (arrays * sizeof(double) + 1 + sleepers) + cells_bytes(&method, n, neighbours);
+    /* outcome; parts and woken; where somebody sleeps, kept, asleep and level */
+    const double sleepers = simulation->plan.sleep ? sizeof(double) + 2 : 0,
+                 local = simulation->plan.local ? 2 : 0;
+    return n * (arrays * sizeof(double) + 1 + local + sleepers) + cells_bytes(&method, n, neighbours);
 }
 
 static void forget_sleep(struct room *room)
@@ -288,12 +294,13 @@ static const unsigned char *find_parts(const struct simulation *simulation)
 
 /* Finds neighbours within the radii. What is too wide for the box is bad input at the start and a
  * breakdown later. */
-static enum status search(struct simulation *simulation, struct error *error)
+static enum status search_for(struct simulation *simulation, const unsigned char *parts,
+                              struct error *error)
 {
     struct room *room = room_of(simulation);
     const struct particles *a = &simulation->particles;
     const enum status status =
-        cells_arrange(room->cells, &room->fields, room->radius, find_parts(simulation), error);
+        cells_arrange(room->cells, &room->fields, room->radius, parts, error);
     if (status != STATUS_BAD_INPUT || simulation->cost.steps == 0) return status;
     ptrdiff_t widest = 0;
     for (ptrdiff_t i = 1; i < a->n; i++)
@@ -303,6 +310,11 @@ static enum status search(struct simulation *simulation, struct error *error)
     return error_set(error, STATUS_BROKE_DOWN,
                      "%.400s, beyond half the box (%g): more particles or a smaller eta are needed",
                      where.message, half_box(simulation));
+}
+
+static enum status search(struct simulation *simulation, struct error *error)
+{
+    return search_for(simulation, find_parts(simulation), error);
 }
 
 static void permute(struct particles *particles, double *array)
@@ -460,18 +472,68 @@ static enum status newton_widths(struct simulation *simulation, struct error *er
     return status;
 }
 
+static void find_radii(const struct simulation *simulation)
+{
+    const struct particles *a = &simulation->particles;
+    for (ptrdiff_t i = 0; i < a->n; i++) room_of(simulation)->radius[i] = 1 / a->h_inverse[i];
+}
+
+/* Corrects the pairs that leave a level as particles wake, and ends these particles' steps. */
+static enum status wake(struct simulation *simulation, struct error *error)
+{
+    struct room *room = room_of(simulation);
+    double spans[STEPS_LEVELS];
+    enum status status = STATUS_OK;
+    if (steps_uncovered(simulation, spans)) {
+        for (size_t i = 0; i < room->fields.n; i++)
+            room->parts[i] = room->woken[i] ? CELLS_ACTIVE : CELLS_RECEIVES;
+        status = search_for(simulation, room->parts, error);
+        if (status) return status;
+        cells_correct(room->cells, &room->fields, steps_woken_level(simulation), spans);
+        hold_rates(simulation);
+    }
+    status = steps_wake(simulation, room->woken, error);
+    if (status) return status;
+    find_radii(simulation);
+    return search(simulation, error);
+}
+
+/* Neighbours of active particles that are too coarse wake. */
+static enum status wake_neighbours(struct simulation *simulation, struct error *error)
+{
+    struct room *room = room_of(simulation);
+    struct cells_fields *fields = &room->fields;
+    const int to = steps_woken_level(simulation);
+    enum status status = STATUS_OK;
+    if (to < STEPS_APART) return STATUS_OK;
+    fields->coarsest = to + 1 - STEPS_APART;
+    fields->wake_to = (unsigned char)to;
+    while (!status) {
+        memset(room->woken, 0, fields->n);
+        cells_find_coarse(room->cells, fields);
+        if (!memchr(room->woken, to, fields->n)) break;
+        status = wake(simulation, error);
+    }
+    return status;
+}
+
 static enum status predicted_widths(struct simulation *simulation, double ratio,
                                     struct error *error)
 {
     struct room *room = room_of(simulation);
     const struct particles *a = &simulation->particles;
-    for (ptrdiff_t first = 0; !simulation->plan.local && first < a->n; first += BATCH_MAX)
+    const bool local = room->fields.local = simulation->steps.level >= 0;
+    for (ptrdiff_t first = 0; !local && first < a->n; first += BATCH_MAX)
         width_predict(a, first, batch_len(a, first), ratio);
-    for (ptrdiff_t i = 0; room->asleep && i < a->n; i++)
+    for (ptrdiff_t i = 0; room->asleep && i < a->n; i++) {
+        if (local) room->asleep[i] = 0; /* nobody sleeps where most have long steps */
         if (room->asleep[i]) a->h_inverse[i] = room->kept[i];
-    for (ptrdiff_t i = 0; i < a->n; i++) room->radius[i] = 1 / a->h_inverse[i];
-    const enum status status = search_sorted(simulation, error);
+    }
+    find_radii(simulation);
+    enum status status = search_sorted(simulation, error);
+    if (!status && local) status = wake_neighbours(simulation, error);
     if (status) return status;
+    if (local) steps_begin_sums(simulation);
     cells_density(room->cells, &room->fields);
     close_all(simulation, true);
     return STATUS_OK;
@@ -504,7 +566,7 @@ static void find_balsara(struct simulation *simulation)
             }
         }
         div = fabs(div);
-        if (simulation->plan.local) room->balsara_before[i] = room->balsara[i];
+        if (room->fields.local) room->balsara_before[i] = room->balsara[i];
         room->balsara[i] = (div + floor_of * rate) / (div + sqrt(curl2) + (floor_of + 1e-4) * rate);
     }
 }

@@ -160,15 +160,23 @@ struct lanes_list lanes_partners(const struct cells *cells, size_t slot, struct 
     const int32_t *slots = grid_neighbours(cells->grid, &lanes->reader, cells->lists, slot);
     const int32_t count = cells->lists[slot].count;
     if (!cells->parts) return (struct lanes_list){slots, count};
-    /* an active particle has forces with all but those on finer levels, others with active ones */
     const unsigned char *kinds = cells->kinds;
     const bool active = kinds[slot] == CELLS_ACTIVE;
     int kept = 0;
-    for (int32_t k = 0; k < count; k++) {
-        const unsigned char kind = kinds[slots[k]];
-        lanes->slots[kept] = slots[k];
-        kept += active ? kind != CELLS_SUMMED : kind == CELLS_ACTIVE;
-    }
+    if (cells->pair_level >= 0) /* pairs that leave this level for a finer one */
+        for (int32_t k = 0; k < count; k++) {
+            const unsigned own = kinds[slot], theirs = kinds[slots[k]];
+            const unsigned before = (own & 15) > (theirs & 15) ? own & 15 : theirs & 15,
+                           after = own >> 4 > theirs >> 4 ? own >> 4 : theirs >> 4;
+            lanes->slots[kept] = slots[k];
+            kept += before == (unsigned)cells->pair_level && after > before;
+        }
+    else /* the active have forces with all but those on finer levels, others with the active */
+        for (int32_t k = 0; k < count; k++) {
+            const unsigned char kind = kinds[slots[k]];
+            lanes->slots[kept] = slots[k];
+            kept += active ? kind != CELLS_SUMMED : kind == CELLS_ACTIVE;
+        }
     for (int k = kept; k < whole_vectors(kept); k++) lanes->slots[k] = (int32_t)cells->points;
     return (struct lanes_list){lanes->slots, kept};
 }

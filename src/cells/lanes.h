@@ -31,7 +31,6 @@ enum lanes_field {
     FIELD_SLOPE,
     FIELD_PROJECTOR,    /* symmetric */
     FIELD_ACCELERATION, /* ax ay (az) */
-    FIELD_PACE,         /* local steps */
     FIELDS
 };
 
@@ -103,7 +102,10 @@ struct cells {
     struct shapes shapes;
     double own_w;               /* w(0) */
     const unsigned char *parts; /* enum cells_part of each particle; NULL: all are active */
-    unsigned char *kinds;       /* the same by slot; of the force pass */
+    /* local steps, of the force pass: */
+    unsigned char *kinds; /* by slot: the part; while pairs are corrected, levels before and after */
+    double *paces;        /* by slot */
+    int pair_level;       /* of the pairs that are corrected; -1: none are */
     size_t points;              /* particles and their mirror images: slots run over both */
     /* of the grid's last search */
     const struct grid_list *lists;
@@ -187,6 +189,7 @@ int lanes_gather_part(const struct cells *cells, const struct lanes_layout *layo
 
 static inline enum cells_part lanes_part(const struct cells *cells, size_t i)
 {
+    if (cells->pair_level >= 0) return CELLS_RECEIVES;
     return cells->parts ? (enum cells_part)cells->parts[i] : CELLS_ACTIVE;
 }
 

@@ -13,7 +13,7 @@
 
 /* Work that keys bring back; where the case's own scheme does not leave it out, nothing is shown.
  */
-enum when { ALWAYS, PREDICTED, INVISCID, UNIFORM };
+enum when { ALWAYS, PREDICTED, INVISCID, UNIFORM, LOCAL };
 static const struct {
     /* ALPHA and CFL stand for the scheme's own: what is automatic depends on the viscosity */
     const char *name, *keys[BENCH_SIDES];
@@ -26,6 +26,7 @@ static const struct {
      ALWAYS,
      PROMISE_ROUND_OFF,
      1e-8},
+    {"the shortest step for all", {"steps=local", "steps=global"}, LOCAL, PROMISE_ERROR, 0.05},
     {"h by Newton", {"", "h_method=newton"}, PREDICTED, PROMISE_ERROR, 0.05},
     {"viscosity of none",
      {"", "viscosity=constant alpha=0 beta=0 cfl=CFL"},
@@ -144,8 +145,11 @@ static enum status apply(struct run_settings *settings, const char *keys, const 
     return STATUS_OK;
 }
 
-static bool applies(enum when when, const struct scheme *scheme)
+static bool applies(enum when when, const struct scheme *scheme, int dim)
 {
+    struct scheme local = *scheme;
+    struct error ignored;
+    local.steps = STEPS_LOCAL;
     switch (when) {
     case PREDICTED:
         return scheme->h_method != H_NEWTON;
@@ -153,6 +157,8 @@ static bool applies(enum when when, const struct scheme *scheme)
         return scheme->viscosity == VISCOSITY_NONE;
     case UNIFORM:
         return scheme->viscosity == VISCOSITY_CONSTANT;
+    case LOCAL:
+        return scheme_check(&local, dim, &ignored) == STATUS_OK;
     default:
         return true;
     }
@@ -196,7 +202,8 @@ static enum status add_switches(struct bench *bench, size_t c, const struct sche
                                 struct error *error)
 {
     for (size_t s = 0; s < SWITCHES; s++) {
-        if (!applies(switches[s].when, scheme)) continue;
+        const int dim = bench->result->cases[c].file.dimension;
+        if (!applies(switches[s].when, scheme, dim)) continue;
         struct bench_skip *skip =
             new_skip(bench, c, switches[s].name, switches[s].keys[BENCH_WITH]);
         skip->promise = switches[s].promise;
@@ -335,7 +342,7 @@ static void judge(struct bench_skip *skip, const struct job *job)
     skip->l1[BENCH_WITH] = b->errors[FIELD_DENSITY].l1;
     struct bench_shares shares;
     struct error ignored;
-    if (a->cost.skipped_particle_updates &&
+    if (skip->promise == PROMISE_ROUND_OFF && a->cost.skipped_particle_updates &&
         !bench_possible(job[BENCH_WITHOUT].run, &shares, &ignored))
         skip->skipped = shares.skipped, skip->possible = shares.possible;
     skip->difference = skip->promise == PROMISE_ERROR
