@@ -60,8 +60,8 @@ void scheme_default(struct scheme *scheme, const struct scheme_open *open, int d
         scheme->h_method == H_PREDICTED && scheme->volume_element == VOLUME_MASS;
     /* mu grows as h/r where particles close: in a strong shock (sedov_2d) longer steps would leave
      * cold gas ahead of it without internal energy */
-    const bool bounded =
-        scheme->viscosity == VISCOSITY_NONE || scheme->viscosity_form == VISCOSITY_FORM_SIGNAL;
+    const bool bounded = scheme->viscosity == VISCOSITY_NONE ||
+                         scheme->viscosity_form == VISCOSITY_FORM_SIGNAL;
     scheme->cfl = long_steps                                        ? kernel->predicted.cfl
                   : dim > 1 && bounded && integrator->cloud_cfl > 0 ? integrator->cloud_cfl
                                                                     : integrator->cfl;

@@ -75,7 +75,7 @@ struct cells_fields {
     double *steep;                   /* blended: the standard gradient's share */
     double *slope[CELLS_SQUARE];     /* (grad v): d v_a/d x_b at a dim + b */
     double *alpha_local, *decay;     /* of the switch */
-    bool local;         /* the evaluation is one of local steps: */
+    bool local;                      /* the evaluation is one of local steps: */
     const double *level;
     const double *pace; /* cfl over the step that a particle asks for */
     /* what inactive particles show is extrapolated: by ratio times the last change */

@@ -164,9 +164,9 @@ size_t cells_matrix(struct cells *cells, const struct cells_fields *fields)
     fill_records(cells, fields);
     lanes_all(cells, fields, matrix_pass);
     size_t fallen_back = 0;
-    for (size_t i = 0; method->gradient != GRADIENT_STANDARD && i < fields->n; i++)
-        if (lanes_part(cells, i) == CELLS_ACTIVE &&
-            !(fields->condition[i] <= method->worst_condition))
-            fallen_back++;
+    for (size_t i = 0; method->gradient != GRADIENT_STANDARD && i < fields->n; i++) {
+        if (lanes_part(cells, i) != CELLS_ACTIVE) continue;
+        if (!(fields->condition[i] <= method->worst_condition)) fallen_back++;
+    }
     return fallen_back;
 }

@@ -201,7 +201,8 @@ static double bytes(const struct simulation *simulation, double n)
     /* outcome; parts and woken; where somebody sleeps, kept, asleep and level */
     const double sleepers = simulation->plan.sleep ? sizeof(double) + 2 : 0,
                  local = simulation->plan.local ? 2 : 0;
-    return n * (arrays * sizeof(double) + 1 + local + sleepers) + cells_bytes(&method, n, neighbours);
+    return n * (arrays * sizeof(double) + 1 + local + sleepers) +
+           cells_bytes(&method, n, neighbours);
 }
 
 static void forget_sleep(struct room *room)

@@ -103,10 +103,11 @@ struct cells {
     double own_w;               /* w(0) */
     const unsigned char *parts; /* enum cells_part of each particle; NULL: all are active */
     /* local steps, of the force pass: */
-    unsigned char *kinds; /* by slot: the part; while pairs are corrected, levels before and after */
-    double *paces;        /* by slot */
-    int pair_level;       /* of the pairs that are corrected; -1: none are */
-    size_t points;              /* particles and their mirror images: slots run over both */
+    unsigned char
+        *kinds;     /* by slot: the part; while pairs are corrected, levels before and after */
+    double *paces;  /* by slot */
+    int pair_level; /* of the pairs that are corrected; -1: none are */
+    size_t points;  /* particles and their mirror images: slots run over both */
     /* of the grid's last search */
     const struct grid_list *lists;
     const double (*place)[3];

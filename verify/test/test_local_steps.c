@@ -338,6 +338,37 @@ static void neighbours_are_no_further_apart(void **state)
     assert_true(woken > 0);
 }
 
+/* What pairs that change levels have been given, against the evaluations of all levels in turn. */
+static void pairs_are_given_what_is_missing(void **state)
+{
+    (void)state;
+    enum { FINEST = 6 };
+    struct simulation simulation = {.steps.clock = {.finest = FINEST, .end = 2 << FINEST}};
+    struct steps_clock *clock = &simulation.steps.clock;
+    long given[FINEST + 1] = {0};
+    int unlike = 0;
+    clock->tick = 0.25;
+    for (clock->now = 1; clock->now < clock->end; clock->now++) {
+        int level = 0;
+        while (clock->now % (clock->end >> level) != clock->end >> level >> 1) level++;
+        simulation.steps.level = level;
+        if (level > 1) {
+            double spans[STEPS_LEVELS];
+            const int to = steps_woken_level(&simulation);
+            const bool some = steps_uncovered(&simulation, spans);
+            bool any = false;
+            for (int l = 0; l < to; l++) {
+                assert_true(spans[l] == 0.25 * (double)(given[to] - given[l]));
+                any |= given[to] != given[l];
+            }
+            assert_int_equal(some, any);
+            unlike += any;
+        }
+        given[level] = clock->now + (clock->end >> level >> 1);
+    }
+    assert_true(unlike > 10);
+}
+
 static void says_what_excludes_it(void **state)
 {
     (void)state;
@@ -375,6 +406,7 @@ int main(void)
         cmocka_unit_test(goes_on_to_the_last_bit),
         cmocka_unit_test(second_order_in_time),
         cmocka_unit_test(neighbours_are_no_further_apart),
+        cmocka_unit_test(pairs_are_given_what_is_missing),
         cmocka_unit_test(says_what_excludes_it),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -74,7 +74,7 @@ static void every_array_has_its_room(void **state)
                 struct particles a = made(dim, n, ghosts);
                 double *arrays[ARRAYS_MOST];
                 const size_t count = list(&a, arrays);
-                assert_int_equal(count, 6 * dim + 23);
+                assert_int_equal(count, 8 * dim + 31);
                 assert_true(a.n == n && a.dim == dim);
                 assert_true(a.ghosts == (ghosts + LINE - 1) / LINE * LINE);
                 filled(&a, -n); /* all zero */
