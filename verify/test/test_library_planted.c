@@ -1,0 +1,725 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The library on drawn input: every number that it hands over, in its place and nowhere else, is
+ * what a plain calculation or the solution itself says; and every refusal. The operator whose
+ * gradients are checked is none, but each figure of it is known. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "gradient_study.h"
+#include "near.h"
+#include "noh.h"
+#include "order.h"
+#include "riemann.h"
+#include "sedov.h"
+#include "simple_wave.h"
+#include "sphproof/gradients.h"
+#include "sphproof/rates.h"
+#include "sphproof/simulations.h"
+#include "sphproof/solutions.h"
+#include "vortex.h"
+
+static uint64_t seed = 26;
+static double uniform(double lo, double hi)
+{
+    seed = seed * 6364136223846793005u + 1442695040888963407u;
+    return lo + (hi - lo) * (double)(seed >> 11) / 9007199254740992.;
+}
+
+static struct sphproof_error error;
+
+static void refused(enum sphproof_status status, const char *says)
+{
+    if (status != SPHPROOF_BAD_INPUT || error.status != status || !strstr(error.message, says))
+        fail_msg("status %d, '%s' is not in: %s", (int)status, says, error.message);
+}
+
+/* ---- solutions ---- */
+
+enum { PLACES = 6 };
+static double at[PLACES], found[3][PLACES + 1];
+
+static void draw_places(double lo, double hi)
+{
+    for (int i = 0; i < PLACES; i++) at[i] = uniform(lo, hi);
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i <= PLACES; i++) found[k][i] = -77;
+}
+
+static void state_is(int i, double rho, double v, double P)
+{
+    assert_true(found[0][i] == rho && found[1][i] == v && found[2][i] == P);
+}
+
+/* Nothing is written behind the n-th. */
+static void ends_at(size_t n)
+{
+    for (int k = 0; k < 3; k++) assert_true(found[k][n] == -77);
+}
+
+static void solutions(void **state)
+{
+    double *const rho = found[0], *const v = found[1], *const P = found[2];
+    (void)state;
+    for (size_t n = 0; n <= PLACES; n++) {
+        const int count = (int)n;
+        const double t = n ? uniform(0.1, 0.3) : 0, gamma = uniform(1.2, 2), x0 = uniform(-1, 1);
+        const double left[3] = {uniform(0.5, 1), uniform(-1, 1), uniform(0.5, 1)},
+                     right[3] = {uniform(0.1, 0.5), uniform(-1, 1), uniform(0.1, 0.5)};
+        struct riemann_solution tube;
+        struct sphproof_star star;
+        struct sedov sedov;
+        double shock = 0;
+        assert_null(riemann_solve(gamma, &(struct riemann_state){left[0], left[1], left[2]},
+                                  &(struct riemann_state){right[0], right[1], right[2]}, &tube));
+        draw_places(-1, 1);
+        assert_int_equal(
+            sphproof_solutions_riemann(gamma, left, right, x0, t, n, at, rho, v, P, &error),
+            SPHPROOF_OK);
+        for (int i = 0; i < count; i++) {
+            const struct riemann_state s = riemann_sample(&tube, at[i], x0, t);
+            state_is(i, s.rho, s.v, s.P);
+        }
+        ends_at(n);
+        assert_int_equal(sphproof_solutions_star(gamma, left, right, &star, &error), SPHPROOF_OK);
+        const double speeds[] = {tube.left_head, tube.left_tail, tube.contact, tube.right_tail,
+                                 tube.right_head};
+        assert_true(star.P == tube.p_star && star.v == tube.v_star);
+        assert_true(star.rho_left == tube.rho_star_left && star.rho_right == tube.rho_star_right);
+        assert_memory_equal(star.speed, speeds, sizeof speeds);
+
+        const int dim = 1 + count % 3;
+        draw_places(-1, 1);
+        assert_int_equal(sphproof_solutions_noh(gamma, dim, t, n, at, rho, v, P, &error),
+                         SPHPROOF_OK);
+        for (int i = 0; i < count; i++) {
+            const struct noh_state s = noh_sample(gamma, dim, fabs(at[i]), t);
+            state_is(i, s.rho, s.v, s.P);
+        }
+        ends_at(n);
+        draw_places(-1, 1);
+        assert_null(sedov_solve(1.4, dim, 2, 0.7, &sedov));
+        for (int told = 0; told < 2; told++)
+            assert_int_equal(sphproof_solutions_sedov(1.4, dim, 2, 0.7, t + 0.1, n, at, rho, v, P,
+                                                      told ? &shock : NULL, &error),
+                             SPHPROOF_OK);
+        assert_true(shock == sedov_shock(&sedov, t + 0.1));
+        for (int i = 0; i < count; i++) {
+            const struct sedov_state s = sedov_sample(&sedov, fabs(at[i]), t + 0.1);
+            state_is(i, s.rho, s.v, s.P);
+        }
+        ends_at(n);
+        draw_places(-0.6, 0.6);
+        assert_int_equal(sphproof_solutions_gresho(n, at, rho, v, P, &error), SPHPROOF_OK);
+        for (int i = 0; i < count; i++) {
+            const struct vortex_state s = vortex_gresho(fabs(at[i]));
+            state_is(i, s.rho, s.v, s.P);
+        }
+        ends_at(n);
+        draw_places(-3, 3);
+        assert_int_equal(sphproof_solutions_yee(gamma, 2.5, n, at, rho, v, P, &error), SPHPROOF_OK);
+        for (int i = 0; i < count; i++) {
+            const struct vortex_state s = vortex_yee(fabs(at[i]), 2.5, gamma);
+            state_is(i, s.rho, s.v, s.P);
+        }
+        ends_at(n);
+        const struct simple_wave wave = {gamma, 1.1, 0.3, 0.9, 0.01, 2};
+        draw_places(-1, 1);
+        assert_int_equal(
+            sphproof_solutions_wave(gamma, 1.1, 0.3, 0.9, 0.01, 2, t, n, at, rho, v, P, &error),
+            SPHPROOF_OK);
+        for (int i = 0; i < count; i++) {
+            const struct simple_wave_state s = simple_wave_sample(&wave, at[i], t);
+            state_is(i, s.rho, s.v, s.P);
+        }
+        ends_at(n);
+    }
+}
+
+static void refused_solutions(void **state)
+{
+    const double gas[3] = {1, 0, 1}, wrong[3] = {-1, 0, 1};
+    const struct simple_wave wave = {1.4, 1, 0, 1, 0.1, 1};
+    double *const rho = found[0], *const v = found[1], *const P = found[2];
+    struct sphproof_star star;
+    (void)state;
+    draw_places(0, 1);
+#define RIEMANN(left, t)   sphproof_solutions_riemann(1.4, left, gas, 0, t, 1, at, rho, v, P, &error)
+#define SEDOV(dim, t)      sphproof_solutions_sedov(1.4, dim, 1, 1, t, 1, at, rho, v, P, NULL, &error)
+#define NOH(gamma, dim, t) sphproof_solutions_noh(gamma, dim, t, 1, at, rho, v, P, &error)
+#define YEE(gamma, beta)   sphproof_solutions_yee(gamma, beta, 1, at, rho, v, P, &error)
+#define WAVE(amplitude, t)                                                                         \
+    sphproof_solutions_wave(1.4, 1, 0, 1, amplitude, 1, t, 1, at, rho, v, P, &error)
+    refused(RIEMANN(wrong, 1), "must not be negative");
+    refused(RIEMANN(gas, -1e-300), "t: allowed: 0 or more");
+    refused(sphproof_solutions_star(1.4, wrong, gas, &star, &error), "must not be negative");
+    refused(SEDOV(0, 1), "");
+    refused(SEDOV(4, 1), "");
+    refused(SEDOV(2, 0), "t: allowed: above 0");
+    refused(SEDOV(2, -1), "t: allowed: above 0");
+    refused(NOH(1, 1, 1), "gamma > 1");
+    refused(NOH(1.4, 0, 1), "gamma > 1");
+    refused(NOH(1.4, 4, 1), "gamma > 1");
+    refused(NOH(1.4, 1, -1e-300), "gamma > 1");
+    refused(YEE(1, 1), "gamma > 1");
+    refused(YEE(1.4, 100), "gamma > 1");
+    refused(WAVE(0.1, -1e-300), "t = -1e-300: allowed: from 0 to below");
+    refused(WAVE(0.1, simple_wave_breaking_time(&wave)), "allowed: from 0 to below");
+    refused(WAVE(7, 1), "");
+    ends_at(0);
+    assert_int_equal(WAVE(0.1, nextafter(simple_wave_breaking_time(&wave), 0)), SPHPROOF_OK);
+    assert_int_equal(RIEMANN(gas, 0), SPHPROOF_OK);
+    assert_int_equal(NOH(1.4, 1, 0), SPHPROOF_OK);
+    assert_int_equal(NOH(1.4, 3, 0), SPHPROOF_OK);
+}
+
+/* ---- scenes ---- */
+
+enum { SIDE = 8, MOST = SIDE * SIDE * SIDE };
+static double x[3][MOST], v[3][MOST], m[MOST], u[MOST];
+
+/* Shaken lattices in a box that begins nowhere in particular, in an order of their own. */
+static struct sphproof_scene drawn_scene(int dim)
+{
+    struct sphproof_scene scene = {.dim = dim, .n = 1, .m = m, .u = u, .gamma = 1.5};
+    for (int a = 0; a < dim; a++) {
+        scene.lo[a] = uniform(-1, 1), scene.hi[a] = scene.lo[a] + uniform(1, 1.2);
+        scene.x[a] = x[a], scene.v[a] = v[a];
+        scene.n *= SIDE;
+    }
+    for (size_t k = 0; k < scene.n; k++) {
+        const size_t i = k * 27 % scene.n, cell[] = {i % SIDE, i / SIDE % SIDE, i / SIDE / SIDE};
+        for (int a = 0; a < dim; a++) {
+            x[a][k] = scene.lo[a] +
+                      ((double)cell[a] + uniform(0.4, 0.6)) / SIDE * (scene.hi[a] - scene.lo[a]);
+            v[a][k] = uniform(-0.1, 0.1);
+        }
+        m[k] = uniform(1, 1.1) / (double)scene.n, u[k] = uniform(1, 2);
+    }
+    return scene;
+}
+
+static double away(const struct sphproof_scene *scene, size_t i, size_t j, int a)
+{
+    const double length = scene->hi[a] - scene->lo[a], d = x[a][i] - x[a][j];
+    return d - length * round(d / length);
+}
+
+/* Sum of mass and number of those within h, images included. */
+static double sum_of(const struct sphproof_scene *scene, const struct sphproof_kernel *kernel,
+                     size_t i, double h, double *number)
+{
+    double sum = 0;
+    *number = 0;
+    for (size_t j = 0; j < scene->n; j++) {
+        double squares = 0;
+        for (int a = 0; a < scene->dim; a++) squares += away(scene, i, j, a) * away(scene, i, j, a);
+        const double r = sqrt(squares);
+        sum += m[j] * sphproof_kernels_value(kernel, r, h, scene->dim);
+        *number += r < h;
+    }
+    return sum;
+}
+
+/* Both at the start: rates of the scene, and the state of a simulation of it. */
+static void scenes(void **state)
+{
+    static const char *const keys[] = {"kernel=cubic_spline", "eta=1.7",
+                                       "volume_element=mass", "energy=internal",
+                                       "viscosity=none",      NULL},
+                             *const coarse[] = {"kernel=cubic_spline",
+                                                "eta=1.7",
+                                                "volume_element=mass",
+                                                "energy=internal",
+                                                "viscosity=none",
+                                                "h_tolerance=1e-2",
+                                                NULL};
+    static double got[12][MOST + 1];
+    struct sphproof_kernel *kernel;
+    (void)state;
+    assert_int_equal(sphproof_kernels_find("cubic_spline", &kernel, NULL), SPHPROOF_OK);
+    for (int dim = 1; dim <= 3; dim++)
+        for (int left_out = 0; left_out < 5; left_out++) { /* 3: at rest; 4: h is coarse */
+            struct sphproof_scene scene = drawn_scene(dim);
+            struct sphproof_simulation *simulation;
+            double force[3] = {0}, power = 0, off = 0;
+            scene.keys = left_out == 4 ? coarse : keys;
+            if (left_out == 3) scene.v[0] = NULL;
+            for (int k = 0; k < 12; k++)
+                for (int i = 0; i <= MOST; i++) got[k][i] = -77;
+            const struct sphproof_rates rates = {.h = got[0],
+                                                 .rho = left_out == 1 ? NULL : got[1],
+                                                 .P = got[2],
+                                                 .dU = got[3],
+                                                 .neighbours = left_out == 2 ? NULL : got[4],
+                                                 .force = {got[5], got[6], got[7]}};
+            if (sphproof_rates_evaluate(&scene, &rates, &error)) fail_msg("%s", error.message);
+            for (size_t i = 0; i < scene.n; i++) {
+                double number;
+                const double h = got[0][i], rho = sum_of(&scene, kernel, i, h, &number);
+                off = fmax(off, fabs(h / (1.7 * pow(m[i] / rho, 1. / dim)) - 1));
+                if (left_out == 4) continue;
+                if (left_out != 1) near_relative(got[1][i], rho, 1e-11);
+                if (left_out != 2) assert_true(got[4][i] == number);
+                near_relative(got[2][i], 0.5 * rho * u[i], 1e-11);
+                power += got[3][i];
+                for (int a = 0; a < dim; a++) {
+                    force[a] += got[5 + a][i];
+                    power += got[5 + a][i] * (scene.v[a] ? v[a][i] : 0);
+                }
+            }
+            assert_true(left_out == 4 ? off > 2e-13 : off < 3e-14);
+            for (int k = 0; k < 12; k++)
+                assert_true(got[k][scene.n] == -77 && (k < 5 + dim || got[k][0] == -77));
+            for (int a = 0; a < dim && left_out < 4; a++) near_absolute(force[a], 0, 1e-13);
+            near_absolute(power, 0, 1e-13);
+
+            for (int k = 0; k < 12; k++)
+                for (int i = 0; i <= MOST; i++) got[k][i] = -77;
+            const struct sphproof_state wanted = {.x = {got[0], got[1], got[2]},
+                                                  .v = {got[3], got[4], got[5]},
+                                                  .rho = got[6],
+                                                  .u = left_out == 1 ? NULL : got[7],
+                                                  .P = got[8],
+                                                  .h = left_out == 2 ? NULL : got[9]};
+            scene.threads = left_out;
+            if (sphproof_simulations_create(&scene, &simulation, &error))
+                fail_msg("%s", error.message);
+            assert_true(sphproof_simulations_state(simulation, &wanted) == 0);
+            for (size_t i = 0; i < scene.n; i++) {
+                for (int a = 0; a < dim; a++) {
+                    near_relative(got[a][i], x[a][i], 1e-15);
+                    near_absolute(got[3 + a][i], scene.v[a] ? v[a][i] : 0, 1e-15);
+                }
+                assert_true(got[6][i] > 0.5 && got[6][i] < 1.5);
+                if (left_out != 1) near_relative(got[7][i], u[i], 1e-14);
+                near_relative(got[8][i], 0.5 * got[6][i] * u[i], 1e-13);
+                if (left_out == 2) continue;
+                near_relative(got[9][i], 1.7 * pow(m[i] / got[6][i], 1. / dim), 1e-2);
+            }
+            for (int k = 0; k < 12; k++)
+                assert_true(got[k][scene.n] == -77 &&
+                            (k > 9 || k % 3 < dim || got[k][0] == -77 || k > 5));
+            sphproof_simulations_free(simulation);
+        }
+    sphproof_kernels_free(kernel);
+}
+
+static void refused_scenes(void **state)
+{
+    struct sphproof_simulation *simulation;
+    (void)state;
+    for (int row = 0; row < 12; row++) {
+        struct sphproof_scene scene = drawn_scene(2);
+        const struct sphproof_rates none = {0};
+        static const char *const narrow[] = {"kernel=cubic_spline", "eta=1.7", NULL};
+        const char *says = NULL;
+        scene.keys = narrow;
+        if (row == 0) scene.dim = 0, says = "dim = 0: allowed: 1, 2, 3";
+        if (row == 1) scene.dim = 4, says = "dim = 4: allowed: 1, 2, 3";
+        if (row == 2) scene.m = NULL, says = "m and u of its particles";
+        if (row == 3) scene.u = NULL, says = "m and u of its particles";
+        if (row == 4) scene.x[0] = NULL, says = "in 2D needs x[0]";
+        if (row == 5) scene.x[1] = NULL, says = "in 2D needs x[1]";
+        if (row == 6) x[1][0] = nextafter(scene.lo[1], -2), says = "particle 0: x[1] = ";
+        if (row == 7) x[0][63] = nextafter(scene.hi[0], 3), says = "particle 63: x[0] = ";
+        if (row == 8) scene.boundary[0] = "fixed", says = "boundary 'fixed': allowed: periodic";
+        if (row == 9) scene.boundary[1] = "", says = "boundary '': allowed: periodic";
+        if (row == 10) /* ends belong to the box */
+            x[0][0] = scene.lo[0], x[0][7] = scene.hi[0], x[1][7] += 0.01;
+        if (row == 11) /* and beyond those that are open is room */
+            scene.boundary[1] = "open", x[1][0] = scene.lo[1] - 0.05;
+        const enum sphproof_status status =
+            sphproof_simulations_create(&scene, &simulation, &error);
+        if (says) {
+            refused(status, says);
+            assert_null(simulation);
+            refused(sphproof_rates_evaluate(&scene, &none, &error), says);
+        } else if (status) {
+            fail_msg("row %d: %s", row, error.message);
+        }
+        sphproof_simulations_free(simulation);
+    }
+    const struct sphproof_scene scene = drawn_scene(1);
+    assert_int_equal(sphproof_simulations_create(&scene, &simulation, &error), SPHPROOF_OK);
+    refused(sphproof_simulations_run(simulation, 2e300, &error), "t = 2e+300: allowed: 0 or later");
+    sphproof_simulations_free(simulation);
+}
+
+/* ---- gradients of a cloud ---- */
+
+/* The standard sum and the density, in an open and in a periodic box. */
+static void clouds(void **state)
+{
+    static double h[MOST], volume[MOST], f[MOST], got[4][MOST + 1];
+    struct sphproof_kernel *kernel;
+    (void)state;
+    assert_int_equal(sphproof_kernels_find("wendland_c4", &kernel, NULL), SPHPROOF_OK);
+    for (int dim = 1; dim <= 3; dim++)
+        for (int periodic = 0; periodic < 2; periodic++) {
+            const struct sphproof_scene scene = drawn_scene(dim);
+            struct sphproof_cloud cloud = {.dim = dim,
+                                           .n = scene.n,
+                                           .x = {x[0], x[1], x[2]},
+                                           .volume = volume,
+                                           .h = h,
+                                           .periodic = periodic};
+            double *const to[] = {got[0], got[1], got[2]};
+            memcpy(cloud.lo, scene.lo, sizeof cloud.lo);
+            memcpy(cloud.hi, scene.hi, sizeof cloud.hi);
+            for (size_t i = 0; i < scene.n; i++)
+                h[i] = uniform(0.2, 0.3), volume[i] = uniform(1, 2), f[i] = uniform(-1, 1);
+            for (int k = 0; k < 4; k++)
+                for (int i = 0; i <= MOST; i++) got[k][i] = -77;
+            assert_int_equal(sphproof_gradients_apply("standard", kernel, &cloud, f, to, &error),
+                             SPHPROOF_OK);
+            for (size_t i = 0; i < scene.n; i++) {
+                double sum[3] = {0};
+                for (size_t j = 0; j < scene.n; j++) {
+                    double d[3] = {0}, squares = 0;
+                    for (int a = 0; a < dim; a++) {
+                        d[a] = periodic ? away(&scene, i, j, a) : x[a][i] - x[a][j];
+                        squares += d[a] * d[a];
+                    }
+                    const double r = sqrt(squares);
+                    for (int a = 0; a < dim && j != i; a++)
+                        sum[a] +=
+                            volume[j] * f[j] * sphproof_kernels_dr(kernel, r, h[i], dim) * d[a] / r;
+                }
+                for (int a = 0; a < dim; a++) near_absolute(got[a][i], sum[a], 1e-9);
+            }
+            for (int k = 0; k < 4; k++)
+                assert_true(got[k][scene.n] == -77 && (k < dim || got[k][0] == -77));
+            cloud.volume = cloud.h = NULL;
+            assert_int_equal(
+                sphproof_gradients_density(kernel, 2, &cloud, m, got[0], got[1], &error),
+                SPHPROOF_OK);
+            for (size_t i = 0; i < scene.n && periodic; i++) {
+                double number;
+                near_relative(got[1][i], sum_of(&scene, kernel, i, got[0][i], &number), 1e-8);
+                near_relative(got[0][i], 2 * pow(m[i] / got[1][i], 1. / dim), 1e-8);
+            }
+            refused(sphproof_gradients_apply("standard", kernel, &cloud, f, to, &error),
+                    "volume and h");
+            cloud.volume = volume;
+            refused(sphproof_gradients_apply("standard", kernel, &cloud, f, to, &error),
+                    "volume and h");
+            cloud.h = h, cloud.volume = NULL;
+            refused(sphproof_gradients_apply("standard", kernel, &cloud, f, to, &error),
+                    "volume and h");
+            cloud.volume = volume, cloud.x[dim - 1] = NULL;
+            char says[40];
+            snprintf(says, sizeof says, "%dD needs x[%d]", dim, dim - 1);
+            refused(sphproof_gradients_apply("standard", kernel, &cloud, f, to, &error), says);
+            cloud.dim = dim == 1 ? 0 : 4;
+            refused(sphproof_gradients_density(kernel, 2, &cloud, m, got[0], got[1], &error),
+                    dim == 1 ? "dim = 0: allowed" : "dim = 4: allowed");
+            refused(sphproof_gradients_apply(NULL, kernel, &cloud, f, to, &error),
+                    "no operator ''");
+        }
+    sphproof_kernels_free(kernel);
+}
+
+/* ---- figures of an operator ---- */
+
+enum { POINTS_MAX = 9000, FIGURES_MAX = 40, ETA_TENTHS = 24 };
+
+/* A "gradient" that is none. */
+static double planted(const double *const place[], const double *f, size_t i, int a)
+{
+    return (1 + a) * f[i] * (1.5 + place[0][i]) + f[i] * f[i] - 0.25 * a;
+}
+
+static int calls, refuse_at; /* the call that says that it could not; 0: none */
+
+static bool plant(void *context, const struct sphproof_cloud *cloud, const double *f,
+                  double *const gradient[])
+{
+    assert_ptr_equal(context, &calls);
+    for (int a = 0; a < cloud->dim; a++)
+        for (size_t i = 0; i < cloud->n; i++) gradient[a][i] = planted(cloud->x, f, i, a);
+    return ++calls != refuse_at;
+}
+
+static struct sphproof_figure figures[FIGURES_MAX];
+static char wheres[FIGURES_MAX][80];
+static int seen;
+
+static void see(void *context, const struct sphproof_figure *figure)
+{
+    assert_ptr_equal(context, &seen);
+    assert_true(seen < FIGURES_MAX);
+    snprintf(wheres[seen], sizeof wheres[seen], "%s", figure->where);
+    figures[seen++] = *figure;
+}
+
+/* A cloud as the check makes it, with a field. */
+struct made {
+    struct clouds_settings settings;
+    struct clouds_cloud cloud;
+    size_t n;
+    int dim;
+    double f[POINTS_MAX], slope[3][POINTS_MAX], largest;
+};
+
+static void make(struct made *made, struct clouds_settings settings, enum gradient_function field)
+{
+    assert_int_equal(clouds_make(&settings, &made->cloud, NULL), STATUS_OK);
+    made->settings = settings, made->dim = settings.dim, made->largest = 0;
+    made->n = made->cloud.cloud.points.n;
+    assert_true(made->n <= POINTS_MAX);
+    for (size_t i = 0; i < made->n; i++) {
+        double place[3] = {0}, slope[3] = {0};
+        for (int a = 0; a < made->dim; a++) place[a] = made->cloud.x[a][i];
+        made->f[i] = gradient_study_field(field, made->dim, place, slope);
+        for (int a = 0; a < made->dim; a++) made->slope[a][i] = slope[a];
+        made->largest = fmax(made->largest, fabs(made->f[i]));
+    }
+}
+
+static struct clouds_settings usual(enum clouds_kind kind, int dim)
+{
+    struct clouds_settings settings = gradient_study_cloud(kind, dim);
+    settings.eta = ETA_TENTHS / 10.;
+    return settings;
+}
+
+static int told;
+
+/* The next figure. */
+static void figure_is(const char *property, const char *formula, const char *where, double value,
+                      double bound)
+{
+    assert_true(told < seen);
+    const struct sphproof_figure *figure = &figures[told];
+    assert_string_equal(figure->property, property);
+    assert_non_null(strstr(figure->formula, formula));
+    assert_string_equal(wheres[told++], where);
+    near_relative(figure->value + 1, value + 1, 1e-10);
+    if (value > 0) near_relative(figure->value, value, 1e-6);
+    assert_true(figure->bound == bound && figure->floor == 1e-14 && !figure->skipped);
+    assert_true(figure->passed == (figure->value <= figure->bound));
+}
+
+static double misses[3][POINTS_MAX];
+
+/* The largest |misses| h of points whose support lies inside, over the largest |f|. */
+static double worst(const struct made *made, double stretch)
+{
+    double most = 0;
+    for (size_t i = 0; i < made->n; i++)
+        for (int a = 0; a < made->dim; a++)
+            if (clouds_interior(&made->settings, &made->cloud, i))
+                most = fmax(most, fabs(misses[a][i]) * stretch * made->cloud.h[i] / made->largest);
+    return most;
+}
+
+static struct made one;
+
+static void fields_are(int dim, bool linear)
+{
+    static double other[POINTS_MAX], both[POINTS_MAX];
+    char where[80];
+    make(&one, usual(CLOUDS_SOBOL, dim), FUNCTION_SMOOTH);
+    const double *const place[] = {one.cloud.x[0], one.cloud.x[1], one.cloud.x[2]};
+    for (size_t i = 0; i < one.n; i++) {
+        other[i] = cos(3 * one.f[i]);
+        both[i] = 2.385 * one.f[i] - 0.71 * other[i];
+    }
+    snprintf(where, sizeof where, "%dD, %s", dim, clouds_name(CLOUDS_SOBOL));
+    figure_is("repeats", "same input", where, 0, 0);
+    for (int a = 0; a < dim; a++)
+        for (size_t i = 0; i < one.n; i++)
+            misses[a][i] = planted(place, both, i, a) - 2.385 * planted(place, one.f, i, a) +
+                           0.71 * planted(place, other, i, a);
+    if (linear) figure_is("linear", "grad (a f + b g)", where, worst(&one, 1), 1e-9);
+    clouds_free(&one.cloud);
+}
+
+static void exactness_is(int dim, int degrees)
+{
+    char where[80];
+    for (int degree = 0; degree < degrees; degree++)
+        for (int kind = 0; kind < CLOUDS_KINDS; kind++) {
+            const enum gradient_function field = degree ? FUNCTION_LINEAR : FUNCTION_CONSTANT;
+            make(&one, usual((enum clouds_kind)kind, dim), field);
+            const double *const place[] = {one.cloud.x[0], one.cloud.x[1], one.cloud.x[2]};
+            snprintf(where, sizeof where, "%dD, %s, %s field", dim,
+                     clouds_name((enum clouds_kind)kind), gradient_study_field_name(field));
+            for (int a = 0; a < dim; a++)
+                for (size_t i = 0; i < one.n; i++)
+                    misses[a][i] = planted(place, one.f, i, a) - one.slope[a][i];
+            figure_is("exactness", "of polynomials", where, worst(&one, 1), 1e-9);
+            clouds_free(&one.cloud);
+        }
+}
+
+/* The cloud is turned by R, or made larger, and shifted; the gradient goes along. */
+static void move_is(int dim, const char *property, const char *formula, const double R[9],
+                    double unit, const double shift[3])
+{
+    static double moved[3][POINTS_MAX];
+    char where[80];
+    make(&one, usual(CLOUDS_CLUSTERED, dim), FUNCTION_SMOOTH);
+    const double *const place[] = {one.cloud.x[0], one.cloud.x[1], one.cloud.x[2]},
+                        *const there[] = {moved[0], moved[1], moved[2]};
+    for (size_t i = 0; i < one.n; i++)
+        for (int a = 0; a < dim; a++) {
+            moved[a][i] = shift[a];
+            for (int b = 0; b < dim; b++) moved[a][i] += unit * R[a * dim + b] * place[b][i];
+        }
+    snprintf(where, sizeof where, "%dD, %s", dim, clouds_name(CLOUDS_CLUSTERED));
+    for (int a = 0; a < dim; a++)
+        for (size_t i = 0; i < one.n; i++) {
+            misses[a][i] = planted(there, one.f, i, a);
+            for (int b = 0; b < dim; b++)
+                misses[a][i] -= R[a * dim + b] / unit * planted(place, one.f, i, b);
+        }
+    figure_is(property, formula, where, worst(&one, unit), 1e-9);
+    clouds_free(&one.cloud);
+}
+
+static void moves_are(int dim, const struct sphproof_gradient_promise *promise)
+{
+    static const double nowhere[3] = {0}, shift[3] = {3.7, -5.1, 2.3};
+    const double c = cos(0.7), s = sin(0.7), e = cos(1.9), t = sin(1.9);
+    const double about_z[9] = {c, -s, 0, s, c, 0, 0, 0, 1},
+                 about_x[9] = {1, 0, 0, 0, e, -t, 0, t, e};
+    double R[9] = {0}, unit[9] = {0};
+    for (int a = 0; a < 3; a++)
+        for (int b = 0; b < 3; b++)
+            for (int k = 0; k < 3; k++) R[3 * a + b] += about_z[3 * a + k] * about_x[3 * k + b];
+    if (dim == 2) R[0] = R[3] = c, R[1] = -s, R[2] = s;
+    if (dim == 1) R[0] = -1;
+    for (int a = 0; a < dim; a++) unit[a * dim + a] = 1;
+    if (promise->turns) move_is(dim, "turns", "turned gradient", R, 1, nowhere);
+    if (promise->moves) move_is(dim, "moves", "shifted cloud is the same", unit, 1, shift);
+    if (promise->scales) move_is(dim, "scales", "larger cloud is smaller", unit, 2.385, nowhere);
+}
+
+static void order_is(int dim, double promised)
+{
+    static const size_t sides[3][5] = {
+        {32, 48, 72, 108, 162}, {12, 17, 24, 34, 48}, {10, 12, 14, 17, 20}};
+    double spacing[5], errors[5];
+    struct order_fit fit;
+    char where[80];
+    for (int l = 0; l < 5; l++) {
+        double squares = 0, count = 0;
+        for (unsigned long k = 0; k < 2; k++) {
+            make(&one,
+                 (struct clouds_settings){CLOUDS_JITTERED, dim, sides[dim - 1][l], 0.2,
+                                          ETA_TENTHS / 10., 5 + 3 * k},
+                 FUNCTION_SMOOTH);
+            const double *const place[] = {one.cloud.x[0], one.cloud.x[1], one.cloud.x[2]};
+            for (size_t i = 0; i < one.n; i++)
+                for (int a = 0; a < dim; a++) {
+                    if (!clouds_interior(&one.settings, &one.cloud, i)) continue;
+                    const double off = planted(place, one.f, i, a) - one.slope[a][i];
+                    squares += off * off, count++;
+                }
+            clouds_free(&one.cloud);
+        }
+        spacing[l] = 1. / (double)sides[dim - 1][l];
+        errors[l] = sqrt(squares / count);
+    }
+    assert_int_equal(order_fit(5, spacing, errors, NULL, &fit, NULL), STATUS_OK);
+    snprintf(where, sizeof where, "%dD, jittered: %s", dim, order_class_name(fit.class));
+    figure_is("order", "promised - observed", where, promised - fit.order, 0.2);
+}
+
+static void figures_of_an_operator(void **state)
+{
+    (void)state;
+    for (int dim = 1; dim <= 3; dim++)
+        for (int kept = dim == 3; kept < (dim == 3 ? 2 : 6); kept++) {
+            const struct sphproof_gradient_promise promise = {.exact = kept < 3 ? 2 - kept : 2,
+                                                              .order = 1.5,
+                                                              .eta = ETA_TENTHS / 10.,
+                                                              .turns = kept != 2,
+                                                              .moves = kept != 3,
+                                                              .scales = kept != 4,
+                                                              .linear = kept != 5};
+            calls = seen = told = 0;
+            assert_int_equal(
+                sphproof_gradients_check(plant, &calls, dim, &promise, see, &seen, &error),
+                SPHPROOF_CHECK_FAILED);
+            fields_are(dim, promise.linear);
+            exactness_is(dim, promise.exact);
+            moves_are(dim, &promise);
+            order_is(dim, promise.order);
+            assert_int_equal(told, seen);
+            assert_int_equal(calls, 4 + promise.exact * CLOUDS_KINDS + 10 +
+                                        2 * (promise.turns + promise.moves + promise.scales));
+        }
+}
+
+/* The exact gradients of clouds that are known, until a call refuses. */
+static bool zero(void *context, const struct sphproof_cloud *cloud, const double *f,
+                 double *const gradient[])
+{
+    (void)context, (void)f;
+    for (int a = 0; a < cloud->dim; a++)
+        for (size_t i = 0; i < cloud->n; i++) gradient[a][i] = 0;
+    return ++calls != refuse_at;
+}
+
+static void promises(void **state)
+{
+    const struct sphproof_gradient_promise none = {0, -9, 2.4, true, true, true, true};
+    static const struct {
+        int dim, exact;
+        double order, eta;
+        const char *says; /* NULL: all is well */
+    } rows[] = {{1, 0, -9, 2.4, NULL},
+                {3, 0, -9, 1, NULL},
+                {1, 1, -9, 6, NULL},
+                {0, 0, -9, 2.4, "an operator and dim"},
+                {4, 0, -9, 2.4, "an operator and dim"},
+                {1, 0, -9, 0.9999999, "promise: allowed"},
+                {1, 0, -9, 6.0000001, "promise: allowed"},
+                {1, -1, -9, 2.4, "promise: allowed"},
+                {1, 3, -9, 2.4, "promise: allowed"},
+                {1, 0, (double)NAN, 2.4, "promise: allowed"},
+                {1, 0, -HUGE_VAL, 2.4, "promise: allowed"}};
+    (void)state;
+    refuse_at = 0;
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        struct sphproof_gradient_promise promise = none;
+        promise.exact = rows[k].exact, promise.order = rows[k].order, promise.eta = rows[k].eta;
+        const enum sphproof_status status =
+            sphproof_gradients_check(zero, NULL, rows[k].dim, &promise, NULL, NULL, &error);
+        if (rows[k].says)
+            refused(status, rows[k].says);
+        else if (status)
+            fail_msg("row %zu: %s", k, error.message);
+    }
+    refused(sphproof_gradients_check(NULL, NULL, 1, &none, NULL, NULL, &error), "an operator and");
+    for (refuse_at = 1; refuse_at <= 20; refuse_at++) { /* whichever call refuses */
+        calls = 0;
+        const enum sphproof_status status =
+            sphproof_gradients_check(zero, NULL, 1, &none, NULL, NULL, &error);
+        assert_int_equal(calls, 20);
+        assert_int_equal(status, SPHPROOF_CHECK_FAILED);
+        assert_string_equal(error.message, "the operator says that it could not");
+    }
+    refuse_at = 0;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(solutions), cmocka_unit_test(refused_solutions),
+        cmocka_unit_test(scenes),    cmocka_unit_test(refused_scenes),
+        cmocka_unit_test(clouds),    cmocka_unit_test(figures_of_an_operator),
+        cmocka_unit_test(promises),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
