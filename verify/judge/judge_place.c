@@ -104,21 +104,24 @@ static void extent(const struct snapshot_file *file, size_t n, int d, double *lo
     }
 }
 
-/* Positions all lie in the case's own box and nearly fill it. */
-static bool fits_case(const struct snapshot_file *file, const struct settings *settings)
+/* Positions all lie in the case's own box and, unless its ends are the user's word, nearly fill it.
+ */
+static bool fits_case(const struct snapshot_file *file, const struct settings *settings, bool ends)
 {
+    const double part = ends ? 0 : 0.8;
     for (int d = 0; d < file->dim; d++) {
         double lo, hi;
         const double from = settings_along(settings, SETTING_lo, d),
                      to = settings_along(settings, SETTING_hi, d);
         extent(file, file->n, d, &lo, &hi);
-        if (!(lo >= from && hi <= to && hi - lo >= 0.8 * (to - from))) return false;
+        if (!(lo >= from && hi <= to && hi - lo >= part * (to - from))) return false;
     }
     return true;
 }
 
 static enum status take_box(const struct judge_request *request, struct judged *judged,
-                            const struct settings *settings, struct box *box, struct error *error)
+                            const struct settings *settings, bool ends, struct box *box,
+                            struct error *error)
 {
     struct snapshot_file *file = &judged->file;
     char value[80];
@@ -152,7 +155,7 @@ static enum status take_box(const struct judge_request *request, struct judged *
             box->lo[d] = snapped - 0.5 * file->box[d], box->hi[d] = snapped + 0.5 * file->box[d];
         }
     }
-    if (!file->boxed && file->gas == file->n && fits_case(file, settings)) {
+    if (!file->boxed && file->gas == file->n && fits_case(file, settings, ends)) {
         box->known = file->boxed = true; /* and periodic, as nothing else is said */
         for (int d = 0; d < file->dim; d++) {
             box->lo[d] = settings_along(settings, SETTING_lo, d);
@@ -160,7 +163,8 @@ static enum status take_box(const struct judge_request *request, struct judged *
             file->box[d] = box->hi[d] - box->lo[d];
         }
         snapshot_note(&file->notes, "box", "the case's",
-                      "the file says none; all positions lie in the case's and fill it");
+                      ends ? "the file says none; all positions lie in the case's"
+                           : "the file says none; all positions lie in the case's and fill it");
     } else {
         snprintf(value, sizeof value, "%.6g to %.6g along x", box->lo[0], box->hi[0]);
         snapshot_note(&file->notes, "box", value, "%s",
@@ -173,6 +177,18 @@ static enum status take_box(const struct judge_request *request, struct judged *
                                  "are not in it from 0 on");
     }
     return STATUS_OK;
+}
+
+/* What a case says of the ends of a tube, as --boundary would; the solver itself has none. NULL:
+ * nothing. */
+static const char *case_ends(struct settings *settings)
+{
+    struct setting_value *value = &settings->value[SETTING_boundary];
+    if (value->automatic) return NULL;
+    const char *word =
+        scheme_boundary_family.members[settings_choice_along(settings, SETTING_boundary, 0)]->name;
+    value->automatic = true;
+    return word;
 }
 
 /* Where the two gases met: the box is then about that. A tube that has ends (*ended) has its
@@ -292,9 +308,11 @@ static enum status take_keys(struct judged *judged, struct settings *settings, s
     return STATUS_OK;
 }
 
-enum status judge_place(const struct judge_request *request, struct judged *judged,
-                        double period[3], struct error *error)
+enum status judge_place(const struct judge_request *given, struct judged *judged, double period[3],
+                        struct error *error)
 {
+    struct judge_request with_ends = *given; /* and the window, where the case has both */
+    const struct judge_request *request = &with_ends;
     struct run_settings asked;
     struct box box;
     bool ended = false;
@@ -330,12 +348,19 @@ enum status judge_place(const struct judge_request *request, struct judged *judg
                          "judge: --left, --right and --x0 belong to two gases that meet; %.60s has "
                          "none",
                          name);
+    const char *ends = tube && asked.file.dimension == 1 ? case_ends(settings) : NULL;
+    const struct setting_value *window = &settings->value[SETTING_window];
+    if (!request->boundary) with_ends.boundary = ends;
+    if (ends && !request->window && !window->automatic) {
+        with_ends.window = true;
+        with_ends.ends[0] = window->real[0], with_ends.ends[1] = window->real[1];
+    }
     const double case_lo = settings_along(settings, SETTING_lo, 0),
                  case_hi = settings_along(settings, SETTING_hi, 0);
     if (check_dimension(judged, &asked, problem, error) ||
         take_gamma(request, judged, settings, error) ||
         take_time(request, judged, settings, error) ||
-        take_box(request, judged, settings, &box, error))
+        take_box(request, judged, settings, ends != NULL, &box, error))
         return error->status;
     if (request->boundary && !tube)
         snprintf(judged->file.boundary, sizeof judged->file.boundary, "%s", request->boundary);

@@ -82,7 +82,7 @@ bool judge_tube_ends(const struct judge_request *request, struct judged *judged,
 {
     struct tube tube;
     if (request->boundary) {
-        snapshot_note(&judged->file.notes, "ends", request->boundary, "--boundary");
+        snapshot_note(&judged->file.notes, "ends", request->boundary, "--boundary or the case's");
         return strcmp(request->boundary, "periodic") != 0;
     }
     if (judged->file.boundary[0] || !solve(settings, &tube)) return false;
@@ -130,7 +130,7 @@ enum status judge_tube_place(const struct judge_request *request, struct judged 
             judged->path, tube.time, ends[0], ends[1]);
     snprintf(value, sizeof value, "%.6g to %.6g", window[0], window[1]);
     snapshot_note(&judged->file.notes, "window", value, "%s",
-                  request->window         ? "--window"
+                  request->window         ? "--window or the case's"
                   : from[0] + from[1] > 0 ? "but for what waves from the ends may have reached"
                                           : "from end to end: no wave has reached one");
     const double half = fmax(fabs(ends[0] - x0), fabs(ends[1] - x0)) +

@@ -561,6 +561,9 @@ enum status case_parse(struct case_file *file, const char *path, const char *tex
     const enum status status = check_complete(&parser);
     if (status) return status;
     struct settings trial = file->settings;
+    /* of a tube, ends that are not periodic: judge knows them, and a run refuses them */
+    if (file->dimension == 1 && problem_reads(problem_of(&trial), SETTING_left))
+        trial.value[SETTING_boundary].automatic = true;
     struct prepared problem;
     struct scheme scheme;
     struct error reason;

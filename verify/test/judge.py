@@ -684,6 +684,20 @@ def tubes_with_ends(folder):
         placed = file.read().replace("\n", "\n# box = -0.5:1.5\n", 1)
     got = judge(write(folder, "placed.csv", placed), *asked, "0.2", "--box", "1", "--boundary", "open", status=0)
     assert got["window"] == [0, 1], got["window"]
+    # a case file of one's own says box, ends and window
+    words = {"lo": "0", "hi": "1", "boundary": "reflecting"}
+    for more, window in ({}, [0, 1]), ({"window": "0.1 0.9"}, [0.1, 0.9]), ({"lo": "-1"}, [-1, 1]):
+        said = {**words, **more}
+        case = write(folder, "ends.ini", "[case]\ntitle = A tube\ndimension = 1\nreference = riemann\n[domain]\nlo = %s\n"
+                     "hi = %s\nboundary = %s\n[initial]\nkind = riemann\nleft = 1 0 1\nright = 0.125 0 0.1\n[run]\nt_end = 0.2\n"
+                     "n = 100\n[measure]\nwindow = %s\n" % (said["lo"], said["hi"], said["boundary"], said.get("window", "auto")))
+        got = judge(late, "--case", case, "--time", "0.2", *(["--x0", "0.5"] if "lo" in more else []), status=0)
+        assert got["window"] == window and got["errors"]["density"]["l1"] < 1e-15, (said, got["window"])
+        assert assumption(got, "ends") == "reflecting" and assumption(got, "box") == "the case's", got["assumptions"]
+        if "lo" not in more:
+            assert "mirrored tube" in call(late, "--case", case, "--time", "0.2", "--boundary", "periodic")[2]
+    done = subprocess.run([PROGRAM, "run", case], capture_output=True, text=True)
+    assert done.returncode == 2 and "tubes with ends are for judge alone" in done.stderr, done
     refused(late, *asked, "0.2", "--boundary", "periodic", says="mirrored tube")
     refused(late, *asked, "0.2", "--boundary", "wall", says=("--boundary 'wall'", "reflecting"))
     refused(late, *asked, "0.2", "--box", "1:x", says=("--box '1:x'", "LO:HI"))
