@@ -18,6 +18,9 @@ bool page_make(struct page *page, const json_t *results);
 
 /* The same of a document of `sphproof judge` whose snapshots have profiles (verdict.h). */
 bool page_make_judge(struct page *page, const json_t *document);
+
+/* The same of a document of `sphproof compare` whose first draws have profiles. */
+bool page_make_compare(struct page *page, const json_t *document);
 void page_free(struct page *page);
 
 #endif

@@ -234,19 +234,25 @@ static void together(struct buffer *to, const json_t *document)
     buffer_add(to, " have changed.</p></section>\n");
 }
 
+void page_head(struct buffer *to, const char *title)
+{
+    buffer_format(to,
+                  "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"/>"
+                  "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>"
+                  "<meta name=\"color-scheme\" content=\"light dark\"/><title>%s</title>"
+                  "<style>",
+                  title);
+    for (size_t k = 0; page_styles[k]; k++) buffer_add(to, page_styles[k]);
+    buffer_format(to, "%s</style></head><body>\n", style_css());
+}
+
 bool page_make_judge(struct page *page, const json_t *document)
 {
     struct page_writer writer = {.alone = true};
     struct buffer *to = &writer.to;
     const json_t *snapshots = json_object_get(document, "snapshots"), *one;
     size_t k;
-    buffer_add(to,
-               "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"/>"
-               "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>"
-               "<meta name=\"color-scheme\" content=\"light dark\"/><title>sphproof judge</title>"
-               "<style>");
-    for (k = 0; page_styles[k]; k++) buffer_add(to, page_styles[k]);
-    buffer_format(to, "%s</style></head><body>\n", style_css());
+    page_head(to, "sphproof judge");
     buffer_format(to, "<header class=\"%s\"><p class=\"kind\">sphproof judge, case ",
                   strcmp(value_text(document, "status"), "pass") ? "unwell" : "well");
     buffer_escape(to, value_text(document, "case"));

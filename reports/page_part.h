@@ -9,6 +9,9 @@
 
 extern const char *const page_styles[]; /* parts of the style sheet; ends with NULL */
 
+/* Of a page of its own: all up to <body>. */
+void page_head(struct buffer *to, const char *title);
+
 /* One line for the head, and the section: what changed since last night and over the nights. */
 void page_since(struct buffer *to, const json_t *results);
 void page_history(struct page_writer *writer, const json_t *history);

@@ -129,6 +129,8 @@ COMMANDS = [
     ["run", "two_rarefactions", "n=60", "cfl=50"],
     ["rates", "sod", "n=60"],
     ["judge", SNAPSHOTS + "gizmo_sod1d_dsph_n198.gadget1", "--case", "sod", "--gate", "density_l1=1"],
+    ["compare", "sod n=40", "sod n=40 kernel=cubic_spline", "--draws", "2"],
+    ["compare", "gresho n=10^2 t_end=0.01", "gresho n=10^2 t_end=0.01", "--draws", "1"],
     ["converge", "sod", "--n", "20,40,60,80", "t_end=0.1"],
     ["converge", "sod", "--n", "20,40,60,80", "t_end=0.05", "--vary", "gradient"],
     ["bench", "--n", "20,40", "t_end=0.05", "--vary", "gradient", *BRIEF],

@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The page of `sphproof compare`: verdict, table, and both sides over the exact solution or as maps
+ * of one colour scale. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "html.h"
+#include "page.h"
+#include "page_cloud.h"
+#include "page_part.h"
+#include "style.h"
+#include "value.h"
+
+static const char *const fields[] = {"density", "velocity", "pressure"};
+enum { PANELS = sizeof fields / sizeof *fields, SIDES = 2, SERIES = SIDES + 1 };
+
+/* Both over the exact curve, in one panel for each field. */
+static void lines(struct page_writer *writer, const json_t *const runs[SIDES])
+{
+    static const char *const axes[] = {"x", "density", "velocity", "pressure"};
+    struct plot_series series[PANELS][SERIES];
+    struct plot_panel panels[PANELS];
+    double *values[SERIES][PANELS + 1];
+    size_t n[SERIES][PANELS + 1];
+    bool whole = true;
+    for (int s = 0; s < SERIES; s++)
+        for (int k = 0; k <= PANELS; k++) {
+            const json_t *profile = json_object_get(runs[s < SIDES ? s : 0], "profile");
+            if (s == SIDES) profile = json_object_get(profile, "exact");
+            values[s][k] = value_numbers(json_object_get(profile, axes[k]), &n[s][k]);
+            whole = whole && n[s][k] && n[s][k] == n[s][0];
+        }
+    for (int k = 0; k < PANELS && whole; k++) {
+        for (int s = 0; s < SERIES; s++)
+            series[k][s] =
+                (struct plot_series){.label = s < SIDES ? value_text(runs[s], "label") : "exact",
+                                     .kind = s < SIDES ? PLOT_POINTS : PLOT_LINES,
+                                     .n = n[s][0],
+                                     .x = values[s][0],
+                                     .y = values[s][k + 1],
+                                     .color = s < SIDES ? s : PLOT_NEUTRAL,
+                                     .size = 0.5};
+        panels[k] = (struct plot_panel){.x_label = "x",
+                                        .y_label = fields[k],
+                                        .key = k ? PLOT_KEY_NONE : PLOT_KEY_TOP,
+                                        .series = series[k],
+                                        .series_count = SERIES};
+    }
+    const struct plot plot = {.name = "compare-profiles",
+                              .title = "a and b over the exact solution",
+                              .panels = panels,
+                              .panel_count = PANELS};
+    if (whole)
+        page_plot(writer, &plot,
+                  "Particles of the first draw over the exact solution, code units.");
+    for (int s = 0; s < SERIES; s++)
+        for (int k = 0; k <= PANELS; k++) free(values[s][k]);
+}
+
+static void table(struct buffer *to, const json_t *document)
+{
+    const json_t *figure, *cpu = json_object_get(document, "cpu");
+    size_t k;
+    html_table(to, "errors", "error|#a|#b|#b/a - 1 in %|b is");
+    json_array_foreach(json_object_get(document, "comparisons"), k, figure) {
+        const double change = 100 * value_member(figure, "change"),
+                     half = 100 * value_member(figure, "half");
+        const char *verdict = value_text(figure, "verdict");
+        if (!isfinite(change)) continue;
+        buffer_add(to, "<tr><td>");
+        html_words(to, value_text(figure, "name"));
+        buffer_add(to, "</td>");
+        html_cell_number(to, value_member(figure, "a"));
+        html_cell_number(to, value_member(figure, "b"));
+        buffer_format(
+            to, isnan(half) ? "<td class=\"n\">%+.3g</td>" : "<td class=\"n\">%+.3g ± %.2g</td>",
+            change, half);
+        html_cell(to, strcmp(verdict, "none") ? verdict : "no different");
+        buffer_add(to, "</tr>\n");
+    }
+    html_table_end(to);
+    buffer_format(to,
+                  "<p>Geometric means over %g draws, of fields L1, of values |found - exact|; ± is "
+                  "half of the interval that holds all "
+                  "of them with 95 %% (Student, pairs of draws).",
+                  value_member(document, "draws"));
+    if (json_is_object(cpu))
+        buffer_format(to, " CPU time, b over a: %.3g (%.3g to %.3g).", value_member(cpu, "ratio"),
+                      value_member(cpu, "low"), value_member(cpu, "high"));
+    buffer_add(to, "</p>\n");
+}
+
+bool page_make_compare(struct page *page, const json_t *document)
+{
+    struct page_writer writer = {.alone = true};
+    struct buffer *to = &writer.to;
+    const json_t *sides = json_object_get(document, "sides"), *side;
+    const json_t *runs[SIDES] = {0};
+    size_t k;
+    page_head(to, "sphproof compare");
+    buffer_add(to, "<header class=\"well\"><p class=\"kind\">sphproof compare, case ");
+    buffer_escape(to, value_text(document, "case"));
+    buffer_add(to, "</p><h1>");
+    buffer_escape(to, value_text(document, "verdict"));
+    buffer_add(to, "</h1></header>\n<main>\n<section><h2>Errors</h2>\n");
+    json_array_foreach(sides, k, side) {
+        runs[k] = json_object_get(side, "first");
+        buffer_add(to, "<p><b>");
+        buffer_escape(to, value_text(side, "name"));
+        buffer_add(to, "</b> <code>");
+        buffer_escape(to, value_text(side, "of"));
+        buffer_format(to, "</code>, n = %.0f</p>\n", value_member(runs[k], "n"));
+    }
+    table(to, document);
+    buffer_add(to, "</section>\n<section><h2>Side by side</h2>\n");
+    if (value_member(document, "dim") > 1) {
+        page_cloud_plots(&writer, "compare", runs, SIDES);
+        buffer_add(to, "</div>\n");
+    } else {
+        lines(&writer, runs);
+    }
+    buffer_add(to, "</section></main></body></html>\n");
+    page->html = buffer_take(to);
+    page->plots = writer.plots;
+    if (page->html) return true;
+    page_plots_free(&page->plots);
+    return false;
+}

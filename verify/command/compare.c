@@ -1,0 +1,510 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * sphproof compare: two schemes, or results, side by side on one case, with the scatter of draws.
+ */
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "cloud_profile.h"
+#include "command.h"
+#include "judge.h"
+#include "output.h"
+#include "page.h"
+#include "paired.h"
+#include "problem_list.h"
+#include "profile.h"
+#include "progress.h"
+#include "result.h"
+#include "settings_output.h"
+#include "study.h"
+#include "table.h"
+#include "text.h"
+
+enum { WORDS_MAX = 64, FIGURES_MAX = FIELDS + PROBLEM_FUNCTIONALS_MAX, DRAWS = 5 };
+#define LEVEL 0.05 /* of all figures together */
+
+/* One of the two. */
+struct side {
+    const char *name; /* "a", "b" */
+    const char *text; /* as asked for */
+    bool is_snapshot;
+    struct run_settings asked; /* of runs */
+    struct run first;          /* of the first draw, or as judged */
+    char *figures[FIGURES_MAX];
+    double error[FIGURES_MAX][STUDY_REPLICATES_MAX], cpu_s[STUDY_REPLICATES_MAX];
+    size_t n[STUDY_REPLICATES_MAX], count; /* particles of each draw; figures */
+    json_t *result;                        /* of the first draw, for pages */
+};
+
+struct comparison {
+    struct side sides[2];
+    size_t asked, draws; /* draws that differ in their particles */
+    struct paired of[FIGURES_MAX];
+    double cpu, cpu_low, cpu_high; /* b over a: median, least, most; NaN: a side is a snapshot */
+    char verdict[1024];
+};
+
+/* ---- what is asked ---- */
+
+/* Splits at blanks, but for those between quotes; the words lie in text. False: a quote is open. */
+static bool split(char *text, char *words[WORDS_MAX], int *count)
+{
+    char *to = text, quote = 0;
+    *count = 0;
+    for (char *from = text; *from && *count < WORDS_MAX;) {
+        while (*from == ' ') from++;
+        if (!*from) break;
+        words[(*count)++] = to;
+        for (; *from && (quote || *from != ' '); from++) {
+            if (quote ? *from == quote : *from == '"' || *from == '\'')
+                quote = quote ? 0 : *from;
+            else
+                *to++ = *from;
+        }
+        const bool more = *from != '\0';
+        *to++ = '\0';
+        from += more;
+    }
+    return !quote;
+}
+
+static bool is_file(const char *text)
+{
+    struct stat of;
+    const size_t length = strlen(text);
+    return stat(text, &of) == 0 && S_ISREG(of.st_mode) &&
+           !(length > 4 && strcmp(text + length - 4, ".ini") == 0);
+}
+
+static enum status take_side(struct side *side, int threads, struct error *error)
+{
+    char *words[WORDS_MAX], *text = strdup(side->text);
+    int count;
+    enum status status = STATUS_OK;
+    side->is_snapshot = is_file(side->text);
+    if (!text)
+        status = error_set(error, STATUS_ENVIRONMENT, "no memory for arguments");
+    else if (side->is_snapshot)
+        ;
+    else if (!split(text, words, &count) || count < 1)
+        status =
+            error_set(error, STATUS_BAD_INPUT,
+                      "compare: %s, '%.200s': allowed: \"CASE [KEY=VALUE ...]\" with quotes in "
+                      "pairs, or the path of a snapshot",
+                      side->name, side->text);
+    else if (!run_prepare(&side->asked, words[0], count - 1, words + 1, error)) {
+        side->asked.threads = threads;
+        status = run_resolve(&side->first, &side->asked, error);
+    } else
+        status = error->status;
+    free(text);
+    return status;
+}
+
+/* Keys that say what is computed, beside a problem's own; the others are what is compared. */
+static const enum setting problem_keys[] = {
+    SETTING_kind,   SETTING_gamma,         SETTING_t_end, SETTING_lo,      SETTING_hi,
+    SETTING_window, SETTING_window_radius, SETTING_boost, SETTING_gravity, SETTING_boundary};
+
+static enum status differ(const struct comparison *c, enum setting key, struct error *error)
+{
+    char text[2][SETTING_TEXT_MAX];
+    for (int s = 0; s < 2; s++) settings_text(&c->sides[s].first.settings, key, text[s]);
+    if (strcmp(text[0], text[1]) == 0) return STATUS_OK;
+    const double x = settings_real(&c->sides[0].first.settings, key),
+                 y = settings_real(&c->sides[1].first.settings, key);
+    const bool by_file = c->sides[0].is_snapshot || c->sides[1].is_snapshot;
+    if (by_file && key != SETTING_gamma && key != SETTING_t_end) return STATUS_OK;
+    if (by_file && fabs(x - y) <= 1e-6 * fabs(x)) return STATUS_OK;
+    return error_set(error, STATUS_BAD_INPUT,
+                     "compare: a has %s=%.80s, b has %s=%.80s: two problems, whose errors say "
+                     "nothing about each other; allowed: the same on both sides",
+                     setting_keys[key].name, text[0], setting_keys[key].name, text[1]);
+}
+
+static enum status check_problem(const struct comparison *c, struct error *error)
+{
+    const struct run *a = &c->sides[0].first, *b = &c->sides[1].first;
+    if (strcmp(a->asked.file.name, b->asked.file.name) != 0 ||
+        a->asked.file.dimension != b->asked.file.dimension)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "compare: a is of the case %s in %dD, b of %s in %dD; allowed: the same "
+                         "case on both sides",
+                         a->asked.file.name, a->asked.file.dimension, b->asked.file.name,
+                         b->asked.file.dimension);
+    const struct problem *problem = problem_of(&a->settings);
+    for (size_t k = 0; k < problem->key_count; k++)
+        if (problem->keys[k].role != ROLE_PARTICLES && differ(c, problem->keys[k].key, error))
+            return error->status;
+    for (size_t k = 0; k < sizeof problem_keys / sizeof *problem_keys; k++)
+        if (differ(c, problem_keys[k], error)) return error->status;
+    return STATUS_OK;
+}
+
+/* ---- draws ---- */
+
+/* Another seed where the start is random. Else another number of particles: on a line within 2.5 %;
+ * in 2D and 3D of a lattice of one more, one less, two more ... along each side. */
+static enum status draw(const struct side *side, size_t r, size_t draws, struct run *run,
+                        struct error *error)
+{
+    struct run_settings asked = side->asked;
+    const struct settings *settings = &side->first.settings;
+    const bool random = study_is_random(settings);
+    const enum setting key = random ? SETTING_seed : SETTING_n;
+    const int dim = side->asked.file.dimension;
+    double value = settings_real(settings, key);
+    char text[32];
+    if (random)
+        value += (double)r;
+    else if (dim == 1)
+        value = (double)study_neighbour((size_t)value, draws, r);
+    else {
+        const double along = round(pow(value, 1. / dim)), away = (double)((r + 1) / 2);
+        value = round(value * pow((along + (r % 2 ? away : -away)) / along, dim));
+    }
+    snprintf(text, sizeof text, "%.0f", value);
+    if (r && settings_set(&asked.settings, key, text, SOURCE_USER, NULL, error))
+        return error->status;
+    return run_resolve(run, &asked, error);
+}
+
+static json_t *result_json(const struct side *side, const struct run_result *r)
+{
+    const bool line = r->problem.domain.dim == 1;
+    return json_pack("{s:s, s:I, s:o, s:o, s:o, s:o}", "label", side->name, "n", (json_int_t)r->n,
+                     "time", result_number(r->time), "errors", run_errors_json(r), "functionals",
+                     run_functionals_json(r), "profile",
+                     line ? profile_json(r) : cloud_profile_json(r));
+}
+
+/* Errors of fields; where none is exact, of what is. */
+static enum status read_figures(struct side *side, const struct run_result *r, size_t draw,
+                                struct error *error)
+{
+    side->count = 0;
+    for (int f = 0; f < FIELDS && !r->problem.problem->fieldless; f++) {
+        side->figures[side->count] = (char *)field_family.members[f]->name;
+        side->error[side->count++][draw] = r->errors[f].l1;
+    }
+    for (size_t k = 0; k < r->functional_count && r->problem.problem->fieldless; k++) {
+        if (!isfinite(r->functionals[k].exact)) continue;
+        side->figures[side->count] = (char *)r->functionals[k].name;
+        side->error[side->count++][draw] = fabs(r->functionals[k].value - r->functionals[k].exact);
+    }
+    side->n[draw] = r->n;
+    side->cpu_s[draw] = side->is_snapshot ? (double)NAN : r->cost.cpu_s;
+    if (draw == 0) side->result = result_json(side, r);
+    if (!side->count)
+        return error_set(error, STATUS_BAD_INPUT, "compare: nothing of the case %s is exact",
+                         side->first.asked.file.name);
+    return STATUS_OK;
+}
+
+static enum status one_run(struct side *side, size_t r, size_t draws, struct error *error)
+{
+    struct run run;
+    struct run_result result;
+    struct error reason = {0};
+    if (draw(side, r, draws, &run, error)) return error->status;
+    enum status status = run_execute(&run, &result, &reason);
+    if (status && status != STATUS_BROKE_DOWN)
+        return error_set(error, status, "%.480s", reason.message);
+    if (status)
+        error_set(error, status, "%s, '%.160s', n=%zu: %.280s", side->name, side->text, result.n,
+                  result.message);
+    else
+        status = read_figures(side, &result, r, error);
+    run_free(&result);
+    return status;
+}
+
+/* of: the case of the other side, where that is a run. */
+static enum status one_snapshot(struct side *side, const struct side *other, bool allow_far,
+                                struct error *error)
+{
+    struct judged judged;
+    const struct judge_request request = {.case_name =
+                                              other->is_snapshot ? NULL : other->asked.file.asked,
+                                          .kernel = -1,
+                                          .allow_far = allow_far};
+    enum status status = judge_snapshot(side->text, &request, &judged, error);
+    if (!status && !judged.passes)
+        status =
+            error_set(error, STATUS_CHECK_FAILED, "%.200s: %.280s", side->text, judged.verdict);
+    if (!status) {
+        side->first = judged.run;
+        status = read_figures(side, &judged.result, 0, error);
+        for (size_t k = 0; k < side->count; k++)
+            for (size_t r = 1; r < STUDY_REPLICATES_MAX; r++)
+                side->error[k][r] = side->error[k][0], side->cpu_s[r] = (double)NAN;
+        for (size_t r = 1; r < STUDY_REPLICATES_MAX; r++) side->n[r] = side->n[0];
+    }
+    judge_free(&judged);
+    return status;
+}
+
+/* A lattice may come out the same for two numbers of particles: that is one draw, not two. */
+static bool seen(const struct comparison *c, size_t r)
+{
+    for (int s = 0; s < 2; s++)
+        if (!c->sides[s].is_snapshot && study_is_random(&c->sides[s].first.settings)) return false;
+    for (size_t k = 0; k < r; k++)
+        if (c->sides[0].n[k] == c->sides[0].n[r] && c->sides[1].n[k] == c->sides[1].n[r])
+            return true;
+    return false;
+}
+
+static enum status carry_out(struct comparison *c, const struct options *options,
+                             struct error *error)
+{
+    struct progress progress;
+    enum status status = STATUS_OK;
+    for (int s = 0; s < 2 && !status; s++) {
+        struct side *side = &c->sides[s];
+        if (side->is_snapshot)
+            status = one_snapshot(side, &c->sides[!s], options_value(options, "allow-far"), error);
+    }
+    if (!status) status = check_problem(c, error);
+    const bool both = c->sides[0].is_snapshot && c->sides[1].is_snapshot;
+    const size_t asked = both ? 1 : c->asked;
+    progress_begin(&progress, "compare", options->quiet);
+    for (size_t r = 0; r < asked && !status; r++) {
+        for (int s = 0; s < 2 && !status; s++) {
+            struct side *side = &c->sides[s];
+            if (!side->is_snapshot) {
+                status = one_run(side, r, asked, error);
+                if (!status) side->n[c->draws] = side->n[r], side->cpu_s[c->draws] = side->cpu_s[r];
+                for (size_t k = 0; k < side->count && !status; k++)
+                    side->error[k][c->draws] = side->error[k][r];
+            }
+            progress_update(&progress, (double)(2 * r) + s + 1, 2 * (double)asked);
+        }
+        if (!status && !seen(c, c->draws)) c->draws++;
+    }
+    progress_end(&progress);
+    return status;
+}
+
+/* ---- what is said ---- */
+
+static int ascending(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static void say(char *text, size_t size, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+static void say(char *text, size_t size, const char *format, ...)
+{
+    const size_t used = strlen(text);
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text + used, size - used, format, arguments);
+    va_end(arguments);
+}
+
+/* "12 +- 3 %", with as many digits as the interval leaves. */
+static void say_change(char *text, size_t size, const struct paired *of, bool sign)
+{
+    const double change = 100 * (sign ? of->change : fabs(of->change)), half = 100 * of->half;
+    const double step = isnan(half) ? fabs(change) / 10 : half;
+    const int places = step > 0 && step < 10 ? (int)fmin(6, ceil(1 - log10(step))) : 0;
+    say(text, size, sign ? "%+.*f" : "%.*f", places, change);
+    if (!isnan(half)) say(text, size, " +- %.*f", places, half);
+    say(text, size, " %%");
+}
+
+static void conclude(struct comparison *c)
+{
+    static const char *const open[] = {
+        [PAIRED_NONE] = "no difference can be told in ",
+        [PAIRED_BETTER] = "b is better in ",
+        [PAIRED_WORSE] = "b is worse in ",
+        [PAIRED_UNKNOWN] = "a single draw does not tell how much of the difference is chance: "};
+    static const enum paired_verdict order[] = {PAIRED_BETTER, PAIRED_WORSE, PAIRED_UNKNOWN,
+                                                PAIRED_NONE};
+    const bool single = c->sides[0].is_snapshot != c->sides[1].is_snapshot;
+    double ratio[STUDY_REPLICATES_MAX];
+    char *text = c->verdict;
+    const size_t size = sizeof c->verdict, count = c->sides[0].count;
+    for (size_t k = 0; k < count; k++)
+        c->of[k] = paired_compare(c->draws, c->sides[0].error[k], c->sides[1].error[k], single,
+                                  LEVEL / (double)count);
+    for (size_t r = 0; r < c->draws; r++) ratio[r] = c->sides[1].cpu_s[r] / c->sides[0].cpu_s[r];
+    qsort(ratio, c->draws, sizeof *ratio, ascending);
+    c->cpu = ratio[c->draws / 2], c->cpu_low = ratio[0], c->cpu_high = ratio[c->draws - 1];
+    for (size_t v = 0; v < PAIRED_VERDICTS; v++) {
+        size_t said = 0;
+        for (size_t k = 0; k < count; k++) {
+            if (!c->of[k].n || c->of[k].verdict != order[v]) continue;
+            say(text, size, "%s", said ? ", " : *text ? "; " : "");
+            say(text, size, "%s%s", said++ ? "" : open[order[v]], c->sides[0].figures[k]);
+            if (order[v] == PAIRED_NONE) continue;
+            say(text, size, order[v] == PAIRED_UNKNOWN ? " %s by " : " by ",
+                c->of[k].change < 0 ? "less" : "more");
+            say_change(text, size, &c->of[k], false);
+        }
+    }
+    say(text, size, " (%zu draw%s)", c->draws, c->draws == 1 ? "" : "s");
+    if (c->cpu_low > 1 || c->cpu_high < 1)
+        say(text, size, "; b takes %.2g times the CPU time (%.2g to %.2g)", c->cpu, c->cpu_low,
+            c->cpu_high);
+}
+
+static json_t *side_json(const struct side *side, bool pictures)
+{
+    json_t *run = json_copy(side->result);
+    if (run && !pictures) json_object_del(run, "profile");
+    return json_pack("{s:s, s:s, s:s, s:o, s:o}", "name", side->name, "of", side->text, "kind",
+                     side->is_snapshot ? "snapshot" : "runs", "settings",
+                     settings_json(&side->first.settings), "first", run);
+}
+
+static json_t *compare_json(const struct comparison *c, bool pictures)
+{
+    json_t *document = result_new("compare"), *figures = json_array(), *sides = json_array();
+    for (int s = 0; s < 2; s++) json_array_append_new(sides, side_json(&c->sides[s], pictures));
+    for (size_t k = 0; k < c->sides[0].count; k++) {
+        const struct paired *of = &c->of[k];
+        json_array_append_new(
+            figures, json_pack("{s:s, s:o, s:o, s:o, s:o, s:I, s:s}", "name",
+                               c->sides[0].figures[k], "a", result_number(of->a), "b",
+                               result_number(of->b), "change", result_number(of->change), "half",
+                               isnan(of->half) ? json_null() : result_number(of->half), "draws",
+                               (json_int_t)of->n, "verdict", paired_verdicts[of->verdict]));
+    }
+    json_object_set_new(document, "case", json_string(c->sides[0].first.asked.file.name));
+    json_object_set_new(document, "dim", json_integer(c->sides[0].first.asked.file.dimension));
+    json_object_set_new(document, "draws", json_integer((json_int_t)c->draws));
+    json_object_set_new(document, "sides", sides);
+    json_object_set_new(document, "comparisons", figures);
+    json_object_set_new(document, "cpu",
+                        isnan(c->cpu) ? json_null()
+                                      : json_pack("{s:o, s:o, s:o}", "ratio", result_number(c->cpu),
+                                                  "low", result_number(c->cpu_low), "high",
+                                                  result_number(c->cpu_high)));
+    json_object_set_new(document, "verdict", json_string(c->verdict));
+    return document;
+}
+
+static void print_all(const struct comparison *c, const struct options *options)
+{
+    const struct table_style style = table_style(options->color);
+    for (int s = 0; s < 2; s++)
+        printf("%s%s%s  %s, n=%zu\n", style.bold, c->sides[s].name, style.end, c->sides[s].text,
+               c->sides[s].n[0]);
+    printf("\n%s%-18s %12s %12s %24s  %s%s\n", style.bold, "error", "a", "b", "b/a - 1", "b is",
+           style.end);
+    for (size_t k = 0; k < c->sides[0].count; k++) {
+        const struct paired *of = &c->of[k];
+        char change[64] = "";
+        if (!of->n) continue;
+        say_change(change, sizeof change, of, true);
+        printf("%-18s %12.4e %12.4e %24s  %s%s%s\n", c->sides[0].figures[k], of->a, of->b, change,
+               of->verdict == PAIRED_BETTER  ? style.good
+               : of->verdict == PAIRED_WORSE ? style.bad
+                                             : style.faint,
+               of->verdict == PAIRED_NONE ? "no different" : paired_verdicts[of->verdict],
+               style.end);
+    }
+    printf("%sgeometric means, of fields L1, of values |found - exact|; +- is half of the interval "
+           "that holds all of them with 95 %% "
+           "(Student, pairs of draws)%s\n",
+           style.faint, style.end);
+    if (!isnan(c->cpu))
+        printf("%-18s b/a = %.3g (%.3g to %.3g)\n", "CPU time", c->cpu, c->cpu_low, c->cpu_high);
+    printf("\n%s", style.bold);
+    table_wrap("", c->verdict);
+    printf("%s", style.end);
+}
+
+static enum status write_page(const char *path, const struct comparison *c, struct error *error)
+{
+    struct page page = {0};
+    struct output output;
+    json_t *document = compare_json(c, true);
+    const bool made = document && page_make_compare(&page, document);
+    json_decref(document);
+    if (!made) return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", path);
+    enum status status = output_open(&output, path, error);
+    if (!status) {
+        fputs(page.html, output.stream);
+        status = output_close(&output, error);
+    }
+    page_free(&page);
+    return status;
+}
+
+static enum status tell(const struct options *options, const struct comparison *c,
+                        struct error *error)
+{
+    const char *html = options_value(options, "html");
+    enum status status = STATUS_OK;
+    if (options->speak) print_all(c, options);
+    if (options->json) {
+        json_t *document = compare_json(c, false);
+        status = result_write(document, options->json, error);
+        json_decref(document);
+    }
+    return status || !html ? status : write_page(html, c, error);
+}
+
+static enum status run(const struct options *options, int n, char **arguments, struct error *error)
+{
+    double draws = DRAWS;
+    const char *text = options_value(options, "draws"), *html = options_value(options, "html");
+    if (n != 2)
+        return command_usage(options, error, "two sides are needed, each in quotes, not %d", n);
+    if (text && !(text_integer(text, &draws) && draws >= 1 && draws <= STUDY_REPLICATES_MAX))
+        return error_set(error, STATUS_BAD_INPUT,
+                         "compare: --draws '%.40s': allowed: an integer from 1 to %d", text,
+                         STUDY_REPLICATES_MAX);
+    struct comparison *c = calloc(1, sizeof *c);
+    if (!c) return error_set(error, STATUS_ENVIRONMENT, "no memory");
+    enum status status = html ? output_probe(html, error) : STATUS_OK;
+    c->asked = (size_t)draws;
+    for (int s = 0; s < 2 && !status; s++) {
+        c->sides[s].name = s ? "b" : "a", c->sides[s].text = arguments[s];
+        status = take_side(&c->sides[s], options->threads, error);
+    }
+    if (!status) status = carry_out(c, options, error);
+    if (!status) {
+        conclude(c);
+        status = tell(options, c, error);
+    }
+    for (int s = 0; s < 2; s++) json_decref(c->sides[s].result);
+    free(c);
+    return status;
+}
+
+static const struct command_option own_options[] = {
+    {"draws", "N",
+     "runs of each side (default 5): other seeds of a random start, else n within 2.5 %, or\n"
+     "a lattice of one more, one less ... along each side; both sides draw alike"},
+    {"allow-far", NULL, "take also a snapshot that is far from the solution"},
+    {"html", "F.html", "write a page: verdict, table, both over the exact solution or as maps"},
+    {NULL, NULL, NULL},
+};
+
+const struct command command_compare = {
+    .name = "compare",
+    .synopsis = "\"CASE [KEY=VALUE ...]\"|SNAPSHOT \"CASE [KEY=VALUE ...]\"|SNAPSHOT",
+    .help = "two schemes, or snapshots, of one case side by side, with scatter and one verdict\n"
+            "Each side is the words of a run in quotes, or a snapshot of any code as for `sphproof "
+            "judge`.\nRuns are drawn several times, both sides alike; errors are compared draw by "
+            "draw, and what\nis within their scatter is no difference. Of a snapshot there is one "
+            "draw: against runs it is\ntaken to scatter as they do, against another snapshot "
+            "nothing can be told of chance.\nExit status 0 whoever is better; 1: a snapshot is far "
+            "from the solution; 3: a run broke down.",
+    .run = run,
+    .options = own_options,
+    .examples = "sphproof compare \"sod n=400\" \"sod n=400 kernel=wendland_c4 gradient=ia\"\n"
+                "sphproof compare \"gresho n=32^2\" \"gresho n=32^2 viscosity=constant\" --draws 9 "
+                "--html F.html\n"
+                "sphproof compare theirs.hdf5 \"sod n=400\"",
+};
