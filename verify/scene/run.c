@@ -14,6 +14,7 @@
 #include "plain.h"
 #include "problem_prepare.h"
 #include "run_measure.h"
+#include "snapshot_writer.h"
 
 enum status run_prepare(struct run_settings *settings, const char *case_name, int n,
                         char *const *arguments, struct error *error)
@@ -96,8 +97,11 @@ static enum status measure_start(struct run_result *result, const struct initial
 static void add_snapshots(const struct run *run, const struct scene *scene,
                           struct estimate *estimate)
 {
-    if (run->asked.snapshots)
-        estimate->memory += snapshots_memory(run->asked.snapshots, scene->dim, (double)scene->n);
+    const struct snapshots *snapshots = run->asked.snapshots;
+    const double n = (double)scene->n;
+    if (snapshots)
+        estimate->memory +=
+            snapshots_memory(scene->dim, n) + n * snapshot_writer_memory(snapshots->path);
 }
 
 /* Before there is an array of n numbers; a file's particles are as many as they are. */

@@ -4,12 +4,12 @@
 #include <stdio.h>
 #include <string.h>
 
-#define WRITER(name) extern const struct snapshot_writer snapshot_writer_##name;
+#define WRITER(name) extern const struct snapshot_writer writer_##name;
 #include "writers.def"
 #undef WRITER
 
 static const struct member *const members[] = {
-#define WRITER(name) &snapshot_writer_##name.member,
+#define WRITER(name) &writer_##name.member,
 #include "writers.def"
 #undef WRITER
 };
@@ -33,7 +33,7 @@ const struct snapshot_writer *snapshot_writer_of(const char *path, struct error 
 {
     const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
     char allowed[128] = "";
-    if (!dot) return &snapshot_writer_csv;
+    if (!dot) return &writer_csv;
     for (size_t k = 0; k < snapshot_writer_family.n; k++) {
         const struct snapshot_writer *writer =
             (const struct snapshot_writer *)snapshot_writer_family.members[k];
@@ -45,6 +45,13 @@ const struct snapshot_writer *snapshot_writer_of(const char *path, struct error 
               "a snapshot '%.150s': ends in '%.20s'; allowed: %s, or no ending for csv", path, dot,
               allowed);
     return NULL;
+}
+
+double snapshot_writer_memory(const char *path)
+{
+    struct error error;
+    const struct snapshot_writer *writer = snapshot_writer_of(path, &error);
+    return writer ? writer->memory : 0;
 }
 
 enum status run_write_snapshot(const struct run_result *result, const char *path,

@@ -28,4 +28,7 @@ extern const struct family snapshot_writer_family;
  * error, which names the endings that there are. */
 const struct snapshot_writer *snapshot_writer_of(const char *path, struct error *error);
 
+/* Its bytes for each particle; 0 where path means none. */
+double snapshot_writer_memory(const char *path);
+
 #endif

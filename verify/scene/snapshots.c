@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "snapshot_writer.h"
 
 /* Steps before a snapshot's time: the last two are made equal, and one prepares the next. */
 static const double steps_aside = 4;
@@ -44,12 +43,10 @@ char *snapshots_path(const struct snapshots *snapshots, size_t number)
     return path;
 }
 
-double snapshots_memory(const struct snapshots *snapshots, int dim, double n)
+double snapshots_memory(int dim, double n)
 {
     static const double kept[] = {0, 180, 350, 480}; /* a particle's state, measured */
-    struct error error;
-    const struct snapshot_writer *writer = snapshot_writer_of(snapshots->path, &error);
-    return n * (kept[dim] + (writer ? writer->memory : 0));
+    return n * kept[dim];
 }
 
 void snapshots_begin(struct snapshots *snapshots, double time, double last, double t_end)

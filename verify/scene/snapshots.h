@@ -40,8 +40,9 @@ size_t snapshots_count(const struct snapshots *snapshots, double t_end);
 double snapshots_time(const struct snapshots *snapshots, size_t number);
 char *snapshots_path(const struct snapshots *snapshots, size_t number);
 
-/* Bytes that going aside takes in a run of n particles, beside the run's own. */
-double snapshots_memory(const struct snapshots *snapshots, int dim, double n);
+/* Bytes that going aside takes in a run of n particles, beside the run's own and what writing a
+ * file takes. */
+double snapshots_memory(int dim, double n);
 
 /* Before the first step of this process: those up to `time` are over, and those up to `last`, which
  * is that of the last one that was made (< 0: none). */

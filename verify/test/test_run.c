@@ -108,8 +108,7 @@ static void explanations(void **state)
         run.asked.snapshots = &snapshots;
         const struct run_result with = explained(&run);
         assert_int_equal(plain.n, n);
-        assert_true(with.estimate.memory ==
-                    plain.estimate.memory + snapshots_memory(&snapshots, 2, (double)n));
+        assert_true(with.estimate.memory == plain.estimate.memory + snapshots_memory(2, (double)n));
         assert_true(plain.estimate.memory > 0 && plain.estimate.steps > 0);
         assert_true(plain.plan_count > 3 && plain.plan_count <= RUN_PLAN_MAX);
         assert_int_equal(plain.crossed, 0);

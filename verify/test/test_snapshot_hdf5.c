@@ -14,7 +14,7 @@
 #include "made_place.h"
 #include "snapshot_writer.h"
 
-extern const struct snapshot_writer snapshot_writer_hdf5;
+extern const struct snapshot_writer writer_hdf5;
 
 static void names(void **state)
 {
@@ -190,7 +190,7 @@ static void whole_files(void **state)
         struct error error;
         char path[256];
         snprintf(path, sizeof path, "%s", path_of("s.hdf5"));
-        assert_int_equal(snapshot_writer_hdf5.write(&result, path, &error), STATUS_OK);
+        assert_int_equal(writer_hdf5.write(&result, path, &error), STATUS_OK);
         const hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
         assert_true(file >= 0 && members(file, "/") == 2 && members(file, "Header") == 0);
         const double count[6] = {N}, none[6] = {0}, *lo = result.problem.domain.lo;
@@ -239,23 +239,23 @@ static void failures(void **state)
     char path[256];
     (void)state;
     snprintf(path, sizeof path, "%s", path_of("f.h5"));
-    assert_null(snapshot_writer_hdf5.possible);
+    assert_null(writer_hdf5.possible);
     const long open = open_things();
     calls = refused = 0;
-    assert_int_equal(snapshot_writer_hdf5.write(&result, path, &error), STATUS_OK);
+    assert_int_equal(writer_hdf5.write(&result, path, &error), STATUS_OK);
     const long all = calls;
     assert_true(all > 50 && open_things() == open);
     unlink(path);
     for (long k = 1; k <= all; k++) {
         calls = 0, refused = k;
         error = (struct error){0};
-        const enum status status = snapshot_writer_hdf5.write(&result, path, &error);
+        const enum status status = writer_hdf5.write(&result, path, &error);
         refused = 0;
         if (status != STATUS_ENVIRONMENT || !error.message[0] || access(path, F_OK) == 0)
             fail_msg("call %ld of %ld: status %d", k, all, (int)status);
         assert_int_equal(open_things(), open);
     }
-    assert_int_equal(snapshot_writer_hdf5.write(&result, path_of("no/such/folder.h5"), &error),
+    assert_int_equal(writer_hdf5.write(&result, path_of("no/such/folder.h5"), &error),
                      STATUS_ENVIRONMENT);
     assert_int_equal(open_things(), open);
 }
@@ -270,8 +270,8 @@ static void failures(void **state)
     struct run_result result = {0};
     struct error error = {0};
     (void)state;
-    assert_int_equal(snapshot_writer_hdf5.possible("a.h5", &error), STATUS_ENVIRONMENT);
-    assert_int_equal(snapshot_writer_hdf5.write(&result, "a.h5", &error), STATUS_ENVIRONMENT);
+    assert_int_equal(writer_hdf5.possible("a.h5", &error), STATUS_ENVIRONMENT);
+    assert_int_equal(writer_hdf5.write(&result, "a.h5", &error), STATUS_ENVIRONMENT);
     assert_non_null(strstr(error.message, "a.h5: built without HDF5"));
 }
 #endif

@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "made_simulation.h"
+#include "snapshot_writer.h"
 #include "snapshots.h"
 
 /* From a ten thousandth of the run to all of it, both included. */
@@ -74,12 +75,11 @@ static void files(void **state)
 static void memory(void **state)
 {
     static const double bytes[] = {0, 180, 350, 480};
-    const struct snapshots csv = {.path = "a.csv"}, hdf5 = {.path = "a.hdf5"};
     (void)state;
-    for (int dim = 1; dim <= 3; dim++) {
-        assert_true(snapshots_memory(&csv, dim, 1000) == 1000 * bytes[dim]);
-        assert_true(snapshots_memory(&hdf5, dim, 1000) == 1000 * (bytes[dim] + 250));
-    }
+    for (int dim = 1; dim <= 3; dim++)
+        assert_true(snapshots_memory(dim, 1000) == 1000 * bytes[dim]);
+    assert_true(snapshot_writer_memory("a.csv") == 0 && snapshot_writer_memory("a.h5") == 250);
+    assert_true(snapshot_writer_memory("a.vtu") == 90 && snapshot_writer_memory("a.") == 0);
 }
 
 /* Those up to now are over, and those that were made before the process began. */

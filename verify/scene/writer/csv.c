@@ -32,7 +32,7 @@ static enum status write_csv(const struct run_result *result, const char *path, 
     return output_close(&output, error);
 }
 
-const struct snapshot_writer snapshot_writer_csv = {
+const struct snapshot_writer writer_csv = {
     .member = {"csv", "text, a line a particle: .csv .txt .dat, or no ending", ""},
     .endings = ".csv .txt .dat",
     .write = write_csv,

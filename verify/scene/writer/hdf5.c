@@ -193,7 +193,7 @@ static enum status write_hdf5(const struct run_result *result, const char *path,
 
 #endif
 
-const struct snapshot_writer snapshot_writer_hdf5 = {
+const struct snapshot_writer writer_hdf5 = {
     .member = {"hdf5", "HDF5 in GADGET's layout: .hdf5 .h5", "Springel 2005"},
     .endings = ".hdf5 .h5",
     .memory = 250, /* of a file that is made in memory */

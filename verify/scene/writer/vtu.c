@@ -196,7 +196,7 @@ static enum status collect(const struct run_result *result, const struct snapsho
     return status;
 }
 
-const struct snapshot_writer snapshot_writer_vtu = {
+const struct snapshot_writer writer_vtu = {
     .member = {"vtu", "XML of VTK, for ParaView; a series with a collection F.pvd: .vtu", ""},
     .endings = ".vtu",
     .memory = 90,
