@@ -9,10 +9,9 @@
 #include "run.h"
 
 /* {"dim", "map": {"x", "y": centres of cells, "slice": [from, to] of z (3D), "density", "speed",
- * "error" (|v - exact|, where it is known): by rows, NaN in a void}, "over": "x" or "R",
- * "quantities": names, "x": of some particles of the window, NAME, "exact_NAME": arrays, "exact":
- * {"x", NAME ...}}; from "over" on only where there is such a curve. New reference; NULL: no
- * memory. */
+ * "error" (|v - exact|, where it is known): by rows, NaN in a void}, "over": "x" or "R", "quantities": names, "x": of some particles of the
+ * window, NAME, "exact_NAME": arrays, "exact": {"x", NAME ...}}; from "over" on only where there is
+ * such a curve. New reference; NULL: no memory. */
 json_t *cloud_profile_json(const struct run_result *result);
 
 #endif

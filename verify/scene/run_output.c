@@ -8,6 +8,7 @@
 #include "judged.h"
 #include "result.h"
 #include "settings_output.h"
+#include "snapshot_writer.h"
 
 static void set_number(json_t *object, const char *name, double value)
 {
@@ -141,4 +142,11 @@ void run_add_json(const struct run_settings *settings, const struct run_result *
     set_number(document, "h", result->h);
     json_object_set_new(document, "budget", budget_json(&result->budget));
     json_object_set_new(document, "suspicion", json_string(result->suspicion));
+}
+
+enum status run_write_snapshot(const struct run_result *result, const char *path,
+                               struct error *error)
+{
+    const struct snapshot_writer *writer = snapshot_writer_of(path, error);
+    return writer ? writer->write(result, path, error) : error->status;
 }

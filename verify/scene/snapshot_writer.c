@@ -53,10 +53,3 @@ double snapshot_writer_memory(const char *path)
     const struct snapshot_writer *writer = snapshot_writer_of(path, &error);
     return writer ? writer->memory : 0;
 }
-
-enum status run_write_snapshot(const struct run_result *result, const char *path,
-                               struct error *error)
-{
-    const struct snapshot_writer *writer = snapshot_writer_of(path, error);
-    return writer ? writer->write(result, path, error) : error->status;
-}
