@@ -80,7 +80,7 @@ static herr_t add_name(hid_t group, const char *name, const H5L_info_t *info, vo
 
 void hdf5_names(const struct snapshot_source *source, const char *group, char *text, size_t size)
 {
-    struct names names = {text, size, 0, NULL, -1};
+    struct names names = {.text = text, .size = size};
     hsize_t at = 0;
     *text = '\0';
     H5Literate_by_name(file_of(source), group, H5_INDEX_NAME, H5_ITER_INC, &at, add_name, &names,
@@ -91,7 +91,7 @@ void hdf5_names(const struct snapshot_source *source, const char *group, char *t
 bool hdf5_last(const struct snapshot_source *source, const char *group, const char *prefix,
                char *name, size_t size)
 {
-    struct names names = {name, size, 0, prefix, -1};
+    struct names names = {.text = name, .size = size, .prefix = prefix, .number = -1};
     hsize_t at = 0;
     H5Literate_by_name(file_of(source), group, H5_INDEX_NAME, H5_ITER_INC, &at, add_name, &names,
                        H5P_DEFAULT);
@@ -212,15 +212,12 @@ static bool open_dataset(const struct snapshot_source *source, const char *path,
     return false;
 }
 
-bool hdf5_shape(const struct snapshot_source *source, const char *path, size_t *rows,
-                size_t *columns)
+size_t hdf5_rows(const struct snapshot_source *source, const char *path)
 {
     struct dataset d;
-    if (!open_dataset(source, path, &d)) return false;
-    *rows = (size_t)d.shape[0];
-    *columns = (size_t)d.shape[1];
+    if (!open_dataset(source, path, &d)) return 0;
     close_dataset(&d);
-    return true;
+    return (size_t)d.shape[0];
 }
 
 static void set_precision(struct snapshot_file *file, enum snapshot_column column, hid_t type)
@@ -323,12 +320,10 @@ void hdf5_text(const struct snapshot_source *source, const char *group, const ch
     snprintf(text, size, "%s", "");
 }
 
-bool hdf5_shape(const struct snapshot_source *source, const char *path, size_t *rows,
-                size_t *columns)
+size_t hdf5_rows(const struct snapshot_source *source, const char *path)
 {
     (void)source, (void)path;
-    *rows = *columns = 0;
-    return false;
+    return 0;
 }
 
 enum status hdf5_read(const struct snapshot_source *source, const char *path,

@@ -34,9 +34,8 @@ int hdf5_numbers(const struct snapshot_source *source, const char *group, const 
 void hdf5_text(const struct snapshot_source *source, const char *group, const char *name,
                char *text, size_t size);
 
-/* Rows and columns of a dataset of numbers (columns 1 where it has one index). */
-bool hdf5_shape(const struct snapshot_source *source, const char *path, size_t *rows,
-                size_t *columns);
+/* Rows of a dataset of numbers; 0: it is none. */
+size_t hdf5_rows(const struct snapshot_source *source, const char *path);
 
 /* Reads a dataset of file->n rows and at most 3 columns into column and those behind it.
  * STATUS_BAD_INPUT: not of that shape, or it cannot be read. Sets the precision. */

@@ -10,7 +10,6 @@ enum status hdf5_gas(const struct snapshot_source *source, const char *group,
                      struct error *error)
 {
     char path[128], there[300];
-    size_t columns;
     for (size_t k = 0; k < n; k++) {
         const char *const *name = names[k].names;
         for (; *name; name++) {
@@ -24,8 +23,8 @@ enum status hdf5_gas(const struct snapshot_source *source, const char *group,
                              source->path, group, names[k].names[0], there);
         }
         if (names[k].column == SNAPSHOT_X) {
-            if (!hdf5_shape(source, path, &file->n, &columns) || file->n < 1 ||
-                file->n > SNAPSHOT_ROWS_MAX)
+            file->n = hdf5_rows(source, path);
+            if (file->n < 1 || file->n > SNAPSHOT_ROWS_MAX)
                 return error_set(error, STATUS_BAD_INPUT,
                                  "%.200s: %.80s: no particles, or no table of numbers",
                                  source->path, path);

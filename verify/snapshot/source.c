@@ -77,16 +77,14 @@ static enum status read_all(struct snapshot_source *source, stream from, struct 
         if (source->size >> 20 >= SOURCE_MEGABYTES_MAX)
             return error_set(error, STATUS_BAD_INPUT, "%.200s: too large; allowed: %d megabytes",
                              source->path, SOURCE_MEGABYTES_MAX);
-        if (source->size == room) {
+        if (source->size + CHUNK > room) {
             room = 2 * room + CHUNK;
             unsigned char *bytes = realloc(source->bytes, room + 1);
             if (!bytes)
                 return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", source->path);
             source->bytes = bytes;
         }
-        const size_t left = room - source->size;
-        const long got =
-            stream_read(from, source->bytes + source->size, left < CHUNK ? left : CHUNK);
+        const long got = stream_read(from, source->bytes + source->size, CHUNK);
         if (got < 0)
             return error_set(error, STATUS_BAD_INPUT,
                              "%.200s: cannot be read (damaged, if it is compressed)", source->path);

@@ -378,12 +378,34 @@ static void notes(void **state)
     assert_null(file.column[SNAPSHOT_X]);
 }
 
+static double flat(const struct kernel *kernel, double q, int dim)
+{
+    (void)kernel, (void)q, (void)dim;
+    return 1;
+}
+
+/* Of a ball of constant density; and particles that all stand at the ends are asked as well. */
+static void corners(void **state)
+{
+    const struct kernel ball = {.w = flat};
+    (void)state;
+    for (int dim = 1; dim <= 3; dim++)
+        near_relative(conventions_deviation(&ball, dim), sqrt(1. / (dim + 2)), 1e-12);
+    const struct snapshot_file file = scatter(2, 4, 1.5, 0);
+    for (int i = 0; i < 4; i++)
+        storage[0][i] = i % 2, storage[1][i] = i / 2, storage[SNAPSHOT_RHO][i] = 1;
+    const struct conventions found = found_in(&file, open_box, NULL, NULL);
+    assert_int_equal(found.sample, CONVENTIONS_SAMPLE);
+    assert_true(found.count > 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_kernel), cmocka_unit_test(ends),       cmocka_unit_test(no_proof),
-        cmocka_unit_test(either_sum),   cmocka_unit_test(masses),     cmocka_unit_test(said),
-        cmocka_unit_test(crowds),       cmocka_unit_test(as_columns), cmocka_unit_test(notes),
+        cmocka_unit_test(corners),  cmocka_unit_test(every_kernel), cmocka_unit_test(ends),
+        cmocka_unit_test(no_proof), cmocka_unit_test(either_sum),   cmocka_unit_test(masses),
+        cmocka_unit_test(said),     cmocka_unit_test(crowds),       cmocka_unit_test(as_columns),
+        cmocka_unit_test(notes),
     };
     return cmocka_run_group_tests(tests, make_place, remove_place);
 }

@@ -54,12 +54,20 @@ static void left_out(void **state)
             else
                 is_read(&b, tags[k]);
             b.there[k] = true; /* of another length */
-            b.rows[k]++;
+            const size_t each = is_vector(k) ? 3 : 1, n = b.rows[k]++,
+                         size = (n + 1) * each * (size_t)b.width[k];
+            char words[120];
+            if (k <= VEL)
+                snprintf(words, sizeof words,
+                         "%s of %zu particles take %zu or %zu bytes; the record has %zu",
+                         k ? "velocities" : "positions", n, 12 * n, 24 * n, size);
+            else
+                snprintf(words, sizeof words, "block '%s' has %zu bytes; allowed: %zu or %zu",
+                         tags[k], size, 4 * each * n, 8 * each * n);
             if (k == ID)
                 is_read(&b, tags[k]);
             else
-                refuses(put_all(&b), tags[k],
-                        k <= VEL ? "bytes; the record has" : "bytes; allowed:");
+                refuses(put_all(&b), tags[k], words);
         }
     struct binary b = made(1); /* all of one mass: no block is needed */
     for (int t = 0; t < TYPES; t++) b.table[t] = 2;
@@ -89,7 +97,14 @@ static void cut_off(void **state)
         }
         put_all(&b);
         bytes[size - 4] ^= 1, bytes[size - 1] ^= 1; /* either order */
-        refuses(size, "a wrong count", "damaged: record");
+        size_t records = 1, last = 0;
+        char words[80];
+        for (int k = 0; k < BLOCKS; k++)
+            if (b.there[k])
+                records++, last = b.rows[k] * (is_vector(k) ? 3 : 1) * (size_t)b.width[k];
+        snprintf(words, sizeof words, "damaged: record %zu at byte %zu begins with %zu and ends",
+                 records, size - last - 8, last);
+        refuses(size, "a wrong count", words);
     }
 }
 

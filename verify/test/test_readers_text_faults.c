@@ -7,6 +7,11 @@
 #include <stdint.h>
 #include <cmocka.h>
 
+#include <fcntl.h>
+#include <float.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include "made_table.h"
 
 /* ---- columns by the user's names ---- */
@@ -56,6 +61,7 @@ static void maps(void **state)
     refuses(text, size, "rho=Density", "has no column 'Density'; it has 'x' 'vx'");
     refuses(text, size, "rho=rh", "has no column 'rh'");
     refuses(text, size, "rho=rhoo", "has no column 'rhoo'");
+    refuses(text, size, "u=u,rho=Den,P=P", "has no column 'Den'; it has");
     refuses(text, size, "rho", "NAME one of");
     refuses(text, size, "rho,P=P", "NAME one of");
     refuses(text, size, "density=rho", "NAME one of");
@@ -74,7 +80,7 @@ static void maps(void **state)
     char map[80], says[80]; /* of long names the beginning is said */
     for (int more = 0; more < 2; more++) {
         snprintf(map, sizeof map, "rho=%0*d", 40 + more, 0);
-        snprintf(says, sizeof says, "has no column '%040d'", 0);
+        snprintf(says, sizeof says, "has no column '%040d'; it has", 0);
         refuses(text, text_of(&t, text, -1, -1, NULL), map, says);
     }
     struct table unknown = t;
@@ -118,6 +124,58 @@ static void spoilt(void **state)
         while (text[size - 1] != t.separator) size--;
         refuses(text, size, NULL, "no number (or a row that is too short)");
         refuses(text, size - 1, NULL, "no number (or a row that is too short)");
+    }
+}
+
+/* Of any particle, the first and the last among them. */
+static void values(void **state)
+{
+    static char text[TEXT_MAX];
+    (void)state;
+    struct table t = table_of(3, true);
+    t.columns -= 2;
+    for (size_t c = 0; c < t.columns; c++)
+        for (int row = 0; row < ROWS; row += ROWS - 1)
+            for (int sign = -1; sign <= 1; sign += 2) {
+                struct table wrong = t;
+                char says[80];
+                wrong.value[c][row] = sign * 1e100;
+                snprintf(says, sizeof says,
+                         "%s of particle %d is %s; allowed: ", snapshot_column_names[t.meaning[c]],
+                         row, sign < 0 ? "-1e+100" : "1e+100");
+                refuses(text, text_of(&wrong, text, -1, -1, NULL), NULL, says);
+            }
+    struct snapshot_file file;
+    reads(&t, NULL, &file);
+    assert_true(file.precision[0] == DBL_EPSILON / 2 && file.precision[1] == DBL_EPSILON / 2);
+    snapshot_file_free(&file);
+}
+
+static void no_files(void **state)
+{
+    static const struct snapshot_options plain;
+    static const struct {
+        const char *name, *says;
+    } rows[] = {{"nothing", "nothing: cannot be read: No such file"},
+                {"folder", "folder: is a directory; allowed: a file"},
+                {"queue", "queue: is no regular file; allowed: a file"},
+                {"empty", "empty: the file is empty"}};
+    (void)state;
+    assert_int_equal(mkdir(path_of("folder"), 0700), 0);
+    assert_int_equal(mkfifo(path_of("queue"), 0600), 0);
+    fclose(fopen(path_of("empty"), "w"));
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        struct snapshot_file file;
+        struct error error = {0};
+        const int next = open("/dev/null", O_RDONLY);
+        close(next);
+        const enum status status = snapshot_read(path_of(rows[k].name), &plain, &file, &error);
+        snapshot_file_free(&file);
+        if (status != STATUS_BAD_INPUT || !strstr(error.message, rows[k].says))
+            fail_msg("status %d: %s", (int)status, error.message);
+        const int still = open("/dev/null", O_RDONLY); /* nothing is left open */
+        close(still);
+        assert_int_equal(still, next);
     }
 }
 
@@ -179,9 +237,8 @@ static void heads(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(maps),
-        cmocka_unit_test(spoilt),
-        cmocka_unit_test(heads),
+        cmocka_unit_test(maps),     cmocka_unit_test(spoilt), cmocka_unit_test(values),
+        cmocka_unit_test(no_files), cmocka_unit_test(heads),
     };
     return cmocka_run_group_tests(tests, make_place, remove_place);
 }
