@@ -161,6 +161,7 @@ enum status simulation_take(const struct scene *scene, struct simulation **resul
     simulation->plan = plan_of_scene(scene);
     simulation->gamma = scene->gamma;
     simulation->steps.level = -1;
+    simulation->steps.worth = STEPS_WORTH;
     team_begin(&simulation->team, scene->threads > 1 ? scene->threads : 1);
     status = allocate(simulation, (ptrdiff_t)scene->n, error);
     if (!status) status = copy_scene(simulation, scene, error);

@@ -8,9 +8,6 @@
 #include "stamp.h"
 #include "width.h"
 
-/* A block's levels only pay where they leave out this part of the work. */
-static const double worth = 0.9;
-
 /* A particle's pace is at least this part of its fastest neighbour's, so that a shock finds short
  * steps when it arrives (Saitoh & Makino 2009). */
 static const double close_to = 0.5;
@@ -19,8 +16,8 @@ static const double close_to = 0.5;
  * the next block will have shorter ones. */
 static const double patience = 1.1;
 
-/* In single steps: from one look at whether blocks pay to the next. */
-enum { LOOK_EVERY = 4 };
+/* Single steps from one look at whether blocks pay to the next; and after blocks that did not. */
+enum { LOOK_EVERY = 4, REST = 32 };
 
 static long length_of(const struct steps_clock *clock, int level)
 {
@@ -75,7 +72,7 @@ static double work_of(const struct simulation *simulation, double dt, int depth)
 static bool pays(const struct simulation *simulation, double dt, int depth)
 {
     const double awake = (double)simulation->sleep.awake_count / (double)simulation->particles.n;
-    return work_of(simulation, dt, depth) <= worth * awake;
+    return work_of(simulation, dt, depth) <= simulation->steps.worth * awake;
 }
 
 /* Single steps, which keep nothing for local ones, have led up to here. Rates are their midpoint's.
@@ -125,12 +122,13 @@ double steps_begin_block(struct simulation *simulation, double dt, double left)
 {
     struct steps *steps = &simulation->steps;
     if (!(simulation->dt > 0)) {
-        *steps = (struct steps){.level = -1, .single = true};
+        steps->single = true;
         return dt;
     }
     if (steps->single) {
         steps->depth = 0;
-        if (++steps->looked % LOOK_EVERY != 1) return dt;
+        if (steps->rest-- > 0) return dt;
+        steps->rest = LOOK_EVERY - 1;
         find_own_paces(simulation);
         if (2 * dt > left || !pays(simulation, dt, 1)) return dt;
         take_over(simulation);
@@ -142,7 +140,7 @@ double steps_begin_block(struct simulation *simulation, double dt, double left)
     /* widths of single steps are predicted from a last step of everybody's */
     if (steps->depth == 0 && before == 0) {
         steps->single = true;
-        steps->looked = 1;
+        steps->rest = REST;
     }
     return ldexp(dt, steps->depth);
 }

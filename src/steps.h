@@ -47,14 +47,18 @@ struct steps_clock {
     double tick;
 };
 
+/* Evaluations of few particles search and predict for all, and find the pairs beside them twice. */
+#define STEPS_WORTH 0.55
+
 struct steps {
     int depth;        /* the finest planned level of the block */
     int level;        /* being evaluated; -1: all particles are */
     double span;      /* step of that level */
     uint64_t updates; /* of active particles in the block */
     uint64_t woken;   /* particles inside blocks, so far */
-    uint64_t looked;  /* single steps since blocks did not pay */
+    int rest;         /* single steps before the next look at whether blocks pay */
     bool single;      /* the integrator's own steps, as with steps=global: blocks do not pay */
+    double worth;     /* blocks pay where no more than this part of the work is left */
     struct steps_clock clock;
 };
 
