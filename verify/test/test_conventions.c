@@ -373,7 +373,9 @@ static void notes(void **state)
         assert_null(strchr(notes.note[k].evidence, '\n'));
         assert_non_null(strstr(notes.note[k].evidence, "evidence"));
     }
-    struct snapshot_file file = {.n = SNAPSHOT_ROWS_MAX + (size_t)1};
+    struct snapshot_file file = {.n = SNAPSHOT_ROWS_MAX + (size_t)1, .box = {7, 7, 7}};
+    assert_true(snapshot_take_box("2 1", &file) && !file.placed);
+    assert_true(file.box[0] == 2 && file.box[1] == 1 && file.box[2] == 7);
     assert_false(snapshot_file_make(&file, SNAPSHOT_X));
     assert_null(file.column[SNAPSHOT_X]);
 }

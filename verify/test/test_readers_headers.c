@@ -161,7 +161,8 @@ static void phantom(void **state)
     static const char *const ends[] = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"};
     (void)state;
     for (int dead = 0; dead < 3; dead++)
-        for (int end = 0; end < 13; end++) { /* one is left out, or lies within; the last: none */
+        for (int end = 0; end < 14; end++) { /* one is left out, or lies within; 12: none; 13: all
+                                                are where particles are */
             struct layout l = layouts[3];
             struct snapshot_file file;
             struct error error = {0};
@@ -176,15 +177,19 @@ static void phantom(void **state)
                 items[n].attribute = dead;
                 if (end == k) items[n].path[0] = '\0';
                 if (end == 6 + k) items[n].values[0] = 6;
+                if (end == 13) items[n].values[0] = k / 2 + (k % 2 ? 11 : 0);
                 n++;
             }
             write_items(path_of("p.h5"), items, n);
             if (snapshot_read(path_of("p.h5"), &here, &file, &error)) fail_msg("%s", error.message);
             assert_int_equal(file.n, dead ? N - 1 : N);
             assert_int_equal(file.gas, dead ? N - 4 : N - 3);
-            assert_true(file.boxed == (end == 12) && file.placed == file.boxed);
+            assert_true(file.boxed == (end >= 12) && file.placed == file.boxed);
+            noted(&file, "dead particles", dead ? "1 of 12 rows left out" : NULL,
+                  "their h is not above 0");
             for (int d = 0; d < 3 && file.boxed; d++)
-                assert_true(file.corner[d] == -2 * d && file.box[d] == 21 + 4 * d);
+                assert_true(end == 13 ? file.corner[d] == d && file.box[d] == 11
+                                      : file.corner[d] == -2 * d && file.box[d] == 21 + 4 * d);
             if (dead) assert_true(file.column[SNAPSHOT_X][3] == 6); /* after rows 0, 1, 3 */
             snapshot_file_free(&file);
         }
