@@ -73,7 +73,8 @@ static json_t *changed(struct made_draw *draw, const json_t *of, const char *nam
     if (json_is_integer(of) && !made_below(draw, 8) && strcmp(name, "n") && strcmp(name, "dim"))
         return json_integer(json_integer_value(of) + 1);
     if (json_is_string(of) &&
-        (!strcmp(name, "status") || !strcmp(name, "outcome") || !strcmp(name, "state")) &&
+        (!strcmp(name, "status") || !strcmp(name, "outcome") || !strcmp(name, "state") ||
+         !strcmp(name, "processor")) &&
         !made_below(draw, 4))
         return json_string(words[made_below(draw, sizeof words / sizeof *words)]);
     return json_deep_copy(of);
@@ -236,13 +237,16 @@ static void joined(void **state)
         struct made_draw draw = {k, NULL};
         json_t *all = json_object();
         for (size_t parts = made_below(&draw, 4); parts > 0; parts--) {
-            json_t *part =
-                json_pack("{s:[i], s:[], s:{s:i, s:i}}", "checks", (int)parts, "mutants", "summary",
-                          "passed", (int)made_below(&draw, 5), "failed", (int)made_below(&draw, 3));
-            for (size_t m = made_below(&draw, 4); m > 0; m--)
-                json_array_append_new(json_object_get(part, "mutants"),
-                                      json_pack("{s:s, s:b}", "mutant", names[made_below(&draw, 3)],
-                                                "detected", made_below(&draw, 4) > 0));
+            const int passed = (int)made_below(&draw, 5), failed = (int)made_below(&draw, 3);
+            json_t *part = json_pack("{s:[i], s:[], s:{s:i, s:i}}", "checks", (int)parts, "mutants",
+                                     "summary", "passed", passed, "failed", failed);
+            for (size_t m = made_below(&draw, 4); m > 0; m--) {
+                const char *name = names[made_below(&draw, 3)];
+                const int detected = made_below(&draw, 4) > 0;
+                json_array_append_new(
+                    json_object_get(part, "mutants"),
+                    json_pack("{s:s, s:b}", "mutant", name, "detected", detected));
+            }
             report_piece_join(all, part);
             json_decref(part);
         }

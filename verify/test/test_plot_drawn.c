@@ -201,21 +201,25 @@ static void draw_tag(struct made_draw *draw, struct buffer *to, const char *name
     static const char *const bad[] = {"fill", "fill=none", "fill='none", "a='1' b", "/"};
     size_t n = toss(draw, 60) ? 23 + made_below(draw, 4) : made_below(draw, 5);
     buffer_format(to, "<%s", name);
-    for (; n > 0; n--)
-        buffer_format(to, "%s%s", toss(draw, 3) ? "\n\t" : " ",
-                      attributes[made_below(draw, sizeof attributes / sizeof *attributes)]);
+    for (; n > 0; n--) {
+        buffer_add(to, toss(draw, 3) ? "\n\t" : " ");
+        buffer_add(to, attributes[made_below(draw, sizeof attributes / sizeof *attributes)]);
+    }
     if (toss(draw, 150)) buffer_format(to, " %s", bad[made_below(draw, sizeof bad / sizeof *bad)]);
 }
 
 static void draw_particles(struct made_draw *draw, struct buffer *to)
 {
     static const char *const colors[] = {"rgb(0,114,178)", "rgb(213,94,0)", "black"};
-    for (size_t n = made_below(draw, 5); n > 0; n--)
-        buffer_format(
-            to,
-            "<use xlink:href='#gpPt6' transform='translate(%zu.25,7.%zu) scale(%s)' color='%s'/>\n",
-            made_below(draw, 90), made_below(draw, 100), toss(draw, 3) ? "1.5" : "0.75",
-            colors[made_below(draw, toss(draw, 2) ? 3 : 1)]);
+    for (size_t n = made_below(draw, 5); n > 0; n--) { /* one by one: arguments have no order */
+        const size_t x = made_below(draw, 90), y = made_below(draw, 100);
+        const char *size = toss(draw, 3) ? "1.5" : "0.75";
+        const char *color = colors[made_below(draw, toss(draw, 2) ? 3 : 1)];
+        buffer_format(to,
+                      "<use xlink:href='#gpPt6' transform='translate(%zu.25,7.%zu) scale(%s)' "
+                      "color='%s'/>\n",
+                      x, y, size, color);
+    }
 }
 
 static void draw_elements(struct made_draw *draw, struct buffer *to, size_t depth)

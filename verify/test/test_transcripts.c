@@ -125,33 +125,17 @@ static int split(char *line, char *words[WORDS])
 
 /* What depends on the machine, the day, the build: what follows these words on a line is left out.
  */
-static const char *const left_out[] = {"\"version\": ",
-                                       "\"git\": ",
-                                       "\"compiler\": ",
-                                       "\"flags\": ",
-                                       "\"system\": ",
-                                       "\"architecture\": ",
-                                       "\"processor\": ",
-                                       "\"cores\": ",
-                                       "\"date\": ",
-                                       "\"wall_s\": ",
-                                       "\"cpu_s\": ",
-                                       "\"peak_rss_bytes\": ",
-                                       "\"memory_bytes\": ",
-                                       "\ncost ",
-                                       "pair interactions, ",
-                                       "\nit would take ",
-                                       "\"old_git\": ",
-                                       "\"new_git\": ",
-                                       "sphproof 0",
-                                       "\"subject\": ",
-                                       "\"floor\": ",
-                                       "\"seconds\": ",
-                                       "\"bytes\": ",
-                                       " results, ",
-                                       "\nold  ",
-                                       "\nnew  ",
-                                       "\"git_before\": "};
+static const char *const left_out[] = {
+    "\"version\": ",      "\"git\": ",     "\"compiler\": ",
+    "\"flags\": ",        "\"system\": ",  "\"architecture\": ",
+    "\"processor\": ",    "\"cores\": ",   "\"date\": ",
+    "\"wall_s\": ",       "\"cpu_s\": ",   "\"peak_rss_bytes\": ",
+    "\"memory_bytes\": ", "\ncost ",       "pair interactions, ",
+    "\nit would take ",   "\"old_git\": ", "\"new_git\": ",
+    "sphproof 0",         "\"subject\": ", "\"floor\": ",
+    "\"seconds\": ",      "\"bytes\": ",   " results, ",
+    " skipped; ",         "\nold  ",       "\nnew  ",
+    "\"git_before\": "};
 
 /* Where the blanks before the last word begin. */
 static char *last_column(char *line)

@@ -1,0 +1,196 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What a report plans by day and by night, and what it makes of its computations, of which each is
+ * a document drawn from data/drawn/pieces.json here: what it was, byte for byte:
+ * data/drawn/reports.txt; kept as test_page_drawn.c says. And some of its pieces are computed. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "buffer.h"
+#include "made_document.h"
+#include "made_place.h"
+#include "report.h"
+#include "report_piece.h"
+#include "result.h"
+
+static const char *folder;
+
+static bool begins(const char *text, const char *with)
+{
+    return !strncmp(text, with, strlen(with));
+}
+
+static void compare(struct made_kept *kept, const char *what, size_t number, struct buffer *text)
+{
+    char name[64], *all = buffer_take(text);
+    assert_non_null(all);
+    snprintf(name, sizeof name, "%s-%zu", what, number);
+    made_compare(kept, name, all);
+    free(all);
+}
+
+/* Numbers to nine digits; what depends on the build and the day is left out. */
+static void add_document(struct buffer *to, json_t *document)
+{
+    static const char *const heads[] = {"version", "git",  "compiler", "flags",
+                                        "machine", "date", "seconds"};
+    const char *key;
+    json_t *value;
+    for (size_t i = 0; i < sizeof heads / sizeof *heads; i++) json_object_del(document, heads[i]);
+    json_object_foreach(document, key, value)
+        for (size_t i = 0; i < sizeof heads / sizeof *heads; i++)
+            if (json_is_object(value)) json_object_del(value, heads[i]);
+    size_t k;
+    json_array_foreach(json_object_get(document, "studies"), k, value)
+        for (size_t i = 0; i < sizeof heads / sizeof *heads; i++) json_object_del(value, heads[i]);
+    char *text = json_dumps(document, JSON_INDENT(1) | JSON_REAL_PRECISION(9));
+    assert_non_null(text);
+    for (char *at = text; (at = strstr(at, place)); at++) memset(at, '~', strlen(place));
+    buffer_add(to, text);
+    free(text);
+}
+
+static const json_t *template_of(const json_t *template, const char *job)
+{
+    const char *const kinds[][2] = {{"checks of", "verify"},
+                                    {"kernel ", "kernel"},
+                                    {"league", "league"},
+                                    {"work-precision", "bench"},
+                                    {"profile", "profiled"}};
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
+        if (begins(job, kinds[i][0])) return json_object_get(template, kinds[i][1]);
+    return json_object_get(template, "run");
+}
+
+/* The number of particles of a run as its name says, or its piece. */
+static void set_size(struct pool_job *job)
+{
+    const char *named = strstr(job->name, ", n = ");
+    const struct report_piece *piece = job->context;
+    if (!named && !begins(job->name, "profile")) return;
+    const double n = named ? atof(named + 6) : settings_real(&piece->run.settings, SETTING_n);
+    json_object_set_new(job->document, "n", json_integer((json_int_t)n));
+    json_object_set_new(job->document, "spacing", json_real(1 / n));
+}
+
+static void invent(struct made_draw *draw, struct pool *pool, size_t sound)
+{
+    pool->found = 3;
+    for (size_t i = 0; i < pool->count; i++) {
+        struct pool_job *job = &pool->jobs[i];
+        const json_t *kind = template_of(draw->template, job->name);
+        const bool checks = kind == json_object_get(draw->template, "verify");
+        job->done = true;
+        if (!made_below(draw, sound) && !checks) {
+            error_set(&job->error, STATUS_BROKE_DOWN, "job %zu broke down", i);
+            job->crashed = true;
+        } else {
+            job->document = made_document(draw, kind);
+            set_size(job);
+        }
+    }
+}
+
+static void write_text(const char *name, const char *text)
+{
+    FILE *file = fopen(path_of(name), "w");
+    assert_non_null(file);
+    fputs(text, file);
+    fclose(file);
+}
+
+/* Cheap pieces, computed: their documents are of the right kind, and say how to see them again. */
+static void compute_some(struct pool *pool)
+{
+    static const struct {
+        const char *name, *command, *member, *value;
+    } cheap[] = {{"profile of sound_wave", "run", "status", "ok"},
+
+                 {"checks of riemann", "verify", NULL, NULL}};
+    struct error error = {0};
+    size_t found = 0;
+    for (size_t i = 0; i < pool->count; i++)
+        for (size_t c = 0; c < sizeof cheap / sizeof *cheap; c++) {
+            struct pool_job *job = &pool->jobs[i];
+            json_t *document;
+            if (strcmp(job->name, cheap[c].name)) continue;
+            assert_int_equal(job->compute(job->context, &document, &error), STATUS_OK);
+            found++;
+            assert_string_equal(json_string_value(json_object_get(document, "command")),
+                                cheap[c].command);
+            if (cheap[c].member)
+                assert_string_equal(json_string_value(json_object_get(document, cheap[c].member)),
+                                    cheap[c].value);
+            const json_t *profile = json_object_get(document, "profile");
+            assert_int_equal(json_is_object(profile), !strcmp(cheap[c].command, "run"));
+            assert_int_equal(json_is_object(json_object_get(document, "through_time")),
+                             !strcmp(cheap[c].command, "run"));
+            if (c < 1) assert_int_equal(json_is_object(json_object_get(profile, "map")), false);
+            if (c == 1)
+                assert_true(json_array_size(json_object_get(document, "checks")) &&
+                            json_array_size(json_object_get(document, "mutants")));
+            json_decref(document);
+        }
+    assert_true(found > 3); /* two of them with three schemes */
+}
+
+static void reports(void **state)
+{
+    (void)state;
+    json_t *template = made_template(folder, "pieces.json");
+    struct made_kept kept;
+    made_open(&kept, folder, "reports.txt");
+    write_text("faults.json",
+               "{\"schema\": \"sphproof/1\", \"command\": \"faults\", \"faults\": []}");
+    write_text("score.json", "{");
+    for (size_t k = 0; k < 2; k++) { /* by day, where some things break down; by night */
+        struct made_draw draw = {k, template};
+        struct buffer text = {0};
+        struct error error = {0};
+        struct report *report;
+        json_t *results;
+        assert_int_equal(report_create(k ? REPORT_NIGHTLY : REPORT_QUICK, &report, &error),
+                         STATUS_OK);
+        struct pool *pool = report_pool(report);
+        if (!k) compute_some(pool);
+        for (size_t i = 0; i < pool->count; i++)
+            buffer_format(&text, "%s: %.4g%s\n", pool->jobs[i].name, pool->jobs[i].weight,
+                          pool->jobs[i].key ? "" : ", never kept");
+        compare(&kept, "plan", k, &text);
+        if (k) { /* it would be judged as by day */
+            report_destroy(report);
+            break;
+        }
+        invent(&draw, pool, 150);
+        if (report_judge(report, place, &results, &error)) fail_msg("%s", error.message);
+        add_document(&text, results);
+        compare(&kept, "report", k, &text);
+        json_decref(results);
+        for (int i = 0; i < 2; i++) { /* not a result */
+            struct error *said = &pool->jobs[i].error;
+            *said = (struct error){i ? STATUS_BAD_INPUT : STATUS_ENVIRONMENT, "no process"};
+            assert_int_equal(report_judge(report, NULL, &results, &error), said->status);
+            assert_non_null(strstr(error.message, ": no process"));
+            assert_null(results);
+            said->status = STATUS_OK;
+        }
+        report_destroy(report);
+    }
+    made_close(&kept);
+    json_decref(template);
+}
+
+int main(int argc, char **argv)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(reports)};
+    if (argc != 2) return 2;
+    folder = argv[1];
+    return cmocka_run_group_tests(tests, make_place, remove_place);
+}
