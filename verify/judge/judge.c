@@ -15,6 +15,7 @@ enum { SINC_ORDER = 5 };
 #define JUDGE_FOREIGN      0.06
 #define JUDGE_FOREIGN_MEAN 0.2 /* and an L1 above this none of jumps that are a few h wide */
 #define JUDGE_FOREIGN_PART 0.5 /* and a functional that is off by more than this of its value */
+#define JUDGE_FOREIGN_MASS 0.3 /* and gas whose mass is off by this of what fills its box */
 
 /* A stored pressure that is that of the gas law to the file's precision is taken from it: it has
  * been rounded once more. */
@@ -366,11 +367,22 @@ static void note_precision(struct judged *judged)
                   file->precision[1]);
 }
 
+static bool wrong_mass(const struct judged *judged)
+{
+    return judged->start.mass > 0 &&
+           !(fabs(judged->sums.mass / judged->start.mass - 1) <= JUDGE_FOREIGN_MASS);
+}
+
 static void write_verdict(struct judged *judged)
 {
     const struct run_result *r = &judged->result;
     const struct convention *best = &judged->conventions.candidate[0];
-    char kernel[100], gas[120] = "";
+    char kernel[100], gas[220] = "";
+    if (wrong_mass(judged))
+        snprintf(gas, sizeof gas,
+                 "its mass is %.3g times that of the case in this box: particles are missing or "
+                 "there twice, or box or units are others; ",
+                 judged->sums.mass / judged->start.mass);
     if (judged->case_gamma > 0)
         snprintf(gas, sizeof gas,
                  "another gas: gamma = %.6g, the case has %.6g (--gamma %.6g judges it as that); ",
@@ -435,9 +447,9 @@ enum status judge_as(const char *path, const struct judge_request *request, bool
     if (!status) status = measure_wrong(judged, error);
     if (!status) {
         judged->far = judged->wrong > JUDGE_FOREIGN;
-        judged->foreign = judged->far || judged->case_gamma > 0;
-        judged->passes = !judged->foreign || request->allow_far;
         measure_sums(judged);
+        judged->foreign = judged->far || judged->case_gamma > 0 || wrong_mass(judged);
+        judged->passes = !judged->foreign || request->allow_far;
         judged->transverse = measure_noise(judged);
         if (!glance) note_kernel(judged);
         note_precision(judged);

@@ -587,6 +587,22 @@ def gates_of_values():
     refused(vortex, "--case", "gresho", "--gate", "disc_eror=1", says=("disc_eror", " disc_error peak_velocity"))
 
 
+def missing_mass(folder):
+    """Gas that does not fill its box fails, however right it is where there is some."""
+    ours = os.path.join(folder, "whole.csv")
+    subprocess.run([PROGRAM, "run", "sod", "n=400", "--snapshot", ours, "--quiet"], check=True)
+    with open(ours, encoding="utf-8") as file:
+        lines = file.readlines()
+    head, rows = lines[:7], lines[7:]
+    for name, text, times in (("twice", head + rows + rows, "2"), ("half", head + rows[::2], "0.5"), ("cut", head + rows[:205], "0.512"),
+                              ("wide", [line.replace("-1:1", "-2:2") for line in head] + rows, "0.5")):
+        path = write(folder, name + ".csv", "".join(text))
+        got = judge(path, status=1)
+        assert got["foreign"] and got["verdict"].startswith("its mass is %s times that of the case" % times), (name, got["verdict"])
+        judge(path, "--allow-far", status=0)
+    judge(write(folder, "most.csv", "".join(head + rows[:360])), status=0)
+
+
 def one_list_of_findings(folder):
     """Exit status, JSON, JUnit, terminal and page say the same of gates, whatever they are of; and the case's own."""
     ladder = []
@@ -718,6 +734,7 @@ def main():
         tubes_with_ends(folder)
         gates_of_values()
         one_list_of_findings(folder)
+        missing_mass(folder)
         own(folder)
         together(folder, hdf5)
         forces(folder)

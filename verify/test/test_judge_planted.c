@@ -187,7 +187,7 @@ static void tube_is_far(void **state)
             }
             judges(&request, &judged);
             near_relative(judged.wrong / 0.06, far ? 0.062 / 0.06 : 0.058 / 0.06, 2e-3);
-            assert_true(judged.foreign == far);
+            assert_true(judged.far == far);
             assert_int_equal(judged.wrong_field, field);
             judge_free(&judged);
         }
