@@ -39,7 +39,7 @@ static void lines(struct page_writer *writer, const json_t *const runs[SIDES])
                                      .n = n[s][0],
                                      .x = values[s][0],
                                      .y = values[s][k + 1],
-                                     .color = s < SIDES ? s : PLOT_NEUTRAL,
+                                     .color = s < SIDES ? s + 1 : PLOT_NEUTRAL,
                                      .size = 0.5};
         panels[k] = (struct plot_panel){.x_label = "x",
                                         .y_label = fields[k],
@@ -73,9 +73,10 @@ static void table(struct buffer *to, const json_t *document)
         buffer_add(to, "</td>");
         html_cell_number(to, value_member(figure, "a"));
         html_cell_number(to, value_member(figure, "b"));
-        buffer_format(
-            to, isnan(half) ? "<td class=\"n\">%+.3g</td>" : "<td class=\"n\">%+.3g ± %.2g</td>",
-            change, half);
+        const int places = half > 0 && half < 10 ? 2 : 0;
+        buffer_format(to, "<td class=\"n\">%+.*f", places, change);
+        if (!isnan(half)) buffer_format(to, " ± %.*f", places, half);
+        buffer_add(to, "</td>");
         html_cell(to, strcmp(verdict, "none") ? verdict : "no different");
         buffer_add(to, "</tr>\n");
     }
@@ -99,7 +100,7 @@ bool page_make_compare(struct page *page, const json_t *document)
     const json_t *runs[SIDES] = {0};
     size_t k;
     page_head(to, "sphproof compare");
-    buffer_add(to, "<header class=\"well\"><p class=\"kind\">sphproof compare, case ");
+    buffer_add(to, "<header><p class=\"kind\">sphproof compare, case ");
     buffer_escape(to, value_text(document, "case"));
     buffer_add(to, "</p><h1>");
     buffer_escape(to, value_text(document, "verdict"));

@@ -212,6 +212,26 @@ static bool open_dataset(const struct snapshot_source *source, const char *path,
     return false;
 }
 
+void hdf5_kind(const struct snapshot_source *source, const char *path, char *text, size_t size)
+{
+    const hid_t self = hdf5_has(source, path) ? H5Oopen(file_of(source), path, H5P_DEFAULT) : -1;
+    const H5I_type_t kind = self >= 0 ? H5Iget_type(self) : H5I_BADID;
+    const hid_t type = kind == H5I_DATASET ? H5Dget_type(self) : -1,
+                space = kind == H5I_DATASET ? H5Dget_space(self) : -1;
+    if (type >= 0 && space >= 0 && is_number(type))
+        snprintf(text, size, "numbers with %d indices", H5Sget_simple_extent_ndims(space));
+    else
+        snprintf(text, size, "%s",
+                 kind == H5I_GROUP                               ? "a group"
+                 : type >= 0 && H5Tget_class(type) == H5T_STRING ? "text"
+                 : kind == H5I_DATASET                           ? "a dataset of another kind"
+                 : self >= 0                                     ? "a type"
+                                                                 : "nothing");
+    if (type >= 0) H5Tclose(type);
+    if (space >= 0) H5Sclose(space);
+    if (self >= 0) H5Oclose(self);
+}
+
 size_t hdf5_rows(const struct snapshot_source *source, const char *path)
 {
     struct dataset d;
@@ -262,9 +282,13 @@ enum status hdf5_read(const struct snapshot_source *source, const char *path,
                       struct snapshot_file *file, enum snapshot_column column, struct error *error)
 {
     struct dataset d;
-    if (!open_dataset(source, path, &d))
-        return error_set(error, STATUS_BAD_INPUT, "%.200s: %.80s is no table of numbers",
-                         source->path, path);
+    char kind[64];
+    if (!open_dataset(source, path, &d)) {
+        hdf5_kind(source, path, kind, sizeof kind);
+        return error_set(error, STATUS_BAD_INPUT,
+                         "%.200s: %.80s is no table of numbers, but %s; allowed: 1 or 2 indices",
+                         source->path, path, kind);
+    }
     const enum status status = take(&d, source, path, file, column, error);
     close_dataset(&d);
     return status;
@@ -318,6 +342,12 @@ void hdf5_text(const struct snapshot_source *source, const char *group, const ch
 {
     (void)source, (void)group, (void)name;
     snprintf(text, size, "%s", "");
+}
+
+void hdf5_kind(const struct snapshot_source *source, const char *path, char *text, size_t size)
+{
+    (void)source, (void)path;
+    snprintf(text, size, "nothing");
 }
 
 size_t hdf5_rows(const struct snapshot_source *source, const char *path)

@@ -34,6 +34,10 @@ int hdf5_numbers(const struct snapshot_source *source, const char *group, const 
 void hdf5_text(const struct snapshot_source *source, const char *group, const char *name,
                char *text, size_t size);
 
+/* What stands there in place of a table of numbers, for messages: "a group", "text", "numbers with 3
+ * indices", "nothing". */
+void hdf5_kind(const struct snapshot_source *source, const char *path, char *text, size_t size);
+
 /* Rows of a dataset of numbers; 0: it is none. */
 size_t hdf5_rows(const struct snapshot_source *source, const char *path);
 

@@ -23,11 +23,18 @@ enum status hdf5_gas(const struct snapshot_source *source, const char *group,
                              source->path, group, names[k].names[0], there);
         }
         if (names[k].column == SNAPSHOT_X) {
+            char kind[64];
             file->n = hdf5_rows(source, path);
-            if (file->n < 1 || file->n > SNAPSHOT_ROWS_MAX)
+            hdf5_kind(source, path, kind, sizeof kind);
+            if (file->n < 1)
                 return error_set(error, STATUS_BAD_INPUT,
-                                 "%.200s: %.80s: no particles, or no table of numbers",
-                                 source->path, path);
+                                 "%.200s: %.80s: no particles, or no table of numbers, but %s; "
+                                 "allowed: 1 or 2 indices",
+                                 source->path, path, kind);
+            if (file->n > SNAPSHOT_ROWS_MAX)
+                return error_set(error, STATUS_BAD_INPUT,
+                                 "%.200s: %.80s: %zu particles; allowed: up to %d", source->path,
+                                 path, file->n, SNAPSHOT_ROWS_MAX);
             file->gas = file->n;
         }
         if (hdf5_read(source, path, file, names[k].column, error)) return error->status;
@@ -67,11 +74,14 @@ static enum status take_masses(const struct snapshot_source *source, struct snap
                                struct error *error)
 {
     double mass = 0;
+    char there[48] = "Header/MassTable";
     if (file->column[SNAPSHOT_M]) return STATUS_OK;
-    if (hdf5_numbers(source, "Header", "MassTable", &mass, 1) < 1 || !(mass > 0))
+    const bool table = hdf5_numbers(source, "Header", "MassTable", &mass, 1) >= 1;
+    if (table) snprintf(there, sizeof there, "Header/MassTable[0] = %g", mass);
+    if (!table || !(mass > 0))
         return error_set(error, STATUS_BAD_INPUT,
-                         "%.200s: no masses: neither PartType0/Masses nor Header/MassTable[0] > 0",
-                         source->path);
+                         "%.200s: no masses: no PartType0/Masses, and %s%s; allowed: above 0",
+                         source->path, table ? "" : "no ", there);
     if (!snapshot_file_make(file, SNAPSHOT_M))
         return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", source->path);
     for (size_t i = 0; i < file->n; i++) file->column[SNAPSHOT_M][i] = mass;
@@ -101,10 +111,11 @@ enum status hdf5_header(const struct snapshot_source *source, struct snapshot_fi
                                 part = hdf5_first(source, parts, NULL),
                                 count = hdf5_first(source, counts, NULL);
     if (comoving(source, file))
-        return error_set(error, STATUS_BAD_INPUT,
-                         "%.200s: comoving units (a cosmological run); allowed: runs in a box at "
-                         "rest",
-                         source->path);
+        return error_set(
+            error, STATUS_BAD_INPUT,
+            "%.200s: comoving units (a cosmological run: the file says so, or its time %g "
+            "is 1/(1 + redshift)); allowed: runs in a box at rest",
+            source->path, file->time.value);
     if (count.known && count.value != (double)file->n)
         return error_set(error, STATUS_BAD_INPUT,
                          "%.200s: Header/NumPart_ThisFile says %g gas particles, PartType0 has "

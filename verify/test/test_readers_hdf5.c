@@ -166,12 +166,12 @@ static void spoilt_columns(void **state)
             refuses(l, items, f->path, first ? "no particles" : "0 x 4");
             items[k].rank = 3;
             items[k].shape[0] = N, items[k].shape[1] = items[k].shape[2] = 1;
-            refuses(l, items, f->path, "no table of numbers");
+            refuses(l, items, f->path, "no table of numbers, but numbers with 3 indices");
             items_of(l, items);
             items[k].stored = TEXT;
-            refuses(l, items, f->path, "no table of numbers");
+            refuses(l, items, f->path, "no table of numbers, but text");
             items[k].stored = GROUP;
-            refuses(l, items, f->path, "no table of numbers");
+            refuses(l, items, f->path, "no table of numbers, but a group");
             if (f->meaning == TYPES) continue;
             for (int fault = 0; fault < 5; fault++)
                 for (int c = 0; c < f->width; c++) {
