@@ -147,12 +147,14 @@ bool page_make(struct page *page, const json_t *results)
     const json_t *stress = json_object_get(results, "stress");
     const json_t *claims = json_object_get(results, "claims");
     const json_t *bench = json_object_get(results, "bench");
+    const json_t *skips = json_object_get(results, "skips");
     head(to, results, verdict);
     buffer_add(to, "<nav>");
     if (json_is_object(json_object_get(history, "since")))
         buffer_add(to, "<a href=\"#history\">Changes</a> ");
     buffer_add(to, "<a href=\"#cases\">Cases</a>");
     if (json_array_size(bench)) buffer_add(to, " <a href=\"#cost\">Cost</a>");
+    if (json_array_size(skips)) buffer_add(to, " <a href=\"#skips\">Skips</a>");
     if (gradients) buffer_add(to, " <a href=\"#gradients\">Gradients</a>");
     if (stress) buffer_add(to, " <a href=\"#stability\">Stability</a>");
     if (claims) buffer_add(to, " <a href=\"#claims\">Claims</a>");
@@ -171,6 +173,7 @@ bool page_make(struct page *page, const json_t *results)
     if (history) FOLDED(page_history(&writer, history));
     FOLDED(page_overview(&writer, results));
     FOLDED(page_bench(&writer, bench));
+    if (json_array_size(skips)) FOLDED(page_skips(&writer, skips));
     if (gradients) FOLDED(page_gradients(&writer, gradients));
     if (stress) FOLDED(page_stress(&writer, stress));
     if (claims) FOLDED(page_claims(&writer, claims));

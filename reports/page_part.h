@@ -19,6 +19,7 @@ void page_history(struct page_writer *writer, const json_t *history);
 void page_strip(struct page_writer *writer, const json_t *results);
 void page_overview(struct page_writer *writer, const json_t *results);
 void page_cases(struct page_writer *writer, const json_t *results);
+void page_skips(struct page_writer *writer, const json_t *skips);
 void page_bench(struct page_writer *writer, const json_t *bench);
 void page_gradients(struct page_writer *writer, const json_t *gradients);
 void page_stress(struct page_writer *writer, const json_t *stress);

@@ -356,6 +356,12 @@ void simulation_carry(struct simulation *simulation, struct carrier *carrier)
     simulation->cpu_start = seconds(CLOCK_PROCESS_CPUTIME_ID) - simulation->cost.cpu_s;
 }
 
+void simulation_asleep(const struct simulation *simulation, bool *asleep)
+{
+    for (ptrdiff_t i = 0; i < simulation->particles.n; i++)
+        asleep[i] = simulation->plan.sums->sleeps(simulation, i);
+}
+
 void simulation_snapshot(const struct simulation *simulation, struct snapshot *snapshot)
 {
     const struct particles *a = &simulation->particles;

@@ -101,6 +101,8 @@ enum status simulation_run(struct simulation *simulation, double t_end,
  * Look at carrier->failed; after a failure on the way back only simulation_destroy is allowed. */
 void simulation_carry(struct simulation *simulation, struct carrier *carrier);
 void simulation_snapshot(const struct simulation *simulation, struct snapshot *snapshot);
+/* Whether each particle, in the order of a snapshot, is left out of the sums: n values. */
+void simulation_asleep(const struct simulation *simulation, bool *asleep);
 void simulation_rates(const struct simulation *simulation, struct rates *rates);
 void simulation_conservation(const struct simulation *simulation, struct conservation *sums);
 void simulation_cost(const struct simulation *simulation, struct simulation_cost *cost);

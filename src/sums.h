@@ -59,6 +59,8 @@ struct sums {
     /* Who sleeps: from the first rates, and after every step. Fill simulation->sleep. */
     enum status (*sleep_begin)(struct simulation *simulation, struct error *error);
     void (*sleep_update)(struct simulation *simulation);
+    /* Whether particle i sleeps. */
+    bool (*sleeps)(const struct simulation *simulation, ptrdiff_t i);
 
     /* No evaluation is to follow: frees what is as large as lists. NULL: there is nothing. */
     void (*end)(struct simulation *simulation);

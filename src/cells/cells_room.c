@@ -334,7 +334,7 @@ static void sort_memory(struct simulation *simulation)
     const uint32_t *order = grid_order(cells_grid(room->cells));
     const size_t slots = cells_points(room->cells);
     ptrdiff_t place = 0;
-    for (size_t slot = 0; slot < slots; slot++) /* images are nobody's memory */
+    for (size_t slot = 0; slot < slots; slot++) /* images own no storage */
         if (order[slot] < (size_t)a->n) a->order[place++] = order[slot];
     /* those who sleep keep what the last sums over them left */
     for (size_t k = 0; k < room->arrays; k++) permute(a, room->block + k * room->stride);
@@ -715,6 +715,12 @@ static void update_sleep(struct simulation *simulation)
     simulation->sleep.awake_count = count_awake(room, n);
 }
 
+static bool sleeps(const struct simulation *simulation, ptrdiff_t i)
+{
+    const struct room *room = room_of(simulation);
+    return room->asleep && room->asleep[i];
+}
+
 /* Neighbours are found anew in every evaluation. */
 static void carry_room(struct simulation *simulation, struct carrier *carrier)
 {
@@ -748,6 +754,7 @@ const struct sums cells_sums = {
     .describe = describe,
     .sleep_begin = begin_sleep,
     .sleep_update = update_sleep,
+    .sleeps = sleeps,
     .end = end,
     .carry = carry_room,
 };

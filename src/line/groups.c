@@ -224,6 +224,11 @@ static bool sleep_again(struct simulation *simulation)
     return found;
 }
 
+bool groups_sleep(const struct simulation *simulation, ptrdiff_t i)
+{
+    return !line_of(simulation)->groups.awake[i / GROUP];
+}
+
 void groups_update(struct simulation *simulation)
 {
     bool changed = simulation->sleep.on && wake_ahead(simulation);

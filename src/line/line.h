@@ -92,6 +92,7 @@ enum status forces_reserve_scratch(struct simulation *simulation, ptrdiff_t reac
                                    struct error *error);
 enum status groups_begin(struct simulation *simulation, struct error *error);
 void groups_update(struct simulation *simulation);
+bool groups_sleep(const struct simulation *simulation, ptrdiff_t i);
 /* Wakes all groups: the order of particles has changed, and groups are others now. */
 void groups_wake_all(struct simulation *simulation);
 

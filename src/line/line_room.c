@@ -116,5 +116,6 @@ const struct sums line_sums = {
     .describe = describe,
     .sleep_begin = groups_begin,
     .sleep_update = groups_update,
+    .sleeps = groups_sleep,
     .carry = carry_line,
 };

@@ -8,14 +8,38 @@
 #include "initial_create.h"
 
 static const double reaches = 3;
+/* Rates of change, in c per h/c of the scene's mean sound speed, below which gas counts as calm. It
+ * is far above what wakes gas, and far below what changes the errors of a run. */
+static const double coarse = 1e-7;
 
 struct counting {
     const struct prepared *problem;
     const struct initial *initial;
-    double *h; /* of the start, by id */
-    double share;
+    struct simulation *simulation;
+    double *h;                 /* of the start, by id */
+    double *before;            /* v and rho of the step before, by id: dim + 1 runs of n */
+    bool *asleep;              /* in the order of a snapshot */
+    double sound, time, t_end; /* of the scene; of the step before; of the run */
+    double share;              /* what could be skipped, summed over steps */
     uint64_t steps;
+    double slept[BENCH_ROWS][BENCH_COLUMNS], gas[BENCH_ROWS][BENCH_COLUMNS];
 };
+
+/* Sound speed if all energy but that of the common motion were heat, as in sleep.h. */
+static double scene_sound(const struct initial *initial, int dim, double gamma)
+{
+    double mass = 0, energy = 0, momentum[3] = {0};
+    for (size_t i = 0; i < initial->n; i++) {
+        mass += initial->m[i];
+        energy += initial->m[i] * initial->u[i];
+        for (int k = 0; k < dim; k++) {
+            momentum[k] += initial->m[i] * initial->v[k][i];
+            energy += 0.5 * initial->m[i] * initial->v[k][i] * initial->v[k][i];
+        }
+    }
+    for (int k = 0; k < dim; k++) energy -= 0.5 * momentum[k] * momentum[k] / mass;
+    return sqrt(gamma * (gamma - 1) * fmax(energy, 0) / mass);
+}
 
 /* Gas ahead of all waves moves on as it started. */
 static void place_at(const struct counting *counting, size_t i, double time, double x[3])
@@ -29,9 +53,8 @@ static void place_at(const struct counting *counting, size_t i, double time, dou
     }
 }
 
-static bool count(void *context, double time, uint64_t steps)
+static size_t count_ahead(const struct counting *counting, double time)
 {
-    struct counting *counting = context;
     const struct prepared *p = counting->problem;
     size_t ahead = 0;
     for (size_t i = 0; i < counting->initial->n; i++) {
@@ -39,29 +62,99 @@ static bool count(void *context, double time, uint64_t steps)
         place_at(counting, i, time, x);
         ahead += p->problem->ahead(p, x, time) > reaches * counting->h[i];
     }
-    counting->share += (double)ahead / (double)counting->initial->n;
+    return ahead;
+}
+
+/* How many change slowly; keeps their values for the next step. */
+static size_t count_calm(struct counting *counting, const struct snapshot *s, double dt)
+{
+    const int dim = counting->problem->domain.dim;
+    size_t calm = 0;
+    for (size_t i = 0; i < s->n; i++) {
+        double *rho = &counting->before[(size_t)dim * s->n + s->id[i]];
+        const double slow = coarse * dt * counting->sound / s->h[i]; /* relative */
+        double square = 0;
+        for (int k = 0; k < dim; k++) {
+            double *v = &counting->before[(size_t)k * s->n + s->id[i]];
+            square += (s->v[k][i] - *v) * (s->v[k][i] - *v);
+            *v = s->v[k][i];
+        }
+        calm += sqrt(square) <= slow * counting->sound && fabs(s->rho[i] - *rho) <= slow * *rho;
+        *rho = s->rho[i];
+    }
+    return calm;
+}
+
+static void map_sleepers(struct counting *counting, const struct snapshot *s, double time)
+{
+    const struct domain *domain = &counting->problem->domain;
+    const int row = (int)fmin(time / counting->t_end * BENCH_ROWS, BENCH_ROWS - 1);
+    simulation_asleep(counting->simulation, counting->asleep);
+    for (size_t i = 0; i < s->n; i++) {
+        const double at = (s->x[0][i] - domain->lo[0]) / domain_length(domain, 0);
+        const int column = (int)fmax(0, fmin(at * BENCH_COLUMNS, BENCH_COLUMNS - 1));
+        counting->gas[row][column]++;
+        counting->slept[row][column] += counting->asleep[i];
+    }
+}
+
+static bool count(void *context, double time, uint64_t steps)
+{
+    struct counting *counting = context;
+    const bool known = counting->problem->problem->ahead != NULL;
+    struct snapshot s;
+    simulation_snapshot(counting->simulation, &s);
+    const size_t calm =
+        known ? count_ahead(counting, time) : count_calm(counting, &s, time - counting->time);
+    counting->share += (double)calm / (double)s.n;
     counting->steps = steps;
+    counting->time = time;
+    map_sleepers(counting, &s, time);
     return true;
+}
+
+static bool has_gas(const struct counting *counting, int row)
+{
+    double gas = 0;
+    for (int c = 0; c < BENCH_COLUMNS; c++) gas += counting->gas[row][c];
+    return gas > 0;
+}
+
+/* Steps may be longer than a row: such a row is as the one before, the first ones as the first that
+ * a step ends in. */
+static void fill_map(const struct counting *counting, struct bench_shares *shares)
+{
+    int from = -1;
+    for (int row = 0; row < BENCH_ROWS; row++)
+        if (from < 0 && has_gas(counting, row)) from = row;
+    for (int row = 0; row < BENCH_ROWS; row++) {
+        if (has_gas(counting, row)) from = row;
+        for (int c = 0; c < BENCH_COLUMNS; c++)
+            shares->asleep[row][c] = counting->slept[from][c] / counting->gas[from][c];
+    }
 }
 
 static enum status run_counting(const struct run *run, struct counting *counting,
                                 struct bench_shares *shares, struct error *error)
 {
     const struct scene scene = run_scene(run, counting->initial);
-    struct simulation *simulation = NULL;
     struct simulation_cost cost;
     struct snapshot start;
-    enum status status = simulation_create(&scene, &simulation, error);
+    enum status status = simulation_create(&scene, &counting->simulation, error);
     if (status) return status;
-    simulation_snapshot(simulation, &start);
+    simulation_snapshot(counting->simulation, &start);
+    counting->sound = scene_sound(counting->initial, scene.dim, scene.gamma);
+    counting->t_end = scene.t_end;
     for (size_t i = 0; i < start.n; i++) counting->h[start.id[i]] = start.h[i];
-    const bool known = run->problem.problem->ahead != NULL;
-    status = simulation_run(simulation, scene.t_end, known ? count : NULL, counting, error);
-    simulation_cost(simulation, &cost);
-    simulation_destroy(simulation);
+    count_calm(counting, &start, 0);
+    status = simulation_run(counting->simulation, scene.t_end, count, counting, error);
+    simulation_cost(counting->simulation, &cost);
+    simulation_destroy(counting->simulation);
     const double skipped = (double)cost.skipped_particle_updates;
     shares->skipped = skipped / (skipped + (double)cost.particle_updates);
-    shares->possible = known ? counting->share / (double)counting->steps : (double)NAN;
+    shares->possible = counting->share / (double)counting->steps;
+    shares->coarse = run->problem.problem->ahead == NULL;
+    fill_map(counting, shares);
     return status;
 }
 
@@ -70,11 +163,21 @@ enum status bench_possible(const struct run *run, struct bench_shares *shares, s
     struct initial initial = {0};
     enum status status = initial_create(&initial, &run->problem, &run->settings, error);
     if (status) return status;
-    struct counting counting = {
-        .problem = &run->problem, .initial = &initial, .h = malloc(initial.n * sizeof(double))};
-    status = counting.h ? run_counting(run, &counting, shares, error)
-                        : error_set(error, STATUS_ENVIRONMENT, "no memory");
-    free(counting.h);
+    const size_t values = (size_t)run->problem.domain.dim + 1;
+    struct counting *counting = calloc(1, sizeof *counting);
+    double *kept = calloc((values + 1) * initial.n, sizeof *kept);
+    bool *asleep = calloc(initial.n, sizeof *asleep);
+    if (counting && kept && asleep) {
+        *counting = (struct counting){.problem = &run->problem,
+                                      .initial = &initial,
+                                      .h = kept,
+                                      .before = kept + initial.n,
+                                      .asleep = asleep};
+        status = run_counting(run, counting, shares, error);
+    } else {
+        status = error_set(error, STATUS_ENVIRONMENT, "no memory");
+    }
+    free(counting), free(kept), free(asleep);
     initial_free(&initial);
     return status;
 }

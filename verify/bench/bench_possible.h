@@ -1,15 +1,22 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * How much of a run is skipped, and how much could be: particles further than three smoothing
- * lengths ahead of every wave of the exact solution. */
+ * How much of a run is skipped, how much could be, and where and when it sleeps. */
 #ifndef SPHPROOF_BENCH_POSSIBLE_H
 #define SPHPROOF_BENCH_POSSIBLE_H
 
 #include "run.h"
 
+enum { BENCH_ROWS = 32, BENCH_COLUMNS = 64 };
+
 /* Of the particle updates of a run. */
 struct bench_shares {
     double skipped;
-    double possible; /* NaN: the exact solution has no waves with an edge */
+    /* What could be: particles further than three smoothing lengths ahead of every wave of the
+     * exact solution; or, where that has no waves with an edge, particles whose velocity and
+     * density change more slowly than a coarse threshold. */
+    double possible;
+    bool coarse; /* possible is found with the coarse threshold */
+    /* Share of the gas that sleeps, by parts of t_end and parts of the box along x; NaN: no gas. */
+    double asleep[BENCH_ROWS][BENCH_COLUMNS];
 };
 
 /* Runs it, with or without skips as its keys say. STATUS_*: as run_execute. */

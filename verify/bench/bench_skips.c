@@ -121,6 +121,7 @@ static enum status work(void *context, uint64_t times, struct clock_taken *taken
 struct bench {
     struct bench_skips *result;
     size_t max;
+    bool sleep;
     struct job *jobs; /* BENCH_SIDES a skip; then one whole step of each case */
     struct bench_subject *subjects;
 };
@@ -174,8 +175,6 @@ static struct bench_skip *new_skip(struct bench *bench, size_t c, const char *na
                                 .promise = PROMISE_UNUSED,
                                 .difference = (double)NAN,
                                 .l1 = {(double)NAN, (double)NAN},
-                                .skipped = (double)NAN,
-                                .possible = (double)NAN,
                                 .kept = true};
     return skip;
 }
@@ -201,7 +200,7 @@ static struct run *run_with(const struct run_settings *from, const char *keys,
 static enum status add_switches(struct bench *bench, size_t c, const struct scheme *scheme,
                                 struct error *error)
 {
-    for (size_t s = 0; s < SWITCHES; s++) {
+    for (size_t s = 0; s < (bench->sleep ? 1 : SWITCHES); s++) { /* which is the first */
         const int dim = bench->result->cases[c].file.dimension;
         if (!applies(switches[s].when, scheme, dim)) continue;
         struct bench_skip *skip =
@@ -308,7 +307,7 @@ static enum status add_case(struct bench *bench, size_t c, struct error *error)
     struct job *whole = &bench->jobs[bench->max * BENCH_SIDES + c];
     whole->run = run_with(settings, "skip=none", NULL, error);
     if (!whole->run || add_switches(bench, c, &whole->run->scheme, error) ||
-        add_extras(bench, c, &whole->run->scheme, error))
+        (!bench->sleep && add_extras(bench, c, &whole->run->scheme, error)))
         return error->status;
     return STATUS_OK;
 }
@@ -340,11 +339,12 @@ static void judge(struct bench_skip *skip, const struct job *job)
     const struct run_result *a = &job[BENCH_WITHOUT].last, *b = &job[BENCH_WITH].last;
     skip->l1[BENCH_WITHOUT] = a->errors[FIELD_DENSITY].l1;
     skip->l1[BENCH_WITH] = b->errors[FIELD_DENSITY].l1;
-    struct bench_shares shares;
     struct error ignored;
-    if (skip->promise == PROMISE_ROUND_OFF && a->cost.skipped_particle_updates &&
-        !bench_possible(job[BENCH_WITHOUT].run, &shares, &ignored))
-        skip->skipped = shares.skipped, skip->possible = shares.possible;
+    if (skip->name == switches[0].name && (skip->shares = calloc(1, sizeof *skip->shares)) &&
+        bench_possible(job[BENCH_WITHOUT].run, skip->shares, &ignored)) {
+        free(skip->shares);
+        skip->shares = NULL;
+    }
     skip->difference = skip->promise == PROMISE_ERROR
                            ? skip->l1[BENCH_WITHOUT] / skip->l1[BENCH_WITH] - 1
                            : bench_skips_difference(&a->snapshot, &b->snapshot,
@@ -413,10 +413,10 @@ end:
 }
 
 enum status bench_skips_measure(const struct run_settings *cases, size_t count,
-                                const struct bench_rules *rules, struct bench_skips *result,
-                                struct error *error)
+                                const struct bench_rules *rules, bool sleep,
+                                struct bench_skips *result, struct error *error)
 {
-    struct bench bench = {.result = result, .max = count * (SWITCHES + EXTRAS)};
+    struct bench bench = {.result = result, .sleep = sleep, .max = count * (SWITCHES + EXTRAS)};
     *result = (struct bench_skips){.case_count = count,
                                    .cases = malloc(count * sizeof *cases),
                                    .n = calloc(count, sizeof(size_t)),
@@ -444,6 +444,7 @@ enum status bench_skips_measure(const struct run_settings *cases, size_t count,
 
 void bench_skips_free(struct bench_skips *result)
 {
+    for (size_t s = 0; s < result->count; s++) free(result->skips[s].shares);
     free(result->cases), free(result->n), free(result->skips);
     *result = (struct bench_skips){0};
 }

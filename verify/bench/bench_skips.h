@@ -8,6 +8,7 @@
 #include <jansson.h>
 
 #include "bench.h"
+#include "bench_possible.h"
 #include "run.h"
 #include "table.h"
 
@@ -35,11 +36,10 @@ struct bench_skip {
     double bound; /* of the difference; 0 for bits; round-off: wider where the case amplifies it */
     double difference;      /* as the promise defines it; NaN where there is nothing to compare */
     double l1[BENCH_SIDES]; /* of density */
-    double cpu_s[BENCH_SIDES]; /* of a run, or of a particle's update */
-    double spread;             /* the larger of both */
-    double skipped;            /* fraction of particle updates left out; NaN: no such thing */
-    double possible;           /* the fraction that could be: bench_possible.h; NaN: not known */
-    bool kept;                 /* the promise */
+    double cpu_s[BENCH_SIDES];   /* of a run, or of a particle's update */
+    double spread;               /* the larger of both */
+    struct bench_shares *shares; /* which and how many: bench_possible.h; NULL: no such thing */
+    bool kept;                   /* the promise */
 };
 
 struct bench_skips {
@@ -49,15 +49,16 @@ struct bench_skips {
     struct bench_skip *skips;
 };
 
-/* cases: count prepared settings, copied. STATUS_OK also where a promise is broken: see kept. Free
- * with bench_skips_free, also after a failure. */
+/* cases: count prepared settings, copied. sleep: only the particles that no signal has reached.
+ * STATUS_OK also where a promise is broken: see kept. Free with bench_skips_free, also after a
+ * failure. */
 enum status bench_skips_measure(const struct run_settings *cases, size_t count,
-                                const struct bench_rules *rules, struct bench_skips *result,
-                                struct error *error);
+                                const struct bench_rules *rules, bool sleep,
+                                struct bench_skips *result, struct error *error);
 void bench_skips_free(struct bench_skips *result);
 
-/* Array "skips" of a result document. */
-void bench_skips_add_json(const struct bench_skips *result, json_t *document);
+/* Array "skips" of a result document; maps: with where and when gas sleeps. */
+void bench_skips_add_json(const struct bench_skips *result, bool maps, json_t *document);
 void bench_skips_print(const struct bench_skips *result, const struct table_style *style);
 
 /* Largest difference of two snapshots in any field, relative to the field's largest value,

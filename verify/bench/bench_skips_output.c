@@ -13,25 +13,46 @@ static const char *const promises[] = {
 #undef PROMISE
 };
 
-void bench_skips_add_json(const struct bench_skips *result, json_t *document)
+/* Rows of time, columns along x. */
+static json_t *map_json(const struct bench_shares *shares)
+{
+    json_t *map = json_array();
+    for (int row = 0; row < BENCH_ROWS; row++) {
+        json_t *values = json_array();
+        for (int c = 0; c < BENCH_COLUMNS; c++)
+            json_array_append_new(
+                values, result_number_or_null(round(1000 * shares->asleep[row][c]) / 1000));
+        json_array_append_new(map, values);
+    }
+    return map;
+}
+
+void bench_skips_add_json(const struct bench_skips *result, bool maps, json_t *document)
 {
     json_t *list = json_array();
     for (size_t s = 0; s < result->count; s++) {
         const struct bench_skip *skip = &result->skips[s];
+        const struct bench_shares *shares = skip->shares;
         json_array_append_new(
             list,
-            json_pack("{s:s, s:I, s:s, s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:s, s:o, s:o, s:s}",
-                      "case", result->cases[skip->case_index].file.name, "n",
-                      (json_int_t)result->n[skip->case_index], "skip", skip->name, "against",
-                      skip->keys, "cpu_s", result_number(skip->cpu_s[BENCH_WITHOUT]),
-                      "cpu_s_without_skip", result_number(skip->cpu_s[BENCH_WITH]), "saves",
-                      result_number(skip->cpu_s[BENCH_WITH] / skip->cpu_s[BENCH_WITHOUT]), "spread",
-                      result_number(skip->spread), "skipped_fraction",
-                      result_number_or_null(skip->skipped), "possible_fraction",
-                      result_number_or_null(skip->possible), "promise", promises[skip->promise],
-                      "difference", result_number_or_null(skip->difference), "bound",
-                      skip->promise == PROMISE_UNUSED ? json_null() : result_number(skip->bound),
-                      "status", skip->kept ? "pass" : "fail"));
+            json_pack(
+                "{s:s, s:I, s:s, s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:s, s:o, s:o, s:s}", "case",
+                result->cases[skip->case_index].file.name, "n",
+                (json_int_t)result->n[skip->case_index], "skip", skip->name, "against", skip->keys,
+                "cpu_s", result_number(skip->cpu_s[BENCH_WITHOUT]), "cpu_s_without_skip",
+                result_number(skip->cpu_s[BENCH_WITH]), "saves",
+                result_number(skip->cpu_s[BENCH_WITH] / skip->cpu_s[BENCH_WITHOUT]), "spread",
+                result_number(skip->spread), "skipped_fraction",
+                result_number_or_null(shares ? shares->skipped : (double)NAN), "possible_fraction",
+                result_number_or_null(shares ? shares->possible : (double)NAN), "promise",
+                promises[skip->promise], "difference", result_number_or_null(skip->difference),
+                "bound", skip->promise == PROMISE_UNUSED ? json_null() : result_number(skip->bound),
+                "status", skip->kept ? "pass" : "fail"));
+        if (!shares) continue;
+        json_t *entry = json_array_get(list, json_array_size(list) - 1);
+        json_object_set_new(entry, "possible_by",
+                            json_string(shares->coarse ? "coarse threshold" : "exact solution"));
+        if (maps) json_object_set_new(entry, "asleep", map_json(shares));
     }
     json_object_set_new(document, "skips", list);
 }
@@ -62,24 +83,23 @@ void bench_skips_print(const struct bench_skips *result, const struct table_styl
         printf("%-16s %6zu  %-32s %7.2fx %6.0f%%", result->cases[skip->case_index].file.name,
                result->n[skip->case_index], skip->name,
                skip->cpu_s[BENCH_WITH] / skip->cpu_s[BENCH_WITHOUT], 100 * skip->spread);
-        if (isnan(skip->skipped))
-            printf(" %9s", "");
+        if (skip->shares)
+            printf(" %8.0f%% %7.0f%%%s", -100 * skip->shares->skipped,
+                   -100 * skip->shares->possible, skip->shares->coarse ? "*" : " ");
         else
-            printf(" %8.0f%%", -100 * skip->skipped);
-        if (isnan(skip->possible))
-            printf(" %9s", "");
-        else
-            printf(" %8.0f%%", -100 * skip->possible);
+            printf(" %9s %9s", "", "");
         print_answer(skip, style);
         printf("\n");
     }
-    printf("%ssaves: CPU time with the work over that without, both runs of one benchmark; passes "
-           "that the plan\ndoes not contain are timed by themselves (n = %d; in 2D and 3D 1600 and "
-           "1728) on top of a "
-           "particle's whole update. updates: particle\nupdates left out; possible: of gas three "
-           "smoothing lengths and more ahead of all waves of the\nexact solution. Differences: "
-           "largest of "
-           "any field at t_end over the field's largest value;\nbound of round-off: 1e-8, or ten "
-           "times what steps longer by a part of 1e-11 change%s\n",
-           style->faint, BENCH_LOOPS_PARTICLES, style->end);
+    printf(
+        "%ssaves: CPU time with the work over that without, both runs of one benchmark; passes "
+        "that the plan\ndoes not contain are timed by themselves (n = %d; in 2D and 3D 1600 and "
+        "1728) on top of a "
+        "particle's whole update. updates: particle\nupdates left out; possible: of gas three "
+        "smoothing lengths and more ahead of all waves of the\nexact solution; *: there is no such "
+        "front, and it is gas that changes by less than 1e-7 in the\ntime h/c. Differences: "
+        "largest of "
+        "any field at t_end over the field's largest value;\nbound of round-off: 1e-8, or ten "
+        "times what steps longer by a part of 1e-11 change%s\n",
+        style->faint, BENCH_LOOPS_PARTICLES, style->end);
 }

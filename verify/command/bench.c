@@ -237,13 +237,13 @@ static enum status skips(struct request *request, struct error *error)
     struct run_settings *cases = all_cases(request, &count, error);
     if (!cases) return error->status;
     progress_begin(&request->progress, "bench --skips", request->options->quiet);
-    enum status status = bench_skips_measure(cases, count, &request->rules, &result, error);
+    enum status status = bench_skips_measure(cases, count, &request->rules, false, &result, error);
     progress_end(&request->progress);
     for (size_t s = 0; s < result.count; s++) kept = kept && result.skips[s].kept;
     if (!status) {
         json_t *document = result_new("bench");
         json_object_set_new(document, "points", json_array());
-        bench_skips_add_json(&result, document);
+        bench_skips_add_json(&result, false, document);
         status = write_result(request, document, error);
         json_decref(document);
     }

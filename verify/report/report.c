@@ -204,6 +204,34 @@ static enum status add_cases(struct report *report, struct error *error)
     return STATUS_OK;
 }
 
+/* What sleep saves in tubes and blasts, early and in full, and in inflow that converges. */
+static enum status add_skips(struct report *report, struct error *error)
+{
+    static const struct {
+        const char *name, *keys[2];
+    } scenes[] = {{"sod", {"n=1600"}},
+                  {"noh_1d", {"n=800"}},
+                  {"sod_2d", {"n=5600", "t_end=0.03"}},
+                  {"sod_2d", {"n=5600"}},
+                  {"sedov_2d", {"n=64^2", "t_end=0.01"}},
+                  {"sedov_2d", {"n=64^2"}},
+                  {"sedov_3d", {"n=24^3", "t_end=0.002"}},
+                  {"noh_2d", {"n=40^2"}}};
+    for (size_t k = 0; k < sizeof scenes / sizeof *scenes; k++) {
+        struct report_piece skips = {.kind = REPORT_SKIPS, .where = scenes[k].name};
+        char words[2][40], *keys[] = {words[0], words[1]};
+        int count = 0;
+        for (; count < 2 && scenes[k].keys[count]; count++)
+            snprintf(words[count], sizeof words[count], "%s", scenes[k].keys[count]);
+        snprintf(skips.keys, sizeof skips.keys, "%s%s%s", words[0], count > 1 ? " " : "",
+                 count > 1 ? words[1] : "");
+        if (run_prepare(&skips.settings, skips.where, count, keys, error) ||
+            add_piece(report, skips, error))
+            return error->status;
+    }
+    return STATUS_OK;
+}
+
 static enum status add_checks(struct report *report, struct error *error)
 {
     size_t count;
@@ -218,7 +246,8 @@ static enum status add_checks(struct report *report, struct error *error)
 
 static enum status add_all(struct report *report, struct error *error)
 {
-    if (add_cases(report, error) || add_checks(report, error)) return error->status;
+    if (add_cases(report, error) || add_skips(report, error) || add_checks(report, error))
+        return error->status;
     if (add_piece(report, (struct report_piece){.kind = REPORT_LEAGUE, .where = "operators"},
                   error))
         return error->status;
@@ -317,7 +346,8 @@ static json_t *run_document(const struct report *report, const struct report_pie
 
 static void add_documents(struct report *report, json_t *results)
 {
-    json_t *runs = json_array(), *kernels = json_array(), *bench = json_array(), *verify = NULL;
+    json_t *runs = json_array(), *kernels = json_array(), *bench = json_array(),
+           *skips = json_array(), *verify = NULL;
     for (size_t k = 0; k < report->piece_count; k++) {
         const struct report_piece *piece = report->pieces[k];
         const struct pool_job *job = &report->pool.jobs[piece->job];
@@ -339,6 +369,9 @@ static void add_documents(struct report *report, json_t *results)
         case REPORT_BENCH:
             json_array_append(bench, job->document);
             break;
+        case REPORT_SKIPS:
+            json_array_append(skips, job->document);
+            break;
         case REPORT_CHECKS:
             if (!verify) {
                 json_object_set_new(results, "verify", verify = result_new("verify"));
@@ -353,6 +386,7 @@ static void add_documents(struct report *report, json_t *results)
     json_object_set_new(results, "runs", runs);
     json_object_set_new(results, "kernels", kernels);
     json_object_set_new(results, "bench", bench);
+    json_object_set_new(results, "skips", skips);
 }
 
 /* FOLDER/NAME.json, which a script may have written. */

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "bench_skips.h"
 #include "certificate.h"
 #include "check_registry.h"
 #include "cloud_profile.h"
@@ -125,6 +126,26 @@ static enum status compute_bench(const struct report_piece *piece, json_t **docu
     return status;
 }
 
+static enum status compute_skips(const struct report_piece *piece, json_t **document,
+                                 struct error *error)
+{
+    const struct bench_rules rules = {.least_s = 0.01, .most_s = 2, .samples = 3};
+    struct bench_skips skips;
+    const enum status status =
+        bench_skips_measure(&piece->settings, 1, &rules, true, &skips, error);
+    if (!status) {
+        char reproduce[256];
+        snprintf(reproduce, sizeof reproduce, "sphproof bench %s %s --skips --samples %d",
+                 piece->where, piece->keys, rules.samples);
+        *document = result_new("bench");
+        json_object_set_new(*document, "points", json_array());
+        bench_skips_add_json(&skips, true, *document);
+        json_object_set_new(*document, "reproduce", json_string(reproduce));
+    }
+    bench_skips_free(&skips);
+    return status;
+}
+
 static enum status compute(const void *context, json_t **document, struct error *error)
 {
     const struct report_piece *piece = context;
@@ -139,6 +160,8 @@ static enum status compute(const void *context, json_t **document, struct error 
         return compute_league(document, error);
     case REPORT_BENCH:
         return compute_bench(piece, document, error);
+    case REPORT_SKIPS:
+        return compute_skips(piece, document, error);
     }
     return STATUS_OK;
 }
@@ -146,7 +169,7 @@ static enum status compute(const void *context, json_t **document, struct error 
 /* About how many seconds a piece takes that is no run. */
 static double weight_of(const struct report_piece *piece)
 {
-    static const double weights[] = {0, 0, 0.1, 2, 5};
+    static const double weights[] = {0, 0, 0.1, 2, 5, 3};
     const struct suite_choice choice = {
         .groups = &piece->where, .group_count = 1, .slow = piece->slow};
     double checks = 0;
@@ -157,9 +180,11 @@ static double weight_of(const struct report_piece *piece)
 
 enum status report_piece_add(struct pool *pool, struct report_piece *piece, struct error *error)
 {
-    static const char *const names[] = {"profile", "checks", "kernel", "league", "work-precision"};
+    static const char *const names[] = {"profile", "checks",         "kernel",
+                                        "league",  "work-precision", "skips"};
     char name[128], *run = NULL, *key = name;
-    snprintf(name, sizeof name, "%s of %s", names[piece->kind], piece->where);
+    snprintf(name, sizeof name, "%s of %s%s%s", names[piece->kind], piece->where,
+             *piece->keys ? " " : "", piece->keys);
     if (piece->kind == REPORT_CHECKS && piece->slow) strcat(name, ", slow ones too");
     if (piece->kind == REPORT_KERNEL)
         snprintf(name, sizeof name, "kernel %s, dim %d", piece->where, piece->dim);

@@ -387,9 +387,9 @@ static void test_promises_are_kept_or_seen_broken(void **state)
     const struct bench_rules brief = {.least_s = 1e-6, .most_s = 1, .samples = 2};
     assert_int_equal(run_prepare(&settings, "sod", 2, (char *[]){"t_end=0.1", "n=180"}, &error), 0);
     settings.threads = 1;
-    assert_int_equal(bench_skips_measure(&settings, 1, &brief, &skips, &error), 0);
+    assert_int_equal(bench_skips_measure(&settings, 1, &brief, false, &skips, &error), 0);
     assert_true(skips.count >= 6);
-    near_inside(skips.skips[0].skipped, 0.2, 0.9); /* no signal has come far at t = 0.1 */
+    near_inside(skips.skips[0].shares->skipped, 0.2, 0.9); /* no signal has come far at t = 0.1 */
     for (size_t i = 0; i < skips.count; i++) {
         const struct bench_skip *skip = &skips.skips[i];
         assert_true(skip->kept);
@@ -411,7 +411,7 @@ static void test_no_viscosity(void **state)
         const char *name = k ? "gresho" : "sound_wave";
         assert_int_equal(run_prepare(&settings, name, 2 + k, keys[k], &error), 0);
         settings.threads = 1;
-        assert_int_equal(bench_skips_measure(&settings, 1, &brief, &skips, &error), 0);
+        assert_int_equal(bench_skips_measure(&settings, 1, &brief, false, &skips, &error), 0);
         int met = 0;
         for (size_t i = 0; i < skips.count; i++) {
             assert_true(skips.skips[i].kept);
@@ -447,7 +447,7 @@ static void test_promises_in_2d(void **state)
     char *keys[] = {"t_end=0.02", "n=16^2", "gradient=standard", "viscosity=constant"};
     assert_int_equal(run_prepare(&settings, "gresho", 4, keys, &error), 0);
     settings.threads = 1;
-    assert_int_equal(bench_skips_measure(&settings, 1, &brief, &skips, &error), 0);
+    assert_int_equal(bench_skips_measure(&settings, 1, &brief, false, &skips, &error), 0);
     bool matrix = false, slope = false, line = false;
     for (size_t i = 0; i < skips.count; i++) {
         const struct bench_skip *skip = &skips.skips[i];

@@ -201,6 +201,31 @@ static void folded_cases(void **state)
     free(bad);
 }
 
+/* What is skipped: shares, whose source they name, the ratio of CPU times, and a map. */
+static void skips(void **state)
+{
+    (void)state;
+    static const char *const contents[] = {"id=\"skips\"",
+                                           "<code>sod n=8</code>",
+                                           "<td class=\"n\">25 %</td>",
+                                           "<td class=\"n\">50 %*</td>",
+                                           "<td class=\"n\">0.80</td>",
+                                           "plots/sod-asleep-1.dat",
+                                           "sphproof bench sod n=8 --skips --samples 3"};
+    json_t *results = sound();
+    json_object_set_new(
+        results, "skips",
+        json_pack("[{s:s, s:[{s:s, s:f, s:f, s:s, s:f, s:f, s:f, s:f, s:s, s:[[f,f],[f,n]]}]}]",
+                  "reproduce", "sphproof bench sod n=8 --skips --samples 3", "skips", "case", "sod",
+                  "skipped_fraction", 0.25, "possible_fraction", 0.5, "possible_by",
+                  "coarse threshold", "saves", 1.25, "spread", 0.03, "difference", 1e-12, "bound",
+                  1e-8, "status", "pass", "asleep", 0., 0.5, 1.));
+    char *page = page_of(results);
+    for (size_t k = 0; k < sizeof contents / sizeof *contents; k++)
+        if (!strstr(page, contents[k])) fail_msg("the page lacks %s", contents[k]);
+    free(page);
+}
+
 /* One profile: density from 2 to 1 at x = 0, where pressure is 4 and one particle has 5. */
 static void overshoots(void **state)
 {
@@ -559,6 +584,7 @@ int main(void)
         cmocka_unit_test(summary),
         cmocka_unit_test(cause_first),
         cmocka_unit_test(unreadable),
+        cmocka_unit_test(skips),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What is left out of runs where no signal has been: how much, what could be, what it saves, and
+ * where and when the gas sleeps. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "html.h"
+#include "page_part.h"
+#include "value.h"
+
+enum { NAME = 96, ROWS = 64, COLUMNS = 128, MAP_WIDTH = 330, MAP_HEIGHT = 240 };
+
+/* The words after `sphproof bench`, up to the options: the case and its keys. */
+static void scene_of(const json_t *document, char name[NAME])
+{
+    const char *from = value_text(document, "reproduce"), *bench = strstr(from, "bench ");
+    snprintf(name, NAME, "%s", bench ? bench + 6 : from);
+    char *options = strstr(name, " --");
+    if (options) *options = '\0';
+}
+
+static const json_t *sleep_of(const json_t *document)
+{
+    return json_array_get(json_object_get(document, "skips"), 0);
+}
+
+static void percent(struct buffer *to, double share, const char *mark)
+{
+    if (isfinite(share))
+        buffer_format(to, "<td class=\"n\">%.0f %%%s</td>", 100 * share, mark);
+    else
+        buffer_add(to, "<td class=\"n\">—</td>");
+}
+
+static void shares_table(struct buffer *to, const json_t *skips)
+{
+    size_t i;
+    const json_t *document;
+    html_table(to, "costs", "scene|#skipped|#possible|#CPU time|#spread|#difference|#bound|answer");
+    json_array_foreach(skips, i, document) {
+        const json_t *sleep = sleep_of(document);
+        char scene[NAME];
+        scene_of(document, scene);
+        const bool coarse = !strcmp(value_text(sleep, "possible_by"), "coarse threshold");
+        buffer_add(to, "<tr>");
+        html_cell_code(to, scene);
+        percent(to, value_member(sleep, "skipped_fraction"), "");
+        percent(to, value_member(sleep, "possible_fraction"), coarse ? "*" : "");
+        buffer_format(to, "<td class=\"n\">%.2f</td>", 1 / value_member(sleep, "saves"));
+        percent(to, value_member(sleep, "spread"), "");
+        html_cell_number(to, value_member(sleep, "difference"));
+        html_cell_number(to, value_member(sleep, "bound"));
+        buffer_add(to, "<td>");
+        html_status(to, value_text(sleep, "status"));
+        buffer_add(to, "</td></tr>\n");
+    }
+    html_table_end(to);
+}
+
+/* Where (along x) and when (as parts of t_end) gas sleeps. */
+static void plot_map(struct page_writer *writer, const json_t *document, size_t number)
+{
+    static double z[ROWS * COLUMNS], x[COLUMNS], y[ROWS];
+    const json_t *map = json_object_get(sleep_of(document), "asleep");
+    const size_t rows = json_array_size(map), columns = json_array_size(json_array_get(map, 0));
+    if (!rows || rows > ROWS || !columns || columns > COLUMNS) return;
+    for (size_t c = 0; c < columns; c++) x[c] = ((double)c + 0.5) / (double)columns;
+    for (size_t r = 0; r < rows; r++) {
+        y[r] = ((double)r + 0.5) / (double)rows;
+        if (value_reals(json_array_get(map, r), z + r * columns, columns) < columns) return;
+    }
+    const struct plot_heat heat = {.nx = columns,
+                                   .ny = rows,
+                                   .x = x,
+                                   .y = y,
+                                   .z = z,
+                                   .label = "share asleep",
+                                   .image = true,
+                                   .low = 0,
+                                   .high = 1};
+    const struct plot_panel panel = {.x_label = "x, in boxes",
+                                     .y_label = "t / t_end",
+                                     .own_x = true,
+                                     .x_min = 0,
+                                     .x_max = 1,
+                                     .y_min = 0,
+                                     .y_max = 1,
+                                     .key = PLOT_KEY_NONE,
+                                     .heat = &heat};
+    char scene[NAME], name[NAME], what[32], title[NAME + 32];
+    scene_of(document, scene);
+    snprintf(what, sizeof what, "asleep-%zu", number);
+    page_plot_name(name, sizeof name, value_text(sleep_of(document), "case"), what);
+    snprintf(title, sizeof title, "%s: share of the gas asleep", scene);
+    const struct plot plot = {.name = name,
+                              .title = title,
+                              .width = MAP_WIDTH,
+                              .height = MAP_HEIGHT,
+                              .panels = &panel,
+                              .panel_count = 1};
+    page_plot(writer, &plot, scene);
+}
+
+void page_skips(struct page_writer *writer, const json_t *skips)
+{
+    struct buffer *to = &writer->to;
+    size_t i;
+    const json_t *document;
+    buffer_add(
+        to,
+        "<section id=\"skips\"><h2>What is left out where no signal has been</h2>\n<p>Particles "
+        "whose rates and velocity differences are below a tolerance of about 1e-11 sleep: their "
+        "sums are left out until a disturbance comes near. Skipped: share of the particle updates "
+        "of the run. Possible: gas further than three smoothing lengths ahead of every wave of the "
+        "exact solution; with *, where that has no waves with an edge, gas that changes by less "
+        "than 1e-7 in the time h/c. CPU time: that of the run with skips over that of the run "
+        "without, and the larger spread of the two. Difference: the largest of any field at t_end "
+        "over its largest value. Noh's inflow converges: its density grows everywhere at the rate "
+        "(d - 1)/r, so that it is nowhere at rest in 2D and 3D.</p>\n");
+    shares_table(to, skips);
+    buffer_add(to, "<div class=\"figures\">");
+    json_array_foreach(skips, i, document) plot_map(writer, document, i + 1);
+    buffer_add(to, "</div>\n");
+    json_array_foreach(skips, i, document)
+        html_command(to, i ? "" : "see it again:", value_text(document, "reproduce"));
+    buffer_add(to, "</section>\n");
+}
