@@ -31,6 +31,7 @@ struct plan plan_make(const struct scheme *scheme, int dim, bool skip, bool stam
         .jump = scheme->viscosity == VISCOSITY_CULLEN_DEHNEN,
         .local = scheme->steps == STEPS_LOCAL,
         .sleep = skip,
+        .quiet = skip,
         .signal_pass = scheme->integrator->signal_pass,
     };
 }

@@ -27,6 +27,7 @@ struct plan {
     bool gravity;            /* a constant acceleration */
     bool signal_pass;        /* a pass of its own for the time step */
     bool sleep;              /* leave out particles that no signal has reached */
+    bool quiet;              /* leave out what vanishes of pairs at rest against each other */
 };
 
 struct scene; /* see simulation.h */
@@ -34,7 +35,7 @@ struct scene; /* see simulation.h */
 /* What a scene needs. */
 struct plan plan_of_scene(const struct scene *scene);
 
-/* What the scheme needs in dim dimensions; skip: leave out work: sleep.h. */
+/* What the scheme needs in dim dimensions; skip: leave out work: sleep.h, and quiet. */
 struct plan plan_make(const struct scheme *scheme, int dim, bool skip, bool stamped);
 
 #endif

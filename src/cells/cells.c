@@ -145,6 +145,17 @@ void cells_team(struct cells *cells, int size)
     grid_team(cells->grid, size);
 }
 
+struct cells_left_out cells_left_out(struct cells *cells)
+{
+    struct cells_left_out sum = {0};
+    for (int t = 0; t < cells->method.threads; t++) {
+        sum.viscosity += cells->lanes[t].left_out.viscosity;
+        sum.slope += cells->lanes[t].left_out.slope;
+        cells->lanes[t].left_out = (struct cells_left_out){0};
+    }
+    return sum;
+}
+
 size_t cells_points(const struct cells *cells)
 {
     return cells->points;

@@ -48,7 +48,9 @@ struct cells_method {
     bool jump;           /* alpha by the switch: */
     double alpha_min, alpha_max;
     struct pair_numbers numbers;
-    int threads; /* at most */
+    double still; /* in sound speeds: viscosity and velocity gradients of neighbours that move
+                     together to this are left out; 0: none are */
+    int threads;  /* at most */
 };
 
 /* What a particle has to do with an evaluation that is of some particles alone. Its value is the
@@ -86,6 +88,11 @@ struct cells_fields {
     unsigned char *woken, wake_to;      /* 0, or the level that a particle wakes to */
     double *impulse[3], *heat, span;    /* receivers gain span times their rates */
     double *F[3], *de, *div_v, *signal; /* signal: largest speed of the particle's pairs */
+};
+
+/* Particles whose velocity gradient or viscosity was left out by method.still. */
+struct cells_left_out {
+    uint64_t slope, viscosity;
 };
 
 struct cells;
@@ -168,6 +175,9 @@ size_t cells_lull(struct cells *cells, const struct cells_fields *fields,
 /* Visits the particles, slot by slot. */
 void cells_describe(const struct cells *cells, const struct cells_fields *fields,
                     description_visit *visit, void *context);
+
+/* Of all sums since the last call. */
+struct cells_left_out cells_left_out(struct cells *cells);
 
 /* Slots of the grid: particles, and their images in walls. */
 size_t cells_points(const struct cells *cells);

@@ -273,18 +273,19 @@ static double find_pace(const struct cells *cells, const struct lanes_list *list
     return most;
 }
 
-/* What the neighbours in the lanes do to a particle. */
-static void add_part(struct cells *cells, const struct pairs *pairs, int64_t *inside,
+/* What the neighbours in the lanes do to a particle. Returns whether there was viscosity. */
+static bool add_part(struct cells *cells, const struct pairs *pairs, int64_t *inside,
                      struct totals *totals)
 {
     const struct cells_method *method = &cells->method;
     const struct pressure pressure = find_pressure(method, pairs);
     cells_pair_gradients(cells, pairs);
-    cells_viscosity(cells, pairs);
+    const bool viscous = cells_viscosity(cells, pairs);
     (method->formulation == FORMULATION_VANILLA_ICE ? add_vanilla_ice : add_lagrangian)(
         method->box.dim, method->energy, pairs, &pressure, totals, inside);
     if (method->conductivity > 0) totals->de += cells_conduction(cells, pairs);
     if (method->div_v) totals->div_v += cells_divergence(cells, pairs);
+    return viscous;
 }
 
 /* A particle on a coarser level has these pairs for the span of theirs. */
@@ -307,9 +308,11 @@ static void force_pass(struct cells *cells, const struct cells_fields *fields, s
                           .layout = layout,
                           .record = cells->records + (ptrdiff_t)slot * layout->size};
     struct totals totals = {.signal = 2 * *pairs_own(&pairs, FIELD_SOUND)};
+    bool viscous = list.count == 0;
     for (int from = 0; from < list.count; from += pairs.count) {
         pairs.count = lanes_gather_part(cells, layout, slot, &list, from, lanes);
-        add_part(cells, &pairs, &lanes->pairs, &totals);
+        pairs.neighbours = list.count - from < pairs.count ? list.count - from : pairs.count;
+        viscous |= add_part(cells, &pairs, &lanes->pairs, &totals);
     }
     const size_t i = cells->order[slot];
     if (fields->local) totals.pace = find_pace(cells, &list);
@@ -318,6 +321,7 @@ static void force_pass(struct cells *cells, const struct cells_fields *fields, s
         return;
     }
     if (fields->local) fields->near_pace[i] = totals.pace;
+    if (!viscous) lanes->left_out.viscosity++;
     for (int a = 0; a < cells->method.box.dim; a++) fields->F[a][i] = totals.F[a];
     fields->de[i] = totals.de;
     if (cells->method.div_v) fields->div_v[i] = totals.div_v;

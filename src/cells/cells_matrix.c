@@ -93,11 +93,17 @@ static void velocity_gradient(struct cells *cells, const struct cells_fields *fi
     const struct lanes_layout *layout = &cells->matrix;
     const size_t i = cells->order[slot];
     const int dim = cells->method.box.dim;
+    const double *own = cells->records + (ptrdiff_t)slot * layout->size +
+                        layout->offset[FIELD_VELOCITY],
+                 *v = lane_of(lanes, layout, FIELD_VELOCITY),
+                 /* the direction of `projected` is that of the smallest slope, too */
+        limit = cells->method.projected ? 0 : cells->method.still * fields->c[i];
     double L[CELLS_SQUARE] = {0};
-    if (sound)
-        moments_gradient(
-            dim, count, lanes, weight, inverse, lane_of(lanes, layout, FIELD_VELOCITY),
-            cells->records + (ptrdiff_t)slot * layout->size + layout->offset[FIELD_VELOCITY], L);
+    if (fabs(*v - *own) < limit &&
+        lanes_agree(dim, cells->lists[slot].count, lanes->stride, own, v, limit))
+        lanes->left_out.slope++;
+    else if (sound)
+        moments_gradient(dim, count, lanes, weight, inverse, v, own, L);
     for (int k = 0; k < dim * dim; k++) {
         if (fields->local) fields->slope_before[k][i] = fields->slope[k][i];
         fields->slope[k][i] = L[k];

@@ -82,6 +82,7 @@ static struct cells_method method_of(const struct simulation *simulation)
                     .beta = scheme->beta,
                     .beta_ratio = scheme->alpha > 0 ? scheme->beta / scheme->alpha : 2,
                     .near = 1 / scheme->eta},
+        .still = plan->quiet && !plan->jump ? 0.01 * sleep_tolerance(simulation) : 0,
         .threads = simulation->team.most,
     };
     for (int k = 0; k < plan->dim; k++) {
@@ -598,6 +599,9 @@ static enum status forces(struct simulation *simulation, double *rate, struct er
     (void)error;
     room->fields.span = simulation->steps.span;
     simulation->cost.pair_interactions += cells_forces(room->cells, &room->fields);
+    const struct cells_left_out left_out = cells_left_out(room->cells);
+    simulation->cost.without_viscosity += left_out.viscosity;
+    simulation->cost.without_slope += left_out.slope;
     for (ptrdiff_t first = 0; simulation->plan.alpha && first < a->n; first += BATCH_MAX)
         state_dalpha(a, first, batch_len(a, first), &simulation->scheme);
     *rate = rate_of_all(simulation);

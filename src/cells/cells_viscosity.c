@@ -185,14 +185,39 @@ VISCOUS(viscous_mu_3, VISCOSITY_LINE_LIST, false, 3, MU_NEVER)
 VISCOUS(viscous_signal_2, SIGNAL_LIST, true, 2, )
 VISCOUS(viscous_signal_3, SIGNAL_LIST, true, 3, )
 
-void cells_viscosity(const struct cells *cells, const struct pairs *pairs)
+/* Does no pair move against the other, and has none a slope? */
+static bool all_still(const struct cells_method *method, const struct pairs *pairs)
+{
+    const struct lanes *lanes = pairs->lanes;
+    const int dim = method->box.dim, count = pairs->neighbours;
+    const double *own_v = pairs_own(pairs, FIELD_VELOCITY),
+                 *v = pairs_theirs(pairs, FIELD_VELOCITY),
+                 limit = method->still * *pairs_own(pairs, FIELD_SOUND);
+    static const double none[CELLS_SQUARE];
+    /* one neighbour tells it of most gas that moves */
+    if (!(count > 0 && fabs(*v - *own_v) < limit) || method->viscosity == VISCOSITY_NONE)
+        return false;
+    if (method->viscosity == VISCOSITY_RECONSTRUCTED) {
+        const double *own_L = pairs_own(pairs, FIELD_SLOPE),
+                     rate = limit * *pairs_own(pairs, FIELD_H_INVERSE);
+        for (int k = 0; k < dim * dim; k++)
+            if (!(fabs(own_L[k]) <= rate)) return false;
+        if (!lanes_agree(dim * dim, count, lanes->stride, none, pairs_theirs(pairs, FIELD_SLOPE),
+                         rate))
+            return false;
+    }
+    return lanes_agree(dim, count, lanes->stride, own_v, v, limit);
+}
+
+bool cells_viscosity(const struct cells *cells, const struct pairs *pairs)
 {
     const struct cells_method *method = &cells->method;
     const int dim = method->box.dim;
-    if (method->viscosity == VISCOSITY_NONE) {
+    const bool still = all_still(method, pairs);
+    if (method->viscosity == VISCOSITY_NONE || still) {
         double *K = lane(pairs->lanes, LANE_K);
         for (int k = 0; k < pairs->count; k++) K[k] = 0;
-        return;
+        return !still;
     }
     if (method->viscosity == VISCOSITY_RECONSTRUCTED) find_slopes(dim, method->projected, pairs);
     const enum viscosity viscosity = method->projected ? VISCOSITY_PROJECTED : method->viscosity;
@@ -200,6 +225,7 @@ void cells_viscosity(const struct cells *cells, const struct pairs *pairs)
         (dim == 2 ? viscous_signal_2 : viscous_signal_3)(viscosity, method, pairs);
     else
         (dim == 2 ? viscous_mu_2 : viscous_mu_3)(viscosity, method, pairs);
+    return true;
 }
 
 /* Conductivity (Price 2008), into heat: sum_j m_i m_j alpha_u v_u (u_i - u_j)/rhobar e_ij . Gbar.

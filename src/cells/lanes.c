@@ -230,6 +230,25 @@ CLONES static double dot(const double *restrict a, const double *restrict b, int
     return TREE(s);
 }
 
+CLONES static bool agree(int axes, int count, ptrdiff_t stride, const double *restrict own,
+                         const double *restrict theirs, double limit)
+{
+    int k = 0;
+    for (; k + GRID_LANES <= count; k += GRID_LANES)
+        for (int a = 0; a < axes; a++) {
+            const double *restrict values = theirs + a * stride + k;
+            double apart = 0;
+#pragma omp simd reduction(+ : apart)
+            for (int l = 0; l < GRID_LANES; l++)
+                apart += fabs(values[l] - own[a]) <= limit ? 0. : 1.;
+            if (apart > 0) return false;
+        }
+    for (; k < count; k++)
+        for (int a = 0; a < axes; a++)
+            if (!(fabs(theirs[a * stride + k] - own[a]) <= limit)) return false;
+    return true;
+}
+
 /* Stamped functions are static, and the public ones call them: clang 14 gives the dispatched symbol
  * a name of its own, so that another file would not find it. */
 double lanes_sum(const double *values, int count)
@@ -240,4 +259,10 @@ double lanes_sum(const double *values, int count)
 double lanes_dot(const double *a, const double *b, int count)
 {
     return dot(a, b, count);
+}
+
+bool lanes_agree(int axes, int count, ptrdiff_t stride, const double *own, const double *theirs,
+                 double limit)
+{
+    return agree(axes, count, stride, own, theirs, limit);
 }

@@ -82,6 +82,7 @@ struct lanes {
     double *block; /* LANES_OWN arrays and those of the longest record, stride each */
     ptrdiff_t stride;
     int64_t pairs;
+    struct cells_left_out left_out;
     struct grid_reader reader;
     int32_t *slots; /* a list without those who take no part, in place of the grid's */
     ptrdiff_t room; /* entries */
@@ -168,6 +169,11 @@ static inline double *lanes_sentinel(const struct cells *cells, const struct lan
     for (int f = cells->method.box.dim; f < layout->size; f++) record[f] = 0;
     return record;
 }
+
+/* Are the first count of each axis' values within the limit of the particle's own? Axes of theirs
+ * are a stride apart. Where they are not, the first vector mostly tells. */
+bool lanes_agree(int axes, int count, ptrdiff_t stride, const double *own, const double *theirs,
+                 double limit);
 
 /* Gathers the records of a slot's list and finds the geometry of its pairs. Returns the number of
  * lanes, a multiple of GRID_LANES. */

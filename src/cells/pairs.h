@@ -7,7 +7,8 @@
 
 /* The pairs of one particle that are worked on: as many of its neighbours as fit in the lanes. */
 struct pairs {
-    int count; /* lanes, in whole vectors */
+    int count;      /* lanes, in whole vectors */
+    int neighbours; /* lanes that are neighbours; the rest is the sentinel's */
     const struct lanes *lanes;
     const struct lanes_layout *layout;
     const double *record; /* of the particle itself */
@@ -29,8 +30,9 @@ static inline const double *pairs_theirs(const struct pairs *pairs, enum lanes_f
  * form, G_i and G_j, into the lanes of these names. */
 void cells_pair_gradients(const struct cells *cells, const struct pairs *pairs);
 
-/* K of every pair: what viscosity adds to a_i and a_j alike. */
-void cells_viscosity(const struct cells *cells, const struct pairs *pairs);
+/* K of every pair: what viscosity adds to a_i and a_j alike. False where it vanishes, as all
+ * neighbours are still (cells_method): K is 0. */
+bool cells_viscosity(const struct cells *cells, const struct pairs *pairs);
 
 /* P of `projected` from a velocity gradient, the matrix that takes noise along resolved shear out.
  */

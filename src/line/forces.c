@@ -7,19 +7,47 @@
 #include "stamp.h"
 #include "state.h"
 
+/* Do velocities never fall with the place? The first vector tells it of most ranges where they do.
+ */
+static bool never_falls(const double *v, ptrdiff_t count)
+{
+    for (ptrdiff_t i = 0; i < count; i += 8) {
+        const ptrdiff_t end = i + 8 < count ? 8 : count - i;
+        int falls = 0;
+        for (ptrdiff_t l = 0; l < end; l++) falls |= !(v[i + l + 1] >= v[i + l]);
+        if (falls) return false;
+    }
+    return true;
+}
+
+/* Sets how far the pairs of a range reach, and whether they all recede: in the order of places
+ * velocities never fall. One walk over particles tells it of all pairs. */
+static void look_at_pairs(const struct simulation *simulation, struct range *range)
+{
+    const ptrdiff_t reach = range->force_reach = reach_of_pairs(simulation, range);
+    const double *v = simulation->particles.v[0] + range->first - reach;
+    range->recedes = simulation->plan.quiet && never_falls(v, range->len + 2 * reach - 1);
+}
+
 static void matrix_pass(struct simulation *simulation, struct range *range, struct tally *tally)
 {
-    (void)tally;
-    line_of(simulation)
-        ->loops.matrix(&simulation->scheme.kernel, &simulation->particles, range->first, range->len,
-                       range->reach);
+    const struct loops *loops = &line_of(simulation)->loops;
+    matrix_loop *loop = loops->matrix;
+    if (simulation->plan.slope) {
+        look_at_pairs(simulation, range);
+        if (range->recedes) loop = loops->matrix_receding;
+        tally->without_slope += range->recedes ? (uint64_t)range->len : 0;
+    }
+    if (loop)
+        loop(&simulation->scheme.kernel, &simulation->particles, range->first, range->len,
+             range->reach);
 }
 
 void forces_matrix(struct simulation *simulation)
 {
     const struct particles *a = &simulation->particles;
     const ptrdiff_t count = line_of(simulation)->reach + 1;
-    pass_all(simulation, matrix_pass);
+    simulation->cost.without_slope += pass_all(simulation, matrix_pass).without_slope;
     ghosts_fill(a, a->g, count, 0);
     if (simulation->plan.slope) ghosts_fill(a, a->dv, count, 0);
 }
@@ -43,9 +71,11 @@ static void force_pass(struct simulation *simulation, struct range *range, struc
     const struct line *line = line_of(simulation);
     const struct particles *a = &simulation->particles;
     double *scratch = line->scratch + line->scratch_size * (size_t)tally->thread;
-    range->force_reach = reach_of_pairs(simulation, range);
+    if (!simulation->plan.slope) range->force_reach = reach_of_pairs(simulation, range);
+    force_loop *const loop = range->recedes ? line->loops.force_receding : line->loops.force;
     const double rate =
-        line->loops.force(&line->loops, a, range->first, range->len, range->force_reach, scratch);
+        loop(&line->loops, a, range->first, range->len, range->force_reach, scratch);
+    tally->without_viscosity += range->recedes ? (uint64_t)range->len : 0;
     tally->rate = largest(tally->rate, rate);
     /* visited: both sides of every sum in the own-width sums, each pair once in the forces */
     const int sums = 1 + (line->loops.matrix != NULL);
@@ -60,6 +90,7 @@ enum status forces_sum(struct simulation *simulation, double *rate, struct error
     if (status) return status;
     const struct tally found = pass_all(simulation, force_pass);
     simulation->cost.pair_interactions += found.pairs;
+    simulation->cost.without_viscosity += found.without_viscosity;
     *rate = found.rate;
     return STATUS_OK;
 }

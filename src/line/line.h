@@ -14,6 +14,7 @@ struct range {
     int len;
     ptrdiff_t reach;       /* neighbour offsets that suffice for the particles' own h */
     ptrdiff_t force_reach; /* and for pairs within max(h_i, h_j) */
+    bool recedes;          /* none of its pairs approaches: viscosity is exactly 0 */
     uint64_t done;         /* the density pass in which the widths were found */
     uint64_t predicted;    /* the one in which they were predicted */
 };

@@ -25,9 +25,11 @@ void loops_choose(const struct plan *plan, const struct scheme *scheme, struct l
         loops->matrix = loop_matrix(kernel, !plan->slope   ? MATRIX_MOMENT
                                             : plan->matrix ? MATRIX_BOTH
                                                            : MATRIX_SLOPE);
+    if (plan->matrix) loops->matrix_receding = loop_matrix(kernel, MATRIX_MOMENT);
     loops->gradient = loop_gradient(kernel, scheme->gradient,
                                     plan->grad_h ? PAIR_WIDTH_OWN : (int)scheme->pair_width);
     loops->force = loop_force(kernel >= 0, scheme->formulation, loops->viscosity, scheme->energy);
+    loops->force_receding = loop_force(true, scheme->formulation, VISCOSITY_NONE, scheme->energy);
 }
 
 void loops_signal(const struct particles *particles, ptrdiff_t first, int len, ptrdiff_t D)

@@ -68,6 +68,9 @@ struct loops {
     matrix_loop *matrix; /* NULL where nothing needs it */
     gradient_loop *gradient;
     force_loop *force;
+    /* the same two where no pair approaches: without velocity gradients, without viscosity */
+    matrix_loop *matrix_receding;
+    force_loop *force_receding;
     /* what the pair forces read beside the particles */
     const struct kernel *kernel;
     enum formulation formulation;

@@ -25,6 +25,8 @@ static void tally_add(struct tally *all, const struct tally *own)
     all->crossings += own->crossings;
     all->rate = largest(all->rate, own->rate);
     all->pairs += own->pairs;
+    all->without_viscosity += own->without_viscosity;
+    all->without_slope += own->without_slope;
 }
 
 struct tally pass_all(struct simulation *simulation, range_pass *pass)

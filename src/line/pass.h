@@ -19,7 +19,7 @@ struct tally {
     bool short_of_ghosts;
     ptrdiff_t reach; /* largest */
     double crossings, rate;
-    uint64_t pairs;
+    uint64_t pairs, without_viscosity, without_slope;
 };
 
 /* The work on one range; tally: of the thread that does it, to be added to. */

@@ -175,6 +175,8 @@ static struct bench_skip *new_skip(struct bench *bench, size_t c, const char *na
                                 .promise = PROMISE_UNUSED,
                                 .difference = (double)NAN,
                                 .l1 = {(double)NAN, (double)NAN},
+                                 .without_viscosity = (double)NAN,
+                                 .without_slope = (double)NAN,
                                 .kept = true};
     return skip;
 }
@@ -344,6 +346,13 @@ static void judge(struct bench_skip *skip, const struct job *job)
         bench_possible(job[BENCH_WITHOUT].run, skip->shares, &ignored)) {
         free(skip->shares);
         skip->shares = NULL;
+    }
+    if (strcmp(skip->keys, "skip=none") == 0) {
+        /* and the sums of the start */
+        const double sums =
+            (double)a->n + a->scheme.integrator->evaluations * (double)a->cost.particle_updates;
+        skip->without_viscosity = (double)a->cost.without_viscosity / sums;
+        skip->without_slope = (double)a->cost.without_slope / sums;
     }
     skip->difference = skip->promise == PROMISE_ERROR
                            ? skip->l1[BENCH_WITHOUT] / skip->l1[BENCH_WITH] - 1

@@ -39,7 +39,9 @@ struct bench_skip {
     double cpu_s[BENCH_SIDES];   /* of a run, or of a particle's update */
     double spread;               /* the larger of both */
     struct bench_shares *shares; /* which and how many: bench_possible.h; NULL: no such thing */
-    bool kept;                   /* the promise */
+    /* fractions of the sums over neighbours from which these were left out; NaN: not known */
+    double without_viscosity, without_slope;
+    bool kept; /* the promise */
 };
 
 struct bench_skips {

@@ -36,15 +36,17 @@ void bench_skips_add_json(const struct bench_skips *result, bool maps, json_t *d
         json_array_append_new(
             list,
             json_pack(
-                "{s:s, s:I, s:s, s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:s, s:o, s:o, s:s}", "case",
-                result->cases[skip->case_index].file.name, "n",
+                "{s:s, s:I, s:s, s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:s, s:o, s:o, s:s}",
+                "case", result->cases[skip->case_index].file.name, "n",
                 (json_int_t)result->n[skip->case_index], "skip", skip->name, "against", skip->keys,
                 "cpu_s", result_number(skip->cpu_s[BENCH_WITHOUT]), "cpu_s_without_skip",
                 result_number(skip->cpu_s[BENCH_WITH]), "saves",
                 result_number(skip->cpu_s[BENCH_WITH] / skip->cpu_s[BENCH_WITHOUT]), "spread",
                 result_number(skip->spread), "skipped_fraction",
                 result_number_or_null(shares ? shares->skipped : (double)NAN), "possible_fraction",
-                result_number_or_null(shares ? shares->possible : (double)NAN), "promise",
+                result_number_or_null(shares ? shares->possible : (double)NAN),
+                "without_viscosity_fraction", result_number_or_null(skip->without_viscosity),
+                "without_slope_fraction", result_number_or_null(skip->without_slope), "promise",
                 promises[skip->promise], "difference", result_number_or_null(skip->difference),
                 "bound", skip->promise == PROMISE_UNUSED ? json_null() : result_number(skip->bound),
                 "status", skip->kept ? "pass" : "fail"));
@@ -76,8 +78,9 @@ static void print_answer(const struct bench_skip *skip, const struct table_style
 
 void bench_skips_print(const struct bench_skips *result, const struct table_style *style)
 {
-    printf("%s%-16s %6s  %-32s %8s %7s %9s %9s  %s%s\n", style->bold, "case", "n", "left out",
-           "saves", "spread", "updates", "possible", "the answer", style->end);
+    printf("%s%-16s %6s  %-32s %8s %7s %9s %9s %9s %9s  %s%s\n", style->bold, "case", "n",
+           "left out", "saves", "spread", "updates", "possible", "viscosity", "slopes",
+           "the answer", style->end);
     for (size_t s = 0; s < result->count; s++) {
         const struct bench_skip *skip = &result->skips[s];
         printf("%-16s %6zu  %-32s %7.2fx %6.0f%%", result->cases[skip->case_index].file.name,
@@ -88,6 +91,12 @@ void bench_skips_print(const struct bench_skips *result, const struct table_styl
                    -100 * skip->shares->possible, skip->shares->coarse ? "*" : " ");
         else
             printf(" %9s %9s", "", "");
+        const double shares[] = {skip->without_viscosity, skip->without_slope};
+        for (size_t k = 0; k < sizeof shares / sizeof *shares; k++)
+            if (isnan(shares[k]))
+                printf(" %9s", "");
+            else
+                printf(" %8.0f%%", 0 - 100 * shares[k]);
         print_answer(skip, style);
         printf("\n");
     }
@@ -97,7 +106,8 @@ void bench_skips_print(const struct bench_skips *result, const struct table_styl
         "1728) on top of a "
         "particle's whole update. updates: particle\nupdates left out; possible: of gas three "
         "smoothing lengths and more ahead of all waves of the\nexact solution; *: there is no such "
-        "front, and it is gas that changes by less than 1e-7 in the\ntime h/c. Differences: "
+        "front, and it is gas that changes by less than 1e-7 in the\ntime h/c; viscosity, slopes: "
+        "of the updates that are done, those without. Differences: "
         "largest of "
         "any field at t_end over the field's largest value;\nbound of round-off: 1e-8, or ten "
         "times what steps longer by a part of 1e-11 change%s\n",

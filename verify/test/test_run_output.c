@@ -41,7 +41,7 @@ static void make(struct run_settings *settings, struct run_result *result, const
         .momentum = 46,
         .angular_momentum = 47,
         .energy = 48,
-        .cost = {49, 50, 51, 52, 53, 54, 55, 56},
+        .cost = {49, 50, 51, 52, 53, 54, 55, 56, 65, 66},
         .matrix = {57, 58, 59, 60, 61},
         .peak_rss = 62,
         .plan = {{"density", true, "always"}, {"matrix", false, "none"}, {"one", true, "too many"}},
@@ -123,8 +123,9 @@ static void common(const json_t *document, const struct run_result *result)
        json_pack("{s:f, s:f, s:f, s:f, s:f}", "nearest", 32., "spread", 33., "paired", 34.,
                  "density", 35., "gradient", 36.));
     is(document, "cost",
-       json_pack("{s:f, s:f, s:i, s:i, s:i, s:i, s:i}", "wall_s", 49., "cpu_s", 50., "steps", 51,
-                 "particle_updates", 52, "pair_interactions", 53, "skipped_particle_updates", 54,
+       json_pack("{s:f, s:f, s:i, s:i, s:i, s:i, s:i, s:i, s:i}", "wall_s", 49., "cpu_s", 50.,
+                 "steps", 51, "particle_updates", 52, "pair_interactions", 53,
+                 "skipped_particle_updates", 54, "without_slope", 65, "without_viscosity", 66,
                  "peak_rss_bytes", 62));
     is(document, "matrix",
        json_pack("{s:{s:f, s:f}, s:{s:f, s:f}, s:i, s:i}", "condition", "max", 57., "mean", 58.,

@@ -402,7 +402,7 @@ static void all_is_carried(void **state)
     line_of(kept)->density_passes = 77, line_of(kept)->predict_ratio = 0.375;
     line_of(kept)->ghosts_filled = 13, line_of(kept)->reach = 9, line_of(kept)->range_count = 2;
     for (ptrdiff_t b = 0; b < 2; b++)
-        line_of(kept)->ranges[b] = (struct range){b, 5, 6, 7, 8, 9 + (uint64_t)b};
+        line_of(kept)->ranges[b] = (struct range){b, 5, 6, 7, true, 8, 9 + (uint64_t)b};
     for (ptrdiff_t g = 0; g < 5; g++)
         line_of(kept)->groups.awake[g] = g != 3, line_of(kept)->groups.rate[g] = (double)g;
     simulation_carry(kept, &out);
