@@ -180,7 +180,10 @@ static void verdict_is(const struct judged *judged, const char *kernel)
              judged->foreign ? "far from the solution of this case: " : "",
              r->errors[FIELD_DENSITY].l1, r->errors[FIELD_VELOCITY].l1,
              r->errors[FIELD_PRESSURE].l1, kernel);
-    assert_string_equal(judged->verdict, says);
+    const size_t length = strlen(says); /* behind it, of what is far: what other case it may be */
+    if (strncmp(judged->verdict, says, length) != 0 ||
+        (judged->verdict[length] && !(judged->foreign && judged->verdict[length] == ';')))
+        fail_msg("%s: not: %s", judged->verdict, says);
 }
 
 static void drawn(void **state)
@@ -188,7 +191,7 @@ static void drawn(void **state)
     int far = 0, draws = 0;
     (void)state;
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++)
-        for (int twice = 0; twice < 6; twice++) {
+        for (int twice = 0; twice < 2; twice++) {
             const double noise = pow(10, uniform(-2, 0));
             const int kernel = (int)uniform(-1, 4);
             struct judge_request request = {.case_name = cases[k].name, .kernel = kernel};
@@ -232,7 +235,7 @@ static void drawn(void **state)
             far += judged.foreign, draws++;
             judge_free(&judged);
         }
-    assert_true(far > 5 && far < draws - 5);
+    assert_true(far > 4 && far < draws - 4);
 }
 
 int main(void)
