@@ -130,7 +130,7 @@ static inline void made_compare(struct made_kept *kept, const char *name, const 
     }
     const bool read = fscanf(kept->file, "%63s %" SCNx64, there, &expected) == 2;
     if (!read || strcmp(there, name) || found != expected)
-        fail_msg("%s is another text than before (see test_page_drawn.c)", name);
+        fail_msg("%s is another text than before (see verify/test/keep)", name);
 }
 
 static inline void made_close(struct made_kept *kept)

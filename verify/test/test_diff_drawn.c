@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Result documents drawn from data/drawn/figures.json: their figures, what diff and history say of
  * two or many of them, and where series of figures move, are what they were, byte for byte:
- * data/drawn/diffs.txt; kept as test_page_drawn.c says. */
+ * data/drawn/diffs.txt; kept by verify/test/keep. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

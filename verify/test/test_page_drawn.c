@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Pages of documents drawn from data/drawn/report.json, with what lies beside them, are those that
  * were made before, byte for byte: data/drawn/pages.txt. Of gnuplot only the scripts and the data,
- * so that it needs none. A change of pages that is meant is looked at and kept by
- *   SPHPROOF_KEEP=FOLDER test_page_drawn .../verify/test/data/drawn
- * before and after it, diff -r of the two folders, and a copy of FOLDER/pages.txt to data/drawn. */
+ * so that it needs none. A change that is meant is kept by verify/test/keep. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

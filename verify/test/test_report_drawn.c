@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What a report plans by day and by night, and what it makes of its computations, of which each is
  * a document drawn from data/drawn/pieces.json here: what it was, byte for byte:
- * data/drawn/reports.txt; kept as test_page_drawn.c says. And some of its pieces are computed. */
+ * data/drawn/reports.txt; kept by verify/test/keep. And some of its pieces are computed. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -307,7 +307,8 @@ static void transcript(void **state)
         for (size_t k = 0; k < at; k++)
             if (!strncmp(found + k, "\n$ ", 3)) command = k + 1;
         if (found[at] != expected[at])
-            fail_msg("%s: is not what it was:\n%.600s", name, found + command);
+            fail_msg("%s: is not what it was (see verify/test/keep):\n%.600s", name,
+                     found + command);
     }
     free(found);
     free(expected);
