@@ -374,8 +374,6 @@ enum status judge_place(const struct judge_request *given, struct judged *judged
     if (tube && place_tube(request, judged, settings, &box, &period[0], &ended, error))
         return error->status;
     judged->boxed = box.known && !ended && judged->file.gas == judged->file.n;
-    for (int d = 1; d < dim; d++) /* of particles that stand on one line there is no box */
-        if (!(box.hi[d] > box.lo[d])) box.hi[d] = box.lo[d] + 1;
     if ((!ended && set_window(request, judged, settings, &box, case_hi - case_lo,
                               0.5 * (case_lo + case_hi), error)) ||
         set_real(settings, SETTING_n, fmin(1e7, (double)judged->file.gas), error) ||

@@ -27,7 +27,7 @@ enum sphproof_status library_fail(struct sphproof_error *theirs, enum status sta
 struct library_figures {
     sphproof_figure_sink *sink; /* may be NULL */
     void *context;
-    size_t count, failed;
+    size_t failed;
     struct sphproof_error *error;
 };
 void library_figure(struct library_figures *figures, const struct sphproof_figure *figure);

@@ -42,7 +42,6 @@ enum sphproof_status library_fail(struct sphproof_error *theirs, enum status sta
 
 void library_figure(struct library_figures *figures, const struct sphproof_figure *figure)
 {
-    figures->count++;
     if (!figure->passed && !figures->failed++)
         library_fail(figures->error, STATUS_CHECK_FAILED, "%s: %.3g, allowed %.3g (%s)",
                      figure->property, figure->value, figure->bound, figure->where);

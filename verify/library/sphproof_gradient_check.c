@@ -184,11 +184,10 @@ static void rotation_make(int dim, double R[9])
     memcpy(R, dim == 1 ? one : dim == 2 ? two : three, 9 * sizeof *R);
 }
 
-/* other = R g. */
+/* other = R g, where other is 0. */
 static void turn(const struct sample *sample, const double *R)
 {
     const size_t n = sample->cloud.cloud.points.n, dim = (size_t)sample->settings.dim;
-    memset(sample->other, 0, n * dim * sizeof *sample->other);
     for (size_t a = 0; a < dim; a++)
         for (size_t b = 0; b < dim; b++)
             for (size_t i = 0; i < n; i++)
@@ -269,7 +268,7 @@ enum sphproof_status sphproof_gradients_check(sphproof_gradient_operator *gradie
                                               sphproof_figure_sink *sink, void *sink_context,
                                               struct sphproof_error *error)
 {
-    struct trial trial = {gradients, context, dim, promise, {sink, sink_context, 0, 0, error},
+    struct trial trial = {gradients, context, dim, promise, {sink, sink_context, 0, error},
                           false,     false};
     if (!gradients || dim < 1 || dim > 3)
         return library_fail(error, STATUS_BAD_INPUT, "an operator and dim = 1, 2 or 3 are needed");

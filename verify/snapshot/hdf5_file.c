@@ -72,9 +72,8 @@ static herr_t add_name(hid_t group, const char *name, const H5L_info_t *info, vo
         snprintf(names->text, names->size, "%s", name);
         return 0;
     }
-    const int n = snprintf(names->text + names->length, names->size - names->length, "%s%s",
-                           names->length ? " " : "", name);
-    names->length += n > 0 ? (size_t)n : 0;
+    names->length += (size_t)snprintf(names->text + names->length, names->size - names->length,
+                                      "%s%s", names->length ? " " : "", name);
     return names->length + 1 >= names->size; /* full: stops */
 }
 

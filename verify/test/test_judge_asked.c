@@ -213,7 +213,8 @@ static void sizes(void **state)
             .case_name = "gresho", .time = {true, 0}, .kernel = -1, .radius = k % 2 ? 0.3125 : 0};
         struct judged judged;
         char head[80], says[80];
-        snprintf(head, sizeof head, "# box = %.17g\n", length);
+        snprintf(head, sizeof head, k < 3 ? "# box = %.17g\n" : "# box = -0.25:1.75 -0.25:1.75\n",
+                 length);
         plant(2, 0, head);
         for (int i = 0; i < N; i++) gas.x[0][i] /= 2;
         judges(&request, &judged);
@@ -256,17 +257,17 @@ static void wraps(void **state)
     struct judge_request request = uniform_gas();
     struct judged judged;
     (void)state;
-    request.x0 = (struct snapshot_value){true, 0.75};
-    request.box = "0:2";
+    request.x0 = (struct snapshot_value){true, 0.5};
+    request.box = "-0.25:2.25";
     plant(1, 0, "");
     judges(&request, &judged);
-    noted(&judged, "box", "0 to 2 along x", "--box");
-    noted(&judged, "x0", "0.75", "--x0");
+    noted(&judged, "box", "-0.25 to 2.25 along x", "--box");
+    noted(&judged, "x0", "0.5", "--x0");
     const struct snapshot *s = &judged.result.snapshot;
     int beyond = 0;
     for (size_t i = 0; i < N; i++) {
         if (i) assert_true(s->x[0][i] >= s->x[0][i - 1]);
-        assert_true(s->x[0][i] >= -0.25 && s->x[0][i] < 1.75);
+        assert_true(s->x[0][i] >= -0.75 && s->x[0][i] < 1.75);
         beyond += s->x[0][i] < 0;
     }
     assert_true(beyond > 10);
@@ -354,6 +355,7 @@ static void found_ends(void **state)
     plant(1, 0, "# box = 2\n# boundary = open\n");
     judges(&request, &judged);
     noted(&judged, "ends", "periodic", "--boundary");
+    assert_true(judged.run.problem.domain.lo[0] == 0 && judged.run.problem.domain.hi[0] == 2);
     judge_free(&judged);
     request.boundary = NULL;
     judges(&request, &judged);

@@ -85,6 +85,12 @@ static void cut_off(void **state)
         const size_t size = put_all(&b), head = b.tagged ? 280 : 264;
         for (size_t cut = 1; cut + head < size; cut += 1 + cut / 8)
             refuses(size - cut, "cut off", cut < 4 || b.tagged ? "" : "cut off: record");
+        for (int wrong = 0; wrong < 3 && b.tagged; wrong++) { /* counts and the first name */
+            if (wrong < 2) put_count(wrong ? 12 : 0, &b, 9);
+            if (wrong == 2) bytes[7] = 'X';
+            refuses(size, "no beginning", "no snapshot that is read");
+            put_all(&b);
+        }
         refuses(head, "a header alone", "1 records; allowed: a header of 256 bytes");
         for (size_t at = head - 4; at < size; at += at < head ? 1 : 1 + at % 97) {
             put_all(&b);

@@ -72,6 +72,18 @@ static void apart(void **state)
     assert_int_equal(full, STATUS_ENVIRONMENT);
     if (!strstr(error.message, "no space for what")) fail_msg("%s", error.message);
     snapshot_file_free(&file);
+    FILE *junk = fopen(path_of("junk.hdf5"), "wb");
+    fputs("\x89HDF\r\n\x1a\n and no more", junk);
+    fclose(junk);
+    for (int k = 0; k < 2; k++) {
+        here.here = k;
+        assert_int_equal(snapshot_read(path_of("junk.hdf5"), &here, &file, &error),
+                         STATUS_BAD_INPUT);
+        if (!strstr(error.message, "begins as HDF5, but its library cannot open it"))
+            fail_msg("%s", error.message);
+        snapshot_file_free(&file);
+    }
+    here.here = false;
     const char *usual_folder = getenv("TMPDIR");
     putenv(folder);
     assert_int_equal(snapshot_read(path_of("a.hdf5"), &here, &file, &error), STATUS_ENVIRONMENT);

@@ -193,7 +193,6 @@ static void extent(const struct binary *b, const struct record *positions, int *
         ++*dim;
         *volume *= b->box > 0 && hi - lo > 0.5 * b->box ? b->box : hi - lo;
     }
-    if (*dim == 0) *dim = 1;
 }
 
 /* The blocks from record `first` on, in the order of the user guide. */
