@@ -459,20 +459,6 @@ enum status judge_as(const char *path, const struct judge_request *request, bool
     return status;
 }
 
-enum status judge_snapshot(const char *path, const struct judge_request *request,
-                           struct judged *judged, struct error *error)
-{
-    char meant[JUDGE_MEANT];
-    const enum status status = judge_as(path, request, false, judged, error);
-    if (status == STATUS_BAD_INPUT ? !judged->file.n : status || !judged->far) return status;
-    judge_meant(path, request, judged, !status, meant);
-    char *text = status ? error->message : judged->verdict;
-    const size_t size = status ? sizeof error->message : sizeof judged->verdict,
-                 used = strlen(text);
-    if (meant[0]) snprintf(text + used, size - used, "; %s", meant);
-    return status;
-}
-
 void judge_free(struct judged *judged)
 {
     run_free(&judged->result);

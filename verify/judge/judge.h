@@ -63,14 +63,6 @@ void judge_free(struct judged *judged);
 enum status judge_as(const char *path, const struct judge_request *request, bool glance,
                      struct judged *judged, struct error *error);
 
-enum { JUDGE_MEANT = 240 };
-
-/* Tries all other built-in cases that fit the dimension, box, gamma and time of a snapshot that is
- * far from the case asked for, or could not be judged as it (sound: false). meant: a question with
- * figures, or that none is near; "" where a snapshot that could not be judged fits none. */
-void judge_meant(const char *path, const struct judge_request *request, struct judged *judged,
-                 bool sound, char meant[JUDGE_MEANT]);
-
 /* Gamma, time, box and place of the case in it: resolves judged->run. */
 enum status judge_place(const struct judge_request *request, struct judged *judged,
                         double period[3], struct error *error);

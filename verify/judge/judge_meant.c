@@ -30,6 +30,8 @@ static bool same_box(const struct judged *judged, const struct settings *of_case
     return true;
 }
 
+enum { JUDGE_MEANT = 240 };
+
 struct candidate {
     const char *name;
     double wrong, late; /* |time - t_end| over t_end */
@@ -71,8 +73,11 @@ static bool try_case(const char *path, const struct judge_request *request,
     return compared;
 }
 
-void judge_meant(const char *path, const struct judge_request *request, struct judged *judged,
-                 bool sound, char meant[JUDGE_MEANT])
+/* Tries all other built-in cases that fit the dimension, box, gamma and time of a snapshot that is
+ * far from the case asked for, or could not be judged as it (sound: false). meant: a question with
+ * figures, or that none is near; "" where a snapshot that could not be judged fits none. */
+static void find_meant(const char *path, const struct judge_request *request, struct judged *judged,
+                       bool sound, char meant[JUDGE_MEANT])
 {
     struct candidate best = {0};
     const char *asked = request->case_name ? request->case_name : judged->file.case_name;
@@ -106,4 +111,18 @@ void judge_meant(const char *path, const struct judge_request *request, struct j
         used += snprintf(meant + used, JUDGE_MEANT - (size_t)used, ", against %.2g here",
                          judged->wrong);
     snprintf(meant + used, JUDGE_MEANT - (size_t)used, ")");
+}
+
+enum status judge_snapshot(const char *path, const struct judge_request *request,
+                           struct judged *judged, struct error *error)
+{
+    char meant[JUDGE_MEANT];
+    const enum status status = judge_as(path, request, false, judged, error);
+    if (status == STATUS_BAD_INPUT ? !judged->file.n : status || !judged->far) return status;
+    find_meant(path, request, judged, !status, meant);
+    char *text = status ? error->message : judged->verdict;
+    const size_t size = status ? sizeof error->message : sizeof judged->verdict,
+                 used = strlen(text);
+    if (meant[0]) snprintf(text + used, size - used, "; %s", meant);
+    return status;
 }

@@ -34,6 +34,8 @@ static const struct reading_rule rules[] = {
     {"", "pair_interactions", 0, READING_COUNT, 0.01, 0},
     {"", "pairs_per_particle", 0, READING_COUNT, 0.01, 0},
     {"", "skipped_particle_updates", OUT},
+    {"", "without_slope", OUT},
+    {"", "without_viscosity", OUT},
     /* words */
     {"faults", "status", 0, READING_STATUS, 0, 0},
     {"faults", "*", OUT},

@@ -14,6 +14,8 @@ TYPES = {"object": dict, "array": list, "string": str, "null": type(None), "bool
 
 
 def is_type(value, name):
+    if isinstance(name, list):
+        return any(is_type(value, one) for one in name)
     if name in ("number", "integer"):
         number = isinstance(value, (int, float)) and not isinstance(value, bool)
         return number and (name == "number" or isinstance(value, int))
