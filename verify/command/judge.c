@@ -351,8 +351,8 @@ const struct command command_judge = {
         "Snapshots of `sphproof run` name their case, and need no option.\n"
         "Several snapshots: orders where numbers of particles differ, conservation where only\n"
         "times do; gates look at the one of most particles.\n"
-        "Exit status 1: a gate failed, or a snapshot is far from the case's solution or of another "
-        "gas.",
+        "Exit status 1: a gate failed, a snapshot is far from the case's solution or of another gas, "
+        "or\nnothing is known at its time that it could be compared with.",
     .run = run,
     .options = own_options,
     .examples =

@@ -314,6 +314,13 @@ static double wrong_part(const struct run_result *result)
     return isfinite(f->value) ? fabs(f->value / f->exact - 1) : (double)INFINITY;
 }
 
+/* Is anything known of the case at the snapshot's time that the gas was compared with? */
+static bool is_known(const struct run_result *r)
+{
+    return !r->problem.problem->fieldless ||
+           (r->functional_count && isfinite(r->functionals[0].exact));
+}
+
 static enum status measure_wrong(struct judged *judged, struct error *error)
 {
     if (judged->run.problem.problem->fieldless) {
@@ -392,12 +399,14 @@ static void write_verdict(struct judged *judged)
                  best->ratio);
     else
         snprintf(kernel, sizeof kernel, "kernel not identifiable");
-    if (r->problem.problem->fieldless)
+    if (!is_known(r))
+        snprintf(judged->verdict, sizeof judged->verdict,
+                 "%snothing of this case is known at t = %.6g, so nothing was compared; %s", gas,
+                 r->time, kernel);
+    else if (r->problem.problem->fieldless)
         snprintf(judged->verdict, sizeof judged->verdict, "%s%s%s = %.4g, the case says %.4g; %s",
                  gas, judged->wrong > JUDGE_FOREIGN ? "far from the solution of this case: " : "",
-                 r->functional_count ? r->functionals[0].name : "nothing",
-                 r->functional_count ? r->functionals[0].value : (double)NAN,
-                 r->functional_count ? r->functionals[0].exact : (double)NAN, kernel);
+                 r->functionals[0].name, r->functionals[0].value, r->functionals[0].exact, kernel);
     else
         snprintf(judged->verdict, sizeof judged->verdict,
                  "%s%sL1 of density %.3g, velocity %.3g, pressure %.3g; %s", gas,
@@ -450,6 +459,7 @@ enum status judge_as(const char *path, const struct judge_request *request, bool
         measure_sums(judged);
         judged->foreign = judged->far || judged->case_gamma > 0 || wrong_mass(judged);
         judged->passes = !judged->foreign || request->allow_far;
+        judged->silent = !is_known(&judged->result) && !request->allow_far;
         judged->transverse = measure_noise(judged);
         if (!glance) note_kernel(judged);
         note_precision(judged);

@@ -46,6 +46,7 @@ struct judged {
     bool far;          /* from this case's solution */
     bool foreign;      /* far from this case's solution, or of another gas */
     bool passes;       /* not foreign, or that was allowed */
+    bool silent;       /* nothing is known of the case at this time, and that was not allowed */
     double case_gamma; /* where the user named the case and the file has another gamma; else 0 */
     char meant[64];    /* the case of ours that it fits, where it is far from the one asked for */
     char verdict[600];

@@ -50,6 +50,14 @@ static bool nearer(const struct candidate *a, const struct candidate *b)
     return a->late < b->late;
 }
 
+/* Has the gas about the mass and energy that the case starts with, where that is known? */
+static bool same_content(const struct judged *judged)
+{
+    const struct conservation *is = &judged->sums, *was = &judged->start;
+    return !(was->mass > 0) ||
+           (fabs(is->mass / was->mass - 1) < 0.1 && fabs(is->energy / was->energy - 1) < 0.2);
+}
+
 /* False: the file is not of such a box, gas or dimension, or nothing can be compared. */
 static bool try_case(const char *path, const struct judge_request *request,
                      const struct case_file *file, struct candidate *found)
@@ -59,7 +67,8 @@ static bool try_case(const char *path, const struct judge_request *request,
     struct error ignored = {0};
     as.case_name = found->name, as.left = as.right = NULL;
     const bool fits = !judge_as(path, &as, true, &judged, &ignored) &&
-                      same_box(&judged, &file->settings) && judged.case_gamma == 0;
+                      same_box(&judged, &file->settings) && judged.case_gamma == 0 &&
+                      same_content(&judged);
     if (fits) {
         const double t_end = settings_real(&file->settings, SETTING_t_end);
         found->far = judged.far, found->wrong = judged.wrong, found->field = judged.wrong_field;

@@ -79,7 +79,10 @@ static json_t *findings_json(const struct judged *judged, size_t n, const json_t
     const json_t *gate;
     size_t i;
     for (i = 0; i < n; i++)
-        add_finding(findings, judged[i].path, gate_names[judged[i].passes ? GATE_PASS : GATE_FAIL],
+        add_finding(findings, judged[i].path,
+                    gate_names[!judged[i].passes  ? GATE_FAIL
+                               : judged[i].silent ? GATE_UNDETERMINED
+                                                  : GATE_PASS],
                     judged[i].verdict);
     json_array_foreach(gates, i, gate) {
         const char *name = value_text(gate, "name"), *why = value_text(gate, "why"),
@@ -110,14 +113,15 @@ static void add_conclusion(json_t *document, const json_t *findings, const json_
 {
     const size_t all = json_array_size(gates), snapshots = json_array_size(findings) - all;
     char failing[700] = "", text[1600];
-    size_t failed = 0, silent = 0, used = 0, i;
+    size_t failed = 0, silent = 0, told = 0, used = 0, i;
     bool good = true;
     const json_t *finding;
     json_array_foreach(findings, i, finding) {
         const char *status = value_text(finding, "status");
         const json_t *gate = i < snapshots ? NULL : json_array_get(gates, i - snapshots);
         if (!fails(status, gate)) {
-            silent += strcmp(status, gate_names[GATE_PASS]) != 0;
+            silent += gate && strcmp(status, gate_names[GATE_PASS]) != 0;
+            told += strcmp(status, gate_names[GATE_UNDETERMINED]) != 0;
             continue;
         }
         good = false;
@@ -134,6 +138,7 @@ static void add_conclusion(json_t *document, const json_t *findings, const json_
         used = (size_t)snprintf(text, sizeof text, "%zu of %zu gates pass, %zu cannot tell; ",
                                 all - silent, all, silent);
     snprintf(text + used, sizeof text - used, "%s", main->verdict);
+    good &= told > 0; /* a judgement that compared nothing is not well */
     json_object_set_new(document, "status", json_string(gate_names[good ? GATE_PASS : GATE_FAIL]));
     json_object_set_new(document, "headline", json_string(text));
 }

@@ -78,6 +78,9 @@ static const struct reading_rule rules[] = {
     {"checks", "value", 0, READING_CHECK, 0, 0},
     {"checks", "*", OUT},
     {"mutants", "*", OUT},
+    {"skips", "possible_fraction", OUT},
+    {"skips", "without_*", OUT},
+    {"skips", "asleep", OUT},
     {"skips", "difference", 0, READING_CHECK, 0, 1e-9},
     {"skips", "bound", 0, READING_NEUTRAL, 1e-9, 0},
     {"claims", "*", OUT}, /* about schemes that are no default */

@@ -587,6 +587,16 @@ def gates_of_values():
     refused(vortex, "--case", "gresho", "--gate", "disc_eror=1", says=("disc_eror", " disc_error peak_velocity"))
 
 
+def nothing_known(folder):
+    """Beyond the reference's last time nothing is compared, which is not well by itself."""
+    path = os.path.join(folder, "late_billow.csv")
+    subprocess.run([PROGRAM, "run", "kelvin_helmholtz", "n=12^2", "t_end=1.6", "--snapshot", path, "--quiet"], check=True)
+    got = judge(path, status=1)
+    assert "nothing was compared" in got["verdict"] and got["findings"][0]["status"] == "undetermined", got
+    judge(path, "--allow-far", status=0)
+    judge(path, "--gate", "mass=1e-9", status=0)
+
+
 def missing_mass(folder):
     """Gas that does not fill its box fails, however right it is where there is some."""
     ours = os.path.join(folder, "whole.csv")
@@ -735,6 +745,7 @@ def main():
         gates_of_values()
         one_list_of_findings(folder)
         missing_mass(folder)
+        nothing_known(folder)
         own(folder)
         together(folder, hdf5)
         forces(folder)
