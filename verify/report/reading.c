@@ -267,6 +267,9 @@ static void walk_list(struct readings *readings, const struct place *at, const c
         name_entry(entry, name);
         if (strcmp(key, "snapshots") == 0) /* of one run as a rule, each at its time */
             add_name(name, "time %.10g", value_member(entry, "time"));
+        const char *computed = json_string_value(json_object_get(entry, "reproduce"));
+        if (strcmp(key, "skips") == 0 && computed) /* benchmarks, some of one case twice */
+            add_name(name, "%s", computed);
         const int length = snprintf(inside.path, sizeof inside.path, "%s%s%.80s[%s]", at->path,
                                     *at->path ? "." : "", key, name);
         if (length >= (int)sizeof inside.path || strlen(name) + 1 >= sizeof name) {
