@@ -613,6 +613,16 @@ def missing_mass(folder):
     judge(write(folder, "most.csv", "".join(head + rows[:360])), status=0)
 
 
+def gates_know_the_box(folder):
+    """The bounds of a case hold at a spacing, whatever the box."""
+    bounds = []
+    for name, *keys in (("short", "n=400"), ("long", "lo=-2", "hi=2", "n=800")):
+        path = os.path.join(folder, name + ".csv")
+        subprocess.run([PROGRAM, "run", "sod", *keys, "--snapshot", path, "--quiet"], check=True)
+        bounds.append([gate["bound"] for gate in judge(path, "--gates", "case", status=0)["gates"]])
+    assert bounds[0] == bounds[1] and len(bounds[0]) > 2, bounds
+
+
 def one_list_of_findings(folder):
     """Exit status, JSON, JUnit, terminal and page say the same of gates, whatever they are of; and the case's own."""
     ladder = []
@@ -746,6 +756,7 @@ def main():
         one_list_of_findings(folder)
         missing_mass(folder)
         nothing_known(folder)
+        gates_know_the_box(folder)
         own(folder)
         together(folder, hdf5)
         forces(folder)
