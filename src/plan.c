@@ -152,8 +152,8 @@ size_t plan_explain(const struct scene *scene, struct plan_line *lines, size_t m
          "the integrator changes velocities after the last force", "comes with the pair forces");
     if (scene->dim > 1) {
         line(&writer, "local steps", plan.local,
-             "each particle's own, by powers of two; a pair has the shorter one of its two",
-             "steps=global: the shortest one is everybody's");
+             "each particle takes its own, by powers of two, and a pair the shorter one of its two particles",
+             "steps=global: all particles take the shortest one");
         line(&writer, "conductivity", scheme->alpha_u > 0, "alpha_u > 0, inside the pair loop",
              "alpha_u=0");
         line(&writer, "gravity", plan.gravity, "added to the forces", "gravity=0");

@@ -24,9 +24,8 @@
  *   cullen_dehnen, which sees the sign of a divergence;
  * - in 1D viscosity and velocity gradients of viscosity=reconstructed, in ranges all of whose pairs
  *   recede: there they are exactly 0.
- * Tried and left: matrices kept where no neighbour has moved by more than 1e-13 h (0 to 2 % of them
- * in sod_2d, sedov and gresho, for 3 to 8 % of the CPU time); viscosity of constant alpha in 1D
- * (a quarter of the particles of sod, and to look costs as much as it is).
+ * Tried and dropped, as looking cost as much as was saved: keeping the matrices of particles whose
+ * neighbours have not moved, and leaving out viscosity of constant alpha in 1D.
  */
 #ifndef SPHPROOF_SLEEP_H
 #define SPHPROOF_SLEEP_H

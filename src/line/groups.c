@@ -14,19 +14,24 @@ static int group_len(const struct simulation *simulation, ptrdiff_t group)
     return left < GROUP ? (int)left : GROUP;
 }
 
+/* The speed at which a particle and its right neighbour move against each other, in tolerances. */
+static double against_right(const struct simulation *simulation, ptrdiff_t i, double in_tolerances)
+{
+    const struct particles *a = &simulation->particles;
+    const double sound = simulation->sleep.sound, right = a->v[0][i + 1 < a->n ? i + 1 : 0];
+    return in_tolerances * fabs(right - a->v[0][i]) / (a->c[i] < sound ? sound : a->c[i]);
+}
+
 /* The largest disturbance of these particles, in tolerances: their rates, and the speeds at which
  * they and their right neighbours move against each other. Cold gas that streams apart has no
  * rates, but its density changes. NaN where a value is no number. */
 static double disturbance_of(const struct simulation *simulation, ptrdiff_t first, ptrdiff_t len)
 {
-    const struct particles *a = &simulation->particles;
     const double in_tolerances = 1 / sleep_tolerance(simulation);
     double worst = sleep_disturbance(simulation, first, len);
     for (ptrdiff_t i = first; i < first + len; i++) {
-        const double right = a->v[0][i + 1 < a->n ? i + 1 : 0];
-        const double sound = simulation->sleep.sound;
-        const double against = fabs(right - a->v[0][i]) / (a->c[i] < sound ? sound : a->c[i]);
-        if (!(against * in_tolerances <= worst || isnan(worst))) worst = against * in_tolerances;
+        const double against = against_right(simulation, i, in_tolerances);
+        if (!(against <= worst || isnan(worst))) worst = against;
     }
     return worst;
 }
@@ -36,11 +41,11 @@ static bool group_disturbed(const struct simulation *simulation, ptrdiff_t group
     return !(disturbance_of(simulation, group * GROUP, group_len(simulation, group)) <= 1);
 }
 
-/* Most gas that is awake shows it in its first particle. */
+/* Most gas that is awake shows it in one velocity, before anything else is looked at. */
 static bool group_calm(const struct simulation *simulation, ptrdiff_t group)
 {
     const ptrdiff_t first = group * GROUP;
-    return disturbance_of(simulation, first, 1) <= SLEEP_CALM &&
+    return against_right(simulation, first, 1 / sleep_tolerance(simulation)) <= SLEEP_CALM &&
            disturbance_of(simulation, first, group_len(simulation, group)) <= SLEEP_CALM;
 }
 
@@ -196,6 +201,20 @@ static bool wake_ahead(struct simulation *simulation)
     return woken;
 }
 
+/* Is a group within the margin of this one stirred, across the ends of the periodic box? */
+static bool stirred_near(const struct groups *groups, ptrdiff_t group, ptrdiff_t around)
+{
+    const ptrdiff_t count = groups->count;
+    if (groups->stirred[group]) return true;
+    for (ptrdiff_t k = -around; k <= around; k++)
+        if (groups->stirred[((group + k) % count + count) % count]) return true;
+    return false;
+}
+
+/* Integrators pass over sleepers only while none of them has a velocity. Groups that fall asleep
+ * again mostly have one, so they stay awake if they are fewer than one in FEW. */
+enum { FEW = 16 };
+
 /* Sends every awake group to sleep that has only calm groups within the margin, calm being well
  * below what wakes. Returns whether there was one. */
 static bool sleep_again(struct simulation *simulation)
@@ -204,24 +223,23 @@ static bool sleep_again(struct simulation *simulation)
     struct line *line = line_of(simulation);
     struct groups *groups = &line->groups;
     const ptrdiff_t around = margin(line->reach);
-    memset(groups->stirred, 0, (size_t)groups->count);
-    for (ptrdiff_t group = 0; group < groups->count; group++) {
-        if (!groups->awake[group] || group_calm(simulation, group)) continue;
-        for (ptrdiff_t k = -around; k <= around; k++)
-            groups->stirred[((group + k) % groups->count + groups->count) % groups->count] = 1;
-    }
-    bool found = false;
-    for (ptrdiff_t group = 0; group < groups->count; group++) {
-        if (!groups->awake[group] || groups->stirred[group]) continue;
-        if (!found) { /* particles have moved since the last sums */
-            ghosts_fill(a, a->x[0], line->reach + 1, a->period[0]);
-            ghosts_fill(a, a->v[0], line->reach + 1, 0);
+    ptrdiff_t found = 0;
+    for (ptrdiff_t group = 0; group < groups->count; group++)
+        groups->stirred[group] = groups->awake[group] && !group_calm(simulation, group);
+    for (ptrdiff_t group = 0; group < groups->count; group++)
+        found += groups->awake[group] && !stirred_near(groups, group, around);
+    if (!found ||
+        (simulation->sleep.on && simulation->sleep.at_rest && found * FEW < groups->count))
+        return false;
+    /* particles have moved since the last sums */
+    ghosts_fill(a, a->x[0], line->reach + 1, a->period[0]);
+    ghosts_fill(a, a->v[0], line->reach + 1, 0);
+    for (ptrdiff_t group = 0; group < groups->count; group++)
+        if (groups->awake[group] && !stirred_near(groups, group, around)) {
+            groups->awake[group] = 0;
+            fall_asleep(simulation, group, line->reach);
         }
-        groups->awake[group] = 0;
-        fall_asleep(simulation, group, line->reach);
-        found = true;
-    }
-    return found;
+    return true;
 }
 
 bool groups_sleep(const struct simulation *simulation, ptrdiff_t i)

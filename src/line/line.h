@@ -24,7 +24,7 @@ enum { GROUP = 8 }; /* particles that sleep and wake together */
 struct groups {
     ptrdiff_t count;
     unsigned char *awake;   /* of each group */
-    unsigned char *stirred; /* of each group: too near a disturbance to fall asleep; scratch */
+    unsigned char *stirred; /* of each group: awake and not calm; scratch */
     double *rate;           /* signal speed / h of each group when it fell asleep, 0 awake */
 };
 

@@ -54,8 +54,8 @@ static enum status reserve(struct simulation *simulation, struct error *error)
     const ptrdiff_t reach = RESERVE * line->reach;
     if (reach + 8 > simulation->particles.ghosts) {
         enum status status = particles_grow_ghosts(&simulation->particles, reach + 8, error);
-        line->ghosts_filled =
-            0; /* the groups that fall asleep next read ghosts: they are filled at once */
+        /* The groups that fall asleep next read ghosts, which are filled at once. */
+        line->ghosts_filled = 0;
         if (!status) status = ghosts_of_density(simulation, line->reach + 2, error);
         if (status) return status;
         ghosts_of_pairs(simulation);

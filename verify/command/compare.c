@@ -426,16 +426,11 @@ static void print_all(const struct comparison *c, const struct options *options)
 static enum status write_page(const char *path, const struct comparison *c, struct error *error)
 {
     struct page page = {0};
-    struct output output;
     json_t *document = compare_json(c, true);
     const bool made = document && page_make_compare(&page, document);
     json_decref(document);
     if (!made) return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", path);
-    enum status status = output_open(&output, path, error);
-    if (!status) {
-        fputs(page.html, output.stream);
-        status = output_close(&output, error);
-    }
+    const enum status status = output_text(path, page.html, error);
     page_free(&page);
     return status;
 }

@@ -225,14 +225,9 @@ end:
 static enum status write_page(const char *path, const json_t *document, struct error *error)
 {
     struct page page = {0};
-    struct output output;
     if (!document || !page_make_judge(&page, document))
         return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", path);
-    enum status status = output_open(&output, path, error);
-    if (!status) {
-        fputs(page.html, output.stream);
-        status = output_close(&output, error);
-    }
+    const enum status status = output_text(path, page.html, error);
     page_free(&page);
     return status;
 }
@@ -240,13 +235,8 @@ static enum status write_page(const char *path, const json_t *document, struct e
 static enum status write_junit(const char *path, const json_t *document, struct error *error)
 {
     char *text = junit_judge_text(document);
-    struct output output;
     if (!text) return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", path);
-    enum status status = output_open(&output, path, error);
-    if (!status) {
-        fputs(text, output.stream);
-        status = output_close(&output, error);
-    }
+    const enum status status = output_text(path, text, error);
     free(text);
     return status;
 }

@@ -39,13 +39,9 @@ static enum status write_text(const char *folder, const char *name, const char *
                               struct error *error)
 {
     char path[PATH_LENGTH];
-    struct output output;
     snprintf(path, sizeof path, "%s/%s", folder, name);
     if (!text) return error_set(error, STATUS_ENVIRONMENT, "no memory for %s", path);
-    enum status status = output_open(&output, path, error);
-    if (status) return status;
-    fputs(text, output.stream);
-    return output_close(&output, error);
+    return output_text(path, text, error);
 }
 
 static enum status write_page(const char *folder, const struct page *page, struct error *error)

@@ -140,6 +140,14 @@ enum status output_close(struct output *output, struct error *error)
     return status;
 }
 
+enum status output_text(const char *path, const char *text, struct error *error)
+{
+    struct output output;
+    if (output_open(&output, path, error)) return error->status;
+    fputs(text, output.stream); /* output_close tells whether it worked */
+    return output_close(&output, error);
+}
+
 void output_discard(struct output *output)
 {
     if (!output->stream) return;

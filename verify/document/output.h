@@ -21,6 +21,9 @@ enum status output_open(struct output *output, const char *path, struct error *e
 /* Flushes, and puts the file in its place. On an error the file is as it was before. */
 enum status output_close(struct output *output, struct error *error);
 
+/* A file that holds this text. */
+enum status output_text(const char *path, const char *text, struct error *error);
+
 /* Gives up: the file is as it was before output_open. Harmless after output_close. */
 void output_discard(struct output *output);
 

@@ -40,12 +40,9 @@ static enum status write_text(const char *stem, const char *end, const char *tex
                               struct error *error)
 {
     char path[4096];
-    struct output output;
     if (snprintf(path, sizeof path, "%s%s", stem, end) >= (int)sizeof path)
         return error_set(error, STATUS_ENVIRONMENT, "--plot '%.150s...': too long a name", stem);
-    if (output_open(&output, path, error)) return error->status;
-    fputs(text, output.stream); /* output_close tells whether it worked */
-    return output_close(&output, error);
+    return output_text(path, text, error);
 }
 
 enum status picture_source(const struct plot *plot, const char *path, struct error *error)

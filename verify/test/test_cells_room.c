@@ -13,6 +13,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "made_bytes.h"
 #include "made_scheme.h"
 #include "near.h"
 #include "solver.h"
@@ -250,29 +251,6 @@ static void test_switch(void **state)
     simulation_destroy(simulation);
 }
 
-/* Where a state is kept. */
-struct kept {
-    size_t at;
-    unsigned char bytes[1 << 21];
-};
-
-static bool keep_bytes(void *context, void *bytes, size_t n)
-{
-    struct kept *kept = context;
-    if (kept->at + n > sizeof kept->bytes) return false;
-    memcpy(kept->bytes + kept->at, bytes, n);
-    kept->at += n;
-    return true;
-}
-
-static bool take_bytes(void *context, void *bytes, size_t n)
-{
-    struct kept *kept = context;
-    memcpy(bytes, kept->bytes + kept->at, n);
-    kept->at += n;
-    return true;
-}
-
 static bool ten_steps(void *context, double time, uint64_t steps)
 {
     const uint64_t *from = context;
@@ -285,7 +263,7 @@ static bool ten_steps(void *context, double time, uint64_t steps)
 static void test_carried(void **state)
 {
     (void)state;
-    static struct kept kept;
+    static struct made_bytes kept;
     for (int kind = 0; kind < 3; kind++) { /* asleep, with predicted widths; all moving */
         struct scheme scheme = made_scheme();
         const bool moving = kind == 2;
@@ -304,14 +282,14 @@ static void test_carried(void **state)
         struct simulation *first = made_of(&scene), *second = made_of(&scene);
         uint64_t from = moving ? 30 : 0; /* sorted once more */
         assert_int_equal(simulation_run(first, 1, ten_steps, &from, NULL), STATUS_OK);
-        struct carrier out = {.bytes = keep_bytes, .context = &kept},
-                       back = {.bytes = take_bytes, .context = &kept, .back = true};
-        kept.at = 0;
+        struct carrier out = {.bytes = made_put, .context = &kept},
+                       back = {.bytes = made_take, .context = &kept, .back = true};
+        kept.used = kept.read = 0;
         simulation_carry(first, &out);
         assert_false(out.failed);
-        kept.at = 0;
         simulation_carry(second, &back);
         assert_false(back.failed);
+        assert_int_equal(kept.read, kept.used);
         for (from += 10; from < 80; from += 10) {
             struct snapshot s, t;
             struct simulation_cost cost[2];

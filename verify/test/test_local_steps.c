@@ -14,6 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "made_bytes.h"
 #include "made_scheme.h"
 #include "near.h"
 #include "settings.h"
@@ -194,35 +195,12 @@ static void one_level_is_global(void **state)
     }
 }
 
-struct bag {
-    unsigned char bytes[1 << 21];
-    size_t used, read;
-};
-
-static bool put(void *context, void *bytes, size_t n)
-{
-    struct bag *bag = context;
-    if (bag->used + n > sizeof bag->bytes) return false;
-    memcpy(bag->bytes + bag->used, bytes, n);
-    bag->used += n;
-    return true;
-}
-
-static bool take(void *context, void *bytes, size_t n)
-{
-    struct bag *bag = context;
-    if (bag->read + n > bag->used) return false;
-    memcpy(bytes, bag->bytes + bag->read, n);
-    bag->read += n;
-    return true;
-}
-
-static struct bag bag;
+static struct made_bytes bag;
 static int blocks;
 
 static bool keep_the_fifth(void *context, double time, uint64_t steps)
 {
-    struct carrier out = {.bytes = put, .context = &bag};
+    struct carrier out = {.bytes = made_put, .context = &bag};
     (void)time, (void)steps;
     if (++blocks == 5) simulation_carry(context, &out);
     assert_false(out.failed);
@@ -236,7 +214,7 @@ static void goes_on_to_the_last_bit(void **state)
     seed = 11;
     const struct scene scene = scene_of(2, 24, 0.2, 300, false, &scheme);
     struct simulation *kept = blocks_of(&scene), *restored = blocks_of(&scene);
-    struct carrier back = {.bytes = take, .context = &bag, .back = true};
+    struct carrier back = {.bytes = made_take, .context = &bag, .back = true};
     run_to(kept, 0.06, keep_the_fifth);
     assert_true(blocks > 6);
     simulation_carry(restored, &back);

@@ -19,6 +19,7 @@
 #include "report.h"
 #include "report_piece.h"
 #include "result.h"
+#include "value.h"
 
 static const char *folder;
 
@@ -106,83 +107,76 @@ static void write_text(const char *name, const char *text)
     fclose(file);
 }
 
-/* Cheap pieces, computed: their documents are of the right kind, and say how to see them again. */
+/* Some cheap pieces are computed: their documents are of the right kind. */
 static void compute_some(struct pool *pool)
 {
-    static const struct {
-        const char *name, *command, *member, *value;
-    } cheap[] = {{"profile of sound_wave", "run", "status", "ok"},
-
-                 {"checks of riemann", "verify", NULL, NULL}};
     struct error error = {0};
-    size_t found = 0;
+    size_t runs = 0, checks = 0;
+    for (size_t i = 0; i < pool->count; i++) {
+        struct pool_job *job = &pool->jobs[i];
+        const bool run = !strcmp(job->name, "profile of sound_wave");
+        json_t *document;
+        if (!run && strcmp(job->name, "checks of riemann")) continue;
+        assert_int_equal(job->compute(job->context, &document, &error), STATUS_OK);
+        assert_string_equal(value_text(document, "command"), run ? "run" : "verify");
+        if (run) {
+            assert_string_equal(value_text(document, "status"), "ok");
+            assert_true(json_is_object(json_object_get(document, "profile")) &&
+                        json_is_object(json_object_get(document, "through_time")));
+        } else
+            assert_true(json_array_size(json_object_get(document, "checks")) &&
+                        json_array_size(json_object_get(document, "mutants")));
+        runs += run, checks += !run;
+        json_decref(document);
+    }
+    assert_int_equal(runs, 3); /* of three schemes */
+    assert_int_equal(checks, 1);
+}
+
+static struct report *planned(struct made_kept *kept, enum report_mode mode)
+{
+    struct error error = {0};
+    struct buffer text = {0};
+    struct report *report;
+    assert_int_equal(report_create(mode, &report, &error), STATUS_OK);
+    const struct pool *pool = report_pool(report);
     for (size_t i = 0; i < pool->count; i++)
-        for (size_t c = 0; c < sizeof cheap / sizeof *cheap; c++) {
-            struct pool_job *job = &pool->jobs[i];
-            json_t *document;
-            if (strcmp(job->name, cheap[c].name)) continue;
-            assert_int_equal(job->compute(job->context, &document, &error), STATUS_OK);
-            found++;
-            assert_string_equal(json_string_value(json_object_get(document, "command")),
-                                cheap[c].command);
-            if (cheap[c].member)
-                assert_string_equal(json_string_value(json_object_get(document, cheap[c].member)),
-                                    cheap[c].value);
-            const json_t *profile = json_object_get(document, "profile");
-            assert_int_equal(json_is_object(profile), !strcmp(cheap[c].command, "run"));
-            assert_int_equal(json_is_object(json_object_get(document, "through_time")),
-                             !strcmp(cheap[c].command, "run"));
-            if (c < 1) assert_int_equal(json_is_object(json_object_get(profile, "map")), false);
-            if (c == 1)
-                assert_true(json_array_size(json_object_get(document, "checks")) &&
-                            json_array_size(json_object_get(document, "mutants")));
-            json_decref(document);
-        }
-    assert_true(found > 3); /* two of them with three schemes */
+        buffer_format(&text, "%s: %.4g%s\n", pool->jobs[i].name, pool->jobs[i].weight,
+                      pool->jobs[i].key ? "" : ", never kept");
+    compare(kept, "plan", mode == REPORT_NIGHTLY, &text);
+    return report;
 }
 
 static void reports(void **state)
 {
     (void)state;
-    json_t *template = made_template(folder, "pieces.json");
+    json_t *template = made_template(folder, "pieces.json"), *results;
     struct made_kept kept;
+    struct made_draw draw = {0, template};
+    struct buffer text = {0};
+    struct error error = {0};
     made_open(&kept, folder, "reports.txt");
     write_text("faults.json",
                "{\"schema\": \"sphproof/1\", \"command\": \"faults\", \"faults\": []}");
     write_text("score.json", "{");
-    for (size_t k = 0; k < 2; k++) { /* by day, where some things break down; by night */
-        struct made_draw draw = {k, template};
-        struct buffer text = {0};
-        struct error error = {0};
-        struct report *report;
-        json_t *results;
-        assert_int_equal(report_create(k ? REPORT_NIGHTLY : REPORT_QUICK, &report, &error),
-                         STATUS_OK);
-        struct pool *pool = report_pool(report);
-        if (!k) compute_some(pool);
-        for (size_t i = 0; i < pool->count; i++)
-            buffer_format(&text, "%s: %.4g%s\n", pool->jobs[i].name, pool->jobs[i].weight,
-                          pool->jobs[i].key ? "" : ", never kept");
-        compare(&kept, "plan", k, &text);
-        if (k) { /* it would be judged as by day */
-            report_destroy(report);
-            break;
-        }
-        invent(&draw, pool, 150);
-        if (report_judge(report, place, &results, &error)) fail_msg("%s", error.message);
-        add_document(&text, results);
-        compare(&kept, "report", k, &text);
-        json_decref(results);
-        for (int i = 0; i < 2; i++) { /* not a result */
-            struct error *said = &pool->jobs[i].error;
-            *said = (struct error){i ? STATUS_BAD_INPUT : STATUS_ENVIRONMENT, "no process"};
-            assert_int_equal(report_judge(report, NULL, &results, &error), said->status);
-            assert_non_null(strstr(error.message, ": no process"));
-            assert_null(results);
-            said->status = STATUS_OK;
-        }
-        report_destroy(report);
+    struct report *report = planned(&kept, REPORT_QUICK);
+    struct pool *pool = report_pool(report);
+    compute_some(pool);
+    invent(&draw, pool, 150);
+    if (report_judge(report, place, &results, &error)) fail_msg("%s", error.message);
+    add_document(&text, results);
+    compare(&kept, "report", 0, &text);
+    json_decref(results);
+    for (int i = 0; i < 2; i++) { /* not a result */
+        struct error *said = &pool->jobs[i].error;
+        *said = (struct error){i ? STATUS_BAD_INPUT : STATUS_ENVIRONMENT, "no process"};
+        assert_int_equal(report_judge(report, NULL, &results, &error), said->status);
+        assert_non_null(strstr(error.message, ": no process"));
+        assert_null(results);
+        said->status = STATUS_OK;
     }
+    report_destroy(report);
+    report_destroy(planned(&kept, REPORT_NIGHTLY)); /* it would be judged as by day */
     made_close(&kept);
     json_decref(template);
 }

@@ -14,6 +14,7 @@
 #include <cmocka.h>
 
 #include "line/line.h"
+#include "made_bytes.h"
 #include "made_simulation.h"
 #include "near.h"
 #include "solver.h"
@@ -327,37 +328,14 @@ static void half_of_the_energy(void **state)
 /* --- kept and restored -------------------------------------------------------------------------
  */
 
-struct bag {
-    unsigned char bytes[1 << 20];
-    size_t used, read;
-};
-
-static bool put(void *context, void *bytes, size_t n)
-{
-    struct bag *bag = context;
-    if (bag->used + n > sizeof bag->bytes) return false;
-    memcpy(bag->bytes + bag->used, bytes, n);
-    bag->used += n;
-    return true;
-}
-
-static bool take(void *context, void *bytes, size_t n)
-{
-    struct bag *bag = context;
-    if (bag->read + n > bag->used) return false;
-    memcpy(bytes, bag->bytes + bag->read, n);
-    bag->read += n;
-    return true;
-}
-
 /* The clocks of a simulation that is restored go on from where the other's stood. */
 static void clocks_go_on(void **state)
 {
     (void)state;
-    static struct bag bag;
+    static struct made_bytes bag;
     struct simulation *kept = made_simulation(40), *restored = made_simulation(40);
-    struct carrier out = {.bytes = put, .context = &bag},
-                   back = {.bytes = take, .context = &bag, .back = true};
+    struct carrier out = {.bytes = made_put, .context = &bag},
+                   back = {.bytes = made_take, .context = &bag, .back = true};
     made_run(kept, 0.02);
     kept->wall_start -= 1e6, kept->cpu_start -= 2e6;
     const double wall = kept->wall_start, cpu = kept->cpu_start;
@@ -388,11 +366,11 @@ static void clocks_go_on(void **state)
 static void all_is_carried(void **state)
 {
     (void)state;
-    static struct bag bag;
+    static struct made_bytes bag;
     bag.used = bag.read = 0;
     struct simulation *kept = made_simulation(40), *restored = made_simulation(40);
-    struct carrier out = {.bytes = put, .context = &bag},
-                   back = {.bytes = take, .context = &bag, .back = true};
+    struct carrier out = {.bytes = made_put, .context = &bag},
+                   back = {.bytes = made_take, .context = &bag, .back = true};
     const size_t keeps = kept->scheme.integrator->keeps;
     assert_true(keeps > 0 && kept->sleep.span_count == 1);
     memset(kept->integrator_state, 0x3f, keeps);

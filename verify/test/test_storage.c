@@ -12,6 +12,7 @@
 #include <unistd.h>
 #include <cmocka.h>
 
+#include "made_bytes.h"
 #include "near.h"
 #include "particles.h"
 
@@ -109,35 +110,12 @@ static void room_for_more_ghosts(void **state)
 /* --- carried -----------------------------------------------------------------------------------
  */
 
-struct bag {
-    unsigned char bytes[1 << 17];
-    size_t used, read;
-};
-
-static bool put(void *context, void *bytes, size_t n)
-{
-    struct bag *bag = context;
-    assert_true(bag->used + n <= sizeof bag->bytes);
-    memcpy(bag->bytes + bag->used, bytes, n);
-    bag->used += n;
-    return true;
-}
-
-static bool take(void *context, void *bytes, size_t n)
-{
-    struct bag *bag = context;
-    assert_true(bag->read + n <= bag->used);
-    memcpy(bytes, bag->bytes + bag->read, n);
-    bag->read += n;
-    return true;
-}
-
 /* Those arrays that somebody has written to, wherever that was; the others take no room, and become
  * blank where they were not. */
 static void carried_with_ghosts(void **state)
 {
     (void)state;
-    static struct bag bag;
+    static struct made_bytes bag;
     for (int dim = 1; dim <= 3; dim++)
         for (ptrdiff_t n = 3; n < 300; n += 59)
             for (int at = 0; at < 4; at++) {
@@ -150,8 +128,8 @@ static void carried_with_ghosts(void **state)
                     if (k % 3 != 1) from[k][place] = value(k, at), written++;
                 for (ptrdiff_t i = 0; i < n; i++) a.id[i] = (size_t)(2 * i + 1);
                 fill(&b, 8);
-                struct carrier out = {.bytes = put, .context = &bag},
-                               back = {.bytes = take, .context = &bag, .back = true};
+                struct carrier out = {.bytes = made_put, .context = &bag},
+                               back = {.bytes = made_take, .context = &bag, .back = true};
                 bag.used = bag.read = 0;
                 particles_carry(&a, &out);
                 assert_false(out.failed);

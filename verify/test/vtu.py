@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""vtu.py SPHPROOF DRAWS [--others] [--seed SEED]: snapshots for ParaView (`--snapshot F.vtu`). In random scenes of 1, 2 and 3
+"""vtu.py SPHPROOF [DRAWS] [--others] [--seed SEED]: snapshots for ParaView (`--snapshot F.vtu`). In random scenes of 1, 2 and 3
 dimensions every number is, to the last bit, that of the same run's CSV; what belongs to the whole run is there; a series
 has a collection; judge finds in them what it finds in CSV, also packed and appended as other programs write them.
-With
---others VTK and meshio, where one is installed for this Python or the system's, must read the same bits."""
+With --others VTK and meshio, where one is installed for this Python or the system's, must read the same bits."""
 import base64
 import json
 import os
@@ -16,7 +15,7 @@ import xml.etree.ElementTree as tree
 import zlib
 
 PROGRAM = os.path.abspath(sys.argv[1])
-DRAWS = int(sys.argv[2])
+DRAWS = int(sys.argv[2]) if len(sys.argv) > 2 else 2
 KINDS = {"Float64": "d", "Int64": "q", "UInt8": "B", "Int32": "i"}
 NAMES = {"m": "mass", "rho": "density", "u": "internal_energy", "P": "pressure", "h": "smoothing_length"}
 OTHERS = r"""

@@ -168,7 +168,6 @@ static enum status collect(const struct run_result *result, const struct snapsho
                            struct error *error)
 {
     struct buffer text = {0}, name = {0};
-    struct output output;
     buffer_format(&text,
                   "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" "
                   "byte_order=\"%s\">\n<Collection>\n",
@@ -187,11 +186,7 @@ static enum status collect(const struct run_result *result, const struct snapsho
     if (text.failed || name.failed)
         status = error_set(error, STATUS_ENVIRONMENT, "no memory for the collection of %.200s",
                            snapshots->path);
-    if (!status) status = output_open(&output, name.data, error);
-    if (!status) {
-        fputs(text.data, output.stream); /* output_close tells whether it worked */
-        status = output_close(&output, error);
-    }
+    if (!status) status = output_text(name.data, text.data, error);
     buffer_free(&text), buffer_free(&name);
     return status;
 }

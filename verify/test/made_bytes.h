@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Memory that a carrier takes a state to, and restores it from. Include after cmocka.h. */
+#ifndef MADE_BYTES_H
+#define MADE_BYTES_H
+
+#include <string.h>
+
+#include "carrier.h"
+
+struct made_bytes {
+    unsigned char bytes[1 << 21];
+    size_t used, read;
+};
+
+static inline bool made_put(void *context, void *bytes, size_t n)
+{
+    struct made_bytes *kept = context;
+    if (n > sizeof kept->bytes - kept->used) return false;
+    memcpy(kept->bytes + kept->used, bytes, n);
+    kept->used += n;
+    return true;
+}
+
+static inline bool made_take(void *context, void *bytes, size_t n)
+{
+    struct made_bytes *kept = context;
+    if (n > kept->used - kept->read) return false;
+    memcpy(bytes, kept->bytes + kept->read, n);
+    kept->read += n;
+    return true;
+}
+
+#endif
