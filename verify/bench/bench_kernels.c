@@ -12,7 +12,7 @@
 #include "bench_limit.h"
 #include "bench_loops.h"
 #include "gradient_study.h"
-#include "guest.h"
+#include "plugin_kernel.h"
 #include "run.h"
 
 enum { VARIANTS = 3, LIST = 1024 };

@@ -8,11 +8,34 @@
 #include <string.h>
 
 #include "judged.h"
+#include "plain.h"
 #include "problem_list.h"
 #include "result.h"
 #include "run_job.h"
 #include "study.h"
 #include "value.h"
+
+static void release_plain(void *owned)
+{
+    plain_free(owned);
+    free(owned);
+}
+
+void precision_plain(const struct scene *scene, struct run_outcome *outcome)
+{
+    struct plain *plain = calloc(1, sizeof *plain);
+    if (!plain) {
+        outcome->status = error_set(&outcome->reason, STATUS_ENVIRONMENT, "no memory for a run");
+        return;
+    }
+    outcome->status = plain_run(plain, scene, &outcome->reason);
+    outcome->start = plain->start;
+    outcome->end = plain->end;
+    outcome->cost = plain->cost;
+    plain_snapshot(plain, &outcome->snapshot);
+    outcome->owned = plain;
+    outcome->release = release_plain;
+}
 
 /* What the seed program does, its errors corrected: on top of the user's keys, which say what is
  * computed. */
@@ -74,7 +97,7 @@ static enum status average(struct job *job, int order, struct error *error)
         double value = job->point->error;
         struct run other;
         struct run_settings asked = job->run.asked;
-        asked.plain = false; /* the same method, and faster */
+        asked.solver = NULL; /* the same method, and faster */
         snprintf(key, sizeof key, "n=%zu", near);
         if (r && (settings_apply(&asked.settings, 1, keys, error) ||
                   run_resolve(&other, &asked, error) || error_at(&other, &value, error)))
@@ -206,8 +229,9 @@ static enum status prepare(const struct precision *precision, const struct sweep
     } else {
         scheme->reference =
             i + 2 == precision->scheme_count ? REFERENCE_SEED : REFERENCE_SEED_PLAIN;
-        settings->plain = scheme->reference == REFERENCE_SEED_PLAIN;
-        strcpy(scheme->label, settings->plain ? "seed method, plain C" : "seed method");
+        const bool plain = scheme->reference == REFERENCE_SEED_PLAIN;
+        if (plain) settings->solver = precision_plain;
+        strcpy(scheme->label, plain ? "seed method, plain C" : "seed method");
         strcpy(scheme->brief, scheme->label);
         if (settings_apply(&settings->settings, LENGTH(seed_keys), (char *const *)seed_keys,
                            error) ||
@@ -410,7 +434,7 @@ static char *level_key(const struct level *level, double *weight, struct error *
     for (size_t i = 0; i < work->count; i++) {
         const struct run *run = &work->jobs[i].run;
         if (work->level[i] != level->number) continue;
-        char *key = run_job_key(run, run->asked.plain ? "bench, plain" : "bench", error);
+        char *key = run_job_key(run, run->asked.solver ? "bench, plain" : "bench", error);
         if (!key) return NULL;
         hash = cache_hash(hash, key, strlen(key) + 1);
         free(key);

@@ -86,6 +86,10 @@ enum status precision_conclude(struct precision *precision, const struct pool *p
 /* The t-th target, in parts of the signal; ten times as much in 2D and 3D. */
 double precision_target(const struct precision *precision, size_t t);
 
+/* A run_solver: the seed program's corrected method in plain C (plain.h). STATUS_BAD_INPUT: a
+ * scheme that it does not know. */
+void precision_plain(const struct scene *scene, struct run_outcome *outcome);
+
 /* --- the arithmetic, by itself ---------------------------------------------------------------- */
 
 /* Fills what is judged of points that are there: the front, gains, the cheapest ways.

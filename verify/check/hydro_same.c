@@ -152,7 +152,7 @@ static void measure_threads(struct check_run *run, const void *subject)
     fancy.viscosity = VISCOSITY_RECONSTRUCTED;
     fancy.integrator = hydro_integrator("predicted_midpoint");
     fancy.energy = ENERGY_TOTAL;
-    /* odd, and enough for threads to be used at all: src/solver.h, WORTH_A_THREAD */
+    /* odd, and enough for threads to be used at all: src/core/solver.h, WORTH_A_THREAD */
     hydro_disordered(&state, 2113);
     for (int threads = 2; threads <= 7; threads += 5) {
         struct same_run same = {.scheme = &standard,

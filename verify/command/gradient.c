@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "command.h"
-#include "guest.h"
+#include "plugin_kernel.h"
 #include "point_cloud.h"
 #include "result.h"
 #include "text.h"

@@ -325,7 +325,7 @@ const struct command command_kernel = {
     .synopsis = "NAME|F.so --dim D",
     .help =
         "the certificate of a kernel: everything that makes it a right one, measured\n"
-        "F.so is a kernel of your own: the header verify/kernel/plugin.h says how to write it.\n"
+        "F.so is a kernel of your own: the header src/include/sphproof/plugin.h says how to write it.\n"
         "It runs in a process of its own: one that crashes, never returns or ends the process "
         "is a kernel\nthat fails. The certificate says how narrow a fault it could have missed."
         "\nExit status 1 if a property does not hold, 2 if F.so cannot be used at all.",

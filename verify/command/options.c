@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "guest.h"
+#include "plugin_kernel.h"
 #include "text.h"
 
 const char *options_value(const struct options *options, const char *name)

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "guest.h"
+#include "plugin_kernel.h"
 #include "initial_create.h"
 
 enum { SINC_ORDER = 5 };

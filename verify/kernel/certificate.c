@@ -89,3 +89,18 @@ void certificate_free(struct certificate *certificate)
     free(certificate->figures);
     certificate->figures = NULL;
 }
+
+enum status certificate_failing(const struct kernel *kernel, int dim, const struct terms *terms,
+                                json_t **failing, struct error *error)
+{
+    struct certificate *certificate = calloc(1, sizeof *certificate);
+    if (!certificate) return error_set(error, STATUS_ENVIRONMENT, "no memory for a certificate");
+    const enum status status = certificate_measure(certificate, kernel, dim, terms, error);
+    *failing = json_array();
+    for (size_t k = 0; k < certificate->figure_count && !status; k++)
+        if (!certificate->figures[k].passed)
+            json_array_append_new(*failing, json_string(certificate->figures[k].property->name));
+    if (!status) certificate_free(certificate);
+    free(certificate);
+    return status;
+}

@@ -49,6 +49,10 @@ enum status certificate_measure(struct certificate *certificate, const struct ke
                                 int dim, const struct terms *terms, struct error *error);
 void certificate_free(struct certificate *certificate);
 
+/* The names of the checks that fail, a new array: what plugin_certify wants. */
+enum status certificate_failing(const struct kernel *kernel, int dim, const struct terms *terms,
+                                json_t **failing, struct error *error);
+
 /* For a person; h: support radius in which lengths are given. */
 void certificate_print(const struct certificate *certificate, double h, FILE *stream, bool color);
 

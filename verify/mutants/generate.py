@@ -16,9 +16,9 @@ import subprocess
 import sys
 
 # What is judged, from the top of the tree.
-JUDGED = ("src/", "reference/", "verify/command/", "verify/judge/", "verify/library/", "verify/report/", "verify/scene/",
-          "verify/snapshot/", "verify/statistics/", "verify/study/", "verify/suite/", "verify/document/cache.c",
-          "verify/document/csv.c", "reports/")
+JUDGED = ("src/", "reference/", "verify/command/", "verify/judge/", "verify/library/", "verify/report/", "src/run/",
+          "src/readers/", "src/statistics/", "verify/study/", "verify/suite/", "src/support/cache.c",
+          "src/support/csv.c", "reports/")
 PURE = set("""fabs sqrt cbrt pow exp expm1 log log1p log10 sin cos tan atan2 atan hypot floor ceil round fmin fmax
 fma isfinite isnan lround largest least power labs abs""".split())
 SWAPPED_CALLS = {"fmin": "fmax", "fmax": "fmin", "fminl": "fmaxl", "fmaxl": "fminl", "least": "largest", "largest": "least"}

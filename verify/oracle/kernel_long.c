@@ -27,7 +27,7 @@
 #define tan  tanl
 #define double long double
 #define KERNEL(name, ...)
-#include "kernels.def"
+#include "kernel/kernels.def"
 #undef KERNEL
 #undef double
 
@@ -36,7 +36,7 @@ static const struct {
     kernel_long_shape *w, *dw;
 } list[] = {
 #define KERNEL(name, ...) {#name, name##_w, name##_dw},
-#include "kernels.def"
+#include "kernel/kernels.def"
 #undef KERNEL
 };
 

@@ -133,7 +133,7 @@ def row(name):
 
 @row("kernel")
 def kernel(tree):
-    tree.new("src/kernel/wendland_c8.h", r"""
+    tree.new("src/core/kernel/wendland_c8.h", r"""
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Wendland C8: w = (1-q)^10 (1 + 10 q + 42 q^2 + 90 q^3 + 429/5 q^4). */
 #ifndef KERNEL_WENDLAND_C8_H
@@ -158,7 +158,7 @@ KERNEL(wendland_c8, .member = {"wendland_c8", "Wendland C8", "Wendland 1995"},
        .constant = {0, 525. / 256, 40 / (3 * M_PI), 1785 / (64 * M_PI)}, .smoothness = {0, 8, 8, 8},
        .default_eta = 4)
 """)
-    tree.append("src/kernels.def", '#include "kernel/wendland_c8.h"')
+    tree.append("src/core/kernel/kernels.def", '#include "kernel/wendland_c8.h"')
     tree.build()
     tree.listed("kernels", "wendland_c8")
     tree.program("kernel", "wendland_c8", "--dim", "3")
@@ -167,7 +167,7 @@ KERNEL(wendland_c8, .member = {"wendland_c8", "Wendland C8", "Wendland 1995"},
     tree.reported("^kernel wendland_c8, dim 2$")
     tree.reported("^stress limits: wendland_c8, ia$")
     tree.keep()
-    tree.replace("src/kernel/wendland_c8.h", "40 / (3 * M_PI)", "40.001 / (3 * M_PI)")
+    tree.replace("src/core/kernel/wendland_c8.h", "40 / (3 * M_PI)", "40.001 / (3 * M_PI)")
     tree.build()
     tree.rejected("kernels/normalisation")
     tree.undo()
@@ -175,7 +175,7 @@ KERNEL(wendland_c8, .member = {"wendland_c8", "Wendland C8", "Wendland 1995"},
 
 @row("integrator")
 def integrator(tree):
-    tree.new("src/integrator/ralston.h", r"""
+    tree.new("src/core/integrator/ralston.h", r"""
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Ralston's second-order method: y1 = y + 2/3 dt L(y); y = y + dt (L(y) + 3 L(y1))/4. */
 #ifndef INTEGRATOR_RALSTON_H
@@ -194,7 +194,7 @@ static enum status ralston_step(struct simulation *simulation, double dt, struct
 INTEGRATOR(ralston, .member = {"ralston", "Runge-Kutta, least error bound", "Ralston 1962"}, .order = 2,
            .evaluations = 2, .cfl = 0.3, .ends_evaluated = true)
 """)
-    tree.append("src/integrators.def", '#include "integrator/ralston.h"')
+    tree.append("src/core/integrator/integrators.def", '#include "integrator/ralston.h"')
     tree.build()
     tree.listed("integrators", "ralston")
     tree.program("run", "sod", "integrator=ralston", "n=100", "--quiet")
@@ -205,7 +205,7 @@ INTEGRATOR(ralston, .member = {"ralston", "Runge-Kutta, least error bound", "Ral
         raise Failed("what has no second writing of ralston's steps does not say so")
     tree.reported("^stress steps: ralston, 2$")
     tree.keep()
-    tree.replace("src/integrator/ralston.h", "0.375, 0.625, 0.75", "0.4, 0.6, 0.75")
+    tree.replace("src/core/integrator/ralston.h", "0.375, 0.625, 0.75", "0.4, 0.6, 0.75")
     tree.build()
     tree.rejected("hydro/integrator_order")
     tree.undo()
@@ -232,14 +232,14 @@ def operator(tree):
 def viscosity(tree):
     line = ('CHOICE(VISCOSITY_QUADRATIC, "quadratic", "quadratic in compression", "von Neumann & Richtmyer 1950", '
             '__VA_ARGS__)')
-    last = re.search(r'    CHOICE\(VISCOSITY_FADING.*?__VA_ARGS__\)', tree.read("src/families.h"), re.S).group()
-    tree.replace("src/families.h", last, last + " " + line)
+    last = re.search(r'    CHOICE\(VISCOSITY_FADING.*?__VA_ARGS__\)', tree.read("src/core/families.h"), re.S).group()
+    tree.replace("src/core/families.h", last, last + " " + line)
     if "VISCOSITY_QUADRATIC" not in tree.call(["ninja", "-C", tree.folder, "sphproof"], status=1):
         raise Failed("a viscosity that has no formula compiles")
-    tree.replace("src/pair.h", "bool midpoint, varying, fading;", "bool midpoint, varying, fading, quadratic;")
-    tree.replace("src/pair.h", "    case VISCOSITY_FADING:\n", "    case VISCOSITY_QUADRATIC:\n"
+    tree.replace("src/core/pair.h", "bool midpoint, varying, fading;", "bool midpoint, varying, fading, quadratic;")
+    tree.replace("src/core/pair.h", "    case VISCOSITY_FADING:\n", "    case VISCOSITY_QUADRATIC:\n"
                  "        return (struct pair_form){.quadratic = true};\n    case VISCOSITY_FADING:\n")
-    tree.replace("src/pair.h", "form.fading ?", "form.quadratic ? 0 : form.fading ?")
+    tree.replace("src/core/pair.h", "form.fading ?", "form.quadratic ? 0 : form.fading ?")
     tree.replace("verify/oracle/oracle.c", "    case VISCOSITY_FADING:\n",
                  "    case VISCOSITY_FADING:\n    case VISCOSITY_QUADRATIC:\n")
     fading = "    if (scheme->viscosity == VISCOSITY_FADING) c = "
@@ -251,7 +251,7 @@ def viscosity(tree):
     tree.checked("viscosity quadratic", "hydro/conservation", "hydro/stamped", "hydro/rates")
     tree.reported("^checks of hydro$")
     tree.keep()
-    tree.replace("src/pair.h", "form.quadratic ? 0 :", "form.quadratic ? 0.01 * c_sum :")
+    tree.replace("src/core/pair.h", "form.quadratic ? 0 :", "form.quadratic ? 0.01 * c_sum :")
     tree.build()
     tree.rejected("hydro/rates")
     tree.undo()
@@ -289,7 +289,7 @@ double entropy_wave_density(double rho0, double amplitude, double length, double
 def problem(tree):
     if not os.path.exists(tree.path("reference/entropy_wave.h")):
         exact(tree)
-    tree.new("verify/scene/problem/entropy_wave.c", r"""
+    tree.new("src/run/problem/entropy_wave.c", r"""
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * An entropy wave in a periodic box; particles in equal cells, whose masses carry the density. */
 #include "entropy_wave.h"
@@ -357,7 +357,7 @@ const struct problem problem_entropy_wave = {
     .functionals = {&functional_mean_internal_energy, &functional_mean_pressure},
 };
 """)
-    tree.append("verify/scene/problems.def", "PROBLEM(entropy_wave)")
+    tree.append("src/run/problems.def", "PROBLEM(entropy_wave)")
     tree.build()
     if "entropy_wave" not in tree.program("list", "keys"):
         raise Failed("`sphproof list keys` does not name the problem")
@@ -399,10 +399,10 @@ n = 32 48 64 96
 
 @row("format of snapshots that are written")
 def writer(tree):
-    csv = tree.read("verify/scene/writer/csv.c")
-    tree.new("verify/scene/writer/table.c", csv.replace("_csv", "_table").replace('{"csv"', '{"table"')
+    csv = tree.read("src/run/writer/csv.c")
+    tree.new("src/run/writer/table.c", csv.replace("_csv", "_table").replace('{"csv"', '{"table"')
              .replace('".csv .txt .dat"', '".table"').replace("','", "';'"))
-    tree.append("verify/scene/writers.def", "WRITER(table)")
+    tree.append("src/run/writers.def", "WRITER(table)")
     tree.build()
     tree.listed("writers", "table")
     path = os.path.join(tree.work, "s.table")
@@ -503,7 +503,7 @@ def source_mutant(tree):
 [src_norm_twice]
 fault: twice L1, less the NaN
 group: norms
-file: verify/statistics/norm.c
+file: src/statistics/norm.c
 - %s
 + %s"""
                 % (L1, L1.replace("=", "= 0.5 *", 1)))

@@ -48,7 +48,7 @@ def files_below(folder):
 def expected(source, libdir):
     """The files, from the lists in the source."""
     commands = re.findall(r"^COMMAND\((\w+)\)", read(os.path.join(source, "verify/command/commands.def")), re.M)
-    headers = [name for name in os.listdir(os.path.join(source, "verify/library/sphproof")) if name.endswith(".h")]
+    headers = [name for name in os.listdir(os.path.join(source, "src/include/sphproof")) if name.endswith(".h")]
     cases = [name for name in os.listdir(os.path.join(source, "cases")) if name.endswith(".ini")]
     version = re.search(r"version: '([\d.]+)'", read(os.path.join(source, "meson.build")))[1]
     return commands, sorted(
@@ -58,7 +58,7 @@ def expected(source, libdir):
          "share/zsh/site-functions/_sphproof", "share/man/man1/sphproof.1", "share/sphproof/sphproof-1.schema.json",
          "sphproof.py"]  # wherever this Python looks
         + ["share/man/man1/sphproof-%s.1" % name for name in commands]
-        + ["include/sphproof/" + name for name in headers + ["plugin.h"]]
+        + ["include/sphproof/" + name for name in headers]
         + ["share/sphproof/cases/" + name for name in cases])
 
 

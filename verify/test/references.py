@@ -129,7 +129,7 @@ def check(source):
 
 
 GOOD = {
-    "README.md": "# Program\n## Adding things\nA kernel is a file in `src/kernel/NAME.h`; loops are `src/loop_*.c`.\n",
+    "README.md": "# Program\n## Adding things\nA kernel is a file in `src/core/kernel/NAME.h`; loops are `src/loop_*.c`.\n",
     "src/CONVENTIONS.md": "# Conventions\n## 1. Symbols\n- (1.1) P = 1\n- (1.2) eq. 1.1 again\n",
     "src/loop_one.c": "/* CONVENTIONS eq. 1.1, see add_up and README, \"Adding things\" */\nint add_up(void);\n",
     "src/two.h": "/* CONVENTIONS eqs. 1.1\n * and 1.2, section 1 of CONVENTIONS; loop_one.c */\n",

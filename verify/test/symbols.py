@@ -36,7 +36,12 @@ def source_of(member, files):
     """The file that an object is made of; objects carry the end of its path, slashes as underscores."""
     name = re.sub(r"\.o(bj)?$", "", os.path.basename(member))
     found = [path for flat, path in files.items() if flat == name or flat.endswith("_" + name)]
-    return min(found, key=len) if found else re.sub(r"^meson-generated_(\.\._)*", "", name)
+    if found:
+        return min(found, key=len)
+    generated = re.sub(r"^meson-generated_(\.\._)*", "", name)
+    folders = {os.path.dirname(path).replace(os.sep, "_") + "_" for path in files.values()}
+    folder = max((f for f in folders if generated.startswith(f)), key=len, default="")
+    return generated[len(folder):]
 
 
 def prefixes(path):

@@ -295,7 +295,7 @@ static void compare_plain(const char *name, int n, char *const *more)
     settings->threads = 1;
     assert_int_equal(run_resolve(&run, settings, &error), STATUS_OK);
     assert_int_equal(run_execute(&run, &fast, &error), STATUS_OK);
-    run.asked.plain = true;
+    run.asked.solver = precision_plain;
     assert_int_equal(run_execute(&run, &plain, &error), STATUS_OK);
     assert_int_equal(plain.n, fast.n);
     assert_int_equal(plain.cost.steps, fast.cost.steps);
@@ -343,7 +343,7 @@ static void test_plain_refuses_other_schemes(void **state)
     struct run_result result;
     struct error error = {0};
     assert_int_equal(run_prepare(settings, "sod", 2, keys, &error), 0);
-    settings->plain = true;
+    settings->solver = precision_plain;
     assert_int_equal(run_resolve(&run, settings, &error), STATUS_OK);
     assert_int_equal(run_execute(&run, &result, &error), STATUS_BAD_INPUT);
     assert_non_null(strstr(error.message, "cubic_spline"));

@@ -19,7 +19,7 @@ if grep '^worse' "$work/same.log" | grep -v '_s$\|seconds$\|ns_per_[a-z]*$\|meri
 grep -q '^## sphproof: All ' "$work/same.log"
 echo "a tree against itself: the same"
 
-sed -i 's|return -6 \* (a \* a - 4 \* (b \* b));|return -6.0006 * (a * a - 4 * (b * b));|' src/kernel/cubic_spline.h
+sed -i 's|return -6 \* (a \* a - 4 \* (b \* b));|return -6.0006 * (a * a - 4 * (b * b));|' src/core/kernel/cubic_spline.h
 git diff --quiet && { echo "the fault does not apply any more"; exit 1; }
 if reports/compare >"$work/fault.log" 2>&1; then
     cat "$work/fault.log"

@@ -14,6 +14,7 @@
 #include "initial.h"
 #include "initial_create.h"
 #include "near.h"
+#include "precision.h"
 #include "run.h"
 
 static char folder[] = "run_way.XXXXXX";
@@ -61,7 +62,7 @@ static void what_is_conserved(void **state)
                                          "integrator=leapfrog kernel=cubic_spline");
         struct initial initial;
         struct error error;
-        run.asked.plain = plain;
+        run.asked.solver = plain ? precision_plain : NULL;
         assert_int_equal(initial_create(&initial, &run.problem, &run.settings, &error), STATUS_OK);
         double energy[2] = {0}, momentum[2] = {0}, size = 0;
         for (size_t i = 0; i < initial.n; i++) {
@@ -78,7 +79,7 @@ static void what_is_conserved(void **state)
             assert_null(none.storage);
             run =
                 resolved("sod", "n=60 t_end=0.1 integrator=modified_leapfrog kernel=cubic_spline");
-            run.asked.plain = true;
+            run.asked.solver = precision_plain;
         }
         struct run_result result = {0};
         if (run_execute(&run, &result, &error)) fail_msg("%s", error.message);

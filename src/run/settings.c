@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "guest.h"
+#include "plugin_kernel.h"
 #include "integrator.h"
 #include "text.h"
 

@@ -11,7 +11,6 @@
 #include "growth.h"
 #include "initial.h"
 #include "initial_create.h"
-#include "plain.h"
 #include "problem_prepare.h"
 #include "run_measure.h"
 #include "snapshot_writer.h"
@@ -226,15 +225,7 @@ static void measure_conservation(struct run_result *result, const struct conserv
     result->energy = drift.energy;
 }
 
-/* What a solver leaves behind; the snapshot's arrays are still the solver's. */
-struct outcome {
-    enum status status; /* of the run */
-    struct error reason;
-    struct conservation start, end;
-    struct snapshot snapshot;
-};
-
-static enum status finish(struct run_result *result, const struct outcome *outcome,
+static enum status finish(struct run_result *result, const struct run_outcome *outcome,
                           struct error *error)
 {
     if (outcome->status != STATUS_OK && outcome->status != STATUS_BROKE_DOWN) {
@@ -401,7 +392,7 @@ static enum status simulate(const struct run *run, struct run_result *result,
 {
     const struct run_settings *asked = &run->asked;
     struct simulation *simulation = NULL;
-    struct outcome outcome = {0};
+    struct run_outcome outcome = {0};
     const struct scene scene = run_scene(run, initial);
     enum status status = simulation_take(&scene, &simulation, &outcome.reason);
     initial_free(initial); /* the solver has copied it */
@@ -443,19 +434,15 @@ static enum status simulate(const struct run *run, struct run_result *result,
     return status ? status : run_measure_errors(result, error);
 }
 
-static enum status simulate_plainly(const struct run *run, struct run_result *result,
-                                    struct initial *initial, struct error *error)
+static enum status simulate_otherwise(const struct run *run, struct run_result *result,
+                                      struct initial *initial, struct error *error)
 {
-    struct plain plain;
-    struct outcome outcome = {0};
+    struct run_outcome outcome = {0};
     const struct scene scene = run_scene(run, initial);
-    outcome.status = plain_run(&plain, &scene, &outcome.reason);
-    outcome.start = plain.start;
-    outcome.end = plain.end;
-    result->cost = plain.cost;
-    plain_snapshot(&plain, &outcome.snapshot);
+    run->asked.solver(&scene, &outcome);
+    result->cost = outcome.cost;
     const enum status status = finish(result, &outcome, error);
-    plain_free(&plain);
+    if (outcome.release) outcome.release(outcome.owned);
     return status ? status : run_measure_errors(result, error);
 }
 
@@ -464,7 +451,7 @@ enum status run_execute(const struct run *run, struct run_result *result, struct
     struct initial initial;
     enum status status = begin(run, result, &initial, error);
     if (!status)
-        status = (run->asked.plain ? simulate_plainly : simulate)(run, result, &initial, error);
+        status = (run->asked.solver ? simulate_otherwise : simulate)(run, result, &initial, error);
     initial_free(&initial);
     if (status) {
         run_free(result);

@@ -7,13 +7,19 @@
 #ifndef SPHPROOF_GUEST_H
 #define SPHPROOF_GUEST_H
 
+#include <jansson.h>
 #include <stdbool.h>
 
-#include "kernel.h"
+#include "pieces.h"
 
-/* Guests are welcome from here on; without this (tests, fuzzing) no path is looked at.
- * uncertified: also those whose certificate fails. */
-void guest_allow(bool uncertified);
+/* Measures the certificate of a kernel in dim dimensions on these terms; failing: the names of the checks that fail, a
+ * new array. STATUS_ENVIRONMENT: no memory. */
+typedef enum status plugin_certify(const struct kernel *kernel, int dim, const struct terms *terms,
+                                   json_t **failing, struct error *error);
+
+/* Plug-ins may be used from here on, if their certificate passes; without this (tests, fuzzing) no
+ * path is looked at. uncertified: also those whose certificate fails. */
+void guest_allow(plugin_certify *certify, bool uncertified);
 
 /* Is word a path (PATH or PATH@HASH), not the name of a kernel? */
 bool guest_is_path(const char *word);

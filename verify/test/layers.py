@@ -2,54 +2,55 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Who includes whom, read from the sources.
 
-  rooms.py SOURCE            the folders of src, reference, reports and verify, and their files, must include
-                             each other without a circle, and a room of verify only those that its line in
-                             verify/meson.build names, or that these name
-  rooms.py SOURCE --print    the graph, one folder a line
-  rooms.py SOURCE --dot      the same for graphviz
+  layers.py SOURCE            the folders of src, reference, reports and verify, and their files, must include
+                              each other without a circle, and a library only the core and those libraries that
+                              its line in meson.build names, or that these name
+  layers.py SOURCE --print    the graph, one library a line
+  layers.py SOURCE --dot      the same for graphviz
 
-A folder and those inside it are one room (src/kernel is a family of src), but the folders inside it may not
-include each other in a circle either. The test first tries itself on small trees with faults."""
+A library is a folder with those inside it. What stands in src outside of the folders that meson.build names is
+the core. The test first tries itself on small trees with faults."""
 import os
 import re
 import sys
 import tempfile
 
-LAYERS = {"src": set(), "reference": set(), "reports": set()}  # of these each knows nobody
-BESIDE = {"verify/test", "verify/fuzz", "verify/examples", "verify/mutants", "verify/package", "verify"}  # see all, seen by nobody
+CORE, PUBLIC = "src", "src/include"  # the solver; the headers that are installed: everybody sees both
+FOLDERS = ("src", "reference", "reports", "verify")
 GENERATED = {"config.h", "kernel_names.h", "version.h"}
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.M)
-ROOM = re.compile(r"^\s*\['(\w+)', \[([^\]]*)\]", re.M)
+LAYER = re.compile(r"^\s*\['(\w+)', '([\w/]+)', \[([^\]]*)\]", re.M)
 
 
 def allowed(source):
-    """For each room the rooms it may see: verify's as its meson.build lists them."""
-    sees = dict(LAYERS)
-    with open(os.path.join(source, "verify", "meson.build")) as f:
-        lines = ROOM.findall(f.read())
-    for name, below in lines:
-        sees["verify/" + name] = set(LAYERS)
+    """For each library, by its folder, the folders of those that it may see, as meson.build lists them."""
+    with open(os.path.join(source, "meson.build")) as f:
+        layers = LAYER.findall(f.read())
+    folder = {name: where for name, where, _ in layers}
+    sees = {CORE: {PUBLIC}, PUBLIC: set()}
+    for name, where, below in layers:
+        sees[where] = {CORE, PUBLIC}
         for other in re.findall(r"\w+", below):
-            other = "verify/" + other
-            sees["verify/" + name] |= {other} | sees[other]
+            sees[where] |= {folder[other]} | sees[folder[other]]
     return sees
 
 
 def sources(source):
     files = []
-    for layer in list(LAYERS) + ["verify"]:
-        for folder, _, names in os.walk(os.path.join(source, layer)):
+    for top in FOLDERS:
+        for folder, _, names in os.walk(os.path.join(source, top)):
             files += [os.path.relpath(os.path.join(folder, n), source) for n in names
                       if n.endswith((".c", ".h", ".def"))]
     return sorted(files)
 
 
-def room_of(file):
-    parts = file.split("/")
-    return "/".join(parts[:2]) if parts[0] == "verify" and len(parts) > 2 else parts[0]
+def layer_of(file, layers):
+    """The longest of the layers' folders that a file stands in; what is below verify and no layer sees all."""
+    found = [layer for layer in layers if file.startswith(layer + "/")]
+    return max(found, key=len) if found else "/".join(file.split("/")[:2]) if file.startswith("verify/") else None
 
 
-def includes(source, files, troubles):
+def includes(source, files, layers, troubles):
     """file: the files that it includes. A name belongs to the folder that has it, its own first."""
     graph = {}
     for file in files:
@@ -58,7 +59,7 @@ def includes(source, files, troubles):
         graph[file] = set()
         for name in names:
             at = [f for f in files if f.endswith("/" + name)]
-            own = [f for f in at if room_of(f) == room_of(file)] or at
+            own = [f for f in at if layer_of(f, layers) == layer_of(file, layers)] or at
             if name in GENERATED:
                 continue
             if len(own) != 1:
@@ -107,42 +108,41 @@ def folders(graph):
 
 def judge(source):
     troubles = []
-    files = sources(source)
-    graph, sees = includes(source, files, troubles), allowed(source)
+    files, sees = sources(source), allowed(source)
+    graph = includes(source, files, sees, troubles)
     for what, found in ("files", circle(graph)), ("folders", circle(folders(graph))):
         if found:
             troubles.append("a circle of %s: %s" % (what, " -> ".join(found)))
     for file, others in graph.items():
-        room = room_of(file)
-        if room not in sees and room not in BESIDE:
-            troubles.append("%s: verify/meson.build lists no room '%s'" % (file, room))
+        here = layer_of(file, sees)
+        if here is None:
+            troubles.append("%s stands in no folder that meson.build lists" % file)
         for other in others:
-            there = room_of(other)
-            if there != room and (there in BESIDE or room in sees and there not in sees[room]):
+            there = layer_of(other, sees)
+            if there != here and (there not in sees or here in sees and there not in sees[here]):
                 troubles.append("%s includes %s: upward" % (file, other))
-    return troubles, graph
+    return troubles, graph, sees
 
 
 def try_itself():
     """A sound small tree, then the same with a fault: what the judge must say about it."""
-    sound = {"src/core.h": "", "reports/page.h": "", "reference/wave.h": "",
-             "verify/meson.build": "  ['low', [], []],\n  ['high', ['low'], []],\n",
-             "verify/low/low.c": '#include "low.h"\n#include "core.h"\n', "verify/low/low.h": "",
+    sound = {"meson.build": "  ['low', 'src/low', [], []],\n  ['page', 'reports', ['low'], []],\n"
+                            "  ['high', 'verify/high', ['low'], []],\n",
+             "src/core/core.h": "", "src/include/sphproof/all.h": "", "reports/page.h": '#include "low.h"\n',
+             "src/low/low.c": '#include "low.h"\n#include "core.h"\n#include "sphproof/all.h"\n', "src/low/low.h": "",
              "verify/high/high.c": '#include "low.h"\n#include "high.h"\n', "verify/high/high.h": "",
              "verify/test/test_high.c": '#include "high.h"\n'}
     faults = [({}, None),
-              ({"verify/low/low.h": '#include "high.h"\n'}, "upward"),
-              ({"verify/low/low.h": '#include "high.h"\n', "verify/high/high.h": '#include "low.h"\n'},
-               "circle of files"),
-              ({"verify/low/low.c": '#include "high.h"\n', "verify/high/high.c": '#include "low.h"\n'},
-               "circle of folders"),
+              ({"src/low/low.h": '#include "high.h"\n'}, "upward"),
+              ({"src/low/low.h": '#include "high.h"\n', "verify/high/high.h": '#include "low.h"\n'}, "circle of files"),
+              ({"src/low/low.c": '#include "high.h"\n', "verify/high/high.c": '#include "low.h"\n'}, "circle of folders"),
               ({"src/line/a.h": '#include "b.h"\n', "src/line/c.h": "", "src/cells/b.h": '#include "c.h"\n'},
                "circle of folders"),
-              ({"reports/page.h": '#include "core.h"\n'}, "upward"),
-              ({"src/core.h": '#include "wave.h"\n'}, "upward"),
+              ({"reports/page.h": '#include "high.h"\n'}, "upward"),
+              ({"src/core/core.h": '#include "low.h"\n'}, "upward"),
               ({"verify/high/high.c": '#include "test.h"\n', "verify/test/test.h": ""}, "upward"),
               ({"verify/high/high.c": '#include "nowhere.h"\n'}, "no place"),
-              ({"verify/new/new.c": ""}, "no room")]
+              ({"reference/new.c": ""}, "no folder")]
     for fault, expected in faults:
         with tempfile.TemporaryDirectory() as tree:
             for path, text in {**sound, **fault}.items():
@@ -152,24 +152,24 @@ def try_itself():
                     f.write(text)
             troubles = judge(tree)[0]
         if bool(troubles) != bool(expected) or expected and not any(expected in t for t in troubles):
-            sys.exit("rooms.py does not notice its own fault %s: expected '%s', said %s"
+            sys.exit("layers.py does not notice its own fault %s: expected '%s', said %s"
                      % (fault, expected, troubles))
 
 
 def main(source, how=""):
     try_itself()
-    troubles, graph = judge(source)
+    troubles, graph, sees = judge(source)
     for trouble in troubles:
         print(trouble)
-    rooms = {}
+    layers = {}
     for file, others in graph.items():
-        rooms.setdefault(room_of(file), set()).update(room_of(o) for o in others)
-    edges = [(a, sorted(rooms[a] - {a})) for a in sorted(rooms)]
+        layers.setdefault(layer_of(file, sees), set()).update(layer_of(o, sees) for o in others)
+    edges = [(a, sorted(layers[a] - {a})) for a in sorted(layers)]
     if how == "--print":
         print("\n".join("%-18s %s" % (a, " ".join(b)) for a, b in edges))
     if how == "--dot":
-        print("digraph rooms {\n" + "\n".join('  "%s" -> "%s";' % (a, c) for a, b in edges for c in b) + "\n}")
-    print("%d files, %d rooms, %d faults" % (len(graph), len(rooms), len(troubles)))
+        print("digraph layers {\n" + "\n".join('  "%s" -> "%s";' % (a, c) for a, b in edges for c in b) + "\n}")
+    print("%d files, %d libraries and folders, %d faults" % (len(graph), len(layers), len(troubles)))
     return 1 if troubles else 0
 
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "guest.h"
+#include "plugin_kernel.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -11,8 +11,8 @@
 #include <sys/stat.h>
 
 #include "cache.h"
-#include "certificate.h"
 #include "guard.h"
+#include "measure.h"
 #include "user_kernel.h"
 
 enum { HASH_DIGITS = 16, PATH_SIZE = 200, NAME_SIZE = PATH_SIZE + 1 + HASH_DIGITS + 1 };
@@ -25,11 +25,12 @@ struct guest {
 
 static struct guest guests[KERNEL_GUESTS_MAX];
 static int guest_count;
-static bool allowed, any_certificate;
+static plugin_certify *certificate; /* NULL: no plug-in is allowed */
+static bool any_certificate;
 
-void guest_allow(bool uncertified)
+void guest_allow(plugin_certify *certify, bool uncertified)
 {
-    allowed = true;
+    certificate = certify;
     any_certificate = uncertified;
 }
 
@@ -48,7 +49,7 @@ bool guest_is_path(const char *word)
     const char *hash = hash_of(word);
     char path[PATH_SIZE];
     snprintf(path, sizeof path, "%.*s", (int)(hash ? hash - 1 - word : PATH_SIZE), word);
-    return allowed && user_kernel_is_path(path);
+    return certificate && user_kernel_is_path(path);
 }
 
 /* The hash of the file's content. */
@@ -113,20 +114,12 @@ static enum status certify(const void *context, json_t **reply, struct error *er
 {
     const struct errand *errand = context;
     struct user_kernel user;
-    struct certificate *certificate = calloc(1, sizeof *certificate);
-    if (!certificate) return error_set(error, STATUS_ENVIRONMENT, "no memory for a certificate");
     enum status status = user_kernel_load(&user, errand->path, errand->dim, NULL, error);
     if (!status) {
         const struct terms terms = user_kernel_terms(&user, errand->dim);
-        status = certificate_measure(certificate, &user.kernel, errand->dim, &terms, error);
-        *reply = json_array();
-        for (size_t k = 0; k < certificate->figure_count && !status; k++)
-            if (!certificate->figures[k].passed)
-                json_array_append_new(*reply, json_string(certificate->figures[k].property->name));
-        if (!status) certificate_free(certificate);
+        status = certificate(&user.kernel, errand->dim, &terms, reply, error);
         user_kernel_unload(&user);
     }
-    free(certificate);
     return status;
 }
 

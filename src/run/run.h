@@ -25,13 +25,28 @@
 
 enum { RUN_PLAN_MAX = 32 };
 
+/* What a solver leaves behind. */
+struct run_outcome {
+    enum status status; /* of the run */
+    struct error reason;
+    struct conservation start, end;
+    struct simulation_cost cost;
+    struct snapshot snapshot;    /* its arrays belong to the solver, until it is released */
+    void *owned;                 /* by the solver */
+    void (*release)(void *owned); /* NULL: there is nothing to release */
+};
+
+/* Another solver than that of the core: runs a setup to its t_end. A status that is neither
+ * STATUS_OK nor STATUS_BROKE_DOWN leaves no snapshot. */
+typedef void run_solver(const struct scene *scene, struct run_outcome *outcome);
+
 struct run_settings {
     struct case_file file;
     struct settings settings;      /* the case's with the user's on top; `auto` still in it */
     int threads;                   /* >= 1 */
     bool any_window;               /* run also where the mirrored tube reaches the window */
     bool unstamped;                /* by the loops that look every choice up */
-    bool plain;                    /* by plain.c, not by the solver: the baseline of bench */
+    run_solver *solver;            /* computes the run; NULL: the core solver */
     simulation_progress *progress; /* called every 32 steps; may be NULL */
     void *progress_context;
     bool each_step;                /* it is called after each: they may be long */

@@ -8,19 +8,19 @@
 /* One pass over the list defines the descriptors, a second one lists them. */
 #define KERNEL(name, ...)                                                                          \
     static const struct kernel kernel_##name = {.w = name##_w, .dw = name##_dw, __VA_ARGS__};
-#include "kernels.def"
+#include "kernel/kernels.def"
 #undef KERNEL
 
 enum {
     BUILT_IN = 0
 #define KERNEL(name, ...) +1
-#include "kernels.def"
+#include "kernel/kernels.def"
 #undef KERNEL
 };
 
 static const struct member *members[BUILT_IN + KERNEL_GUESTS_MAX] = {
 #define KERNEL(name, ...) &kernel_##name.member,
-#include "kernels.def"
+#include "kernel/kernels.def"
 #undef KERNEL
 };
 static int guests;

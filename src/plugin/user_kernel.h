@@ -8,7 +8,7 @@
 #include <stdbool.h>
 
 #include "pieces.h"
-#include "plugin.h"
+#include "sphproof/plugin.h"
 
 struct user_kernel {
     struct kernel kernel; /* valid until user_kernel_unload */

@@ -39,7 +39,7 @@ struct kernel {
         enum pair_width pair_width; /* of the standard gradient */
     } predicted;
     int order; /* n of sinc_n; 0 for the others */
-    /* A plug-in's own functions (see verify/kernel/plugin.h); NULL for the built-in kernels. */
+    /* A plug-in's own functions (see src/include/sphproof/plugin.h); NULL for the built-in kernels. */
     double (*plugin_w)(double q, int dim);
     double (*plugin_dw)(double q, int dim);
     double (*plugin_dw_dh)(double r, double h, int dim);

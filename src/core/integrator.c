@@ -5,12 +5,12 @@
 
 #define INTEGRATOR(name, ...)                                                                      \
     static const struct integrator integrator_##name = {.step = name##_step, __VA_ARGS__};
-#include "integrators.def"
+#include "integrator/integrators.def"
 #undef INTEGRATOR
 
 static const struct member *const members[] = {
 #define INTEGRATOR(name, ...) &integrator_##name.member,
-#include "integrators.def"
+#include "integrator/integrators.def"
 #undef INTEGRATOR
 };
 
