@@ -18,26 +18,26 @@ enum {
 #undef KERNEL
 };
 
-static const struct member *members[BUILT_IN + KERNEL_GUESTS_MAX] = {
+static const struct member *members[BUILT_IN + KERNEL_PLUGINS_MAX] = {
 #define KERNEL(name, ...) &kernel_##name.member,
 #include "kernel/kernels.def"
 #undef KERNEL
 };
-static int guests;
+static int plugins;
 
 const struct family kernel_family = {"kernels", "kernels W(r,h), h = support radius", members,
                                      BUILT_IN};
 
-int kernel_add(const struct kernel *guest)
+int kernel_add(const struct kernel *plugin)
 {
-    if (guests == KERNEL_GUESTS_MAX) return -1;
-    members[BUILT_IN + guests] = &guest->member;
-    return BUILT_IN + guests++;
+    if (plugins == KERNEL_PLUGINS_MAX) return -1;
+    members[BUILT_IN + plugins] = &plugin->member;
+    return BUILT_IN + plugins++;
 }
 
 int kernel_index(const char *name)
 {
-    for (int i = 0; i < BUILT_IN + guests; i++)
+    for (int i = 0; i < BUILT_IN + plugins; i++)
         if (strcmp(members[i]->name, name) == 0) return i;
     return -1;
 }

@@ -47,16 +47,16 @@ struct kernel {
 
 extern const struct family kernel_family;
 
-/* Guests: kernels that a program brings besides those of kernels.def. In kernel_family.members they
+/* Plug-ins: kernels that a program brings besides those of kernels.def. In kernel_family.members they
  * stand behind its n members, so that who goes through the family does not meet them; they are
- * found by name alone, and have no stamped loops. plugin_w is set, the constants are the guest's.
+ * found by name alone, and have no stamped loops. plugin_w is set, the constants are the plug-in's.
  */
-enum { KERNEL_GUESTS_MAX = 16 };
+enum { KERNEL_PLUGINS_MAX = 16 };
 
-/* Takes a guest in (not owned, with a name that no other has); its place, -1: there is no room. */
-int kernel_add(const struct kernel *guest);
+/* Takes a plug-in in (not owned, with a name that no other has); its place, -1: there is no room. */
+int kernel_add(const struct kernel *plugin);
 
-/* Place in kernel_family.members of the kernel called name, a guest or not; -1: there is none. */
+/* Place in kernel_family.members of the kernel called name, a plug-in or not; -1: there is none. */
 int kernel_index(const char *name);
 
 /* Copies the kernel called name into *kernel and completes it: sinc_order (3..12) is used by sinc

@@ -17,18 +17,18 @@
 
 enum { HASH_DIGITS = 16, PATH_SIZE = 200, NAME_SIZE = PATH_SIZE + 1 + HASH_DIGITS + 1 };
 
-struct guest {
+struct plugin {
     char path[PATH_SIZE], name[NAME_SIZE];
     struct kernel kernel;
     struct user_kernel user[KERNEL_DIM_MAX + 1]; /* loaded once for each dimension */
 };
 
-static struct guest guests[KERNEL_GUESTS_MAX];
-static int guest_count;
+static struct plugin plugins[KERNEL_PLUGINS_MAX];
+static int plugin_count;
 static plugin_certify *certificate; /* NULL: no plug-in is allowed */
 static bool any_certificate;
 
-void guest_allow(plugin_certify *certify, bool uncertified)
+void plugin_allow(plugin_certify *certify, bool uncertified)
 {
     certificate = certify;
     any_certificate = uncertified;
@@ -44,7 +44,7 @@ static const char *hash_of(const char *word)
     return at + 1;
 }
 
-bool guest_is_path(const char *word)
+bool plugin_is_path(const char *word)
 {
     const char *hash = hash_of(word);
     char path[PATH_SIZE];
@@ -72,7 +72,7 @@ static enum status hash_file(const char *path, char digits[HASH_DIGITS + 1], str
     return STATUS_OK;
 }
 
-enum status guest_find(const char *word, int *index, struct error *error)
+enum status plugin_find(const char *word, int *index, struct error *error)
 {
     char digits[HASH_DIGITS + 1], path[PATH_SIZE], name[NAME_SIZE];
     const char *hash = hash_of(word);
@@ -89,16 +89,16 @@ enum status guest_find(const char *word, int *index, struct error *error)
                          path, digits, hash);
     snprintf(name, sizeof name, "%s@%s", path, digits);
     if ((*index = kernel_index(name)) >= 0) return STATUS_OK;
-    if (guest_count == KERNEL_GUESTS_MAX)
+    if (plugin_count == KERNEL_PLUGINS_MAX)
         return error_set(error, STATUS_BAD_INPUT, "kernel '%s': allowed: up to %d plug-ins", path,
-                         KERNEL_GUESTS_MAX);
-    struct guest *guest = &guests[guest_count];
-    strcpy(guest->path, path);
-    strcpy(guest->name, name);
-    guest->kernel.member = (struct member){guest->name, "user's kernel", ""};
-    if (guard_watch(guest->path, error)) return error->status;
-    guest_count++;
-    *index = kernel_add(&guest->kernel);
+                         KERNEL_PLUGINS_MAX);
+    struct plugin *plugin = &plugins[plugin_count];
+    strcpy(plugin->path, path);
+    strcpy(plugin->name, name);
+    plugin->kernel.member = (struct member){plugin->name, "user's kernel", ""};
+    if (guard_watch(plugin->path, error)) return error->status;
+    plugin_count++;
+    *index = kernel_add(&plugin->kernel);
     return STATUS_OK;
 }
 
@@ -139,24 +139,24 @@ static void find_faults(const struct guard_verdict *verdict, char *text, size_t 
         snprintf(text, size, "it prints, which would mix with results: %.80s", verdict->printed);
 }
 
-static enum status check(const struct guest *guest, int dim, struct error *error)
+static enum status check(const struct plugin *plugin, int dim, struct error *error)
 {
     char faults[300];
-    const struct errand errand = {guest->path, dim};
+    const struct errand errand = {plugin->path, dim};
     struct guard_verdict verdict;
     enum status status = guard_run(certify, &errand, GUARD_LIMIT, &verdict, error);
     if (!verdict.ended && verdict.reason[0])
-        error_set(error, status, "kernel '%s' is refused: it %s", guest->path, verdict.reason);
+        error_set(error, status, "kernel '%s' is refused: it %s", plugin->path, verdict.reason);
     if (!status) find_faults(&verdict, faults, sizeof faults);
     if (!status && faults[0] && any_certificate)
         fprintf(stderr, "sphproof: kernel '%s' is used although its certificate is refused: %s\n",
-                guest->path, faults);
+                plugin->path, faults);
     else if (!status && faults[0])
         status =
             error_set(error, STATUS_CHECK_FAILED,
                       "kernel '%s' is refused in dimension %d: %s (`sphproof kernel %s --dim %d` "
                       "shows all; --uncertified takes it nevertheless)",
-                      guest->path, dim, faults, guest->path, dim);
+                      plugin->path, dim, faults, plugin->path, dim);
     guard_free(&verdict);
     return status;
 }
@@ -186,11 +186,11 @@ static double usual_eta(const struct kernel *kernel, int dim)
     return isfinite(eta) ? round(1000 * eta) / 1000 : cubic.default_eta;
 }
 
-static enum status load(struct guest *guest, int dim, struct error *error)
+static enum status load(struct plugin *plugin, int dim, struct error *error)
 {
-    struct user_kernel *user = &guest->user[dim];
-    if (user_kernel_load(user, guest->path, dim, NULL, error)) return error->status;
-    struct kernel *kernel = &guest->kernel, *loaded = &user->kernel;
+    struct user_kernel *user = &plugin->user[dim];
+    if (user_kernel_load(user, plugin->path, dim, NULL, error)) return error->status;
+    struct kernel *kernel = &plugin->kernel, *loaded = &user->kernel;
     kernel->w = loaded->w;
     kernel->dw = loaded->dw;
     kernel->plugin_w = loaded->plugin_w;
@@ -207,17 +207,17 @@ static enum status load(struct guest *guest, int dim, struct error *error)
     return STATUS_OK;
 }
 
-enum status guest_prepare(int index, int dim, struct error *error)
+enum status plugin_prepare(int index, int dim, struct error *error)
 {
-    struct guest *guest = guests + index - (int)kernel_family.n;
-    if (index < (int)kernel_family.n || guest->user[dim].library) return STATUS_OK;
-    if (check(guest, dim, error)) return error->status;
-    return load(guest, dim, error);
+    struct plugin *plugin = plugins + index - (int)kernel_family.n;
+    if (index < (int)kernel_family.n || plugin->user[dim].library) return STATUS_OK;
+    if (check(plugin, dim, error)) return error->status;
+    return load(plugin, dim, error);
 }
 
-enum status guest_select(struct kernel *kernel, int index, int sinc_order, int dim,
+enum status plugin_select(struct kernel *kernel, int index, int sinc_order, int dim,
                          struct error *error)
 {
-    if (guest_prepare(index, dim, error)) return error->status;
+    if (plugin_prepare(index, dim, error)) return error->status;
     return kernel_select(kernel, kernel_family.members[index]->name, sinc_order, error);
 }

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * A user's kernels in runs: wherever a kernel is named, the path of a shared object (plugin.h) may
- * stand. It becomes a guest of kernel_family for this process, called PATH@HASH after the content
+ * stand. It becomes a plug-in of kernel_family for this process, called PATH@HASH after the content
  * of its file, so that documents and caches tell one from another; PATH@HASH may be typed as well
  * and then wants that content. Its certificate is made first, in a process of its own (guard.h);
- * then it is called in this one, which is watched from the first guest on (guard_watch). */
-#ifndef SPHPROOF_GUEST_H
-#define SPHPROOF_GUEST_H
+ * then it is called in this one, which is watched from the first plug-in on (guard_watch). */
+#ifndef SPHPROOF_PLUGIN_KERNEL_H
+#define SPHPROOF_PLUGIN_KERNEL_H
 
 #include <jansson.h>
 #include <stdbool.h>
@@ -19,22 +19,22 @@ typedef enum status plugin_certify(const struct kernel *kernel, int dim, const s
 
 /* Plug-ins may be used from here on, if their certificate passes; without this (tests, fuzzing) no
  * path is looked at. uncertified: also those whose certificate fails. */
-void guest_allow(plugin_certify *certify, bool uncertified);
+void plugin_allow(plugin_certify *certify, bool uncertified);
 
 /* Is word a path (PATH or PATH@HASH), not the name of a kernel? */
-bool guest_is_path(const char *word);
+bool plugin_is_path(const char *word);
 
 /* The place of the kernel at that path in kernel_family.members. STATUS_BAD_INPUT: no such file,
- * other content than HASH says, too many guests. */
-enum status guest_find(const char *word, int *index, struct error *error);
+ * other content than HASH says, too many plug-ins. */
+enum status plugin_find(const char *word, int *index, struct error *error);
 
-/* Makes the guest at that place ready for use in dim dimensions; built-in kernels are.
+/* Makes the plug-in at that place ready for use in dim dimensions; built-in kernels are.
  * STATUS_CHECK_FAILED: it is refused, with the checks of its certificate that fail;
  * STATUS_BAD_INPUT: it is no kernel. */
-enum status guest_prepare(int index, int dim, struct error *error);
+enum status plugin_prepare(int index, int dim, struct error *error);
 
-/* guest_prepare, then kernel_select, of the kernel at that place. */
-enum status guest_select(struct kernel *kernel, int index, int sinc_order, int dim,
+/* plugin_prepare, then kernel_select, of the kernel at that place. */
+enum status plugin_select(struct kernel *kernel, int index, int sinc_order, int dim,
                          struct error *error);
 
 #endif

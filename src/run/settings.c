@@ -172,9 +172,9 @@ static enum status read_choice(enum setting which, const char *text, const char 
                                struct error *error)
 {
     const struct setting_key *key = &setting_keys[which];
-    if (which == SETTING_kernel && guest_is_path(text)) {
+    if (which == SETTING_kernel && plugin_is_path(text)) {
         struct error reason;
-        if (!guest_find(text, choice, &reason)) return STATUS_OK;
+        if (!plugin_find(text, choice, &reason)) return STATUS_OK;
         return error_set(error, reason.status, "%s%s%s", where ? where : "", where ? ": " : "",
                          reason.message);
     }
@@ -339,7 +339,7 @@ static enum status read_scheme(const struct settings *settings, int dim, struct 
         .pair_width = IS_AUTO(pair_width),
         .h_method = IS_AUTO(h_method),
     };
-    return guest_select(&scheme->kernel, CHOICE_OF(kernel), (int)REAL_OF(sinc_n), dim, error);
+    return plugin_select(&scheme->kernel, CHOICE_OF(kernel), (int)REAL_OF(sinc_n), dim, error);
 #undef REAL_OF
 #undef CHOICE_OF
 #undef IS_AUTO

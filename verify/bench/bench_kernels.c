@@ -362,7 +362,7 @@ static enum status choose_kernels(struct bench *bench, const struct sweep *sweep
             sweep->key_count ? sweep->keys[0].values[k] : kernel_family.members[k]->name;
         const int index = kernel_index(name);
         for (int dim = 1; dim <= KERNEL_DIM_MAX; dim++)
-            if (guest_select(&bench->kernels[k], index, 5, dim, error)) return error->status;
+            if (plugin_select(&bench->kernels[k], index, 5, dim, error)) return error->status;
     }
     bench->row_max =
         bench->kernel_count * ((KERNEL_DIM_MAX - 1) * CELLS_ROWS +

@@ -277,7 +277,7 @@ static enum status execute(struct line *line, int argc, char **argv, struct erro
         return error_set(error, STATUS_BAD_INPUT,
                          "no command given; `sphproof --help` lists the commands");
     resolve_streams(line);
-    guest_allow(certificate_failing, line->uncertified);
+    plugin_allow(certificate_failing, line->uncertified);
     if (options->json && (status = output_probe(options->json, error))) return status;
     if ((status = threads_check(options->threads, error))) return status;
     line->options.count = line->n;

@@ -106,7 +106,7 @@ static enum status take_request(const struct options *options, int n, char **arg
         return error_set(error, STATUS_BAD_INPUT, "gradient: --dim '%.40s': allowed: 1, 2, 3", dim);
     r->dim = (int)number;
     if (options_kernel(options, &index, error) ||
-        guest_select(&r->kernel, index, SINC_ORDER, r->dim, error))
+        plugin_select(&r->kernel, index, SINC_ORDER, r->dim, error))
         return error->status;
     r->tolerance = 1e-9;
     if (take_positive(options, "eta", &r->eta, error) ||

@@ -34,7 +34,7 @@ enum status options_kernel(const struct options *options, int *index, struct err
     const char *word = options_value(options, "kernel");
     *index = -1;
     if (!word) return STATUS_OK;
-    if (guest_is_path(word)) return guest_find(word, index, error);
+    if (plugin_is_path(word)) return plugin_find(word, index, error);
     *index = kernel_index(word);
     return *index >= 0
                ? STATUS_OK

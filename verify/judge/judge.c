@@ -432,7 +432,7 @@ enum status judge_as(const char *path, const struct judge_request *request, bool
     if (!status) status = judge_place(request, judged, period, error);
     if (!status) status = complete(judged, judged->run.problem.gamma, error);
     if (!status && request->kernel >= 0)
-        status = guest_select(&kernel, request->kernel, SINC_ORDER, judged->file.dim, error);
+        status = plugin_select(&kernel, request->kernel, SINC_ORDER, judged->file.dim, error);
     if (!status && !glance)
         status = conventions_find(&judged->file, period, request->kernel < 0 ? NULL : &kernel,
                                   &request->width, &judged->conventions, error);

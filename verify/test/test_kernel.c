@@ -292,41 +292,41 @@ static double one(double q, int dim)
     return q < 1 ? 1 : 0;
 }
 
-static double guest_shape(const struct kernel *kernel, double q, int dim)
+static double plugin_shape(const struct kernel *kernel, double q, int dim)
 {
     return kernel->plugin_w(q, dim);
 }
 
-static double guest_dh(double r, double h, int dim)
+static double plugin_dh(double r, double h, int dim)
 {
     return 100 * r + 10 * h + dim;
 }
 
 /* As many as there is room for are found by name behind the others, as they are: constants are the
- * guest's, also where it has none. The last test: who has come stays. */
-static void test_guests(void **state)
+ * plug-in's, also where it has none. The last test: who has come stays. */
+static void test_plugins(void **state)
 {
     (void)state;
-    static struct kernel guests[KERNEL_GUESTS_MAX + 1];
-    static char names[KERNEL_GUESTS_MAX + 1][24];
+    static struct kernel plugins[KERNEL_PLUGINS_MAX + 1];
+    static char names[KERNEL_PLUGINS_MAX + 1][24];
     static const double knots[] = {0.3, 0.5};
     struct kernel cubic;
     assert_int_equal(kernel_select(&cubic, "cubic_spline", 5, NULL), STATUS_OK);
-    for (int k = 0; k <= KERNEL_GUESTS_MAX; k++) {
+    for (int k = 0; k <= KERNEL_PLUGINS_MAX; k++) {
         snprintf(names[k], sizeof names[k], "guest_%d", k);
-        guests[k] = (struct kernel){.member = {names[k], "", ""},
-                                    .w = guest_shape,
+        plugins[k] = (struct kernel){.member = {names[k], "", ""},
+                                    .w = plugin_shape,
                                     .plugin_w = one,
-                                    .plugin_dw_dh = k ? guest_dh : NULL,
+                                    .plugin_dw_dh = k ? plugin_dh : NULL,
                                     .constant = {0, 0, 1 / M_PI}};
         if (k == 5) /* one without a plug-in: normalised from knot to knot */
-            guests[k] = (struct kernel){
+            plugins[k] = (struct kernel){
                 .member = {names[k], "", ""}, .w = cubic.w, .knot_count = 2, .knots = knots};
-        assert_int_equal(kernel_add(&guests[k]), k < KERNEL_GUESTS_MAX ? KINDS + k : -1);
+        assert_int_equal(kernel_add(&plugins[k]), k < KERNEL_PLUGINS_MAX ? KINDS + k : -1);
     }
-    for (int k = 0; k <= KERNEL_GUESTS_MAX; k++) {
+    for (int k = 0; k <= KERNEL_PLUGINS_MAX; k++) {
         struct kernel kernel;
-        const bool in = k < KERNEL_GUESTS_MAX;
+        const bool in = k < KERNEL_PLUGINS_MAX;
         assert_int_equal(kernel_index(names[k]), in ? KINDS + k : -1);
         assert_int_equal(kernel_select(&kernel, names[k], 5, NULL), in ? 0 : STATUS_BAD_INPUT);
         if (!in) continue;
@@ -355,7 +355,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_table),       cmocka_unit_test(test_sinc_constants),
         cmocka_unit_test(test_sinc_limits), cmocka_unit_test(test_select),
         cmocka_unit_test(test_edges),       cmocka_unit_test(test_descriptors),
-        cmocka_unit_test(test_stamps),      cmocka_unit_test(test_guests),
+        cmocka_unit_test(test_stamps),      cmocka_unit_test(test_plugins),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -490,6 +490,6 @@ int main(void)
         cmocka_unit_test(written),
         cmocka_unit_test(documents_have_what_is_read),
     };
-    guest_allow(certificate_failing, false);
+    plugin_allow(certificate_failing, false);
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""guests.py PROGRAM [FOLDER [all]]: plug-in kernels in runs. A copy of the cubic spline gives the figures of
+"""plugin_runs.py PROGRAM [FOLDER [all]]: plug-in kernels in runs. A copy of the cubic spline gives the figures of
 the built-in one to round-off, in every command that names a kernel; one that is wrong is refused with its
 certificate; one that crashes, ends its process or does not come back is a clear error, and no process is
 left of it. FOLDER: of the plug-ins; without it, those that have been built beside PROGRAM."""
