@@ -13,7 +13,7 @@
 enum { NAME = 96, ROWS = 64, COLUMNS = 128, MAP_WIDTH = 330, MAP_HEIGHT = 240 };
 
 /* The words after `sphproof bench`, up to the options: the case and its keys. */
-static void scene_of(const json_t *document, char name[NAME])
+static void setup_of(const json_t *document, char name[NAME])
 {
     const char *from = value_text(document, "reproduce"), *bench = strstr(from, "bench ");
     snprintf(name, NAME, "%s", bench ? bench + 6 : from);
@@ -38,14 +38,14 @@ static void shares_table(struct buffer *to, const json_t *skips)
 {
     size_t i;
     const json_t *document;
-    html_table(to, "costs", "scene|#skipped|#possible|#CPU time|#spread|#difference|#bound|answer");
+    html_table(to, "costs", "setup|#skipped|#possible|#CPU time|#spread|#difference|#bound|answer");
     json_array_foreach(skips, i, document) {
         const json_t *sleep = sleep_of(document);
-        char scene[NAME];
-        scene_of(document, scene);
+        char setup[NAME];
+        setup_of(document, setup);
         const bool coarse = !strcmp(value_text(sleep, "possible_by"), "coarse threshold");
         buffer_add(to, "<tr>");
-        html_cell_code(to, scene);
+        html_cell_code(to, setup);
         percent(to, value_member(sleep, "skipped_fraction"), "");
         percent(to, value_member(sleep, "possible_fraction"), coarse ? "*" : "");
         buffer_format(to, "<td class=\"n\">%.2f</td>", 1 / value_member(sleep, "saves"));
@@ -89,18 +89,18 @@ static void plot_map(struct page_writer *writer, const json_t *document, size_t 
                                      .y_max = 1,
                                      .key = PLOT_KEY_NONE,
                                      .heat = &heat};
-    char scene[NAME], name[NAME], what[32], title[NAME + 32];
-    scene_of(document, scene);
+    char setup[NAME], name[NAME], what[32], title[NAME + 32];
+    setup_of(document, setup);
     snprintf(what, sizeof what, "asleep-%zu", number);
     page_plot_name(name, sizeof name, value_text(sleep_of(document), "case"), what);
-    snprintf(title, sizeof title, "%s: share of the gas asleep", scene);
+    snprintf(title, sizeof title, "%s: share of the gas asleep", setup);
     const struct plot plot = {.name = name,
                               .title = title,
                               .width = MAP_WIDTH,
                               .height = MAP_HEIGHT,
                               .panels = &panel,
                               .panel_count = 1};
-    page_plot(writer, &plot, scene);
+    page_plot(writer, &plot, setup);
 }
 
 void page_skips(struct page_writer *writer, const json_t *skips)

@@ -7,7 +7,7 @@
 
 #include "lanes.h"
 #include "matrix.h"
-#include "stamp.h"
+#include "specialise.h"
 
 static void add_field(struct lanes_layout *layout, enum lanes_field field, int values)
 {
@@ -106,7 +106,7 @@ struct cells *cells_create(const struct cells_method *method, size_t n)
     cells->method = *method;
     cells->pair_level = -1;
     cells->team = method->threads;
-    cells->shapes = shapes_of(method->kernel, method->box.dim, method->stamped);
+    cells->shapes = shapes_of(method->kernel, method->box.dim, method->specialised);
     cells->own_w = method->kernel->w(method->kernel, 0, method->box.dim);
     lay_out(cells);
     struct lanes_layout *const layouts[] = {&cells->density, &cells->matrix, &cells->force,

@@ -27,7 +27,7 @@ struct cells_method {
     struct grid_box box;
     bool wall[3]; /* mirrors particles at both ends of a direction that is not periodic */
     const struct kernel *kernel; /* must outlive the cells */
-    bool stamped;                /* kernel loops of its own, where it is a built-in one */
+    bool specialised;            /* kernel loops of its own, where it is a built-in one */
     enum gradient gradient;
     enum formulation formulation;
     enum pair_width pair_width;

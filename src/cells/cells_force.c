@@ -6,7 +6,7 @@
 #include <math.h>
 
 #include "pairs.h"
-#include "stamp.h"
+#include "specialise.h"
 
 /* --- records ---------------------------------------------------------------------------------- */
 

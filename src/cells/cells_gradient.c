@@ -5,7 +5,7 @@
 #include <math.h>
 
 #include "pairs.h"
-#include "stamp.h"
+#include "specialise.h"
 
 /* q at the particle's own width and at the neighbour's, or at a width of both. */
 CLONES static void widths(enum pair_width width, int count, const double *restrict r,

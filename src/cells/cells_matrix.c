@@ -7,7 +7,7 @@
 
 #include "moments.h"
 #include "pairs.h"
-#include "stamp.h"
+#include "specialise.h"
 
 static void fill_records(struct cells *cells, const struct cells_fields *fields)
 {

@@ -6,9 +6,9 @@
 
 #include "breakdown.h"
 #include "cells.h"
-#include "hold.h"
+#include "fixed.h"
 #include "solver.h"
-#include "stamp.h"
+#include "specialise.h"
 #include "state.h"
 #include "width.h"
 
@@ -56,7 +56,7 @@ static struct cells_method method_of(const struct simulation *simulation)
     struct cells_method method = {
         .box.dim = plan->dim,
         .kernel = &scheme->kernel,
-        .stamped = plan->stamped,
+        .specialised = plan->specialised,
         .gradient = scheme->gradient,
         .formulation = scheme->formulation,
         .pair_width = scheme->pair_width,
@@ -492,7 +492,7 @@ static enum status wake(struct simulation *simulation, struct error *error)
         status = search_for(simulation, room->parts, error);
         if (status) return status;
         cells_correct(room->cells, &room->fields, steps_woken_level(simulation), spans);
-        hold_rates(simulation);
+        fixed_rates(simulation);
     }
     status = steps_wake(simulation, room->woken, error);
     if (status) return status;
@@ -726,17 +726,17 @@ static bool sleeps(const struct simulation *simulation, ptrdiff_t i)
 }
 
 /* Neighbours are found anew in every evaluation. */
-static void carry_room(struct simulation *simulation, struct carrier *carrier)
+static void serialise_room(struct simulation *simulation, struct serialiser *serialiser)
 {
     struct room *room = room_of(simulation);
-    carry(carrier, room->block, room->arrays * room->stride * sizeof *room->block);
+    serialise(serialiser, room->block, room->arrays * room->stride * sizeof *room->block);
     if (room->asleep) {
         const size_t n = (size_t)simulation->particles.n;
-        carry(carrier, room->asleep, n);
-        carry(carrier, room->kept, n * sizeof *room->kept);
+        serialise(serialiser, room->asleep, n);
+        serialise(serialiser, room->kept, n * sizeof *room->kept);
     }
-    CARRY(carrier, room->sorted_at);
-    CARRY(carrier, room->sorted);
+    SERIALISE(serialiser, room->sorted_at);
+    SERIALISE(serialiser, room->sorted);
 }
 
 const struct sums cells_sums = {
@@ -760,5 +760,5 @@ const struct sums cells_sums = {
     .sleep_update = update_sleep,
     .sleeps = sleeps,
     .end = end,
-    .carry = carry_room,
+    .serialise = serialise_room,
 };

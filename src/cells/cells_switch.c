@@ -7,7 +7,7 @@
 #include <math.h>
 
 #include "moments.h"
-#include "stamp.h"
+#include "specialise.h"
 
 static double divergence_of(int dim, const struct cells_fields *fields, size_t i)
 {

@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "pairs.h"
-#include "stamp.h"
+#include "specialise.h"
 
 /* What find_slopes reads, at the particle and at its neighbours; P NULL: not projected. */
 struct slopes {

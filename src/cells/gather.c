@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gather.h"
 
-#include "stamp.h"
+#include "specialise.h"
 
 #if SPHPROOF_CLONES && defined __x86_64__
 #include <immintrin.h>

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "grid_inside.h"
-#include "stamp.h"
+#include "specialise.h"
 
 #ifdef _OPENMP
 #include <omp.h>

@@ -8,7 +8,7 @@
 #include <omp.h>
 #endif
 
-#include "stamp.h"
+#include "specialise.h"
 
 int lanes_longest_record(const struct cells *cells)
 {

@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "matrix.h"
-#include "stamp.h"
+#include "specialise.h"
 
 /* All entries of sum weight x x^T in one walk. */
 ALWAYS_INLINE void squares_body(int dim, int count, ptrdiff_t stride, const double *restrict weight,

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 
 #include "shapes.h"
-#include "stamp.h"
+#include "specialise.h"
 #include "matrix.h"
 #include "units.h"
 
@@ -341,8 +341,8 @@ BLOCK(3)
 static enum status gradients_of_block(const struct task *task, struct work *work, size_t block,
                                       uint64_t *pairs, struct error *error)
 {
-    static uint64_t (*const stamps[])(const struct task *, struct work *, size_t,
-                                      size_t) = {block_1, block_2, block_3};
+    static uint64_t (*const specialisations[])(const struct task *, struct work *, size_t,
+                                               size_t) = {block_1, block_2, block_3};
     const struct neighbours *nb = task->neighbours;
     const size_t first = block * NEIGHBOURS_BLOCK;
     const size_t end = first + NEIGHBOURS_BLOCK < nb->n ? first + NEIGHBOURS_BLOCK : nb->n;
@@ -352,7 +352,7 @@ static enum status gradients_of_block(const struct task *task, struct work *work
     if (status) return status;
     if (!work_reserve(work))
         return error_set(error, STATUS_ENVIRONMENT, "no memory for neighbours");
-    *pairs += stamps[nb->dim - 1](task, work, first, end);
+    *pairs += specialisations[nb->dim - 1](task, work, first, end);
     return STATUS_OK;
 }
 
@@ -406,7 +406,7 @@ static enum status apply(const struct operator_settings *settings, const struct 
     const size_t n = nb->n;
     struct task task = {.settings = settings,
                         .neighbours = nb,
-                        .shapes = shapes_of(settings->kernel, nb->dim, !settings->unstamped),
+                        .shapes = shapes_of(settings->kernel, nb->dim, !settings->generic),
                         .fields = fields,
                         .sorted = malloc((2 + fields) * (n + 1) * sizeof(double)),
                         .gradient = gradient,

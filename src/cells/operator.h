@@ -65,8 +65,8 @@ struct cloud { /* arrays of n, the caller's */
 struct operator_settings {
     const struct operator_form *form;
     const struct kernel *kernel;
-    bool unstamped; /* kernel through its function pointers: the oracle of the stamped loops */
-    int threads;    /* >= 1; the result does not depend on it */
+    bool generic; /* kernel through its function pointers: the oracle of the specialised loops */
+    int threads;  /* >= 1; the result does not depend on it */
 };
 
 /* Gradients of `fields` fields at once: f[k][i] at point i, component a goes to

@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "kernel_names.h"
-#include "stamp.h"
+#include "specialise.h"
 
 /* One loop over q. */
 #define LOOP(function, shape, dim, attributes)                                                     \
@@ -96,12 +96,12 @@ static const struct shapes any[KERNEL_DIM_MAX] = LOOPS(any);
 #define DECLARE(name) extern const struct shapes shapes_##name[KERNEL_DIM_MAX];
 KERNEL_NAMES(DECLARE)
 #define TABLE(name)   shapes_##name,
-static const struct shapes *const stamps[] = {KERNEL_NAMES(TABLE)};
+static const struct shapes *const specialisations[] = {KERNEL_NAMES(TABLE)};
 
-struct shapes shapes_of(const struct kernel *kernel, int dim, bool stamped)
+struct shapes shapes_of(const struct kernel *kernel, int dim, bool specialised)
 {
-    const int stamp = stamped ? kernel_stamp(kernel) : -1;
-    return stamp < 0 ? any[dim - 1] : stamps[stamp][dim - 1];
+    const int specialisation = specialised ? kernel_specialisation(kernel) : -1;
+    return specialisation < 0 ? any[dim - 1] : specialisations[specialisation][dim - 1];
 }
 
 #endif

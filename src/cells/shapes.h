@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Kernel shapes over an array of points: loops stamped for every kernel and dimension, so that sums
- * over gathered neighbours pay one call a point, not one a pair. */
+ * Kernel shapes over an array of points: loops specialised for every kernel and dimension, so that
+ * sums over gathered neighbours pay one call a point, not one a pair. */
 #ifndef SPHPROOF_SHAPES_H
 #define SPHPROOF_SHAPES_H
 
@@ -34,8 +34,9 @@ struct shapes {
     shapes_pair *pair_w, *pair_dw;
 };
 
-/* The loops for this kernel in dim dimensions: stamped ones where both its shape functions are
- * those of a built-in kernel and stamped is wanted; else loops that call through its pointers. */
-struct shapes shapes_of(const struct kernel *kernel, int dim, bool stamped);
+/* The loops for this kernel in dim dimensions: specialised ones where both its shape functions are
+ * those of a built-in kernel and specialised is wanted; else loops that call through its pointers.
+ */
+struct shapes shapes_of(const struct kernel *kernel, int dim, bool specialised);
 
 #endif

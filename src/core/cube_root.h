@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * A cube root by arithmetic alone: loops with it vectorise, and its bits are the same everywhere. */
+ * A cube root by arithmetic alone: loops with it vectorise, and its bits are the same everywhere.
+ */
 #ifndef SPHPROOF_CUBE_ROOT_H
 #define SPHPROOF_CUBE_ROOT_H
 
 #include <stdint.h>
 #include <string.h>
 
-#include "stamp.h"
+#include "specialise.h"
 
 /* x^(1/3) to one unit in the last place; x > 0, neither subnormal nor within a factor of 4 of the
  * largest double. The upper half of a double's bits is nearly a logarithm: a third of it, shifted,

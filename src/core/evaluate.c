@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What an evaluation is made of, in its order; the sums know the geometry. */
 #include "breakdown.h"
-#include "hold.h"
+#include "fixed.h"
 #include "solver.h"
-#include "stamp.h"
+#include "specialise.h"
 #include "state.h"
 
 /* v and U from p and e. */
@@ -29,7 +29,7 @@ static enum status prepare(struct simulation *simulation, bool newton, struct er
     const struct sums *sums = simulation->plan.sums;
     enum status status = sums->arrange(simulation, error);
     if (!status) status = sums->widths(simulation, newton, prediction(simulation), error);
-    if (!status) hold_state(simulation);
+    if (!status) fixed_state(simulation);
     return status;
 }
 
@@ -79,7 +79,7 @@ enum status evaluate_rates_of_primitives(struct simulation *simulation, struct e
     if (plan->matrix || plan->slope) plan->sums->matrix(simulation);
     status = plan->sums->forces(simulation, &rate, error);
     if (status == STATUS_OK && plan->gravity) fall(simulation);
-    if (status == STATUS_OK) hold_rates(simulation);
+    if (status == STATUS_OK) fixed_rates(simulation);
     if (status == STATUS_OK && plan->jump) plan->sums->find_switch(simulation);
     if (status == STATUS_OK) limit_time_step(simulation, rate);
     return status;

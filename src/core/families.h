@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Families whose members are choices in the equations, not functions of their own. The list of a
  * family is read for its enum (here), its descriptors (scheme.c) and its axis in the tables of
- * stamped loops: a member cannot be forgotten in one of them, nor stand at another's place.
+ * specialised loops: a member cannot be forgotten in one of them, nor stand at another's place.
  *
  * A member: CHOICE(symbol, name, label, paper); a list hands on what follows the first argument, so
  * that lists nest: FORMULATION_LIST(F, a) makes F(symbol, name, label, paper, a) of each member. */
@@ -9,7 +9,7 @@
 #define SPHPROOF_FAMILIES_H
 
 /* Lists called _LINE are of members that have a form in 1D; those that need two dimensions follow
- * them in the whole list (scheme_members counts). Loops in 1D are stamped for the former. */
+ * them in the whole list (scheme_members counts). Loops in 1D are specialised for the former. */
 #define GRADIENT_LINE_LIST(CHOICE, ...)                                                            \
     CHOICE(GRADIENT_STANDARD, "standard", "derivative of the kernel, e_ij dW/dr", "Monaghan 1992", \
            __VA_ARGS__)                                                                            \

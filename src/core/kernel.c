@@ -113,7 +113,7 @@ enum status kernel_select(struct kernel *kernel, const char *name, int sinc_orde
     return STATUS_OK;
 }
 
-int kernel_stamp(const struct kernel *kernel)
+int kernel_specialisation(const struct kernel *kernel)
 {
     for (size_t i = 0; i < kernel_family.n; i++) {
         const struct kernel *built_in = (const struct kernel *)kernel_family.members[i];

@@ -39,7 +39,8 @@ struct kernel {
         enum pair_width pair_width; /* of the standard gradient */
     } predicted;
     int order; /* n of sinc_n; 0 for the others */
-    /* A plug-in's own functions (see src/include/sphproof/plugin.h); NULL for the built-in kernels. */
+    /* A plug-in's own functions (see src/include/sphproof/plugin.h); NULL for the built-in kernels.
+     */
     double (*plugin_w)(double q, int dim);
     double (*plugin_dw)(double q, int dim);
     double (*plugin_dw_dh)(double r, double h, int dim);
@@ -47,13 +48,15 @@ struct kernel {
 
 extern const struct family kernel_family;
 
-/* Plug-ins: kernels that a program brings besides those of kernels.def. In kernel_family.members they
- * stand behind its n members, so that who goes through the family does not meet them; they are
- * found by name alone, and have no stamped loops. plugin_w is set, the constants are the plug-in's.
+/* Plug-ins: kernels that a program brings besides those of kernels.def. In kernel_family.members
+ * they stand behind its n members, so that who goes through the family does not meet them; they are
+ * found by name alone, and have no specialised loops. plugin_w is set, the constants are the
+ * plug-in's.
  */
 enum { KERNEL_PLUGINS_MAX = 16 };
 
-/* Takes a plug-in in (not owned, with a name that no other has); its place, -1: there is no room. */
+/* Takes a plug-in in (not owned, with a name that no other has); its place, -1: there is no room.
+ */
 int kernel_add(const struct kernel *plugin);
 
 /* Place in kernel_family.members of the kernel called name, a plug-in or not; -1: there is none. */
@@ -66,8 +69,8 @@ enum status kernel_select(struct kernel *kernel, const char *name, int sinc_orde
                           struct error *error);
 
 /* Position in kernels.def of the built-in kernel whose shape functions this kernel has, and with it
- * the place of its stamped loops in every table of them; -1: none has them (a plug-in). */
-int kernel_stamp(const struct kernel *kernel);
+ * the place of its specialised loops in every table of them; -1: none has them (a plug-in). */
+int kernel_specialisation(const struct kernel *kernel);
 
 /* W(r,h), dW/dr and dW/dh in dim dimensions; r >= 0, h > 0. */
 double kernel_value(const struct kernel *kernel, double r, double h, int dim);

@@ -21,10 +21,10 @@ static double arrays_of(const struct simulation *simulation)
     return count + plan->dim; /* those of a snapshot */
 }
 
-double memory_bytes(const struct scene *scene)
+double memory_bytes(const struct setup *setup)
 {
-    struct simulation simulation = {.scheme = scene->scheme, .plan = plan_of_scene(scene)};
-    const double n = (double)scene->n;
+    struct simulation simulation = {.scheme = setup->scheme, .plan = plan_of_setup(setup)};
+    const double n = (double)setup->n;
     return sizeof(double) * n * arrays_of(&simulation) +
            simulation.plan.sums->bytes(&simulation, n);
 }

@@ -3,10 +3,10 @@
 #ifndef SPHPROOF_MEMORY_H
 #define SPHPROOF_MEMORY_H
 
-struct scene;
+struct setup;
 
-/* Bytes that a simulation of the scene comes to use, by its scheme, dimension and number of
+/* Bytes that a simulation of the setup comes to use, by its scheme, dimension and number of
  * particles (no array of it is read): within a tenth where particles are evenly spaced. */
-double memory_bytes(const struct scene *scene);
+double memory_bytes(const struct setup *setup);
 
 #endif

@@ -16,7 +16,7 @@
 #include <stdbool.h>
 
 #include "scheme.h"
-#include "stamp.h"
+#include "specialise.h"
 
 /* What one particle brings into a pair; a term reads what it needs, and what none reads costs
  * nothing, as everything here is inlined. */

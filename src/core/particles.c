@@ -119,27 +119,27 @@ static bool is_blank(const double *array, ptrdiff_t n)
     return memcmp(bytes, zero, left) == 0;
 }
 
-void particles_carry(struct particles *particles, struct carrier *carrier)
+void particles_serialise(struct particles *particles, struct serialiser *serialiser)
 {
     ptrdiff_t ghosts = particles->ghosts;
     double **arrays[ARRAYS_MAX];
     const size_t count = list_arrays(particles, arrays);
-    CARRY(carrier, ghosts);
-    if (carrier->failed) return;
+    SERIALISE(serialiser, ghosts);
+    if (serialiser->failed) return;
     if (ghosts > particles->ghosts && particles_grow_ghosts(particles, ghosts, NULL))
-        carrier->failed = true;
+        serialiser->failed = true;
     for (size_t k = 0; k < count; k++) {
         double *first = *arrays[k] - ghosts;
         const ptrdiff_t length = particles->n + 2 * ghosts;
         bool blank = is_blank(first, length);
         const bool was = blank;
-        CARRY(carrier, blank);
+        SERIALISE(serialiser, blank);
         if (!blank)
-            carry(carrier, first, (size_t)length * sizeof *first);
-        else if (carrier->back && !was && !carrier->failed)
+            serialise(serialiser, first, (size_t)length * sizeof *first);
+        else if (serialiser->back && !was && !serialiser->failed)
             memset(first, 0, (size_t)length * sizeof *first);
     }
-    carry(carrier, particles->id, (size_t)particles->n * sizeof *particles->id);
+    serialise(serialiser, particles->id, (size_t)particles->n * sizeof *particles->id);
 }
 
 void particles_permute(struct particles *particles)

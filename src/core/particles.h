@@ -9,7 +9,7 @@
 #include <math.h>
 #include <stddef.h>
 
-#include "carrier.h"
+#include "serialiser.h"
 #include "status.h"
 
 /* SCALAR(name, meaning) or VECTOR(name, meaning). The first group is the state, the rest is derived
@@ -65,7 +65,7 @@ struct particles {
     PARTICLE_FIELDS(SCALAR, VECTOR)
 #undef SCALAR
 #undef VECTOR
-    size_t *id;    /* index in the scene */
+    size_t *id;    /* index in the setup */
     double *block; /* what the arrays live in */
     double *spare; /* one array, for permutations and snapshots */
     size_t *order; /* likewise: where the particle that belongs at place i stands */
@@ -82,7 +82,7 @@ enum status particles_grow_ghosts(struct particles *particles, ptrdiff_t ghosts,
 
 /* All values, those of ghosts included. Back: may invalidate pointers to arrays; fails without
  * memory for as many ghosts. */
-void particles_carry(struct particles *particles, struct carrier *carrier);
+void particles_serialise(struct particles *particles, struct serialiser *serialiser);
 
 /* Puts the particle at place order[i] to place i, all of its values. Ghosts are not touched. */
 void particles_permute(struct particles *particles);

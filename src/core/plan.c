@@ -9,12 +9,12 @@
 #include "integrator.h"
 #include "simulation.h"
 
-struct plan plan_make(const struct scheme *scheme, int dim, bool skip, bool stamped)
+struct plan plan_make(const struct scheme *scheme, int dim, bool skip, bool specialised)
 {
     return (struct plan){
         .dim = dim,
         .sums = sums_find(dim),
-        .stamped = stamped,
+        .specialised = specialised,
         .newton = scheme->h_method == H_NEWTON,
         .energy_sum = scheme->volume_element == VOLUME_ENERGY,
         .grad_h = scheme->formulation == FORMULATION_LAGRANGIAN,
@@ -36,10 +36,10 @@ struct plan plan_make(const struct scheme *scheme, int dim, bool skip, bool stam
     };
 }
 
-struct plan plan_of_scene(const struct scene *scene)
+struct plan plan_of_setup(const struct setup *setup)
 {
-    struct plan plan = plan_make(&scene->scheme, scene->dim, scene->skip, !scene->unstamped);
-    for (int k = 0; k < scene->dim; k++) plan.gravity |= scene->gravity[k] != 0;
+    struct plan plan = plan_make(&setup->scheme, setup->dim, setup->skip, !setup->generic);
+    for (int k = 0; k < setup->dim; k++) plan.gravity |= setup->gravity[k] != 0;
     plan.sleep &= !plan.gravity; /* nobody is at rest */
     return plan;
 }
@@ -98,30 +98,30 @@ static void find_warnings(const struct scheme *scheme, int dim, char *text, size
 }
 
 /* How particles find each other. */
-static void explain_neighbours(const struct scene *scene, struct writer *writer)
+static void explain_neighbours(const struct setup *setup, struct writer *writer)
 {
     bool walls = false;
-    if (scene->dim == 1) {
+    if (setup->dim == 1) {
         line(writer, "order", true,
              "neighbours are a contiguous range; sorted anew only if particles cross", "");
         line(writer, "ghost copies", true, "periodic images, so that no loop knows of a boundary",
              "");
         return;
     }
-    for (int k = 0; k < scene->dim; k++) walls |= scene->boundary[k] == BOUNDARY_REFLECTING;
+    for (int k = 0; k < setup->dim; k++) walls |= setup->boundary[k] == BOUNDARY_REFLECTING;
     line(writer, "neighbour lists", true,
          "a grid of cells and a list for each particle, made anew at every evaluation", "");
     line(writer, "mirror images", walls, "boundary=reflecting: particles near a wall",
          "no reflecting wall");
 }
 
-size_t plan_explain(const struct scene *scene, struct plan_line *lines, size_t max, char *warnings,
+size_t plan_explain(const struct setup *setup, struct plan_line *lines, size_t max, char *warnings,
                     size_t warnings_size)
 {
-    const struct scheme *scheme = &scene->scheme;
-    const struct plan plan = plan_of_scene(scene);
+    const struct scheme *scheme = &setup->scheme;
+    const struct plan plan = plan_of_setup(setup);
     struct writer writer = {lines, 0, max};
-    explain_neighbours(scene, &writer);
+    explain_neighbours(setup, &writer);
     line(&writer, "smoothing length by Newton", plan.newton,
          "h = eta m/rho to h_tolerance at every evaluation",
          "h_method=predicted: 1/h extrapolated from the last two density sums, each with a Newton "
@@ -140,7 +140,7 @@ size_t plan_explain(const struct scene *scene, struct plan_line *lines, size_t m
                       : "for the midpoint velocities of the viscosity",
          "no viscosity needs it");
     line(&writer, "pair forces", true,
-         scene->dim == 1 ? "half loop, antisymmetric fluxes"
+         setup->dim == 1 ? "half loop, antisymmetric fluxes"
                          : "each pair from both sides, opposite to the last bit",
          "");
     line(&writer, "artificial viscosity", plan.viscosity, "inside the pair loop", "viscosity=none");
@@ -150,7 +150,7 @@ size_t plan_explain(const struct scene *scene, struct plan_line *lines, size_t m
          "alpha is constant");
     line(&writer, "signal speed", plan.signal_pass,
          "the integrator changes velocities after the last force", "comes with the pair forces");
-    if (scene->dim > 1) {
+    if (setup->dim > 1) {
         line(&writer, "local steps", plan.local,
              "each particle takes its own, by powers of two, and a pair the shorter one of its two particles",
              "steps=global: all particles take the shortest one");
@@ -160,10 +160,9 @@ size_t plan_explain(const struct scene *scene, struct plan_line *lines, size_t m
     }
     line(&writer, "sleep", plan.sleep,
          "skip=auto: no sums where no signal has been; acts as a start changed by 1e-11",
-         plan.gravity ? "gravity: nobody is at rest"
-                      : "skip=none: every particle at every step");
+         plan.gravity ? "gravity: nobody is at rest" : "skip=none: every particle at every step");
     line(&writer, "final state", !scheme->integrator->ends_evaluated,
          "density and equation of state once more at t_end", "the last evaluation was at t_end");
-    if (warnings && warnings_size) find_warnings(scheme, scene->dim, warnings, warnings_size);
+    if (warnings && warnings_size) find_warnings(scheme, setup->dim, warnings, warnings_size);
     return writer.count;
 }

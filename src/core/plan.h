@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The plan: derived once from a scene, it says which passes the scene needs. A pass that it leaves
+ * The plan: derived once from a setup, it says which passes the setup needs. A pass that it leaves
  * out is work whose result is unused or exactly zero. */
 #ifndef SPHPROOF_PLAN_H
 #define SPHPROOF_PLAN_H
@@ -12,7 +12,7 @@
 struct plan {
     int dim;
     const struct sums *sums; /* the way to sum over neighbours; NULL: none for the dimension */
-    bool stamped;            /* loops compiled for the choices; else all is looked up (oracle) */
+    bool specialised;        /* loops compiled for the choices; else all is looked up (oracle) */
     bool newton;             /* h by Newton at every evaluation; else predicted */
     bool energy_sum;         /* second kernel sum, of U */
     bool grad_h;             /* grad-h factors */
@@ -30,12 +30,12 @@ struct plan {
     bool quiet;              /* leave out what vanishes of pairs at rest against each other */
 };
 
-struct scene; /* see simulation.h */
+struct setup; /* see simulation.h */
 
-/* What a scene needs. */
-struct plan plan_of_scene(const struct scene *scene);
+/* What a setup needs. */
+struct plan plan_of_setup(const struct setup *setup);
 
 /* What the scheme needs in dim dimensions; skip: leave out work: sleep.h, and quiet. */
-struct plan plan_make(const struct scheme *scheme, int dim, bool skip, bool stamped);
+struct plan plan_make(const struct scheme *scheme, int dim, bool skip, bool specialised);
 
 #endif

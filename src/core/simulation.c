@@ -7,7 +7,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "hold.h"
+#include "fixed.h"
 #include "solver.h"
 #include "width.h"
 
@@ -40,77 +40,77 @@ static double seconds(clockid_t clock)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-static enum status check_particle(const struct scene *scene, size_t i, struct error *error)
+static enum status check_particle(const struct setup *setup, size_t i, struct error *error)
 {
-    for (int k = 0; k < scene->dim; k++) {
-        const bool open = scene->boundary[k] == BOUNDARY_OPEN && isfinite(scene->x[k][i]);
-        if (!open && !(scene->x[k][i] >= scene->lo[k] && scene->x[k][i] <= scene->hi[k]))
+    for (int k = 0; k < setup->dim; k++) {
+        const bool open = setup->boundary[k] == BOUNDARY_OPEN && isfinite(setup->x[k][i]);
+        if (!open && !(setup->x[k][i] >= setup->lo[k] && setup->x[k][i] <= setup->hi[k]))
             return error_set(error, STATUS_BAD_INPUT, "particle %zu: %c = %g is outside the box", i,
-                             "xyz"[k], scene -> x[k][i]);
-        if (!isfinite(scene->v[k][i]))
+                             "xyz"[k], setup -> x[k][i]);
+        if (!isfinite(setup->v[k][i]))
             return error_set(error, STATUS_BAD_INPUT, "particle %zu: velocity %g", i,
-                             scene->v[k][i]);
+                             setup->v[k][i]);
     }
-    if (!(scene->m[i] > 0) || !isfinite(scene->m[i]))
+    if (!(setup->m[i] > 0) || !isfinite(setup->m[i]))
         return error_set(error, STATUS_BAD_INPUT, "particle %zu: mass %g must be > 0", i,
-                         scene->m[i]);
-    if (!(scene->u[i] > 0) || !isfinite(scene->u[i]))
+                         setup->m[i]);
+    if (!(setup->u[i] > 0) || !isfinite(setup->u[i]))
         return error_set(error, STATUS_BAD_INPUT,
-                         "particle %zu: specific internal energy %g must be > 0", i, scene->u[i]);
+                         "particle %zu: specific internal energy %g must be > 0", i, setup->u[i]);
     return STATUS_OK;
 }
 
-static enum status check_scene(const struct scene *scene, struct error *error)
+static enum status check_setup(const struct setup *setup, struct error *error)
 {
-    if (!sums_find(scene->dim))
+    if (!sums_find(setup->dim))
         return error_set(error, STATUS_BAD_INPUT, "dimension = %d: the solver is for dimension 1",
-                         scene->dim);
-    if (scene->n < 2)
-        return error_set(error, STATUS_BAD_INPUT, "n = %zu: at least 2 particles", scene->n);
-    if (!(scene->gamma > 1) || !isfinite(scene->gamma))
-        return error_set(error, STATUS_BAD_INPUT, "gamma = %g: must be > 1", scene->gamma);
-    for (int k = 0; k < scene->dim; k++) {
-        const double period = scene->hi[k] - scene->lo[k];
-        if (scene->boundary[k] >= scheme_members(&scheme_boundary_family, scene->dim))
+                         setup->dim);
+    if (setup->n < 2)
+        return error_set(error, STATUS_BAD_INPUT, "n = %zu: at least 2 particles", setup->n);
+    if (!(setup->gamma > 1) || !isfinite(setup->gamma))
+        return error_set(error, STATUS_BAD_INPUT, "gamma = %g: must be > 1", setup->gamma);
+    for (int k = 0; k < setup->dim; k++) {
+        const double period = setup->hi[k] - setup->lo[k];
+        if (setup->boundary[k] >= scheme_members(&scheme_boundary_family, setup->dim))
             return error_set(error, STATUS_BAD_INPUT,
                              "boundary=%s and dimension=1 exclude each other: it is for 2 and 3 "
                              "dimensions",
-                             scheme_boundary_family.members[scene->boundary[k]]->name);
-        if (!isfinite(scene->gravity[k]) || (scene->dim == 1 && scene->gravity[k] != 0))
+                             scheme_boundary_family.members[setup->boundary[k]]->name);
+        if (!isfinite(setup->gravity[k]) || (setup->dim == 1 && setup->gravity[k] != 0))
             return error_set(error, STATUS_BAD_INPUT,
                              "gravity = %g: finite, and 0 in 1 dimension, is needed",
-                             scene->gravity[k]);
+                             setup->gravity[k]);
         if (!(period > 0) || !isfinite(period))
             return error_set(error, STATUS_BAD_INPUT, "box [%g, %g]: must have a positive length",
-                             scene->lo[k], scene->hi[k]);
+                             setup->lo[k], setup->hi[k]);
     }
-    for (size_t i = 0; i < scene->n; i++) {
-        const enum status status = check_particle(scene, i, error);
+    for (size_t i = 0; i < setup->n; i++) {
+        const enum status status = check_particle(setup, i, error);
         if (status) return status;
     }
-    return scheme_check(&scene->scheme, scene->dim, error);
+    return scheme_check(&setup->scheme, setup->dim, error);
 }
 
-/* The state of the scene, with a first guess of h. */
-static void set_particles(struct simulation *simulation, const struct scene *scene)
+/* The state of the setup, with a first guess of h. */
+static void set_particles(struct simulation *simulation, const struct setup *setup)
 {
     struct particles *a = &simulation->particles;
     const struct scheme *scheme = &simulation->scheme;
     const struct width_rule rule = {.dim = a->dim, .eta = scheme->eta};
     const bool varies = simulation->plan.alpha || simulation->plan.jump;
     double mass = 0, volume = 1;
-    for (ptrdiff_t i = 0; i < a->n; i++) mass += scene->m[i];
+    for (ptrdiff_t i = 0; i < a->n; i++) mass += setup->m[i];
     for (int k = 0; k < a->dim; k++) volume *= a->period[k];
     for (ptrdiff_t i = 0; i < a->n; i++) {
-        const double m = scene->m[i], u = scene->u[i];
-        const double rho = scene->rho && scene->rho[i] > 0 ? scene->rho[i] : mass / volume;
+        const double m = setup->m[i], u = setup->u[i];
+        const double rho = setup->rho && setup->rho[i] > 0 ? setup->rho[i] : mass / volume;
         a->id[i] = (size_t)i;
         a->m[i] = m;
         a->m_inverse[i] = 1 / m;
         a->e[i] = m * u;
         for (int k = 0; k < a->dim; k++) {
-            const double v = scene->v[k][i];
-            a->x[k][i] = a->x_old[k][i] = scene->x[k][i];
+            const double v = setup->v[k][i];
+            a->x[k][i] = a->x_old[k][i] = setup->x[k][i];
             a->p[k][i] = m * v;
             if (scheme->energy == ENERGY_TOTAL) a->e[i] += 0.5 * m * v * v;
         }
@@ -133,38 +133,38 @@ static enum status allocate(struct simulation *simulation, ptrdiff_t n, struct e
                  : error_set(error, STATUS_ENVIRONMENT, "no memory for %td particles", n);
 }
 
-/* The state of the scene. */
-static enum status copy_scene(struct simulation *simulation, const struct scene *scene,
+/* The state of the setup. */
+static enum status copy_setup(struct simulation *simulation, const struct setup *setup,
                               struct error *error)
 {
-    for (int k = 0; k < scene->dim; k++) {
-        simulation->lo[k] = scene->lo[k];
-        simulation->boundary[k] = scene->boundary[k];
-        simulation->gravity[k] = scene->gravity[k];
-        simulation->particles.period[k] = scene->hi[k] - scene->lo[k];
+    for (int k = 0; k < setup->dim; k++) {
+        simulation->lo[k] = setup->lo[k];
+        simulation->boundary[k] = setup->boundary[k];
+        simulation->gravity[k] = setup->gravity[k];
+        simulation->particles.period[k] = setup->hi[k] - setup->lo[k];
     }
-    set_particles(simulation, scene);
-    return hold_begin(simulation, error);
+    set_particles(simulation, setup);
+    return fixed_begin(simulation, error);
 }
 
-enum status simulation_take(const struct scene *scene, struct simulation **result,
+enum status simulation_take(const struct setup *setup, struct simulation **result,
                             struct error *error)
 {
     *result = NULL;
-    enum status status = check_scene(scene, error);
+    enum status status = check_setup(setup, error);
     if (status) return status;
     struct simulation *simulation = calloc(1, sizeof *simulation);
     if (!simulation) return error_set(error, STATUS_ENVIRONMENT, "no memory");
     simulation->wall_start = seconds(CLOCK_MONOTONIC);
     simulation->cpu_start = seconds(CLOCK_PROCESS_CPUTIME_ID);
-    simulation->scheme = scene->scheme;
-    simulation->plan = plan_of_scene(scene);
-    simulation->gamma = scene->gamma;
+    simulation->scheme = setup->scheme;
+    simulation->plan = plan_of_setup(setup);
+    simulation->gamma = setup->gamma;
     simulation->steps.level = -1;
     simulation->steps.worth = STEPS_WORTH;
-    team_begin(&simulation->team, scene->threads > 1 ? scene->threads : 1);
-    status = allocate(simulation, (ptrdiff_t)scene->n, error);
-    if (!status) status = copy_scene(simulation, scene, error);
+    team_begin(&simulation->team, setup->threads > 1 ? setup->threads : 1);
+    status = allocate(simulation, (ptrdiff_t)setup->n, error);
+    if (!status) status = copy_setup(simulation, setup, error);
     if (status)
         simulation_destroy(simulation);
     else
@@ -186,10 +186,10 @@ enum status simulation_begin(struct simulation *simulation, struct error *error)
     return status ? status : sums->sleep_begin(simulation, error);
 }
 
-enum status simulation_create(const struct scene *scene, struct simulation **simulation,
+enum status simulation_create(const struct setup *setup, struct simulation **simulation,
                               struct error *error)
 {
-    enum status status = simulation_take(scene, simulation, error);
+    enum status status = simulation_take(setup, simulation, error);
     if (!status) status = simulation_begin(*simulation, error);
     if (!status) return STATUS_OK;
     simulation_destroy(*simulation);
@@ -209,7 +209,7 @@ void simulation_destroy(struct simulation *simulation)
     free(simulation->integrator_state);
     simulation->plan.sums->free(simulation);
     particles_destroy(&simulation->particles);
-    hold_free(simulation);
+    fixed_free(simulation);
     free(simulation->sleep.spans);
     for (int k = 0; k < simulation->plan.dim; k++) free(simulation->wrapped[k]);
     free(simulation);
@@ -278,7 +278,8 @@ static enum status advance(struct simulation *simulation, struct error *error)
 {
     double dt = simulation_next_step(simulation, simulation->time);
     simulation->largest_dt = fmax(simulation->largest_dt, dt);
-    if (simulation->plan.local) dt = steps_begin_block(simulation, dt, simulation->t_end - simulation->time);
+    if (simulation->plan.local)
+        dt = steps_begin_block(simulation, dt, simulation->t_end - simulation->time);
     const bool local = simulation->plan.local && !simulation->steps.single;
     const bool last = simulation_time_after(simulation, dt) >= simulation->t_end;
     /* in the last step t_end alone decides, however near it is */
@@ -294,7 +295,9 @@ static enum status advance(struct simulation *simulation, struct error *error)
     simulation->time = simulation_time_after(simulation, dt);
     if (simulation->plan.signal_pass && simulation->time < simulation->t_end)
         evaluate_signal(simulation);
-    if (!local) simulation->plan.sums->sleep_update(simulation); /* makes new ranges, whose reach is unknown */
+    if (!local)
+        simulation->plan.sums->sleep_update(
+            simulation); /* makes new ranges, whose reach is unknown */
     struct simulation_cost *cost = &simulation->cost;
     const uint64_t steps = local ? 1u << simulation->steps.depth : 1;
     const uint64_t all = steps * (uint64_t)simulation->particles.n;
@@ -329,29 +332,29 @@ enum status simulation_run(struct simulation *simulation, double t_end,
     return status;
 }
 
-void simulation_carry(struct simulation *simulation, struct carrier *carrier)
+void simulation_serialise(struct simulation *simulation, struct serialiser *serialiser)
 {
     struct sleep *sleep = &simulation->sleep;
     stop_clocks(simulation);
-    particles_carry(&simulation->particles, carrier);
-    CARRY(carrier, simulation->time);
-    CARRY(carrier, simulation->time_step);
-    CARRY(carrier, simulation->dt);
-    CARRY(carrier, simulation->dt_before);
-    CARRY(carrier, simulation->largest_dt);
-    CARRY(carrier, simulation->start_energy);
-    CARRY(carrier, simulation->cost);
-    CARRY(carrier, simulation->steps);
-    CARRY(carrier, sleep->on);
-    CARRY(carrier, sleep->at_rest);
-    CARRY(carrier, sleep->rate);
-    CARRY(carrier, sleep->sound);
-    CARRY(carrier, sleep->span_count);
-    CARRY(carrier, sleep->awake_count);
-    carry(carrier, sleep->spans, (size_t)sleep->span_count * sizeof *sleep->spans);
-    carry(carrier, simulation->integrator_state, simulation->scheme.integrator->keeps);
-    simulation->plan.sums->carry(simulation, carrier);
-    if (!carrier->back) return;
+    particles_serialise(&simulation->particles, serialiser);
+    SERIALISE(serialiser, simulation->time);
+    SERIALISE(serialiser, simulation->time_step);
+    SERIALISE(serialiser, simulation->dt);
+    SERIALISE(serialiser, simulation->dt_before);
+    SERIALISE(serialiser, simulation->largest_dt);
+    SERIALISE(serialiser, simulation->start_energy);
+    SERIALISE(serialiser, simulation->cost);
+    SERIALISE(serialiser, simulation->steps);
+    SERIALISE(serialiser, sleep->on);
+    SERIALISE(serialiser, sleep->at_rest);
+    SERIALISE(serialiser, sleep->rate);
+    SERIALISE(serialiser, sleep->sound);
+    SERIALISE(serialiser, sleep->span_count);
+    SERIALISE(serialiser, sleep->awake_count);
+    serialise(serialiser, sleep->spans, (size_t)sleep->span_count * sizeof *sleep->spans);
+    serialise(serialiser, simulation->integrator_state, simulation->scheme.integrator->keeps);
+    simulation->plan.sums->serialise(simulation, serialiser);
+    if (!serialiser->back) return;
     simulation->wall_start = seconds(CLOCK_MONOTONIC) - simulation->cost.wall_s;
     simulation->cpu_start = seconds(CLOCK_PROCESS_CPUTIME_ID) - simulation->cost.cpu_s;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The solver as its users see it: a scene in, particles and costs out. Code units throughout. */
+ * The solver as its users see it: a setup in, particles and costs out. Code units throughout. */
 #ifndef SPHPROOF_SIMULATION_H
 #define SPHPROOF_SIMULATION_H
 
@@ -7,13 +7,13 @@
 #include <stdint.h>
 #include <stddef.h>
 
-#include "carrier.h"
+#include "serialiser.h"
 #include "scheme.h"
 #include "status.h"
 
 /* What is to be computed. Arrays belong to the caller and are copied by simulation_create and
  * simulation_take. */
-struct scene {
+struct setup {
     int dim;                   /* 1, 2 or 3 */
     double lo[3], hi[3];       /* box */
     enum boundary boundary[3]; /* in each direction */
@@ -27,9 +27,9 @@ struct scene {
     const double *u;    /* n: specific internal energies, > 0 */
     const double *rho;  /* n: first guess of the density, or NULL */
     struct scheme scheme;
-    bool skip;      /* leave out work: sleep.h */
-    bool unstamped; /* the oracle: loops with every choice looked up at run time */
-    int threads;    /* >= 1 */
+    bool skip;    /* leave out work: sleep.h */
+    bool generic; /* the oracle: loops with every choice looked up at run time */
+    int threads;  /* >= 1 */
 };
 
 /* One line of the plan: a pass, whether it runs, and why (or why not). */
@@ -56,7 +56,7 @@ struct snapshot {
     size_t n;
     const double *x[3], *v[3];
     const double *m, *rho, *u, *P, *h, *volume;
-    const size_t *id; /* index in the scene */
+    const size_t *id; /* index in the setup */
     double time;
 };
 
@@ -74,21 +74,21 @@ struct conservation { /* sums over all particles; extensive, code units */
     double angular_momentum[3], angular_scale /* sum |r x p| */, turning_scale /* sum |r| m c */;
 };
 
-/* Builds the plan for a scene into lines (at most max), returns how many it has; runs nothing.
+/* Builds the plan for a setup into lines (at most max), returns how many it has; runs nothing.
  * warnings (may be NULL): one text, "" if none, e.g. eta off a partition-of-unity width. */
-size_t plan_explain(const struct scene *scene, struct plan_line *lines, size_t max, char *warnings,
+size_t plan_explain(const struct setup *setup, struct plan_line *lines, size_t max, char *warnings,
                     size_t warnings_size);
 
 struct simulation;
 
 /* Allocates all that a run needs; simulation_run asks for more only where neighbours get eight
  * times as far apart in the order of positions as they are at the start. */
-enum status simulation_create(const struct scene *scene, struct simulation **simulation,
+enum status simulation_create(const struct setup *setup, struct simulation **simulation,
                               struct error *error);
-/* The same in two parts, for who has no use for the scene's arrays after the first one: what they
+/* The same in two parts, for who has no use for the setup's arrays after the first one: what they
  * take is then there for the neighbours. Without success in the second part only
  * simulation_destroy is allowed. */
-enum status simulation_take(const struct scene *scene, struct simulation **simulation,
+enum status simulation_take(const struct setup *setup, struct simulation **simulation,
                             struct error *error);
 enum status simulation_begin(struct simulation *simulation, struct error *error);
 /* Called after each step with the current time; return false to stop (STATUS_OK, time < t_end). */
@@ -98,11 +98,12 @@ typedef bool simulation_progress(void *context, double time, uint64_t steps);
  * state is then the last sound one. progress may be NULL. */
 enum status simulation_run(struct simulation *simulation, double t_end,
                            simulation_progress *progress, void *context, struct error *error);
-/* Hands over all that the next step depends on: to be kept, or (carrier->back) as it was kept, into
- * a simulation that was created of the same scene by the same build and then goes on to the last
- * bit as the one that was kept. Between steps: from simulation_progress, or before simulation_run.
- * Look at carrier->failed; after a failure on the way back only simulation_destroy is allowed. */
-void simulation_carry(struct simulation *simulation, struct carrier *carrier);
+/* Hands over all that the next step depends on: to be kept, or (serialiser->back) as it was kept,
+ * into a simulation that was created of the same setup by the same build and then goes on to the
+ * last bit as the one that was kept. Between steps: from simulation_progress, or before
+ * simulation_run. Look at serialiser->failed; after a failure on the way back only
+ * simulation_destroy is allowed. */
+void simulation_serialise(struct simulation *simulation, struct serialiser *serialiser);
 void simulation_snapshot(const struct simulation *simulation, struct snapshot *snapshot);
 /* Whether each particle, in the order of a snapshot, is left out of the sums: n values. */
 void simulation_asleep(const struct simulation *simulation, bool *asleep);

@@ -3,7 +3,7 @@
  * round-off, so density, forces and time step are left out there. A sleeper keeps its velocity.
  *
  * A particle is disturbed once |dp/dt| > tol m c^2/h or |de/dt| > tol m c^2 (c + |v|)/h, where c is
- * its sound speed or the scene's mean one, whichever is more (c_s: all energy but that of the
+ * its sound speed or the setup's mean one, whichever is more (c_s: all energy but that of the
  * common motion taken for heat). A sleeper wakes when it is a neighbour of a disturbed particle, or
  * of one that moves against it at more than tol c. Whoever is calm, to a quarter of tol, among
  * neighbours that are, falls asleep (again).
@@ -12,7 +12,7 @@
  * are undisturbed, so they are at most about tol c^2/h. Over a time T that changes velocities by
  * tol c (c T/h) and distances, and so densities, by tol (c T/h)^2/2 of h. Rates fall by orders of
  * magnitude from reach to reach ahead of a wave and stand for h/c only before the gas wakes: then
- * both changes are about tol. With c_s for c they are compared with the fields that the scene's
+ * both changes are about tol. With c_s for c they are compared with the fields that the setup's
  * energy makes, not with those of a cold gas that a blast will run over. The errors of any run (L1
  * of 1e-4 and more) are seven orders above. A flow that amplifies round-off amplifies this as well:
  * skips act as a change of the start by the tolerance does.

@@ -25,7 +25,7 @@ struct simulation {
     double lo[3];           /* of the box */
     enum boundary boundary[3];
     double gravity[3];
-    double *held; /* by id, see hold.c: 0 for particles that move; NULL: all do */
+    double *held; /* by id, see fixed.c: 0 for particles that move; NULL: all do */
     double gamma, time, t_end;
     double time_step;     /* limit found by the last signal speeds */
     double dt, dt_before; /* of the step in progress or the last one, and the one before; 0: none */

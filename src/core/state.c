@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "cube_root.h"
-#include "stamp.h"
+#include "specialise.h"
 
 /* Stamped functions are static here, and the public ones call them: clang 14 gives the dispatched
  * symbol a name of its own, so that another file would not find it. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What a state implies without any neighbours: velocity and internal energy, equation of state,
- * what the pair terms need of it, limits of the time step. Plain loops over particles, stamped over
- * instruction sets like the sums. */
+ * what the pair terms need of it, limits of the time step. Plain loops over particles, specialised
+ * over instruction sets like the sums. */
 #ifndef SPHPROOF_STATE_H
 #define SPHPROOF_STATE_H
 

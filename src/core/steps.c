@@ -5,7 +5,7 @@
 
 #include "breakdown.h"
 #include "solver.h"
-#include "stamp.h"
+#include "specialise.h"
 #include "width.h"
 
 /* A particle's pace is at least this part of its fastest neighbour's, so that a shock finds short

@@ -13,7 +13,7 @@
 #include <stddef.h>
 
 #include "description.h"
-#include "carrier.h"
+#include "serialiser.h"
 #include "status.h"
 
 struct simulation;
@@ -66,7 +66,7 @@ struct sums {
     void (*end)(struct simulation *simulation);
 
     /* What the room keeps from one step to the next. */
-    void (*carry)(struct simulation *simulation, struct carrier *carrier);
+    void (*serialise)(struct simulation *simulation, struct serialiser *serialiser);
 };
 
 extern const struct sums line_sums, cells_sums;

@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "solver.h"
-#include "stamp.h"
+#include "specialise.h"
 
 static const double start_tolerance = 1e-10;
 
@@ -102,8 +102,8 @@ ALWAYS_INLINE void predict(const struct particles *particles, ptrdiff_t first, i
 /* Stamped functions are static, and the public ones call them: clang 14 gives the dispatched symbol
  * a name of its own, so that another file would not find it. Nearly all batches are full: a
  * constant trip count has no remainder loop. */
-CLONES static void predict_stamped(const struct particles *particles, ptrdiff_t first, int len,
-                                   double ratio)
+CLONES static void predict_specialised(const struct particles *particles, ptrdiff_t first, int len,
+                                       double ratio)
 {
     if (len == BATCH_MAX)
         predict(particles, first, BATCH_MAX, ratio);
@@ -113,5 +113,5 @@ CLONES static void predict_stamped(const struct particles *particles, ptrdiff_t 
 
 void width_predict(const struct particles *particles, ptrdiff_t first, int len, double ratio)
 {
-    predict_stamped(particles, first, len, ratio);
+    predict_specialised(particles, first, len, ratio);
 }

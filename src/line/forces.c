@@ -4,7 +4,7 @@
 
 #include "line.h"
 #include "pass.h"
-#include "stamp.h"
+#include "specialise.h"
 #include "state.h"
 
 /* Do velocities never fall with the place? The first vector tells it of most ranges where they do.

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "line.h"
-#include "stamp.h"
+#include "specialise.h"
 #include "state.h"
 
 static int group_len(const struct simulation *simulation, ptrdiff_t group)

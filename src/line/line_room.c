@@ -85,18 +85,18 @@ static void describe(const struct simulation *simulation, description_visit *vis
     }
 }
 
-static void carry_line(struct simulation *simulation, struct carrier *carrier)
+static void serialise_line(struct simulation *simulation, struct serialiser *serialiser)
 {
     struct line *line = line_of(simulation);
     struct groups *groups = &line->groups;
-    CARRY(carrier, line->range_count);
-    carry(carrier, line->ranges, (size_t)line->range_count * sizeof *line->ranges);
-    CARRY(carrier, line->ghosts_filled);
-    CARRY(carrier, line->reach);
-    CARRY(carrier, line->predict_ratio);
-    CARRY(carrier, line->density_passes);
-    carry(carrier, groups->awake, (size_t)groups->count);
-    carry(carrier, groups->rate, (size_t)groups->count * sizeof *groups->rate);
+    SERIALISE(serialiser, line->range_count);
+    serialise(serialiser, line->ranges, (size_t)line->range_count * sizeof *line->ranges);
+    SERIALISE(serialiser, line->ghosts_filled);
+    SERIALISE(serialiser, line->reach);
+    SERIALISE(serialiser, line->predict_ratio);
+    SERIALISE(serialiser, line->density_passes);
+    serialise(serialiser, groups->awake, (size_t)groups->count);
+    serialise(serialiser, groups->rate, (size_t)groups->count * sizeof *groups->rate);
 }
 
 const struct sums line_sums = {
@@ -117,5 +117,5 @@ const struct sums line_sums = {
     .sleep_begin = groups_begin,
     .sleep_update = groups_update,
     .sleeps = groups_sleep,
-    .carry = carry_line,
+    .serialise = serialise_line,
 };

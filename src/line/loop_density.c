@@ -4,7 +4,7 @@
 
 #include "kernel_names.h"
 #include "loops.h"
-#include "stamp.h"
+#include "specialise.h"
 
 /* The pairs at offset d, on both sides. The first offset sets the sums, with the particle itself,
  * the others add to them. */
@@ -66,16 +66,16 @@ ALWAYS_INLINE void sum_pairs(const struct kernel *kernel, kernel_shape *w, kerne
 #define UNSTAMPED(terms, k) BODY(k##_##terms, kernel->w, kernel->dw, terms, )
 DENSITY_LIST(UNSTAMPED, any)
 
-static density_loop *const unstamped[DENSITY_TERMS] = {DENSITY_LIST(ENTRY, any)};
+static density_loop *const generic[DENSITY_TERMS] = {DENSITY_LIST(ENTRY, any)};
 
 #define DECLARE(name) extern density_loop *const loop_density_##name[DENSITY_TERMS];
 KERNEL_NAMES(DECLARE)
 #define TABLE(name)   loop_density_##name,
-static density_loop *const *const stamped[] = {KERNEL_NAMES(TABLE)};
+static density_loop *const *const specialised[] = {KERNEL_NAMES(TABLE)};
 
 density_loop *loop_density(int kernel, enum density_terms terms)
 {
-    return kernel < 0 ? unstamped[terms] : stamped[kernel][terms];
+    return kernel < 0 ? generic[terms] : specialised[kernel][terms];
 }
 
 #endif

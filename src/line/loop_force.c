@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "loops.h"
-#include "stamp.h"
+#include "specialise.h"
 
 /* What a particle gathers at offset d: its pair to the left is strip[i], to the right strip[i + d].
  * The first offset sets the sums, the others add to them. */
@@ -147,18 +147,18 @@ ALWAYS_INLINE double force_body(enum formulation formulation, enum viscosity vis
 ALL(STAMP)
 
 #define ENTRY(f, v, e) [f][v][e] = force_##f##_##v##_##e,
-static force_loop *const stamped[FORMULATIONS][VISCOSITIES][ENERGIES] = {ALL(ENTRY)};
+static force_loop *const specialised[FORMULATIONS][VISCOSITIES][ENERGIES] = {ALL(ENTRY)};
 
-/* The unstamped body: every choice is looked up at run time. */
-static double unstamped(const struct loops *loops, const struct particles *particles,
-                        ptrdiff_t first, int len, ptrdiff_t D, double *scratch)
+/* The generic body: every choice is looked up at run time. */
+static double generic(const struct loops *loops, const struct particles *particles, ptrdiff_t first,
+                      int len, ptrdiff_t D, double *scratch)
 {
     return force_body(loops->formulation, loops->viscosity, loops->energy, loops, particles, first,
                       len, D, scratch);
 }
 
-force_loop *loop_force(bool want_stamped, enum formulation formulation, enum viscosity viscosity,
-                       enum energy energy)
+force_loop *loop_force(bool want_specialised, enum formulation formulation,
+                       enum viscosity viscosity, enum energy energy)
 {
-    return want_stamped ? stamped[formulation][viscosity][energy] : unstamped;
+    return want_specialised ? specialised[formulation][viscosity][energy] : generic;
 }

@@ -6,7 +6,7 @@
 
 #include "kernel_names.h"
 #include "loops.h"
-#include "stamp.h"
+#include "specialise.h"
 
 ALWAYS_INLINE double own_gradient(const struct kernel *kernel, kernel_shape *w, kernel_shape *dw,
                                   enum gradient gradient, double g, double r, double h_inverse)
@@ -84,16 +84,16 @@ ALWAYS_INLINE void gradients_of_pairs(const struct kernel *kernel, kernel_shape 
 #define UNSTAMPED(k, g, width) BODY(k##_##g##_##width, kernel->w, kernel->dw, g, width, )
 ALL(UNSTAMPED, any)
 
-static gradient_loop *const unstamped[GRADIENTS][PAIR_GRADIENTS] = {ALL(ENTRY, any)};
+static gradient_loop *const generic[GRADIENTS][PAIR_GRADIENTS] = {ALL(ENTRY, any)};
 
 #define DECLARE(name) extern gradient_loop *const loop_gradient_##name[GRADIENTS][PAIR_GRADIENTS];
 KERNEL_NAMES(DECLARE)
 #define TABLE(name)   loop_gradient_##name,
-static gradient_loop *const (*const stamped[])[PAIR_GRADIENTS] = {KERNEL_NAMES(TABLE)};
+static gradient_loop *const (*const specialised[])[PAIR_GRADIENTS] = {KERNEL_NAMES(TABLE)};
 
 gradient_loop *loop_gradient(int kernel, enum gradient gradient, int width)
 {
-    return kernel < 0 ? unstamped[gradient][width] : stamped[kernel][gradient][width];
+    return kernel < 0 ? generic[gradient][width] : specialised[kernel][gradient][width];
 }
 
 #endif

@@ -6,7 +6,7 @@
 
 #include "kernel_names.h"
 #include "loops.h"
-#include "stamp.h"
+#include "specialise.h"
 
 ALWAYS_INLINE void sum_moments(const struct kernel *kernel, kernel_shape *w,
                                enum matrix_terms terms, const struct particles *particles,
@@ -59,16 +59,16 @@ ALWAYS_INLINE void sum_moments(const struct kernel *kernel, kernel_shape *w,
 #define UNSTAMPED(terms, k) BODY(k##_##terms, kernel->w, terms, )
 MATRIX_LIST(UNSTAMPED, any)
 
-static matrix_loop *const unstamped[MATRIX_TERMS] = {MATRIX_LIST(ENTRY, any)};
+static matrix_loop *const generic[MATRIX_TERMS] = {MATRIX_LIST(ENTRY, any)};
 
 #define DECLARE(name) extern matrix_loop *const loop_matrix_##name[MATRIX_TERMS];
 KERNEL_NAMES(DECLARE)
 #define TABLE(name)   loop_matrix_##name,
-static matrix_loop *const *const stamped[] = {KERNEL_NAMES(TABLE)};
+static matrix_loop *const *const specialised[] = {KERNEL_NAMES(TABLE)};
 
 matrix_loop *loop_matrix(int kernel, enum matrix_terms terms)
 {
-    return kernel < 0 ? unstamped[terms] : stamped[kernel][terms];
+    return kernel < 0 ? generic[terms] : specialised[kernel][terms];
 }
 
 #endif

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "loops.h"
 
-#include "stamp.h"
+#include "specialise.h"
 
 void loops_choose(const struct plan *plan, const struct scheme *scheme, struct loops *loops)
 {
-    const int kernel = plan->stamped ? kernel_stamp(&scheme->kernel) : -1;
+    const int kernel = plan->specialised ? kernel_specialisation(&scheme->kernel) : -1;
     *loops = (struct loops){
         .kernel = &scheme->kernel,
         .formulation = scheme->formulation,

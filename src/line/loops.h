@@ -2,8 +2,8 @@
  * The particle sums in 1D, over sorted particles: a loop over neighbour offsets d = 1..D, inside it
  * a loop over the particles of a range, which vectorises. Kernels are exactly 0 beyond their
  * support, so D only has to be sufficient and the result depends neither on D nor on the range.
- * Every sum exists stamped per kernel (run-time dispatch over instruction sets) and unstamped, with
- * the kernel behind a pointer: the oracle, and the path of a user's plug-in. */
+ * Every sum exists specialised per kernel (run-time dispatch over instruction sets) and generic,
+ * with the kernel behind a pointer: the oracle, and the path of a user's plug-in. */
 #ifndef SPHPROOF_LOOPS_H
 #define SPHPROOF_LOOPS_H
 
@@ -18,7 +18,7 @@ enum { FORCE_STRIPS = 6 }; /* of scratch, in a pair force */
 
 /* --- kernel sums of one range, at width 1/h_inverse[i] -------------------------------------- */
 
-/* Like the lists of families.h: enum and table of stamps from one list. */
+/* Like the lists of families.h: enum and table of specialisations from one list. */
 #define DENSITY_LIST(TERMS, ...)                                                                   \
     TERMS(DENSITY_MASS, __VA_ARGS__)   /* sum m w, sum m (w + q w') */                             \
     TERMS(DENSITY_ENERGY, __VA_ARGS__) /* and the same two with Z = U */
@@ -81,19 +81,19 @@ struct loops {
     struct pair_numbers numbers;
 };
 
-/* Chooses through the tables what the plan asks for, once per simulation; stamped loops where the
- * plan wants them and the kernel is a built-in one. The loops keep a pointer to the scheme's
+/* Chooses through the tables what the plan asks for, once per simulation; specialised loops where
+ * the plan wants them and the kernel is a built-in one. The loops keep a pointer to the scheme's
  * kernel.
  */
 void loops_choose(const struct plan *plan, const struct scheme *scheme, struct loops *loops);
 
-/* The tables, one in each of the four files; kernel: position in kernels.def, -1: unstamped. The
- * files that stamp kernels are compiled once with the tables and once for each kernel
- * (stamp.c.in). */
+/* The tables, one in each of the four files; kernel: position in kernels.def, -1: generic. The
+ * files that specialisation kernels are compiled once with the tables and once for each kernel
+ * (specialise.c.in). */
 density_loop *loop_density(int kernel, enum density_terms terms);
 matrix_loop *loop_matrix(int kernel, enum matrix_terms terms);
 gradient_loop *loop_gradient(int kernel, enum gradient gradient, int width);
-force_loop *loop_force(bool stamped, enum formulation formulation, enum viscosity viscosity,
+force_loop *loop_force(bool specialised, enum formulation formulation, enum viscosity viscosity,
                        enum energy energy);
 
 /* The signal speed of each particle of the range, where it is asked for by itself. */

@@ -6,7 +6,7 @@
 #include "line.h"
 #include "pass.h"
 #include "sort.h"
-#include "stamp.h"
+#include "specialise.h"
 
 CLONES static double crossings_in(const struct particles *particles, ptrdiff_t first, ptrdiff_t len)
 {

@@ -2,7 +2,7 @@
 #include "pass.h"
 
 #include "line.h"
-#include "stamp.h"
+#include "specialise.h"
 
 #ifdef _OPENMP
 #include <omp.h>

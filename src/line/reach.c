@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * How far neighbours reach, in places of the order. */
 #include "line.h"
-#include "stamp.h"
+#include "specialise.h"
 
 ALWAYS_INLINE double count_inside(const struct particles *particles, ptrdiff_t first, int len,
                                   ptrdiff_t d)
@@ -15,8 +15,8 @@ ALWAYS_INLINE double count_inside(const struct particles *particles, ptrdiff_t f
     return inside;
 }
 
-CLONES static double inside_stamped(const struct particles *particles, ptrdiff_t first, int len,
-                                    ptrdiff_t d)
+CLONES static double inside_specialised(const struct particles *particles, ptrdiff_t first, int len,
+                                        ptrdiff_t d)
 {
     return len == BATCH_MAX ? count_inside(particles, first, BATCH_MAX, d)
                             : count_inside(particles, first, len, d);
@@ -24,7 +24,7 @@ CLONES static double inside_stamped(const struct particles *particles, ptrdiff_t
 
 double reach_inside(const struct particles *particles, ptrdiff_t first, int len, ptrdiff_t d)
 {
-    return inside_stamped(particles, first, len, d);
+    return inside_specialised(particles, first, len, d);
 }
 
 bool reach_cover(const struct simulation *simulation, struct range *range)

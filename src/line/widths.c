@@ -6,7 +6,7 @@
 #include "breakdown.h"
 #include "line.h"
 #include "pass.h"
-#include "stamp.h"
+#include "specialise.h"
 #include "state.h"
 
 /* What becomes of a range: all is well, or more ghosts are needed, or (>= 0) the first particle

@@ -55,11 +55,11 @@ void checkpoint_save(struct checkpoint *checkpoint, struct simulation *simulatio
     checkpoint->trouble = (struct error){0};
     if (output_open(&output, checkpoint->path, &checkpoint->trouble)) return;
     struct stream stream = {.file = output.stream, .sum = CACHE_HASH};
-    struct carrier carrier = {.bytes = put, .context = &stream};
+    struct serialiser serialiser = {.bytes = put, .context = &stream};
     fprintf(output.stream, "%s %s\n%s\n", magic, checkpoint->build, checkpoint->run);
-    CARRY(&carrier, *growth);
-    CARRY(&carrier, checkpoint->snapshot);
-    simulation_carry(simulation, &carrier);
+    SERIALISE(&serialiser, *growth);
+    SERIALISE(&serialiser, checkpoint->snapshot);
+    simulation_serialise(simulation, &serialiser);
     fwrite(&stream.sum, sizeof stream.sum, 1, output.stream);
     output_close(&output, &checkpoint->trouble); /* tells whether it worked */
 }
@@ -156,12 +156,12 @@ enum status checkpoint_load(struct checkpoint *checkpoint, struct simulation *si
     enum status status = check_head(checkpoint, file, error);
     if (!status) status = check_bytes(checkpoint, file, error);
     struct stream stream = {.file = file, .sum = CACHE_HASH};
-    struct carrier carrier = {.bytes = get, .context = &stream, .back = true};
+    struct serialiser serialiser = {.bytes = get, .context = &stream, .back = true};
     if (!status) {
-        CARRY(&carrier, *growth);
-        CARRY(&carrier, checkpoint->snapshot);
-        simulation_carry(simulation, &carrier);
-        if (carrier.failed) status = refuse(checkpoint, "is damaged, or too large", error);
+        SERIALISE(&serialiser, *growth);
+        SERIALISE(&serialiser, checkpoint->snapshot);
+        simulation_serialise(simulation, &serialiser);
+        if (serialiser.failed) status = refuse(checkpoint, "is damaged, or too large", error);
     }
     fclose(file);
     return status;

@@ -13,11 +13,11 @@ struct estimate {
 };
 
 /* By dimension, scheme, threads and number of particles alone; steps and cpu_s are 0. */
-struct estimate estimate_size(const struct scene *scene);
+struct estimate estimate_size(const struct setup *setup);
 
 /* All of it; the first signals are thought to stay, and where gas meets gas its motion to become
  * heat. */
-struct estimate estimate_run(const struct scene *scene);
+struct estimate estimate_run(const struct setup *setup);
 
 /* STATUS_ENVIRONMENT: it is more than this machine has, or this process may have. */
 enum status estimate_check(const struct estimate *estimate, size_t n, struct error *error);

@@ -84,7 +84,7 @@ void particle_file_free(struct particle_file *file)
 }
 
 /* A box around the particles, a little wider. */
-static void surround(const struct particle_file *file, int a, struct scene *scene)
+static void surround(const struct particle_file *file, int a, struct setup *setup)
 {
     double lo = (double)INFINITY, hi = -(double)INFINITY;
     for (size_t i = 0; i < file->csv.rows; i++) {
@@ -92,28 +92,28 @@ static void surround(const struct particle_file *file, int a, struct scene *scen
         hi = fmax(hi, file->x[a][i]);
     }
     const double margin = hi > lo ? 0.01 * (hi - lo) : 1;
-    scene->lo[a] = lo - margin;
-    scene->hi[a] = hi + margin;
+    setup->lo[a] = lo - margin;
+    setup->hi[a] = hi + margin;
 }
 
 enum status particle_file_fill(const struct particle_file *file, const char *path,
-                               struct scene *scene, struct error *error)
+                               struct setup *setup, struct error *error)
 {
-    scene->dim = file->dim;
-    scene->n = file->csv.rows;
-    scene->m = file->m;
-    scene->u = file->u;
+    setup->dim = file->dim;
+    setup->n = file->csv.rows;
+    setup->m = file->m;
+    setup->u = file->u;
     for (int a = 0; a < file->dim; a++) {
-        scene->x[a] = file->x[a];
-        scene->v[a] = file->v[a];
-        if (scene->boundary[a] == BOUNDARY_OPEN && scene->lo[a] == scene->hi[a])
-            surround(file, a, scene);
-        for (size_t i = 0; i < scene->n; i++)
-            if (!(scene->x[a][i] >= scene->lo[a] && scene->x[a][i] <= scene->hi[a]))
+        setup->x[a] = file->x[a];
+        setup->v[a] = file->v[a];
+        if (setup->boundary[a] == BOUNDARY_OPEN && setup->lo[a] == setup->hi[a])
+            surround(file, a, setup);
+        for (size_t i = 0; i < setup->n; i++)
+            if (!(setup->x[a][i] >= setup->lo[a] && setup->x[a][i] <= setup->hi[a]))
                 return error_set(error, STATUS_BAD_INPUT,
                                  "%.200s:%zu: %s = %.9g: allowed: inside of the box, %.9g to %.9g",
-                                 path, file->csv.line[i], places[a], scene->x[a][i], scene->lo[a],
-                                 scene->hi[a]);
+                                 path, file->csv.line[i], places[a], setup->x[a][i], setup->lo[a],
+                                 setup->hi[a]);
     }
     return STATUS_OK;
 }

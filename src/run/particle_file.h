@@ -26,10 +26,10 @@ enum status particle_file_read(const char *path, struct particle_file *file, str
 enum status particle_file_of(const char *path, struct particle_file *file, struct error *error);
 void particle_file_free(struct particle_file *file);
 
-/* The particles as a scene's, whose box and boundary are set: an open direction without a box (lo =
+/* The particles as a setup's, whose box and boundary are set: an open direction without a box (lo =
  * hi) gets one around them. STATUS_BAD_INPUT: one is outside. */
 enum status particle_file_fill(const struct particle_file *file, const char *path,
-                               struct scene *scene, struct error *error);
+                               struct setup *setup, struct error *error);
 
 /* The particles of the settings' file as the start of a problem; rho, a first
  * guess and the density of layers at fixed ends: what the problem knows, else a column rho, else,

@@ -19,7 +19,7 @@ static bool allocate(struct rate_table *table)
     return true;
 }
 
-/* Puts the solver's order back into the scene's; dE = v . F + dU where it is E that is integrated.
+/* Puts the solver's order back into the setup's; dE = v . F + dU where it is E that is integrated.
  */
 static void take(struct rate_table *table, const struct simulation *simulation, bool total)
 {
@@ -66,21 +66,21 @@ static void describe(struct rate_table *table, struct simulation *simulation)
     table->matrix = description_sum(simulation);
 }
 
-enum status rate_table_make(struct rate_table *table, const struct scene *scene,
+enum status rate_table_make(struct rate_table *table, const struct setup *setup,
                             struct error *error)
 {
-    *table = (struct rate_table){.dim = scene->dim, .n = scene->n};
+    *table = (struct rate_table){.dim = setup->dim, .n = setup->n};
     struct simulation *simulation = NULL;
-    const enum status status = simulation_create(scene, &simulation, error);
+    const enum status status = simulation_create(setup, &simulation, error);
     if (status) return status;
     const bool there = allocate(table);
     if (there) {
-        take(table, simulation, scene->scheme.energy == ENERGY_TOTAL);
+        take(table, simulation, setup->scheme.energy == ENERGY_TOTAL);
         describe(table, simulation);
     }
     simulation_destroy(simulation);
     return there ? STATUS_OK
-                 : error_set(error, STATUS_ENVIRONMENT, "no memory for %zu particles", scene->n);
+                 : error_set(error, STATUS_ENVIRONMENT, "no memory for %zu particles", setup->n);
 }
 
 void rate_table_free(struct rate_table *table)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * One evaluation: what the solver finds of particles that do not move, in the order of the scene.
+ * One evaluation: what the solver finds of particles that do not move, in the order of the setup.
  */
 #ifndef SPHPROOF_RATE_TABLE_H
 #define SPHPROOF_RATE_TABLE_H
@@ -17,9 +17,9 @@ struct rate_table {
     double *storage;
 };
 
-/* STATUS_BAD_INPUT: the scene is none; STATUS_BROKE_DOWN: no sound state; STATUS_ENVIRONMENT: no
+/* STATUS_BAD_INPUT: the setup is none; STATUS_BROKE_DOWN: no sound state; STATUS_ENVIRONMENT: no
  * memory. Free with rate_table_free, also after a failure. */
-enum status rate_table_make(struct rate_table *table, const struct scene *scene,
+enum status rate_table_make(struct rate_table *table, const struct setup *setup,
                             struct error *error);
 void rate_table_free(struct rate_table *table);
 

@@ -44,11 +44,11 @@ enum status run_resolve(struct run *run, const struct run_settings *asked, struc
     return status ? status : settings_scheme(&run->settings, dim, &run->scheme, error);
 }
 
-struct scene run_scene(const struct run *run, const struct initial *initial)
+struct setup run_setup(const struct run *run, const struct initial *initial)
 {
     const struct prepared *problem = &run->problem;
     const struct domain *domain = &problem->domain;
-    return (struct scene){
+    return (struct setup){
         .dim = domain->dim,
         .lo = {domain->lo[0], domain->lo[1], domain->lo[2]},
         .hi = {domain->hi[0], domain->hi[1], domain->hi[2]},
@@ -64,7 +64,7 @@ struct scene run_scene(const struct run *run, const struct initial *initial)
         .rho = initial->rho,
         .scheme = run->scheme,
         .skip = settings_choice(&run->settings, SETTING_skip) == SKIP_AUTO,
-        .unstamped = run->asked.unstamped,
+        .generic = run->asked.generic,
         .threads = run->asked.threads,
     };
 }
@@ -93,23 +93,23 @@ static enum status measure_start(struct run_result *result, const struct initial
     return status;
 }
 
-static void add_snapshots(const struct run *run, const struct scene *scene,
+static void add_snapshots(const struct run *run, const struct setup *setup,
                           struct estimate *estimate)
 {
     const struct snapshots *snapshots = run->asked.snapshots;
-    const double n = (double)scene->n;
+    const double n = (double)setup->n;
     if (snapshots)
         estimate->memory +=
-            snapshots_memory(scene->dim, n) + n * snapshot_writer_memory(snapshots->path);
+            snapshots_memory(setup->dim, n) + n * snapshot_writer_memory(snapshots->path);
 }
 
 /* Before there is an array of n numbers; a file's particles are as many as they are. */
 static enum status check_size(const struct run *run, struct error *error)
 {
     const struct initial none = {.n = (size_t)settings_real(&run->settings, SETTING_n)};
-    const struct scene scene = run_scene(run, &none);
-    struct estimate estimate = estimate_size(&scene);
-    add_snapshots(run, &scene, &estimate);
+    const struct setup setup = run_setup(run, &none);
+    struct estimate estimate = estimate_size(&setup);
+    add_snapshots(run, &setup, &estimate);
     return run->settings.file[0] ? STATUS_OK : estimate_check(&estimate, none.n, error);
 }
 
@@ -129,13 +129,13 @@ static enum status begin(const struct run *run, struct run_result *result, struc
         (status = check_size(run, error)) ||
         (status = initial_create(initial, &run->problem, &run->settings, error)))
         return status;
-    const struct scene scene = run_scene(run, initial);
+    const struct setup setup = run_setup(run, initial);
     result->n = initial->n;
-    result->estimate = estimate_run(&scene);
-    add_snapshots(run, &scene, &result->estimate);
+    result->estimate = estimate_run(&setup);
+    add_snapshots(run, &setup, &result->estimate);
     if (run->settings.file[0]) result->settings.value[SETTING_n].real[0] = (double)initial->n;
     result->plan_count =
-        plan_explain(&scene, result->plan, RUN_PLAN_MAX, result->warnings, sizeof result->warnings);
+        plan_explain(&setup, result->plan, RUN_PLAN_MAX, result->warnings, sizeof result->warnings);
     if ((status = measure_start(result, initial, error))) return status;
     if (initial->ignored[0]) {
         const size_t used = strlen(result->warnings);
@@ -393,8 +393,8 @@ static enum status simulate(const struct run *run, struct run_result *result,
     const struct run_settings *asked = &run->asked;
     struct simulation *simulation = NULL;
     struct run_outcome outcome = {0};
-    const struct scene scene = run_scene(run, initial);
-    enum status status = simulation_take(&scene, &simulation, &outcome.reason);
+    const struct setup setup = run_setup(run, initial);
+    enum status status = simulation_take(&setup, &simulation, &outcome.reason);
     initial_free(initial); /* the solver has copied it */
     if (!status) status = simulation_begin(simulation, &outcome.reason);
     if (status) simulation_destroy(simulation);
@@ -417,9 +417,9 @@ static enum status simulate(const struct run *run, struct run_result *result,
     if (asked->snapshots) {
         simulation_snapshot(simulation, &outcome.snapshot);
         snapshots_begin(asked->snapshots, outcome.snapshot.time,
-                        asked->checkpoint ? asked->checkpoint->snapshot : -1, scene.t_end);
+                        asked->checkpoint ? asked->checkpoint->snapshot : -1, setup.t_end);
     }
-    outcome.status = steps(&watch, simulation, result, scene.t_end, &outcome.reason);
+    outcome.status = steps(&watch, simulation, result, setup.t_end, &outcome.reason);
     simulation_cost(simulation, &result->cost);
     if (!outcome.status) result->matrix = description_sum(simulation);
     simulation_end(simulation); /* its neighbours' memory serves for the snapshot */
@@ -438,8 +438,8 @@ static enum status simulate_otherwise(const struct run *run, struct run_result *
                                       struct initial *initial, struct error *error)
 {
     struct run_outcome outcome = {0};
-    const struct scene scene = run_scene(run, initial);
-    run->asked.solver(&scene, &outcome);
+    const struct setup setup = run_setup(run, initial);
+    run->asked.solver(&setup, &outcome);
     result->cost = outcome.cost;
     const enum status status = finish(result, &outcome, error);
     if (outcome.release) outcome.release(outcome.owned);

@@ -31,21 +31,21 @@ struct run_outcome {
     struct error reason;
     struct conservation start, end;
     struct simulation_cost cost;
-    struct snapshot snapshot;    /* its arrays belong to the solver, until it is released */
-    void *owned;                 /* by the solver */
+    struct snapshot snapshot;     /* its arrays belong to the solver, until it is released */
+    void *owned;                  /* by the solver */
     void (*release)(void *owned); /* NULL: there is nothing to release */
 };
 
 /* Another solver than that of the core: runs a setup to its t_end. A status that is neither
  * STATUS_OK nor STATUS_BROKE_DOWN leaves no snapshot. */
-typedef void run_solver(const struct scene *scene, struct run_outcome *outcome);
+typedef void run_solver(const struct setup *setup, struct run_outcome *outcome);
 
 struct run_settings {
     struct case_file file;
     struct settings settings;      /* the case's with the user's on top; `auto` still in it */
     int threads;                   /* >= 1 */
     bool any_window;               /* run also where the mirrored tube reaches the window */
-    bool unstamped;                /* by the loops that look every choice up */
+    bool generic;                  /* by the loops that look every choice up */
     run_solver *solver;            /* computes the run; NULL: the core solver */
     simulation_progress *progress; /* called every 32 steps; may be NULL */
     void *progress_context;
@@ -115,7 +115,7 @@ enum status run_prepare(struct run_settings *settings, const char *case_name, in
 enum status run_resolve(struct run *run, const struct run_settings *asked, struct error *error);
 
 /* What the solver is given; initial: of the run's problem. */
-struct scene run_scene(const struct run *run, const struct initial *initial);
+struct setup run_setup(const struct run *run, const struct initial *initial);
 
 /* Runs. STATUS_OK and STATUS_BROKE_DOWN leave a result (run_free it), anything else none:
  * STATUS_BAD_INPUT where the exact solution does not hold in the window up to t_end. */

@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-
 /* Steps before a snapshot's time: the last two are made equal, and one prepares the next. */
 static const double steps_aside = 4;
 
@@ -90,16 +89,16 @@ bool snapshots_keep(struct snapshots *snapshots, struct simulation *simulation, 
     struct rates rates;
     struct error error;
     struct buffer buffer = {0};
-    struct carrier carrier = {.bytes = put, .context = &buffer};
+    struct serialiser serialiser = {.bytes = put, .context = &buffer};
     if (snapshots->next >= snapshots->count) return false;
     simulation_rates(simulation, &rates);
     snapshots->reach = fmin(stop, time + steps_aside * rates.time_step);
     if (snapshots_time(snapshots, snapshots->next) > snapshots->reach) return false;
-    simulation_carry(simulation, &carrier);
+    simulation_serialise(simulation, &serialiser);
     snapshots->size = buffer.used;
     buffer = (struct buffer){.bytes = malloc(snapshots->size)};
     if (buffer.bytes) {
-        simulation_carry(simulation, &carrier);
+        simulation_serialise(simulation, &serialiser);
         snapshots->state = buffer.bytes;
         return true;
     }
@@ -112,8 +111,8 @@ bool snapshots_keep(struct snapshots *snapshots, struct simulation *simulation, 
 void snapshots_return(struct snapshots *snapshots, struct simulation *simulation)
 {
     struct buffer buffer = {.bytes = snapshots->state};
-    struct carrier carrier = {.bytes = get, .context = &buffer, .back = true};
-    simulation_carry(simulation, &carrier);
+    struct serialiser serialiser = {.bytes = get, .context = &buffer, .back = true};
+    simulation_serialise(simulation, &serialiser);
 }
 
 void snapshots_go_on(struct snapshots *snapshots)

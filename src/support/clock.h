@@ -3,7 +3,7 @@
 #ifndef SPHPROOF_CLOCK_H
 #define SPHPROOF_CLOCK_H
 
-/* What something took, or two readings. */
+/* What something took, or two metrics. */
 struct clock_taken {
     double wall_s, cpu_s; /* cpu_s: of all threads of the process */
 };

@@ -11,14 +11,14 @@
 static const double jitter = 0.2, gamma_gas = 1.4;
 
 /* As the solver asks for them (src/cells/cells_room.c). */
-static struct cells_method method_of(const struct scheme *s, int dim, bool stamped)
+static struct cells_method method_of(const struct scheme *s, int dim, bool specialised)
 {
-    const struct plan plan = plan_make(s, dim, false, stamped);
+    const struct plan plan = plan_make(s, dim, false, specialised);
     const bool projected = s->viscosity == VISCOSITY_PROJECTED, varies = plan.alpha || plan.jump;
     struct cells_method method = {
         .box = {.dim = dim, .hi = {1, 1, 1}, .periodic = {true, true, true}},
         .kernel = &s->kernel,
-        .stamped = stamped,
+        .specialised = specialised,
         .gradient = s->gradient,
         .formulation = s->formulation,
         .pair_width = s->pair_width,
@@ -112,12 +112,12 @@ static enum status run(struct bench_cells *bench, unsigned passes, struct error 
 }
 
 enum status bench_cells_create(struct bench_cells *bench, const struct scheme *scheme, int dim,
-                               size_t side, bool stamped, unsigned passes, struct error *error)
+                               size_t side, bool specialised, unsigned passes, struct error *error)
 {
     struct arrays arrays;
     const size_t n = dim == 2 ? side * side : side * side * side;
     *bench = (struct bench_cells){.scheme = *scheme, .passes = passes};
-    const struct cells_method method = method_of(&bench->scheme, dim, stamped);
+    const struct cells_method method = method_of(&bench->scheme, dim, specialised);
     bench->cells = cells_create(&method, n);
     if (!bench->cells || !allocate(bench, n, &arrays))
         return error_set(error, STATUS_ENVIRONMENT, "no memory for %zu particles", n);

@@ -27,7 +27,7 @@ struct bench_cells {
  * widths exceed half of the box; STATUS_ENVIRONMENT: no memory. Free with bench_cells_free, also
  * after a failure. */
 enum status bench_cells_create(struct bench_cells *bench, const struct scheme *scheme, int dim,
-                               size_t side, bool stamped, unsigned passes, struct error *error);
+                               size_t side, bool specialised, unsigned passes, struct error *error);
 void bench_cells_free(struct bench_cells *bench);
 
 /* A bench_work; context: struct bench_cells. */

@@ -179,11 +179,11 @@ static struct job *new_row(struct bench *bench, const char *kernel, const char *
     return &bench->jobs[row * VARIANTS];
 }
 
-static enum status prepare_loops(struct job *job, const struct scheme *scheme, bool stamped,
+static enum status prepare_loops(struct job *job, const struct scheme *scheme, bool specialised,
                                  unsigned passes, struct error *error)
 {
     job->kind = JOB_LOOPS;
-    if (bench_loops_create(&job->loops, scheme, BENCH_LOOPS_PARTICLES, stamped, passes, error))
+    if (bench_loops_create(&job->loops, scheme, BENCH_LOOPS_PARTICLES, specialised, passes, error))
         return error->status;
     job->pairs = (double)job->loops.pairs;
     job->particles = BENCH_LOOPS_PARTICLES;
@@ -222,7 +222,7 @@ static enum status add_solver(struct bench *bench, const char *kernel, const cha
         if (v == UNSTAMPED && !(step[v].run = malloc(sizeof *run)))
             return error_set(error, STATUS_ENVIRONMENT, "no memory");
         *step[v].run = *run;
-        step[v].run->asked.unstamped = v == UNSTAMPED;
+        step[v].run->asked.generic = v == UNSTAMPED;
     }
     const unsigned all =
         1u << PASS_STATE | 1u << PASS_DENSITY | 1u << PASS_MATRIX | 1u << PASS_FORCE;
@@ -335,7 +335,7 @@ static enum status add_operator(struct bench *bench, const struct kernel *kernel
     for (enum variant v = STAMPED; v <= LIMIT; v++) {
         job[v].kind = v == LIMIT ? JOB_LIMIT : JOB_OPERATOR;
         job[v].settings = (struct operator_settings){
-            .form = form, .kernel = kernel, .unstamped = v == UNSTAMPED, .threads = 1};
+            .form = form, .kernel = kernel, .generic = v == UNSTAMPED, .threads = 1};
         job[v].cloud = cloud;
         job[v].field = bench->fields[dim - 1];
         job[v].particles = (double)cloud->cloud.points.n;
@@ -454,7 +454,7 @@ enum status bench_kernels_measure(const struct sweep *sweep, const struct bench_
     for (size_t r = 0; r < bench.row_count; r++) {
         struct bench_kernel_row *row = &result->rows[r];
         const struct job *job = &bench.jobs[r * VARIANTS];
-        struct bench_cost *const costs[] = {&row->stamped, &row->unstamped, &row->limit};
+        struct bench_cost *const costs[] = {&row->specialised, &row->generic, &row->limit};
         row->pairs = job->pairs / job->particles;
         row->ns_per_particle = 1e9 * next->time.cpu_s / job->particles;
         for (size_t v = 0; v < VARIANTS; v++) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What a pair costs: every kernel in the solver's loops and steps (1D) and sums (2D and 3D) and in
- * every gradient operator in 1D, 2D and 3D; stamped, unstamped, and the same arithmetic where
+ * every gradient operator in 1D, 2D and 3D; specialised, generic, and the same arithmetic where
  * nothing has to be found. */
 #ifndef SPHPROOF_BENCH_KERNELS_H
 #define SPHPROOF_BENCH_KERNELS_H
@@ -23,7 +23,7 @@ struct bench_kernel_row {
     double ns_per_particle;
     size_t whole; /* the row of the evaluation that this is a part of */
     double share; /* of its time; NaN: it is no part of one */
-    struct bench_cost stamped, unstamped, limit;
+    struct bench_cost specialised, generic, limit;
     double error; /* operators: rms of |gradient error| h/max|f|, smooth field, jittered cloud */
 };
 

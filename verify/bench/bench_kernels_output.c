@@ -20,11 +20,11 @@ void bench_kernels_add_json(const struct bench_kernels *result, json_t *document
                 row->kernel, "of", row->on_cloud ? "operator" : "solver", "what", row->what, "dim",
                 row->dim, "pairs_per_particle", result_number(row->pairs), "ns_per_particle",
                 result_number(row->ns_per_particle), "share", result_number_or_null(row->share),
-                "ns_per_pair", result_number(row->stamped.ns_per_pair), "spread",
-                result_number(row->stamped.spread), "ns_per_pair_unstamped",
-                result_number(row->unstamped.ns_per_pair), "ns_per_pair_limit",
+                "ns_per_pair", result_number(row->specialised.ns_per_pair), "spread",
+                result_number(row->specialised.spread), "ns_per_pair_generic",
+                result_number(row->generic.ns_per_pair), "ns_per_pair_limit",
                 limit ? result_number(row->limit.ns_per_pair) : json_null(), "limit_over_this",
-                limit ? result_number(row->limit.ns_per_pair / row->stamped.ns_per_pair)
+                limit ? result_number(row->limit.ns_per_pair / row->specialised.ns_per_pair)
                       : json_null(),
                 "error", row->on_cloud ? result_number(row->error) : json_null()));
     }
@@ -34,18 +34,18 @@ void bench_kernels_add_json(const struct bench_kernels *result, json_t *document
 void bench_kernels_print(const struct bench_kernels *result, const struct table_style *style)
 {
     printf("%s%-18s %-22s %3s %7s %9s %6s %9s %7s %10s %9s %7s %10s%s\n", style->bold, "kernel",
-           "what", "dim", "pairs", "ns/part.", "share", "ns/pair", "spread", "unstamped", "limit",
+           "what", "dim", "pairs", "ns/part.", "share", "ns/pair", "spread", "generic", "limit",
            "of it", "error", style->end);
     for (size_t i = 0; i < result->count; i++) {
         const struct bench_kernel_row *row = &result->rows[i];
         char share[16] = "";
         if (!isnan(row->share)) snprintf(share, sizeof share, "%.0f%%", 100 * row->share);
         printf("%-18s %-22s %3d %7.3g %9.4g %6s %9.3g %6.0f%% %10.3g", row->kernel, row->what,
-               row->dim, row->pairs, row->ns_per_particle, share, row->stamped.ns_per_pair,
-               100 * row->stamped.spread, row->unstamped.ns_per_pair);
+               row->dim, row->pairs, row->ns_per_particle, share, row->specialised.ns_per_pair,
+               100 * row->specialised.spread, row->generic.ns_per_pair);
         if (isfinite(row->limit.ns_per_pair))
             printf(" %9.3g %6.0f%%", row->limit.ns_per_pair,
-                   100 * row->limit.ns_per_pair / row->stamped.ns_per_pair);
+                   100 * row->limit.ns_per_pair / row->specialised.ns_per_pair);
         else
             printf(" %9s %7s", "-", "-");
         if (row->on_cloud) printf(" %10.2e", row->error);
@@ -62,7 +62,7 @@ void bench_kernels_print(const struct bench_kernels *result, const struct table_
         "that of standard; of the evaluation:\nthe sum. Others: gradient operators on 4096 "
         "jittered points, search included, h = 2.4 "
         "spacings;\ntheir limit is the same arithmetic on one contiguous array. "
-        "unstamped: every choice and the kernel behind\na pointer. error: rms of a smooth "
+        "generic: every choice and the kernel behind\na pointer. error: rms of a smooth "
         "field's gradient error, times h/max|f|.%s\n",
         style->faint, BENCH_LOOPS_PARTICLES, style->end);
 }

@@ -6,7 +6,7 @@
 #include <math.h>
 
 #include "kernel_names.h"
-#include "stamp.h"
+#include "specialise.h"
 #include "matrix.h"
 
 /* Places of the sums. */
@@ -17,7 +17,7 @@ enum { PF = 0, P = 3, PX = 6, W = 15, WF = 16, WX = 17, USED = 20 };
     X(name, tag, vector, 1) X(name, tag, vector, 2) X(name, tag, vector, 3)
 #define KINDS(X, name) VECTOR_LIST(DIMENSIONS, X, name)
 
-#ifdef KERNEL_FILE /* one kernel's, see stamp.c.in */
+#ifdef KERNEL_FILE /* one kernel's, see specialise.c.in */
 
 ALWAYS_INLINE void sum_up(const struct kernel *kernel, kernel_shape *w, kernel_shape *dw,
                           enum pair_vector vector, bool matrix, int dim,
@@ -82,8 +82,8 @@ static bench_limit_loop *const (*const loops[])[KERNEL_DIM_MAX] = {KERNEL_NAMES(
 bench_limit_loop *bench_limit_find(const struct kernel *kernel, const struct operator_form *form,
                                    int dim)
 {
-    const int stamp = kernel_stamp(kernel);
-    return stamp < 0 ? NULL : loops[stamp][form->pair_vector][dim - 1];
+    const int specialisation = kernel_specialisation(kernel);
+    return specialisation < 0 ? NULL : loops[specialisation][form->pair_vector][dim - 1];
 }
 
 CLONES static size_t near(int dim, size_t n, const float *restrict x, const float *restrict y,

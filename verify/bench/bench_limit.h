@@ -19,7 +19,7 @@ typedef void bench_limit_loop(const struct kernel *kernel, const struct bench_ne
                               double *sums);
 enum { BENCH_LIMIT_SUMS = 32 };
 
-/* The stamped loop for a built-in kernel; NULL: it is a plug-in. */
+/* The specialised loop for a built-in kernel; NULL: it is a plug-in. */
 bench_limit_loop *bench_limit_find(const struct kernel *kernel, const struct operator_form *form,
                                    int dim);
 

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "integrator.h"
-#include "stamp.h"
+#include "specialise.h"
 #include "state.h"
 
 enum { GHOSTS = 64 };
@@ -111,10 +111,10 @@ static void run(struct bench_loops *loops)
 }
 
 enum status bench_loops_create(struct bench_loops *loops, const struct scheme *scheme, size_t n,
-                               bool stamped, unsigned passes, struct error *error)
+                               bool specialised, unsigned passes, struct error *error)
 {
     *loops = (struct bench_loops){.scheme = *scheme, .passes = passes};
-    loops->plan = plan_make(&loops->scheme, 1, false, stamped);
+    loops->plan = plan_make(&loops->scheme, 1, false, specialised);
     loops_choose(&loops->plan, &loops->scheme, &loops->loops);
     if (!loops->loops.matrix) loops->passes &= ~(1u << PASS_MATRIX);
     loops->reach = (ptrdiff_t)ceil(scheme->eta) - 1;

@@ -43,10 +43,10 @@ enum bench_pass {
 };
 
 /* A slightly disordered lattice of n particles, with every array that the scheme's loops read;
- * passes that the scheme does not have are left out. stamped: as in loops_choose.
+ * passes that the scheme does not have are left out. specialised: as in loops_choose.
  * STATUS_ENVIRONMENT: no memory. Free with bench_loops_free, also after a failure. */
 enum status bench_loops_create(struct bench_loops *loops, const struct scheme *scheme, size_t n,
-                               bool stamped, unsigned passes, struct error *error);
+                               bool specialised, unsigned passes, struct error *error);
 void bench_loops_free(struct bench_loops *loops);
 
 /* A bench_work; context: struct bench_loops. */

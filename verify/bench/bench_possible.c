@@ -8,7 +8,7 @@
 #include "initial_create.h"
 
 static const double reaches = 3;
-/* Rates of change, in c per h/c of the scene's mean sound speed, below which gas counts as calm. It
+/* Rates of change, in c per h/c of the setup's mean sound speed, below which gas counts as calm. It
  * is far above what wakes gas, and far below what changes the errors of a run. */
 static const double coarse = 1e-7;
 
@@ -19,14 +19,14 @@ struct counting {
     double *h;                 /* of the start, by id */
     double *before;            /* v and rho of the step before, by id: dim + 1 runs of n */
     bool *asleep;              /* in the order of a snapshot */
-    double sound, time, t_end; /* of the scene; of the step before; of the run */
+    double sound, time, t_end; /* of the setup; of the step before; of the run */
     double share;              /* what could be skipped, summed over steps */
     uint64_t steps;
     double slept[BENCH_ROWS][BENCH_COLUMNS], gas[BENCH_ROWS][BENCH_COLUMNS];
 };
 
 /* Sound speed if all energy but that of the common motion were heat, as in sleep.h. */
-static double scene_sound(const struct initial *initial, int dim, double gamma)
+static double setup_sound(const struct initial *initial, int dim, double gamma)
 {
     double mass = 0, energy = 0, momentum[3] = {0};
     for (size_t i = 0; i < initial->n; i++) {
@@ -137,17 +137,17 @@ static void fill_map(const struct counting *counting, struct bench_shares *share
 static enum status run_counting(const struct run *run, struct counting *counting,
                                 struct bench_shares *shares, struct error *error)
 {
-    const struct scene scene = run_scene(run, counting->initial);
+    const struct setup setup = run_setup(run, counting->initial);
     struct simulation_cost cost;
     struct snapshot start;
-    enum status status = simulation_create(&scene, &counting->simulation, error);
+    enum status status = simulation_create(&setup, &counting->simulation, error);
     if (status) return status;
     simulation_snapshot(counting->simulation, &start);
-    counting->sound = scene_sound(counting->initial, scene.dim, scene.gamma);
-    counting->t_end = scene.t_end;
+    counting->sound = setup_sound(counting->initial, setup.dim, setup.gamma);
+    counting->t_end = setup.t_end;
     for (size_t i = 0; i < start.n; i++) counting->h[start.id[i]] = start.h[i];
     count_calm(counting, &start, 0);
-    status = simulation_run(counting->simulation, scene.t_end, count, counting, error);
+    status = simulation_run(counting->simulation, setup.t_end, count, counting, error);
     simulation_cost(counting->simulation, &cost);
     simulation_destroy(counting->simulation);
     const double skipped = (double)cost.skipped_particle_updates;

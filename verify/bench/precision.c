@@ -21,14 +21,14 @@ static void release_plain(void *owned)
     free(owned);
 }
 
-void precision_plain(const struct scene *scene, struct run_outcome *outcome)
+void precision_plain(const struct setup *setup, struct run_outcome *outcome)
 {
     struct plain *plain = calloc(1, sizeof *plain);
     if (!plain) {
         outcome->status = error_set(&outcome->reason, STATUS_ENVIRONMENT, "no memory for a run");
         return;
     }
-    outcome->status = plain_run(plain, scene, &outcome->reason);
+    outcome->status = plain_run(plain, setup, &outcome->reason);
     outcome->start = plain->start;
     outcome->end = plain->end;
     outcome->cost = plain->cost;

@@ -88,7 +88,7 @@ double precision_target(const struct precision *precision, size_t t);
 
 /* A run_solver: the seed program's corrected method in plain C (plain.h). STATUS_BAD_INPUT: a
  * scheme that it does not know. */
-void precision_plain(const struct scene *scene, struct run_outcome *outcome);
+void precision_plain(const struct setup *setup, struct run_outcome *outcome);
 
 /* --- the arithmetic, by itself ---------------------------------------------------------------- */
 

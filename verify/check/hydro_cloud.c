@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "hydro_scene.h"
+#include "hydro_setup.h"
 #include "integrator.h"
 
 static const double low[3] = {-0.37, 1.213, 0.61}, high[3] = {0.681, 2.109, 1.572};
@@ -48,9 +48,9 @@ void hydro_cloud_sheared(struct hydro_cloud *cloud, int dim, size_t side)
     }
 }
 
-struct scene hydro_cloud_scene(const struct hydro_cloud *cloud, const struct scheme *scheme)
+struct setup hydro_cloud_setup(const struct hydro_cloud *cloud, const struct scheme *scheme)
 {
-    struct scene scene = {.dim = cloud->dim,
+    struct setup setup = {.dim = cloud->dim,
                           .gamma = cloud->gamma,
                           .n = cloud->n,
                           .m = cloud->m,
@@ -58,12 +58,12 @@ struct scene hydro_cloud_scene(const struct hydro_cloud *cloud, const struct sch
                           .scheme = *scheme,
                           .threads = 1};
     for (int a = 0; a < cloud->dim; a++) {
-        scene.lo[a] = cloud->lo[a];
-        scene.hi[a] = cloud->hi[a];
-        scene.x[a] = cloud->x[a];
-        scene.v[a] = cloud->v[a];
+        setup.lo[a] = cloud->lo[a];
+        setup.hi[a] = cloud->hi[a];
+        setup.x[a] = cloud->x[a];
+        setup.v[a] = cloud->v[a];
     }
-    return scene;
+    return setup;
 }
 
 struct scheme hydro_cloud_scheme(int dim)

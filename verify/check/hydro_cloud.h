@@ -23,8 +23,8 @@ void hydro_cloud_disordered(struct hydro_cloud *cloud, int dim, size_t side);
  * are neither 0 nor 1. */
 void hydro_cloud_sheared(struct hydro_cloud *cloud, int dim, size_t side);
 
-/* A scene of this state: the arrays stay the cloud's; threads 1, no skips. */
-struct scene hydro_cloud_scene(const struct hydro_cloud *cloud, const struct scheme *scheme);
+/* A setup of this state: the arrays stay the cloud's; threads 1, no skips. */
+struct setup hydro_cloud_setup(const struct hydro_cloud *cloud, const struct scheme *scheme);
 
 /* cubic_spline standard vanilla_ice mass, constant viscosity, mean width, modified leapfrog, h to
  * 1e-15, with numbers that are nobody's defaults. */

@@ -7,7 +7,7 @@
 #include "check.h"
 #include "description.h"
 #include "hydro_cloud.h"
-#include "hydro_scene.h"
+#include "hydro_setup.h"
 #include "worst.h"
 
 /* A state and its scheme; what a mutant does to what the solver has found (see corrupt). */
@@ -153,10 +153,10 @@ static void measure(struct check_run *run, const void *subject)
     struct error error = {0};
     char where[CLOUD_TEXT];
     s.state(&cloud, s.dim, s.dim == 2 ? 9 : 6);
-    struct scene scene = hydro_cloud_scene(&cloud, &s.scheme);
-    for (int a = 0; a < s.dim; a++) scene.boundary[a] = s.boundary;
+    struct setup setup = hydro_cloud_setup(&cloud, &s.scheme);
+    for (int a = 0; a < s.dim; a++) setup.boundary[a] = s.boundary;
     hydro_cloud_describe(&s.scheme, s.dim, where);
-    if (simulation_create(&scene, &simulation, &error)) {
+    if (simulation_create(&setup, &simulation, &error)) {
         check_measure(run, 1, 0, 0, "%s: %s", where, error.message);
         return;
     }
@@ -193,9 +193,10 @@ const struct check check_hydro_cloud_balance = {
     .mutants = mutants,
 };
 
-/* --- stamped loops ---------------------------------------------------------------------------- */
+/* --- specialised loops
+ * ---------------------------------------------------------------------------- */
 
-static void stamped_subjects(struct check_run *run)
+static void specialised_subjects(struct check_run *run)
 {
     for (int dim = 2; dim <= 3; dim++)
         for (size_t k = 0; k < kernel_family.n; k++)
@@ -221,7 +222,7 @@ static double difference(const double *a, const double *b, size_t n)
     return worst == 0 ? 0 : worst / scale;
 }
 
-static void measure_stamped(struct check_run *run, const void *subject)
+static void measure_specialised(struct check_run *run, const void *subject)
 {
     const struct balance_subject *given = subject;
     const struct balance_subject s = given->corruption ? of_mutant(given) : *given;
@@ -231,13 +232,13 @@ static void measure_stamped(struct check_run *run, const void *subject)
     struct error error = {0};
     char where[CLOUD_TEXT];
     s.state(&cloud, s.dim, s.dim == 2 ? 9 : 6);
-    struct scene scene = hydro_cloud_scene(&cloud, &s.scheme);
+    struct setup setup = hydro_cloud_setup(&cloud, &s.scheme);
     hydro_cloud_describe(&s.scheme, s.dim, where);
-    enum status status = simulation_create(&scene, &simulation[0], &error);
-    scene.unstamped = true;
-    if (s.corruption) hydro_set_kernel(&scene.scheme, "quartic_spline");
-    scene.scheme.eta = s.scheme.eta;
-    if (!status) status = simulation_create(&scene, &simulation[1], &error);
+    enum status status = simulation_create(&setup, &simulation[0], &error);
+    setup.generic = true;
+    if (s.corruption) hydro_set_kernel(&setup.scheme, "quartic_spline");
+    setup.scheme.eta = s.scheme.eta;
+    if (!status) status = simulation_create(&setup, &simulation[1], &error);
     if (status) {
         check_measure(run, 1, 0, 0, "%s: %s", where, error.message);
     } else {
@@ -250,17 +251,17 @@ static void measure_stamped(struct check_run *run, const void *subject)
     for (int k = 0; k < 2; k++) simulation_destroy(simulation[k]);
 }
 
-static const struct check_mutant stamped_mutants[] = {
-    {"cloud_stamp_kernel", "another kernel in the unstamped loops", CORRUPT(OTHER_KERNEL)},
+static const struct check_mutant specialised_mutants[] = {
+    {"cloud_specialisation_kernel", "another kernel in the generic loops", CORRUPT(OTHER_KERNEL)},
     {0},
 };
 
-const struct check check_hydro_cloud_stamped = {
+const struct check check_hydro_cloud_specialised = {
     .group = "clouds",
-    .name = "stamped",
+    .name = "specialised",
     .cost = 0.2,
-    .property = "stamped loops = unstamped loops in 2D and 3D, for every kernel",
-    .subjects = stamped_subjects,
-    .measure = measure_stamped,
-    .mutants = stamped_mutants,
+    .property = "specialised loops = generic loops in 2D and 3D, for every kernel",
+    .subjects = specialised_subjects,
+    .measure = measure_specialised,
+    .mutants = specialised_mutants,
 };

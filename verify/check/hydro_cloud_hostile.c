@@ -9,7 +9,7 @@
 
 #include "check.h"
 #include "hydro_cloud.h"
-#include "hydro_scene.h"
+#include "hydro_setup.h"
 #include "integrator.h"
 #include "oracle.h"
 #include "worst.h"
@@ -17,7 +17,7 @@
 typedef void place(struct hydro_cloud *cloud);
 
 struct hostile_subject {
-    void (*spoil)(struct scene *scene);
+    void (*spoil)(struct setup *setup);
     place *place;
     const char *name;
     enum boundary boundary;
@@ -209,16 +209,16 @@ static void measure(struct check_run *run, const void *subject)
     const struct scheme scheme = scheme_of(s.dim, s.scheme);
     hydro_cloud_sheared(&cloud, s.dim, s.dim == 2 ? 8 : 6);
     s.place(&cloud);
-    struct scene scene = hydro_cloud_scene(&cloud, &scheme);
-    for (int a = 0; a < s.dim; a++) scene.boundary[a] = s.boundary;
+    struct setup setup = hydro_cloud_setup(&cloud, &scheme);
+    for (int a = 0; a < s.dim; a++) setup.boundary[a] = s.boundary;
     hydro_cloud_describe(&scheme, s.dim, scheme_text);
     snprintf(where, sizeof where, "%s, %s", s.name, scheme_text);
-    enum status status = oracle_create(&oracle, &scene, &error);
+    enum status status = oracle_create(&oracle, &setup, &error);
     if (!status) {
         status = oracle_evaluate(&oracle, &error);
         const double t_end = (double)oracle_time_step(&oracle) * 0.5;
-        if (s.spoil) s.spoil(&scene);
-        if (!status) status = simulation_create(&scene, &simulation, &error);
+        if (s.spoil) s.spoil(&setup);
+        if (!status) status = simulation_create(&setup, &simulation, &error);
         if (!status) judge_rates(run, simulation, &oracle, where);
         if (!status) status = oracle_run(&oracle, t_end, &error);
         if (!status) status = simulation_run(simulation, t_end, NULL, NULL, &error);
@@ -229,20 +229,20 @@ static void measure(struct check_run *run, const void *subject)
     if (status) check_measure(run, 1, 0, 0, "%s: %s", where, error.message);
 }
 
-static void wider(struct scene *scene)
+static void wider(struct setup *setup)
 {
-    scene->scheme.eta *= 1 + 1e-9;
+    setup->scheme.eta *= 1 + 1e-9;
 }
 
-static void warmer(struct scene *scene)
+static void warmer(struct setup *setup)
 {
-    ((double *)scene->u)[0] *= 1 + 1e-8;
+    ((double *)setup->u)[0] *= 1 + 1e-8;
 }
 
 /* As if positions were kept in single precision. */
-static void coarse(struct scene *scene)
+static void coarse(struct setup *setup)
 {
-    double *x = (double *)scene->x[0];
+    double *x = (double *)setup->x[0];
     x[0] = (double)(float)x[0];
 }
 

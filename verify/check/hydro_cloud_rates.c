@@ -7,7 +7,7 @@
 
 #include "check.h"
 #include "hydro_cloud.h"
-#include "hydro_scene.h"
+#include "hydro_setup.h"
 #include "oracle.h"
 #include "worst.h"
 
@@ -17,10 +17,10 @@ static size_t side_of(int dim)
     return dim == 2 ? 9 : 6;
 }
 
-/* A scheme in a dimension; or what a mutant does to the solver's scene, where the scheme is
+/* A scheme in a dimension; or what a mutant does to the solver's setup, where the scheme is
  * hydro_cloud_scheme() with a geometry and physics of its own. */
 struct cloud_subject {
-    void (*spoil)(struct scene *scene);
+    void (*spoil)(struct setup *setup);
     int dim;
     struct scheme scheme;
 };
@@ -149,7 +149,7 @@ static void measure(struct check_run *run, const void *subject)
     const struct cloud_subject s = given->spoil ? of_mutant(given) : *given;
     static struct hydro_cloud cloud;
     hydro_cloud_sheared(&cloud, s.dim, side_of(s.dim));
-    struct scene scene = hydro_cloud_scene(&cloud, &s.scheme);
+    struct setup setup = hydro_cloud_setup(&cloud, &s.scheme);
     struct oracle oracle;
     struct simulation *simulation = NULL;
     struct error error = {0};
@@ -163,11 +163,11 @@ static void measure(struct check_run *run, const void *subject)
         check_skip(run, "%s: the oracle lacks one of these choices", where);
         return;
     }
-    enum status status = oracle_create(&oracle, &scene, &error);
+    enum status status = oracle_create(&oracle, &setup, &error);
     if (!status) {
         status = oracle_evaluate(&oracle, &error);
-        if (s.spoil) s.spoil(&scene);
-        if (!status) status = simulation_create(&scene, &simulation, &error);
+        if (s.spoil) s.spoil(&setup);
+        if (!status) status = simulation_create(&setup, &simulation, &error);
         if (!status) judge(run, simulation, &oracle, where);
         simulation_destroy(simulation);
         oracle_free(&oracle);
@@ -177,74 +177,74 @@ static void measure(struct check_run *run, const void *subject)
 
 /* --- mutants ---------------------------------------------------------------------------------- */
 
-static void wrong_constant(struct scene *scene)
+static void wrong_constant(struct setup *setup)
 {
-    scene->scheme.kernel.constant[scene->dim] *= 1 + 1e-9;
+    setup->scheme.kernel.constant[setup->dim] *= 1 + 1e-9;
 }
 
-static void other_eta(struct scene *scene)
+static void other_eta(struct setup *setup)
 {
-    scene->scheme.eta *= 1 + 1e-9;
+    setup->scheme.eta *= 1 + 1e-9;
 }
 
-static void loose_h(struct scene *scene)
+static void loose_h(struct setup *setup)
 {
-    scene->scheme.h_tolerance = 1e-5;
+    setup->scheme.h_tolerance = 1e-5;
 }
 
-static void corrected_for_ia(struct scene *scene)
+static void corrected_for_ia(struct setup *setup)
 {
-    scene->scheme.gradient = GRADIENT_CORRECTED;
+    setup->scheme.gradient = GRADIENT_CORRECTED;
 }
 
-static void ia_for_blended(struct scene *scene)
+static void ia_for_blended(struct setup *setup)
 {
-    scene->scheme.gradient = GRADIENT_IA;
+    setup->scheme.gradient = GRADIENT_IA;
 }
 
-static void vanilla_for_lagrangian(struct scene *scene)
+static void vanilla_for_lagrangian(struct setup *setup)
 {
-    scene->scheme.formulation = FORMULATION_VANILLA_ICE;
+    setup->scheme.formulation = FORMULATION_VANILLA_ICE;
 }
 
-static void mass_for_number(struct scene *scene)
+static void mass_for_number(struct setup *setup)
 {
-    scene->scheme.volume_element = VOLUME_MASS;
+    setup->scheme.volume_element = VOLUME_MASS;
 }
 
-static void mu_for_signal(struct scene *scene)
+static void mu_for_signal(struct setup *setup)
 {
-    scene->scheme.viscosity_form = VISCOSITY_FORM_MU;
+    setup->scheme.viscosity_form = VISCOSITY_FORM_MU;
 }
 
-static void without_balsara(struct scene *scene)
+static void without_balsara(struct setup *setup)
 {
-    scene->scheme.balsara = BALSARA_OFF;
+    setup->scheme.balsara = BALSARA_OFF;
 }
 
-static void without_floor(struct scene *scene)
+static void without_floor(struct setup *setup)
 {
-    scene->scheme.balsara_floor = 0;
+    setup->scheme.balsara_floor = 0;
 }
 
-static void less_noise(struct scene *scene)
+static void less_noise(struct setup *setup)
 {
-    scene->scheme.noise *= 1 - 1e-7;
+    setup->scheme.noise *= 1 - 1e-7;
 }
 
-static void less_conductivity(struct scene *scene)
+static void less_conductivity(struct setup *setup)
 {
-    scene->scheme.alpha_u *= 1 - 1e-9;
+    setup->scheme.alpha_u *= 1 - 1e-9;
 }
 
-static void float_beta(struct scene *scene)
+static void float_beta(struct setup *setup)
 {
-    scene->scheme.beta = (double)(float)scene->scheme.beta;
+    setup->scheme.beta = (double)(float)setup->scheme.beta;
 }
 
-static void reconstructed_only(struct scene *scene)
+static void reconstructed_only(struct setup *setup)
 {
-    scene->scheme.viscosity = VISCOSITY_RECONSTRUCTED;
+    setup->scheme.viscosity = VISCOSITY_RECONSTRUCTED;
 }
 
 #define SPOIL(how, d, ...)                                                                         \

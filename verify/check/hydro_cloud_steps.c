@@ -5,7 +5,7 @@
 
 #include "check.h"
 #include "hydro_cloud.h"
-#include "hydro_scene.h"
+#include "hydro_setup.h"
 #include "integrator.h"
 #include "oracle.h"
 #include "worst.h"
@@ -13,7 +13,7 @@
 enum { STEPS = 2 };
 
 struct cloud_steps_subject {
-    void (*spoil)(struct scene *scene);
+    void (*spoil)(struct setup *setup);
     int dim;
     struct scheme scheme;
 };
@@ -103,7 +103,7 @@ static void measure(struct check_run *run, const void *subject)
     }
     hydro_cloud_sheared(&cloud, s.dim, s.dim == 2 ? 8 : 6);
     for (size_t i = 0; i < cloud.n; i++) cloud.v[0][i] -= 1.1; /* through the end of the box */
-    struct scene scene = hydro_cloud_scene(&cloud, &s.scheme);
+    struct setup setup = hydro_cloud_setup(&cloud, &s.scheme);
     struct oracle oracle;
     struct simulation *simulation = NULL;
     struct error error = {0};
@@ -113,13 +113,13 @@ static void measure(struct check_run *run, const void *subject)
         check_skip(run, "%s: the oracle lacks one of these choices", where);
         return;
     }
-    enum status status = oracle_create(&oracle, &scene, &error);
+    enum status status = oracle_create(&oracle, &setup, &error);
     if (!status) {
         status = oracle_evaluate(&oracle, &error);
         const double t_end = (double)oracle_time_step(&oracle) * (STEPS + 0.3);
         if (!status) status = oracle_run(&oracle, t_end, &error);
-        if (s.spoil) s.spoil(&scene);
-        if (!status) status = simulation_create(&scene, &simulation, &error);
+        if (s.spoil) s.spoil(&setup);
+        if (!status) status = simulation_create(&setup, &simulation, &error);
         if (!status) status = simulation_run(simulation, t_end, NULL, NULL, &error);
         if (!status) judge(run, simulation, &oracle, where);
         simulation_destroy(simulation);
@@ -128,32 +128,32 @@ static void measure(struct check_run *run, const void *subject)
     if (status) check_measure(run, 1, 0, 0, "%s: %s", where, error.message);
 }
 
-static void newton(struct scene *scene)
+static void newton(struct setup *setup)
 {
-    scene->scheme.h_method = H_NEWTON;
+    setup->scheme.h_method = H_NEWTON;
 }
 
-static void end_taken_for_evaluated(struct scene *scene)
+static void end_taken_for_evaluated(struct setup *setup)
 {
     static struct integrator replaced;
-    replaced = *scene->scheme.integrator;
+    replaced = *setup->scheme.integrator;
     replaced.ends_evaluated = true;
-    scene->scheme.integrator = &replaced;
+    setup->scheme.integrator = &replaced;
 }
 
-static void wider(struct scene *scene)
+static void wider(struct setup *setup)
 {
-    scene->scheme.eta *= 1 + 1e-6;
+    setup->scheme.eta *= 1 + 1e-6;
 }
 
-static void other_cfl(struct scene *scene)
+static void other_cfl(struct setup *setup)
 {
-    scene->scheme.cfl *= 1 + 1e-6;
+    setup->scheme.cfl *= 1 + 1e-6;
 }
 
-static void lower_alpha(struct scene *scene)
+static void lower_alpha(struct setup *setup)
 {
-    scene->scheme.alpha_max *= 1 - 1e-6;
+    setup->scheme.alpha_max *= 1 - 1e-6;
 }
 
 #define SPOIL(how) (&(const struct cloud_steps_subject){.spoil = how})

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "check.h"
-#include "hydro_scene.h"
+#include "hydro_setup.h"
 #include "integrator.h"
 #include "order.h"
 #include "solver.h" /* the state as an integrator sees it: for mutants only */
@@ -37,13 +37,13 @@ static double drift_bound(const struct scheme *scheme)
 static void drift(struct check_run *run, const struct scheme *scheme,
                   const struct hydro_state *state)
 {
-    const struct scene scene = hydro_scene(state, scheme);
+    const struct setup setup = hydro_setup(state, scheme);
     struct simulation *simulation = NULL;
     struct conservation before, after;
     struct error error = {0};
     char where[HYDRO_TEXT];
     hydro_describe(scheme, where);
-    enum status status = simulation_create(&scene, &simulation, &error);
+    enum status status = simulation_create(&setup, &simulation, &error);
     if (!status) {
         simulation_conservation(simulation, &before);
         status = simulation_run(simulation, 0.1, NULL, NULL, &error);
@@ -121,9 +121,9 @@ static enum status wave_after(const struct scheme *scheme, int steps, double T, 
 {
     static struct hydro_state state;
     hydro_wave(&state, WAVE);
-    const struct scene scene = hydro_scene(&state, scheme);
+    const struct setup setup = hydro_setup(&state, scheme);
     struct simulation *simulation = NULL;
-    enum status status = simulation_create(&scene, &simulation, error);
+    enum status status = simulation_create(&setup, &simulation, error);
     for (int k = 1; k <= steps && !status; k++)
         status = simulation_run(simulation, T * k / steps, NULL, NULL, error);
     if (!status) {

@@ -4,17 +4,17 @@
 #include <math.h>
 
 #include "check.h"
-#include "hydro_scene.h"
+#include "hydro_setup.h"
 #include "oracle.h"
 #include "solver.h"
 #include "worst.h"
 
 enum { PARTICLES = 82 };
 
-/* A state and a scheme of it, and what a mutant does to the solver's scene; the oracle keeps the
+/* A state and a scheme of it, and what a mutant does to the solver's setup; the oracle keeps the
  * right one. A mutant names no state: hydro_scheme() on hydro_disordered(). */
 struct rates_subject {
-    void (*spoil)(struct scene *scene);
+    void (*spoil)(struct setup *setup);
     void (*state)(struct hydro_state *state, size_t n);
     struct scheme scheme;
 };
@@ -112,7 +112,7 @@ static void measure(struct check_run *run, const void *subject)
     const struct scheme scheme = s->state ? s->scheme : hydro_scheme();
     static struct hydro_state state;
     (s->state ? s->state : hydro_disordered)(&state, PARTICLES);
-    struct scene scene = hydro_scene(&state, &scheme);
+    struct setup setup = hydro_setup(&state, &scheme);
     struct oracle oracle;
     struct simulation *simulation = NULL;
     struct error error = {0};
@@ -126,11 +126,11 @@ static void measure(struct check_run *run, const void *subject)
         check_skip(run, "%s: the oracle lacks one of these choices", where);
         return;
     }
-    enum status status = oracle_create(&oracle, &scene, &error);
+    enum status status = oracle_create(&oracle, &setup, &error);
     if (!status) {
         status = oracle_evaluate(&oracle, &error);
-        if (s->spoil) s->spoil(&scene);
-        if (!status) status = simulation_create(&scene, &simulation, &error);
+        if (s->spoil) s->spoil(&setup);
+        if (!status) status = simulation_create(&setup, &simulation, &error);
         if (!status) judge(run, simulation, &oracle, where);
         simulation_destroy(simulation);
         oracle_free(&oracle);
@@ -138,9 +138,9 @@ static void measure(struct check_run *run, const void *subject)
     if (status) check_measure(run, 1, 0, 0, "%s: %s", where, error.message);
 }
 
-static void wrong_constant(struct scene *scene)
+static void wrong_constant(struct setup *setup)
 {
-    scene->scheme.kernel.constant[1] *= 1 + 1e-9;
+    setup->scheme.kernel.constant[1] *= 1 + 1e-9;
 }
 
 static double knot_off(const struct kernel *kernel, double q, int dim)
@@ -151,55 +151,55 @@ static double knot_off(const struct kernel *kernel, double q, int dim)
     return right.dw(&right, q, dim) + (q > 0.5 && q < 1 ? 1e-6 * (1 - q) * (q - 0.5) : 0);
 }
 
-static void wrong_slope(struct scene *scene)
+static void wrong_slope(struct setup *setup)
 {
-    scene->scheme.kernel.dw = knot_off;
-    scene->unstamped = true;
+    setup->scheme.kernel.dw = knot_off;
+    setup->generic = true;
 }
 
-static void other_eta(struct scene *scene)
+static void other_eta(struct setup *setup)
 {
-    scene->scheme.eta *= 1 + 1e-9;
+    setup->scheme.eta *= 1 + 1e-9;
 }
 
-static void loose_h(struct scene *scene)
+static void loose_h(struct setup *setup)
 {
-    scene->scheme.h_tolerance = 1e-4;
+    setup->scheme.h_tolerance = 1e-4;
 }
 
-static void other_gradient(struct scene *scene)
+static void other_gradient(struct setup *setup)
 {
-    scene->scheme.gradient = GRADIENT_IA;
+    setup->scheme.gradient = GRADIENT_IA;
 }
 
-static void other_formulation(struct scene *scene)
+static void other_formulation(struct setup *setup)
 {
-    scene->scheme.formulation = FORMULATION_LAGRANGIAN;
+    setup->scheme.formulation = FORMULATION_LAGRANGIAN;
 }
 
-static void other_element(struct scene *scene)
+static void other_element(struct setup *setup)
 {
-    scene->scheme.volume_element = VOLUME_ENERGY;
+    setup->scheme.volume_element = VOLUME_ENERGY;
 }
 
-static void float_alpha(struct scene *scene)
+static void float_alpha(struct setup *setup)
 {
-    scene->scheme.alpha = (double)(1 + 1.2e-7F);
+    setup->scheme.alpha = (double)(1 + 1.2e-7F);
 }
 
-static void beta_of_alpha(struct scene *scene)
+static void beta_of_alpha(struct setup *setup)
 {
-    scene->scheme.beta = scene->scheme.alpha;
+    setup->scheme.beta = setup->scheme.alpha;
 }
 
-static void other_gamma(struct scene *scene)
+static void other_gamma(struct setup *setup)
 {
-    scene->gamma = 5. / 3;
+    setup->gamma = 5. / 3;
 }
 
-static void other_width(struct scene *scene)
+static void other_width(struct setup *setup)
 {
-    scene->scheme.pair_width = PAIR_WIDTH_HARMONIC;
+    setup->scheme.pair_width = PAIR_WIDTH_HARMONIC;
 }
 
 #define SPOIL(how) (&(const struct rates_subject){.spoil = how})
@@ -240,10 +240,10 @@ static void measure_residual(struct check_run *run, const void *subject)
     for (int digits = 3; digits <= 13; digits++) {
         struct scheme scheme = hydro_scheme();
         scheme.h_tolerance = pow(10, -digits);
-        struct scene scene = hydro_scene(&state, &scheme);
-        if (s) s->spoil(&scene);
+        struct setup setup = hydro_setup(&state, &scheme);
+        if (s) s->spoil(&setup);
         struct simulation *simulation;
-        if (simulation_create(&scene, &simulation, &error)) {
+        if (simulation_create(&setup, &simulation, &error)) {
             check_measure(run, 1, 0, 0, "%s", error.message);
             continue;
         }
@@ -261,14 +261,14 @@ static void measure_residual(struct check_run *run, const void *subject)
     }
 }
 
-static void four_times(struct scene *scene)
+static void four_times(struct setup *setup)
 {
-    scene->scheme.h_tolerance *= 4;
+    setup->scheme.h_tolerance *= 4;
 }
 
-static void once_more(struct scene *scene)
+static void once_more(struct setup *setup)
 {
-    scene->scheme.eta *= 1 + 1e-12;
+    setup->scheme.eta *= 1 + 1e-12;
 }
 
 static const struct check_mutant residual_mutants[] = {

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Choices that must not change the answer: threads, stamped loops, left-out work. */
+ * Choices that must not change the answer: threads, specialised loops, left-out work. */
 #include <math.h>
 
 #include "check.h"
-#include "hydro_scene.h"
+#include "hydro_setup.h"
 #include "integrator.h"
 #include "worst.h"
 
@@ -37,18 +37,18 @@ static double field_difference(size_t n, const double *a, const double *b)
     return worst == 0 ? 0 : worst / scale;
 }
 
-/* Two scenes, run for the same time, the second one perhaps with stops; the largest difference of
+/* Two setups, run for the same time, the second one perhaps with stops; the largest difference of
  * any state variable, relative to the largest value of it; NaN where one did not run. */
-static double difference(const struct scene *a, const struct scene *b, bool stops, double t_end,
+static double difference(const struct setup *a, const struct setup *b, bool stops, double t_end,
                          struct error *error)
 {
-    const struct scene *scenes[] = {a, b};
+    const struct setup *setups[] = {a, b};
     struct simulation *simulations[2] = {NULL, NULL};
     struct snapshot s[2];
     struct rates r[2];
     double worst = (double)NAN;
     for (int k = 0; k < 2; k++) {
-        if (simulation_create(scenes[k], &simulations[k], error)) goto done;
+        if (simulation_create(setups[k], &simulations[k], error)) goto done;
         if (run_on(simulations[k], t_end, k && stops, error)) goto done;
         simulation_snapshot(simulations[k], &s[k]);
         simulation_rates(simulations[k], &r[k]);
@@ -67,42 +67,42 @@ done:
     return worst;
 }
 
-/* What is changed in the second scene beside what is measured. */
-typedef void spoiler(struct scene *scene, struct hydro_state *state);
+/* What is changed in the second setup beside what is measured. */
+typedef void spoiler(struct setup *setup, struct hydro_state *state);
 
-static void one_ulp(struct scene *scene, struct hydro_state *state)
+static void one_ulp(struct setup *setup, struct hydro_state *state)
 {
-    (void)scene;
+    (void)setup;
     state->u[state->n / 2] = nextafter(state->u[state->n / 2], 10);
 }
 
-static void one_ulp_mass(struct scene *scene, struct hydro_state *state)
+static void one_ulp_mass(struct setup *setup, struct hydro_state *state)
 {
-    (void)scene;
+    (void)setup;
     state->m[0] = nextafter(state->m[0], 10);
 }
 
-static void ia_for_standard(struct scene *scene, struct hydro_state *state)
+static void ia_for_standard(struct setup *setup, struct hydro_state *state)
 {
     (void)state;
-    scene->scheme.gradient = !scene->scheme.gradient;
+    setup->scheme.gradient = !setup->scheme.gradient;
 }
 
-static void swapped_kernel(struct scene *scene, struct hydro_state *state)
+static void swapped_kernel(struct setup *setup, struct hydro_state *state)
 {
     (void)state;
-    const double eta = scene->scheme.eta;
-    const bool cubic = scene->scheme.kernel.w == hydro_scheme().kernel.w;
-    hydro_set_kernel(&scene->scheme, cubic ? "quadratic_spline" : "cubic_spline");
-    scene->scheme.eta = eta;
+    const double eta = setup->scheme.eta;
+    const bool cubic = setup->scheme.kernel.w == hydro_scheme().kernel.w;
+    hydro_set_kernel(&setup->scheme, cubic ? "quadratic_spline" : "cubic_spline");
+    setup->scheme.eta = eta;
 }
 
-static void swapped_forms(struct scene *scene, struct hydro_state *state)
+static void swapped_forms(struct setup *setup, struct hydro_state *state)
 {
     (void)state;
-    if (scene->scheme.formulation == FORMULATION_VANILLA_ICE)
-        scene->scheme.pair_width =
-            scene->scheme.pair_width == PAIR_WIDTH_MAX ? PAIR_WIDTH_MEAN : PAIR_WIDTH_MAX;
+    if (setup->scheme.formulation == FORMULATION_VANILLA_ICE)
+        setup->scheme.pair_width =
+            setup->scheme.pair_width == PAIR_WIDTH_MAX ? PAIR_WIDTH_MEAN : PAIR_WIDTH_MAX;
 }
 
 struct same_subject {
@@ -119,7 +119,7 @@ struct same_run {
     const struct hydro_state *state;
     double t_end, bound;
     int threads; /* the other one's; and: */
-    bool unstamped, skip;
+    bool generic, skip;
     const char *what;
 };
 
@@ -130,10 +130,10 @@ static void compare(struct check_run *run, const struct same_subject *subject,
     struct error error = {0};
     char where[HYDRO_TEXT];
     other = *same->state;
-    const struct scene first = hydro_scene(same->state, same->scheme);
-    struct scene second = hydro_scene(&other, same->scheme);
+    const struct setup first = hydro_setup(same->state, same->scheme);
+    struct setup second = hydro_setup(&other, same->scheme);
     second.threads = same->threads;
-    second.unstamped = same->unstamped;
+    second.generic = same->generic;
     second.skip = same->skip;
     if (subject) subject->spoil(&second, &other);
     hydro_describe(same->scheme, where);
@@ -189,9 +189,9 @@ static void measure_skipped_run(struct check_run *run, const struct hydro_state 
     struct simulation_cost cost;
     struct conservation before, after;
     struct error error = {0};
-    struct scene scene = hydro_scene(state, scheme);
-    scene.skip = true;
-    if (simulation_create(&scene, &simulation, &error)) {
+    struct setup setup = hydro_setup(state, scheme);
+    setup.skip = true;
+    if (simulation_create(&setup, &simulation, &error)) {
         check_measure(run, 1, 0, 0, "the run with skips: %s", error.message);
         return;
     }
@@ -273,8 +273,8 @@ static void measure_stops(struct check_run *run, const void *subject)
         scheme.viscosity = VISCOSITY_TIME_DEPENDENT;
         hydro_tube(&state, 200);
         other = state;
-        const struct scene first = hydro_scene(&state, &scheme);
-        struct scene second = hydro_scene(&other, &scheme);
+        const struct setup first = hydro_setup(&state, &scheme);
+        struct setup second = hydro_setup(&other, &scheme);
         if (subject) ((const struct same_subject *)subject)->spoil(&second, &other);
         hydro_describe(&scheme, where);
         check_measure(run, difference(&first, &second, true, 0.1, &error), 1e-10, 0, "%s%s%s",
@@ -296,9 +296,9 @@ const struct check check_hydro_stops = {
     .mutants = stops_mutants,
 };
 
-/* Every entry of the tables of stamped loops: kernel x gradient x form, formulation x viscosity x
- * energy, and what the volume element adds to the density sum. */
-static void measure_stamped(struct check_run *run, const void *subject)
+/* Every entry of the tables of specialised loops: kernel x gradient x form, formulation x viscosity
+ * x energy, and what the volume element adds to the density sum. */
+static void measure_specialised(struct check_run *run, const void *subject)
 {
     static struct hydro_state state;
     struct error error;
@@ -317,8 +317,8 @@ static void measure_stamped(struct check_run *run, const void *subject)
                                               .t_end = 1e-4,
                                               .bound = 1e-12,
                                               .threads = 1,
-                                              .unstamped = true,
-                                              .what = "unstamped"};
+                                              .generic = true,
+                                              .what = "generic"};
                 if (scheme_check(&s, 1, &error))
                     excluded++;
                 else
@@ -332,18 +332,21 @@ static void measure_stamped(struct check_run *run, const void *subject)
         }
 }
 
-static const struct check_mutant stamped_mutants[] = {
-    {"stamp_gradients_swapped", "the stamps of standard and ia exchanged", &with_other_gradient},
-    {"stamp_kernel_swapped", "one kernel's stamp in the others' places", &with_swapped_kernel},
-    {"stamp_form_swapped", "the stamp of width max in the place of mean", &with_swapped_forms},
+static const struct check_mutant specialised_mutants[] = {
+    {"specialisation_gradients_swapped", "the specialisations of standard and ia exchanged",
+     &with_other_gradient},
+    {"specialisation_kernel_swapped", "one kernel's specialisation in the others' places",
+     &with_swapped_kernel},
+    {"specialisation_form_swapped", "the specialisation of width max in the place of mean",
+     &with_swapped_forms},
     {0},
 };
 
-const struct check check_hydro_stamped = {
+const struct check check_hydro_specialised = {
     .group = "hydro",
-    .name = "stamped",
+    .name = "specialised",
     .cost = 0.7,
-    .property = "stamped loops = unstamped loops, for every entry of every table",
-    .measure = measure_stamped,
-    .mutants = stamped_mutants,
+    .property = "specialised loops = generic loops, for every entry of every table",
+    .measure = measure_specialised,
+    .mutants = specialised_mutants,
 };

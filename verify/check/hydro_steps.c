@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "check.h"
-#include "hydro_scene.h"
+#include "hydro_setup.h"
 #include "integrator.h"
 #include "oracle.h"
 #include "worst.h"
@@ -15,10 +15,10 @@ enum { PARTICLES = 34, FAR_PARTICLES = 150, STEPS = 5 };
  * each other there in the first step; a contact with neighbours far to one side. */
 enum start { RUNNING, PASSING, CONTACT };
 
-/* A run; or a mutant: what is done to the solver's scene, where the right one is hydro_scheme()
+/* A run; or a mutant: what is done to the solver's setup, where the right one is hydro_scheme()
  * with this integrator and viscosity. */
 struct steps_subject {
-    void (*spoil)(struct scene *scene);
+    void (*spoil)(struct setup *setup);
     const char *integrator;
     struct scheme scheme;
     double part; /* t_end = (STEPS + part) first steps */
@@ -142,7 +142,7 @@ static void measure(struct check_run *run, const void *subject)
     const struct steps_subject s = given->spoil ? of_mutant(given) : *given;
     static struct hydro_state state;
     prepare(&state, s.start);
-    struct scene scene = hydro_scene(&state, &s.scheme);
+    struct setup setup = hydro_setup(&state, &s.scheme);
     struct oracle oracle;
     struct simulation *simulation = NULL;
     struct error error = {0};
@@ -152,13 +152,13 @@ static void measure(struct check_run *run, const void *subject)
         check_skip(run, "%s: the oracle lacks one of these choices", where);
         return;
     }
-    enum status status = oracle_create(&oracle, &scene, &error);
+    enum status status = oracle_create(&oracle, &setup, &error);
     if (!status) {
         status = oracle_evaluate(&oracle, &error);
         const double t_end = (double)oracle_time_step(&oracle) * (STEPS + s.part);
         if (!status) status = oracle_run(&oracle, t_end, &error);
-        if (s.spoil) s.spoil(&scene);
-        if (!status) status = simulation_create(&scene, &simulation, &error);
+        if (s.spoil) s.spoil(&setup);
+        if (!status) status = simulation_create(&setup, &simulation, &error);
         if (!status) status = simulation_run(simulation, t_end, NULL, NULL, &error);
         if (!status) judge(run, simulation, &oracle, where);
         simulation_destroy(simulation);
@@ -169,21 +169,21 @@ static void measure(struct check_run *run, const void *subject)
 
 static struct integrator replaced;
 
-static void replace(struct scene *scene, const char *name)
+static void replace(struct setup *setup, const char *name)
 {
-    replaced = *scene->scheme.integrator;
+    replaced = *setup->scheme.integrator;
     replaced.step = hydro_integrator(name)->step;
-    scene->scheme.integrator = &replaced;
+    setup->scheme.integrator = &replaced;
 }
 
-static void never_evaluated_again(struct scene *scene)
+static void never_evaluated_again(struct setup *setup)
 {
-    replace(scene, "leapfrog");
+    replace(setup, "leapfrog");
 }
 
-static void heun_for_midpoint(struct scene *scene)
+static void heun_for_midpoint(struct setup *setup)
 {
-    replace(scene, "rk2");
+    replace(setup, "rk2");
 }
 
 static enum status long_step(struct simulation *simulation, double dt, struct error *error)
@@ -191,38 +191,38 @@ static enum status long_step(struct simulation *simulation, double dt, struct er
     return hydro_integrator("rk3")->step(simulation, dt * (1 + 1e-9), error);
 }
 
-static void step_too_long(struct scene *scene)
+static void step_too_long(struct setup *setup)
 {
-    replace(scene, "rk3");
+    replace(setup, "rk3");
     replaced.step = long_step;
 }
 
-static void other_cfl(struct scene *scene)
+static void other_cfl(struct setup *setup)
 {
-    scene->scheme.cfl *= 1 + 1e-6;
+    setup->scheme.cfl *= 1 + 1e-6;
 }
 
-static void alpha_stands_still(struct scene *scene)
+static void alpha_stands_still(struct setup *setup)
 {
-    scene->scheme.viscosity = VISCOSITY_CONSTANT;
-    scene->scheme.alpha = scene->scheme.alpha_min;
-    scene->scheme.beta = 2 * scene->scheme.alpha;
+    setup->scheme.viscosity = VISCOSITY_CONSTANT;
+    setup->scheme.alpha = setup->scheme.alpha_min;
+    setup->scheme.beta = 2 * setup->scheme.alpha;
 }
 
-static void alpha_max_float(struct scene *scene)
+static void alpha_max_float(struct setup *setup)
 {
-    scene->scheme.alpha_max = (double)1.49999F;
+    setup->scheme.alpha_max = (double)1.49999F;
 }
 
-static void end_taken_for_evaluated(struct scene *scene)
+static void end_taken_for_evaluated(struct setup *setup)
 {
-    replace(scene, "predicted_midpoint");
+    replace(setup, "predicted_midpoint");
     replaced.ends_evaluated = true;
 }
 
-static void predicted_h(struct scene *scene)
+static void predicted_h(struct setup *setup)
 {
-    scene->scheme.h_method = H_PREDICTED;
+    setup->scheme.h_method = H_PREDICTED;
 }
 
 #define SPOIL(name, kind, how)                                                                     \

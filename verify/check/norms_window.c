@@ -22,7 +22,7 @@ static double part_of_window(const struct prepared *p, const struct snapshot *s,
 }
 
 /* A lattice of `across` cells along each direction of the box [-1, 1]^dim and its window. */
-struct scene_of_cells {
+struct setup_of_cells {
     const char *name;
     int dim, across;
     double half;   /* of the window along x; the other directions are whole */
@@ -32,7 +32,7 @@ struct scene_of_cells {
 };
 
 /* Columns of cells stand on the edge (x = +-0.5, R = 0.625), or would if they were not moved. */
-static const struct scene_of_cells scenes[] = {
+static const struct setup_of_cells setups[] = {
     {"interval", 1, 80, 0.5 - 0.0125, 0, 1e-13},
     {"slab in 2D", 2, 40, 0.5 - 0.025, 0, 1e-13},
     {"slab in 3D", 3, 16, 0.5 - 0.0625, 0, 1e-13},
@@ -49,26 +49,26 @@ struct cells {
 };
 
 /* Moved by shift and wrapped; the error is 1 + x^2, of either sign. */
-static void make_cells(struct cells *c, const struct scene_of_cells *scene, double shift)
+static void make_cells(struct cells *c, const struct setup_of_cells *setup, double shift)
 {
-    const double side = 2. / scene->across;
+    const double side = 2. / setup->across;
     size_t n = 1;
-    c->p = (struct prepared){.domain.dim = scene->dim, .window.dim = scene->dim};
-    c->p.window.radius = scene->radius;
-    for (int d = 0; d < scene->dim; d++) {
-        const double half = d == 0 ? scene->half : 1;
+    c->p = (struct prepared){.domain.dim = setup->dim, .window.dim = setup->dim};
+    c->p.window.radius = setup->radius;
+    for (int d = 0; d < setup->dim; d++) {
+        const double half = d == 0 ? setup->half : 1;
         c->p.domain.lo[d] = -1, c->p.domain.hi[d] = 1;
         c->p.window.lo[d] = -half, c->p.window.hi[d] = half;
-        n *= (size_t)scene->across;
+        n *= (size_t)setup->across;
     }
     c->s = (struct snapshot){.n = n, .x = {c->x[0], c->x[1], c->x[2]}, .volume = c->volume};
     for (size_t i = 0; i < n; i++) {
         size_t rest = i;
-        for (int d = 0; d < scene->dim; d++, rest /= (size_t)scene->across) {
-            const double x = -1 + side * ((double)(rest % (size_t)scene->across) + 0.5) + shift;
+        for (int d = 0; d < setup->dim; d++, rest /= (size_t)setup->across) {
+            const double x = -1 + side * ((double)(rest % (size_t)setup->across) + 0.5) + shift;
             c->x[d][i] = x >= 1 ? x - 2 : x;
         }
-        c->volume[i] = pow(side, scene->dim);
+        c->volume[i] = pow(side, setup->dim);
         c->exact[i] = 2.385;
         c->value[i] = 2.385 + (i % 2 ? 1 : -1) * (1 + c->x[0][i] * c->x[0][i]);
     }
@@ -80,12 +80,12 @@ static double l1_of(struct cells *c, part_function *part)
     return norm_l1(c->s.n, c->weight, c->value, c->exact);
 }
 
-static double volume_of_window(const struct scene_of_cells *scene)
+static double volume_of_window(const struct setup_of_cells *setup)
 {
-    if (scene->radius > 0)
-        return scene->dim == 2 ? M_PI * pow(scene->radius, 2)
-                               : 4 * M_PI / 3 * pow(scene->radius, 3);
-    return 2 * scene->half * pow(2, scene->dim - 1);
+    if (setup->radius > 0)
+        return setup->dim == 2 ? M_PI * pow(setup->radius, 2)
+                               : 4 * M_PI / 3 * pow(setup->radius, 3);
+    return 2 * setup->half * pow(2, setup->dim - 1);
 }
 
 /* The change of L1 for displacements of 1e-7 each way, over 1e-7. */
@@ -115,23 +115,23 @@ static double steepness(struct cells *c, part_function *part)
     return most;
 }
 
-static void measure_scene(struct check_run *run, const struct scene_of_cells *scene,
+static void measure_setup(struct check_run *run, const struct setup_of_cells *setup,
                           struct cells *c, part_function *part)
 {
     double filled = 0;
     /* as they stand, a column is cut in halves by the edge; moved, somewhere */
     for (int moved = 0; moved < 2; moved++) {
         double sum = 0;
-        make_cells(c, scene, moved ? 0.37 * 2 / scene->across : 0);
+        make_cells(c, setup, moved ? 0.37 * 2 / setup->across : 0);
         l1_of(c, part);
         for (size_t i = 0; i < c->s.n; i++) sum += c->weight[i];
-        filled = fmax(filled, fabs(sum / volume_of_window(scene) - 1));
+        filled = fmax(filled, fabs(sum / volume_of_window(setup) - 1));
     }
-    check_measure(run, filled, scene->roughness, scene->roughness / 10,
-                  "%s: cells side by side fill the window", scene->name);
-    make_cells(c, scene, 0);
+    check_measure(run, filled, setup->roughness, setup->roughness / 10,
+                  "%s: cells side by side fill the window", setup->name);
+    make_cells(c, setup, 0);
     check_measure(run, steepness(c, part), 1, 0.1, "%s: change of L1 over displacements of 1e-7",
-                  scene->name);
+                  setup->name);
 }
 
 static double one_dimension(struct cells *c, part_function *part, size_t n, const double *x,
@@ -187,8 +187,8 @@ static void measure_parts(struct check_run *run, const void *subject)
         check_measure(run, (double)NAN, 0, 0, "no memory");
         return;
     }
-    for (size_t k = 0; k < sizeof scenes / sizeof *scenes; k++)
-        measure_scene(run, &scenes[k], c, part);
+    for (size_t k = 0; k < sizeof setups / sizeof *setups; k++)
+        measure_setup(run, &setups[k], c, part);
     measure_by_hand(run, c, part);
     free(c);
 }

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "check.h"
-#include "hydro_scene.h"
+#include "hydro_setup.h"
 #include "integrator.h"
 #include "simulation.h"
 #include "stability.h"
@@ -57,8 +57,8 @@ static enum status solver_response(const struct stability *lattice, double kappa
         struct snapshot s;
         struct rates rates;
         set_wave(&state, lattice, kappa, component, sign * amplitude);
-        const struct scene scene = hydro_scene(&state, &lattice->scheme);
-        if (simulation_create(&scene, &simulation, error)) return error->status;
+        const struct setup setup = hydro_setup(&state, &lattice->scheme);
+        if (simulation_create(&setup, &simulation, error)) return error->status;
         simulation_snapshot(simulation, &s);
         simulation_rates(simulation, &rates);
         *force += sign * project(rates.force[0], &s, kappa, 0) / (2 * amplitude);
@@ -217,8 +217,8 @@ static enum status run_wave(const struct stability *lattice, double kappa, doubl
     struct snapshot s;
     double moved[PARTICLES];
     set_wave(&state, lattice, kappa, DISPLACEMENT, amplitude);
-    const struct scene scene = hydro_scene(&state, &lattice->scheme);
-    if (simulation_create(&scene, &simulation, error)) return error->status;
+    const struct setup setup = hydro_setup(&state, &lattice->scheme);
+    if (simulation_create(&setup, &simulation, error)) return error->status;
     const enum status status = simulation_run(simulation, 1e9, stop, NULL, error);
     simulation_snapshot(simulation, &s);
     for (size_t i = 0; i < s.n; i++) moved[i] = s.x[0][i] - ((double)s.id[i] + 0.5);

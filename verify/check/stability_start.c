@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "check.h"
-#include "hydro_scene.h"
+#include "hydro_setup.h"
 #include "simulation.h"
 #include "worst.h"
 
@@ -45,8 +45,8 @@ static double distance(const struct scheme *scheme)
     struct snapshot s;
     struct error error;
     coincident(&state);
-    const struct scene scene = hydro_scene(&state, scheme);
-    if (simulation_create(&scene, &simulation, &error)) return (double)NAN;
+    const struct setup setup = hydro_setup(&state, scheme);
+    if (simulation_create(&setup, &simulation, &error)) return (double)NAN;
     simulation_snapshot(simulation, &s);
     double least = HUGE_VAL, most = 0;
     for (size_t i = 0; i < s.n; i += 2) {
@@ -73,8 +73,8 @@ static double steps_to(double light)
         state.m[i] = i < PARTICLES / 2 ? 1 : light;
         state.u[i] = i < PARTICLES / 2 || light >= 1 ? 1 : 1e-6;
     }
-    const struct scene scene = hydro_scene(&state, &scheme);
-    if (simulation_create(&scene, &simulation, &error)) return (double)NAN;
+    const struct setup setup = hydro_setup(&state, &scheme);
+    if (simulation_create(&setup, &simulation, &error)) return (double)NAN;
     simulation_snapshot(simulation, &s);
     simulation_rates(simulation, &rates);
     double pull = 0;
@@ -108,8 +108,8 @@ static double lost_push(void)
             state.m[i] = 2. / DENSE;
             state.u[i] = i < DENSE ? 0.1 : 1e-4;
         }
-        const struct scene scene = hydro_scene(&state, &scheme);
-        if (simulation_create(&scene, &simulation, &error)) return (double)NAN;
+        const struct setup setup = hydro_setup(&state, &scheme);
+        if (simulation_create(&setup, &simulation, &error)) return (double)NAN;
         if (!simulation_run(simulation, 0.2, NULL, NULL, &error)) {
             simulation_snapshot(simulation, &s);
             speed[method] = s.v[0][DENSE];

@@ -258,8 +258,8 @@ static bool seen(const struct comparison *c, size_t r)
     return false;
 }
 
-static enum status carry_out(struct comparison *c, const struct options *options,
-                             struct error *error)
+static enum status serialise_out(struct comparison *c, const struct options *options,
+                                 struct error *error)
 {
     struct progress progress;
     enum status status = STATUS_OK;
@@ -467,7 +467,7 @@ static enum status run(const struct options *options, int n, char **arguments, s
         c->sides[s].name = s ? "b" : "a", c->sides[s].text = arguments[s];
         status = take_side(&c->sides[s], options->threads, error);
     }
-    if (!status) status = carry_out(c, options, error);
+    if (!status) status = serialise_out(c, options, error);
     if (!status) {
         conclude(c);
         status = tell(options, c, error);

@@ -48,8 +48,8 @@ static void print_gate(const struct study_result *result, const struct study_ord
     const char *color = good                          ? style->good
                         : order->status >= GATE_SMOKE ? style->faint
                                                       : style->bad;
-    printf("at most %.3g: %s%s%s%s%s\n", order->gate.bound, color, gate_names[order->status], style->end,
-           good ? "" : ": ", order->why);
+    printf("at most %.3g: %s%s%s%s%s\n", order->gate.bound, color, gate_names[order->status],
+           style->end, good ? "" : ": ", order->why);
     if (known) printf("    known: %s\n", order->known);
 }
 
@@ -224,9 +224,9 @@ static enum status take_replicates(struct study *study, const struct options *op
 }
 
 /* Runs everything and judges it; the document gets what came out. *whole: see sharing_run. */
-static enum status carry_out(struct study *study, const struct options *options,
-                             struct sharing *sharing, json_t *document, bool *whole,
-                             struct error *error)
+static enum status serialise_out(struct study *study, const struct options *options,
+                                 struct sharing *sharing, json_t *document, bool *whole,
+                                 struct error *error)
 {
     struct pool pool = {0};
     *whole = false;
@@ -266,7 +266,7 @@ static enum status run(const struct options *options, int n, char **arguments, s
     struct error trouble = {0};
     if (!run_resolve(&as_given, &study.settings, &trouble))
         json_object_set_new(document, "settings", settings_json(&as_given.settings));
-    enum status status = carry_out(&study, options, &sharing, document, &whole, error);
+    enum status status = serialise_out(&study, options, &sharing, document, &whole, error);
     const bool sound = status == STATUS_OK || status == STATUS_CHECK_FAILED;
     const bool told = whole && (sound || status == STATUS_BROKE_DOWN);
     if (options->speak && told) print_all(&study, options);

@@ -27,7 +27,7 @@ struct request {
     struct settings settings;
     struct particle_file file;
     struct initial initial;
-    struct scene scene;
+    struct setup setup;
     struct csv theirs;
     double tolerance;
     struct snapshot_file snapshot; /* what the particles come from, if they do: no columns */
@@ -85,30 +85,30 @@ static enum status take_box(struct request *r, int n, char **arguments, char **r
         const size_t length = text ? (size_t)(text++ - arguments[k]) : 0;
         enum status status = STATUS_OK;
         if (length == 2 && !strncmp(arguments[k], "lo", 2))
-            status = take_numbers("lo", text, dim, r->scene.lo, error), lo = true;
+            status = take_numbers("lo", text, dim, r->setup.lo, error), lo = true;
         else if (length == 2 && !strncmp(arguments[k], "hi", 2))
-            status = take_numbers("hi", text, dim, r->scene.hi, error), hi = true;
+            status = take_numbers("hi", text, dim, r->setup.hi, error), hi = true;
         else if (length == 7 && !strncmp(arguments[k], "gravity", 7))
-            status = take_numbers("gravity", text, dim, r->scene.gravity, error);
+            status = take_numbers("gravity", text, dim, r->setup.gravity, error);
         else if (length == 8 && !strncmp(arguments[k], "boundary", 8))
-            status = take_boundaries(text, dim, r->scene.boundary, error);
+            status = take_boundaries(text, dim, r->setup.boundary, error);
         else
             rest[(*left)++] = arguments[k];
         if (status) return status;
     }
     for (int a = 0; a < dim && r->snapshot.boxed && !lo && !hi; a++)
-        r->scene.lo[a] = 0, r->scene.hi[a] = r->snapshot.box[a];
+        r->setup.lo[a] = 0, r->setup.hi[a] = r->snapshot.box[a];
     lo = lo || r->snapshot.boxed, hi = hi || r->snapshot.boxed;
     for (int a = 0; a < dim; a++)
-        if ((!lo || !hi) && r->scene.boundary[a] != BOUNDARY_OPEN)
+        if ((!lo || !hi) && r->setup.boundary[a] != BOUNDARY_OPEN)
             return error_set(error, STATUS_BAD_INPUT,
                              "%.200s: lo and hi are needed: the box of boundary=%s, such as lo=0 "
                              "hi=1",
-                             r->source, scheme_boundary_family.members[r->scene.boundary[a]]->name);
+                             r->source, scheme_boundary_family.members[r->setup.boundary[a]]->name);
     for (int a = 0; a < dim; a++)
-        if ((lo || hi) && !(r->scene.lo[a] < r->scene.hi[a]))
+        if ((lo || hi) && !(r->setup.lo[a] < r->setup.hi[a]))
             return error_set(error, STATUS_BAD_INPUT, "lo = %g, hi = %g: allowed: lo < hi",
-                             r->scene.lo[a], r->scene.hi[a]);
+                             r->setup.lo[a], r->setup.hi[a]);
     return STATUS_OK;
 }
 
@@ -172,14 +172,14 @@ static enum status take_file(struct request *r, int n, char **arguments, struct 
                              "the scheme, gamma, lo, hi, boundary, gravity",
                              setting_keys[k].name);
     if ((status = sharpen(&r->settings, error)) ||
-        (status = settings_scheme(&r->settings, r->file.dim, &r->scene.scheme, error)))
+        (status = settings_scheme(&r->settings, r->file.dim, &r->setup.scheme, error)))
         return status;
-    r->scene.gamma = settings_real(&r->settings, SETTING_gamma);
+    r->setup.gamma = settings_real(&r->settings, SETTING_gamma);
     if (r->snapshot.gamma.known && r->settings.value[SETTING_gamma].source != SOURCE_USER)
         return error_set(error, STATUS_BAD_INPUT,
                          "%.200s: says gamma = %.9g: gamma=... is needed, as you mean it",
                          r->source, r->snapshot.gamma.value);
-    return particle_file_fill(&r->file, r->source, &r->scene, error);
+    return particle_file_fill(&r->file, r->source, &r->setup, error);
 }
 
 static enum status take_case(struct request *r, int n, char **arguments, struct error *error)
@@ -192,7 +192,7 @@ static enum status take_case(struct request *r, int n, char **arguments, struct 
     if (!status) status = initial_create(&r->initial, &run.problem, &run.settings, error);
     if (status) return status;
     r->settings = run.settings;
-    r->scene = run_scene(&run, &r->initial);
+    r->setup = run_setup(&run, &r->initial);
     return STATUS_OK;
 }
 
@@ -212,8 +212,8 @@ static enum status take_request(const struct options *options, int n, char **arg
     r->from_file = is_csv(r->source) || is_snapshot(r->source);
     enum status status = (r->from_file ? take_file : take_case)(r, n - 1, arguments + 1, error);
     if (!status && check) status = take_theirs(r, check, tolerance, error);
-    r->scene.threads = options->threads;
-    r->scene.skip = false;
+    r->setup.threads = options->threads;
+    r->setup.skip = false;
     return status;
 }
 
@@ -289,8 +289,8 @@ static enum status write_csv(const char *path, const struct request *r, const st
     for (size_t i = 0; i < t->n; i++) {
         fprintf(output.stream, "%.17g,%.17g,%.17g", t->h[i], t->rho[i], t->P[i]);
         for (int a = 0; a < t->dim; a++)
-            fprintf(output.stream, ",%.17g", t->force[a][i] / r->scene.m[i]);
-        fprintf(output.stream, ",%.17g\n", t->dU[i] / r->scene.m[i]);
+            fprintf(output.stream, ",%.17g", t->force[a][i] / r->setup.m[i]);
+        fprintf(output.stream, ",%.17g\n", t->dU[i] / r->setup.m[i]);
     }
     return output_close(&output, error);
 }
@@ -309,7 +309,7 @@ static json_t *particles_json(const struct request *r, const struct rate_table *
     for (size_t i = 0; i < t->n; i++)
         json_array_append_new(
             particles, json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:i, s:o, s:o}", "x",
-                                 vector(t->dim, r->scene.x, i), "h", result_number(t->h[i]), "rho",
+                                 vector(t->dim, r->setup.x, i), "h", result_number(t->h[i]), "rho",
                                  result_number(t->rho[i]), "P", result_number(t->P[i]), "force",
                                  vector(t->dim, force, i), "dU", result_number(t->dU[i]),
                                  "neighbours", (int)t->described[i].neighbours, "condition",
@@ -322,7 +322,7 @@ static json_t *particles_json(const struct request *r, const struct rate_table *
 static json_t *used_settings(const struct request *r)
 {
     json_t *all = settings_json(&r->settings), *used = json_object(), *boundary = json_array();
-    const double *const ends[] = {r->scene.lo, r->scene.hi, r->scene.gravity};
+    const double *const ends[] = {r->setup.lo, r->setup.hi, r->setup.gravity};
     static const char *const names[] = {"lo", "hi", "gravity"};
     if (!r->from_file) {
         json_decref(used), json_decref(boundary);
@@ -333,12 +333,12 @@ static json_t *used_settings(const struct request *r)
             json_object_set(used, setting_keys[k].name, json_object_get(all, setting_keys[k].name));
     for (int k = 0; k < 3; k++) {
         json_t *values = json_array();
-        for (int a = 0; a < r->scene.dim; a++) json_array_append_new(values, json_real(ends[k][a]));
+        for (int a = 0; a < r->setup.dim; a++) json_array_append_new(values, json_real(ends[k][a]));
         json_object_set_new(used, names[k], values);
     }
-    for (int a = 0; a < r->scene.dim; a++)
+    for (int a = 0; a < r->setup.dim; a++)
         json_array_append_new(
-            boundary, json_string(scheme_boundary_family.members[r->scene.boundary[a]]->name));
+            boundary, json_string(scheme_boundary_family.members[r->setup.boundary[a]]->name));
     json_object_set_new(used, "boundary", boundary);
     json_decref(all);
     return used;
@@ -391,9 +391,9 @@ static enum status run(const struct options *options, int n, char **arguments, s
     const char *csv = options_value(options, "csv"), *theirs = options_value(options, "check");
     enum status status = take_request(options, n, arguments, &r, error);
     if (!status && csv) status = output_probe(csv, error);
-    if (!status) status = rate_table_make(&table, &r.scene, error);
+    if (!status) status = rate_table_make(&table, &r.setup, error);
     if (!status && theirs)
-        status = rate_check_make(&check, theirs, &r.theirs, &r.scene, &table, r.tolerance, error);
+        status = rate_check_make(&check, theirs, &r.theirs, &r.setup, &table, r.tolerance, error);
     if (!status) {
         if (options->speak) {
             print_table(&r, &table, theirs ? ROWS_CHECKED : ROWS_SHOWN);

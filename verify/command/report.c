@@ -161,8 +161,8 @@ static enum status tell(const struct options *options, const json_t *results,
     return strcmp(verdict, "pass") == 0 ? STATUS_OK : STATUS_CHECK_FAILED;
 }
 
-static enum status carry_out(const struct options *options, struct report *report,
-                             struct error *error)
+static enum status serialise_out(const struct options *options, struct report *report,
+                                 struct error *error)
 {
     struct paths paths;
     struct sharing sharing;
@@ -192,7 +192,7 @@ static enum status run(const struct options *options, int n, char **arguments, s
     if (n) return command_usage(options, error, "no argument is known: '%.40s'", arguments[0]);
     const enum report_mode mode = options_value(options, "nightly") ? REPORT_NIGHTLY : REPORT_QUICK;
     if (check_options(options, error) || report_create(mode, &report, error)) return error->status;
-    const enum status status = carry_out(options, report, error);
+    const enum status status = serialise_out(options, report, error);
     report_destroy(report);
     return status;
 }

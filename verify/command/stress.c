@@ -83,8 +83,8 @@ static void print_all(const json_t *document, size_t wrong, const struct options
            wrong ? style.bad : style.good, wrong ? "NOT WELL" : "all as it should be", style.end);
 }
 
-static enum status carry_out(struct stress *stress, struct pool *pool, struct sharing *sharing,
-                             const struct options *options, struct error *error)
+static enum status serialise_out(struct stress *stress, struct pool *pool, struct sharing *sharing,
+                                 const struct options *options, struct error *error)
 {
     bool whole;
     if (sharing->list) return sharing_list(sharing, pool, error);
@@ -109,7 +109,7 @@ static enum status run(const struct options *options, int n, char **arguments, s
     enum status status = stress_plan(&stress, nightly, (size_t)n, arguments, &pool, error);
     if (!status) {
         gsl_set_error_handler_off();
-        status = carry_out(&stress, &pool, &sharing, options, error);
+        status = serialise_out(&stress, &pool, &sharing, options, error);
         stress_free(&stress);
     }
     pool_free(&pool);

@@ -67,19 +67,19 @@ static void compare(struct rate_comparison *c, const double *theirs, const struc
 
 /* --- causes ----------------------------------------------------------------------------------- */
 
-typedef void change(struct scene *scene);
+typedef void change(struct setup *setup);
 
 #define CHANGE(name, key, value)                                                                   \
-    static void name(struct scene *scene)                                                          \
+    static void name(struct setup *setup)                                                          \
     {                                                                                              \
-        scene->key = value;                                                                        \
+        setup->key = value;                                                                        \
     }
 CHANGE(no_viscosity, scheme.viscosity, VISCOSITY_NONE)
 CHANGE(constant_viscosity, scheme.viscosity, VISCOSITY_CONSTANT)
 CHANGE(no_beta, scheme.beta, 0)
-CHANGE(beta_alpha, scheme.beta, scene->scheme.alpha)
-CHANGE(twice_alpha, scheme.alpha, 2 * scene->scheme.alpha)
-CHANGE(half_alpha, scheme.alpha, 0.5 * scene->scheme.alpha)
+CHANGE(beta_alpha, scheme.beta, setup->scheme.alpha)
+CHANGE(twice_alpha, scheme.alpha, 2 * setup->scheme.alpha)
+CHANGE(half_alpha, scheme.alpha, 0.5 * setup->scheme.alpha)
 CHANGE(mu_form, scheme.viscosity_form, VISCOSITY_FORM_MU)
 CHANGE(signal_form, scheme.viscosity_form, VISCOSITY_FORM_SIGNAL)
 CHANGE(with_balsara, scheme.balsara, BALSARA_ON)
@@ -99,25 +99,25 @@ CHANGE(number, scheme.volume_element, VOLUME_NUMBER)
 CHANGE(conduction, scheme.alpha_u, 0)
 CHANGE(gamma_5_3, gamma, 5. / 3)
 CHANGE(gamma_7_5, gamma, 1.4)
-CHANGE(half_eta, scheme.eta, 0.5 * scene->scheme.eta)
-CHANGE(twice_eta, scheme.eta, 2 * scene->scheme.eta)
+CHANGE(half_eta, scheme.eta, 0.5 * setup->scheme.eta)
+CHANGE(twice_eta, scheme.eta, 2 * setup->scheme.eta)
 #undef CHANGE
 
-static void twice_viscosity(struct scene *scene)
+static void twice_viscosity(struct setup *setup)
 {
-    twice_alpha(scene);
-    scene->scheme.beta *= 2;
+    twice_alpha(setup);
+    setup->scheme.beta *= 2;
 }
 
-static void half_viscosity(struct scene *scene)
+static void half_viscosity(struct setup *setup)
 {
-    half_alpha(scene);
-    scene->scheme.beta *= 0.5;
+    half_alpha(setup);
+    setup->scheme.beta *= 0.5;
 }
 
-static void open_box(struct scene *scene)
+static void open_box(struct setup *setup)
 {
-    for (int a = 0; a < scene->dim; a++) scene->boundary[a] = BOUNDARY_OPEN;
+    for (int a = 0; a < setup->dim; a++) setup->boundary[a] = BOUNDARY_OPEN;
 }
 
 static const struct {
@@ -179,26 +179,26 @@ static void propose(struct rate_check *check, const double *const theirs[RATE_CO
 
 /* Rates without grad-h factors: the solver has no such choice, the oracle has. */
 static void propose_no_grad_h(struct rate_check *check, const double *const theirs[RATE_COLUMNS],
-                              const struct scene *scene, const struct rate_table *ours,
+                              const struct setup *setup, const struct rate_table *ours,
                               double tolerance)
 {
     struct oracle oracle;
     struct rate_table changed = *ours;
-    if (scene->scheme.formulation != FORMULATION_LAGRANGIAN || scene->n > ORACLE_MOST) return;
-    for (int a = 0; a < scene->dim; a++)
-        if (scene->boundary[a] != BOUNDARY_PERIODIC || scene->gravity[a] != 0) return;
+    if (setup->scheme.formulation != FORMULATION_LAGRANGIAN || setup->n > ORACLE_MOST) return;
+    for (int a = 0; a < setup->dim; a++)
+        if (setup->boundary[a] != BOUNDARY_PERIODIC || setup->gravity[a] != 0) return;
     double *storage = changed.storage = NULL;
-    if (oracle_create(&oracle, scene, NULL)) return;
+    if (oracle_create(&oracle, setup, NULL)) return;
     oracle.without_grad_h = true;
     if (!oracle_evaluate(&oracle, NULL) &&
-        (storage = malloc(4 * scene->n * sizeof *storage)) != NULL) {
-        for (int a = 0; a < 3; a++) changed.force[a] = storage + (size_t)a * scene->n;
-        changed.dU = storage + 3 * scene->n;
-        for (size_t i = 0; i < scene->n; i++) {
+        (storage = malloc(4 * setup->n * sizeof *storage)) != NULL) {
+        for (int a = 0; a < 3; a++) changed.force[a] = storage + (size_t)a * setup->n;
+        changed.dU = storage + 3 * setup->n;
+        for (size_t i = 0; i < setup->n; i++) {
             for (int a = 0; a < 3; a++) changed.force[a][i] = (double)oracle.particles[i].F[a];
             changed.dU[i] = (double)oracle.particles[i].dU;
         }
-        propose(check, theirs, &changed, scene->m, tolerance,
+        propose(check, theirs, &changed, setup->m, tolerance,
                 "grad-h: their lagrangian formulation has no grad-h factors");
     }
     free(storage);
@@ -207,29 +207,29 @@ static void propose_no_grad_h(struct rate_check *check, const double *const thei
 
 /* Differences that show in the numbers themselves: a factor, a term that is left out. */
 static void explain_plainly(struct rate_comparison *c, const double *theirs, int column,
-                            const struct scene *scene, const struct rate_table *ours,
+                            const struct setup *setup, const struct rate_table *ours,
                             double tolerance)
 {
-    const struct kernel *kernel = &scene->scheme.kernel;
+    const struct kernel *kernel = &setup->scheme.kernel;
     const double close = near_enough(c, tolerance);
-    const double scale = scale_of(ours, scene->m, column, 0);
+    const double scale = scale_of(ours, setup->m, column, 0);
     double ratio = 0, weight = 0, off[4] = {0};
     for (size_t i = 0; i < ours->n; i++) {
-        const double mine = value(ours, scene->m, column, i), size = column < 3 ? mine : scale;
-        const double own = scene->m[i] * kernel->constant[scene->dim] *
-                           kernel->w(kernel, 0, scene->dim) / pow(ours->h[i], scene->dim);
+        const double mine = value(ours, setup->m, column, i), size = column < 3 ? mine : scale;
+        const double own = setup->m[i] * kernel->constant[setup->dim] *
+                           kernel->w(kernel, 0, setup->dim) / pow(ours->h[i], setup->dim);
         ratio += theirs[i] * mine / (size * size);
         weight += mine * mine / (size * size);
         worst_keep(&off[0], fabs(theirs[i] + own - mine) / size);
-        worst_keep(&off[1], fabs(theirs[i] - scene->m[i] * mine) / size);
+        worst_keep(&off[1], fabs(theirs[i] - setup->m[i] * mine) / size);
         worst_keep(&off[2], fabs(theirs[i] + mine) / size);
     }
     ratio /= weight;
     for (size_t i = 0; i < ours->n; i++) {
-        const double mine = value(ours, scene->m, column, i), size = column < 3 ? mine : scale;
+        const double mine = value(ours, setup->m, column, i), size = column < 3 ? mine : scale;
         worst_keep(&off[3], fabs(theirs[i] - ratio * mine) / size);
     }
-    const bool element_of_energy = scene->scheme.volume_element == VOLUME_ENERGY;
+    const bool element_of_energy = setup->scheme.volume_element == VOLUME_ENERGY;
     if (column == 1 && !element_of_energy && off[0] <= close)
         snprintf(c->cause, RATE_CAUSE, "self-contribution: they leave out m W(0)");
     else if (column >= 3 && off[1] <= close)
@@ -242,23 +242,23 @@ static void explain_plainly(struct rate_comparison *c, const double *theirs, int
 }
 
 static void find_causes(struct rate_check *check, const double *const theirs[RATE_COLUMNS],
-                        const struct scene *scene, const struct rate_table *ours, double tolerance)
+                        const struct setup *setup, const struct rate_table *ours, double tolerance)
 {
     for (size_t k = 0; k < sizeof changes / sizeof *changes; k++) {
-        struct scene changed = *scene;
+        struct setup changed = *setup;
         struct rate_table table;
         changes[k].make(&changed);
         if (!rate_table_make(&table, &changed, NULL))
-            propose(check, theirs, &table, scene->m, tolerance, changes[k].cause);
+            propose(check, theirs, &table, setup->m, tolerance, changes[k].cause);
         rate_table_free(&table);
     }
-    propose_no_grad_h(check, theirs, scene, ours, tolerance);
+    propose_no_grad_h(check, theirs, setup, ours, tolerance);
     const char *first = NULL; /* that is wrong; what comes after it follows from it */
     for (size_t k = 0; k < check->count; k++) {
         struct rate_comparison *c = &check->columns[k];
         const int column = c->column;
         if (c->good) continue;
-        if (!c->cause[0]) explain_plainly(c, theirs[column], column, scene, ours, tolerance);
+        if (!c->cause[0]) explain_plainly(c, theirs[column], column, setup, ours, tolerance);
         if (!c->cause[0] && first && column >= 2)
             snprintf(c->cause, RATE_CAUSE, "it follows from %s, or there is more than one", first);
         if (!first && column < 3) first = c->quantity;
@@ -266,7 +266,7 @@ static void find_causes(struct rate_check *check, const double *const theirs[RAT
 }
 
 enum status rate_check_make(struct rate_check *check, const char *path, const struct csv *theirs,
-                            const struct scene *scene, const struct rate_table *ours,
+                            const struct setup *setup, const struct rate_table *ours,
                             double tolerance, struct error *error)
 {
     const double *columns[RATE_COLUMNS] = {NULL};
@@ -283,13 +283,13 @@ enum status rate_check_make(struct rate_check *check, const char *path, const st
         columns[column] = theirs->values[k];
         c->column = column;
         c->quantity = names[column];
-        compare(c, columns[column], ours, scene->m, column);
+        compare(c, columns[column], ours, setup->m, column);
         c->good = c->worst <= tolerance;
         check->good &= c->good;
     }
     if (check->count == 0)
         return error_set(error, STATUS_BAD_INPUT,
                          "%.200s:1: nothing to compare: allowed: any of h rho P ax ay az du", path);
-    if (!check->good) find_causes(check, columns, scene, ours, tolerance);
+    if (!check->good) find_causes(check, columns, setup, ours, tolerance);
     return STATUS_OK;
 }

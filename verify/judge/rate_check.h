@@ -24,10 +24,10 @@ struct rate_check {
     bool good;
 };
 
-/* Compares the columns of THEIRS.csv with the table of the scene. STATUS_BAD_INPUT: none of the
+/* Compares the columns of THEIRS.csv with the table of the setup. STATUS_BAD_INPUT: none of the
  * columns, or another number of rows. */
 enum status rate_check_make(struct rate_check *check, const char *path, const struct csv *theirs,
-                            const struct scene *scene, const struct rate_table *ours,
+                            const struct setup *setup, const struct rate_table *ours,
                             double tolerance, struct error *error);
 
 #endif

@@ -32,10 +32,10 @@ struct library_figures {
 };
 void library_figure(struct library_figures *figures, const struct sphproof_figure *figure);
 
-/* The scene as the solver wants it, with arrays of the caller. rest: room for n zeros, for
+/* The setup as the solver wants it, with arrays of the caller. rest: room for n zeros, for
  * velocities that are not given. */
-enum sphproof_status library_scene(const struct sphproof_scene *theirs, bool sharp,
-                                   const double *rest, struct scene *scene,
+enum sphproof_status library_setup(const struct sphproof_setup *theirs, bool sharp,
+                                   const double *rest, struct setup *setup,
                                    struct sphproof_error *error);
 
 #endif

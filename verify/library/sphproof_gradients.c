@@ -52,7 +52,7 @@ enum sphproof_status sphproof_gradients_apply(const char *name,
     const struct cloud ours = {points_of(cloud), cloud->volume, cloud->h};
     const struct operator_settings settings = {
         (const struct operator_form *)operator_family.members[at], &kernel->kernel,
-        kernel_stamp(&kernel->kernel) < 0, 1};
+        kernel_specialisation(&kernel->kernel) < 0, 1};
     struct error failure;
     return library_pass(operator_apply(&settings, &ours, 1, &f, gradient, NULL, NULL, &failure),
                         &failure, error);

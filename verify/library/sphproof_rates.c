@@ -12,18 +12,18 @@ static void put(double *to, const double *from, size_t n)
     if (to) memcpy(to, from, n * sizeof *to);
 }
 
-enum sphproof_status sphproof_rates_evaluate(const struct sphproof_scene *theirs,
+enum sphproof_status sphproof_rates_evaluate(const struct sphproof_setup *theirs,
                                              const struct sphproof_rates *rates,
                                              struct sphproof_error *error)
 {
-    struct scene scene;
+    struct setup setup;
     struct error ours;
     struct rate_table table = {0};
     double *rest = calloc(theirs->n + 1, sizeof *rest);
     if (!rest)
         return library_fail(error, STATUS_ENVIRONMENT, "no memory for %zu particles", theirs->n);
-    enum sphproof_status status = library_scene(theirs, true, rest, &scene, error);
-    if (!status) status = library_pass(rate_table_make(&table, &scene, &ours), &ours, error);
+    enum sphproof_status status = library_setup(theirs, true, rest, &setup, error);
+    if (!status) status = library_pass(rate_table_make(&table, &setup, &ours), &ours, error);
     if (!status) {
         put(rates->h, table.h, table.n);
         put(rates->rho, table.rho, table.n);
@@ -31,7 +31,7 @@ enum sphproof_status sphproof_rates_evaluate(const struct sphproof_scene *theirs
         put(rates->dU, table.dU, table.n);
         for (size_t i = 0; rates->neighbours && i < table.n; i++)
             rates->neighbours[i] = table.described[i].neighbours;
-        for (int a = 0; a < scene.dim; a++) put(rates->force[a], table.force[a], table.n);
+        for (int a = 0; a < setup.dim; a++) put(rates->force[a], table.force[a], table.n);
     }
     rate_table_free(&table);
     free(rest);

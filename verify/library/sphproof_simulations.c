@@ -14,7 +14,7 @@ struct sphproof_simulation {
 };
 
 /* The scheme that the keys stand for; nothing but the scheme is theirs to say. */
-static enum status take_keys(const struct sphproof_scene *theirs, bool sharp, struct scheme *scheme,
+static enum status take_keys(const struct sphproof_setup *theirs, bool sharp, struct scheme *scheme,
                              struct error *error)
 {
     struct settings settings;
@@ -29,7 +29,7 @@ static enum status take_keys(const struct sphproof_scene *theirs, bool sharp, st
     for (int k = 0; k < SETTINGS; k++)
         if (settings.value[k].source == SOURCE_USER && strcmp(setting_keys[k].section, "scheme"))
             return error_set(error, STATUS_BAD_INPUT,
-                             "%s is no key of a scheme: the scene itself says what is computed",
+                             "%s is no key of a scheme: the setup itself says what is computed",
                              setting_keys[k].name);
     if (sharp && settings.value[SETTING_h_tolerance].source == SOURCE_FALLBACK &&
         settings_set(&settings, SETTING_h_tolerance, "1e-14", SOURCE_FALLBACK, NULL, error))
@@ -47,10 +47,10 @@ static enum status take_boundary(const char *name, enum boundary *boundary, stru
     return STATUS_OK;
 }
 
-static enum status take_scene(const struct sphproof_scene *theirs, bool sharp, const double *rest,
-                              struct scene *scene, struct error *error)
+static enum status take_setup(const struct sphproof_setup *theirs, bool sharp, const double *rest,
+                              struct setup *setup, struct error *error)
 {
-    *scene = (struct scene){.dim = theirs->dim,
+    *setup = (struct setup){.dim = theirs->dim,
                             .gamma = theirs->gamma,
                             .n = theirs->n,
                             .m = theirs->m,
@@ -60,37 +60,37 @@ static enum status take_scene(const struct sphproof_scene *theirs, bool sharp, c
     if (theirs->dim < 1 || theirs->dim > 3)
         return error_set(error, STATUS_BAD_INPUT, "dim = %d: allowed: 1, 2, 3", theirs->dim);
     if (!theirs->m || !theirs->u)
-        return error_set(error, STATUS_BAD_INPUT, "a scene needs m and u of its particles");
+        return error_set(error, STATUS_BAD_INPUT, "a setup needs m and u of its particles");
     for (int a = 0; a < theirs->dim; a++) {
         if (!theirs->x[a])
-            return error_set(error, STATUS_BAD_INPUT, "a scene in %dD needs x[%d]", theirs->dim, a);
-        scene->x[a] = theirs->x[a];
-        scene->v[a] = theirs->v[a] ? theirs->v[a] : rest;
-        scene->lo[a] = theirs->lo[a], scene->hi[a] = theirs->hi[a];
-        scene->gravity[a] = theirs->gravity[a];
-        if (take_boundary(theirs->boundary[a], &scene->boundary[a], error)) return error->status;
-        for (size_t i = 0; i < theirs->n && scene->boundary[a] != BOUNDARY_OPEN; i++)
-            if (!(scene->x[a][i] >= scene->lo[a] && scene->x[a][i] <= scene->hi[a]))
+            return error_set(error, STATUS_BAD_INPUT, "a setup in %dD needs x[%d]", theirs->dim, a);
+        setup->x[a] = theirs->x[a];
+        setup->v[a] = theirs->v[a] ? theirs->v[a] : rest;
+        setup->lo[a] = theirs->lo[a], setup->hi[a] = theirs->hi[a];
+        setup->gravity[a] = theirs->gravity[a];
+        if (take_boundary(theirs->boundary[a], &setup->boundary[a], error)) return error->status;
+        for (size_t i = 0; i < theirs->n && setup->boundary[a] != BOUNDARY_OPEN; i++)
+            if (!(setup->x[a][i] >= setup->lo[a] && setup->x[a][i] <= setup->hi[a]))
                 return error_set(error, STATUS_BAD_INPUT,
                                  "particle %zu: x[%d] = %.9g: allowed: in the box, %.9g to %.9g", i,
-                                 a, scene->x[a][i], scene->lo[a], scene->hi[a]);
+                                 a, setup->x[a][i], setup->lo[a], setup->hi[a]);
     }
-    return take_keys(theirs, sharp, &scene->scheme, error);
+    return take_keys(theirs, sharp, &setup->scheme, error);
 }
 
-enum sphproof_status library_scene(const struct sphproof_scene *theirs, bool sharp,
-                                   const double *rest, struct scene *scene,
+enum sphproof_status library_setup(const struct sphproof_setup *theirs, bool sharp,
+                                   const double *rest, struct setup *setup,
                                    struct sphproof_error *error)
 {
     struct error ours;
-    return library_pass(take_scene(theirs, sharp, rest, scene, &ours), &ours, error);
+    return library_pass(take_setup(theirs, sharp, rest, setup, &ours), &ours, error);
 }
 
-enum sphproof_status sphproof_simulations_create(const struct sphproof_scene *theirs,
+enum sphproof_status sphproof_simulations_create(const struct sphproof_setup *theirs,
                                                  struct sphproof_simulation **simulation,
                                                  struct sphproof_error *error)
 {
-    struct scene scene;
+    struct setup setup;
     struct error ours;
     double *rest = calloc(theirs->n + 1, sizeof *rest);
     struct sphproof_simulation *made = calloc(1, sizeof *made);
@@ -98,15 +98,15 @@ enum sphproof_status sphproof_simulations_create(const struct sphproof_scene *th
     *simulation = NULL;
     if (!rest || !made)
         status = library_fail(error, STATUS_ENVIRONMENT, "no memory for %zu particles", theirs->n);
-    if (!status) status = library_scene(theirs, false, rest, &scene, error);
+    if (!status) status = library_setup(theirs, false, rest, &setup, error);
     if (!status)
-        status = library_pass(simulation_create(&scene, &made->simulation, &ours), &ours, error);
+        status = library_pass(simulation_create(&setup, &made->simulation, &ours), &ours, error);
     free(rest);
     if (status) {
         free(made);
         return status;
     }
-    made->dim = scene.dim;
+    made->dim = setup.dim;
     *simulation = made;
     return SPHPROOF_OK;
 }
@@ -125,7 +125,7 @@ enum sphproof_status sphproof_simulations_run(struct sphproof_simulation *simula
     return library_pass(status, &ours, error);
 }
 
-/* From the solver's order into the scene's. */
+/* From the solver's order into the setup's. */
 static void put(double *to, const double *from, const struct snapshot *s)
 {
     for (size_t k = 0; to && k < s->n; k++) to[s->id[k]] = from[k];

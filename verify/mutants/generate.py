@@ -418,7 +418,7 @@ class Walker:
         name = cursor.spelling
         arguments = list(cursor.get_arguments())
         home = cursor.referenced and cursor.referenced.location.file
-        if name in SWAPPED_CALLS and (name[0] == "f" or home and home.name.endswith("stamp.h")):
+        if name in SWAPPED_CALLS and (name[0] == "f" or home and home.name.endswith("specialise.h")):
             code = self.code(cursor)
             self.add(cursor, code.replace(name, SWAPPED_CALLS[name], 1),
                      "%s -> %s" % (code, SWAPPED_CALLS[name]), self.pure(cursor))
@@ -501,16 +501,16 @@ def find(tree, build, judged=JUDGED):
     sources = {name: Source(tree, name) for name in judged_files(tree, judged)}
     with open(os.path.join(build, "compile_commands.json")) as f:
         entries = json.load(f)
-    walker, done, index, stamps = Walker(cindex, tree, sources, set()), set(), cindex.Index.create(), set()
+    walker, done, index, specialisations = Walker(cindex, tree, sources, set()), set(), cindex.Index.create(), set()
     for entry in entries:
         path = os.path.realpath(os.path.join(entry["directory"], entry["file"]))
         name = os.path.relpath(path, tree)
-        stamp = re.match(r"src/(loop_\w+?|shapes)_[a-z]+\w*\.c$", os.path.relpath(path, os.path.realpath(build)))
-        if name not in sources and not stamp:
+        specialisation = re.match(r"src/(loop_\w+?|shapes)_[a-z]+\w*\.c$", os.path.relpath(path, os.path.realpath(build)))
+        if name not in sources and not specialisation:
             continue
-        if stamp and stamp[1] in stamps and not stamp[0].startswith("src/shapes"):
-            continue  # one of each kind of stamp; one for each kernel
-        stamps.add(stamp and stamp[1])
+        if specialisation and specialisation[1] in specialisations and not specialisation[0].startswith("src/shapes"):
+            continue  # one of each kind of specialisation; one for each kernel
+        specialisations.add(specialisation and specialisation[1])
         unit = index.parse(path, args=clang_arguments(entry) + resources(cindex) + ["-w"],
                            options=cindex.TranslationUnit.PARSE_DETAILED_PROCESSING_RECORD)
         bad = [d for d in unit.diagnostics if d.severity >= cindex.Diagnostic.Error]
@@ -585,7 +585,7 @@ def rewrite(source, active):
         return original
 
     out = render(0, len(text), sites)
-    # scalar loops; a stamp calls its body: with many alternatives inside, its copies compile for minutes
+    # scalar loops; a specialisation calls its body: with many alternatives inside, its copies compile for minutes
     out = re.sub(r'_Pragma\("omp simd[^"]*"\)', "", out)
     out = re.sub(r"#pragma omp simd.*(\\\n.*)*", lambda m: "\n" * m[0].count("\n"), out)
     return re.sub(r"^ALWAYS_INLINE", "static", out, flags=re.M) if source.name.endswith(".c") and len(sites) > 40 else out

@@ -62,42 +62,42 @@ bool oracle_covers(const struct scheme *scheme)
     return true;
 }
 
-enum status oracle_create(struct oracle *oracle, const struct scene *scene, struct error *error)
+enum status oracle_create(struct oracle *oracle, const struct setup *setup, struct error *error)
 {
     *oracle = (struct oracle){0};
-    if (!oracle_covers(&scene->scheme))
+    if (!oracle_covers(&setup->scheme))
         return error_set(error, STATUS_BAD_INPUT, "oracle: it has no formula for this scheme");
     *oracle = (struct oracle){
-        .scheme = scene->scheme, .dim = scene->dim, .gamma = scene->gamma, .n = scene->n};
+        .scheme = setup->scheme, .dim = setup->dim, .gamma = setup->gamma, .n = setup->n};
     long double share = 1; /* of the box, a particle's */
-    for (int k = 0; k < scene->dim; k++) {
-        oracle->lo[k] = scene->lo[k];
-        oracle->period[k] = (long double)scene->hi[k] - scene->lo[k];
+    for (int k = 0; k < setup->dim; k++) {
+        oracle->lo[k] = setup->lo[k];
+        oracle->period[k] = (long double)setup->hi[k] - setup->lo[k];
         share *= oracle->period[k];
     }
-    share = powl(share / (long double)scene->n, 1.0L / scene->dim);
-    oracle->kernel = oracle_kernel_find(&oracle->scheme.kernel, scene->dim);
-    oracle->particles = calloc(scene->n, sizeof *oracle->particles);
-    oracle->start = calloc(scene->n, sizeof *oracle->start);
-    oracle->distance = calloc(scene->n * scene->n * 3, sizeof *oracle->distance);
+    share = powl(share / (long double)setup->n, 1.0L / setup->dim);
+    oracle->kernel = oracle_kernel_find(&oracle->scheme.kernel, setup->dim);
+    oracle->particles = calloc(setup->n, sizeof *oracle->particles);
+    oracle->start = calloc(setup->n, sizeof *oracle->start);
+    oracle->distance = calloc(setup->n * setup->n * 3, sizeof *oracle->distance);
     if (!oracle->particles || !oracle->start || !oracle->distance) {
         oracle_free(oracle);
         return error_set(error, STATUS_ENVIRONMENT, "oracle: no memory");
     }
-    const bool switched = scene->scheme.viscosity == VISCOSITY_TIME_DEPENDENT ||
-                          scene->scheme.viscosity == VISCOSITY_CULLEN_DEHNEN;
-    for (size_t i = 0; i < scene->n; i++) {
+    const bool switched = setup->scheme.viscosity == VISCOSITY_TIME_DEPENDENT ||
+                          setup->scheme.viscosity == VISCOSITY_CULLEN_DEHNEN;
+    for (size_t i = 0; i < setup->n; i++) {
         struct oracle_particle *a = &oracle->particles[i];
-        a->m = scene->m[i];
-        a->e = a->m * scene->u[i];
-        for (int k = 0; k < scene->dim; k++) {
-            const long double v = scene->v[k] ? scene->v[k][i] : 0;
-            a->x[k] = scene->x[k][i];
+        a->m = setup->m[i];
+        a->e = a->m * setup->u[i];
+        for (int k = 0; k < setup->dim; k++) {
+            const long double v = setup->v[k] ? setup->v[k][i] : 0;
+            a->x[k] = setup->x[k][i];
             a->p[k] = a->m * v;
-            if (scene->scheme.energy == ENERGY_TOTAL) a->e += a->m * v * v / 2;
+            if (setup->scheme.energy == ENERGY_TOTAL) a->e += a->m * v * v / 2;
         }
-        a->alpha = switched ? scene->scheme.alpha_min : scene->scheme.alpha;
-        a->h = share * scene->scheme.eta; /* a first guess only: the root is unique */
+        a->alpha = switched ? setup->scheme.alpha_min : setup->scheme.alpha;
+        a->h = share * setup->scheme.eta; /* a first guess only: the root is unique */
     }
     return STATUS_OK;
 }

@@ -47,13 +47,13 @@ struct oracle {
     bool without_grad_h;        /* wrong on purpose: set after oracle_create */
     long double last_dt, ahead; /* h_method predicted: by how many last changes of 1/h */
     size_t n, steps;
-    struct oracle_particle *particles; /* in the scene's order */
+    struct oracle_particle *particles; /* in the setup's order */
     struct oracle_particle *start;     /* n, workspace of the integrators */
     long double *distance;             /* n n 3: of each pair and image, of the last evaluation */
 };
 
 /* The oracle must stay where it is. STATUS_ENVIRONMENT: no memory. Free with oracle_free. */
-enum status oracle_create(struct oracle *oracle, const struct scene *scene, struct error *error);
+enum status oracle_create(struct oracle *oracle, const struct setup *setup, struct error *error);
 void oracle_free(struct oracle *oracle);
 
 /* Density, h, pressure, rates of the present state. STATUS_BROKE_DOWN: no sound state. */

@@ -216,10 +216,10 @@ static enum status step(struct plain *plain, double dt, struct error *error)
     return evaluate(plain, error);
 }
 
-static enum status check(const struct scene *scene, struct error *error)
+static enum status check(const struct setup *setup, struct error *error)
 {
-    const struct scheme *s = &scene->scheme;
-    if (scene->dim == 1 && strcmp(s->kernel.member.name, "cubic_spline") == 0 &&
+    const struct scheme *s = &setup->scheme;
+    if (setup->dim == 1 && strcmp(s->kernel.member.name, "cubic_spline") == 0 &&
         s->gradient == GRADIENT_STANDARD && s->formulation == FORMULATION_VANILLA_ICE &&
         s->volume_element == VOLUME_MASS && s->viscosity <= VISCOSITY_CONSTANT &&
         s->energy == ENERGY_INTERNAL && s->pair_width == PAIR_WIDTH_MEAN &&
@@ -249,16 +249,16 @@ static void sum_up(const struct plain *plain, struct conservation *sums)
                                   .energy = (double)energy};
 }
 
-static enum status set_up(struct plain *plain, const struct scene *scene, struct error *error)
+static enum status set_up(struct plain *plain, const struct setup *setup, struct error *error)
 {
-    const size_t n = scene->n, ghosts = n < GHOSTS ? n : GHOSTS;
+    const size_t n = setup->n, ghosts = n < GHOSTS ? n : GHOSTS;
     *plain = (struct plain){.n = n,
                             .ghosts = ghosts,
-                            .lo = scene->lo[0],
-                            .period = scene->hi[0] - scene->lo[0],
-                            .gamma = scene->gamma,
-                            .scheme = &scene->scheme};
-    if (check(scene, error)) return error->status;
+                            .lo = setup->lo[0],
+                            .period = setup->hi[0] - setup->lo[0],
+                            .gamma = setup->gamma,
+                            .scheme = &setup->scheme};
+    if (check(setup, error)) return error->status;
     plain->all = calloc(n + 2 * ghosts, sizeof *plain->all);
     plain->arrays = calloc(ARRAYS * n, sizeof(double));
     if (!plain->all || !plain->arrays)
@@ -266,26 +266,26 @@ static enum status set_up(struct plain *plain, const struct scene *scene, struct
     plain->particles = plain->all + ghosts;
     for (size_t i = 0; i < n; i++) {
         struct plain_particle *a = &plain->particles[i];
-        a->x = scene->x[0][i];
-        a->m = scene->m[i];
-        a->v = scene->v[0][i];
-        a->u = scene->u[i];
-        a->h = scene->rho ? scene->scheme.eta * a->m / scene->rho[i]
-                          : scene->scheme.eta * plain->period / (double)n;
+        a->x = setup->x[0][i];
+        a->m = setup->m[i];
+        a->v = setup->v[0][i];
+        a->u = setup->u[i];
+        a->h = setup->rho ? setup->scheme.eta * a->m / setup->rho[i]
+                          : setup->scheme.eta * plain->period / (double)n;
     }
     return STATUS_OK;
 }
 
-enum status plain_run(struct plain *plain, const struct scene *scene, struct error *error)
+enum status plain_run(struct plain *plain, const struct setup *setup, struct error *error)
 {
     const struct clock_taken start = clock_now();
-    enum status status = set_up(plain, scene, error);
+    enum status status = set_up(plain, setup, error);
     if (!status) status = evaluate(plain, error);
     if (status) return status;
     plain->cost.particle_updates = 0;
     sum_up(plain, &plain->start);
-    while (!status && plain->time < scene->t_end) {
-        const double left = scene->t_end - plain->time;
+    while (!status && plain->time < setup->t_end) {
+        const double left = setup->t_end - plain->time;
         double dt = plain->time_step;
         const bool last = dt >= left;
         if (last)
@@ -294,7 +294,7 @@ enum status plain_run(struct plain *plain, const struct scene *scene, struct err
             dt = 0.5 * left;
         if (!(plain->time + dt > plain->time)) return broke_down(plain, 0, "time step", dt, error);
         status = step(plain, dt, error);
-        plain->time = last ? scene->t_end : plain->time + dt;
+        plain->time = last ? setup->t_end : plain->time + dt;
         plain->cost.steps++;
     }
     struct clock_taken taken = {0};

@@ -15,15 +15,15 @@ struct plain {
     double *arrays;                         /* of the snapshot */
     size_t n, ghosts;
     double lo, period, gamma, time, time_step;
-    const struct scheme *scheme; /* the scene's */
+    const struct scheme *scheme; /* the setup's */
     struct simulation_cost cost;
     struct conservation start, end; /* 1D; sums at t = 0 and now */
 };
 
-/* Runs a 1D scene to its t_end, counting costs as src does. STATUS_BAD_INPUT: a scheme other than
+/* Runs a 1D setup to its t_end, counting costs as src does. STATUS_BAD_INPUT: a scheme other than
  * the above; STATUS_BROKE_DOWN: no sound state. Free with plain_free, also after a failure; the
- * scene must live as long. */
-enum status plain_run(struct plain *plain, const struct scene *scene, struct error *error);
+ * setup must live as long. */
+enum status plain_run(struct plain *plain, const struct setup *setup, struct error *error);
 void plain_free(struct plain *plain);
 
 /* The state: arrays belong to plain, positions wrapped into the box, rising; id is NULL. */

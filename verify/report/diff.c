@@ -116,13 +116,13 @@ static int worst_first(const void *a, const void *b)
     return strcmp(path_of(x), path_of(y));
 }
 
-static void judge(struct diff *diff, const struct reading *old, const struct reading *new,
+static void judge(struct diff *diff, const struct metric *old, const struct metric *new,
                   double threshold)
 {
     struct difference *d = &diff->list[diff->count++];
     bool fault;
     *d = (struct difference){.old = old, .new = new};
-    d->verdict = reading_judge(old, new, &d->amount, &fault);
+    d->verdict = metric_judge(old, new, &d->amount, &fault);
     if (diff->problem[0] && old && new)
         d->verdict = VERDICT_INCOMPARABLE, d->amount = 0, fault = false;
     const bool order = new &&new->kind == READING_ORDER; /* its interval is its threshold */
@@ -150,9 +150,9 @@ static bool within(const char *path, size_t object, const char *other)
            (!object || other[object] == '.' || other[object] == '[');
 }
 
-static bool says_broke_down(const struct reading *reading)
+static bool says_broke_down(const struct metric *metric)
 {
-    return reading && reading->word && strcmp(reading->word, "broke_down") == 0;
+    return metric && metric->word && strcmp(metric->word, "broke_down") == 0;
 }
 
 /* Where a run broke down, before or after, its figures are of other times, or none: what became of
@@ -180,7 +180,7 @@ static void leave_out_times(struct diff *diff)
     size_t kept = 0;
     for (size_t i = 0; i < diff->count; i++) {
         const struct difference *d = &diff->list[i];
-        const struct reading *any = d->new ? d->new : d->old;
+        const struct metric *any = d->new ? d->new : d->old;
         if (any->kind != READING_TIMING) diff->list[kept++] = *d;
     }
     diff->left_out_times = diff->count - kept;
@@ -235,7 +235,7 @@ enum status diff_documents(const json_t *old, const json_t *new, double threshol
                          "documents of two commands, '%.40s' and '%.40s': allowed: two of one",
                          before ? before : "", after ? after : "");
     compare_problems(old, new, diff);
-    if (reading_collect(old, &diff->old, error) || reading_collect(new, &diff->new, error)) {
+    if (metric_collect(old, &diff->old, error) || metric_collect(new, &diff->new, error)) {
         diff_free(diff);
         return error->status;
     }
@@ -246,7 +246,7 @@ enum status diff_documents(const json_t *old, const json_t *new, double threshol
         diff_free(diff);
         return error->status;
     }
-    const struct readings *a = &diff->old, *b = &diff->new;
+    const struct metrics *a = &diff->old, *b = &diff->new;
     diff->list = calloc(a->count + b->count + 1, sizeof *diff->list);
     if (!diff->list) {
         diff_free(diff);
@@ -270,8 +270,8 @@ enum status diff_documents(const json_t *old, const json_t *new, double threshol
 
 void diff_free(struct diff *diff)
 {
-    reading_free(&diff->old);
-    reading_free(&diff->new);
+    metric_free(&diff->old);
+    metric_free(&diff->new);
     free(diff->list);
     *diff = (struct diff){.count = 0};
 }

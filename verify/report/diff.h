@@ -1,24 +1,24 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What a change did: the readings of two result documents of the same command, each judged against
+ * What a change did: the metrics of two result documents of the same command, each judged against
  * its noise. */
 #ifndef SPHPROOF_DIFF_H
 #define SPHPROOF_DIFF_H
 
-#include "reading.h"
+#include "metric.h"
 
 /* Worse by more than this part of the old value is a regression (of an order: beyond its interval;
  * of a word: it says fail). Timings and counts of work never are. */
 #define DIFF_THRESHOLD 0.05
 
 struct difference {
-    const struct reading *old, *new; /* NULL: on the other side only */
-    enum reading_verdict verdict;
-    double amount; /* see reading_judge */
+    const struct metric *old, *new; /* NULL: on the other side only */
+    enum metric_verdict verdict;
+    double amount; /* see metric_judge */
     bool regression;
 };
 
 struct diff {
-    struct readings old, new;
+    struct metrics old, new;
     struct difference *list; /* regressions first, then vanished, incomparable, worse, better ... */
     size_t count, verdicts[READING_VERDICTS], regressions;
     size_t compared; /* figures that both documents have and that say something about each other */

@@ -18,14 +18,14 @@ double diff_ratio(const struct difference *d)
 
 double diff_exact(const struct difference *d)
 {
-    const struct reading *reading = d->new ? d->new : d->old;
-    switch (reading->kind) {
+    const struct metric *metric = d->new ? d->new : d->old;
+    switch (metric->kind) {
     case READING_ERROR:
     case READING_CHECK:
     case READING_PART:
         return 0;
     case READING_EXACT:
-        return reading->exact;
+        return metric->exact;
     default:
         return (double)NAN;
     }
@@ -38,10 +38,10 @@ static const char *path_of(const struct difference *d)
 
 /* ---- JSON ---- */
 
-static json_t *value_json(const struct reading *reading)
+static json_t *value_json(const struct metric *metric)
 {
-    if (!reading) return json_null();
-    return reading->word ? json_string(reading->word) : result_number(reading->value);
+    if (!metric) return json_null();
+    return metric->word ? json_string(metric->word) : result_number(metric->value);
 }
 
 static json_t *known(double value)
@@ -58,7 +58,7 @@ json_t *diff_figures_json(const struct diff *diff, size_t most)
             figures, json_pack("{s:s, s:o, s:o, s:o, s:o, s:s, s:b}", "path", path_of(d), "old",
                                value_json(d->old), "new", value_json(d->new), "exact",
                                known(diff_exact(d)), "ratio", known(diff_ratio(d)), "verdict",
-                               reading_verdicts[d->verdict], "regression", d->regression));
+                               metric_verdicts[d->verdict], "regression", d->regression));
     }
     return figures;
 }
@@ -67,7 +67,7 @@ void diff_add_json(const struct diff *diff, json_t *document)
 {
     json_t *summary = json_object();
     for (int v = 0; v < READING_VERDICTS; v++)
-        json_object_set_new(summary, reading_verdicts[v],
+        json_object_set_new(summary, metric_verdicts[v],
                             json_integer((json_int_t)diff->verdicts[v]));
     json_object_set_new(summary, "regressions", json_integer((json_int_t)diff->regressions));
     json_object_set_new(summary, "compared", json_integer((json_int_t)diff->compared));
@@ -83,14 +83,14 @@ void diff_add_json(const struct diff *diff, json_t *document)
 
 /* ---- table ---- */
 
-static void print_value(const struct reading *reading)
+static void print_value(const struct metric *metric)
 {
-    if (!reading)
+    if (!metric)
         printf(" %13s", "-");
-    else if (reading->word)
-        printf(" %13s", *reading->word ? reading->word : "\"\"");
+    else if (metric->word)
+        printf(" %13s", *metric->word ? metric->word : "\"\"");
     else
-        printf(" %13.6g", reading->value);
+        printf(" %13.6g", metric->value);
 }
 
 static void print_number(const char *format, int width, double value)
@@ -108,7 +108,7 @@ static void print_difference(const struct difference *d, bool exact,
         d->regression || d->verdict == VERDICT_VANISHED || d->verdict == VERDICT_WORSE ? style->bad
         : d->verdict == VERDICT_BETTER                                                 ? style->good
                                                                                        : "";
-    printf("%s%-12s%s", color, d->regression ? "REGRESSION" : reading_verdicts[d->verdict],
+    printf("%s%-12s%s", color, d->regression ? "REGRESSION" : metric_verdicts[d->verdict],
            style->end);
     print_value(d->old);
     print_value(d->new);

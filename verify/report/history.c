@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 #include "diff.h"
-#include "reading.h"
+#include "metric.h"
 #include "result.h"
 #include "trend.h"
 #include "value.h"
@@ -38,27 +38,27 @@ static void add_checks(const json_t *checks, json_t *figures)
     }
 }
 
-static json_t *value_of(const struct reading *reading)
+static json_t *value_of(const struct metric *metric)
 {
-    return reading->word ? json_string(reading->word) : result_number(reading->value);
+    return metric->word ? json_string(metric->word) : result_number(metric->value);
 }
 
 /* {path: value} of the headline figures. */
-static json_t *figures_of(const struct readings *readings, const json_t *results)
+static json_t *figures_of(const struct metrics *metrics, const json_t *results)
 {
     json_t *figures = json_object();
-    for (size_t i = 0; i < readings->count; i++)
-        if (readings->list[i].headline)
-            json_object_set_new(figures, readings->list[i].path, value_of(&readings->list[i]));
+    for (size_t i = 0; i < metrics->count; i++)
+        if (metrics->list[i].headline)
+            json_object_set_new(figures, metrics->list[i].path, value_of(&metrics->list[i]));
     add_checks(json_object_get(json_object_get(results, "verify"), "checks"), figures);
     return figures;
 }
 
 static json_t *line_of(const json_t *results, struct error *error)
 {
-    struct readings readings;
+    struct metrics metrics;
     const json_t *verdict = json_object_get(results, "verdict");
-    if (reading_collect(results, &readings, error)) return NULL;
+    if (metric_collect(results, &metrics, error)) return NULL;
     json_t *line =
         json_pack("{s:s, s:s, s:s, s:s, s:s, s:s, s:I, s:o}", "schema", "sphproof-history/1",
                   "date", value_text(results, "date"), "git", value_text(results, "git"), "mode",
@@ -66,8 +66,8 @@ static json_t *line_of(const json_t *results, struct error *error)
                   value_text(json_object_get(results, "machine"), "processor"), "verdict",
                   value_text(verdict, "status"), "failures",
                   (json_int_t)json_array_size(json_object_get(verdict, "failures")), "figures",
-                  figures_of(&readings, results));
-    reading_free(&readings);
+                  figures_of(&metrics, results));
+    metric_free(&metrics);
     if (!line) error_set(error, STATUS_ENVIRONMENT, "no memory for the history");
     return line;
 }
@@ -161,7 +161,7 @@ static json_t *sorted(json_t *list, int compare(const void *, const void *))
     return result;
 }
 
-static json_t *since_last(const json_t *nights, const struct readings *now)
+static json_t *since_last(const json_t *nights, const struct metrics *now)
 {
     const size_t count = json_array_size(nights);
     if (count < 2) return json_null();
@@ -170,16 +170,15 @@ static json_t *since_last(const json_t *nights, const struct readings *now)
     json_t *moved = json_array();
     size_t verdicts[READING_VERDICTS] = {0};
     for (size_t i = 0; i < now->count; i++) {
-        const struct reading *new = &now->list[i];
+        const struct metric *new = &now->list[i];
         if (!new->headline || new->kind == READING_TIMING) continue;
         const json_t *value = json_object_get(figures, new->path);
-        struct reading old = *new;
+        struct metric old = *new;
         double amount;
         bool fault;
         old.value = value_real(value);
         old.word = new->word ? (char *)json_string_value(value) : NULL;
-        const enum reading_verdict verdict =
-            reading_judge(value ? &old : NULL, new, &amount, &fault);
+        const enum metric_verdict verdict = metric_judge(value ? &old : NULL, new, &amount, &fault);
         verdicts[verdict]++;
         if (verdict == VERDICT_SAME) continue;
         const double ratio = new->word || !value ? (double)NAN : new->value / old.value;
@@ -187,13 +186,13 @@ static json_t *since_last(const json_t *nights, const struct readings *now)
             moved, json_pack("{s:s, s:o, s:o, s:o, s:s, s:b, s:b}", "path", new->path, "old",
                              value ? value_of(&old) : json_null(), "new", value_of(new), "ratio",
                              isfinite(ratio) ? result_number(ratio) : json_null(), "verdict",
-                             reading_verdicts[verdict], "fault", fault && amount > DIFF_THRESHOLD,
+                             metric_verdicts[verdict], "fault", fault && amount > DIFF_THRESHOLD,
                              "work", new->kind == READING_COUNT));
     }
     json_t *since = json_pack("{s:s, s:s, s:o}", "date", value_text(last, "date"), "git",
                               value_text(last, "git"), "figures", sorted(moved, worst_first));
     for (int v = 0; v < READING_VERDICTS; v++)
-        json_object_set_new(since, reading_verdicts[v], json_integer((json_int_t)verdicts[v]));
+        json_object_set_new(since, metric_verdicts[v], json_integer((json_int_t)verdicts[v]));
     return since;
 }
 
@@ -256,16 +255,16 @@ static json_t *trends(const json_t *nights, const json_t *results)
     return list;
 }
 
-static json_t *change_json(const struct reading *reading, const json_t *nights, const size_t *night,
+static json_t *change_json(const struct metric *metric, const json_t *nights, const size_t *night,
                            const struct trend_change *change)
 {
-    const bool order = reading->kind == READING_ORDER;
+    const bool order = metric->kind == READING_ORDER;
     const double before = order ? change->before : exp(change->before),
                  after = order ? change->after : exp(change->after);
     const json_t *at = json_array_get(nights, night[change->at]),
                  *last = json_array_get(nights, night[change->at - 1]);
-    return json_pack("{s:s, s:I, s:s, s:s, s:s, s:o, s:o, s:o, s:s}", "path", reading->path,
-                     "night", (json_int_t)night[change->at], "date", value_text(at, "date"), "git",
+    return json_pack("{s:s, s:I, s:s, s:s, s:s, s:o, s:o, s:o, s:s}", "path", metric->path, "night",
+                     (json_int_t)night[change->at], "date", value_text(at, "date"), "git",
                      value_text(at, "git"), "git_before", value_text(last, "git"), "before",
                      result_number(before), "after", result_number(after), "ratio",
                      result_number(after / before), "verdict",
@@ -273,24 +272,24 @@ static json_t *change_json(const struct reading *reading, const json_t *nights, 
 }
 
 /* Change points of one figure; nights without it are left out. */
-static void add_changes(const struct reading *reading, const json_t *nights, json_t *changes)
+static void add_changes(const struct metric *metric, const json_t *nights, json_t *changes)
 {
     double value[HISTORY_NIGHTS_MAX];
     size_t night[HISTORY_NIGHTS_MAX], n = 0;
     struct trend_change found[HISTORY_NIGHTS_MAX]; /* no more than nights */
-    const bool order = reading->kind == READING_ORDER;
+    const bool order = metric->kind == READING_ORDER;
     for (size_t i = 0; i < json_array_size(nights) && i < HISTORY_NIGHTS_MAX; i++) {
         const json_t *figures = json_object_get(json_array_get(nights, i), "figures");
-        const double now = value_member(figures, reading->path);
+        const double now = value_member(figures, metric->path);
         if (!isfinite(now)) continue;
-        value[n] = order ? now : log(fmax(now, fmax(reading->floor, error_least)));
+        value[n] = order ? now : log(fmax(now, fmax(metric->floor, error_least)));
         night[n++] = i;
     }
     const size_t count = trend_changes(
-        n, value, order ? fmax(order_noise, reading->noise) : fmax(error_noise, reading->noise),
+        n, value, order ? fmax(order_noise, metric->noise) : fmax(error_noise, metric->noise),
         found, HISTORY_NIGHTS_MAX);
     for (size_t c = 0; c < count; c++)
-        json_array_append_new(changes, change_json(reading, nights, night, &found[c]));
+        json_array_append_new(changes, change_json(metric, nights, night, &found[c]));
 }
 
 static int newest_first(const void *a, const void *b)
@@ -316,27 +315,27 @@ static json_t *heads(const json_t *nights)
 enum status history_tell(const json_t *results, const char *path, json_t **history,
                          struct error *error)
 {
-    struct readings readings;
+    struct metrics metrics;
     size_t unreadable;
     json_t *nights = json_array(), *changes = json_array();
     *history = NULL;
     enum status status = read_nights(path, value_text(results, "mode"), nights, &unreadable, error);
     json_t *line = status ? NULL : line_of(results, error);
-    if (!status && (!line || reading_collect(results, &readings, error))) status = error->status;
+    if (!status && (!line || metric_collect(results, &metrics, error))) status = error->status;
     if (!status) {
         json_array_append(nights, line);
-        for (size_t i = 0; i < readings.count; i++) {
-            const struct reading *reading = &readings.list[i];
-            if (reading->headline &&
-                (reading->kind == READING_ERROR || reading->kind == READING_ORDER))
-                add_changes(reading, nights, changes);
+        for (size_t i = 0; i < metrics.count; i++) {
+            const struct metric *metric = &metrics.list[i];
+            if (metric->headline &&
+                (metric->kind == READING_ERROR || metric->kind == READING_ORDER))
+                add_changes(metric, nights, changes);
         }
         *history =
             json_pack("{s:o, s:I, s:o, s:o, s:o}", "nights", heads(nights), "unreadable",
-                      (json_int_t)unreadable, "since", since_last(nights, &readings), "trends",
+                      (json_int_t)unreadable, "since", since_last(nights, &metrics), "trends",
                       trends(nights, results), "changes", sorted(changes, newest_first));
         changes = NULL;
-        reading_free(&readings);
+        metric_free(&metrics);
         if (!*history) status = error_set(error, STATUS_ENVIRONMENT, "no memory for the history");
     }
     json_decref(changes);

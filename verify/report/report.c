@@ -209,7 +209,7 @@ static enum status add_skips(struct report *report, struct error *error)
 {
     static const struct {
         const char *name, *keys[2];
-    } scenes[] = {{"sod", {"n=1600"}},
+    } setups[] = {{"sod", {"n=1600"}},
                   {"noh_1d", {"n=800"}},
                   {"sod_2d", {"n=5600", "t_end=0.03"}},
                   {"sod_2d", {"n=5600"}},
@@ -217,12 +217,12 @@ static enum status add_skips(struct report *report, struct error *error)
                   {"sedov_2d", {"n=64^2"}},
                   {"sedov_3d", {"n=24^3", "t_end=0.002"}},
                   {"noh_2d", {"n=40^2"}}};
-    for (size_t k = 0; k < sizeof scenes / sizeof *scenes; k++) {
-        struct report_piece skips = {.kind = REPORT_SKIPS, .where = scenes[k].name};
+    for (size_t k = 0; k < sizeof setups / sizeof *setups; k++) {
+        struct report_piece skips = {.kind = REPORT_SKIPS, .where = setups[k].name};
         char words[2][40], *keys[] = {words[0], words[1]};
         int count = 0;
-        for (; count < 2 && scenes[k].keys[count]; count++)
-            snprintf(words[count], sizeof words[count], "%s", scenes[k].keys[count]);
+        for (; count < 2 && setups[k].keys[count]; count++)
+            snprintf(words[count], sizeof words[count], "%s", setups[k].keys[count]);
         snprintf(skips.keys, sizeof skips.keys, "%s%s%s", words[0], count > 1 ? " " : "",
                  count > 1 ? words[1] : "");
         if (run_prepare(&skips.settings, skips.where, count, keys, error) ||

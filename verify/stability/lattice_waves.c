@@ -63,11 +63,11 @@ static enum status evaluate(const struct lattice_waves *lattice, const struct di
         v[i] = by->speed * by->wave[i];
         u[i] = from->u[i] + (by->power ? by->heat * by->power[i] / from->m[i] : 0);
     }
-    struct scene scene = run_scene(&lattice->run, from);
-    scene.x[by->axis] = x;
-    scene.v[by->axis] = v;
-    scene.u = u;
-    const enum status status = rate_table_make(table, &scene, error);
+    struct setup setup = run_setup(&lattice->run, from);
+    setup.x[by->axis] = x;
+    setup.v[by->axis] = v;
+    setup.u = u;
+    const enum status status = rate_table_make(table, &setup, error);
     free(arrays);
     return status;
 }

@@ -248,7 +248,7 @@ def viscosity(tree):
     tree.build()
     tree.listed("viscosities", "quadratic")
     tree.program("run", "sod", "viscosity=quadratic", "n=100", "--quiet")
-    tree.checked("viscosity quadratic", "hydro/conservation", "hydro/stamped", "hydro/rates")
+    tree.checked("viscosity quadratic", "hydro/conservation", "hydro/specialised", "hydro/rates")
     tree.reported("^checks of hydro$")
     tree.keep()
     tree.replace("src/core/pair.h", "form.quadratic ? 0 :", "form.quadratic ? 0.01 * c_sum :")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""checkpoint.py SPHPROOF [SCENES] [SEED]: runs that are killed and resumed, on scenes drawn at random: the
+"""checkpoint.py SPHPROOF [SETUPS] [SEED]: runs that are killed and resumed, on setups drawn at random: the
 particles at the end and on the way and the document, times and memory aside, have the bytes of the uninterrupted run,
 and those at the end and the document the bytes of a run without snapshots on the way.
 Checkpoints that are damaged, or of another build or run, are refused with the reason."""
@@ -14,7 +14,7 @@ import tempfile
 import time
 
 program = os.path.abspath(sys.argv[1])
-scenes, seed = int(sys.argv[2]) if len(sys.argv) > 2 else 12, int(sys.argv[3]) if len(sys.argv) > 3 else 1
+setups, seed = int(sys.argv[2]) if len(sys.argv) > 2 else 12, int(sys.argv[3]) if len(sys.argv) > 3 else 1
 faults = []
 # a case, its numbers of particles, an end that takes a few dozen steps or more
 LINES = [("sod", (100, 300), 0.05), ("strong_shock", (100, 200), 0.01), ("sound_wave", (64, 128), 0.2),
@@ -96,7 +96,7 @@ def resume(words, files, generator, longest):
 def test_bits():
     generator = random.Random(seed)
     resumed = done = 0
-    while done < scenes:
+    while done < setups:
         words = draw(generator)
         began = time.monotonic()
         way = ["--snapshot-every", "%.3g" % (float(words[2].partition("=")[2]) / generator.uniform(1.5, 9))]
@@ -124,7 +124,7 @@ def test_bits():
             os.remove(path)
         with contextlib.suppress(FileNotFoundError):  # it was too short for one
             os.remove("state")
-    expect("runs that were killed", resumed >= (scenes + 1) // 4, resumed)
+    expect("runs that were killed", resumed >= (setups + 1) // 4, resumed)
 
 
 def test_refused():

@@ -74,7 +74,7 @@ def far_off(rows, dim):
 
 
 PERIODIC, OPEN, FAR = ["lo=0", "hi=1"], ["boundary=open"], ["lo=100000000", "hi=100000001"]
-SCENES = [(plain, PERIODIC), (plain, OPEN), (pair_in_one_place, PERIODIC), (one_cell, PERIODIC), (one_cell, OPEN),
+SETUPS = [(plain, PERIODIC), (plain, OPEN), (pair_in_one_place, PERIODIC), (one_cell, PERIODIC), (one_cell, OPEN),
           (one_alone, OPEN), (contrast, PERIODIC), (plane, OPEN), (far_off, FAR)]
 # and what the message has to name
 REFUSED = [(many_in_one_place, PERIODIC, 3, "smoothing length"), (all_in_one_place, OPEN, 3, "smoothing length"),
@@ -182,7 +182,7 @@ def main():
     for seed in range(seeds):
         random.seed(2385 + seed)
         for dim in (2, 3):
-            for change, words in SCENES:
+            for change, words in SETUPS:
                 gradient = random.choice(["standard", "ia", "corrected", "blended"])
                 rows = draw(dim)
                 change(rows, dim)
@@ -205,7 +205,7 @@ def main():
                     if message not in said:
                         sys.exit("run %dD %s %s: it says %r, not '%s'" % (dim, change.__name__, words, said, message))
                 count += 1
-    print("%d scenes: right, or refused with the reason" % count)
+    print("%d setups: right, or refused with the reason" % count)
 
 
 main()

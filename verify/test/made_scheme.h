@@ -27,11 +27,11 @@ static inline struct scheme made_scheme(void)
 }
 
 /* simulation_destroy it. */
-static inline struct simulation *made_of(const struct scene *scene)
+static inline struct simulation *made_of(const struct setup *setup)
 {
     struct simulation *simulation = NULL;
     struct error error = {0};
-    if (simulation_create(scene, &simulation, &error)) fail_msg("%s", error.message);
+    if (simulation_create(setup, &simulation, &error)) fail_msg("%s", error.message);
     return simulation;
 }
 

@@ -24,7 +24,7 @@ static inline struct simulation *made_simulation(size_t n)
         m[i] = (1 + 0.1 * cos(2 * M_PI * x[i])) / (double)n;
         u[i] = 1 + 0.2 * sin(4 * M_PI * x[i]);
     }
-    struct scene scene = {.dim = 1,
+    struct setup setup = {.dim = 1,
                           .lo = {0},
                           .hi = {1, 1, 1},
                           .gamma = 1.4,
@@ -36,8 +36,8 @@ static inline struct simulation *made_simulation(size_t n)
                           .u = u,
                           .threads = 1};
     settings_init(&settings);
-    if (settings_scheme(&settings, 1, &scene.scheme, &error) ||
-        simulation_create(&scene, &simulation, &error))
+    if (settings_scheme(&settings, 1, &setup.scheme, &error) ||
+        simulation_create(&setup, &simulation, &error))
         fail_msg("%s", error.message);
     free(storage);
     return simulation;

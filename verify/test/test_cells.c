@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Runs in 2D and 3D against each other: what must be the same with and without sleep, for any
  * number of threads, in a walled box and in the periodic one that its mirror image completes, with
- * and without a constant acceleration. Scenes are drawn at random. */
+ * and without a constant acceleration. Setups are drawn at random. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -23,7 +23,7 @@ struct particles_of {
     double x[3][POINTS_MAX], v[3][POINTS_MAX], m[POINTS_MAX], u[POINTS_MAX], rho[POINTS_MAX];
 };
 
-/* The end of a run, by number in the scene. */
+/* The end of a run, by number in the setup. */
 struct end {
     double x[3][POINTS_MAX], v[3][POINTS_MAX], rho[POINTS_MAX], u[POINTS_MAX];
     uint64_t skipped, steps;
@@ -88,9 +88,9 @@ static void lattice(struct particles_of *p, int dim, size_t side, size_t longer)
     }
 }
 
-static struct scene scene_of(const struct particles_of *p, int dim, const struct scheme *scheme)
+static struct setup setup_of(const struct particles_of *p, int dim, const struct scheme *scheme)
 {
-    struct scene scene = {.dim = dim,
+    struct setup setup = {.dim = dim,
                           .gamma = 1.4,
                           .t_end = 1,
                           .n = p->n,
@@ -100,14 +100,14 @@ static struct scene scene_of(const struct particles_of *p, int dim, const struct
                           .scheme = *scheme,
                           .threads = 1};
     for (int a = 0; a < dim; a++) {
-        scene.hi[a] = a == 0 ? p->longer : 1;
-        scene.x[a] = p->x[a];
-        scene.v[a] = p->v[a];
+        setup.hi[a] = a == 0 ? p->longer : 1;
+        setup.x[a] = p->x[a];
+        setup.v[a] = p->v[a];
     }
-    return scene;
+    return setup;
 }
 
-static void run(const struct scene *scene, double t_end, struct end *end)
+static void run(const struct setup *setup, double t_end, struct end *end)
 {
     struct simulation *simulation;
     struct error error = {0};
@@ -115,14 +115,14 @@ static void run(const struct scene *scene, double t_end, struct end *end)
     struct conservation sums;
     struct simulation_cost cost;
     memset(end, 0, sizeof *end);
-    if (simulation_create(scene, &simulation, &error)) fail_msg("%s", error.message);
+    if (simulation_create(setup, &simulation, &error)) fail_msg("%s", error.message);
     if (simulation_run(simulation, t_end, NULL, NULL, &error)) fail_msg("%s", error.message);
     simulation_snapshot(simulation, &s);
     simulation_conservation(simulation, &sums);
     simulation_cost(simulation, &cost);
     for (size_t i = 0; i < s.n; i++) {
         const size_t id = s.id[i];
-        for (int a = 0; a < scene->dim; a++) {
+        for (int a = 0; a < setup->dim; a++) {
             end->x[a][id] = s.x[a][i];
             end->v[a][id] = s.v[a][i];
         }
@@ -133,7 +133,7 @@ static void run(const struct scene *scene, double t_end, struct end *end)
     end->steps = cost.steps;
     end->energy = sums.energy;
     end->momentum = 0;
-    for (int a = 0; a < scene->dim; a++) end->momentum += fabs(sums.momentum[a]);
+    for (int a = 0; a < setup->dim; a++) end->momentum += fabs(sums.momentum[a]);
     simulation_destroy(simulation);
 }
 
@@ -161,12 +161,12 @@ static void sleep_changes_nothing(void **state)
         const struct scheme scheme = draw_scheme(rng, dim);
         lattice(&p, dim, dim == 2 ? 12 : 6, dim == 2 ? 16 : 10);
         heat(&p, rng);
-        struct scene scene = scene_of(&p, dim, &scheme);
+        struct setup setup = setup_of(&p, dim, &scheme);
         const double t_end = 0.2;
-        run(&scene, t_end, &plain);
+        run(&setup, t_end, &plain);
         assert_int_equal(plain.skipped, 0);
-        scene.skip = true;
-        run(&scene, t_end, &other);
+        setup.skip = true;
+        run(&setup, t_end, &other);
         assert_int_equal(plain.steps, other.steps);
         skipped += other.skipped;
         for (size_t i = 0; i < p.n; i++) {
@@ -199,10 +199,10 @@ static void threads_change_no_bit(void **state)
                 if (i + 1 == p.n && p.n % 2) p.v[a][i] = 0;
                 momentum += fabs(p.m[i] * p.v[a][i]);
             }
-        struct scene scene = scene_of(&p, dim, &scheme);
-        run(&scene, 0.02, &plain);
-        scene.threads = 2 + k % 2;
-        run(&scene, 0.02, &other);
+        struct setup setup = setup_of(&p, dim, &scheme);
+        run(&setup, 0.02, &plain);
+        setup.threads = 2 + k % 2;
+        run(&setup, 0.02, &other);
         assert_memory_equal(plain.x, other.x, sizeof plain.x);
         assert_memory_equal(plain.v, other.v, sizeof plain.v);
         assert_memory_equal(plain.u, other.u, sizeof plain.u);
@@ -255,12 +255,12 @@ static void walls_are_mirrors(void **state)
                 p.v[a][i] = 0.4 * (gsl_rng_uniform(rng) - 0.5);
             }
         }
-        struct scene scene = scene_of(&p, dim, &scheme);
+        struct setup setup = setup_of(&p, dim, &scheme);
         for (int a = 0; a < dim; a++)
-            if (walls[a]) scene.boundary[a] = BOUNDARY_REFLECTING;
-        run(&scene, 0.05, &plain);
+            if (walls[a]) setup.boundary[a] = BOUNDARY_REFLECTING;
+        run(&setup, 0.05, &plain);
         complete(&all, &p, dim, walls);
-        struct scene whole = scene_of(&all, dim, &scheme);
+        struct setup whole = setup_of(&all, dim, &scheme);
         for (int a = 0; a < dim; a++)
             if (walls[a]) whole.hi[a] = 2;
         run(&whole, 0.05, &other);
@@ -288,10 +288,10 @@ static void gravity_is_a_fall(void **state)
         lattice(&p, dim, dim == 2 ? 16 : 7, 1);
         for (size_t i = 0; i < p.n; i++)
             for (int a = 0; a < dim; a++) p.v[a][i] = 0.1 * (gsl_rng_uniform(rng) - 0.5);
-        struct scene scene = scene_of(&p, dim, &scheme);
-        run(&scene, 0.05, &plain);
-        scene.gravity[1] = -0.7;
-        run(&scene, 0.05, &other);
+        struct setup setup = setup_of(&p, dim, &scheme);
+        run(&setup, 0.05, &plain);
+        setup.gravity[1] = -0.7;
+        run(&setup, 0.05, &other);
         assert_int_equal(plain.steps, other.steps);
         for (size_t i = 0; i < p.n; i++) {
             near_below(fabs(other.v[1][i] - plain.v[1][i] + 0.7 * 0.05), 1e-11);
@@ -321,9 +321,9 @@ static void gravity_keeps_energy(void **state)
             p.v[1][i] = 0.3;
             before += p.m[i] * (p.u[i] + 0.5 * 0.3 * 0.3 - g * p.x[1][i]);
         }
-        struct scene scene = scene_of(&p, dim, &scheme);
-        scene.gravity[1] = g;
-        run(&scene, 0.5, &plain);
+        struct setup setup = setup_of(&p, dim, &scheme);
+        setup.gravity[1] = g;
+        run(&setup, 0.5, &plain);
         /* symplectic Euler falls a whole last step ahead, to first order */
         const double order = scheme.integrator->order == 1 ? 1e-2 : 1e-11;
         near_relative(plain.energy, before, order);
@@ -342,15 +342,15 @@ static void layers_hold(void **state)
     gsl_rng_set(rng, 9);
     const struct scheme scheme = draw_scheme(rng, 2);
     lattice(&p, 2, 30, 1);
-    struct scene scene = scene_of(&p, 2, &scheme);
-    scene.boundary[1] = BOUNDARY_FIXED;
-    run(&scene, 0.1, &plain);
+    struct setup setup = setup_of(&p, 2, &scheme);
+    setup.boundary[1] = BOUNDARY_FIXED;
+    run(&setup, 0.1, &plain);
     for (size_t i = 0; i < p.n; i++) {
         near_below(fabs(plain.v[1][i]), 1e-10);
         near_relative(plain.rho[i], 1, 0.02); /* the outermost do not see the emptiness outside */
     }
     for (size_t i = 0; i < p.n; i++) p.v[1][i] = 0.1 * sin(2 * M_PI * p.x[1][i]);
-    run(&scene, 0.1, &plain);
+    run(&setup, 0.1, &plain);
     for (size_t i = 0; i < p.n; i++) {
         const bool kept = plain.x[1][i] == p.x[1][i] && plain.v[1][i] == 0;
         const double from_end = fmin(p.x[1][i], 1 - p.x[1][i]);
@@ -380,10 +380,10 @@ static void blended_is_ia_at_even_widths(void **state)
         for (size_t i = 0; i < p.n; i++)
             for (int a = 0; a < dim; a++) p.x[a][i] += spread * (gsl_rng_uniform(rng) - 0.5);
         scheme.gradient = GRADIENT_IA;
-        struct scene scene = scene_of(&p, dim, &scheme);
-        run(&scene, 1e-3, &plain);
-        scene.scheme.gradient = GRADIENT_BLENDED;
-        run(&scene, 1e-3, &other);
+        struct setup setup = setup_of(&p, dim, &scheme);
+        run(&setup, 1e-3, &plain);
+        setup.scheme.gradient = GRADIENT_BLENDED;
+        run(&setup, 1e-3, &other);
         assert_true(plain.v[0][0] != 0);
         if (even)
             assert_memory_equal(plain.v, other.v, sizeof plain.v);

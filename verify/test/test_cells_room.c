@@ -26,9 +26,9 @@ enum { N = 1024 };
 static double x[3][N], v[3][N], m[N], u[N], guess[N];
 
 /* A displaced lattice of so many particles each way in a periodic box of side 1, at rest. */
-static struct scene scene_of(int dim, size_t side, const struct scheme *scheme)
+static struct setup setup_of(int dim, size_t side, const struct scheme *scheme)
 {
-    struct scene scene = {.dim = dim,
+    struct setup setup = {.dim = dim,
                           .hi = {1, 1, 1},
                           .gamma = 1.4,
                           .t_end = 1,
@@ -37,16 +37,16 @@ static struct scene scene_of(int dim, size_t side, const struct scheme *scheme)
                           .u = u,
                           .scheme = *scheme,
                           .threads = 1};
-    assert_true(scene.n <= N);
-    for (size_t i = 0, at = 0; i < scene.n; at = ++i) {
-        m[i] = (1 + 0.1 * sin(2. * (double)i)) / (double)scene.n, u[i] = 1;
+    assert_true(setup.n <= N);
+    for (size_t i = 0, at = 0; i < setup.n; at = ++i) {
+        m[i] = (1 + 0.1 * sin(2. * (double)i)) / (double)setup.n, u[i] = 1;
         for (int a = 0; a < dim; a++, at /= side) {
             x[a][i] = ((double)(at % side) + 0.5 + 0.2 * sin(7. * (double)i + a)) / (double)side;
             v[a][i] = 0;
         }
     }
-    for (int a = 0; a < dim; a++) scene.x[a] = x[a], scene.v[a] = v[a];
-    return scene;
+    for (int a = 0; a < dim; a++) setup.x[a] = x[a], setup.v[a] = v[a];
+    return setup;
 }
 
 /* When particles have changed places in memory. */
@@ -76,13 +76,13 @@ static void test_order_in_memory(void **state)
     (void)state;
     struct sorting sorting = {0};
     struct scheme scheme = made_scheme();
-    struct scene scene = scene_of(2, 16, &scheme);
-    for (size_t i = 0; i < scene.n; i++) v[0][i] = 1.5, v[1][i] = 0.7;
-    sorting.simulation = made_of(&scene);
+    struct setup setup = setup_of(2, 16, &scheme);
+    for (size_t i = 0; i < setup.n; i++) v[0][i] = 1.5, v[1][i] = 0.7;
+    sorting.simulation = made_of(&setup);
     watch(&sorting, 0, 0);
     size_t moved = 0;
-    for (size_t i = 0; i < scene.n; i++) moved += sorting.id[i] != i;
-    assert_true(moved > scene.n / 2);
+    for (size_t i = 0; i < setup.n; i++) moved += sorting.id[i] != i;
+    assert_true(moved > setup.n / 2);
     assert_int_equal(simulation_run(sorting.simulation, 1, watch, &sorting, NULL), STATUS_OK);
     assert_int_equal(sorting.times, 2);
     assert_true(sorting.at[0] == 33 && sorting.at[1] == 65);
@@ -95,10 +95,10 @@ static void test_everybody_moves_whole(void **state)
     (void)state;
     for (int skip = 0; skip < 2; skip++) {
         struct scheme scheme = made_scheme();
-        struct scene scene = scene_of(3, 7, &scheme);
-        scene.skip = skip;
-        for (size_t i = 0; i < scene.n; i++) m[i] = (1 + 1e-3 * (double)i) / (double)scene.n;
-        struct simulation *simulation = made_of(&scene);
+        struct setup setup = setup_of(3, 7, &scheme);
+        setup.skip = skip;
+        for (size_t i = 0; i < setup.n; i++) m[i] = (1 + 1e-3 * (double)i) / (double)setup.n;
+        struct simulation *simulation = made_of(&setup);
         struct snapshot s;
         simulation_snapshot(simulation, &s);
         for (size_t i = 0; i < s.n; i++) {
@@ -118,10 +118,10 @@ static void test_first_guess(void **state)
         const struct scheme scheme = made_scheme();
         for (int k = 0; k < 5; k++) {
             static const double factors[] = {1, 1e-9, 0.3, 8, 1e9};
-            struct scene scene = scene_of(dim, dim == 2 ? 16 : 8, &scheme);
-            for (size_t i = 0; i < scene.n; i++) guess[i] = factors[k] * (i % 3 ? 1 : 0.7);
-            scene.rho = guess;
-            struct simulation *simulation = made_of(&scene);
+            struct setup setup = setup_of(dim, dim == 2 ? 16 : 8, &scheme);
+            for (size_t i = 0; i < setup.n; i++) guess[i] = factors[k] * (i % 3 ? 1 : 0.7);
+            setup.rho = guess;
+            struct simulation *simulation = made_of(&setup);
             struct snapshot s;
             simulation_snapshot(simulation, &s);
             for (size_t i = 0; i < s.n; i++) {
@@ -143,21 +143,21 @@ static void test_far_roots(void **state)
     struct error error;
     for (int dim = 2; dim <= 3; dim++) {
         const struct scheme scheme = made_scheme();
-        struct scene scene = scene_of(dim, dim == 2 ? 8 : 5, &scheme);
-        for (int a = 0; a < dim; a++) scene.boundary[a] = BOUNDARY_OPEN;
-        struct simulation *simulation = made_of(&scene);
+        struct setup setup = setup_of(dim, dim == 2 ? 8 : 5, &scheme);
+        for (int a = 0; a < dim; a++) setup.boundary[a] = BOUNDARY_OPEN;
+        struct simulation *simulation = made_of(&setup);
         struct snapshot s;
         double h[N];
         simulation_snapshot(simulation, &s);
         for (size_t i = 0; i < s.n; i++) h[s.id[i]] = s.h[i];
         simulation_destroy(simulation);
-        scene.rho = guess;
+        setup.rho = guess;
         for (int beyond = 0; beyond < 2; beyond++) {
             const double furthest = 1.1 * pow(1.5, 63) * (beyond ? 1 + 1e-7 : 1 - 1e-7);
-            for (size_t i = 0; i < scene.n; i++)
+            for (size_t i = 0; i < setup.n; i++)
                 guess[i] = m[i] * pow(scheme.eta * furthest / h[i], dim);
             simulation = NULL;
-            const enum status status = simulation_create(&scene, &simulation, &error);
+            const enum status status = simulation_create(&setup, &simulation, &error);
             assert_int_equal(status, beyond ? STATUS_BROKE_DOWN : STATUS_OK);
             if (status)
                 assert_non_null(strstr(error.message, "smoothing length (no root was found) of "
@@ -194,9 +194,9 @@ static void test_densities(void **state)
         for (int e = 0; e < VOLUME_ELEMENTS; e++) {
             struct scheme scheme = made_scheme();
             scheme.volume_element = (enum volume_element)e;
-            const struct scene scene = scene_of(dim, dim == 2 ? 13 : 6, &scheme); /* 169, 216 */
-            for (size_t i = 0; i < scene.n; i++) u[i] = 1 + 0.2 * sin(5. * (double)i);
-            struct simulation *simulation = made_of(&scene);
+            const struct setup setup = setup_of(dim, dim == 2 ? 13 : 6, &scheme); /* 169, 216 */
+            for (size_t i = 0; i < setup.n; i++) u[i] = 1 + 0.2 * sin(5. * (double)i);
+            struct simulation *simulation = made_of(&setup);
             struct snapshot s;
             double U[N];
             simulation_snapshot(simulation, &s);
@@ -222,21 +222,21 @@ static void test_switch(void **state)
     (void)state;
     struct scheme scheme = made_scheme();
     scheme.viscosity = VISCOSITY_CULLEN_DEHNEN;
-    struct scene scene = scene_of(2, 13, &scheme);
-    for (size_t i = 0; i < scene.n; i++) v[0][i] = sin(2 * M_PI * x[0][i]);
-    struct simulation *simulation = made_of(&scene);
+    struct setup setup = setup_of(2, 13, &scheme);
+    for (size_t i = 0; i < setup.n; i++) v[0][i] = sin(2 * M_PI * x[0][i]);
+    struct simulation *simulation = made_of(&setup);
     const struct particles *p = &simulation->particles;
     double local[N];
     size_t below = 0, above = 0;
-    for (size_t i = 0; i < scene.n; i++) p->alpha[i] = 7;
+    for (size_t i = 0; i < setup.n; i++) p->alpha[i] = 7;
     cells_sums.apply_switch(simulation, 1e300);
-    memcpy(local, p->alpha, scene.n * sizeof *local);
+    memcpy(local, p->alpha, setup.n * sizeof *local);
     for (int k = 0; k < 2; k++)
-        for (size_t i = 0; i < scene.n; i++) { /* from both sides, after two steps */
+        for (size_t i = 0; i < setup.n; i++) { /* from both sides, after two steps */
             double after[3];
             for (int step = 0; step < 3; step++) {
                 p->alpha[i] = k ? local[i] + 0.5 : local[i] - 0.01;
-                for (size_t j = 0; j < scene.n; j++)
+                for (size_t j = 0; j < setup.n; j++)
                     if (j != i) p->alpha[j] = local[j];
                 cells_sums.apply_switch(simulation, 0.1 * step);
                 after[step] = p->alpha[i] - local[i];
@@ -247,7 +247,7 @@ static void test_switch(void **state)
             if (k) near_relative(after[2], 0.5 / (1 + 0.2 * rate), 1e-12);
             below += !k, above += k && rate > 0;
         }
-    assert_true(below == scene.n && above == scene.n);
+    assert_true(below == setup.n && above == setup.n);
     simulation_destroy(simulation);
 }
 
@@ -272,22 +272,22 @@ static void test_carried(void **state)
                 (const struct integrator *)family_find(&integrator_family, "predicted_midpoint");
             scheme.h_method = H_PREDICTED;
         }
-        struct scene scene = scene_of(2, 8, &scheme);
-        scene.n = 1024, scene.hi[1] = 16, scene.skip = true;
-        for (size_t i = 0; i < scene.n; i++) {
+        struct setup setup = setup_of(2, 8, &scheme);
+        setup.n = 1024, setup.hi[1] = 16, setup.skip = true;
+        for (size_t i = 0; i < setup.n; i++) {
             x[0][i] = ((double)(i % 8) + 0.5) / 8, x[1][i] = ((double)(i / 8) + 0.5) / 8;
             m[i] = 1. / 64, u[i] = i == 0 ? 3 : 1;
             v[0][i] = moving ? 1.5 : 0, v[1][i] = moving ? 0.7 : 0;
         }
-        struct simulation *first = made_of(&scene), *second = made_of(&scene);
+        struct simulation *first = made_of(&setup), *second = made_of(&setup);
         uint64_t from = moving ? 30 : 0; /* sorted once more */
         assert_int_equal(simulation_run(first, 1, ten_steps, &from, NULL), STATUS_OK);
-        struct carrier out = {.bytes = made_put, .context = &kept},
-                       back = {.bytes = made_take, .context = &kept, .back = true};
+        struct serialiser out = {.bytes = made_put, .context = &kept},
+                          back = {.bytes = made_take, .context = &kept, .back = true};
         kept.used = kept.read = 0;
-        simulation_carry(first, &out);
+        simulation_serialise(first, &out);
         assert_false(out.failed);
-        simulation_carry(second, &back);
+        simulation_serialise(second, &back);
         assert_false(back.failed);
         assert_int_equal(kept.read, kept.used);
         for (from += 10; from < 80; from += 10) {
@@ -318,15 +318,15 @@ static void test_alpha(void **state)
     struct scheme scheme = made_scheme();
     scheme.viscosity = VISCOSITY_TIME_DEPENDENT;
     for (size_t side = 8; side <= 12; side += 2) { /* 64, 100, 144 */
-        struct scene scene = scene_of(2, side, &scheme);
-        for (size_t i = 0; i < scene.n; i++) v[0][i] = sin(2 * M_PI * x[0][i]);
-        struct simulation *simulation = made_of(&scene);
+        struct setup setup = setup_of(2, side, &scheme);
+        for (size_t i = 0; i < setup.n; i++) v[0][i] = sin(2 * M_PI * x[0][i]);
+        struct simulation *simulation = made_of(&setup);
         const struct particles *a = &simulation->particles;
         struct rates rates;
         simulation_rates(simulation, &rates);
         size_t growing = 0;
         double rate = 0;
-        for (size_t i = 0; i < scene.n; i++) {
+        for (size_t i = 0; i < setup.n; i++) {
             const double growth = fmax(0, -a->div_v[i]) * fmax(0, scheme.alpha_max - a->alpha[i]);
             near_below(fabs(rates.alpha[i] - growth +
                             (a->alpha[i] - scheme.alpha_min) * 0.2 * a->c[i] / a->h[i]),
@@ -334,7 +334,7 @@ static void test_alpha(void **state)
             growing += growth > 0;
             rate = fmax(rate, a->signal[i] / a->h[i]);
         }
-        assert_true(growing > scene.n / 4 && growing < scene.n);
+        assert_true(growing > setup.n / 4 && growing < setup.n);
         near_relative(rates.time_step, scheme.cfl / rate, 1e-12);
         simulation_destroy(simulation);
     }
@@ -357,22 +357,22 @@ static void test_described_asleep(void **state)
     scheme.gradient = GRADIENT_IA;
     for (int dim = 2; dim <= 3; dim++) {
         const size_t side = dim == 2 ? 8 : 5;
-        struct scene scene = scene_of(dim, side, &scheme);
-        scene.n = dim == 2 ? 128 * side : 40 * side * side;
-        scene.skip = true;
-        scene.hi[dim - 1] = (double)scene.n / pow((double)side, dim);
-        for (size_t i = 0, at = 0; i < scene.n; at = ++i) {
+        struct setup setup = setup_of(dim, side, &scheme);
+        setup.n = dim == 2 ? 128 * side : 40 * side * side;
+        setup.skip = true;
+        setup.hi[dim - 1] = (double)setup.n / pow((double)side, dim);
+        for (size_t i = 0, at = 0; i < setup.n; at = ++i) {
             m[i] = pow((double)side, -dim), u[i] = i == 0 ? 2 : 1;
             for (int a = 0; a < dim; a++, at /= side) {
                 const size_t k = a < dim - 1 ? at % side : at;
                 x[a][i] = ((double)k + 0.5) / (double)side, v[a][i] = 0;
             }
         }
-        struct simulation *simulation = made_of(&scene);
+        struct simulation *simulation = made_of(&setup);
         assert_int_equal(simulation_run(simulation, 0.05, NULL, NULL, NULL), STATUS_OK);
         size_t counts[2] = {0};
         description_each(simulation, count_neighbours, counts);
-        assert_true(counts[0] > scene.n / 8 && counts[1] > scene.n / 8);
+        assert_true(counts[0] > setup.n / 8 && counts[1] > setup.n / 8);
         assert_int_equal(counts[1], simulation->sleep.awake_count);
         const struct description_sums sums = description_sum(simulation);
         assert_true(sums.angle_max >= sums.angle_mean && sums.condition_max >= 1);
@@ -388,18 +388,18 @@ static void test_too_wide(void **state)
     struct error error;
     for (int dim = 2; dim <= 3; dim++) {
         struct scheme scheme = made_scheme();
-        struct scene scene = scene_of(dim, 4, &scheme);
-        scene.scheme.eta = 2.4;
-        assert_int_equal(simulation_create(&scene, &simulation, &error), STATUS_BAD_INPUT);
+        struct setup setup = setup_of(dim, 4, &scheme);
+        setup.scheme.eta = 2.4;
+        assert_int_equal(simulation_create(&setup, &simulation, &error), STATUS_BAD_INPUT);
         assert_non_null(strstr(error.message, "particle "));
         assert_non_null(strstr(error.message, " reaches as far as 0.75, beyond half the box (0.5): "
                                               "more particles or a smaller eta are needed"));
         assert_null(simulation);
         /* the narrowest of all periodic sides counts, and only those */
-        scene.hi[1] = 4;
-        for (size_t i = 0; i < scene.n; i++) x[1][i] *= 4;
-        scene.boundary[0] = scene.boundary[2] = BOUNDARY_REFLECTING;
-        simulation = made_of(&scene);
+        setup.hi[1] = 4;
+        for (size_t i = 0; i < setup.n; i++) x[1][i] *= 4;
+        setup.boundary[0] = setup.boundary[2] = BOUNDARY_REFLECTING;
+        simulation = made_of(&setup);
         simulation_destroy(simulation);
         simulation = NULL;
     }
@@ -413,10 +413,10 @@ static void test_too_heavy(void **state)
         struct simulation *simulation = NULL;
         struct error error = {0};
         struct scheme scheme = made_scheme();
-        struct scene scene = scene_of(dim, 4, &scheme);
-        for (int a = 0; a < dim; a++) scene.boundary[a] = BOUNDARY_OPEN;
+        struct setup setup = setup_of(dim, 4, &scheme);
+        for (int a = 0; a < dim; a++) setup.boundary[a] = BOUNDARY_OPEN;
         m[5] *= 1000;
-        assert_int_equal(simulation_create(&scene, &simulation, &error), STATUS_BROKE_DOWN);
+        assert_int_equal(simulation_create(&setup, &simulation, &error), STATUS_BROKE_DOWN);
         assert_null(simulation);
         char said[120];
         snprintf(said, sizeof said,
@@ -438,13 +438,13 @@ static void test_grown_too_wide(void **state)
                 (const struct integrator *)family_find(&integrator_family, "predicted_midpoint");
             scheme.h_method = H_PREDICTED;
         }
-        struct scene scene = scene_of(2, 6, &scheme);
-        scene.scheme.eta = 2.2;
-        for (size_t i = 0; i < scene.n; i++) {
+        struct setup setup = setup_of(2, 6, &scheme);
+        setup.scheme.eta = 2.2;
+        for (size_t i = 0; i < setup.n; i++) {
             u[i] = 1e-3;
             for (int a = 0; a < 2; a++) v[a][i] = sin(2 * M_PI * x[a][i]);
         }
-        struct simulation *simulation = made_of(&scene);
+        struct simulation *simulation = made_of(&setup);
         struct error error = {0};
         assert_int_equal(simulation_run(simulation, 1, NULL, NULL, &error), STATUS_BROKE_DOWN);
         struct snapshot s;
@@ -479,10 +479,10 @@ static void test_no_position(void **state)
         for (int a = 0; a < dim; a++)
             for (int last = 0; last < 2; last++) {
                 const struct scheme scheme = made_scheme();
-                const struct scene scene = scene_of(dim, 5, &scheme);
-                struct simulation *simulation = made_of(&scene);
+                const struct setup setup = setup_of(dim, 5, &scheme);
+                struct simulation *simulation = made_of(&setup);
                 struct particles *p = &simulation->particles;
-                const size_t i = last ? scene.n - 1 : 0;
+                const size_t i = last ? setup.n - 1 : 0;
                 struct error error = {0};
                 char text[64];
                 p->x[a][i] = last ? -HUGE_VAL : HUGE_VAL;
@@ -500,9 +500,9 @@ static void test_no_position(void **state)
 static void expect_bytes(int dim, const struct scheme *scheme, int arrays, int record)
 {
     for (int sleep = 0; sleep < 2; sleep++) { /* who may sleep has 1/h and two flags */
-        const struct scene scene = {
+        const struct setup setup = {
             .dim = dim, .scheme = *scheme, .n = 1000, .threads = 1, .skip = sleep};
-        struct simulation simulation = {.scheme = *scheme, .plan = plan_of_scene(&scene)};
+        struct simulation simulation = {.scheme = *scheme, .plan = plan_of_setup(&setup)};
         const double lists = grid_bytes(dim, 1, width_neighbours(dim, scheme->eta * 1.1));
         const double found = cells_sums.bytes(&simulation, 1000) / 1000 - lists;
         near_absolute(found, 8. * arrays + 1 + 10. * sleep + 8. * record, 1e-9);

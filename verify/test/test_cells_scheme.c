@@ -23,9 +23,9 @@ static double x[3][N], v[3][N], m[N], u[N];
 
 /* A lattice of so many particles each way in a box of side 1, displaced by so much of its spacing;
  * at rest. */
-static struct scene scene_of(int dim, size_t side, double displaced, const struct scheme *scheme)
+static struct setup setup_of(int dim, size_t side, double displaced, const struct scheme *scheme)
 {
-    struct scene scene = {.dim = dim,
+    struct setup setup = {.dim = dim,
                           .hi = {1, 1, 1},
                           .gamma = 1.4,
                           .t_end = 1,
@@ -34,17 +34,17 @@ static struct scene scene_of(int dim, size_t side, double displaced, const struc
                           .u = u,
                           .scheme = *scheme,
                           .threads = 1};
-    assert_true(scene.n <= N);
-    for (size_t i = 0, at = 0; i < scene.n; at = ++i) {
-        m[i] = 1. / (double)scene.n, u[i] = 1;
+    assert_true(setup.n <= N);
+    for (size_t i = 0, at = 0; i < setup.n; at = ++i) {
+        m[i] = 1. / (double)setup.n, u[i] = 1;
         for (int a = 0; a < dim; a++, at /= side) {
             x[a][i] =
                 ((double)(at % side) + 0.5 + displaced * sin(7. * (double)i + a)) / (double)side;
             v[a][i] = 0;
         }
     }
-    for (int a = 0; a < dim; a++) scene.x[a] = x[a], scene.v[a] = v[a];
-    return scene;
+    for (int a = 0; a < dim; a++) setup.x[a] = x[a], setup.v[a] = v[a];
+    return setup;
 }
 
 static void find_forces(struct simulation *simulation)
@@ -64,13 +64,13 @@ static void test_beta(void **state)
             struct scheme scheme = made_scheme();
             scheme.viscosity = VISCOSITY_TIME_DEPENDENT;
             scheme.alpha = numbers[k][0], scheme.beta = numbers[k][1];
-            struct scene scene = scene_of(dim, dim == 2 ? 9 : 6, 0.2, &scheme);
-            for (size_t i = 0; i < scene.n; i++) v[0][i] = sin(2 * M_PI * x[0][i]);
-            struct simulation *simulation = made_of(&scene);
+            struct setup setup = setup_of(dim, dim == 2 ? 9 : 6, 0.2, &scheme);
+            for (size_t i = 0; i < setup.n; i++) v[0][i] = sin(2 * M_PI * x[0][i]);
+            struct simulation *simulation = made_of(&setup);
             const struct particles *p = &simulation->particles;
-            for (size_t i = 0; i < scene.n; i++) p->alpha[i] = 0.7;
+            for (size_t i = 0; i < setup.n; i++) p->alpha[i] = 0.7;
             find_forces(simulation);
-            const size_t bytes = scene.n * sizeof *F;
+            const size_t bytes = setup.n * sizeof *F;
             if (k == 0) memcpy(F, p->F[0], bytes), memcpy(de, p->de, bytes);
             assert_int_equal(!memcmp(F, p->F[0], bytes) && !memcmp(de, p->de, bytes), k < 3);
             simulation_destroy(simulation);
@@ -94,15 +94,15 @@ static void test_balsara(void **state)
                 scheme.balsara = friction == 2 ? BALSARA_ON : BALSARA_OFF;
                 scheme.balsara_floor = floors[k];
                 const size_t side = dim == 2 ? 15 : 9;
-                struct scene scene = scene_of(dim, side, 0, &scheme);
-                for (int a = 0; a < dim; a++) scene.boundary[a] = BOUNDARY_OPEN;
-                for (size_t i = 0; i < scene.n; i++)
+                struct setup setup = setup_of(dim, side, 0, &scheme);
+                for (int a = 0; a < dim; a++) setup.boundary[a] = BOUNDARY_OPEN;
+                for (size_t i = 0; i < setup.n; i++)
                     for (int a = 0; a < dim; a++)
                         for (int b = 0; b < dim; b++) v[a][i] += L[a][b] * x[b][i];
-                struct simulation *simulation = made_of(&scene);
+                struct simulation *simulation = made_of(&setup);
                 const struct particles *p = &simulation->particles;
                 size_t middle = 0;
-                while (p->id[middle] != scene.n / 2) middle++;
+                while (p->id[middle] != setup.n / 2) middle++;
                 heat[friction] = p->de[middle];
                 const double rate = p->c[middle] / p->h[middle];
                 double div = 0, curl2 = 0;
@@ -145,24 +145,24 @@ static void test_signals(void **state)
         const int dim = 2 + k % 2;
         const double unit = k < 2 ? 1 : 1e-10; /* of speeds: cold gas */
         const struct scheme scheme = made_scheme();
-        struct scene scene = scene_of(dim, dim == 2 ? 14 : 6, 0.2, &scheme);
-        for (size_t i = 0; i < scene.n; i++) {
+        struct setup setup = setup_of(dim, dim == 2 ? 14 : 6, 0.2, &scheme);
+        for (size_t i = 0; i < setup.n; i++) {
             u[i] = unit * unit * exp(2 * sin(5. * (double)i));
             for (int a = 0; a < dim; a++) v[a][i] = unit * 3 * sin(2 * M_PI * x[a][i] + a);
         }
-        struct simulation *simulation = made_of(&scene);
+        struct simulation *simulation = made_of(&setup);
         const struct particles *p = &simulation->particles;
         size_t own = 0;
         for (int alone = 0; alone < 2; alone++) {
             double rate = 0;
-            for (size_t i = 0; i < scene.n; i++) p->signal[i] = -1;
+            for (size_t i = 0; i < setup.n; i++) p->signal[i] = -1;
             if (alone)
                 cells_sums.signal(simulation);
             else
                 find_forces(simulation);
-            for (size_t i = 0; i < scene.n; i++) {
+            for (size_t i = 0; i < setup.n; i++) {
                 double most = 2 * p->c[i];
-                for (size_t j = 0; j < scene.n; j++) {
+                for (size_t j = 0; j < setup.n; j++) {
                     double d[3], closing = 0;
                     const double r = separation(p, i, j, d);
                     if (j == i || !(r < fmax(p->h[i], p->h[j]))) continue;
@@ -192,22 +192,22 @@ static void test_lagrangian(void **state)
             scheme.formulation = FORMULATION_LAGRANGIAN;
             scheme.volume_element = (enum volume_element)e;
             scheme.energy = ENERGY_INTERNAL;
-            struct scene scene = scene_of(dim, dim == 2 ? 9 : 6, 0.2, &scheme);
-            for (size_t i = 0; i < scene.n; i++) {
+            struct setup setup = setup_of(dim, dim == 2 ? 9 : 6, 0.2, &scheme);
+            for (size_t i = 0; i < setup.n; i++) {
                 m[i] *= 1 + 0.2 * sin(3. * (double)i), u[i] = 1 + 0.3 * sin(5. * (double)i);
                 for (int a = 0; a < dim; a++) v[a][i] = sin(11. * (double)i + a);
             }
-            struct simulation *simulation = made_of(&scene);
+            struct simulation *simulation = made_of(&setup);
             const struct particles *p = &simulation->particles;
             double Z[N], M[N], b[N];
-            for (size_t i = 0; i < scene.n; i++) {
+            for (size_t i = 0; i < setup.n; i++) {
                 Z[i] = e == VOLUME_NUMBER ? 1 : e == VOLUME_ENERGY ? p->U[i] : p->m[i];
                 M[i] = e == VOLUME_NUMBER ? 1 : p->m[i];
                 b[i] = p->P[i] * p->V[i] * p->V[i] / Z[i];
             }
-            for (size_t i = 0; i < scene.n; i++) {
+            for (size_t i = 0; i < setup.n; i++) {
                 double F[3] = {0}, heat = 0, size = 0;
-                for (size_t j = 0; j < scene.n; j++) {
+                for (size_t j = 0; j < setup.n; j++) {
                     double d[3];
                     const double r = separation(p, i, j, d);
                     if (j == i) continue;
@@ -276,12 +276,12 @@ static void test_equal_masses(void **state)
             struct scheme scheme = made_scheme();
             scheme.formulation = FORMULATION_LAGRANGIAN;
             scheme.volume_element = number ? VOLUME_NUMBER : VOLUME_MASS;
-            const struct scene scene = scene_of(dim, dim == 2 ? 16 : 8, 0.2, &scheme);
-            struct simulation *simulation = made_of(&scene);
+            const struct setup setup = setup_of(dim, dim == 2 ? 16 : 8, 0.2, &scheme);
+            struct simulation *simulation = made_of(&setup);
             const struct particles *p = &simulation->particles;
             const double *const found[] = {p->F[0], p->F[1], p->de, p->h, p->grad_h};
             for (int k = 0; k < 5; k++)
-                for (size_t i = 0; i < scene.n; i++)
+                for (size_t i = 0; i < setup.n; i++)
                     if (number)
                         near_below(fabs(found[k][i] - of[k][i]), 1e-10 * (1 + fabs(of[k][i])));
                     else
@@ -303,18 +303,18 @@ static void test_axes_are_alike(void **state)
             scheme.viscosity = g % 2 ? VISCOSITY_PROJECTED : VISCOSITY_CONSTANT;
             scheme.noise = 0.4;
             for (int turned = 0; turned < 2; turned++) {
-                struct scene scene = scene_of(dim, dim == 2 ? 9 : 6, 0.2, &scheme);
+                struct setup setup = setup_of(dim, dim == 2 ? 9 : 6, 0.2, &scheme);
                 for (int a = 0; a < dim; a++) {
-                    scene.boundary[a] = BOUNDARY_REFLECTING;
-                    for (size_t i = 0; i < scene.n; i++) v[a][i] = sin((2. + a) * x[0][i] + a);
+                    setup.boundary[a] = BOUNDARY_REFLECTING;
+                    for (size_t i = 0; i < setup.n; i++) v[a][i] = sin((2. + a) * x[0][i] + a);
                 }
                 for (int a = 0; a < dim; a++) {
-                    scene.x[a] = x[(a + turned) % dim];
-                    scene.v[a] = v[(a + turned) % dim];
+                    setup.x[a] = x[(a + turned) % dim];
+                    setup.v[a] = v[(a + turned) % dim];
                 }
-                struct simulation *simulation = made_of(&scene);
+                struct simulation *simulation = made_of(&setup);
                 const struct particles *p = &simulation->particles;
-                for (size_t i = 0; i < scene.n; i++)
+                for (size_t i = 0; i < setup.n; i++)
                     for (int a = 0; a < dim; a++) {
                         double *known = &F[(a + turned) % dim][p->id[i]];
                         if (turned)
@@ -335,12 +335,12 @@ static void test_fallen_back(void **state)
     struct scheme scheme = made_scheme();
     scheme.gradient = GRADIENT_IA;
     for (int dim = 2; dim <= 3; dim++) {
-        struct scene scene = scene_of(dim, 6, 0, &scheme);
-        for (int a = 0; a < dim; a++) scene.boundary[a] = BOUNDARY_OPEN;
-        scene.n = 20;
-        for (size_t i = 0; i < scene.n; i++)
+        struct setup setup = setup_of(dim, 6, 0, &scheme);
+        for (int a = 0; a < dim; a++) setup.boundary[a] = BOUNDARY_OPEN;
+        setup.n = 20;
+        for (size_t i = 0; i < setup.n; i++)
             for (int a = 0; a < dim; a++) x[a][i] = a == 0 ? ((double)i + 0.5) / 20 : 0.5;
-        struct simulation *simulation = made_of(&scene);
+        struct simulation *simulation = made_of(&setup);
         for (uint64_t times = 1; times <= 3; times++) {
             struct simulation_cost cost;
             simulation_cost(simulation, &cost);
@@ -353,15 +353,15 @@ static void test_fallen_back(void **state)
 }
 
 /* A periodic box 8 particles wide and 128 long. */
-static struct scene long_box(const struct scheme *scheme)
+static struct setup long_box(const struct scheme *scheme)
 {
-    struct scene scene = scene_of(2, 8, 0, scheme);
-    scene.n = 1024, scene.hi[1] = 16, scene.skip = true;
-    for (size_t i = 0; i < scene.n; i++) {
+    struct setup setup = setup_of(2, 8, 0, scheme);
+    setup.n = 1024, setup.hi[1] = 16, setup.skip = true;
+    for (size_t i = 0; i < setup.n; i++) {
         x[0][i] = ((double)(i % 8) + 0.5) / 8, x[1][i] = ((double)(i / 8) + 0.5) / 8;
         m[i] = 1. / 64, u[i] = 1, v[0][i] = v[1][i] = 0;
     }
-    return scene;
+    return setup;
 }
 
 /* Adds whoever has a neighbour in the set. Returns how many are in it. */
@@ -388,11 +388,11 @@ static void test_awake(void **state)
     const struct scheme scheme = made_scheme();
     for (size_t row = 0; row < 30; row += 3) {
         bool pushed[1024], near[1024];
-        const struct scene scene = long_box(&scheme);
+        const struct setup setup = long_box(&scheme);
         u[8 * row] = 3;
-        struct simulation *simulation = made_of(&scene);
+        struct simulation *simulation = made_of(&setup);
         const struct particles *p = &simulation->particles;
-        for (size_t i = 0; i < scene.n; i++) pushed[i] = fabs(p->F[0][i]) + fabs(p->F[1][i]) > 1e-6;
+        for (size_t i = 0; i < setup.n; i++) pushed[i] = fabs(p->F[0][i]) + fabs(p->F[1][i]) > 1e-6;
         add_neighbours(p, pushed, near);
         const ptrdiff_t awake = add_neighbours(p, near, pushed);
         assert_true(awake > 32 && simulation->sleep.awake_count >= awake);
@@ -408,10 +408,10 @@ static void test_awake_in_flow(void **state)
     (void)state;
     const struct scheme scheme = made_scheme();
     for (int boosted = 0; boosted < 2; boosted++) {
-        const struct scene scene = long_box(&scheme);
-        for (size_t i = 0; i < scene.n; i++)
-            v[0][i] = boosted + (i < scene.n / 2 ? 1e-8 : 0), v[1][i] = 2 * boosted;
-        struct simulation *simulation = made_of(&scene);
+        const struct setup setup = long_box(&scheme);
+        for (size_t i = 0; i < setup.n; i++)
+            v[0][i] = boosted + (i < setup.n / 2 ? 1e-8 : 0), v[1][i] = 2 * boosted;
+        struct simulation *simulation = made_of(&setup);
         /* of two such layers at least the rows on either side */
         near_inside((double)simulation->sleep.awake_count, 4 * 8, 12 * 8);
         simulation_destroy(simulation);
@@ -441,16 +441,16 @@ static void test_asleep_again(void **state)
     double ends[2][256];
     for (int skip = 0; skip < 2; skip++) {
         const struct scheme scheme = made_scheme();
-        struct scene scene = scene_of(2, 16, 0, &scheme);
+        struct setup setup = setup_of(2, 16, 0, &scheme);
         struct seen seen = {0};
         struct snapshot s;
-        scene.skip = skip;
+        setup.skip = skip;
         for (size_t i = 0; i < 256; i++) {
             x[0][i] = ((double)(i % 16) + 0.5) / 16, x[1][i] = ((double)(i / 16) + 0.5) / 16;
             m[i] = 1. / 256, u[i] = 1, v[1][i] = 0;
             v[0][i] = (i + i / 16) % 2 ? 1e-9 : -1e-9;
         }
-        seen.simulation = made_of(&scene);
+        seen.simulation = made_of(&setup);
         assert_int_equal(seen.simulation->sleep.awake_count, 256);
         assert_int_equal(simulation_run(seen.simulation, 2, note_asleep, &seen, NULL), STATUS_OK);
         assert_true(skip ? seen.first > 1 : seen.first == 0);

@@ -26,7 +26,7 @@ static struct simulation *lattice(int dim, int threads, bool sleep)
         for (int a = 0; a < dim; a++, rest /= SIDE) x[a][i] = ((double)(rest % SIDE) + 0.5) / SIDE;
         m[i] = 1. / (double)n, u[i] = 1;
     }
-    struct scene scene = {.dim = dim,
+    struct setup setup = {.dim = dim,
                           .hi = {1, 1, 1},
                           .gamma = 1.4,
                           .t_end = 1,
@@ -35,12 +35,12 @@ static struct simulation *lattice(int dim, int threads, bool sleep)
                           .u = u,
                           .skip = sleep,
                           .threads = threads};
-    for (int a = 0; a < dim; a++) scene.x[a] = x[a], scene.v[a] = v;
+    for (int a = 0; a < dim; a++) setup.x[a] = x[a], setup.v[a] = v;
     settings_init(&settings);
     char *keys[] = {"kernel=cubic_spline", "eta=2.4", "gradient=standard"};
     if (settings_apply(&settings, 3, keys, &error) ||
-        settings_scheme(&settings, dim, &scene.scheme, &error) ||
-        simulation_create(&scene, &simulation, &error))
+        settings_scheme(&settings, dim, &setup.scheme, &error) ||
+        simulation_create(&setup, &simulation, &error))
         fail_msg("%s", error.message);
     return simulation;
 }

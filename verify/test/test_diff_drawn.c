@@ -99,17 +99,17 @@ static void add_printed(struct buffer *to, const struct diff *diff, bool exact, 
 
 static void add_readings(struct buffer *to, const json_t *document)
 {
-    struct readings readings;
+    struct metrics metrics;
     struct error error = {0};
-    assert_int_equal(reading_collect(document, &readings, &error), STATUS_OK);
-    for (size_t i = 0; i < readings.count; i++) {
-        const struct reading *r = &readings.list[i];
+    assert_int_equal(metric_collect(document, &metrics, &error), STATUS_OK);
+    for (size_t i = 0; i < metrics.count; i++) {
+        const struct metric *r = &metrics.list[i];
         buffer_format(to, "%s %d %.10g %.6g %.6g %.10g %s %d\n", r->path, r->kind, r->value,
                       r->noise, r->floor, r->exact, r->word ? r->word : "-", r->headline);
-        assert_ptr_equal(reading_find(&readings, r->path), r);
+        assert_ptr_equal(metric_find(&metrics, r->path), r);
     }
-    buffer_format(to, "%s\n", readings.trouble);
-    reading_free(&readings);
+    buffer_format(to, "%s\n", metrics.trouble);
+    metric_free(&metrics);
 }
 
 static void diffs(void **state)

@@ -18,8 +18,8 @@
 /* A figure of each kind: at `good` and at `bad`. */
 static const struct kind {
     const char *path, *inside, *good, *bad;
-    enum reading_verdict worse, better; /* from good to bad, and back */
-    bool fault;                         /* a regression */
+    enum metric_verdict worse, better; /* from good to bad, and back */
+    bool fault;                        /* a regression */
 } kinds[] = {
     {"error", NULL, "1e-3", "2e-3", VERDICT_WORSE, VERDICT_BETTER, true},
     {"error_rms", NULL, "1e-3", "\"nan\"", VERDICT_WORSE, VERDICT_BETTER, true},
@@ -64,11 +64,11 @@ static void each_kind(void **state)
                 const enum status status = differ(old, new, &diff);
                 const struct difference *d = find(&diff, kinds[f].path);
                 const bool worse = i == 2 && k == 3;
-                const enum reading_verdict verdict = i < 2    ? VERDICT_NEW
-                                                     : k < 2  ? VERDICT_VANISHED
-                                                     : i == k ? VERDICT_SAME
-                                                     : worse  ? kinds[f].worse
-                                                              : kinds[f].better;
+                const enum metric_verdict verdict = i < 2    ? VERDICT_NEW
+                                                    : k < 2  ? VERDICT_VANISHED
+                                                    : i == k ? VERDICT_SAME
+                                                    : worse  ? kinds[f].worse
+                                                             : kinds[f].better;
                 assert_int_equal(d == NULL, i < 2 && k < 2);
                 if (d) {
                     assert_int_equal(d->verdict, verdict);
@@ -151,9 +151,9 @@ static void drawn(json_t *document)
         if (rand() % 6 == 0) continue;
         json_array_append_new(
             studies, json_pack("{s:s, s:s, s:{s:{s:f, s:f, s:f}}, s:{s:f}}", "case", "sod", "label",
-                               label, "errors", "density", "l1", 1e-3 * (1 + rand() % 3), "l1_whole",
-                               1e-3 * (1 + rand() % 3), "linf", 0.1 * (1 + rand() % 3), "cost",
-                               "cpu_s", 1. + rand() % 5));
+                               label, "errors", "density", "l1", 1e-3 * (1 + rand() % 3),
+                               "l1_whole", 1e-3 * (1 + rand() % 3), "linf", 0.1 * (1 + rand() % 3),
+                               "cost", "cpu_s", 1. + rand() % 5));
     }
     json_object_set_new(document, "checks", list);
     json_object_set_new(document, "studies", studies);
@@ -192,7 +192,7 @@ static void order(void **state)
 /* What vanishes one way is new the other way; what stays stays. */
 static void both_ways_round(void **state)
 {
-    static const enum reading_verdict back[] = {
+    static const enum metric_verdict back[] = {
         [VERDICT_SAME] = VERDICT_SAME,    [VERDICT_BETTER] = VERDICT_WORSE,
         [VERDICT_WORSE] = VERDICT_BETTER, [VERDICT_INCOMPARABLE] = VERDICT_INCOMPARABLE,
         [VERDICT_VANISHED] = VERDICT_NEW, [VERDICT_NEW] = VERDICT_VANISHED,

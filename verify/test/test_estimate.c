@@ -21,9 +21,9 @@ static const double v[3][N + 1] = {{1, 2, 6, 99}, {0, 4, 2, 99}, {3, 3, 9, 99}},
                              rho[N + 1] = {1, 1, 4, 1e9};
 
 /* The scheme that costs least: density and force by predicted widths. */
-static struct scene plain_scene(int dim)
+static struct setup plain_setup(int dim)
 {
-    struct scene scene = {.dim = dim,
+    struct setup setup = {.dim = dim,
                           .hi = {1, 1, 1},
                           .gamma = 1.5,
                           .t_end = 0.75e8,
@@ -34,18 +34,18 @@ static struct scene plain_scene(int dim)
                           .rho = rho,
                           .threads = 1};
     struct error error;
-    assert_int_equal(kernel_select(&scene.scheme.kernel, "cubic_spline", 0, &error), STATUS_OK);
-    scene.scheme.integrator =
+    assert_int_equal(kernel_select(&setup.scheme.kernel, "cubic_spline", 0, &error), STATUS_OK);
+    setup.scheme.integrator =
         (const struct integrator *)family_find(&integrator_family, "leapfrog");
-    assert_non_null(scene.scheme.integrator);
-    scheme_default(&scene.scheme, &(struct scheme_open){0}, dim);
-    scene.scheme.gradient = GRADIENT_STANDARD;
-    scene.scheme.viscosity = VISCOSITY_CONSTANT;
-    scene.scheme.balsara = BALSARA_OFF;
-    scene.scheme.h_method = H_PREDICTED;
-    scene.scheme.eta = 2.5;
-    scene.scheme.cfl = 0.2;
-    return scene;
+    assert_non_null(setup.scheme.integrator);
+    scheme_default(&setup.scheme, &(struct scheme_open){0}, dim);
+    setup.scheme.gradient = GRADIENT_STANDARD;
+    setup.scheme.viscosity = VISCOSITY_CONSTANT;
+    setup.scheme.balsara = BALSARA_OFF;
+    setup.scheme.h_method = H_PREDICTED;
+    setup.scheme.eta = 2.5;
+    setup.scheme.cfl = 0.2;
+    return setup;
 }
 
 static void of_particles(void **state)
@@ -53,10 +53,10 @@ static void of_particles(void **state)
     (void)state;
     static const double ball[] = {0, 2, M_PI, 4 * M_PI / 3};
     for (int dim = 1; dim <= 3; dim++) {
-        struct scene scene = plain_scene(dim);
+        struct setup setup = plain_setup(dim);
         /* in 2D and 3D the copy of the snapshot takes the place of the neighbours */
-        const double memory = 1.2e7 + memory_bytes(&scene) + (dim == 1 ? 8. * N * 8 : 0);
-        struct estimate found = estimate_size(&scene);
+        const double memory = 1.2e7 + memory_bytes(&setup) + (dim == 1 ? 8. * N * 8 : 0);
+        struct estimate found = estimate_size(&setup);
         near_relative(found.memory, memory, 1e-15);
         assert_true(found.steps == 0 && found.cpu_s == 0);
         /* signals: sound, and what motion beside the mean one becomes when it is stopped */
@@ -87,26 +87,26 @@ static void of_particles(void **state)
             {GRADIENT_IA, VISCOSITY_PROJECTED, BALSARA_ON, H_NEWTON, 36},
         };
         for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-            scene.scheme.gradient = rows[k].gradient;
-            scene.scheme.viscosity = rows[k].viscosity;
-            scene.scheme.balsara = rows[k].balsara;
-            scene.scheme.h_method = rows[k].h_method;
+            setup.scheme.gradient = rows[k].gradient;
+            setup.scheme.viscosity = rows[k].viscosity;
+            setup.scheme.balsara = rows[k].balsara;
+            setup.scheme.h_method = rows[k].h_method;
             const double step = dim == 1 ? 5 + neighbours : 100 + rows[k].pair * neighbours;
-            found = estimate_run(&scene);
-            assert_true(found.steps == steps && found.memory == estimate_size(&scene).memory);
+            found = estimate_run(&setup);
+            assert_true(found.steps == steps && found.memory == estimate_size(&setup).memory);
             near_relative(found.cpu_s,
-                          1e-9 * N * step * (4 + steps * scene.scheme.integrator->evaluations),
+                          1e-9 * N * step * (4 + steps * setup.scheme.integrator->evaluations),
                           1e-14);
         }
-        scene.n = 1;
-        assert_true(estimate_run(&scene).steps > 1);
-        scene.n = N;
-        scene.rho = NULL;
-        found = estimate_run(&scene);
+        setup.n = 1;
+        assert_true(estimate_run(&setup).steps > 1);
+        setup.n = N;
+        setup.rho = NULL;
+        found = estimate_run(&setup);
         assert_true(found.steps == 0 && found.cpu_s == 0 && found.memory > 1.2e7);
-        scene.rho = rho;
-        scene.n = 0;
-        found = estimate_run(&scene);
+        setup.rho = rho;
+        setup.n = 0;
+        found = estimate_run(&setup);
         assert_true(found.steps == 0 && found.cpu_s == 0 && found.memory >= 1.2e7);
     }
 }
@@ -115,17 +115,17 @@ static void of_particles(void **state)
 static void of_a_million(void **state)
 {
     (void)state;
-    struct scene scene = plain_scene(3);
-    scene.n = 1000000;
-    scene.scheme.integrator =
+    struct setup setup = plain_setup(3);
+    setup.n = 1000000;
+    setup.scheme.integrator =
         (const struct integrator *)family_find(&integrator_family, "predicted_midpoint");
-    assert_non_null(scene.scheme.integrator);
-    scheme_default(&scene.scheme,
+    assert_non_null(setup.scheme.integrator);
+    scheme_default(&setup.scheme,
                    &(struct scheme_open){true, true, true, true, true, true, true, true, true, true,
                                          true, true, true},
                    3);
-    assert_true(scene.scheme.viscosity == VISCOSITY_PROJECTED && scene.scheme.eta == 3.6);
-    assert_true(estimate_size(&scene).memory < 0x1p30);
+    assert_true(setup.scheme.viscosity == VISCOSITY_PROJECTED && setup.scheme.eta == 3.6);
+    assert_true(estimate_size(&setup).memory < 0x1p30);
 }
 
 /* Of gas as cold as can be next to nothing is asked; each step takes one evaluation at least. */
@@ -133,18 +133,18 @@ static void of_few_steps(void **state)
 {
     (void)state;
     static const double cold[N] = {1e-30, 1e-30, 1e-30}, still[N] = {0};
-    struct scene scene = plain_scene(1);
-    struct integrator lazy = *scene.scheme.integrator;
-    scene.u = cold;
-    scene.v[0] = still;
-    scene.t_end = 1e6;
+    struct setup setup = plain_setup(1);
+    struct integrator lazy = *setup.scheme.integrator;
+    setup.u = cold;
+    setup.v[0] = still;
+    setup.t_end = 1e6;
     lazy.evaluations = 0;
-    scene.scheme.integrator = &lazy;
-    const struct estimate found = estimate_run(&scene);
+    setup.scheme.integrator = &lazy;
+    const struct estimate found = estimate_run(&setup);
     assert_true(found.steps == 1);
     near_relative(found.cpu_s, 1e-9 * N * 10 * (4 + 1), 1e-14);
     lazy.evaluations = 3;
-    near_relative(estimate_run(&scene).cpu_s, 1e-9 * N * 10 * (4 + 3), 1e-14);
+    near_relative(estimate_run(&setup).cpu_s, 1e-9 * N * 10 * (4 + 3), 1e-14);
 }
 
 /* What is there may be used up. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Neighbour lists of the grid against all pairs, on scenes drawn at random: dimension, number,
+ * Neighbour lists of the grid against all pairs, on setups drawn at random: dimension, number,
  * boundaries, radii from equal to very different, clumps and points in one place. */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Inside of a grid, on scenes drawn at random: its cells, their order in memory, how far they are
+ * Inside of a grid, on setups drawn at random: its cells, their order in memory, how far they are
  * looked through, parts, lists with their order, and who is woken, each once more in plain loops.
  */
 #include <setjmp.h>
@@ -29,26 +29,26 @@ static double draw(double low, double high)
     return low + (high - low) * ldexp((double)draw_bits(), -53);
 }
 
-static struct scene {
+static struct setup {
     struct grid_box box;
     size_t n, active;
     double x[3][POINTS_MAX], radius[POINTS_MAX];
     unsigned char asleep[POINTS_MAX];
-} scene;
+} setup;
 
 /* Beyond the last point nothing is anybody's. */
-static void end_scene(void)
+static void end_setup(void)
 {
-    for (size_t i = scene.n; i < POINTS_MAX; i++) {
-        scene.radius[i] = 1e30;
-        for (int a = 0; a < 3; a++) scene.x[a][i] = i % 2 ? (double)NAN : a % 2 ? 1e9 : -1e9;
+    for (size_t i = setup.n; i < POINTS_MAX; i++) {
+        setup.radius[i] = 1e30;
+        for (int a = 0; a < 3; a++) setup.x[a][i] = i % 2 ? (double)NAN : a % 2 ? 1e9 : -1e9;
     }
 }
 
 /* Boxes of any shape; wide and narrow radii; some points in one place or in one plane. */
 static void make(int trial)
 {
-    struct scene *s = &scene;
+    struct setup *s = &setup;
     memset(s, 0, sizeof *s);
     s->box.dim = 2 + trial % 2;
     s->n = 1 + draw_bits() % (trial % 5 ? 700 : POINTS_MAX - 1);
@@ -70,17 +70,17 @@ static void make(int trial)
         s->radius[i] = radius * draw(0.8, 1) * (draw(0, 1) < 0.1 ? wide : 1);
         s->asleep[i] = draw(0, 1) < 0.3;
     }
-    end_scene();
+    end_setup();
     s->active = trial % 4 ? s->n : 1 + draw_bits() % s->n;
 }
 
 static struct grid *search(int trial, int threads)
 {
     struct error error;
-    const double *const x[] = {scene.x[0], scene.x[1], scene.x[2]};
-    struct grid *grid = grid_create(&scene.box, trial % 2 ? scene.n : scene.n / 3, threads);
+    const double *const x[] = {setup.x[0], setup.x[1], setup.x[2]};
+    struct grid *grid = grid_create(&setup.box, trial % 2 ? setup.n : setup.n / 3, threads);
     assert_non_null(grid);
-    if (grid_search(grid, scene.n, scene.active, x, scene.radius, trial % 3 ? NULL : scene.asleep,
+    if (grid_search(grid, setup.n, setup.active, x, setup.radius, trial % 3 ? NULL : setup.asleep,
                     &error))
         fail_msg("%s", error.message);
     return grid;
@@ -97,8 +97,8 @@ static int compare_doubles(const void *a, const void *b)
 static void check_cells(const struct grid *grid)
 {
     double sample[POINTS_MAX];
-    const size_t count = scene.n < 1000 ? scene.n : 1000;
-    for (size_t k = 0; k < count; k++) sample[k] = scene.radius[k * scene.n / count];
+    const size_t count = setup.n < 1000 ? setup.n : 1000;
+    for (size_t k = 0; k < count; k++) sample[k] = setup.radius[k * setup.n / count];
     qsort(sample, count, sizeof *sample, compare_doubles);
     double size = sample[count * 3 / 4] * (1 + 1e-5), cells = 0;
     assert_true(grid->unit == size);
@@ -108,22 +108,22 @@ static void check_cells(const struct grid *grid)
             const double k = floor(grid->side[a] / size);
             cells *= k > 1 ? k : 1;
         }
-        if (cells <= 2 * (double)scene.n + 64) break;
+        if (cells <= 2 * (double)setup.n + 64) break;
     }
     assert_true((double)grid->cell_count == cells);
     for (int a = 0; a < 3; a++) {
         double lo = HUGE_VAL, hi = -HUGE_VAL;
-        for (size_t i = 0; i < scene.n; i++)
-            lo = fmin(lo, scene.x[a][i]), hi = fmax(hi, scene.x[a][i]);
-        const bool periodic = scene.box.periodic[a];
+        for (size_t i = 0; i < setup.n; i++)
+            lo = fmin(lo, setup.x[a][i]), hi = fmax(hi, setup.x[a][i]);
+        const bool periodic = setup.box.periodic[a];
         if (a >= grid->box.dim) {
             assert_int_equal(grid->cells[a], 1);
             assert_true(grid->size[a] == 0 && grid->cell_inverse[a] == 0);
             assert_true(!grid_wraps(grid, a) && grid_side(grid, a) == 0);
             continue;
         }
-        assert_true(grid->lo[a] == (periodic ? scene.box.lo[a] : lo));
-        assert_true(grid->side[a] == (periodic ? scene.box.hi[a] - scene.box.lo[a] : hi - lo));
+        assert_true(grid->lo[a] == (periodic ? setup.box.lo[a] : lo));
+        assert_true(grid->side[a] == (periodic ? setup.box.hi[a] - setup.box.lo[a] : hi - lo));
         assert_true(grid_wraps(grid, a) == periodic);
         assert_true(grid_side(grid, a) == (periodic ? grid->side[a] : 0));
         const double k = floor(grid->side[a] / size);
@@ -154,7 +154,7 @@ static void check_order_of_cells(const struct grid *grid)
 /* The search radius of a slot, in units, a little more. */
 static float reach_of(const struct grid *grid, size_t slot)
 {
-    return (float)(scene.radius[grid->order[slot]] / grid->unit * (1 + 1e-5));
+    return (float)(setup.radius[grid->order[slot]] / grid->unit * (1 + 1e-5));
 }
 
 /* Every point once, in its cell, where it came before others with higher numbers. */
@@ -164,7 +164,7 @@ static void check_points(const struct grid *grid)
     const uint32_t *order = grid_order(grid);
     const double(*at)[3] = grid_positions(grid);
     assert_int_equal(grid->start[0], 0);
-    assert_int_equal(grid->start[grid->cell_count], scene.n);
+    assert_int_equal(grid->start[grid->cell_count], setup.n);
     double far = 0;
     for (size_t cell = 0; cell < grid->cell_count; cell++) {
         ptrdiff_t c[3];
@@ -186,10 +186,10 @@ static void check_points(const struct grid *grid)
                 const double middle = grid->lo[a] + ((double)c[a] + 0.5) * grid->size[a];
                 near_below(fabs((at[s][a] - middle) / grid->unit - (double)grid->place[a][s]),
                            1e-7 * fmax(1, grid->size[a] / grid->unit));
-                if (!grid->box.periodic[a]) assert_true(at[s][a] == scene.x[a][i]);
+                if (!grid->box.periodic[a]) assert_true(at[s][a] == setup.x[a][i]);
                 assert_true(at[s][a] >= grid->lo[a] &&
                             (at[s][a] < grid->lo[a] + grid->side[a] || !grid->box.periodic[a]));
-                const double turns = (scene.x[a][i] - at[s][a]) / fmax(grid->side[a], 1e-300);
+                const double turns = (setup.x[a][i] - at[s][a]) / fmax(grid->side[a], 1e-300);
                 near_below(fabs(turns - round(turns)), 1e-14);
             }
             const float reach = reach_of(grid, s);
@@ -198,9 +198,9 @@ static void check_points(const struct grid *grid)
     }
     /* the sentinel is further away than anybody sees, also by way of images */
     for (int a = 0; a < grid->box.dim; a++) far = fmax(far, fabs(grid->lo[a]) + grid->side[a]);
-    for (size_t i = 0; i < scene.n; i++) far = fmax(far, scene.radius[i]);
-    assert_true(at[scene.n][0] == 64 * far);
-    for (int a = 1; a < 3; a++) assert_true(at[scene.n][a] == 0);
+    for (size_t i = 0; i < setup.n; i++) far = fmax(far, setup.radius[i]);
+    assert_true(at[setup.n][0] == 64 * far);
+    for (int a = 1; a < 3; a++) assert_true(at[setup.n][a] == 0);
 }
 
 /* Cells that lie within a radius, in units, of any point of a cell, along one axis. */
@@ -289,7 +289,7 @@ static void check_parts(const struct grid *grid)
 {
     const uint32_t *begin;
     const size_t parts = grid_parts(grid, &begin);
-    assert_true(parts > 0 && begin[0] == 0 && begin[parts] == scene.n);
+    assert_true(parts > 0 && begin[0] == 0 && begin[parts] == setup.n);
     assert_int_equal(grid->part_cell[0], 0);
     assert_int_equal(grid->part_cell[parts], grid->cell_count);
     for (size_t p = 0; p < parts; p++) {
@@ -315,7 +315,7 @@ static size_t check_lists(const struct grid *grid)
     int longest = 0;
     struct grid_reader reader = {0};
     assert_true(grid_reader_reserve(grid, &reader));
-    for (size_t s = 0; s < scene.n; s++) {
+    for (size_t s = 0; s < setup.n; s++) {
         ptrdiff_t c[3];
         struct look look[3];
         bool across = false, all = false;
@@ -328,7 +328,7 @@ static size_t check_lists(const struct grid *grid)
             across |= look[a].across, all |= look[a].all;
         }
         assert_true(list->wrapped == across);
-        if (i >= scene.active || (grid->flags && scene.asleep[i])) {
+        if (i >= setup.active || (grid->flags && setup.asleep[i])) {
             assert_true(!list->kept && !list->count);
             continue;
         }
@@ -358,7 +358,7 @@ static size_t check_lists(const struct grid *grid)
                 }
         assert_int_equal(list->count, found);
         compared += (size_t)found;
-        for (; found % GRID_LANES; found++) assert_int_equal(slots[found], scene.n);
+        for (; found % GRID_LANES; found++) assert_int_equal(slots[found], setup.n);
         longest = found > longest ? found : longest;
     }
     assert_int_equal(grid_longest(grid), longest);
@@ -372,15 +372,15 @@ static void check_rim(struct grid *grid)
 {
     static unsigned char asleep[POINTS_MAX];
     memset(asleep, 0, sizeof asleep);
-    for (int k = 0; k < 3; k++) asleep[draw_bits() % scene.active] = 1;
+    for (int k = 0; k < 3; k++) asleep[draw_bits() % setup.active] = 1;
     grid_find_rim(grid, asleep);
-    for (size_t s = 0; s < scene.n; s++) {
+    for (size_t s = 0; s < setup.n; s++) {
         const size_t cell = grid->cell_of[grid->order[s]];
         ptrdiff_t c[3], d[3];
         bool rim = false;
         grid_cell_coordinates(grid, cell, c);
-        for (size_t j = 0; j < scene.n && !rim; j++) {
-            rim = j >= scene.active || asleep[j];
+        for (size_t j = 0; j < setup.n && !rim; j++) {
+            rim = j >= setup.active || asleep[j];
             if (!rim) continue;
             grid_cell_coordinates(grid, grid->cell_of[j], d);
             for (int a = 0; a < grid->box.dim; a++) {
@@ -397,7 +397,7 @@ static void check_rim(struct grid *grid)
     }
 }
 
-static void test_scenes(void **state)
+static void test_setups(void **state)
 {
     (void)state;
     size_t compared = 0;
@@ -421,16 +421,16 @@ static void test_scenes(void **state)
 static struct grid *spread_over(int dim, size_t n, double x, double y, bool periodic)
 {
     const double sides[] = {x, y, 1.5};
-    memset(&scene, 0, sizeof scene);
-    scene.box.dim = dim;
-    scene.n = scene.active = n;
+    memset(&setup, 0, sizeof setup);
+    setup.box.dim = dim;
+    setup.n = setup.active = n;
     for (int a = 0; a < dim; a++) {
-        scene.box.periodic[a] = periodic, scene.box.hi[a] = sides[a];
+        setup.box.periodic[a] = periodic, setup.box.hi[a] = sides[a];
         for (size_t i = 0; i < n; i++)
-            scene.x[a][i] = i == 1 ? sides[a] : i ? draw(0, sides[a]) : 0;
+            setup.x[a][i] = i == 1 ? sides[a] : i ? draw(0, sides[a]) : 0;
     }
-    for (size_t i = 0; i < n; i++) scene.radius[i] = 1 / (1 + 1e-5);
-    end_scene();
+    for (size_t i = 0; i < n; i++) setup.radius[i] = 1 / (1 + 1e-5);
+    end_setup();
     return search(1, 1);
 }
 
@@ -484,10 +484,10 @@ static void test_long_lists(void **state)
 {
     (void)state;
     struct grid *grid = spread_over(2, POINTS_MAX - 1, 7.5, 7.5, true);
-    const double *const x[] = {scene.x[0], scene.x[1]};
+    const double *const x[] = {setup.x[0], setup.x[1]};
     for (int k = 0; k < 3; k++) {
         assert_true(check_lists(grid) > 300000);
-        assert_int_equal(grid_search(grid, scene.n, scene.active, x, scene.radius, NULL, NULL),
+        assert_int_equal(grid_search(grid, setup.n, setup.active, x, setup.radius, NULL, NULL),
                          STATUS_OK);
     }
     grid_destroy(grid);
@@ -499,12 +499,12 @@ static void test_searched_again(void **state)
     (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct grid *grid = spread_over(dim, 100, 10.5, 1.5, false);
-        const double *const x[] = {scene.x[0], scene.x[1], scene.x[2]};
+        const double *const x[] = {setup.x[0], setup.x[1], setup.x[2]};
         for (int k = 0; k < 3; k++) {
             static const double radii[] = {0.3, 0.7, 0.1};
-            for (size_t i = 0; i < scene.n; i++)
-                scene.radius[i] = radii[k] * (1 + 0.1 * (i % 7 == 0));
-            assert_int_equal(grid_search(grid, scene.n, scene.active, x, scene.radius, NULL, NULL),
+            for (size_t i = 0; i < setup.n; i++)
+                setup.radius[i] = radii[k] * (1 + 0.1 * (i % 7 == 0));
+            assert_int_equal(grid_search(grid, setup.n, setup.active, x, setup.radius, NULL, NULL),
                              STATUS_OK);
             check_cells(grid);
             check_order_of_cells(grid);
@@ -520,8 +520,8 @@ static void test_searched_again(void **state)
 static void refused(struct grid *grid, size_t n, const char *message)
 {
     struct error error;
-    const double *const x[] = {scene.x[0], scene.x[1], scene.x[2]};
-    assert_int_equal(grid_search(grid, n, n, x, scene.radius, NULL, &error), STATUS_BAD_INPUT);
+    const double *const x[] = {setup.x[0], setup.x[1], setup.x[2]};
+    assert_int_equal(grid_search(grid, n, n, x, setup.radius, NULL, &error), STATUS_BAD_INPUT);
     assert_string_equal(error.message, message);
 }
 
@@ -529,29 +529,29 @@ static void test_refused(void **state)
 {
     (void)state;
     make(1);
-    scene.n = 5;
+    setup.n = 5;
     for (int a = 0; a < 3; a++) {
-        scene.box.periodic[a] = true, scene.box.lo[a] = 0, scene.box.hi[a] = 2.469128 + a;
-        for (int i = 0; i < 5; i++) scene.x[a][i] = 0.1 * i, scene.radius[i] = 1;
+        setup.box.periodic[a] = true, setup.box.lo[a] = 0, setup.box.hi[a] = 2.469128 + a;
+        for (int i = 0; i < 5; i++) setup.x[a][i] = 0.1 * i, setup.radius[i] = 1;
     }
     struct grid *grid = search(1, 1); /* half a box is not too far */
     refused(grid, 0, "0 particles: allowed are 1 to 2^31 - 2");
     refused(grid, INT32_MAX, "2147483647 particles: allowed are 1 to 2^31 - 2");
-    scene.radius[0] = 1.75;
+    setup.radius[0] = 1.75;
     refused(grid, 5,
             "particle 0 reaches as far as 1.75, beyond half the box (1.23456): more particles "
             "or a smaller eta are needed");
-    scene.radius[0] = 1, scene.radius[4] = 1.25;
+    setup.radius[0] = 1, setup.radius[4] = 1.25;
     refused(grid, 5,
             "particle 4 reaches as far as 1.25, beyond half the box (1.23456): more particles "
             "or a smaller eta are needed");
-    scene.radius[4] = 0;
+    setup.radius[4] = 0;
     refused(grid, 5, "search radius of particle 4 is 0");
-    scene.radius[4] = 0.5, scene.radius[0] = HUGE_VAL;
+    setup.radius[4] = 0.5, setup.radius[0] = HUGE_VAL;
     refused(grid, 5, "search radius of particle 0 is inf");
-    scene.radius[0] = 0.5, scene.x[2][4] = HUGE_VAL;
+    setup.radius[0] = 0.5, setup.x[2][4] = HUGE_VAL;
     refused(grid, 5, "position of particle 4 is inf");
-    scene.x[1][0] = -HUGE_VAL;
+    setup.x[1][0] = -HUGE_VAL;
     refused(grid, 5, "position of particle 0 is -inf");
     grid_destroy(grid);
     grid_destroy(NULL);
@@ -571,7 +571,7 @@ static void test_bytes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_scenes),      cmocka_unit_test(test_number_of_cells),
+        cmocka_unit_test(test_setups),      cmocka_unit_test(test_number_of_cells),
         cmocka_unit_test(test_wide),        cmocka_unit_test(test_long_lists),
         cmocka_unit_test(test_nobody_near), cmocka_unit_test(test_searched_again),
         cmocka_unit_test(test_refused),     cmocka_unit_test(test_bytes),

@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-#include "hydro_scene.h"
+#include "hydro_setup.h"
 #include "memory.h"
 #include "settings.h"
 #include "solver.h"
@@ -34,8 +34,8 @@ static void test_start_of_a_step(void **state)
         struct error error;
         hydro_disordered(&start, 100);
         scheme.integrator = hydro_integrator(integrator_family.members[k]->name);
-        const struct scene scene = hydro_scene(&start, &scheme);
-        assert_int_equal(simulation_create(&scene, &simulation, &error), STATUS_OK);
+        const struct setup setup = hydro_setup(&start, &scheme);
+        assert_int_equal(simulation_create(&setup, &simulation, &error), STATUS_OK);
         assert_int_equal(simulation_run(simulation, 1e-3, NULL, NULL, &error), STATUS_OK);
         const struct particles *a = &simulation->particles;
         assert_int_equal(is_used(a->p_old[0], a->n), scheme.integrator->keeps_start);
@@ -49,12 +49,12 @@ static void test_start_of_a_step(void **state)
 enum { SIDE = 12, N = SIDE * SIDE, ARRAYS_MOST = 64 };
 
 /* Disordered gas in a periodic box, on a line or in a plane, by these keys. */
-static struct scene disordered(int dim, int count, char *const *keys)
+static struct setup disordered(int dim, int count, char *const *keys)
 {
     static double x[3][N], v[3][N], m[N], u[N];
     struct settings settings;
     struct error error;
-    struct scene scene = {.dim = dim,
+    struct setup setup = {.dim = dim,
                           .hi = {1, 1, 1},
                           .gamma = 1.4,
                           .t_end = 1,
@@ -70,27 +70,27 @@ static struct scene disordered(int dim, int count, char *const *keys)
         }
         m[i] = 1. / N, u[i] = 1 + 0.2 * sin(3 * i);
     }
-    for (int k = 0; k < dim; k++) scene.x[k] = x[k], scene.v[k] = v[k];
+    for (int k = 0; k < dim; k++) setup.x[k] = x[k], setup.v[k] = v[k];
     settings_init(&settings);
     if (settings_apply(&settings, count, keys, &error) ||
-        settings_scheme(&settings, dim, &scene.scheme, &error))
+        settings_scheme(&settings, dim, &setup.scheme, &error))
         fail_msg("%s", error.message);
-    return scene;
+    return setup;
 }
 
 /* Gas at rest on a lattice of a line but for a few particles: most of it sleeps. */
-static void lie_still(struct scene *scene)
+static void lie_still(struct setup *setup)
 {
     static double x[N], v[N], u[N];
     for (int i = 0; i < N; i++) x[i] = (i + 0.5) / N, v[i] = i % N < 9 ? 1e-3 * i : 0, u[i] = 1;
-    scene->x[0] = x, scene->v[0] = v, scene->u = u, scene->skip = true;
+    setup->x[0] = x, setup->v[0] = v, setup->u = u, setup->skip = true;
 }
 
-static struct simulation *created(const struct scene *scene)
+static struct simulation *created(const struct setup *setup)
 {
     struct simulation *simulation = NULL;
     struct error error;
-    if (simulation_create(scene, &simulation, &error)) fail_msg("%s", error.message);
+    if (simulation_create(setup, &simulation, &error)) fail_msg("%s", error.message);
     return simulation;
 }
 
@@ -106,7 +106,7 @@ static size_t list(const struct particles *a, double *arrays[ARRAYS_MOST])
     return count;
 }
 
-static struct scene scene_of(size_t integrator, int dim, const char *viscosity, const char *energy)
+static struct setup setup_of(size_t integrator, int dim, const char *viscosity, const char *energy)
 {
     char of_time[64], of_viscosity[64], of_energy[64];
     char *keys[] = {of_time, of_viscosity, of_energy};
@@ -123,8 +123,8 @@ static void test_nothing_beyond(void **state)
     static const char *const viscosities[] = {"time_dependent", "cullen_dehnen"};
     for (size_t k = 0; k < integrator_family.n; k++)
         for (int v = 0; v < 2; v++) {
-            const struct scene scene = scene_of(k, 2, viscosities[v], "internal");
-            struct simulation *simulation = created(&scene);
+            const struct setup setup = setup_of(k, 2, viscosities[v], "internal");
+            struct simulation *simulation = created(&setup);
             const struct particles *a = &simulation->particles;
             double *arrays[ARRAYS_MOST];
             struct error error;
@@ -147,8 +147,8 @@ static void test_without_energy(void **state)
         for (int dim = 1; dim <= 2; dim++) {
             size_t k = 0;
             while (strcmp(integrator_family.members[k]->name, "predicted_midpoint") != 0) k++;
-            const struct scene scene = scene_of(k, dim, "none", energies[total]);
-            struct simulation *simulation = created(&scene);
+            const struct setup setup = setup_of(k, dim, "none", energies[total]);
+            struct simulation *simulation = created(&setup);
             const struct particles *a = &simulation->particles;
             struct error error;
             char said[80];
@@ -188,10 +188,10 @@ static void test_arrays_that_are_counted(void **state)
                 if (dim == 1 && strcmp(keys[0], "viscosity=cullen_dehnen") == 0) continue;
                 snprintf(of_time, sizeof of_time, "integrator=%s",
                          integrator_family.members[integrator]->name);
-                struct scene scene = disordered(dim, 4, keys);
-                if (still) lie_still(&scene);
-                struct simulation *simulation = created(&scene),
-                                  bare = {.scheme = scene.scheme, .plan = plan_of_scene(&scene)};
+                struct setup setup = disordered(dim, 4, keys);
+                if (still) lie_still(&setup);
+                struct simulation *simulation = created(&setup),
+                                  bare = {.scheme = setup.scheme, .plan = plan_of_setup(&setup)};
                 double *arrays[ARRAYS_MOST];
                 struct error error;
                 assert_int_equal(simulation_run(simulation, 5e-3, NULL, NULL, &error), STATUS_OK);
@@ -199,10 +199,10 @@ static void test_arrays_that_are_counted(void **state)
                 size_t used = 3 + (size_t)dim;
                 for (size_t i = 0; i < count; i++) used += is_used(arrays[i], N);
                 const double room = bare.plan.sums->bytes(&bare, N);
-                if (memory_bytes(&scene) - room != 8. * N * (double)used)
+                if (memory_bytes(&setup) - room != 8. * N * (double)used)
                     fail_msg("%dD %s %s %s %s%s: %g arrays, not %zu", dim, keys[0], keys[1],
                              keys[2], keys[3], still ? ", sleeping" : "",
-                             (memory_bytes(&scene) - room) / (8 * N), used);
+                             (memory_bytes(&setup) - room) / (8 * N), used);
                 simulation_destroy(simulation);
             }
 }

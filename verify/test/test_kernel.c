@@ -269,19 +269,19 @@ static void test_descriptors(void **state)
     }
 }
 
-/* Each kernel has the stamps of its own shape; no other pair of functions has any. */
-static void test_stamps(void **state)
+/* Each kernel has the specialisations of its own shape; no other pair of functions has any. */
+static void test_specialisations(void **state)
 {
     (void)state;
     for (int k = 0; k < KINDS; k++) {
         struct kernel kernel, other;
         assert_int_equal(kernel_select(&kernel, kinds[k].name, 5, NULL), STATUS_OK);
         assert_int_equal(kernel_select(&other, kinds[(k + 1) % KINDS].name, 5, NULL), STATUS_OK);
-        assert_int_equal(kernel_stamp(&kernel), kernel_index(kinds[k].name));
+        assert_int_equal(kernel_specialisation(&kernel), kernel_index(kinds[k].name));
         other.w = kernel.w;
-        assert_int_equal(kernel_stamp(&other), -1);
+        assert_int_equal(kernel_specialisation(&other), -1);
         kernel.w = NULL;
-        assert_int_equal(kernel_stamp(&kernel), -1);
+        assert_int_equal(kernel_specialisation(&kernel), -1);
     }
     assert_int_equal(kernel_index("cubic"), -1);
 }
@@ -315,10 +315,10 @@ static void test_plugins(void **state)
     for (int k = 0; k <= KERNEL_PLUGINS_MAX; k++) {
         snprintf(names[k], sizeof names[k], "guest_%d", k);
         plugins[k] = (struct kernel){.member = {names[k], "", ""},
-                                    .w = plugin_shape,
-                                    .plugin_w = one,
-                                    .plugin_dw_dh = k ? plugin_dh : NULL,
-                                    .constant = {0, 0, 1 / M_PI}};
+                                     .w = plugin_shape,
+                                     .plugin_w = one,
+                                     .plugin_dw_dh = k ? plugin_dh : NULL,
+                                     .constant = {0, 0, 1 / M_PI}};
         if (k == 5) /* one without a plug-in: normalised from knot to knot */
             plugins[k] = (struct kernel){
                 .member = {names[k], "", ""}, .w = cubic.w, .knot_count = 2, .knots = knots};
@@ -334,7 +334,7 @@ static void test_plugins(void **state)
             near_relative(kernel.constant[dim], cubic.constant[dim], 1e-14);
         if (k == 5) continue;
         assert_true(kernel.constant[1] == 0 && kernel.constant[2] == 1 / M_PI);
-        assert_int_equal(kernel_stamp(&kernel), -1);
+        assert_int_equal(kernel_specialisation(&kernel), -1);
         if (k) assert_true(kernel_dh(&kernel, 2, 3, 1) == 231);
     }
     assert_int_equal(kernel_family.n, KINDS);
@@ -352,10 +352,10 @@ int main(int argc, char **argv)
     if (argc != 2) return 2;
     table_path = argv[1];
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_table),       cmocka_unit_test(test_sinc_constants),
-        cmocka_unit_test(test_sinc_limits), cmocka_unit_test(test_select),
-        cmocka_unit_test(test_edges),       cmocka_unit_test(test_descriptors),
-        cmocka_unit_test(test_stamps),      cmocka_unit_test(test_plugins),
+        cmocka_unit_test(test_table),           cmocka_unit_test(test_sinc_constants),
+        cmocka_unit_test(test_sinc_limits),     cmocka_unit_test(test_select),
+        cmocka_unit_test(test_edges),           cmocka_unit_test(test_descriptors),
+        cmocka_unit_test(test_specialisations), cmocka_unit_test(test_plugins),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -257,8 +257,8 @@ static void sound(void **state)
         struct error error = {0};
         if (initial_create(&initial, &run.problem, &run.settings, &error))
             fail_msg("%s", error.message);
-        const struct scene scene = run_scene(&run, &initial);
-        if (simulation_create(&scene, &simulation, &error)) fail_msg("%s", error.message);
+        const struct setup setup = run_setup(&run, &initial);
+        if (simulation_create(&setup, &simulation, &error)) fail_msg("%s", error.message);
         simulation_snapshot(simulation, &s);
         simulation_conservation(simulation, &sums);
         double scale = 0, mass = 0, energy = 0;

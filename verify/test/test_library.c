@@ -287,14 +287,14 @@ static const char *const keys[] = {"kernel=cubic_spline", "eta=2.4", "integrator
                                    "energy=internal", NULL};
 
 /* In an order that is not that of their places. */
-static struct sphproof_scene scene_of_a_wave(void)
+static struct sphproof_setup setup_of_a_wave(void)
 {
     for (int k = 0; k < N; k++) {
         const int i = (k * 27) % N;
         x[k] = (i + 0.5) / N, m[k] = 1. / N, u[k] = 1 + 0.1 * cos(2 * 3.14159265358979 * x[k]);
         v[k] = 0.01 * k / N, y[k] = 0.5;
     }
-    return (struct sphproof_scene){.dim = 1,
+    return (struct sphproof_setup){.dim = 1,
                                    .n = N,
                                    .x = {x},
                                    .v = {v},
@@ -309,13 +309,13 @@ static struct sphproof_scene scene_of_a_wave(void)
 static void rates_conserve(void **state)
 {
     (void)state;
-    const struct sphproof_scene scene = scene_of_a_wave();
+    const struct sphproof_setup setup = setup_of_a_wave();
     double force[N], dU[N], P[N], total = 0, power = 0, largest = 0;
     const struct sphproof_rates rates = {.force = {force}, .dU = dU, .P = P};
     struct sphproof_error error;
-    assert_int_equal(sphproof_rates_evaluate(&scene, &rates, &error), SPHPROOF_OK);
+    assert_int_equal(sphproof_rates_evaluate(&setup, &rates, &error), SPHPROOF_OK);
     for (int i = 0; i < N; i++) {
-        assert_true(fabs(P[i] - 0.4 * u[i]) < 0.01); /* the order is the scene's */
+        assert_true(fabs(P[i] - 0.4 * u[i]) < 0.01); /* the order is the setup's */
         total += force[i], power += v[i] * force[i] + dU[i],
             largest = fmax(largest, fabs(force[i]));
     }
@@ -325,12 +325,12 @@ static void rates_conserve(void **state)
 static void a_simulation_conserves(void **state)
 {
     (void)state;
-    struct sphproof_scene scene = scene_of_a_wave();
+    struct sphproof_setup setup = setup_of_a_wave();
     struct sphproof_simulation *simulation;
     struct sphproof_error error;
     double place[N], rho[N];
     const struct sphproof_state wanted = {.x = {place}, .rho = rho};
-    assert_int_equal(sphproof_simulations_create(&scene, &simulation, &error), SPHPROOF_OK);
+    assert_int_equal(sphproof_simulations_create(&setup, &simulation, &error), SPHPROOF_OK);
     const struct sphproof_sums before = sphproof_simulations_sums(simulation);
     assert_true(sphproof_simulations_state(simulation, &wanted) == 0);
     for (int i = 0; i < N; i++) assert_true(place[i] == x[i] && fabs(rho[i] - 1) < 0.01);
@@ -348,13 +348,13 @@ static void times_of_a_simulation(void **state)
 {
     (void)state;
     const double refused[] = {-1e-300, 0.01, nextafter(0.02, 0), (double)NAN, HUGE_VAL, -HUGE_VAL};
-    struct sphproof_scene scene = scene_of_a_wave();
+    struct sphproof_setup setup = setup_of_a_wave();
     struct sphproof_simulation *simulation;
     struct sphproof_error error;
     double place[N], later[N], speed[N], faster[N];
     const struct sphproof_state at_first = {.x = {place}, .v = {speed}},
                                 at_last = {.x = {later}, .v = {faster}};
-    assert_int_equal(sphproof_simulations_create(&scene, &simulation, &error), SPHPROOF_OK);
+    assert_int_equal(sphproof_simulations_create(&setup, &simulation, &error), SPHPROOF_OK);
     for (int step = 0; step < 2; step++) {
         const double time = step ? 0.02 : 0;
         assert_int_equal(sphproof_simulations_run(simulation, time, &error), SPHPROOF_OK);
@@ -379,19 +379,19 @@ static void gas_falls(void **state)
         enum { SIDE = 10, MOST = SIDE * SIDE * SIDE };
         static double place[3][MOST], mass[MOST], energy[MOST];
         const double gravity[] = {0.25, -0.5, 0.75}, time = 0.03;
-        struct sphproof_scene scene = {.dim = dim, .n = 1, .m = mass, .u = energy, .gamma = 1.4};
+        struct sphproof_setup setup = {.dim = dim, .n = 1, .m = mass, .u = energy, .gamma = 1.4};
         struct sphproof_simulation *simulation;
         struct sphproof_error error;
         for (int a = 0; a < dim; a++) {
-            scene.x[a] = place[a], scene.hi[a] = 1, scene.gravity[a] = gravity[a];
-            scene.n *= SIDE;
+            setup.x[a] = place[a], setup.hi[a] = 1, setup.gravity[a] = gravity[a];
+            setup.n *= SIDE;
         }
-        for (size_t i = 0; i < scene.n; i++) {
+        for (size_t i = 0; i < setup.n; i++) {
             const size_t cell[] = {i % SIDE, i / SIDE % SIDE, i / SIDE / SIDE};
             for (int a = 0; a < dim; a++) place[a][i] = ((double)cell[a] + 0.5) / SIDE;
-            mass[i] = 1. / (double)scene.n, energy[i] = 1;
+            mass[i] = 1. / (double)setup.n, energy[i] = 1;
         }
-        if (sphproof_simulations_create(&scene, &simulation, &error)) fail_msg("%s", error.message);
+        if (sphproof_simulations_create(&setup, &simulation, &error)) fail_msg("%s", error.message);
         if (sphproof_simulations_run(simulation, time, &error)) fail_msg("%s", error.message);
         const struct sphproof_sums sums = sphproof_simulations_sums(simulation);
         for (int a = 0; a < 3; a++)
@@ -400,31 +400,31 @@ static void gas_falls(void **state)
     }
 }
 
-static void a_scene_that_is_none_is_refused(void **state)
+static void a_setup_that_is_none_is_refused(void **state)
 {
     (void)state;
     static const char *const foreign[] = {"n=100", NULL}, *const unknown[] = {"kernle=ia", NULL};
     const struct sphproof_rates rates = {0};
     struct sphproof_error error;
-    struct sphproof_scene scene = scene_of_a_wave();
-    scene.keys = foreign;
-    assert_int_equal(sphproof_rates_evaluate(&scene, &rates, &error), SPHPROOF_BAD_INPUT);
+    struct sphproof_setup setup = setup_of_a_wave();
+    setup.keys = foreign;
+    assert_int_equal(sphproof_rates_evaluate(&setup, &rates, &error), SPHPROOF_BAD_INPUT);
     assert_non_null(strstr(error.message, "n is no key of a scheme"));
-    scene.keys = unknown;
-    assert_int_equal(sphproof_rates_evaluate(&scene, &rates, &error), SPHPROOF_BAD_INPUT);
-    scene = scene_of_a_wave(), scene.boundary[0] = "rigid";
-    assert_int_equal(sphproof_rates_evaluate(&scene, &rates, &error), SPHPROOF_BAD_INPUT);
-    scene = scene_of_a_wave(), scene.dim = 2;
-    assert_int_equal(sphproof_rates_evaluate(&scene, &rates, &error), SPHPROOF_BAD_INPUT);
-    scene.x[1] = y, scene.v[1] = NULL, scene.hi[1] = 1, scene.boundary[1] = "reflecting";
-    assert_int_equal(sphproof_rates_evaluate(&scene, &rates, &error), SPHPROOF_OK);
+    setup.keys = unknown;
+    assert_int_equal(sphproof_rates_evaluate(&setup, &rates, &error), SPHPROOF_BAD_INPUT);
+    setup = setup_of_a_wave(), setup.boundary[0] = "rigid";
+    assert_int_equal(sphproof_rates_evaluate(&setup, &rates, &error), SPHPROOF_BAD_INPUT);
+    setup = setup_of_a_wave(), setup.dim = 2;
+    assert_int_equal(sphproof_rates_evaluate(&setup, &rates, &error), SPHPROOF_BAD_INPUT);
+    setup.x[1] = y, setup.v[1] = NULL, setup.hi[1] = 1, setup.boundary[1] = "reflecting";
+    assert_int_equal(sphproof_rates_evaluate(&setup, &rates, &error), SPHPROOF_OK);
     y[5] = 1.5;
-    assert_int_equal(sphproof_rates_evaluate(&scene, &rates, &error), SPHPROOF_BAD_INPUT);
+    assert_int_equal(sphproof_rates_evaluate(&setup, &rates, &error), SPHPROOF_BAD_INPUT);
     assert_non_null(strstr(error.message, "particle 5"));
-    scene = scene_of_a_wave(), m[3] = (double)NAN;
-    assert_int_equal(sphproof_rates_evaluate(&scene, &rates, &error), SPHPROOF_BAD_INPUT);
-    scene = scene_of_a_wave(), scene.gamma = 1;
-    assert_int_equal(sphproof_rates_evaluate(&scene, &rates, NULL), SPHPROOF_BAD_INPUT);
+    setup = setup_of_a_wave(), m[3] = (double)NAN;
+    assert_int_equal(sphproof_rates_evaluate(&setup, &rates, &error), SPHPROOF_BAD_INPUT);
+    setup = setup_of_a_wave(), setup.gamma = 1;
+    assert_int_equal(sphproof_rates_evaluate(&setup, &rates, NULL), SPHPROOF_BAD_INPUT);
 }
 
 int main(void)
@@ -441,7 +441,7 @@ int main(void)
         cmocka_unit_test(a_simulation_conserves),
         cmocka_unit_test(times_of_a_simulation),
         cmocka_unit_test(gas_falls),
-        cmocka_unit_test(a_scene_that_is_none_is_refused),
+        cmocka_unit_test(a_setup_that_is_none_is_refused),
     };
     return cmocka_run_group_tests_name("library", tests, NULL, NULL);
 }

@@ -180,56 +180,56 @@ static void refused_solutions(void **state)
     assert_int_equal(NOH(1.4, 3, 0), SPHPROOF_OK);
 }
 
-/* ---- scenes ---- */
+/* ---- setups ---- */
 
 enum { SIDE = 8, MOST = SIDE * SIDE * SIDE };
 static double x[3][MOST], v[3][MOST], m[MOST], u[MOST];
 
 /* Shaken lattices in a box that begins nowhere in particular, in an order of their own. */
-static struct sphproof_scene drawn_scene(int dim)
+static struct sphproof_setup drawn_setup(int dim)
 {
-    struct sphproof_scene scene = {.dim = dim, .n = 1, .m = m, .u = u, .gamma = 1.5};
+    struct sphproof_setup setup = {.dim = dim, .n = 1, .m = m, .u = u, .gamma = 1.5};
     for (int a = 0; a < dim; a++) {
-        scene.lo[a] = uniform(-1, 1), scene.hi[a] = scene.lo[a] + uniform(1, 1.2);
-        scene.x[a] = x[a], scene.v[a] = v[a];
-        scene.n *= SIDE;
+        setup.lo[a] = uniform(-1, 1), setup.hi[a] = setup.lo[a] + uniform(1, 1.2);
+        setup.x[a] = x[a], setup.v[a] = v[a];
+        setup.n *= SIDE;
     }
-    for (size_t k = 0; k < scene.n; k++) {
-        const size_t i = k * 27 % scene.n, cell[] = {i % SIDE, i / SIDE % SIDE, i / SIDE / SIDE};
+    for (size_t k = 0; k < setup.n; k++) {
+        const size_t i = k * 27 % setup.n, cell[] = {i % SIDE, i / SIDE % SIDE, i / SIDE / SIDE};
         for (int a = 0; a < dim; a++) {
-            x[a][k] = scene.lo[a] +
-                      ((double)cell[a] + uniform(0.4, 0.6)) / SIDE * (scene.hi[a] - scene.lo[a]);
+            x[a][k] = setup.lo[a] +
+                      ((double)cell[a] + uniform(0.4, 0.6)) / SIDE * (setup.hi[a] - setup.lo[a]);
             v[a][k] = uniform(-0.1, 0.1);
         }
-        m[k] = uniform(1, 1.1) / (double)scene.n, u[k] = uniform(1, 2);
+        m[k] = uniform(1, 1.1) / (double)setup.n, u[k] = uniform(1, 2);
     }
-    return scene;
+    return setup;
 }
 
-static double away(const struct sphproof_scene *scene, size_t i, size_t j, int a)
+static double away(const struct sphproof_setup *setup, size_t i, size_t j, int a)
 {
-    const double length = scene->hi[a] - scene->lo[a], d = x[a][i] - x[a][j];
+    const double length = setup->hi[a] - setup->lo[a], d = x[a][i] - x[a][j];
     return d - length * round(d / length);
 }
 
 /* Sum of mass and number of those within h, images included. */
-static double sum_of(const struct sphproof_scene *scene, const struct sphproof_kernel *kernel,
+static double sum_of(const struct sphproof_setup *setup, const struct sphproof_kernel *kernel,
                      size_t i, double h, double *number)
 {
     double sum = 0;
     *number = 0;
-    for (size_t j = 0; j < scene->n; j++) {
+    for (size_t j = 0; j < setup->n; j++) {
         double squares = 0;
-        for (int a = 0; a < scene->dim; a++) squares += away(scene, i, j, a) * away(scene, i, j, a);
+        for (int a = 0; a < setup->dim; a++) squares += away(setup, i, j, a) * away(setup, i, j, a);
         const double r = sqrt(squares);
-        sum += m[j] * sphproof_kernels_value(kernel, r, h, scene->dim);
+        sum += m[j] * sphproof_kernels_value(kernel, r, h, setup->dim);
         *number += r < h;
     }
     return sum;
 }
 
-/* Both at the start: rates of the scene, and the state of a simulation of it. */
-static void scenes(void **state)
+/* Both at the start: rates of the setup, and the state of a simulation of it. */
+static void setups(void **state)
 {
     static const char *const keys[] = {"kernel=cubic_spline", "eta=1.7",
                                        "volume_element=mass", "energy=internal",
@@ -247,11 +247,11 @@ static void scenes(void **state)
     assert_int_equal(sphproof_kernels_find("cubic_spline", &kernel, NULL), SPHPROOF_OK);
     for (int dim = 1; dim <= 3; dim++)
         for (int left_out = 0; left_out < 5; left_out++) { /* 3: at rest; 4: h is coarse */
-            struct sphproof_scene scene = drawn_scene(dim);
+            struct sphproof_setup setup = drawn_setup(dim);
             struct sphproof_simulation *simulation;
             double force[3] = {0}, power = 0, off = 0;
-            scene.keys = left_out == 4 ? coarse : keys;
-            if (left_out == 3) scene.v[0] = NULL;
+            setup.keys = left_out == 4 ? coarse : keys;
+            if (left_out == 3) setup.v[0] = NULL;
             for (int k = 0; k < 12; k++)
                 for (int i = 0; i <= MOST; i++) got[k][i] = -77;
             const struct sphproof_rates rates = {.h = got[0],
@@ -260,10 +260,10 @@ static void scenes(void **state)
                                                  .dU = got[3],
                                                  .neighbours = left_out == 2 ? NULL : got[4],
                                                  .force = {got[5], got[6], got[7]}};
-            if (sphproof_rates_evaluate(&scene, &rates, &error)) fail_msg("%s", error.message);
-            for (size_t i = 0; i < scene.n; i++) {
+            if (sphproof_rates_evaluate(&setup, &rates, &error)) fail_msg("%s", error.message);
+            for (size_t i = 0; i < setup.n; i++) {
                 double number;
-                const double h = got[0][i], rho = sum_of(&scene, kernel, i, h, &number);
+                const double h = got[0][i], rho = sum_of(&setup, kernel, i, h, &number);
                 off = fmax(off, fabs(h / (1.7 * pow(m[i] / rho, 1. / dim)) - 1));
                 if (left_out == 4) continue;
                 if (left_out != 1) near_relative(got[1][i], rho, 1e-11);
@@ -272,12 +272,12 @@ static void scenes(void **state)
                 power += got[3][i];
                 for (int a = 0; a < dim; a++) {
                     force[a] += got[5 + a][i];
-                    power += got[5 + a][i] * (scene.v[a] ? v[a][i] : 0);
+                    power += got[5 + a][i] * (setup.v[a] ? v[a][i] : 0);
                 }
             }
             assert_true(left_out == 4 ? off > 2e-13 : off < 3e-14);
             for (int k = 0; k < 12; k++)
-                assert_true(got[k][scene.n] == -77 && (k < 5 + dim || got[k][0] == -77));
+                assert_true(got[k][setup.n] == -77 && (k < 5 + dim || got[k][0] == -77));
             for (int a = 0; a < dim && left_out < 4; a++) near_absolute(force[a], 0, 1e-13);
             near_absolute(power, 0, 1e-13);
 
@@ -289,14 +289,14 @@ static void scenes(void **state)
                                                   .u = left_out == 1 ? NULL : got[7],
                                                   .P = got[8],
                                                   .h = left_out == 2 ? NULL : got[9]};
-            scene.threads = left_out;
-            if (sphproof_simulations_create(&scene, &simulation, &error))
+            setup.threads = left_out;
+            if (sphproof_simulations_create(&setup, &simulation, &error))
                 fail_msg("%s", error.message);
             assert_true(sphproof_simulations_state(simulation, &wanted) == 0);
-            for (size_t i = 0; i < scene.n; i++) {
+            for (size_t i = 0; i < setup.n; i++) {
                 for (int a = 0; a < dim; a++) {
                     near_relative(got[a][i], x[a][i], 1e-15);
-                    near_absolute(got[3 + a][i], scene.v[a] ? v[a][i] : 0, 1e-15);
+                    near_absolute(got[3 + a][i], setup.v[a] ? v[a][i] : 0, 1e-15);
                 }
                 assert_true(got[6][i] > 0.5 && got[6][i] < 1.5);
                 if (left_out != 1) near_relative(got[7][i], u[i], 1e-14);
@@ -305,50 +305,50 @@ static void scenes(void **state)
                 near_relative(got[9][i], 1.7 * pow(m[i] / got[6][i], 1. / dim), 1e-2);
             }
             for (int k = 0; k < 12; k++)
-                assert_true(got[k][scene.n] == -77 &&
+                assert_true(got[k][setup.n] == -77 &&
                             (k > 9 || k % 3 < dim || got[k][0] == -77 || k > 5));
             sphproof_simulations_free(simulation);
         }
     sphproof_kernels_free(kernel);
 }
 
-static void refused_scenes(void **state)
+static void refused_setups(void **state)
 {
     struct sphproof_simulation *simulation;
     (void)state;
     for (int row = 0; row < 12; row++) {
-        struct sphproof_scene scene = drawn_scene(2);
+        struct sphproof_setup setup = drawn_setup(2);
         const struct sphproof_rates none = {0};
         static const char *const narrow[] = {"kernel=cubic_spline", "eta=1.7", NULL};
         const char *says = NULL;
-        scene.keys = narrow;
-        if (row == 0) scene.dim = 0, says = "dim = 0: allowed: 1, 2, 3";
-        if (row == 1) scene.dim = 4, says = "dim = 4: allowed: 1, 2, 3";
-        if (row == 2) scene.m = NULL, says = "m and u of its particles";
-        if (row == 3) scene.u = NULL, says = "m and u of its particles";
-        if (row == 4) scene.x[0] = NULL, says = "in 2D needs x[0]";
-        if (row == 5) scene.x[1] = NULL, says = "in 2D needs x[1]";
-        if (row == 6) x[1][0] = nextafter(scene.lo[1], -2), says = "particle 0: x[1] = ";
-        if (row == 7) x[0][63] = nextafter(scene.hi[0], 3), says = "particle 63: x[0] = ";
-        if (row == 8) scene.boundary[0] = "fixed", says = "boundary 'fixed': allowed: periodic";
-        if (row == 9) scene.boundary[1] = "", says = "boundary '': allowed: periodic";
+        setup.keys = narrow;
+        if (row == 0) setup.dim = 0, says = "dim = 0: allowed: 1, 2, 3";
+        if (row == 1) setup.dim = 4, says = "dim = 4: allowed: 1, 2, 3";
+        if (row == 2) setup.m = NULL, says = "m and u of its particles";
+        if (row == 3) setup.u = NULL, says = "m and u of its particles";
+        if (row == 4) setup.x[0] = NULL, says = "in 2D needs x[0]";
+        if (row == 5) setup.x[1] = NULL, says = "in 2D needs x[1]";
+        if (row == 6) x[1][0] = nextafter(setup.lo[1], -2), says = "particle 0: x[1] = ";
+        if (row == 7) x[0][63] = nextafter(setup.hi[0], 3), says = "particle 63: x[0] = ";
+        if (row == 8) setup.boundary[0] = "fixed", says = "boundary 'fixed': allowed: periodic";
+        if (row == 9) setup.boundary[1] = "", says = "boundary '': allowed: periodic";
         if (row == 10) /* ends belong to the box */
-            x[0][0] = scene.lo[0], x[0][7] = scene.hi[0], x[1][7] += 0.01;
+            x[0][0] = setup.lo[0], x[0][7] = setup.hi[0], x[1][7] += 0.01;
         if (row == 11) /* and beyond those that are open is room */
-            scene.boundary[1] = "open", x[1][0] = scene.lo[1] - 0.05;
+            setup.boundary[1] = "open", x[1][0] = setup.lo[1] - 0.05;
         const enum sphproof_status status =
-            sphproof_simulations_create(&scene, &simulation, &error);
+            sphproof_simulations_create(&setup, &simulation, &error);
         if (says) {
             refused(status, says);
             assert_null(simulation);
-            refused(sphproof_rates_evaluate(&scene, &none, &error), says);
+            refused(sphproof_rates_evaluate(&setup, &none, &error), says);
         } else if (status) {
             fail_msg("row %d: %s", row, error.message);
         }
         sphproof_simulations_free(simulation);
     }
-    const struct sphproof_scene scene = drawn_scene(1);
-    assert_int_equal(sphproof_simulations_create(&scene, &simulation, &error), SPHPROOF_OK);
+    const struct sphproof_setup setup = drawn_setup(1);
+    assert_int_equal(sphproof_simulations_create(&setup, &simulation, &error), SPHPROOF_OK);
     refused(sphproof_simulations_run(simulation, 2e300, &error), "t = 2e+300: allowed: 0 or later");
     sphproof_simulations_free(simulation);
 }
@@ -364,28 +364,28 @@ static void clouds(void **state)
     assert_int_equal(sphproof_kernels_find("wendland_c4", &kernel, NULL), SPHPROOF_OK);
     for (int dim = 1; dim <= 3; dim++)
         for (int periodic = 0; periodic < 2; periodic++) {
-            const struct sphproof_scene scene = drawn_scene(dim);
+            const struct sphproof_setup setup = drawn_setup(dim);
             struct sphproof_cloud cloud = {.dim = dim,
-                                           .n = scene.n,
+                                           .n = setup.n,
                                            .x = {x[0], x[1], x[2]},
                                            .volume = volume,
                                            .h = h,
                                            .periodic = periodic};
             double *const to[] = {got[0], got[1], got[2]};
-            memcpy(cloud.lo, scene.lo, sizeof cloud.lo);
-            memcpy(cloud.hi, scene.hi, sizeof cloud.hi);
-            for (size_t i = 0; i < scene.n; i++)
+            memcpy(cloud.lo, setup.lo, sizeof cloud.lo);
+            memcpy(cloud.hi, setup.hi, sizeof cloud.hi);
+            for (size_t i = 0; i < setup.n; i++)
                 h[i] = uniform(0.2, 0.3), volume[i] = uniform(1, 2), f[i] = uniform(-1, 1);
             for (int k = 0; k < 4; k++)
                 for (int i = 0; i <= MOST; i++) got[k][i] = -77;
             assert_int_equal(sphproof_gradients_apply("standard", kernel, &cloud, f, to, &error),
                              SPHPROOF_OK);
-            for (size_t i = 0; i < scene.n; i++) {
+            for (size_t i = 0; i < setup.n; i++) {
                 double sum[3] = {0};
-                for (size_t j = 0; j < scene.n; j++) {
+                for (size_t j = 0; j < setup.n; j++) {
                     double d[3] = {0}, squares = 0;
                     for (int a = 0; a < dim; a++) {
-                        d[a] = periodic ? away(&scene, i, j, a) : x[a][i] - x[a][j];
+                        d[a] = periodic ? away(&setup, i, j, a) : x[a][i] - x[a][j];
                         squares += d[a] * d[a];
                     }
                     const double r = sqrt(squares);
@@ -396,14 +396,14 @@ static void clouds(void **state)
                 for (int a = 0; a < dim; a++) near_absolute(got[a][i], sum[a], 1e-9);
             }
             for (int k = 0; k < 4; k++)
-                assert_true(got[k][scene.n] == -77 && (k < dim || got[k][0] == -77));
+                assert_true(got[k][setup.n] == -77 && (k < dim || got[k][0] == -77));
             cloud.volume = cloud.h = NULL;
             assert_int_equal(
                 sphproof_gradients_density(kernel, 2, &cloud, m, got[0], got[1], &error),
                 SPHPROOF_OK);
-            for (size_t i = 0; i < scene.n && periodic; i++) {
+            for (size_t i = 0; i < setup.n && periodic; i++) {
                 double number;
-                near_relative(got[1][i], sum_of(&scene, kernel, i, got[0][i], &number), 1e-8);
+                near_relative(got[1][i], sum_of(&setup, kernel, i, got[0][i], &number), 1e-8);
                 near_relative(got[0][i], 2 * pow(m[i] / got[1][i], 1. / dim), 1e-8);
             }
             refused(sphproof_gradients_apply("standard", kernel, &cloud, f, to, &error),
@@ -717,7 +717,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(solutions), cmocka_unit_test(refused_solutions),
-        cmocka_unit_test(scenes),    cmocka_unit_test(refused_scenes),
+        cmocka_unit_test(setups),    cmocka_unit_test(refused_setups),
         cmocka_unit_test(clouds),    cmocka_unit_test(figures_of_an_operator),
         cmocka_unit_test(promises),
     };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What stands around the sums in 1D, on scenes drawn at random: order, images at the ends, reach,
+ * What stands around the sums in 1D, on setups drawn at random: order, images at the ends, reach,
  * who sleeps, each against a plain count over all particles. */
 #include <math.h>
 #include <setjmp.h>
@@ -17,7 +17,7 @@
 #include "made_simulation.h"
 #include "near.h"
 
-enum { GHOSTS = 256, SCENES = 40 };
+enum { GHOSTS = 256, SETUPS = 40 };
 
 static uint64_t drawn = 1;
 
@@ -74,7 +74,7 @@ static void unmade(struct simulation *simulation)
 static void sorted_across_the_ends(void **state)
 {
     (void)state;
-    for (int scene = 0; scene < SCENES; scene++) {
+    for (int setup = 0; setup < SETUPS; setup++) {
         struct simulation s;
         const int n = draw_count(2, 90);
         made(&s, n);
@@ -128,14 +128,14 @@ static void no_order_of_what_is_no_position(void **state)
 static void crossings_are_counted(void **state)
 {
     (void)state;
-    for (int scene = 0; scene < SCENES; scene++) {
+    for (int setup = 0; setup < SETUPS; setup++) {
         struct simulation s;
         const int n = draw_count(3, 200);
         made(&s, n);
         double *x = s.particles.x[0];
         for (int i = 0; i < n; i++)
             if (draw(0, 1) < 0.2) x[i] = draw(0, 2);
-        if (scene % 3 == 0) x[n / 2] = NAN;
+        if (setup % 3 == 0) x[n / 2] = NAN;
         const int first = draw_count(0, n - 2), len = draw_count(1, n - 1 - first);
         int count = 0;
         for (int i = first; i < first + len; i++) count += !(x[i] <= x[i + 1]);
@@ -397,7 +397,7 @@ static int farthest(const struct particles *a, const struct range *range)
 static void reach_is_what_widths_ask_for(void **state)
 {
     (void)state;
-    for (int scene = 0; scene < SCENES; scene++) {
+    for (int setup = 0; setup < SETUPS; setup++) {
         struct simulation s;
         made(&s, draw_count(20, 300));
         const struct particles *a = &s.particles;
@@ -435,14 +435,14 @@ static void reach_is_what_widths_ask_for(void **state)
 static void pairs_reach_as_far_as_the_wider_one(void **state)
 {
     (void)state;
-    for (int scene = 0; scene < 10 * SCENES; scene++) {
+    for (int setup = 0; setup < 10 * SETUPS; setup++) {
         struct simulation s;
         made(&s, draw_count(40, 700));
         struct line *line = line_of(&s);
         const ptrdiff_t count = line->range_count;
         for (ptrdiff_t b = 0; b < count; b++) {
             struct range *range = &line->ranges[b];
-            if (scene % 2) range->len = draw_count(1, range->len); /* of spans that end anywhere */
+            if (setup % 2) range->len = draw_count(1, range->len); /* of spans that end anywhere */
             range->reach = draw(0, 1) < 0.2   ? draw_count(1, 150)
                            : draw(0, 1) < 0.2 ? BATCH_MAX * draw_count(1, 2)
                                               : draw_count(1, 4);
@@ -527,7 +527,7 @@ static void see(void *context, size_t i, const struct description *of)
 static void neighbours_are_described(void **state)
 {
     (void)state;
-    for (int scene = 0; scene < SCENES; scene++) {
+    for (int setup = 0; setup < SETUPS; setup++) {
         struct simulation s;
         made(&s, draw_count(20, 100));
         ghosts_fill(&s.particles, s.particles.x[0], GHOSTS, 2);
@@ -540,7 +540,7 @@ static void neighbours_are_described(void **state)
 
 /* --- sleep ------------------------------------------------------------------------------------ */
 
-/* Each limit exactly, and the next number beyond it, in d dimensions; where the scene's mean sound
+/* Each limit exactly, and the next number beyond it, in d dimensions; where the setup's mean sound
  * speed and pressure are more than the particle's own, they count. */
 static void disturbed_beyond_a_limit(void **state)
 {
@@ -585,7 +585,7 @@ static void disturbed_beyond_a_limit(void **state)
                     }
 }
 
-/* A scene in which all can sleep, at speed v, but those groups that are given: dp/dt is not 0 in
+/* A setup in which all can sleep, at speed v, but those groups that are given: dp/dt is not 0 in
  * one particle of theirs. */
 static void at_rest(struct simulation *s, const bool *disturbed, double v)
 {
@@ -695,27 +695,27 @@ static void groups_sleep_and_wake(void **state)
 {
     (void)state;
     enum { MOST = 100 };
-    for (int scene = 0; scene < 10 * SCENES; scene++) {
+    for (int setup = 0; setup < 10 * SETUPS; setup++) {
         struct simulation s;
         struct error error;
-        const int n = scene % 4 ? draw_count(16, MOST * GROUP)
-                                : GROUP * draw_count(2, MOST - 1) + (scene % 8 == 0);
+        const int n = setup % 4 ? draw_count(16, MOST * GROUP)
+                                : GROUP * draw_count(2, MOST - 1) + (setup % 8 == 0);
         const ptrdiff_t groups = (n + GROUP - 1) / GROUP;
         bool disturbed[MOST] = {false}, awake[MOST] = {false};
         made(&s, n);
         struct line *line = line_of(&s);
         const bool narrow =
-            scene % 5 == 0; /* spans that are shorter than what is looked at later */
+            setup % 5 == 0; /* spans that are shorter than what is looked at later */
         const ptrdiff_t reach = line->reach = narrow ? 1 : draw_count(1, 12);
         for (ptrdiff_t g = 0; g < groups; g++) disturbed[g] = draw(0, 1) < 0.06;
-        at_rest(&s, disturbed, scene % 3 ? 0 : 0.1);
+        at_rest(&s, disturbed, setup % 3 ? 0 : 0.1);
         for (ptrdiff_t g = 0; g < groups; g++)
             if (disturbed[g]) wake_around(awake, groups, g, margin_of(reach));
         for (ptrdiff_t i = n; i < n + GROUP; i++) s.particles.F[0][i] = 77; /* nobody's */
         assert_int_equal(groups_begin(&s, &error), STATUS_OK);
         sleeps(&s, awake);
         for (ptrdiff_t i = n; i < n + GROUP; i++) assert_true(s.particles.F[0][i] == 77);
-        assert_true(s.sleep.at_rest == (scene % 3 != 0 || !s.sleep.on));
+        assert_true(s.sleep.at_rest == (setup % 3 != 0 || !s.sleep.on));
 
         /* of the disturbed ones in a span, the outermost two are looked for, no further inside
          * than the margin */
@@ -723,7 +723,7 @@ static void groups_sleep_and_wake(void **state)
         memcpy(later, awake, sizeof later);
         for (ptrdiff_t i = 0; i < n; i++)
             s.particles.F[0][i] = (narrow || awake[i / GROUP]) && draw(0, 1) < 0.02 ? 1 : 0;
-        if (awake[groups - 1]) s.particles.F[0][n - 1] = scene % 2;
+        if (awake[groups - 1]) s.particles.F[0][n - 1] = setup % 2;
         for (ptrdiff_t b = 0; b < line->range_count; b++)
             line->ranges[b].force_reach = draw_count(narrow ? 10 : 1, 12);
         for (ptrdiff_t k = 0, b = 0; k < s.sleep.span_count; k++) {
@@ -751,7 +751,7 @@ static void groups_sleep_and_wake(void **state)
         s.particles.F[0][3] = 1, line->ranges[0].reach = 5;
         groups_update(&s); /* all are awake: nothing to do */
         assert_int_equal(line->ranges[0].reach, 5);
-        sleep_once_calm(&s, reach, scene % 2);
+        sleep_once_calm(&s, reach, setup % 2);
         unmade(&s);
     }
 }

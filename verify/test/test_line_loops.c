@@ -77,7 +77,7 @@ static void near_sum(double got, real want, double bound)
     near_below(fabs(got - (double)want), bound);
 }
 
-/* A kernel of one dimension, for the loops that are not stamped. */
+/* A kernel of one dimension, for the loops that are not specialised. */
 static const struct kernel *inner;
 
 static double asked_w(const struct kernel *kernel, double q, int dim)
@@ -92,11 +92,11 @@ static double asked_dw(const struct kernel *kernel, double q, int dim)
     return inner->dw(kernel, q, dim);
 }
 
-static struct kernel asking(const struct kernel *kernel, bool stamped)
+static struct kernel asking(const struct kernel *kernel, bool specialised)
 {
     struct kernel asks = *kernel;
     inner = kernel;
-    if (!stamped) asks.w = asked_w, asks.dw = asked_dw;
+    if (!specialised) asks.w = asked_w, asks.dw = asked_dw;
     return asks;
 }
 
@@ -106,14 +106,14 @@ static void density(void **state)
     const struct particles a = gas();
     for (size_t k = 0; k < kernel_family.n; k++)
         for (int terms = 0; terms < DENSITY_TERMS; terms++)
-            for (int stamped = 0; stamped < 2; stamped++)
+            for (int specialised = 0; specialised < 2; specialised++)
                 for (int r = 0; r < RANGES; r++) {
-                    const struct kernel kernel = kernel_of(k), asks = asking(&kernel, stamped);
+                    const struct kernel kernel = kernel_of(k), asks = asking(&kernel, specialised);
                     double h_inverse[BATCH_MAX];
                     struct density_sums sums;
                     for (int i = 0; i < BATCH_MAX; i++)
                         h_inverse[i] = 1 / draw(1.5, 3.5), sums.Z[i] = sums.Z_dh[i] = untouched;
-                    loop_density(stamped ? (int)k : -1, (enum density_terms)terms)(
+                    loop_density(specialised ? (int)k : -1, (enum density_terms)terms)(
                         &asks, &a, ranges[r].first, ranges[r].len, ranges[r].D, h_inverse, &sums);
                     for (int i = 0; i < ranges[r].len; i++) {
                         real want[4] = {0};
@@ -143,16 +143,16 @@ static void matrices(void **state)
     (void)state;
     for (size_t k = 0; k < kernel_family.n; k++)
         for (int terms = 0; terms < MATRIX_TERMS; terms++)
-            for (int stamped = 0; stamped < 2; stamped++)
+            for (int specialised = 0; specialised < 2; specialised++)
                 for (int r = 0; r < RANGES; r++) {
                     struct particles a = gas();
-                    const struct kernel kernel = kernel_of(k), asks = asking(&kernel, stamped);
+                    const struct kernel kernel = kernel_of(k), asks = asking(&kernel, specialised);
                     const ptrdiff_t first = ranges[r].first, end = first + ranges[r].len;
                     const ptrdiff_t alone = first + ranges[r].len / 2;
                     if (ranges[r].len > 1) a.h_inverse[alone] = 3; /* nobody is near */
                     for (ptrdiff_t i = FIRST_OF_ALL; i < END_OF_ALL; i++)
                         a.g[i] = a.dv[i] = untouched;
-                    loop_matrix(stamped ? (int)k : -1, (enum matrix_terms)terms)(
+                    loop_matrix(specialised ? (int)k : -1, (enum matrix_terms)terms)(
                         &asks, &a, first, ranges[r].len, ranges[r].D);
                     for (ptrdiff_t i = FIRST_OF_ALL; i < END_OF_ALL; i++) {
                         const bool inside = i >= first && i < end;
@@ -192,14 +192,16 @@ static void gradients(void **state)
     for (size_t k = 0; k < kernel_family.n; k++)
         for (int ia = 0; ia < 2; ia++)
             for (int width = 0; width < PAIR_GRADIENTS; width++)
-                for (int stamped = 0; stamped < 2; stamped++)
+                for (int specialised = 0; specialised < 2; specialised++)
                     for (ptrdiff_t d = 1; d < 4; d++) {
-                        const struct kernel kernel = kernel_of(k), asks = asking(&kernel, stamped);
+                        const struct kernel kernel = kernel_of(k),
+                                            asks = asking(&kernel, specialised);
                         const ptrdiff_t first = 60 - 20 * d;
                         const int pairs = 16 + (int)d;
                         double G[32], G_j[32];
                         for (int i = 0; i < 32; i++) G[i] = G_j[i] = untouched;
-                        loop_gradient(stamped ? (int)k : -1, ia ? GRADIENT_IA : GRADIENT_STANDARD,
+                        loop_gradient(specialised ? (int)k : -1,
+                                      ia ? GRADIENT_IA : GRADIENT_STANDARD,
                                       width)(&asks, &a, first, pairs, d, G, G_j);
                         for (int p = 0; p < 32; p++) {
                             const ptrdiff_t i = first + p, j = i + d;
@@ -372,8 +374,8 @@ static void rates_of_cold_gas(void **state)
     double want = 0;
     for (ptrdiff_t i = FIRST_OF_ALL; i < END_OF_ALL; i++) a.c[i] *= 1e-12, a.h_inverse[i] = 3;
     for (ptrdiff_t i = 20 - 4; i < 40; i++) want = fmax(want, 2 * a.c[i] * 3);
-    for (int stamped = 0; stamped < 2; stamped++)
-        near_relative(loop_force(stamped, loops.formulation, loops.viscosity,
+    for (int specialised = 0; specialised < 2; specialised++)
+        near_relative(loop_force(specialised, loops.formulation, loops.viscosity,
                                  loops.energy)(&loops, &a, 20, 20, 4, scratch),
                       want, 1e-15);
     for (int mirrored = 0; mirrored < 2; mirrored++) { /* inside the wider width alone */
@@ -422,7 +424,7 @@ static void signals(void **state)
  */
 
 /* Every kernel has its own, and so has none. */
-static void stamped_ones_differ(void **state)
+static void specialised_ones_differ(void **state)
 {
     (void)state;
     const int kernels = (int)kernel_family.n;
@@ -449,7 +451,7 @@ static void chosen_by_plan_and_scheme(void **state)
     (void)state;
     for (size_t k = 0; k < kernel_family.n; k++)
         for (int way = 0; way < 128; way++) {
-            const struct plan plan = {.stamped = way & 1,
+            const struct plan plan = {.specialised = way & 1,
                                       .energy_sum = way & 2,
                                       .matrix = way & 4,
                                       .slope = way & 8,
@@ -464,7 +466,7 @@ static void chosen_by_plan_and_scheme(void **state)
                                           .alpha = way & 64 ? 0 : 0.5,
                                           .beta = 1.25,
                                           .eta = 1.6};
-            const int stamp = way & 1 ? (int)k : -1;
+            const int specialisation = way & 1 ? (int)k : -1;
             struct loops loops;
             loops_choose(&plan, &scheme, &loops);
             assert_true(loops.kernel == &scheme.kernel);
@@ -476,13 +478,13 @@ static void chosen_by_plan_and_scheme(void **state)
             assert_true(loops.numbers.near == 1 / 1.6);
             assert_true(loops.numbers.beta_ratio == (!plan.alpha ? 0 : way & 64 ? 2 : 2.5));
             assert_true(loops.density ==
-                        loop_density(stamp, way & 2 ? DENSITY_ENERGY : DENSITY_MASS));
-            matrix_loop *const matrices_of[] = {NULL, loop_matrix(stamp, MATRIX_MOMENT),
-                                                loop_matrix(stamp, MATRIX_SLOPE),
-                                                loop_matrix(stamp, MATRIX_BOTH)};
+                        loop_density(specialisation, way & 2 ? DENSITY_ENERGY : DENSITY_MASS));
+            matrix_loop *const matrices_of[] = {NULL, loop_matrix(specialisation, MATRIX_MOMENT),
+                                                loop_matrix(specialisation, MATRIX_SLOPE),
+                                                loop_matrix(specialisation, MATRIX_BOTH)};
             assert_true(loops.matrix == matrices_of[way / 4 % 4]);
             assert_true(loops.gradient ==
-                        loop_gradient(stamp, scheme.gradient,
+                        loop_gradient(specialisation, scheme.gradient,
                                       plan.grad_h ? PAIR_WIDTH_OWN : (int)PAIR_WIDTH_MAX));
             assert_true(loops.force == loop_force(way & 1, FORMULATION_LAGRANGIAN, VISCOSITY_FADING,
                                                   ENERGY_TOTAL));
@@ -498,7 +500,7 @@ int main(void)
         cmocka_unit_test(forces),
         cmocka_unit_test(signals),
         cmocka_unit_test(rates_of_cold_gas),
-        cmocka_unit_test(stamped_ones_differ),
+        cmocka_unit_test(specialised_ones_differ),
         cmocka_unit_test(chosen_by_plan_and_scheme),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -310,7 +310,7 @@ static struct simulation *with(size_t n, int count, char *const *keys)
     struct settings settings;
     struct simulation *simulation = NULL;
     struct error error;
-    struct scene scene = {.dim = 1,
+    struct setup setup = {.dim = 1,
                           .hi = {1},
                           .gamma = 1.4,
                           .t_end = 1,
@@ -326,8 +326,8 @@ static struct simulation *with(size_t n, int count, char *const *keys)
     }
     settings_init(&settings);
     if (settings_apply(&settings, count, keys, &error) ||
-        settings_scheme(&settings, 1, &scene.scheme, &error) ||
-        simulation_create(&scene, &simulation, &error))
+        settings_scheme(&settings, 1, &setup.scheme, &error) ||
+        simulation_create(&setup, &simulation, &error))
         fail_msg("%s", error.message);
     return simulation;
 }

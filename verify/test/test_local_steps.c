@@ -55,10 +55,10 @@ static struct scheme scheme_with(int dim, const char *keys)
 
 /* A lattice of side^dim particles in a periodic box, each off its place by so much of a spacing,
  * with a hot ball in the middle: u rises by `heat`, within a spacing or (smooth) over the box. */
-static struct scene scene_of(int dim, size_t side, double jitter, double heat, bool smooth,
+static struct setup setup_of(int dim, size_t side, double jitter, double heat, bool smooth,
                              const struct scheme *scheme)
 {
-    struct scene scene = {.dim = dim,
+    struct setup setup = {.dim = dim,
                           .hi = {1, 1, 1},
                           .gamma = 1.4,
                           .t_end = 1,
@@ -66,26 +66,26 @@ static struct scene scene_of(int dim, size_t side, double jitter, double heat, b
                           .u = u,
                           .scheme = *scheme,
                           .threads = 1};
-    scene.n = dim == 2 ? side * side : side * side * side;
-    assert_true(scene.n <= N);
-    for (size_t i = 0, at = 0; i < scene.n; at = ++i) {
+    setup.n = dim == 2 ? side * side : side * side * side;
+    assert_true(setup.n <= N);
+    for (size_t i = 0, at = 0; i < setup.n; at = ++i) {
         double r2 = 0;
         for (int a = 0; a < dim; a++, at /= side) {
             x[a][i] = ((double)(at % side) + 0.5 + draw(-jitter, jitter)) / (double)side;
             v[a][i] = jitter * draw(-1, 1);
             r2 += (x[a][i] - 0.5) * (x[a][i] - 0.5);
         }
-        m[i] = (1 + jitter * draw(-1, 1)) / (double)scene.n;
+        m[i] = (1 + jitter * draw(-1, 1)) / (double)setup.n;
         u[i] = smooth ? 1 + heat * exp(-r2 / 0.03) : sqrt(r2) < 0.15 ? 1 + heat : 1;
     }
-    for (int a = 0; a < dim; a++) scene.x[a] = x[a], scene.v[a] = v[a];
-    return scene;
+    for (int a = 0; a < dim; a++) setup.x[a] = x[a], setup.v[a] = v[a];
+    return setup;
 }
 
 /* Of so few particles blocks leave too little work out to pay: taken all the same. */
-static struct simulation *blocks_of(const struct scene *scene)
+static struct simulation *blocks_of(const struct setup *setup)
 {
-    struct simulation *simulation = made_of(scene);
+    struct simulation *simulation = made_of(setup);
     simulation->steps.worth = 0.9;
     return simulation;
 }
@@ -130,9 +130,9 @@ static void keeps_momentum_and_energy(void **state)
         const int dim = k % 2 ? 3 : 2;
         seed = 31 + k;
         const struct scheme scheme = scheme_with(dim, schemes[k / 2]);
-        const struct scene scene =
-            scene_of(dim, dim == 2 ? 28 : 10, k / 2 % 2 ? 0.02 : 0.2, heat[k / 2], false, &scheme);
-        struct simulation *simulation = blocks_of(&scene);
+        const struct setup setup =
+            setup_of(dim, dim == 2 ? 28 : 10, k / 2 % 2 ? 0.02 : 0.2, heat[k / 2], false, &scheme);
+        struct simulation *simulation = blocks_of(&setup);
         struct conservation before, after;
         struct simulation_cost cost;
         simulation_conservation(simulation, &before);
@@ -145,7 +145,7 @@ static void keeps_momentum_and_energy(void **state)
         /* there were levels */
         assert_true(cost.skipped_particle_updates > cost.particle_updates / 10);
         assert_int_equal(cost.particle_updates + cost.skipped_particle_updates,
-                         cost.steps * scene.n);
+                         cost.steps * setup.n);
         woken[k % 2] += simulation->steps.woken;
         simulation_destroy(simulation);
     }
@@ -159,12 +159,12 @@ static void threads_do_not_matter(void **state)
     (void)state;
     const struct scheme scheme = scheme_with(2, "steps=local");
     seed = 7;
-    struct scene scene = scene_of(2, 32, 0.2, 300, false, &scheme);
-    struct simulation *one = blocks_of(&scene);
+    struct setup setup = setup_of(2, 32, 0.2, 300, false, &scheme);
+    struct simulation *one = blocks_of(&setup);
     run_to(one, 0.016, NULL);
     for (int threads = 2; threads <= 3; threads++) {
-        scene.threads = threads;
-        struct simulation *more = blocks_of(&scene);
+        setup.threads = threads;
+        struct simulation *more = blocks_of(&setup);
         run_to(more, 0.016, NULL);
         assert_true(alike(one, more));
         simulation_destroy(more);
@@ -183,8 +183,8 @@ static void one_level_is_global(void **state)
                      strlen(schemes[k]) > 11 ? schemes[k] + 11 : "");
             const struct scheme scheme = scheme_with(2, keys);
             seed = 5;
-            const struct scene scene = scene_of(2, 16, 0.02, 0, true, &scheme);
-            both[local] = blocks_of(&scene);
+            const struct setup setup = setup_of(2, 16, 0.02, 0, true, &scheme);
+            both[local] = blocks_of(&setup);
             run_to(both[local], 0.2, NULL);
         }
         assert_int_equal(both[0]->cost.steps, both[1]->cost.steps);
@@ -200,9 +200,9 @@ static int blocks;
 
 static bool keep_the_fifth(void *context, double time, uint64_t steps)
 {
-    struct carrier out = {.bytes = made_put, .context = &bag};
+    struct serialiser out = {.bytes = made_put, .context = &bag};
     (void)time, (void)steps;
-    if (++blocks == 5) simulation_carry(context, &out);
+    if (++blocks == 5) simulation_serialise(context, &out);
     assert_false(out.failed);
     return true;
 }
@@ -212,12 +212,12 @@ static void goes_on_to_the_last_bit(void **state)
     (void)state;
     const struct scheme scheme = scheme_with(2, "steps=local alpha_u=0.5");
     seed = 11;
-    const struct scene scene = scene_of(2, 24, 0.2, 300, false, &scheme);
-    struct simulation *kept = blocks_of(&scene), *restored = blocks_of(&scene);
-    struct carrier back = {.bytes = made_take, .context = &bag, .back = true};
+    const struct setup setup = setup_of(2, 24, 0.2, 300, false, &scheme);
+    struct simulation *kept = blocks_of(&setup), *restored = blocks_of(&setup);
+    struct serialiser back = {.bytes = made_take, .context = &bag, .back = true};
     run_to(kept, 0.06, keep_the_fifth);
     assert_true(blocks > 6);
-    simulation_carry(restored, &back);
+    simulation_serialise(restored, &back);
     assert_true(!back.failed && restored->time > 0 && restored->steps.depth > 0);
     run_to(restored, 0.06, NULL);
     assert_true(alike(kept, restored));
@@ -252,8 +252,8 @@ static struct simulation *smooth_run(int dim, double cfl, enum time_steps steps)
     scheme.steps = steps;
     scheme.cfl = cfl;
     seed = 3;
-    const struct scene scene = scene_of(dim, dim == 2 ? 28 : 9, 0, 100, true, &scheme);
-    struct simulation *simulation = blocks_of(&scene);
+    const struct setup setup = setup_of(dim, dim == 2 ? 28 : 9, 0, 100, true, &scheme);
+    struct simulation *simulation = blocks_of(&setup);
     run_to(simulation, 0.06, NULL);
     return simulation;
 }
@@ -307,8 +307,8 @@ static void neighbours_are_no_further_apart(void **state)
         const int dim = k % 2 ? 3 : 2;
         const struct scheme scheme = scheme_with(dim, schemes[2]);
         seed = 17 + (uint64_t)k;
-        const struct scene scene = scene_of(dim, dim == 2 ? 24 : 10, 0.2, 1e4, false, &scheme);
-        struct simulation *simulation = blocks_of(&scene);
+        const struct setup setup = setup_of(dim, dim == 2 ? 24 : 10, 0.2, 1e4, false, &scheme);
+        struct simulation *simulation = blocks_of(&setup);
         real = simulation->plan.sums;
         struct sums looking = *real;
         looking.forces = look_at_levels;

@@ -327,10 +327,10 @@ static enum status computed(struct error *error)
 }
 
 /* Eight particles on a line. */
-static struct scene line_scene(double arrays[4][8])
+static struct setup line_setup(double arrays[4][8])
 {
     struct settings settings;
-    struct scene scene = {.dim = 1,
+    struct setup setup = {.dim = 1,
                           .hi = {1, 1, 1},
                           .gamma = 1.4,
                           .t_end = 1,
@@ -346,16 +346,16 @@ static struct scene line_scene(double arrays[4][8])
         arrays[2][i] = 0.125, arrays[3][i] = 1;
     }
     settings_init(&settings);
-    assert_int_equal(settings_scheme(&settings, 1, &scene.scheme, NULL), STATUS_OK);
-    return scene;
+    assert_int_equal(settings_scheme(&settings, 1, &setup.scheme, NULL), STATUS_OK);
+    return setup;
 }
 
 static enum status rated(struct error *error)
 {
     double arrays[4][8];
-    const struct scene scene = line_scene(arrays);
+    const struct setup setup = line_setup(arrays);
     struct rate_table table;
-    const enum status status = rate_table_make(&table, &scene, error);
+    const enum status status = rate_table_make(&table, &setup, error);
     rate_table_free(&table);
     return status;
 }
@@ -364,10 +364,10 @@ static enum status rated(struct error *error)
 static enum status set_aside(struct error *error)
 {
     double arrays[4][8];
-    const struct scene scene = line_scene(arrays);
+    const struct setup setup = line_setup(arrays);
     struct simulation *simulation;
     struct snapshots snapshots = {.path = "a.csv", .every = 0.5};
-    enum status status = simulation_create(&scene, &simulation, error);
+    enum status status = simulation_create(&setup, &simulation, error);
     if (status) return status;
     snapshots_begin(&snapshots, 0, -1, 1);
     const bool aside = snapshots_keep(&snapshots, simulation, 0, 1);
@@ -387,9 +387,9 @@ static enum status set_aside(struct error *error)
 static enum status widened(struct error *error)
 {
     double arrays[4][8], rate;
-    const struct scene scene = line_scene(arrays);
+    const struct setup setup = line_setup(arrays);
     struct simulation *simulation;
-    enum status status = simulation_create(&scene, &simulation, error);
+    enum status status = simulation_create(&setup, &simulation, error);
     if (status) return status;
     const struct particles *a = &simulation->particles;
     const struct line *line = line_of(simulation);
@@ -421,10 +421,10 @@ static enum status resumed(struct error *error)
 static void resume(void)
 {
     double arrays[4][8];
-    const struct scene scene = line_scene(arrays);
+    const struct setup setup = line_setup(arrays);
     struct growth growth = {0};
     struct error error;
-    assert_int_equal(simulation_create(&scene, &to_resume, &error), STATUS_OK);
+    assert_int_equal(simulation_create(&setup, &to_resume, &error), STATUS_OK);
     checkpoint_save(&checkpoint, to_resume, &growth);
     assert_int_equal(checkpoint.trouble.status, STATUS_OK);
     without_memory(resumed, 2, true);

@@ -112,11 +112,11 @@ static enum status kernels(struct error *error)
     return passed(status, &theirs, error);
 }
 
-static enum status scenes(struct error *error)
+static enum status setups(struct error *error)
 {
     static const char *const keys[] = {"kernel=cubic_spline", NULL};
     double arrays[4][16], norms[16];
-    struct sphproof_scene scene = {.dim = 1,
+    struct sphproof_setup setup = {.dim = 1,
                                    .n = 16,
                                    .gamma = 1.4,
                                    .hi = {1},
@@ -131,11 +131,11 @@ static enum status scenes(struct error *error)
     struct sphproof_error theirs;
     for (int i = 0; i < 16; i++)
         arrays[0][i] = (i + 0.5) / 16, arrays[1][i] = 0, arrays[2][i] = arrays[3][i] = 1. / 16;
-    enum sphproof_status status = sphproof_rates_evaluate(&scene, &rates, &theirs);
+    enum sphproof_status status = sphproof_rates_evaluate(&setup, &rates, &theirs);
     if (!status)
         status = sphproof_convergence_norms(16, NULL, arrays[0], arrays[1], &found, &theirs);
     if (!status) {
-        status = sphproof_simulations_create(&scene, &simulation, &theirs);
+        status = sphproof_simulations_create(&setup, &simulation, &theirs);
         assert_true(!simulation == !!status);
         sphproof_simulations_free(simulation);
     }
@@ -146,7 +146,7 @@ static void library(void **state)
 {
     (void)state;
     without_memory(kernels, 2, true);
-    without_memory(scenes, 8, true);
+    without_memory(setups, 8, true);
 }
 
 int main(int argc, char **argv)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Gradient operators against brute force in long double; stamped against unstamped, threads, and
+ * Gradient operators against brute force in long double; specialised against generic, threads, and
  * clouds that invite trouble. */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -122,7 +122,7 @@ static void test_brute_force(void **state)
             }
 }
 
-/* The same bits, whatever the number of threads; the unstamped loop agrees to round-off. */
+/* The same bits, whatever the number of threads; the generic loop agrees to round-off. */
 static void test_same_result(void **state)
 {
     (void)state;
@@ -138,7 +138,7 @@ static void test_same_result(void **state)
             compute(&settings, &cloud.cloud, &one);
             settings.threads = 3;
             compute(&settings, &cloud.cloud, &three);
-            settings.unstamped = true;
+            settings.generic = true;
             compute(&settings, &cloud.cloud, &slow);
             const size_t n = cloud.cloud.points.n;
             for (size_t g = 0; g < FIELDS * (size_t)dim; g++) {

@@ -193,11 +193,11 @@ static void check(int unsound, int steep)
 }
 
 static void make(int dim, enum gradient gradient, enum pair_width width,
-                 enum formulation formulation, bool stamped)
+                 enum formulation formulation, bool specialised)
 {
     drawn.method = (struct cells_method){.box = {.dim = dim, .hi = {1, 1, 1}},
                                          .kernel = &drawn.kernel,
-                                         .stamped = stamped,
+                                         .specialised = specialised,
                                          .gradient = gradient,
                                          .pair_width = width,
                                          .formulation = formulation,
@@ -214,9 +214,9 @@ static void test_gradients(void **state)
         for (int g = 0; g < GRADIENTS; g++)
             for (int w = 0; w < PAIR_WIDTHS; w++)
                 for (int f = 0; f < 2; f++)
-                    for (int stamped = 0; stamped < 2; stamped++) {
+                    for (int specialised = 0; specialised < 2; specialised++) {
                         make(dim, (enum gradient)g, (enum pair_width)w,
-                             f ? FORMULATION_LAGRANGIAN : FORMULATION_VANILLA_ICE, stamped);
+                             f ? FORMULATION_LAGRANGIAN : FORMULATION_VANILLA_ICE, specialised);
                         check(SOUND, NONE_STEEP);
                         for (int k = 1; k < 4 && g != GRADIENT_STANDARD; k++) {
                             check(k, NONE_STEEP);

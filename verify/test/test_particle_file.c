@@ -135,51 +135,51 @@ static void many_columns_are_ignored(void **state)
     particle_file_free(&file);
 }
 
-static void scenes_get_a_box(void **state)
+static void setups_get_a_box(void **state)
 {
     (void)state;
     struct particle_file file;
     struct error error = {0};
     const char *text = "x,y,vx,vy,m,u\n-5,7,2,1,3,4\n1,7,6,1,7,8\n3,7,0,0,1,1\n";
     assert_int_equal(particle_file_read(written(text), &file, &error), STATUS_OK);
-    struct scene scene = {.boundary = {BOUNDARY_OPEN, BOUNDARY_OPEN}};
-    assert_int_equal(particle_file_fill(&file, path, &scene, &error), STATUS_OK);
-    assert_true(scene.dim == 2 && scene.n == 3 && scene.m == file.m && scene.u == file.u);
-    for (int d = 0; d < 2; d++) assert_true(scene.x[d] == file.x[d] && scene.v[d] == file.v[d]);
-    near_relative(scene.lo[0], -5.08, 1e-15);
-    near_relative(scene.hi[0], 3.08, 1e-15);
-    assert_true(scene.lo[1] == 6 && scene.hi[1] == 8);
+    struct setup setup = {.boundary = {BOUNDARY_OPEN, BOUNDARY_OPEN}};
+    assert_int_equal(particle_file_fill(&file, path, &setup, &error), STATUS_OK);
+    assert_true(setup.dim == 2 && setup.n == 3 && setup.m == file.m && setup.u == file.u);
+    for (int d = 0; d < 2; d++) assert_true(setup.x[d] == file.x[d] && setup.v[d] == file.v[d]);
+    near_relative(setup.lo[0], -5.08, 1e-15);
+    near_relative(setup.hi[0], 3.08, 1e-15);
+    assert_true(setup.lo[1] == 6 && setup.hi[1] == 8);
     particle_file_free(&file); /* whoever comes first or last may be the outermost */
     assert_int_equal(
         particle_file_read(written("x,vx,m,u\n5,0,1,1\n1,0,1,1\n-3,0,1,1\n"), &file, &error),
         STATUS_OK);
-    scene = (struct scene){.boundary = {BOUNDARY_OPEN}};
-    assert_int_equal(particle_file_fill(&file, path, &scene, &error), STATUS_OK);
-    near_relative(scene.lo[0], -3.08, 1e-15);
-    near_relative(scene.hi[0], 5.08, 1e-15);
+    setup = (struct setup){.boundary = {BOUNDARY_OPEN}};
+    assert_int_equal(particle_file_fill(&file, path, &setup, &error), STATUS_OK);
+    near_relative(setup.lo[0], -3.08, 1e-15);
+    near_relative(setup.hi[0], 5.08, 1e-15);
     particle_file_free(&file);
     assert_int_equal(particle_file_read(written(text), &file, &error), STATUS_OK);
     /* a box that is there stays; both its ends are inside */
-    scene = (struct scene){
+    setup = (struct setup){
         .lo = {-5, 6.5}, .hi = {3, 7}, .boundary = {BOUNDARY_OPEN, BOUNDARY_PERIODIC}};
-    assert_int_equal(particle_file_fill(&file, path, &scene, &error), STATUS_OK);
-    assert_true(scene.lo[0] == -5 && scene.hi[0] == 3 && scene.lo[1] == 6.5 && scene.hi[1] == 7);
-    scene.hi[0] = 2.5;
-    assert_int_equal(particle_file_fill(&file, path, &scene, &error), STATUS_BAD_INPUT);
+    assert_int_equal(particle_file_fill(&file, path, &setup, &error), STATUS_OK);
+    assert_true(setup.lo[0] == -5 && setup.hi[0] == 3 && setup.lo[1] == 6.5 && setup.hi[1] == 7);
+    setup.hi[0] = 2.5;
+    assert_int_equal(particle_file_fill(&file, path, &setup, &error), STATUS_BAD_INPUT);
     says(&error, ":4: x = 3: allowed: inside of the box, -5 to 2.5");
-    scene.hi[0] = 3, scene.lo[1] = 7.5, scene.hi[1] = 9;
-    assert_int_equal(particle_file_fill(&file, path, &scene, &error), STATUS_BAD_INPUT);
+    setup.hi[0] = 3, setup.lo[1] = 7.5, setup.hi[1] = 9;
+    assert_int_equal(particle_file_fill(&file, path, &setup, &error), STATUS_BAD_INPUT);
     says(&error, ":2: y = 7: allowed: inside of the box, 7.5 to 9");
-    scene = (struct scene){.boundary = {BOUNDARY_PERIODIC, BOUNDARY_OPEN}}; /* none is made */
-    assert_int_equal(particle_file_fill(&file, path, &scene, &error), STATUS_BAD_INPUT);
+    setup = (struct setup){.boundary = {BOUNDARY_PERIODIC, BOUNDARY_OPEN}}; /* none is made */
+    assert_int_equal(particle_file_fill(&file, path, &setup, &error), STATUS_BAD_INPUT);
     says(&error, ":2: x = -5: allowed: inside of the box, 0 to 0");
     for (int open = 0; open < 2; open++) { /* one direction has a box, the other one gets it */
-        scene = (struct scene){.boundary = {open ? BOUNDARY_PERIODIC : BOUNDARY_OPEN,
+        setup = (struct setup){.boundary = {open ? BOUNDARY_PERIODIC : BOUNDARY_OPEN,
                                             open ? BOUNDARY_OPEN : BOUNDARY_PERIODIC}};
-        scene.lo[!open] = -9, scene.hi[!open] = 9;
-        assert_int_equal(particle_file_fill(&file, path, &scene, &error), STATUS_OK);
-        near_relative(scene.lo[open], open ? 6 : -5.08, 1e-15);
-        assert_true(scene.lo[!open] == -9 && scene.hi[!open] == 9);
+        setup.lo[!open] = -9, setup.hi[!open] = 9;
+        assert_int_equal(particle_file_fill(&file, path, &setup, &error), STATUS_OK);
+        near_relative(setup.lo[open], open ? 6 : -5.08, 1e-15);
+        assert_true(setup.lo[!open] == -9 && setup.hi[!open] == 9);
     }
     particle_file_free(&file);
 }
@@ -317,7 +317,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(columns),
         cmocka_unit_test(many_columns_are_ignored),
-        cmocka_unit_test(scenes_get_a_box),
+        cmocka_unit_test(setups_get_a_box),
         cmocka_unit_test(starts_of_runs),
         cmocka_unit_test(starts_that_are_refused),
     };

@@ -98,7 +98,7 @@ static void bad_files(void **state)
     }
 }
 
-/* A scene's box: its own, or where a direction is open and has none, one a hundredth wider than the
+/* A setup's box: its own, or where a direction is open and has none, one a hundredth wider than the
  * particles; who is outside is named by line and coordinate. */
 static void boxes(void **state)
 {
@@ -107,20 +107,20 @@ static void boxes(void **state)
     struct error error;
     written("x,vx,y,vy,m,u\n1,0,5,0,1,1\n3,0,5,0,1,1\n2,0,5,0,1,1\n");
     assert_int_equal(particle_file_read(path, &file, &error), STATUS_OK);
-    struct scene scene = {.boundary = {BOUNDARY_OPEN, BOUNDARY_OPEN, BOUNDARY_PERIODIC}};
-    assert_int_equal(particle_file_fill(&file, path, &scene, &error), STATUS_OK);
-    assert_true(scene.dim == 2 && scene.n == 3 && scene.m == file.m && scene.u == file.u);
-    assert_true(scene.x[1] == file.x[1] && scene.v[1] == file.v[1] && !scene.x[2]);
-    near_relative(scene.lo[0], 0.98, 1e-15);
-    near_relative(scene.hi[0], 3.02, 1e-15);
-    assert_true(scene.lo[1] == 4 && scene.hi[1] == 6);
-    scene = (struct scene){.lo = {1, 5}, .hi = {3, 5.5}};
-    assert_int_equal(particle_file_fill(&file, path, &scene, &error), STATUS_OK);
-    scene.hi[0] = 2.5;
-    assert_int_equal(particle_file_fill(&file, path, &scene, &error), STATUS_BAD_INPUT);
+    struct setup setup = {.boundary = {BOUNDARY_OPEN, BOUNDARY_OPEN, BOUNDARY_PERIODIC}};
+    assert_int_equal(particle_file_fill(&file, path, &setup, &error), STATUS_OK);
+    assert_true(setup.dim == 2 && setup.n == 3 && setup.m == file.m && setup.u == file.u);
+    assert_true(setup.x[1] == file.x[1] && setup.v[1] == file.v[1] && !setup.x[2]);
+    near_relative(setup.lo[0], 0.98, 1e-15);
+    near_relative(setup.hi[0], 3.02, 1e-15);
+    assert_true(setup.lo[1] == 4 && setup.hi[1] == 6);
+    setup = (struct setup){.lo = {1, 5}, .hi = {3, 5.5}};
+    assert_int_equal(particle_file_fill(&file, path, &setup, &error), STATUS_OK);
+    setup.hi[0] = 2.5;
+    assert_int_equal(particle_file_fill(&file, path, &setup, &error), STATUS_BAD_INPUT);
     said(error.message, "3: x = 3: allowed: inside of the box, 1 to 2.5");
-    scene = (struct scene){.lo = {1, 5.25}, .hi = {3, 5.5}};
-    assert_int_equal(particle_file_fill(&file, path, &scene, &error), STATUS_BAD_INPUT);
+    setup = (struct setup){.lo = {1, 5.25}, .hi = {3, 5.5}};
+    assert_int_equal(particle_file_fill(&file, path, &setup, &error), STATUS_BAD_INPUT);
     said(error.message, "2: y = 5: allowed: inside of the box, 5.25 to 5.5");
     particle_file_free(&file);
 }

@@ -25,7 +25,7 @@ enum { N = 60 };
 /* How the gas moves: anyhow; not at all; everything towards the middle, slowly, or so slowly that
  * squares vanish; cold, and away from it; anyhow, on lattice points of spacing 1/4 with widths that
  * are distances. */
-enum scene { ANYHOW, STILL, TOGETHER, HARDLY, APART, LATTICE };
+enum setup { ANYHOW, STILL, TOGETHER, HARDLY, APART, LATTICE };
 
 struct gas {
     struct cells_method method;
@@ -45,37 +45,37 @@ static double draw(double low, double high)
     return low + (high - low) * ldexp((double)((state_of_draws ^ state_of_draws >> 29) >> 11), -53);
 }
 
-static void lay(struct gas *gas, enum scene scene)
+static void lay(struct gas *gas, enum setup setup)
 {
     const int dim = gas->method.box.dim, side = dim == 2 ? 7 : 3;
     int count = 0;
-    gas->n = scene == LATTICE ? (dim == 2 ? 49 : 27) : N;
+    gas->n = setup == LATTICE ? (dim == 2 ? 49 : 27) : N;
     for (int i = 0; i < gas->n; i++) {
         for (int a = 0, rest = i; a < dim; a++, rest /= side) {
-            gas->x[a][i] = scene == LATTICE ? 0.25 * (rest % side) : draw(0, 1);
+            gas->x[a][i] = setup == LATTICE ? 0.25 * (rest % side) : draw(0, 1);
             const double inwards = 0.5 - gas->x[a][i];
-            gas->v[a][i] = scene == STILL      ? 0
-                           : scene == TOGETHER ? 1e-6 * inwards
-                           : scene == HARDLY   ? 1e-170 * inwards
-                           : scene == APART    ? -1e-6 * inwards
+            gas->v[a][i] = setup == STILL      ? 0
+                           : setup == TOGETHER ? 1e-6 * inwards
+                           : setup == HARDLY   ? 1e-170 * inwards
+                           : setup == APART    ? -1e-6 * inwards
                                                : draw(-1, 1);
         }
-        const double cold = scene == HARDLY || scene == APART ? 1e-6 : 1;
+        const double cold = setup == HARDLY || setup == APART ? 1e-6 : 1;
         gas->m[i] = draw(0.5, 2), gas->V[i] = draw(0.5, 2), gas->c[i] = cold * draw(0.1, 2);
         gas->rho[i] = 75 * draw(0.5, 2);
         for (int a = 0; a < dim; a++) {
             const double inwards = gas->m[i] * (0.5 - gas->x[a][i]);
-            gas->F[a][i] = scene == TOGETHER || scene == HARDLY ? inwards
-                           : scene == APART                     ? -inwards
+            gas->F[a][i] = setup == TOGETHER || setup == HARDLY ? inwards
+                           : setup == APART                     ? -inwards
                                                                 : draw(-9, 9);
         }
-        gas->h[i] = scene == LATTICE                           ? (i % 3 ? 0.5 : 0.25)
+        gas->h[i] = setup == LATTICE                           ? (i % 3 ? 0.5 : 0.25)
                     : gas->method.gradient == GRADIENT_BLENDED ? draw(0.36, 0.38)
                                                                : draw(0.28, 0.38);
         gas->asleep[i] = i % 11 == 0;
         count += gas->asleep[i];
     }
-    if (scene == ANYHOW && !gas->method.box.periodic[1]) { /* alone; in a line with two others */
+    if (setup == ANYHOW && !gas->method.box.periodic[1]) { /* alone; in a line with two others */
         for (int a = 0; a < dim; a++) gas->x[a][0] = 5, gas->x[a][1] = 6.5 + 0.1 * (a == 1);
         for (int k = 2; k < 4; k++)
             for (int a = 0; a < dim; a++) gas->x[a][k] = gas->x[a][1] + (k - 1) * 0.05 * (a == 0);
@@ -387,7 +387,7 @@ static int check_described(const struct cells *cells, struct gas *gas, const uns
 /* Where there are walls: along x, with periodic ends along y, or along the last axis alone. */
 enum walls { NO_WALLS, WALLS_FIRST, WALLS_LAST };
 
-static void check(enum scene scene, int dim, enum gradient gradient, enum walls walls,
+static void check(enum setup setup, int dim, enum gradient gradient, enum walls walls,
                   bool velocity_gradient, bool projected, int threads, int *between)
 {
     static struct gas gas;
@@ -396,7 +396,7 @@ static void check(enum scene scene, int dim, enum gradient gradient, enum walls 
         .wall = {walls == WALLS_FIRST, walls == WALLS_LAST && dim == 2,
                  walls == WALLS_LAST && dim == 3},
         .kernel = &gas.kernel,
-        .stamped = true,
+        .specialised = true,
         .gradient = gradient,
         .viscosity = VISCOSITY_RECONSTRUCTED,
         .projected = projected,
@@ -407,7 +407,7 @@ static void check(enum scene scene, int dim, enum gradient gradient, enum walls 
         .alpha_max = 1.5,
         .threads = threads};
     assert_int_equal(kernel_select(&gas.kernel, "quartic_spline", 5, NULL), STATUS_OK);
-    lay(&gas, scene);
+    lay(&gas, setup);
     point_fields(&gas);
     struct cells *cells = cells_create(&gas.method, (size_t)gas.n);
     assert_non_null(cells);

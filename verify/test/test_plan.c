@@ -235,35 +235,35 @@ static void warnings(void **state)
     warns("gresho", "n=8^2 kernel=cubic_spline eta=5 gradient=ia", "");
 }
 
-/* A scene of a scheme alone: 1D, cubic spline, no viscosity, energy of its own. */
-static struct scene scene_of(double eta, enum gradient gradient)
+/* A setup of a scheme alone: 1D, cubic spline, no viscosity, energy of its own. */
+static struct setup setup_of(double eta, enum gradient gradient)
 {
-    struct scene scene = {.dim = 1, .threads = 1};
-    scene.scheme.eta = eta;
-    scene.scheme.gradient = gradient;
-    scene.scheme.viscosity = VISCOSITY_CONSTANT;
-    scene.scheme.integrator = (const struct integrator *)integrator_family.members[0];
-    assert_int_equal(kernel_select(&scene.scheme.kernel, "cubic_spline", 5, NULL), STATUS_OK);
-    return scene;
+    struct setup setup = {.dim = 1, .threads = 1};
+    setup.scheme.eta = eta;
+    setup.scheme.gradient = gradient;
+    setup.scheme.viscosity = VISCOSITY_CONSTANT;
+    setup.scheme.integrator = (const struct integrator *)integrator_family.members[0];
+    assert_int_equal(kernel_select(&setup.scheme.kernel, "cubic_spline", 5, NULL), STATUS_OK);
+    return setup;
 }
 
-static size_t explained(const struct scene *scene, char *warnings, size_t size)
+static size_t explained(const struct setup *setup, char *warnings, size_t size)
 {
     struct plan_line lines[PASSES];
-    return plan_explain(scene, lines, PASSES, warnings, size);
+    return plan_explain(setup, lines, PASSES, warnings, size);
 }
 
 /* What has room is written, and no more; how many lines there are is said all the same. */
 static void room(void **state)
 {
     (void)state;
-    const struct scene scene = scene_of(5, GRADIENT_IA);
+    const struct setup setup = setup_of(5, GRADIENT_IA);
     struct plan_line all[PASSES], some[PASSES];
-    const size_t count = plan_explain(&scene, all, PASSES, NULL, 0);
+    const size_t count = plan_explain(&setup, all, PASSES, NULL, 0);
     assert_int_equal(count, PASSES - 5);
     for (size_t most = 0; most <= count; most++) {
         memset(some, 'x', sizeof some);
-        assert_int_equal(plan_explain(&scene, some, most, NULL, 9), count);
+        assert_int_equal(plan_explain(&setup, some, most, NULL, 9), count);
         for (size_t k = 0; k < most; k++) {
             assert_string_equal(some[k].pass, all[k].pass);
             assert_string_equal(some[k].why, all[k].why);
@@ -272,7 +272,7 @@ static void room(void **state)
             if (most < count) assert_int_equal(((char *)&some[most])[k], 'x');
     }
     char text[512], less[512];
-    explained(&scene, text, sizeof text);
+    explained(&setup, text, sizeof text);
     const size_t length = strlen(text), second = (size_t)(strstr(text, "; eta") - text);
     assert_string_equal(text + second,
                         "; eta = 5 is beyond 4, where cubic_spline with gradient=ia "
@@ -280,7 +280,7 @@ static void room(void **state)
     assert_null(strstr(text + second + 2, "; "));
     for (size_t size = 0; size <= length + 1; size++) {
         memset(less, 'x', sizeof less);
-        explained(&scene, less, size);
+        explained(&setup, less, size);
         for (size_t k = size; k < sizeof less; k++) assert_int_equal(less[k], 'x');
         if (size == 0) continue;
         const size_t room_for = size <= 2 ? 0 : size <= second + 2 ? second : length;
@@ -314,37 +314,37 @@ static void limits(void **state)
         {6, GRADIENT_IA, false, true},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        struct scene scene = scene_of(cases[k].eta, cases[k].gradient);
+        struct setup setup = setup_of(cases[k].eta, cases[k].gradient);
         char text[512] = "old";
-        explained(&scene, text, sizeof text);
+        explained(&setup, text, sizeof text);
         if ((strstr(text, "off the partition") != NULL) != cases[k].off ||
             (strstr(text, "is beyond 4") != NULL) != cases[k].beyond)
             fail_msg("eta = %g: '%s'", cases[k].eta, text);
-        scene.dim = 2;
-        explained(&scene, text, sizeof text);
+        setup.dim = 2;
+        explained(&setup, text, sizeof text);
         assert_string_equal(text, "");
     }
 }
 
-/* What each choice needs; loops are stamped unless the oracle is asked for. */
+/* What each choice needs; loops are specialised unless the oracle is asked for. */
 static void needs(void **state)
 {
     (void)state;
     for (int choice = 0; choice < GRADIENTS * FORMULATIONS * PAIR_WIDTHS; choice++)
-        for (int unstamped = 0; unstamped < 2; unstamped++) {
-            struct scene scene = scene_of(2, (enum gradient)(choice % GRADIENTS));
-            struct scheme *s = &scene.scheme;
+        for (int generic = 0; generic < 2; generic++) {
+            struct setup setup = setup_of(2, (enum gradient)(choice % GRADIENTS));
+            struct scheme *s = &setup.scheme;
             s->formulation = (enum formulation)(choice / GRADIENTS % FORMULATIONS);
             s->pair_width = (enum pair_width)(choice / GRADIENTS / FORMULATIONS);
-            scene.unstamped = unstamped;
-            const struct plan plan = plan_of_scene(&scene);
+            setup.generic = generic;
+            const struct plan plan = plan_of_setup(&setup);
             const bool standard = s->gradient == GRADIENT_STANDARD,
                        lagrangian = s->formulation == FORMULATION_LAGRANGIAN;
             assert_int_equal(plan.own_gradient,
                              standard && (lagrangian || s->pair_width == PAIR_WIDTH_MEAN));
             assert_int_equal(plan.matrix, !standard);
             assert_int_equal(plan.grad_h, lagrangian);
-            assert_int_equal(plan.stamped, !unstamped);
+            assert_int_equal(plan.specialised, !generic);
             assert_true(plan.dim == 1 && plan.sums == sums_find(1));
         }
 }
@@ -356,20 +356,20 @@ static void gravity(void **state)
     for (int axis = 0; axis < 4; axis++)
         for (int dim = 2; dim <= 3; dim++)
             for (int skip = 0; skip < 2; skip++) {
-                struct scene scene = scene_of(2, GRADIENT_IA);
-                scene.dim = dim, scene.skip = skip;
-                if (axis < 3) scene.gravity[axis] = -0.1;
-                const struct plan plan = plan_of_scene(&scene);
+                struct setup setup = setup_of(2, GRADIENT_IA);
+                setup.dim = dim, setup.skip = skip;
+                if (axis < 3) setup.gravity[axis] = -0.1;
+                const struct plan plan = plan_of_setup(&setup);
                 assert_int_equal(plan.gravity, axis < dim);
                 assert_int_equal(plan.sleep, skip && axis >= dim);
                 for (int wall = 0; wall < 4; wall++) {
                     struct plan_line lines[PASSES];
-                    if (wall < 3) scene.boundary[wall] = BOUNDARY_REFLECTING;
-                    plan_explain(&scene, lines, PASSES, NULL, 0);
+                    if (wall < 3) setup.boundary[wall] = BOUNDARY_REFLECTING;
+                    plan_explain(&setup, lines, PASSES, NULL, 0);
                     for (size_t k = 0; k < PASSES - 2; k++)
                         if (strcmp(lines[k].pass, "mirror images") == 0)
                             assert_int_equal(lines[k].runs, wall < dim);
-                    if (wall < 3) scene.boundary[wall] = BOUNDARY_PERIODIC;
+                    if (wall < 3) setup.boundary[wall] = BOUNDARY_PERIODIC;
                 }
             }
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * One evaluation in the order of the scene, and rates of others against it: what is said of the
+ * One evaluation in the order of the setup, and rates of others against it: what is said of the
  * differences, by how much, and what each of them comes from. */
 #include <math.h>
 #include <setjmp.h>
@@ -21,7 +21,7 @@ enum { MOST = 64, KEYS = 16 };
 /* Particles that are not in order, all different. */
 struct gas {
     double x[3][MOST], v[3][MOST], m[MOST], u[MOST];
-    struct scene scene;
+    struct setup setup;
 };
 
 static double noise(unsigned *random)
@@ -31,7 +31,7 @@ static double noise(unsigned *random)
 }
 
 /* The scheme of words such as "eta=2.4 beta=1"; gamma is a key as well. */
-static void set_scheme(struct scene *scene, const char *words)
+static void set_scheme(struct setup *setup, const char *words)
 {
     char text[400], *rest = text, *keys[KEYS], *word;
     struct settings settings;
@@ -41,9 +41,9 @@ static void set_scheme(struct scene *scene, const char *words)
     while ((word = strtok_r(rest, " ", &rest)) && n < KEYS) keys[n++] = word;
     settings_init(&settings);
     if (settings_apply(&settings, n, keys, &error) ||
-        settings_scheme(&settings, scene->dim, &scene->scheme, &error))
+        settings_scheme(&settings, setup->dim, &setup->scheme, &error))
         fail_msg("%s: %s", words, error.message);
-    scene->gamma = settings_real(&settings, SETTING_gamma);
+    setup->gamma = settings_real(&settings, SETTING_gamma);
 }
 
 /* side^dim particles in the periodic unit box, off a lattice, each step along it another one. */
@@ -64,7 +64,7 @@ static void make(struct gas *gas, int dim, size_t side, const char *words)
         gas->m[i] = (1 + 0.2 * noise(&random)) / (double)n;
         gas->u[i] = 1 + 0.3 * noise(&random);
     }
-    gas->scene = (struct scene){.dim = dim,
+    gas->setup = (struct setup){.dim = dim,
                                 .hi = {1, 1, 1},
                                 .t_end = 1,
                                 .n = n,
@@ -73,7 +73,7 @@ static void make(struct gas *gas, int dim, size_t side, const char *words)
                                 .m = gas->m,
                                 .u = gas->u,
                                 .threads = 1};
-    set_scheme(&gas->scene, words);
+    set_scheme(&gas->setup, words);
 }
 
 #define USUAL                                                                                      \
@@ -88,18 +88,18 @@ static void make(struct gas *gas, int dim, size_t side, const char *words)
 static const char *const schemes[] = {"", LINE, USUAL, SPACE};
 static const size_t sides[] = {0, 32, 6, 4};
 
-static struct rate_table table_of(const struct scene *scene)
+static struct rate_table table_of(const struct setup *setup)
 {
     struct rate_table table;
     struct error error;
-    if (rate_table_make(&table, scene, &error)) fail_msg("%s", error.message);
+    if (rate_table_make(&table, setup, &error)) fail_msg("%s", error.message);
     return table;
 }
 
 /* ---- the table ---- */
 
-/* Values belong to the particles as the scene has them: whoever comes first. */
-static void in_the_scenes_order(void **state)
+/* Values belong to the particles as the setup has them: whoever comes first. */
+static void in_the_setups_order(void **state)
 {
     static struct gas gas, turned;
     (void)state;
@@ -108,7 +108,7 @@ static void in_the_scenes_order(void **state)
         snprintf(words, sizeof words, "%s gradient=ia", schemes[dim]);
         make(&gas, dim, sides[dim], words);
         make(&turned, dim, sides[dim], words);
-        const size_t n = gas.scene.n;
+        const size_t n = gas.setup.n;
         for (size_t i = 0; i < n; i++) {
             for (int a = 0; a < 3; a++) {
                 turned.x[a][i] = gas.x[a][n - 1 - i];
@@ -116,7 +116,7 @@ static void in_the_scenes_order(void **state)
             }
             turned.m[i] = gas.m[n - 1 - i], turned.u[i] = gas.u[n - 1 - i];
         }
-        struct rate_table a = table_of(&gas.scene), b = table_of(&turned.scene);
+        struct rate_table a = table_of(&gas.setup), b = table_of(&turned.setup);
         double condition = 0, force[3] = {0}, power = 0, size = 0;
         assert_true(a.n == n && a.dim == dim);
         for (size_t i = 0; i < n; i++) {
@@ -155,12 +155,12 @@ static void whichever_energy(void **state)
     static struct gas gas;
     (void)state;
     make(&gas, 2, 6, USUAL " energy=internal");
-    gas.scene.gravity[0] = 0.25, gas.scene.gravity[1] = -2;
-    struct rate_table internal = table_of(&gas.scene);
-    set_scheme(&gas.scene, USUAL " energy=total");
-    struct rate_table total = table_of(&gas.scene);
+    gas.setup.gravity[0] = 0.25, gas.setup.gravity[1] = -2;
+    struct rate_table internal = table_of(&gas.setup);
+    set_scheme(&gas.setup, USUAL " energy=total");
+    struct rate_table total = table_of(&gas.setup);
     double mass = 0, power = 0, size = 0;
-    for (size_t i = 0; i < gas.scene.n; i++) {
+    for (size_t i = 0; i < gas.setup.n; i++) {
         near_absolute(1 + total.dU[i] - internal.dU[i], 1, 1e-13);
         size = fmax(size, fabs(internal.dU[i]));
         mass += gas.m[i];
@@ -178,7 +178,7 @@ static void whichever_energy(void **state)
     rate_table_free(&total);
 }
 
-static void no_scene_no_table(void **state)
+static void no_setup_no_table(void **state)
 {
     static struct gas gas;
     struct rate_table table;
@@ -186,7 +186,7 @@ static void no_scene_no_table(void **state)
     (void)state;
     make(&gas, 2, 6, USUAL);
     gas.m[7] = -1;
-    assert_int_equal(rate_table_make(&table, &gas.scene, &error), STATUS_BAD_INPUT);
+    assert_int_equal(rate_table_make(&table, &gas.setup, &error), STATUS_BAD_INPUT);
     assert_true(error.message[0] && !table.storage && !table.described);
     rate_table_free(&table);
 }
@@ -225,7 +225,7 @@ static struct rate_check checked(const struct file *file, const struct gas *gas,
 {
     struct rate_check check;
     struct error error;
-    if (rate_check_make(&check, "theirs.csv", &file->csv, &gas->scene, ours, tolerance, &error))
+    if (rate_check_make(&check, "theirs.csv", &file->csv, &gas->setup, ours, tolerance, &error))
         fail_msg("%s", error.message);
     return check;
 }
@@ -238,7 +238,7 @@ static void equal_columns(void **state)
     (void)state;
     for (int dim = 1; dim <= 3; dim++) {
         make(&gas, dim, sides[dim], schemes[dim]);
-        struct rate_table ours = table_of(&gas.scene);
+        struct rate_table ours = table_of(&gas.setup);
         write_file(&file, &gas, &ours, 0x7f);
         struct rate_check check = checked(&file, &gas, &ours, 0);
         assert_true(check.good);
@@ -253,14 +253,14 @@ static void equal_columns(void **state)
         }
         write_file(&file, &gas, &ours, dim < 3 ? 0x20 : 0); /* az; nothing */
         assert_int_equal(
-            rate_check_make(&check, "theirs.csv", &file.csv, &gas.scene, &ours, 0, &error),
+            rate_check_make(&check, "theirs.csv", &file.csv, &gas.setup, &ours, 0, &error),
             STATUS_BAD_INPUT);
         assert_non_null(strstr(error.message, "theirs.csv:1: nothing to compare"));
         for (int more = -1; more <= 1; more += 2) {
             write_file(&file, &gas, &ours, 1);
             file.csv.rows += (size_t)more;
             assert_int_equal(
-                rate_check_make(&check, "theirs.csv", &file.csv, &gas.scene, &ours, 0, &error),
+                rate_check_make(&check, "theirs.csv", &file.csv, &gas.setup, &ours, 0, &error),
                 STATUS_BAD_INPUT);
             assert_non_null(strstr(error.message, "one for each of the"));
         }
@@ -292,10 +292,10 @@ static void how_far_off(void **state)
     (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         make(&gas, dim, sides[dim], schemes[dim]);
-        struct rate_table ours = table_of(&gas.scene);
+        struct rate_table ours = table_of(&gas.setup);
         for (int round = 0; round < 2; round++) {
             const size_t first = who[round][0], second = who[round][1];
-            for (size_t i = 0; i < gas.scene.n && round; i++) {
+            for (size_t i = 0; i < gas.setup.n && round; i++) {
                 for (int a = 0; a < dim; a++) ours.force[a][i] *= i ? 1e-9 : 1e-7;
                 ours.dU[i] *= i ? 1e-9 : 1e-7;
             }
@@ -312,7 +312,7 @@ static void how_far_off(void **state)
                     assert_true(r->good == !wrong);
                     if (!wrong) continue;
                     near_relative(r->worst, 0.5, 1e-12);
-                    near_relative(r->rms, sqrt((0.0625 + 0.25) / (double)gas.scene.n), 1e-12);
+                    near_relative(r->rms, sqrt((0.0625 + 0.25) / (double)gas.setup.n), 1e-12);
                     assert_int_equal(r->particle, second);
                     if (c % 2) continue;
                     /* good as far as is asked for, and no further */
@@ -384,8 +384,8 @@ static void each_choice_is_named(void **state)
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         snprintf(words, sizeof words, "%s %s", USUAL, rows[k].ours);
         make(&gas, 2, 7, words);
-        struct rate_table ours = table_of(&gas.scene);
-        struct scene changed = gas.scene;
+        struct rate_table ours = table_of(&gas.setup);
+        struct setup changed = gas.setup;
         snprintf(words, sizeof words, "%s %s %s", USUAL, rows[k].ours, rows[k].theirs);
         set_scheme(&changed, words);
         struct rate_table theirs = table_of(&changed);
@@ -399,8 +399,8 @@ static void each_choice_is_named(void **state)
     }
     for (int dim = 1; dim <= 3; dim++) {
         make(&gas, dim, sides[dim], schemes[dim]);
-        struct rate_table ours = table_of(&gas.scene);
-        struct scene changed = gas.scene;
+        struct rate_table ours = table_of(&gas.setup);
+        struct setup changed = gas.setup;
         if (dim > 1) {
             for (int a = 0; a < dim; a++) changed.boundary[a] = BOUNDARY_OPEN;
             struct rate_table theirs = table_of(&changed);
@@ -420,8 +420,8 @@ static void better_by_a_thousand(void **state)
     static struct file file;
     (void)state;
     make(&gas, 2, 6, USUAL);
-    struct rate_table ours = table_of(&gas.scene);
-    struct scene changed = gas.scene;
+    struct rate_table ours = table_of(&gas.setup);
+    struct setup changed = gas.setup;
     changed.scheme.viscosity = VISCOSITY_NONE;
     struct rate_table theirs = table_of(&changed);
     const double scale = scale_of(&gas, &theirs, 3, 0);
@@ -439,7 +439,7 @@ static void better_by_a_thousand(void **state)
         /* by as much as is asked for, and no more */
         check = checked(&file, &gas, &ours, 1e-9);
         struct gas without = gas;
-        without.scene = changed;
+        without.setup = changed;
         const double left = checked(&file, &without, &theirs, 1).columns[0].worst;
         if (side > 0) {
             check = checked(&file, &gas, &ours, left);
@@ -467,8 +467,8 @@ static void plain_differences(void **state)
         for (int c = 0; c < 7; c++) {
             if (c >= 3 && c < 6 && c - 3 >= dim) continue;
             make(&gas, dim, sides[dim], schemes[dim]);
-            struct rate_table ours = table_of(&gas.scene);
-            const size_t n = gas.scene.n;
+            struct rate_table ours = table_of(&gas.setup);
+            const size_t n = gas.setup.n;
             char text[80];
             for (int k = 0; k < 2; k++) {
                 static const double factors[] = {0.8125, -3};
@@ -498,7 +498,7 @@ static void plain_differences(void **state)
             check = checked(&file, &gas, &ours, 1e-9);
             assert_string_equal(check.columns[0].cause,
                                 c == 1 ? "self-contribution: they leave out m W(0)" : "");
-            gas.scene.scheme.volume_element = VOLUME_ENERGY;
+            gas.setup.scheme.volume_element = VOLUME_ENERGY;
             check = checked(&file, &gas, &ours, 1e-9);
             assert_null(strstr(check.columns[0].cause, "self"));
             rate_table_free(&ours);
@@ -514,12 +514,12 @@ static void plainly_enough(void **state)
         "theirs is 0.8125", "self-contribution", "", "the sign", "", "", "they give dU/dt"};
     (void)state;
     make(&gas, 2, 6, USUAL);
-    struct rate_table ours = table_of(&gas.scene);
-    const double n = (double)gas.scene.n;
+    struct rate_table ours = table_of(&gas.setup);
+    const double n = (double)gas.setup.n;
     for (int c = 0; c < 7; c++)
         for (int side = -1; side <= 1 && causes[c][0]; side += 2) {
             write_file(&file, &gas, &ours, 1u << c);
-            for (size_t i = 0; i < gas.scene.n; i++) {
+            for (size_t i = 0; i < gas.setup.n; i++) {
                 if (c == 0) file.values[c][i] *= 0.8125;
                 if (c == 1) file.values[c][i] -= gas.m[i] * 40 / (7 * M_PI) / pow(ours.h[i], 2);
                 if (c == 3) file.values[c][i] *= -1;
@@ -549,9 +549,9 @@ static void self_contribution(void **state)
     static struct file file;
     (void)state;
     make(&gas, 2, 8, USUAL " kernel=quintic_spline eta=2.5");
-    struct rate_table ours = table_of(&gas.scene);
+    struct rate_table ours = table_of(&gas.setup);
     write_file(&file, &gas, &ours, 1 << 1);
-    for (size_t i = 0; i < gas.scene.n; i++)
+    for (size_t i = 0; i < gas.setup.n; i++)
         file.values[1][i] -= gas.m[i] * 66 * 7 * 9 / (478 * M_PI) / pow(ours.h[i], 2);
     const struct rate_check check = checked(&file, &gas, &ours, 1e-9);
     assert_string_equal(cause_of(&check, "rho"), "self-contribution: they leave out m W(0)");
@@ -567,9 +567,9 @@ static void factor_of_an_acceleration(void **state)
     size_t least = 0;
     (void)state;
     make(&gas, 2, 6, USUAL);
-    struct rate_table ours = table_of(&gas.scene);
+    struct rate_table ours = table_of(&gas.setup);
     write_file(&file, &gas, &ours, 1 << 3);
-    for (size_t i = 0; i < gas.scene.n; i++) {
+    for (size_t i = 0; i < gas.setup.n; i++) {
         if (fabs(file.values[3][i]) < fabs(file.values[3][least])) least = i;
         file.values[3][i] *= 0.8125;
     }
@@ -587,9 +587,9 @@ static void beside_nothing(void **state)
     static struct file file;
     (void)state;
     make(&gas, 2, 6, USUAL);
-    struct rate_table ours = table_of(&gas.scene);
+    struct rate_table ours = table_of(&gas.setup);
     write_file(&file, &gas, &ours, 1 << 3);
-    for (size_t i = 0; i < gas.scene.n; i++) {
+    for (size_t i = 0; i < gas.setup.n; i++) {
         for (int a = 0; a < 2; a++) ours.force[a][i] = 0;
         file.values[3][i] *= 1 + 0.01 * (double)i;
     }
@@ -606,12 +606,12 @@ static void what_follows(void **state)
     static struct file file;
     (void)state;
     make(&gas, 2, 6, USUAL);
-    struct rate_table ours = table_of(&gas.scene);
+    struct rate_table ours = table_of(&gas.setup);
     for (int first = 0; first < 7; first++) {
         if (first == 5) continue;
         write_file(&file, &gas, &ours, 0x5f);
         for (int c = first; c < 7; c++)
-            for (size_t i = 0; i < gas.scene.n; i += 3)
+            for (size_t i = 0; i < gas.setup.n; i += 3)
                 file.values[c][i] += 0.125 * (double)(i + 1);
         const struct rate_check check = checked(&file, &gas, &ours, 1e-9);
         for (int c = 0; c < 7; c++) {
@@ -638,10 +638,10 @@ static void no_grad_h(void **state)
         char words[400];
         snprintf(words, sizeof words, "%s formulation=lagrangian", schemes[dim]);
         make(&gas, dim, sides[dim], words);
-        struct rate_table ours = table_of(&gas.scene);
+        struct rate_table ours = table_of(&gas.setup);
         struct oracle oracle;
-        const size_t n = gas.scene.n;
-        assert_int_equal(oracle_create(&oracle, &gas.scene, NULL), STATUS_OK);
+        const size_t n = gas.setup.n;
+        assert_int_equal(oracle_create(&oracle, &gas.setup, NULL), STATUS_OK);
         oracle.without_grad_h = true;
         assert_int_equal(oracle_evaluate(&oracle, NULL), STATUS_OK);
         write_file(&file, &gas, &ours, 0x7f);
@@ -661,15 +661,15 @@ static void no_grad_h(void **state)
         assert_string_equal(cause_of(&check, "du"), cause);
         for (int a = 0; a < dim && dim > 1; a++) {
             struct gas other = gas;
-            other.scene.gravity[a] = 1e-3;
+            other.setup.gravity[a] = 1e-3;
             check = checked(&file, &other, &ours, 1e-9);
             assert_string_not_equal(cause_of(&check, "ax"), cause);
-            other.scene = gas.scene;
-            other.scene.boundary[a] = BOUNDARY_OPEN;
+            other.setup = gas.setup;
+            other.setup.boundary[a] = BOUNDARY_OPEN;
             check = checked(&file, &other, &ours, 1e-9);
             assert_string_not_equal(cause_of(&check, "ax"), cause);
         }
-        gas.scene.scheme.formulation = FORMULATION_VANILLA_ICE;
+        gas.setup.scheme.formulation = FORMULATION_VANILLA_ICE;
         check = checked(&file, &gas, &ours, 1e-9);
         assert_string_not_equal(cause_of(&check, "ax"), cause);
         rate_table_free(&ours);
@@ -679,9 +679,9 @@ static void no_grad_h(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(in_the_scenes_order),
+        cmocka_unit_test(in_the_setups_order),
         cmocka_unit_test(whichever_energy),
-        cmocka_unit_test(no_scene_no_table),
+        cmocka_unit_test(no_setup_no_table),
         cmocka_unit_test(equal_columns),
         cmocka_unit_test(how_far_off),
         cmocka_unit_test(each_choice_is_named),

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What a run is given and what it keeps: the scene, the particles at the end in the order in which
+ * What a run is given and what it keeps: the setup, the particles at the end in the order in which
  * they have started, what conservation is of, who is told on the way; states of other codes. */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -47,7 +47,7 @@ static struct run_result executed(const struct run *run)
 
 /* ---- before ---- */
 
-static void scenes(void **state)
+static void setups(void **state)
 {
     static const char *const cases[] = {"sod", "rayleigh_taylor_mode", "rest_3d"};
     static const char *const keys[] = {"n=40 t_end=0.01 skip=none", "n=16^2 t_end=0.01 skip=auto",
@@ -63,21 +63,21 @@ static void scenes(void **state)
                                         .u = arrays[7],
                                         .rho = arrays[8]};
         run.asked.threads = 3;
-        run.asked.unstamped = k == 1;
-        const struct scene scene = run_scene(&run, &initial);
-        assert_true(scene.dim == run.problem.domain.dim && scene.n == 5 && scene.threads == 3);
+        run.asked.generic = k == 1;
+        const struct setup setup = run_setup(&run, &initial);
+        assert_true(setup.dim == run.problem.domain.dim && setup.n == 5 && setup.threads == 3);
         for (int d = 0; d < 3; d++) {
-            assert_true(scene.lo[d] == run.problem.domain.lo[d] &&
-                        scene.hi[d] == run.problem.domain.hi[d]);
-            assert_true(scene.boundary[d] == run.problem.boundary[d] &&
-                        scene.gravity[d] == run.problem.gravity[d]);
-            assert_true(scene.x[d] == arrays[d] && scene.v[d] == arrays[3 + d]);
+            assert_true(setup.lo[d] == run.problem.domain.lo[d] &&
+                        setup.hi[d] == run.problem.domain.hi[d]);
+            assert_true(setup.boundary[d] == run.problem.boundary[d] &&
+                        setup.gravity[d] == run.problem.gravity[d]);
+            assert_true(setup.x[d] == arrays[d] && setup.v[d] == arrays[3 + d]);
         }
-        assert_true(scene.m == arrays[6] && scene.u == arrays[7] && scene.rho == arrays[8]);
-        assert_true(scene.gamma == run.problem.gamma && scene.skip == (k > 0) &&
-                    scene.unstamped == (k == 1));
-        assert_true(scene.t_end == settings_real(&run.settings, SETTING_t_end));
-        assert_true(scene.scheme.eta == run.scheme.eta);
+        assert_true(setup.m == arrays[6] && setup.u == arrays[7] && setup.rho == arrays[8]);
+        assert_true(setup.gamma == run.problem.gamma && setup.skip == (k > 0) &&
+                    setup.generic == (k == 1));
+        assert_true(setup.t_end == settings_real(&run.settings, SETTING_t_end));
+        assert_true(setup.scheme.eta == run.scheme.eta);
     }
     assert_true(resolved(cases[1], keys[1]).problem.gravity[1] != 0);
     assert_int_equal(resolved(cases[2], keys[2]).problem.boundary[2], BOUNDARY_REFLECTING);
@@ -495,7 +495,7 @@ static void walls_push(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(scenes),
+        cmocka_unit_test(setups),
         cmocka_unit_test(explanations),
         cmocka_unit_test(too_large),
         cmocka_unit_test(any_window),

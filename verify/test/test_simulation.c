@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What surrounds the steps of a simulation: which scenes it takes, the state it begins with, sums
+ * What surrounds the steps of a simulation: which setups it takes, the state it begins with, sums
  * over its particles, the length of a step, and how a breakdown is told. */
 #include <math.h>
 #include <setjmp.h>
@@ -26,7 +26,7 @@ static double draw(double low, double high)
     return low + (high - low) * ldexp((double)((drawn ^ drawn >> 29) >> 11), -53);
 }
 
-/* --- scenes ----------------------------------------------------------------------------------- */
+/* --- setups ----------------------------------------------------------------------------------- */
 
 enum { SIDE = 8, N = SIDE * SIDE };
 
@@ -34,11 +34,11 @@ enum { SIDE = 8, N = SIDE * SIDE };
 static double x[3][N + 1], v[3][N + 1], m[N + 1], u[N + 1], rho[N + 1];
 
 /* Of N particles on an uneven lattice of the box [-1, 3] x [0.5, 2.5]; or along its first side. */
-static struct scene plain(int dim, int words, char *const *keys)
+static struct setup plain(int dim, int words, char *const *keys)
 {
     struct settings settings;
     struct error error;
-    struct scene scene = {.dim = dim,
+    struct setup setup = {.dim = dim,
                           .lo = {-1, 0.5},
                           .hi = {3, 2.5},
                           .gamma = 1.5,
@@ -51,85 +51,85 @@ static struct scene plain(int dim, int words, char *const *keys)
     for (int i = 0; i < N; i++) {
         for (int k = 0, rest = i; k < dim; k++, rest /= side) {
             const double part = ((rest % side) + 0.5 + draw(-0.1, 0.1)) / side;
-            x[k][i] = scene.lo[k] + part * (scene.hi[k] - scene.lo[k]);
+            x[k][i] = setup.lo[k] + part * (setup.hi[k] - setup.lo[k]);
             v[k][i] = draw(-0.5, 0.5);
         }
         m[i] = draw(0.9, 1.1), u[i] = draw(0.8, 1.2), rho[i] = draw(3, 5);
     }
-    for (int k = 0; k < dim; k++) scene.x[k] = x[k], scene.v[k] = v[k], x[k][N] = v[k][N] = 7;
+    for (int k = 0; k < dim; k++) setup.x[k] = x[k], setup.v[k] = v[k], x[k][N] = v[k][N] = 7;
     m[N] = u[N] = rho[N] = 7;
     settings_init(&settings);
     if (settings_apply(&settings, words, keys, &error) ||
-        settings_scheme(&settings, dim, &scene.scheme, &error))
+        settings_scheme(&settings, dim, &setup.scheme, &error))
         fail_msg("%s", error.message);
-    return scene;
+    return setup;
 }
 
 static char *const few_neighbours[] = {"kernel=cubic_spline", "eta=2.4"};
 
-static struct simulation *created(const struct scene *scene)
+static struct simulation *created(const struct setup *setup)
 {
     struct simulation *simulation = NULL;
     struct error error;
-    if (simulation_create(scene, &simulation, &error)) fail_msg("%s", error.message);
+    if (simulation_create(setup, &simulation, &error)) fail_msg("%s", error.message);
     return simulation;
 }
 
-static void refused(const struct scene *scene, const char *message)
+static void refused(const struct setup *setup, const char *message)
 {
     struct simulation *simulation = (struct simulation *)(uintptr_t)1;
     struct error error = {0};
-    assert_int_equal(simulation_create(scene, &simulation, &error), STATUS_BAD_INPUT);
+    assert_int_equal(simulation_create(setup, &simulation, &error), STATUS_BAD_INPUT);
     assert_string_equal(error.message, message);
     assert_null(simulation);
 }
 
-/* A place of the scene with another value, for one attempt. */
-static void refused_with(const struct scene *scene, double *place, double value, const char *said)
+/* A place of the setup with another value, for one attempt. */
+static void refused_with(const struct setup *setup, double *place, double value, const char *said)
 {
     const double kept = *place;
     *place = value;
-    refused(scene, said);
+    refused(setup, said);
     *place = kept;
 }
 
-static void scenes_that_are_refused(void **state)
+static void setups_that_are_refused(void **state)
 {
     (void)state;
     for (int dim = 1; dim <= 2; dim++) {
-        struct scene scene = plain(dim, 2, few_neighbours);
-        scene.dim = 0;
-        refused(&scene, "dimension = 0: the solver is for dimension 1");
-        scene.dim = 4;
-        refused(&scene, "dimension = 4: the solver is for dimension 1");
-        scene.dim = dim;
-        scene.n = 1;
-        refused(&scene, "n = 1: at least 2 particles");
-        scene.n = N;
-        refused_with(&scene, &scene.gamma, 1, "gamma = 1: must be > 1");
-        refused_with(&scene, &scene.gamma, INFINITY, "gamma = inf: must be > 1");
-        refused_with(&scene, &scene.gamma, NAN, "gamma = nan: must be > 1");
-        refused_with(&scene, &scene.hi[0], -1, "box [-1, -1]: must have a positive length");
-        refused_with(&scene, &scene.lo[0], 5, "box [5, 3]: must have a positive length");
-        refused_with(&scene, &scene.hi[0], INFINITY, "box [-1, inf]: must have a positive length");
-        refused_with(&scene, &scene.hi[0], NAN, "box [-1, nan]: must have a positive length");
-        refused_with(&scene, &x[0][7], nextafter(3, 4), "particle 7: x = 3 is outside the box");
-        refused_with(&scene, &x[0][7], nextafter(-1, -2), "particle 7: x = -1 is outside the box");
-        refused_with(&scene, &x[0][0], NAN, "particle 0: x = nan is outside the box");
-        refused_with(&scene, &v[0][N - 1], NAN, "particle 63: velocity nan");
-        refused_with(&scene, &v[0][N - 1], INFINITY, "particle 63: velocity inf");
-        refused_with(&scene, &m[3], 0, "particle 3: mass 0 must be > 0");
-        refused_with(&scene, &m[3], -2, "particle 3: mass -2 must be > 0");
-        refused_with(&scene, &m[3], INFINITY, "particle 3: mass inf must be > 0");
-        refused_with(&scene, &u[4], 0, "particle 4: specific internal energy 0 must be > 0");
-        refused_with(&scene, &u[4], INFINITY,
+        struct setup setup = plain(dim, 2, few_neighbours);
+        setup.dim = 0;
+        refused(&setup, "dimension = 0: the solver is for dimension 1");
+        setup.dim = 4;
+        refused(&setup, "dimension = 4: the solver is for dimension 1");
+        setup.dim = dim;
+        setup.n = 1;
+        refused(&setup, "n = 1: at least 2 particles");
+        setup.n = N;
+        refused_with(&setup, &setup.gamma, 1, "gamma = 1: must be > 1");
+        refused_with(&setup, &setup.gamma, INFINITY, "gamma = inf: must be > 1");
+        refused_with(&setup, &setup.gamma, NAN, "gamma = nan: must be > 1");
+        refused_with(&setup, &setup.hi[0], -1, "box [-1, -1]: must have a positive length");
+        refused_with(&setup, &setup.lo[0], 5, "box [5, 3]: must have a positive length");
+        refused_with(&setup, &setup.hi[0], INFINITY, "box [-1, inf]: must have a positive length");
+        refused_with(&setup, &setup.hi[0], NAN, "box [-1, nan]: must have a positive length");
+        refused_with(&setup, &x[0][7], nextafter(3, 4), "particle 7: x = 3 is outside the box");
+        refused_with(&setup, &x[0][7], nextafter(-1, -2), "particle 7: x = -1 is outside the box");
+        refused_with(&setup, &x[0][0], NAN, "particle 0: x = nan is outside the box");
+        refused_with(&setup, &v[0][N - 1], NAN, "particle 63: velocity nan");
+        refused_with(&setup, &v[0][N - 1], INFINITY, "particle 63: velocity inf");
+        refused_with(&setup, &m[3], 0, "particle 3: mass 0 must be > 0");
+        refused_with(&setup, &m[3], -2, "particle 3: mass -2 must be > 0");
+        refused_with(&setup, &m[3], INFINITY, "particle 3: mass inf must be > 0");
+        refused_with(&setup, &u[4], 0, "particle 4: specific internal energy 0 must be > 0");
+        refused_with(&setup, &u[4], INFINITY,
                      "particle 4: specific internal energy inf must be > 0");
-        refused_with(&scene, &scene.gravity[0], dim == 1 ? -9 : INFINITY,
+        refused_with(&setup, &setup.gravity[0], dim == 1 ? -9 : INFINITY,
                      dim == 1 ? "gravity = -9: finite, and 0 in 1 dimension, is needed"
                               : "gravity = inf: finite, and 0 in 1 dimension, is needed");
-        refused_with(&scene, &scene.scheme.cfl, 0, "cfl = 0: cfl must be positive and finite");
+        refused_with(&setup, &setup.scheme.cfl, 0, "cfl = 0: cfl must be positive and finite");
     }
-    struct scene line = plain(1, 0, NULL), plane = plain(2, 2, few_neighbours);
+    struct setup line = plain(1, 0, NULL), plane = plain(2, 2, few_neighbours);
     line.boundary[0] = BOUNDARY_OPEN;
     refused(&line,
             "boundary=open and dimension=1 exclude each other: it is for 2 and 3 dimensions");
@@ -142,22 +142,22 @@ static void scenes_that_are_refused(void **state)
 }
 
 /* The ends of a box belong to it; two particles are enough. */
-static void scenes_that_are_taken(void **state)
+static void setups_that_are_taken(void **state)
 {
     (void)state;
     for (int dim = 1; dim <= 2; dim++) {
-        struct scene scene = plain(dim, 2, few_neighbours);
+        struct setup setup = plain(dim, 2, few_neighbours);
         x[0][0] = -1, x[0][7] = 3;
-        scene.gamma = 1 + 1e-9;
-        simulation_destroy(created(&scene));
+        setup.gamma = 1 + 1e-9;
+        simulation_destroy(created(&setup));
     }
-    struct scene two = plain(1, 0, NULL);
+    struct setup two = plain(1, 0, NULL);
     two.n = 2;
     simulation_destroy(created(&two));
 }
 
 /* The state that a simulation begins with, and its threads. */
-static void the_state_of_a_scene(void **state)
+static void the_state_of_a_setup(void **state)
 {
     (void)state;
     static char *const schemes[][2] = {
@@ -169,13 +169,13 @@ static void the_state_of_a_scene(void **state)
     for (int dim = 1; dim <= 2; dim++)
         for (size_t k = 0; k < 4; k++) {
             if (dim == 1 && k == 3) continue;
-            struct scene scene = plain(dim, 2, schemes[k]);
-            scene.threads = (int)k - 1;
-            scene.boundary[1] = BOUNDARY_REFLECTING;
-            scene.gravity[1] = -0.5;
-            struct simulation *s = created(&scene);
+            struct setup setup = plain(dim, 2, schemes[k]);
+            setup.threads = (int)k - 1;
+            setup.boundary[1] = BOUNDARY_REFLECTING;
+            setup.gravity[1] = -0.5;
+            struct simulation *s = created(&setup);
             const struct particles *a = &s->particles;
-            assert_true(s->team.most == (scene.threads > 1 ? scene.threads : 1));
+            assert_true(s->team.most == (setup.threads > 1 ? setup.threads : 1));
             assert_true(s->team.size == s->team.most && s->gamma == 1.5);
             assert_true(s->lo[0] == -1 && a->period[0] == 4);
             if (dim == 2) {
@@ -192,8 +192,8 @@ static void the_state_of_a_scene(void **state)
                 }
                 near_relative(a->e[i], e, 1e-15);
                 assert_true(a->m[i] == m[id] && a->m_inverse[i] == 1 / m[id]);
-                const double alpha = k >= 2     ? scene.scheme.alpha_min
-                                     : dim == 1 ? scene.scheme.alpha
+                const double alpha = k >= 2     ? setup.scheme.alpha_min
+                                     : dim == 1 ? setup.scheme.alpha
                                                 : 0;
                 assert_true(a->alpha[i] == alpha && a->alpha_old[i] == alpha);
             }
@@ -205,20 +205,20 @@ static void the_state_of_a_scene(void **state)
         }
 }
 
-/* Three particles at one place are laid a thousandth of their spacing apart: as the scene's density
+/* Three particles at one place are laid a thousandth of their spacing apart: as the setup's density
  * says, or the mean one where it says none. */
 static void the_first_guess_of_widths(void **state)
 {
     (void)state;
     char *keys[] = {"kernel=quadratic_spline", "eta=1.5"};
     for (int known = 0; known < 3; known++) {
-        struct scene scene = plain(1, 2, keys);
+        struct setup setup = plain(1, 2, keys);
         double mass = 0;
         for (int i = 0; i < N; i++) m[i] = 0.5 + i % 3, mass += m[i];
         x[0][11] = x[0][12] = x[0][10];
         rho[10] = known == 2 ? 0 : 1e3;
-        if (known) scene.rho = rho;
-        struct simulation *s = created(&scene);
+        if (known) setup.rho = rho;
+        struct simulation *s = created(&setup);
         const double *at = s->particles.x[0];
         int first = 0;
         while (s->particles.id[first] != 10) first++;
@@ -458,8 +458,8 @@ static void places_are_named(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(scenes_that_are_refused), cmocka_unit_test(scenes_that_are_taken),
-        cmocka_unit_test(the_state_of_a_scene),    cmocka_unit_test(the_first_guess_of_widths),
+        cmocka_unit_test(setups_that_are_refused), cmocka_unit_test(setups_that_are_taken),
+        cmocka_unit_test(the_state_of_a_setup),    cmocka_unit_test(the_first_guess_of_widths),
         cmocka_unit_test(conserved_sums),          cmocka_unit_test(snapshots_are_wrapped),
         cmocka_unit_test(steps_meet_the_end),      cmocka_unit_test(the_first_step),
         cmocka_unit_test(places_are_named),

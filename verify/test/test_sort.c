@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "hydro_scene.h"
+#include "hydro_setup.h"
 #include "simulation.h"
 #include "sort.h"
 
@@ -108,9 +108,9 @@ static void test_shuffled_particles(void **state)
         shuffled.x[i] = plain.x[number[i]], shuffled.v[i] = plain.v[number[i]];
         shuffled.m[i] = plain.m[number[i]], shuffled.u[i] = plain.u[number[i]];
     }
-    const struct scene scenes[] = {hydro_scene(&plain, &scheme), hydro_scene(&shuffled, &scheme)};
-    assert_int_equal(simulation_create(&scenes[0], &a, &error), STATUS_OK);
-    assert_int_equal(simulation_create(&scenes[1], &b, &error), STATUS_OK);
+    const struct setup setups[] = {hydro_setup(&plain, &scheme), hydro_setup(&shuffled, &scheme)};
+    assert_int_equal(simulation_create(&setups[0], &a, &error), STATUS_OK);
+    assert_int_equal(simulation_create(&setups[1], &b, &error), STATUS_OK);
     simulation_snapshot(a, &left);
     simulation_snapshot(b, &right);
     for (size_t i = 0; i < plain.n; i++) place[left.id[i]] = i;

@@ -334,17 +334,17 @@ static void clocks_go_on(void **state)
     (void)state;
     static struct made_bytes bag;
     struct simulation *kept = made_simulation(40), *restored = made_simulation(40);
-    struct carrier out = {.bytes = made_put, .context = &bag},
-                   back = {.bytes = made_take, .context = &bag, .back = true};
+    struct serialiser out = {.bytes = made_put, .context = &bag},
+                      back = {.bytes = made_take, .context = &bag, .back = true};
     made_run(kept, 0.02);
     kept->wall_start -= 1e6, kept->cpu_start -= 2e6;
     const double wall = kept->wall_start, cpu = kept->cpu_start;
-    simulation_carry(kept, &out);
+    simulation_serialise(kept, &out);
     assert_false(out.failed);
     assert_true(kept->wall_start == wall && kept->cpu_start == cpu);
     near_inside(kept->cost.wall_s, 1e6, 1e6 + 100);
     near_inside(kept->cost.cpu_s, 2e6, 2e6 + 100);
-    simulation_carry(restored, &back);
+    simulation_serialise(restored, &back);
     assert_false(back.failed);
     assert_int_equal(bag.read, bag.used);
     assert_true(restored->cost.wall_s == kept->cost.wall_s);
@@ -369,8 +369,8 @@ static void all_is_carried(void **state)
     static struct made_bytes bag;
     bag.used = bag.read = 0;
     struct simulation *kept = made_simulation(40), *restored = made_simulation(40);
-    struct carrier out = {.bytes = made_put, .context = &bag},
-                   back = {.bytes = made_take, .context = &bag, .back = true};
+    struct serialiser out = {.bytes = made_put, .context = &bag},
+                      back = {.bytes = made_take, .context = &bag, .back = true};
     const size_t keeps = kept->scheme.integrator->keeps;
     assert_true(keeps > 0 && kept->sleep.span_count == 1);
     memset(kept->integrator_state, 0x3f, keeps);
@@ -383,8 +383,8 @@ static void all_is_carried(void **state)
         line_of(kept)->ranges[b] = (struct range){b, 5, 6, 7, true, 8, 9 + (uint64_t)b};
     for (ptrdiff_t g = 0; g < 5; g++)
         line_of(kept)->groups.awake[g] = g != 3, line_of(kept)->groups.rate[g] = (double)g;
-    simulation_carry(kept, &out);
-    simulation_carry(restored, &back);
+    simulation_serialise(kept, &out);
+    simulation_serialise(restored, &back);
     assert_false(out.failed || back.failed);
     assert_int_equal(bag.read, bag.used);
     assert_memory_equal(restored->integrator_state, kept->integrator_state, keeps);

@@ -128,15 +128,15 @@ static void carried_with_ghosts(void **state)
                     if (k % 3 != 1) from[k][place] = value(k, at), written++;
                 for (ptrdiff_t i = 0; i < n; i++) a.id[i] = (size_t)(2 * i + 1);
                 fill(&b, 8);
-                struct carrier out = {.bytes = made_put, .context = &bag},
-                               back = {.bytes = made_take, .context = &bag, .back = true};
+                struct serialiser out = {.bytes = made_put, .context = &bag},
+                                  back = {.bytes = made_take, .context = &bag, .back = true};
                 bag.used = bag.read = 0;
-                particles_carry(&a, &out);
+                particles_serialise(&a, &out);
                 assert_false(out.failed);
                 assert_int_equal(bag.used, sizeof(ptrdiff_t) + count * sizeof(bool) +
                                                8 * written * (size_t)(n + 32) +
                                                (size_t)n * sizeof(size_t));
-                particles_carry(&b, &back);
+                particles_serialise(&b, &back);
                 assert_false(back.failed);
                 assert_int_equal(bag.read, bag.used);
                 assert_int_equal(b.ghosts, 16);
@@ -165,8 +165,8 @@ static void failed_to_carry(void **state)
     fill(&a, 8);
     for (int calls = 1; calls < 5; calls++) {
         int left = calls;
-        struct carrier back = {.bytes = nothing, .context = &left, .back = true};
-        particles_carry(&a, &back);
+        struct serialiser back = {.bytes = nothing, .context = &left, .back = true};
+        particles_serialise(&a, &back);
         assert_true(back.failed && left == 0);
         filled(&a, 8);
     }

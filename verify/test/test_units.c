@@ -89,7 +89,7 @@ static void test_loops(void **state)
     enum { COUNT = 24 };
     for (size_t k = 0; k < kernel_family.n; k++)
         for (int dim = 1; dim <= 3; dim++)
-            for (int stamped = 0; stamped < 2; stamped++) {
+            for (int specialised = 0; specialised < 2; specialised++) {
                 struct kernel kernel;
                 double q[COUNT], r[COUNT], m[COUNT], theirs[COUNT], w[COUNT + 1], other[COUNT + 1];
                 long double sums[2] = {0};
@@ -97,7 +97,7 @@ static void test_loops(void **state)
                 const double inverse = 0.73;
                 assert_int_equal(kernel_select(&kernel, kernel_family.members[k]->name, 5, NULL),
                                  STATUS_OK);
-                const struct shapes shapes = shapes_of(&kernel, dim, stamped);
+                const struct shapes shapes = shapes_of(&kernel, dim, specialised);
                 for (int i = 0; i < COUNT; i++) {
                     q[i] = 1.1 * i / COUNT, r[i] = q[i] / inverse;
                     m[i] = 0.3 + sin(i), theirs[i] = inverse * (1 + 0.1 * (i % 3));
@@ -137,7 +137,7 @@ static void test_loops(void **state)
                 half.dw = half.w;
                 assert_true(shapes_of(&half, dim, true).w == shapes_of(&kernel, dim, false).w);
                 assert_true((shapes_of(&kernel, dim, true).w == shapes_of(&kernel, dim, false).w) ==
-                            (kernel_stamp(&kernel) < 0));
+                            (kernel_specialisation(&kernel) < 0));
             }
 }
 

@@ -170,7 +170,7 @@ static enum status flow(int dim, size_t n, const struct scheme *scheme, enum bou
                         struct error *error)
 {
     static double m[POINTS_MAX], u[POINTS_MAX];
-    struct scene scene = {.dim = dim,
+    struct setup setup = {.dim = dim,
                           .hi = {1, 1, 1},
                           .boundary = {BOUNDARY_PERIODIC, ends},
                           .gamma = 1.4,
@@ -189,9 +189,9 @@ static enum status flow(int dim, size_t n, const struct scheme *scheme, enum bou
             out[a][i] = i == 0 ? 0.01 : 0;
         }
     }
-    for (int a = 0; a < dim; a++) scene.x[a] = place[a], scene.v[a] = out[a];
+    for (int a = 0; a < dim; a++) setup.x[a] = place[a], setup.v[a] = out[a];
     struct simulation *simulation;
-    enum status status = simulation_create(&scene, &simulation, error);
+    enum status status = simulation_create(&setup, &simulation, error);
     if (status) return status;
     status = simulation_run(simulation, 0.02, NULL, NULL, error);
     struct conservation sums;
@@ -416,27 +416,27 @@ static void test_room_of_cells(void **state)
     }
 }
 
-/* Who asks for loops that are not stamped gets them: the oracle of those that are. */
-static bool stamped_asked;
-struct shapes __real_shapes_of(const struct kernel *of, int dim, bool stamped);
-struct shapes __wrap_shapes_of(const struct kernel *of, int dim, bool stamped);
-struct shapes __wrap_shapes_of(const struct kernel *of, int dim, bool stamped)
+/* Who asks for loops that are not specialised gets them: the oracle of those that are. */
+static bool specialised_asked;
+struct shapes __real_shapes_of(const struct kernel *of, int dim, bool specialised);
+struct shapes __wrap_shapes_of(const struct kernel *of, int dim, bool specialised);
+struct shapes __wrap_shapes_of(const struct kernel *of, int dim, bool specialised)
 {
-    stamped_asked = stamped;
-    return __real_shapes_of(of, dim, stamped);
+    specialised_asked = specialised;
+    return __real_shapes_of(of, dim, specialised);
 }
 
-static void test_unstamped(void **state)
+static void test_generic(void **state)
 {
     (void)state;
     const struct cloud cloud = {points_of(2, 30, false), volume, width};
     make(30, 0.45, 1);
-    for (int unstamped = 0; unstamped < 2; unstamped++) {
+    for (int generic = 0; generic < 2; generic++) {
         const struct operator_settings settings = {
-            (const struct operator_form *)operator_family.members[0], &kernel, unstamped, 1};
+            (const struct operator_form *)operator_family.members[0], &kernel, generic, 1};
         assert_int_equal(operator_apply(&settings, &cloud, 0, NULL, NULL, NULL, NULL, NULL),
                          STATUS_OK);
-        assert_int_equal(stamped_asked, !unstamped);
+        assert_int_equal(specialised_asked, !generic);
     }
 }
 
@@ -445,7 +445,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_every_call),    cmocka_unit_test(test_ends),
         cmocka_unit_test(test_room_of_grids), cmocka_unit_test(test_room_of_cells),
-        cmocka_unit_test(test_unstamped),
+        cmocka_unit_test(test_generic),
     };
     if (kernel_select(&kernel, "cubic_spline", 5, NULL)) return 1;
     return cmocka_run_group_tests(tests, NULL, NULL);

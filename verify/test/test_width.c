@@ -96,9 +96,9 @@ static void steps_are_newtons(void **state)
 {
     (void)state;
     for (int dim = 1; dim <= 3; dim++)
-        for (int scene = 0; scene < 50; scene++) {
+        for (int setup = 0; setup < 50; setup++) {
             const struct width_rule rule = rule_of(dim, 1e-12);
-            struct batch b = drawn_batch(&rule, scene % 2 ? INFINITY : 40);
+            struct batch b = drawn_batch(&rule, setup % 2 ? INFINITY : 40);
             const struct batch old = b;
             assert_true(width_step(&rule, LEN, b.m, &b.sums, &b.bracket, b.h, b.h_inverse));
             for (int i = 0; i < LEN; i++) {

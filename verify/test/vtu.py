@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""vtu.py SPHPROOF [DRAWS] [--others] [--seed SEED]: snapshots for ParaView (`--snapshot F.vtu`). In random scenes of 1, 2 and 3
+"""vtu.py SPHPROOF [DRAWS] [--others] [--seed SEED]: snapshots for ParaView (`--snapshot F.vtu`). In random setups of 1, 2 and 3
 dimensions every number is, to the last bit, that of the same run's CSV; what belongs to the whole run is there; a series
 has a collection; judge finds in them what it finds in CSV, also packed and appended as other programs write them.
 With --others VTK and meshio, where one is installed for this Python or the system's, must read the same bits."""
@@ -67,7 +67,7 @@ def run(*words, status=0):
     return done.stdout + done.stderr
 
 
-def scene(draw):
+def setup(draw):
     """The words of a run: few particles, a random start and time."""
     state = lambda: "%.3g %.3g %.3g" % (draw.uniform(0.2, 2), draw.uniform(-0.3, 0.3), draw.uniform(0.2, 2))
     side = draw.randint(12, 18)
@@ -169,9 +169,9 @@ def judged(path):
     return {key: document[key] for key in ("case", "time", "errors", "gamma", "settings") if key in document}
 
 
-def random_scenes(draw):
+def random_setups(draw):
     for number in range(DRAWS):
-        words = ["run", *scene(draw), "--quiet", "--threads", "1"]
+        words = ["run", *setup(draw), "--quiet", "--threads", "1"]
         run(*words, "--snapshot", "s.csv")
         run(*words, "--snapshot", "s.vtu")
         csv, said = csv_of("s.csv")
@@ -244,7 +244,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
         try:
-            random_scenes(random.Random(seed))
+            random_setups(random.Random(seed))
         except BaseException:
             print("seed", seed)
             raise
@@ -252,7 +252,7 @@ def main():
         refused()
         os.chdir("/")
     others = "" if TESTERS is False else "; also read by: %s" % (", ".join(word for _, word in TESTERS) or "nobody, as neither VTK nor meshio is here")
-    print("%d scenes, bit for bit%s" % (DRAWS, others))
+    print("%d setups, bit for bit%s" % (DRAWS, others))
 
 
 main()

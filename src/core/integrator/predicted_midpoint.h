@@ -21,7 +21,7 @@
 
 #include "breakdown.h"
 #include "solver.h"
-#include "stamp.h"
+#include "specialise.h"
 #include "width.h"
 
 struct predicted_midpoint {
@@ -101,8 +101,8 @@ MOVES(advance_and_predict, true, true)
 #undef MOVES
 #undef MOVE
 
-/* One of them (stamped for each dimension) over all that moves: sleepers in moving gas drift, those
- * at rest are left alone. A count of particles: its sum does not depend on the order. */
+/* One of them (specialised for each dimension) over all that moves: sleepers in moving gas drift,
+ * those at rest are left alone. A count of particles: its sum does not depend on the order. */
 static double move_all(const struct simulation *simulation, move *const *walks, double dt,
                        double ahead)
 {

@@ -10,7 +10,7 @@
 extern "C" {
 #endif
 
-/** Where rates go: n values each, in the order of the scene; NULL: not wanted. */
+/** Where rates go: n values each, in the order of the setup; NULL: not wanted. */
 struct sphproof_rates {
     double *h;          /**< support radii; by default to a relative 1e-14, see key h_tolerance */
     double *rho;        /**< densities */
@@ -20,8 +20,8 @@ struct sphproof_rates {
     double *neighbours; /**< particles within h, itself and images included */
 };
 
-/** Evaluates the scene once. SPHPROOF_BAD_INPUT: as sphproof_simulations_create. */
-enum sphproof_status sphproof_rates_evaluate(const struct sphproof_scene *scene,
+/** Evaluates the setup once. SPHPROOF_BAD_INPUT: as sphproof_simulations_create. */
+enum sphproof_status sphproof_rates_evaluate(const struct sphproof_setup *setup,
                                              const struct sphproof_rates *rates,
                                              struct sphproof_error *error);
 

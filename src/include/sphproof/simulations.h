@@ -11,7 +11,7 @@ extern "C" {
 #endif
 
 /** What is to be computed. All is copied. Zeros and NULL where nothing is said below. */
-struct sphproof_scene {
+struct sphproof_setup {
     int dim;                 /**< 1, 2, 3 */
     size_t n;                /**< particles, 2 or more */
     const double *x[3];      /**< n each: positions, in the box, any order */
@@ -33,7 +33,7 @@ struct sphproof_simulation;
 
 /** Makes one. SPHPROOF_BAD_INPUT: a particle, the box, gamma or a key is out of range; the message
  * names it. Free it with sphproof_simulations_free. */
-enum sphproof_status sphproof_simulations_create(const struct sphproof_scene *scene,
+enum sphproof_status sphproof_simulations_create(const struct sphproof_setup *setup,
                                                  struct sphproof_simulation **simulation,
                                                  struct sphproof_error *error);
 
@@ -42,7 +42,7 @@ enum sphproof_status sphproof_simulations_create(const struct sphproof_scene *sc
 enum sphproof_status sphproof_simulations_run(struct sphproof_simulation *simulation, double t,
                                               struct sphproof_error *error);
 
-/** Where a state goes: n values each, in the order of the scene; NULL: not wanted. */
+/** Where a state goes: n values each, in the order of the setup; NULL: not wanted. */
 struct sphproof_state {
     double *x[3]; /**< positions, wrapped into a periodic box */
     double *v[3]; /**< velocities */

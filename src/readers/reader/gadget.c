@@ -3,7 +3,7 @@
  * order: Fortran records, each between two counts of its bytes. The first is the header of 256
  * bytes. In format 2 a record of 8 bytes before each block names it. In format 1 nobody does, and
  * codes insert blocks of their own: which record is what follows from lengths and from values, and
- * where two readings fit, none is taken. */
+ * where two metrics fit, none is taken. */
 #include <float.h>
 #include <math.h>
 #include <stdint.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "reading.h"
+#include "metric.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "reading_rule.h"
+#include "metric_rule.h"
 #include "value.h"
 
 enum { PATH_MAX_LENGTH = 1536, NAME_MAX_LENGTH = 900, KEYS_MAX = 64 };
@@ -37,23 +37,23 @@ static bool one_of(const char *word, const char *const *list, size_t n)
 
 /* ---- walking through a document ---- */
 
-static void add(struct readings *readings, struct reading reading, const char *path)
+static void add(struct metrics *metrics, struct metric metric, const char *path)
 {
-    if (readings->count == readings->room) {
-        const size_t room = readings->room ? 2 * readings->room : 256;
-        struct reading *list = realloc(readings->list, room * sizeof *list);
+    if (metrics->count == metrics->room) {
+        const size_t room = metrics->room ? 2 * metrics->room : 256;
+        struct metric *list = realloc(metrics->list, room * sizeof *list);
         if (!list) {
-            readings->failed = true;
+            metrics->failed = true;
             return;
         }
-        readings->list = list;
-        readings->room = room;
+        metrics->list = list;
+        metrics->room = room;
     }
-    reading.path = strdup(path);
-    reading.word = reading.word ? strdup(reading.word) : NULL;
-    if (!reading.path) readings->failed = true;
-    reading.number = readings->count;
-    readings->list[readings->count++] = reading;
+    metric.path = strdup(path);
+    metric.word = metric.word ? strdup(metric.word) : NULL;
+    if (!metric.path) metrics->failed = true;
+    metric.number = metrics->count;
+    metrics->list[metrics->count++] = metric;
 }
 
 /* level: the entry of "levels" that encloses this object, or NULL; field: its field. */
@@ -70,20 +70,20 @@ static double exact_of(const json_t *parent, const char *name)
 }
 
 /* What the figure's neighbours know about its noise. */
-static void refine(struct reading *reading, const json_t *parent, const char *name)
+static void refine(struct metric *metric, const json_t *parent, const char *name)
 {
-    if (reading->kind == READING_ORDER) {
+    if (metric->kind == READING_ORDER) {
         const double half = (value_member(parent, "high") - value_member(parent, "low")) / 2;
-        if (half > reading->noise) reading->noise = half;
+        if (half > metric->noise) metric->noise = half;
     }
-    if (reading->kind == READING_CHECK && value_member(parent, "floor") >= 0)
-        reading->floor = fmax(reading->floor, check_floors * value_member(parent, "floor"));
-    if (reading->kind == READING_PART && isfinite(value_member(parent, "predicted"))) {
-        reading->kind = READING_EXACT;
-        reading->exact = value_member(parent, "predicted");
-    } else if (reading->kind == READING_EXACT) {
-        reading->exact = exact_of(parent, name);
-        if (!isfinite(reading->exact)) reading->kind = READING_NEUTRAL;
+    if (metric->kind == READING_CHECK && value_member(parent, "floor") >= 0)
+        metric->floor = fmax(metric->floor, check_floors * value_member(parent, "floor"));
+    if (metric->kind == READING_PART && isfinite(value_member(parent, "predicted"))) {
+        metric->kind = READING_EXACT;
+        metric->exact = value_member(parent, "predicted");
+    } else if (metric->kind == READING_EXACT) {
+        metric->exact = exact_of(parent, name);
+        if (!isfinite(metric->exact)) metric->kind = READING_NEUTRAL;
     }
 }
 
@@ -96,72 +96,72 @@ static double level_noise(const json_t *level, const char *field, const char *no
     return spread > 0 && replicates > 1 ? 2 * spread / sqrt(replicates) : 0;
 }
 
-static void nobody_knows(struct readings *readings, const char *path, const char *why)
+static void nobody_knows(struct metrics *metrics, const char *path, const char *why)
 {
-    if (!readings->trouble[0])
-        snprintf(readings->trouble, sizeof readings->trouble, "%.200s: %s", path, why);
+    if (!metrics->trouble[0])
+        snprintf(metrics->trouble, sizeof metrics->trouble, "%.200s: %s", path, why);
 }
 
 static bool is_headline(const struct place *at, const json_t *parent, const char *name,
-                        const struct reading *reading)
+                        const struct metric *metric)
 {
     static const char *const minor[] = {"l1_whole",      "l2",    "linf",
                                         "particle_mean", "class", "suspicion"};
     static const char *const elsewhere[] = {"kernels", "verify", "budget", "budgets"};
     const char *norm = json_string_value(json_object_get(parent, "norm"));
     bool headline = !one_of(name, minor, LENGTH(minor)) && (!norm || !strcmp(norm, "l1")) &&
-                    reading->kind != READING_NEUTRAL;
+                    metric->kind != READING_NEUTRAL;
     for (size_t i = 0; i < LENGTH(elsewhere); i++)
-        headline = headline && !reading_passes(at->path, elsewhere[i]);
+        headline = headline && !metric_passes(at->path, elsewhere[i]);
     return headline;
 }
 
 /* The member `name` of parent, at the end of a path. */
-static void take(struct readings *readings, const struct place *at, const json_t *parent,
+static void take(struct metrics *metrics, const struct place *at, const json_t *parent,
                  const char *name, const json_t *value)
 {
     char path[PATH_MAX_LENGTH + 128];
     const char *word = json_string_value(value);
     const bool number = value_is_real(value), truth = json_is_boolean(value);
-    const struct reading_rule *rule = reading_rule(at->path, name);
+    const struct metric_rule *rule = metric_rule(at->path, name);
     if (json_is_null(value) || (rule && rule->use == RULE_LEFT_OUT)) return;
     snprintf(path, sizeof path, "%s%s%.100s", at->path, *at->path ? "." : "", name);
     if (!rule) {
-        if (number || truth) nobody_knows(readings, path, "a figure of a kind that is not known");
+        if (number || truth) nobody_knows(metrics, path, "a figure of a kind that is not known");
         return;
     }
-    struct reading reading = {
+    struct metric metric = {
         .kind = rule->kind, .value = NAN, .noise = rule->noise, .floor = rule->floor};
     if (rule->kind == READING_STATUS) {
         if (truth) word = json_is_true(value) ? "true" : "false";
         if (!word) return;
-        reading.word = (char *)word;
+        metric.word = (char *)word;
     } else if (number) {
-        reading.value = value_real(value);
-        refine(&reading, parent, name);
+        metric.value = value_real(value);
+        refine(&metric, parent, name);
         if (at->level && at->field && rule->kind == READING_ERROR)
-            reading.noise = fmax(reading.noise, level_noise(at->level, at->field, name));
+            metric.noise = fmax(metric.noise, level_noise(at->level, at->field, name));
     } else {
         return;
     }
-    reading.headline = is_headline(at, parent, name, &reading);
-    add(readings, reading, path);
+    metric.headline = is_headline(at, parent, name, &metric);
+    add(metrics, metric, path);
 }
 
 /* The components of a vector that is a figure itself. */
-static void take_vector(struct readings *readings, const struct place *at, const char *name,
+static void take_vector(struct metrics *metrics, const struct place *at, const char *name,
                         const json_t *list)
 {
     static const char *const components[] = {"x", "y", "z"};
     struct place inside = *at;
     if (!json_array_size(list) || json_array_size(list) > 3 ||
-        !(reading_passes(at->path, "gradients") || strcmp(name, "force") == 0))
+        !(metric_passes(at->path, "gradients") || strcmp(name, "force") == 0))
         return;
     const size_t length = strlen(at->path);
     snprintf(inside.path + length, sizeof inside.path - length, "%s%.100s", length ? "." : "",
              name);
     for (size_t i = 0; i < json_array_size(list); i++)
-        take(readings, &inside, list, components[i], json_array_get(list, i));
+        take(metrics, &inside, list, components[i], json_array_get(list, i));
 }
 
 /* Numbers of five digits and more behind the point say where something was found ("q 0.564762"),
@@ -254,9 +254,9 @@ static bool is_name(const char *key, const json_t *value)
                                  : one_of(key, numbers, LENGTH(numbers));
 }
 
-static void walk(struct readings *readings, const struct place *at, const json_t *object);
+static void walk(struct metrics *metrics, const struct place *at, const json_t *object);
 
-static void walk_list(struct readings *readings, const struct place *at, const char *key,
+static void walk_list(struct metrics *metrics, const struct place *at, const char *key,
                       const json_t *list)
 {
     for (size_t i = 0; i < json_array_size(list); i++) {
@@ -273,29 +273,29 @@ static void walk_list(struct readings *readings, const struct place *at, const c
         const int length = snprintf(inside.path, sizeof inside.path, "%s%s%.80s[%s]", at->path,
                                     *at->path ? "." : "", key, name);
         if (length >= (int)sizeof inside.path || strlen(name) + 1 >= sizeof name) {
-            nobody_knows(readings, key, "an entry whose name is too long");
+            nobody_knows(metrics, key, "an entry whose name is too long");
             continue;
         }
         if (strcmp(key, "levels") == 0) inside.level = entry;
-        walk(readings, &inside, entry);
+        walk(metrics, &inside, entry);
     }
 }
 
-static void walk_object(struct readings *readings, const struct place *at, const char *key,
+static void walk_object(struct metrics *metrics, const struct place *at, const char *key,
                         const json_t *object)
 {
     struct place inside = *at;
     const int length = snprintf(inside.path, sizeof inside.path, "%s%s%.100s", at->path,
                                 *at->path ? "." : "", key);
     if (length >= (int)sizeof inside.path) {
-        nobody_knows(readings, key, "a name that is too long");
+        nobody_knows(metrics, key, "a name that is too long");
         return;
     }
     inside.field = key;
-    walk(readings, &inside, object);
+    walk(metrics, &inside, object);
 }
 
-static void walk(struct readings *readings, const struct place *at, const json_t *object)
+static void walk(struct metrics *metrics, const struct place *at, const json_t *object)
 {
     static const char *const heads[] = {"schema", "command", "version",     "git",
                                         "date",   "flags",   "computations"};
@@ -305,38 +305,38 @@ static void walk(struct readings *readings, const struct place *at, const json_t
         if (one_of(key, closed, LENGTH(closed)) || is_name(key, value)) continue;
         if (!*at->path && one_of(key, heads, LENGTH(heads))) continue;
         if (json_is_array(value)) {
-            walk_list(readings, at, key, value);
-            take_vector(readings, at, key, value);
+            walk_list(metrics, at, key, value);
+            take_vector(metrics, at, key, value);
         } else if (json_is_object(value)) {
-            walk_object(readings, at, key, value);
+            walk_object(metrics, at, key, value);
         } else {
-            take(readings, at, object, key, value);
+            take(metrics, at, object, key, value);
         }
     }
 }
 
 static int by_path(const void *a, const void *b)
 {
-    const struct reading *x = a, *y = b;
+    const struct metric *x = a, *y = b;
     const int order = strcmp(x->path, y->path);
     return order ? order : (x->number > y->number) - (x->number < y->number);
 }
 
 /* Entries that nothing tells apart become one, the worst of them: to pair them by their place would
  * compare different things as soon as one is missing. How many there are is a part of the name. */
-static void join_alike(struct readings *readings)
+static void join_alike(struct metrics *metrics)
 {
-    struct reading *list = readings->list;
+    struct metric *list = metrics->list;
     size_t kept = 0;
-    for (size_t i = 0, next; i < readings->count; i = next, kept++) {
+    for (size_t i = 0, next; i < metrics->count; i = next, kept++) {
         size_t worst = i;
-        for (next = i + 1; next < readings->count; next++) {
+        for (next = i + 1; next < metrics->count; next++) {
             if (strcmp(list[next].path, list[i].path) != 0) break;
             if (list[worst].kind == READING_NEUTRAL)
-                nobody_knows(readings, list[i].path, "nothing tells several entries apart");
-            if (reading_worse(&list[next], &list[worst])) worst = next;
+                nobody_knows(metrics, list[i].path, "nothing tells several entries apart");
+            if (metric_worse(&list[next], &list[worst])) worst = next;
         }
-        struct reading one = list[worst];
+        struct metric one = list[worst];
         for (size_t k = i; k < next; k++)
             if (k != worst) free(list[k].path), free(list[k].word);
         if (next - i > 1) {
@@ -344,48 +344,48 @@ static void join_alike(struct readings *readings)
             snprintf(path, sizeof path, "%s (%zu alike)", one.path, next - i);
             free(one.path);
             one.path = strdup(path);
-            if (!one.path) readings->failed = true;
+            if (!one.path) metrics->failed = true;
         }
         list[kept] = one;
     }
-    readings->count = kept;
+    metrics->count = kept;
 }
 
-enum status reading_collect(const json_t *document, struct readings *readings, struct error *error)
+enum status metric_collect(const json_t *document, struct metrics *metrics, struct error *error)
 {
     const struct place top = {.path = ""};
-    *readings = (struct readings){0};
-    walk(readings, &top, document);
-    if (!readings->failed && readings->count) {
-        qsort(readings->list, readings->count, sizeof *readings->list, by_path);
-        join_alike(readings);
+    *metrics = (struct metrics){0};
+    walk(metrics, &top, document);
+    if (!metrics->failed && metrics->count) {
+        qsort(metrics->list, metrics->count, sizeof *metrics->list, by_path);
+        join_alike(metrics);
     }
-    if (!readings->failed && readings->count) {
-        qsort(readings->list, readings->count, sizeof *readings->list, by_path);
+    if (!metrics->failed && metrics->count) {
+        qsort(metrics->list, metrics->count, sizeof *metrics->list, by_path);
     }
-    if (!readings->failed) return STATUS_OK;
-    reading_free(readings);
+    if (!metrics->failed) return STATUS_OK;
+    metric_free(metrics);
     return error_set(error, STATUS_ENVIRONMENT, "no memory for the figures of a document");
 }
 
-void reading_free(struct readings *readings)
+void metric_free(struct metrics *metrics)
 {
-    for (size_t i = 0; i < readings->count; i++) {
-        free(readings->list[i].path);
-        free(readings->list[i].word);
+    for (size_t i = 0; i < metrics->count; i++) {
+        free(metrics->list[i].path);
+        free(metrics->list[i].word);
     }
-    free(readings->list);
-    *readings = (struct readings){0};
+    free(metrics->list);
+    *metrics = (struct metrics){0};
 }
 
-static int path_of(const void *path, const void *reading)
+static int path_of(const void *path, const void *metric)
 {
-    return strcmp(path, ((const struct reading *)reading)->path);
+    return strcmp(path, ((const struct metric *)metric)->path);
 }
 
-const struct reading *reading_find(const struct readings *readings, const char *path)
+const struct metric *metric_find(const struct metrics *metrics, const char *path)
 {
-    return readings->count
-               ? bsearch(path, readings->list, readings->count, sizeof *readings->list, path_of)
+    return metrics->count
+               ? bsearch(path, metrics->list, metrics->count, sizeof *metrics->list, path_of)
                : NULL;
 }

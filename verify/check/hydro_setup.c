@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "hydro_scene.h"
+#include "hydro_setup.h"
 
 #include <gsl/gsl_rng.h>
 #include <math.h>
@@ -84,9 +84,9 @@ void hydro_tube(struct hydro_state *state, size_t n)
     }
 }
 
-struct scene hydro_scene(const struct hydro_state *state, const struct scheme *scheme)
+struct setup hydro_setup(const struct hydro_state *state, const struct scheme *scheme)
 {
-    return (struct scene){.dim = 1,
+    return (struct setup){.dim = 1,
                           .lo = {state->lo},
                           .hi = {state->hi},
                           .gamma = state->gamma,

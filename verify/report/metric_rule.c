@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "reading_rule.h"
+#include "metric_rule.h"
 
 #include <string.h>
 
 #define OUT RULE_LEFT_OUT, 0, 0, 0
 
-static const struct reading_rule rules[] = {
+static const struct metric_rule rules[] = {
     /* what depends on timings, or is a sum over what is judged one by one */
     {"cheapest", "*", OUT},
     {"estimate", "*", OUT}, /* of the run that follows */
@@ -43,8 +43,8 @@ static const struct reading_rule rules[] = {
     {"score", "*", OUT},
     {"findings", "*", OUT}, /* named by files; the status is all of them */
     {"", "status", 0, READING_STATUS, 0, 0},
-    {"kernel", "*", OUT},   /* of a snapshot: found, not judged */
-    {"", "foreign", OUT},   /* its status says whether that passes */
+    {"kernel", "*", OUT}, /* of a snapshot: found, not judged */
+    {"", "foreign", OUT}, /* its status says whether that passes */
     {"noise", "*", 0, READING_PART, 0.1, 1e-12},
     {"gates", "*", OUT}, /* bounds, and errors that are read where they stand */
     {"", "detected", 0, READING_STATUS, 0, 0},
@@ -167,7 +167,7 @@ static bool fits(const char *pattern, const char *name)
     return strcmp(pattern, name) == 0;
 }
 
-bool reading_passes(const char *path, const char *name)
+bool metric_passes(const char *path, const char *name)
 {
     const size_t length = strlen(name);
     int depth = 0;
@@ -182,11 +182,11 @@ bool reading_passes(const char *path, const char *name)
     return false;
 }
 
-const struct reading_rule *reading_rule(const char *path, const char *name)
+const struct metric_rule *metric_rule(const char *path, const char *name)
 {
     for (size_t i = 0; i < sizeof rules / sizeof *rules; i++) {
-        const struct reading_rule *rule = &rules[i];
-        if ((!*rule->inside || reading_passes(path, rule->inside)) && fits(rule->name, name))
+        const struct metric_rule *rule = &rules[i];
+        if ((!*rule->inside || metric_passes(path, rule->inside)) && fits(rule->name, name))
             return rule;
     }
     return NULL;

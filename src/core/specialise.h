@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What every stamped loop is made of: bodies that are always inlined with their choices as
+ * What every specialised loop is made of: bodies that are always inlined with their choices as
  * constants, the dispatch over instruction sets, and arithmetic that vectorises. */
-#ifndef SPHPROOF_STAMP_H
-#define SPHPROOF_STAMP_H
+#ifndef SPHPROOF_SPECIALISE_H
+#define SPHPROOF_SPECIALISE_H
 
 #include <stddef.h>
 

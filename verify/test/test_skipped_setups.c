@@ -27,7 +27,7 @@ static double draw(double low, double high)
     return low + (high - low) * ldexp((double)((drawn ^ drawn >> 29) >> 11), -53);
 }
 
-/* Of the scene drawn last: how far the hot gas reaches from its middle, in units of the box. */
+/* Of the setup drawn last: how far the hot gas reaches from its middle, in units of the box. */
 static double width;
 static double x[3][MOST], v[3][MOST], m[MOST], u[MOST];
 
@@ -41,30 +41,30 @@ static struct end plain, skipping;
 
 /* A lattice in a periodic box of `side` spacings across and `longer` along x, with hot gas in the
  * middle: its u is `hot` times that of the rest, or there is a smooth bump of a tenth. */
-static struct scene draw_scene(int dim, enum kind kind, double hot, bool boosted)
+static struct setup draw_setup(int dim, enum kind kind, double hot, bool boosted)
 {
     static const size_t sides[] = {1, 12, 8}, lengths[] = {400, 144, 60};
     const size_t side = sides[dim - 1], longer = lengths[dim - 1];
     const double spacing = 1 / (double)longer, middle = draw(0, 1);
-    struct scene scene = {.dim = dim, .gamma = draw(1.2, 1.8), .m = m, .u = u, .threads = 1};
+    struct setup setup = {.dim = dim, .gamma = draw(1.2, 1.8), .m = m, .u = u, .threads = 1};
     double boost[3];
-    scene.n = longer;
+    setup.n = longer;
     for (int k = 0; k < dim; k++) {
-        scene.hi[k] = k == 0 ? 1 : (double)side * spacing;
-        scene.n *= k == 0 ? 1 : side;
-        scene.x[k] = x[k], scene.v[k] = v[k];
+        setup.hi[k] = k == 0 ? 1 : (double)side * spacing;
+        setup.n *= k == 0 ? 1 : side;
+        setup.x[k] = x[k], setup.v[k] = v[k];
         boost[k] = boosted ? draw(-2, 2) : 0;
     }
-    assert_true(scene.n <= MOST);
+    assert_true(setup.n <= MOST);
     width = (dim == 3 ? draw(2, 3) : draw(3, 6)) * spacing;
-    for (size_t i = 0; i < scene.n; i++) {
+    for (size_t i = 0; i < setup.n; i++) {
         size_t at = i;
         double r = 0;
         for (int k = 0; k < dim; at /= k == 0 ? longer : side, k++) {
             x[k][i] = ((double)(at % (k == 0 ? longer : side)) + 0.5) * spacing;
             v[k][i] = boost[k];
-            const double d = x[k][i] - middle * scene.hi[k];
-            const double apart = d - scene.hi[k] * round(d / scene.hi[k]);
+            const double d = x[k][i] - middle * setup.hi[k];
+            const double apart = d - setup.hi[k] * round(d / setup.hi[k]);
             if (k == 0 || kind == BLAST) r = hypot(r, apart);
         }
         m[i] = pow(spacing, dim), u[i] = 1;
@@ -73,19 +73,19 @@ static struct scene draw_scene(int dim, enum kind kind, double hot, bool boosted
         else if (r < width)
             u[i] = hot;
     }
-    const double fastest = sqrt(scene.gamma * (scene.gamma - 1) * (kind == PULSE ? 1 : hot));
-    scene.t_end = (dim == 3 ? 2 : 4) * spacing / fastest;
-    return scene;
+    const double fastest = sqrt(setup.gamma * (setup.gamma - 1) * (kind == PULSE ? 1 : hot));
+    setup.t_end = (dim == 3 ? 2 : 4) * spacing / fastest;
+    return setup;
 }
 
-static void run(struct scene *scene, bool skip, struct end *end)
+static void run(struct setup *setup, bool skip, struct end *end)
 {
     struct simulation *simulation = NULL;
     struct snapshot s;
     struct error error;
-    scene->skip = skip;
-    if (simulation_create(scene, &simulation, &error) ||
-        simulation_run(simulation, scene->t_end, NULL, NULL, &error))
+    setup->skip = skip;
+    if (simulation_create(setup, &simulation, &error) ||
+        simulation_run(simulation, setup->t_end, NULL, NULL, &error))
         fail_msg("%s", error.message);
     simulation_snapshot(simulation, &s);
     simulation_conservation(simulation, &end->sums);
@@ -99,46 +99,46 @@ static void run(struct scene *scene, bool skip, struct end *end)
 }
 
 /* Mean difference over the largest value, which of velocities is at least the sound's. */
-static double difference(const struct scene *scene, int field)
+static double difference(const struct setup *setup, int field)
 {
     double sum = 0, largest = 0;
     if (field >= 3 && field < 6) largest = plain.sums.sound_scale / plain.sums.mass;
-    for (size_t i = 0; i < scene->n; i++) {
+    for (size_t i = 0; i < setup->n; i++) {
         double d = fabs(plain.fields[field][i] - skipping.fields[field][i]);
-        if (field < scene->dim) d = fmin(d, fabs(scene->hi[field] - d));
+        if (field < setup->dim) d = fmin(d, fabs(setup->hi[field] - d));
         sum += d;
         largest = fmax(largest, fabs(plain.fields[field][i]));
     }
-    return sum == 0 ? 0 : sum / ((double)scene->n * largest);
+    return sum == 0 ? 0 : sum / ((double)setup->n * largest);
 }
 
-static void compare(struct scene *scene)
+static void compare(struct setup *setup)
 {
-    run(scene, false, &plain);
-    run(scene, true, &skipping);
+    run(setup, false, &plain);
+    run(setup, true, &skipping);
     assert_int_equal(plain.cost.skipped_particle_updates, 0);
-    const double updates = (double)(skipping.cost.steps * scene->n);
+    const double updates = (double)(skipping.cost.steps * setup->n);
     near_inside((double)skipping.cost.skipped_particle_updates / updates, 0.2, 1);
     double moved = 0;
-    for (size_t i = 0; i < scene->n; i++) moved = fmax(moved, fabs(plain.fields[6][i] - 1));
+    for (size_t i = 0; i < setup->n; i++) moved = fmax(moved, fabs(plain.fields[6][i] - 1));
     near_inside(moved, 1e-3, 100);
-    for (int f = 0; f < FIELDS_SEEN; f++) near_below(difference(scene, f), 1e-10);
+    for (int f = 0; f < FIELDS_SEEN; f++) near_below(difference(setup, f), 1e-10);
     double start[3] = {0};
-    for (size_t i = 0; i < scene->n; i++)
-        for (int k = 0; k < scene->dim; k++) start[k] += m[i] * v[k][i];
+    for (size_t i = 0; i < setup->n; i++)
+        for (int k = 0; k < setup->dim; k++) start[k] += m[i] * v[k][i];
     const double scale = skipping.sums.sound_scale + skipping.sums.momentum_scale;
-    for (int k = 0; k < scene->dim; k++)
+    for (int k = 0; k < setup->dim; k++)
         near_below(fabs(skipping.sums.momentum[k] - start[k]) / scale, 1e-12);
     near_relative(skipping.sums.energy, plain.sums.energy, 1e-12);
 }
 
 /* A pulse leaves gas in peace that is three smoothing lengths ahead of it, mean over time. */
-static void skip_enough_of_pulse(const struct scene *scene)
+static void skip_enough_of_pulse(const struct setup *setup)
 {
-    const double h = scene->scheme.eta * pow(m[0], 1. / scene->dim);
-    const double sound = sqrt(scene->gamma * (scene->gamma - 1));
-    const double possible = 1 - 2 * (width + 3 * h + 0.5 * sound * scene->t_end);
-    const double updates = (double)(skipping.cost.steps * scene->n);
+    const double h = setup->scheme.eta * pow(m[0], 1. / setup->dim);
+    const double sound = sqrt(setup->gamma * (setup->gamma - 1));
+    const double possible = 1 - 2 * (width + 3 * h + 0.5 * sound * setup->t_end);
+    const double updates = (double)(skipping.cost.steps * setup->n);
     near_inside(possible, 0.5, 1);
     near_inside((double)skipping.cost.skipped_particle_updates / updates, 0.8 * possible, 1);
 }
@@ -156,11 +156,11 @@ static void test_same_figures(void **state)
         if (dim == 3) scheme.eta = 2.4; /* a third of the neighbours */
         for (int k = 0; k < draws[dim - 1]; k++) {
             const double hot = pow(10, dim == 1 ? draw(0.5, 4) : draw(0.5, 6));
-            struct scene scene =
-                draw_scene(dim, (enum kind)(k % KINDS), hot, (k + (dim == 3)) / KINDS % 2);
-            scene.scheme = scheme;
-            compare(&scene);
-            if (k % KINDS == PULSE) skip_enough_of_pulse(&scene);
+            struct setup setup =
+                draw_setup(dim, (enum kind)(k % KINDS), hot, (k + (dim == 3)) / KINDS % 2);
+            setup.scheme = scheme;
+            compare(&setup);
+            if (k % KINDS == PULSE) skip_enough_of_pulse(&setup);
         }
     }
 }
@@ -172,13 +172,13 @@ static void test_boosted(void **state)
     for (int dim = 1; dim <= 3; dim++) {
         struct settings settings;
         struct error error;
-        struct scene scene = draw_scene(dim, TUBE, 10, true);
+        struct setup setup = draw_setup(dim, TUBE, 10, true);
         settings_init(&settings);
-        if (settings_scheme(&settings, dim, &scene.scheme, &error)) fail_msg("%s", error.message);
-        if (dim == 3) scene.scheme.eta = 2.4;
-        run(&scene, true, &plain);
+        if (settings_scheme(&settings, dim, &setup.scheme, &error)) fail_msg("%s", error.message);
+        if (dim == 3) setup.scheme.eta = 2.4;
+        run(&setup, true, &plain);
         memset(v, 0, sizeof v);
-        run(&scene, true, &skipping);
+        run(&setup, true, &skipping);
         assert_true(skipping.cost.skipped_particle_updates > 0);
         near_relative((double)plain.cost.skipped_particle_updates,
                       (double)skipping.cost.skipped_particle_updates, 0.02);
@@ -191,37 +191,37 @@ static void test_cold_streams(void **state)
 {
     struct settings settings;
     struct error error;
-    struct scene scene = draw_scene(1, TUBE, 1, true);
+    struct setup setup = draw_setup(1, TUBE, 1, true);
     (void)state;
     settings_init(&settings);
-    if (settings_scheme(&settings, 1, &scene.scheme, &error)) fail_msg("%s", error.message);
+    if (settings_scheme(&settings, 1, &setup.scheme, &error)) fail_msg("%s", error.message);
     const double boost = v[0][0];
-    for (size_t i = 0; i < scene.n; i++) {
+    for (size_t i = 0; i < setup.n; i++) {
         u[i] = 1e-12;
         v[0][i] = boost + (x[0][i] < 0.3 ? -1 : x[0][i] < 0.6 ? 1 : -1);
     }
-    scene.t_end = 2e-3;
-    compare(&scene);
+    setup.t_end = 2e-3;
+    compare(&setup);
 }
 
 /* Hot gas in disorder among gas that moves as one: pairs of the latter have no viscosity and, but
  * for `projected`, no velocity gradients, and the answer is the same. Under gravity nobody sleeps,
  * and this one moves nobody. In 1D, gas that expands in stretches of three ranges, which collide:
  * what is left out is exactly 0, and the bits are the same. */
-static void compare_pairs(struct scene *scene, bool slope)
+static void compare_pairs(struct setup *setup, bool slope)
 {
-    run(scene, false, &plain);
-    run(scene, true, &skipping);
+    run(setup, false, &plain);
+    run(setup, true, &skipping);
     assert_int_equal(plain.cost.without_viscosity + plain.cost.without_slope, 0);
     assert_int_equal(skipping.cost.skipped_particle_updates, 0);
     assert_int_equal(skipping.cost.steps, plain.cost.steps);
-    const double updates = (double)(skipping.cost.steps * scene->n);
+    const double updates = (double)(skipping.cost.steps * setup->n);
     near_inside((double)skipping.cost.without_viscosity / updates, 0.1, 1.5);
     near_inside((double)skipping.cost.without_slope / updates, slope ? 0.1 : 0, slope ? 1.5 : 0);
-    if (scene->dim == 1) assert_memory_equal(plain.fields, skipping.fields, sizeof plain.fields);
-    for (int f = 0; f < FIELDS_SEEN; f++) near_below(difference(scene, f), 1e-12);
+    if (setup->dim == 1) assert_memory_equal(plain.fields, skipping.fields, sizeof plain.fields);
+    for (int f = 0; f < FIELDS_SEEN; f++) near_below(difference(setup, f), 1e-12);
     const double scale = skipping.sums.sound_scale + skipping.sums.momentum_scale;
-    for (int k = 0; k < scene->dim; k++)
+    for (int k = 0; k < setup->dim; k++)
         near_below(fabs(skipping.sums.momentum[k] - plain.sums.momentum[k]) / scale, 1e-14);
     near_relative(skipping.sums.energy, plain.sums.energy, 1e-14);
 }
@@ -250,7 +250,7 @@ static void test_pairs(void **state)
         struct settings settings;
         struct error error;
         const int dim = schemes[s].dim;
-        struct scene scene = draw_scene(dim, TUBE, draw(2, 100), dim > 1 && !schemes[s].walls);
+        struct setup setup = draw_setup(dim, TUBE, draw(2, 100), dim > 1 && !schemes[s].walls);
         char words[WORDS][40], *keys[WORDS];
         int count = 0;
         for (; count < WORDS && schemes[s].keys[count]; count++) {
@@ -259,14 +259,14 @@ static void test_pairs(void **state)
         }
         settings_init(&settings);
         if (settings_apply(&settings, count, keys, &error) ||
-            settings_scheme(&settings, dim, &scene.scheme, &error))
+            settings_scheme(&settings, dim, &setup.scheme, &error))
             fail_msg("%zu: %s", s, error.message);
-        for (size_t i = 0; i < scene.n; i++)
+        for (size_t i = 0; i < setup.n; i++)
             for (int k = 0; k < dim; k++)
                 v[k][i] += dim == 1 ? 0.5 * (double)(i % 192) / 192 : u[i] > 1 ? draw(-1, 1) : 0;
-        for (int k = 0; k < dim && schemes[s].walls; k++) scene.boundary[k] = BOUNDARY_REFLECTING;
-        scene.gravity[0] = dim == 1 ? 0 : 1e-300;
-        compare_pairs(&scene, schemes[s].slope);
+        for (int k = 0; k < dim && schemes[s].walls; k++) setup.boundary[k] = BOUNDARY_REFLECTING;
+        setup.gravity[0] = dim == 1 ? 0 : 1e-300;
+        compare_pairs(&setup, schemes[s].slope);
     }
 }
 

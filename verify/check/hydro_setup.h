@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * States and schemes that the checks of group hydro run the solver on. */
-#ifndef SPHPROOF_HYDRO_SCENE_H
-#define SPHPROOF_HYDRO_SCENE_H
+#ifndef SPHPROOF_HYDRO_SETUP_H
+#define SPHPROOF_HYDRO_SETUP_H
 
 #include "simulation.h"
 
@@ -28,8 +28,8 @@ void hydro_wave(struct hydro_state *state, size_t n);
 /* A tube 1 0 1 | 0.125 0 0.1 with its mirror image, on [-1, 1]. */
 void hydro_tube(struct hydro_state *state, size_t n);
 
-/* A scene of this state: the arrays stay the state's; threads 1, no skips. */
-struct scene hydro_scene(const struct hydro_state *state, const struct scheme *scheme);
+/* A setup of this state: the arrays stay the state's; threads 1, no skips. */
+struct setup hydro_setup(const struct hydro_state *state, const struct scheme *scheme);
 
 /* cubic_spline standard vanilla_ice mass, constant viscosity, modified leapfrog, h to 1e-14. */
 struct scheme hydro_scheme(void);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Layers of particles that are kept, in a simulation that nobody steps and whose particles are in
- * another order than the scene's. */
+ * another order than the setup's. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,14 +9,14 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "hold.h"
+#include "fixed.h"
 #include "near.h"
 #include "settings.h"
 #include "solver.h"
 
 enum { N = 16 };
 
-/* Particle i, whose number in the scene is N - 1 - i, at i/N of the box along each direction; h =
+/* Particle i, whose number in the setup is N - 1 - i, at i/N of the box along each direction; h =
  * 1/8 of its length 2, and everything else is another number. */
 static void made(struct simulation *s, int dim, enum volume_element element, enum energy energy)
 {
@@ -46,7 +46,7 @@ static void made(struct simulation *s, int dim, enum volume_element element, enu
 
 static void unmade(struct simulation *s)
 {
-    hold_free(s);
+    fixed_free(s);
     particles_destroy(&s->particles);
 }
 
@@ -65,10 +65,10 @@ static void nothing_where_no_end_is_fixed(void **state)
         struct error error;
         made(&s, 2, VOLUME_MASS, ENERGY_TOTAL);
         s.boundary[0] = s.boundary[1] = others[k];
-        assert_int_equal(hold_begin(&s, &error), STATUS_OK);
+        assert_int_equal(fixed_begin(&s, &error), STATUS_OK);
         assert_null(s.held);
-        hold_state(&s);
-        hold_rates(&s);
+        fixed_state(&s);
+        fixed_rates(&s);
         for (int i = 0; i < N; i++)
             assert_true(s.particles.rho[i] == 7 && s.particles.F[0][i] == 5 &&
                         s.particles.p[1][i] == 1.5 + 0.1 * i && s.particles.e[i] == 100 + i);
@@ -89,10 +89,10 @@ static void layers_are_kept(void **state)
                     struct error error;
                     made(&s, dim, (enum volume_element)element, (enum energy)energy);
                     s.boundary[fixed] = BOUNDARY_FIXED;
-                    assert_int_equal(hold_begin(&s, &error), STATUS_OK);
+                    assert_int_equal(fixed_begin(&s, &error), STATUS_OK);
                     assert_non_null(s.held);
-                    hold_state(&s);
-                    hold_rates(&s);
+                    fixed_state(&s);
+                    fixed_rates(&s);
                     const struct particles *a = &s.particles;
                     for (int i = 0; i < N; i++) {
                         const bool kept = depth_of(i) < 3, whole = depth_of(i) >= 1;
@@ -150,7 +150,7 @@ static void energy_of_layers(void **state)
         v[0][i] = 0.1, v[1][i] = 0, m[i] = 1. / ALL, u[i] = 1, rho[i] = 1;
     }
     for (int fixed = 0; fixed < 2; fixed++) {
-        struct scene scene = {
+        struct setup setup = {
             .dim = 2,
             .hi = {1, 1, 1},
             .boundary = {BOUNDARY_PERIODIC, fixed ? BOUNDARY_FIXED : BOUNDARY_OPEN},
@@ -169,8 +169,8 @@ static void energy_of_layers(void **state)
         settings_init(&settings);
         if (settings_set(&settings, SETTING_kernel, "cubic_spline", SOURCE_USER, NULL, &error) ||
             settings_set(&settings, SETTING_eta, "2", SOURCE_USER, NULL, &error) ||
-            settings_scheme(&settings, 2, &scene.scheme, &error) ||
-            simulation_create(&scene, &simulation, &error))
+            settings_scheme(&settings, 2, &setup.scheme, &error) ||
+            simulation_create(&setup, &simulation, &error))
             fail_msg("%s", error.message);
         assert_true(!simulation->held == !fixed);
         simulation->start_energy *= 3;

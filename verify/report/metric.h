@@ -3,8 +3,8 @@
  * from one document to the next (entries of lists are named by what they are about, not by their
  * place), what it is, and how far it may move without meaning anything. Diff, history and baseline
  * are made of them. */
-#ifndef SPHPROOF_READING_H
-#define SPHPROOF_READING_H
+#ifndef SPHPROOF_METRIC_H
+#define SPHPROOF_METRIC_H
 
 #include <jansson.h>
 #include <stdbool.h>
@@ -12,7 +12,7 @@
 
 #include "status.h"
 
-enum reading_kind {
+enum metric_kind {
     READING_ERROR,   /* less is better; noise is relative */
     READING_CHECK,   /* less is better, a factor of 3 means nothing; its own status judges it */
     READING_ORDER,   /* more is better; noise is absolute */
@@ -24,9 +24,9 @@ enum reading_kind {
     READING_NEUTRAL, /* neither more nor less is better: any change must be looked at */
 };
 
-struct reading {
+struct metric {
     char *path; /* studies[sod, default].levels[198].errors.density.l1 */
-    enum reading_kind kind;
+    enum metric_kind kind;
     double value;               /* NaN for a word */
     double noise, floor, exact; /* up to the floor all values are the same */
     char *word;                 /* of a STATUS, else NULL */
@@ -34,22 +34,22 @@ struct reading {
     bool headline;              /* goes into the history */
 };
 
-struct readings {
-    struct reading *list; /* sorted by path, each once */
+struct metrics {
+    struct metric *list; /* sorted by path, each once */
     size_t count, room;
     bool failed;       /* no memory */
     char trouble[400]; /* "", or a figure of which nobody knows what it is: not in the list */
 };
 
-/* All readings of a document. Entries of a list that nothing tells apart are one reading, the worst
+/* All metrics of a document. Entries of a list that nothing tells apart are one reading, the worst
  * of them, with their number in its path. STATUS_ENVIRONMENT: no memory. */
-enum status reading_collect(const json_t *document, struct readings *readings, struct error *error);
-void reading_free(struct readings *readings);
+enum status metric_collect(const json_t *document, struct metrics *metrics, struct error *error);
+void metric_free(struct metrics *metrics);
 
 /* The reading at a path, or NULL. */
-const struct reading *reading_find(const struct readings *readings, const char *path);
+const struct metric *metric_find(const struct metrics *metrics, const char *path);
 
-enum reading_verdict {
+enum metric_verdict {
     VERDICT_SAME,
     VERDICT_BETTER,
     VERDICT_WORSE,
@@ -58,15 +58,15 @@ enum reading_verdict {
     VERDICT_NEW,          /* only the new one has it */
 };
 enum { READING_VERDICTS = VERDICT_NEW + 1 };
-extern const char *const reading_verdicts[READING_VERDICTS];
+extern const char *const metric_verdicts[READING_VERDICTS];
 
 /* What became of a reading (either may be NULL: it is there on one side only). *amount: how much
  * worse, relative (an order: absolute), infinite where a word or a finite number got lost; 0 unless
  * it is worse. fault: does it count where amounts beyond a threshold fail? */
-enum reading_verdict reading_judge(const struct reading *old, const struct reading *new,
-                                   double *amount, bool *fault);
+enum metric_verdict metric_judge(const struct metric *old, const struct metric *new, double *amount,
+                                 bool *fault);
 
-/* Is a the worse one of two readings of one kind? For those without better or worse: no. */
-bool reading_worse(const struct reading *a, const struct reading *b);
+/* Is a the worse one of two metrics of one kind? For those without better or worse: no. */
+bool metric_worse(const struct metric *a, const struct metric *b);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "hold.h"
+#include "fixed.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -23,7 +23,7 @@ static double from_end(const struct simulation *simulation, ptrdiff_t i)
     return least;
 }
 
-enum status hold_begin(struct simulation *simulation, struct error *error)
+enum status fixed_begin(struct simulation *simulation, struct error *error)
 {
     const struct particles *a = &simulation->particles;
     bool fixed = false;
@@ -47,7 +47,7 @@ enum status hold_begin(struct simulation *simulation, struct error *error)
     return STATUS_OK;
 }
 
-void hold_state(struct simulation *simulation)
+void fixed_state(struct simulation *simulation)
 {
     const struct particles *a = &simulation->particles;
     const double *held = simulation->held;
@@ -71,7 +71,7 @@ void hold_state(struct simulation *simulation)
     }
 }
 
-void hold_rates(struct simulation *simulation)
+void fixed_rates(struct simulation *simulation)
 {
     const struct particles *a = &simulation->particles;
     const double *held = simulation->held;
@@ -85,7 +85,7 @@ void hold_rates(struct simulation *simulation)
     }
 }
 
-void hold_free(struct simulation *simulation)
+void fixed_free(struct simulation *simulation)
 {
     free(simulation->held);
 }

@@ -3,15 +3,15 @@
 #include <math.h>
 #include <string.h>
 
-#include "reading.h"
+#include "metric.h"
 
 /* Timings below this are noise. */
 static const double timing_least = 0.02;
 /* A check's value: a factor that means nothing. */
 static const double check_factor = 3;
 
-const char *const reading_verdicts[READING_VERDICTS] = {"same",         "better",   "worse",
-                                                        "incomparable", "vanished", "new"};
+const char *const metric_verdicts[READING_VERDICTS] = {"same",         "better",   "worse",
+                                                       "incomparable", "vanished", "new"};
 
 /* How bad a word is; -1: not known. From FAULT on it is a fault. */
 enum { FAULT = 3 };
@@ -31,14 +31,14 @@ static int rank(const char *word, bool suspicion)
     return -1;
 }
 
-static bool is_suspicion(const struct reading *reading)
+static bool is_suspicion(const struct metric *metric)
 {
-    const size_t length = strlen(reading->path), tail = strlen("suspicion");
-    return length >= tail && strcmp(reading->path + length - tail, "suspicion") == 0;
+    const size_t length = strlen(metric->path), tail = strlen("suspicion");
+    return length >= tail && strcmp(metric->path + length - tail, "suspicion") == 0;
 }
 
-static enum reading_verdict judge_word(const struct reading *old, const struct reading *new,
-                                       double *amount, bool *fault)
+static enum metric_verdict judge_word(const struct metric *old, const struct metric *new,
+                                      double *amount, bool *fault)
 {
     const bool suspicion = is_suspicion(new);
     const int before = rank(old->word, suspicion), after = rank(new->word, suspicion);
@@ -56,8 +56,8 @@ static enum reading_verdict judge_word(const struct reading *old, const struct r
 }
 
 /* a before, b after, less being better. */
-static enum reading_verdict judge_less(double a, double b, double noise, double floor,
-                                       double *amount)
+static enum metric_verdict judge_less(double a, double b, double noise, double floor,
+                                      double *amount)
 {
     if (a <= floor && b <= floor) return VERDICT_SAME;
     const double base = fmax(a, floor);
@@ -68,8 +68,8 @@ static enum reading_verdict judge_less(double a, double b, double noise, double 
     return VERDICT_WORSE;
 }
 
-static enum reading_verdict judge_number(const struct reading *old, const struct reading *new,
-                                         double *amount, bool *fault)
+static enum metric_verdict judge_number(const struct metric *old, const struct metric *new,
+                                        double *amount, bool *fault)
 {
     const double a = old->value, b = new->value, noise = fmax(old->noise, new->noise);
     const double floor = fmax(old->floor, new->floor);
@@ -101,8 +101,8 @@ static enum reading_verdict judge_number(const struct reading *old, const struct
     }
 }
 
-enum reading_verdict reading_judge(const struct reading *old, const struct reading *new,
-                                   double *amount, bool *fault)
+enum metric_verdict metric_judge(const struct metric *old, const struct metric *new, double *amount,
+                                 bool *fault)
 {
     *amount = 0;
     *fault = false;
@@ -120,7 +120,7 @@ enum reading_verdict reading_judge(const struct reading *old, const struct readi
     return VERDICT_WORSE;
 }
 
-bool reading_worse(const struct reading *a, const struct reading *b)
+bool metric_worse(const struct metric *a, const struct metric *b)
 {
     if (!a->word != !b->word) return a->word != NULL;
     if (a->word) return rank(a->word, is_suspicion(a)) > rank(b->word, is_suspicion(b));
