@@ -20,7 +20,7 @@ struct simulation {
     struct scheme scheme;
     struct plan plan;
     struct particles particles;
-    void *room;             /* what the sums keep; theirs */
+    void *workspace;        /* what the sums keep; theirs */
     void *integrator_state; /* what the integrator keeps; its own */
     double lo[3];           /* of the box */
     enum boundary boundary[3];

@@ -4,8 +4,8 @@
  * one for the dimension; evaluate.c, simulation.c and sleep.c call through it and know no geometry.
  *
  * What the sums keep for themselves (order, reach, ghosts, lists, scratch) hangs on
- * simulation->room. No function asks for memory in a step unless neighbours have come closer than
- * what reserve has set aside for. Results do not depend on the number of threads. */
+ * simulation->workspace. No function asks for memory in a step unless neighbours have come closer
+ * than what reserve has set aside for. Results do not depend on the number of threads. */
 #ifndef SPHPROOF_SUMS_H
 #define SPHPROOF_SUMS_H
 
@@ -22,11 +22,11 @@ struct sums {
     const char *name;
     int dim_min, dim_max; /* the dimensions that it serves */
 
-    /* Allocates the room and simulation->particles (n, dim, empty). */
+    /* Allocates the workspace and simulation->particles (n, dim, empty). */
     enum status (*create)(struct simulation *simulation, ptrdiff_t n, struct error *error);
-    void (*free)(struct simulation *simulation); /* the room; after a failed create, too */
-    /* What a room for n particles comes to, in bytes, by scheme and plan alone (the rest of the
-     * simulation is 0); see memory_bytes. */
+    void (*free)(struct simulation *simulation); /* the workspace; after a failed create, too */
+    /* What a workspace for n particles comes to, in bytes, by scheme and plan alone (the rest of
+     * the simulation is 0); see memory_bytes. */
     double (*bytes)(const struct simulation *simulation, double n);
 
     /* Once, after the state has been set, with h a first guess: orders it, and moves apart
@@ -65,7 +65,7 @@ struct sums {
     /* No evaluation is to follow: frees what is as large as lists. NULL: there is nothing. */
     void (*end)(struct simulation *simulation);
 
-    /* What the room keeps from one step to the next. */
+    /* What the workspace keeps from one step to the next. */
     void (*serialise)(struct simulation *simulation, struct serialiser *serialiser);
 };
 

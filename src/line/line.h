@@ -28,7 +28,7 @@ struct groups {
     double *rate;           /* signal speed / h of each group when it fell asleep, 0 awake */
 };
 
-/* The room of a simulation in 1D. */
+/* The workspace of a simulation in 1D. */
 struct line {
     struct loops loops;
     struct range *ranges; /* of the awake particles */
@@ -44,7 +44,7 @@ struct line {
 
 static inline struct line *line_of(const struct simulation *simulation)
 {
-    return simulation->room;
+    return simulation->workspace;
 }
 
 /* --- order.c ---------------------------------------------------------------------------------- */

@@ -76,7 +76,7 @@ enum status equal_masses_fill(const struct prepared *p, const struct settings *s
     struct gas gas = {.p = p};
     measure(&gas);
     gas.mass /= (double)n;
-    const struct relax_room room = {p->domain, room_at, &gas};
+    const struct relax_region room = {p->domain, room_at, &gas};
     if (initial_allocate(initial, p->domain.dim, n, error) ||
         throw_points(&gas, (unsigned long)settings_real(settings, SETTING_seed), n, initial->x,
                      error) ||

@@ -136,7 +136,7 @@ enum status lattice_points(const struct lattice_plan *plan, unsigned long seed, 
                            struct error *error)
 {
     const struct crystal *crystal = crystal_of(plan->kind);
-    const struct relax_room room = {plan->box, equal_share, plan};
+    const struct relax_region room = {plan->box, equal_share, plan};
     enum status status = STATUS_OK;
     if (crystal)
         crystal_points(plan, crystal, x);

@@ -140,7 +140,7 @@ static double root(double volume, int dim)
 
 /* All that decides where points end: the box, where they begin, and their room there, which stands
  * for that elsewhere. */
-static uint64_t content_of(const struct relax_room *room, size_t n, double *const x[3])
+static uint64_t content_of(const struct relax_region *room, size_t n, double *const x[3])
 {
     const size_t dim = (size_t)room->box.dim;
     uint64_t hash = cache_hash(CACHE_HASH, room->box.lo, dim * sizeof(double));
@@ -155,7 +155,7 @@ static uint64_t content_of(const struct relax_room *room, size_t n, double *cons
     return hash;
 }
 
-static enum status relax(const struct relax_room *room, size_t n, double *const x[3],
+static enum status relax(const struct relax_region *room, size_t n, double *const x[3],
                          struct error *error)
 {
     struct cloud cloud;
@@ -176,7 +176,7 @@ static enum status relax(const struct relax_room *room, size_t n, double *const 
     return status;
 }
 
-enum status relax_points(const struct relax_room *room, size_t n, double *const x[3],
+enum status relax_points(const struct relax_region *room, size_t n, double *const x[3],
                          struct error *error)
 {
     const uint64_t content = content_of(room, n, x);

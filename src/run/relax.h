@@ -11,7 +11,7 @@
 #include "status.h"
 
 /* What is to be filled: a periodic box in 2 or 3 dimensions. */
-struct relax_room {
+struct relax_region {
     struct domain box;
     /* Room that a point at x takes: of all points together about the box. */
     double (*volume)(const void *context, const double x[3]);
@@ -27,7 +27,7 @@ struct relax_quality {
 
 /* Moves n points, sweep by sweep; those that have been moved so before are read where they are
  * kept (relax_store.h). STATUS_BAD_INPUT: too few for a neighbourhood; or no memory. */
-enum status relax_points(const struct relax_room *room, size_t n, double *const x[3],
+enum status relax_points(const struct relax_region *room, size_t n, double *const x[3],
                          struct error *error);
 
 /* Of any points: rooms as they are given, n each. */

@@ -10,7 +10,7 @@
 
 static const double jitter = 0.2, gamma_gas = 1.4;
 
-/* As the solver asks for them (src/cells/cells_room.c). */
+/* As the solver asks for them (src/cells/cells_workspace.c). */
 static struct cells_method method_of(const struct scheme *s, int dim, bool specialised)
 {
     const struct plan plan = plan_make(s, dim, false, specialised);

@@ -41,7 +41,7 @@ static void made(struct simulation *simulation, int n)
     if (particles_create(&simulation->particles, 1, n, GHOSTS, &error))
         fail_msg("%s", error.message);
     struct particles *a = &simulation->particles;
-    struct line *line = simulation->room = calloc(1, sizeof *line);
+    struct line *line = simulation->workspace = calloc(1, sizeof *line);
     assert_non_null(line);
     a->period[0] = 2;
     double x = 0.1;

@@ -55,7 +55,7 @@ static void every_range_once(void **state)
             for (int last = 0; last < 2; last++) {
                 struct range ranges[RANGES_MOST];
                 struct line line = {.ranges = ranges, .range_count = count};
-                struct simulation s = {.room = &line, .team = {.size = size, .most = 3}};
+                struct simulation s = {.workspace = &line, .team = {.size = size, .most = 3}};
                 uint64_t pairs = 0;
                 for (ptrdiff_t b = 0; b < count; b++) {
                     visits[b] = 0;

@@ -32,7 +32,7 @@ static double room_at(const void *context, const double x[3])
 }
 
 /* Sixty sweeps over all pairs of images. */
-static void relax_directly(const struct relax_room *room, size_t n, double *const x[3])
+static void relax_directly(const struct relax_region *room, size_t n, double *const x[3])
 {
     const int dim = room->box.dim;
     double *width = malloc(4 * n * sizeof *width), *to = width + n, step = 0.06;
@@ -83,7 +83,8 @@ static void glasses_are_pushed_apart(void **state)
         enum { MOST = 250 };
         const size_t n = dim == 2 ? 100 : 250;
         struct rooms rooms = {dim, dim == 2 ? 1.2 : 1.32, n};
-        const struct relax_room room = {{dim, {-0.3, 2.1, 0.2}, {0.7, 3.3, 1.3}}, room_at, &rooms};
+        const struct relax_region room = {
+            {dim, {-0.3, 2.1, 0.2}, {0.7, 3.3, 1.3}}, room_at, &rooms};
         double x[3][MOST], y[3][MOST], volume[MOST];
         double *const moved[] = {x[0], x[1], x[2]}, *const direct[] = {y[0], y[1], y[2]};
         struct error error = {0};
@@ -203,8 +204,8 @@ static void glasses_of_random_points(void **state)
         assert_int_equal(initial_fill(&p, &random, &one, &error), STATUS_OK);
         assert_int_equal(initial_fill(&p, &glass, &two, &error), STATUS_OK);
         const double mass = one.m[0], share = 4. / N;
-        const struct relax_room room = {p.domain, equal ? room_of_mass : room_of_all,
-                                        equal ? &mass : &share};
+        const struct relax_region room = {p.domain, equal ? room_of_mass : room_of_all,
+                                          equal ? &mass : &share};
         assert_int_equal(relax_points(&room, N, one.x, &error), STATUS_OK);
         for (int i = 0; i < N; i++) {
             const double x[3] = {two.x[0][i], two.x[1][i]};
@@ -258,7 +259,7 @@ static void large_glasses_are_kept(void **state)
     };
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         const struct plain_room plain_room = {rows[k].volume, rows[k].rise};
-        const struct relax_room room = {
+        const struct relax_region room = {
             {2, {0, rows[k].lo}, {1, rows[k].hi}}, plain_room_at, &plain_room};
         struct error error = {0};
         for (int i = 0; i < N; i++)

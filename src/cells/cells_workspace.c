@@ -20,10 +20,10 @@ enum {
 /* How far beyond a first guess the search for a root may go without a second search. */
 static const double margin = 1.1;
 
-struct room {
+struct workspace {
     struct cells *cells;
     struct cells_fields fields;
-    double *block; /* what the room's own arrays live in */
+    double *block; /* what the workspace's own arrays live in */
     double *radius, *balsara, *balsara_before;
     double *sum_m, *sum_m_dh, *sum_Z, *sum_Z_dh;
     size_t arrays, stride; /* that lie in block, and from one to the next */
@@ -42,9 +42,9 @@ static int batch_len(const struct particles *particles, ptrdiff_t first)
     return (int)(particles->n - first < BATCH_MAX ? particles->n - first : BATCH_MAX);
 }
 
-static struct room *room_of(const struct simulation *simulation)
+static struct workspace *workspace_of(const struct simulation *simulation)
 {
-    return simulation->room;
+    return simulation->workspace;
 }
 
 static struct cells_method method_of(const struct simulation *simulation)
@@ -98,47 +98,49 @@ static struct cells_method method_of(const struct simulation *simulation)
 
 enum { ARRAYS_MAX = 12 + 2 * (CELLS_SYMMETRIC + CELLS_SQUARE) };
 
-/* The arrays that a room has for the scheme. */
-static size_t list_arrays(const struct simulation *simulation, struct room *room,
+/* The arrays that a workspace has for the scheme. */
+static size_t list_arrays(const struct simulation *simulation, struct workspace *workspace,
                           double **of[ARRAYS_MAX])
 {
     const struct plan *plan = &simulation->plan;
     const size_t dim = (size_t)plan->dim, symmetric = dim * (dim + 1) / 2;
     size_t count = 0;
-    of[count++] = &room->radius;
-    of[count++] = &room->sum_m;
-    of[count++] = &room->sum_m_dh;
-    if (plan->energy_sum) of[count++] = &room->sum_Z, of[count++] = &room->sum_Z_dh;
-    if (plan->balsara) of[count++] = &room->balsara;
-    if (plan->matrix) of[count++] = &room->fields.condition;
-    if (simulation->scheme.gradient == GRADIENT_BLENDED) of[count++] = &room->fields.steep;
-    for (size_t k = 0; plan->matrix && k < symmetric; k++) of[count++] = &room->fields.matrix[k];
-    for (size_t k = 0; plan->slope && k < dim * dim; k++) of[count++] = &room->fields.slope[k];
-    if (plan->local && plan->balsara) of[count++] = &room->balsara_before;
+    of[count++] = &workspace->radius;
+    of[count++] = &workspace->sum_m;
+    of[count++] = &workspace->sum_m_dh;
+    if (plan->energy_sum) of[count++] = &workspace->sum_Z, of[count++] = &workspace->sum_Z_dh;
+    if (plan->balsara) of[count++] = &workspace->balsara;
+    if (plan->matrix) of[count++] = &workspace->fields.condition;
+    if (simulation->scheme.gradient == GRADIENT_BLENDED) of[count++] = &workspace->fields.steep;
+    for (size_t k = 0; plan->matrix && k < symmetric; k++)
+        of[count++] = &workspace->fields.matrix[k];
+    for (size_t k = 0; plan->slope && k < dim * dim; k++) of[count++] = &workspace->fields.slope[k];
+    if (plan->local && plan->balsara) of[count++] = &workspace->balsara_before;
     for (size_t k = 0; plan->local && plan->matrix && k < symmetric; k++)
-        of[count++] = &room->fields.matrix_before[k];
+        of[count++] = &workspace->fields.matrix_before[k];
     for (size_t k = 0; plan->local && plan->slope && k < dim * dim; k++)
-        of[count++] = &room->fields.slope_before[k];
-    if (plan->jump) of[count++] = &room->fields.alpha_local, of[count++] = &room->fields.decay;
+        of[count++] = &workspace->fields.slope_before[k];
+    if (plan->jump)
+        of[count++] = &workspace->fields.alpha_local, of[count++] = &workspace->fields.decay;
     return count;
 }
 
 /* A run of n doubles each, behind each other. */
 static bool allocate_arrays(struct simulation *simulation, size_t n)
 {
-    struct room *room = room_of(simulation);
+    struct workspace *workspace = workspace_of(simulation);
     double **of[ARRAYS_MAX];
-    const size_t count = list_arrays(simulation, room, of);
-    const size_t stride = room->stride = (n + BATCH_MAX + 7) / 8 * 8;
-    room->arrays = count;
-    room->block = calloc(count * stride, sizeof(double));
-    room->outcome = calloc(n, 1);
-    room->parts = simulation->plan.local ? calloc(n, 2) : NULL;
-    room->woken = room->parts ? room->parts + n : NULL;
-    room->fields.woken = room->woken;
-    if (!room->block || !room->outcome) return false;
-    if (simulation->plan.local && !room->parts) return false;
-    for (size_t k = 0; k < count; k++) *of[k] = room->block + k * stride;
+    const size_t count = list_arrays(simulation, workspace, of);
+    const size_t stride = workspace->stride = (n + BATCH_MAX + 7) / 8 * 8;
+    workspace->arrays = count;
+    workspace->block = calloc(count * stride, sizeof(double));
+    workspace->outcome = calloc(n, 1);
+    workspace->parts = simulation->plan.local ? calloc(n, 2) : NULL;
+    workspace->woken = workspace->parts ? workspace->parts + n : NULL;
+    workspace->fields.woken = workspace->woken;
+    if (!workspace->block || !workspace->outcome) return false;
+    if (simulation->plan.local && !workspace->parts) return false;
+    for (size_t k = 0; k < count; k++) *of[k] = workspace->block + k * stride;
     return true;
 }
 
@@ -146,9 +148,9 @@ static bool allocate_arrays(struct simulation *simulation, size_t n)
  * ghosts to grow. */
 static void connect_fields(struct simulation *simulation)
 {
-    struct room *room = room_of(simulation);
+    struct workspace *workspace = workspace_of(simulation);
     const struct particles *a = &simulation->particles;
-    struct cells_fields *fields = &room->fields;
+    struct cells_fields *fields = &workspace->fields;
     fields->n = (size_t)a->n;
     for (int k = 0; k < a->dim; k++) {
         fields->x[k] = a->x[k];
@@ -163,8 +165,8 @@ static void connect_fields(struct simulation *simulation)
     fields->m = a->m;
     fields->U = a->U;
     fields->alpha = a->alpha;
-    fields->balsara = room->balsara;
-    fields->balsara_before = room->balsara_before;
+    fields->balsara = workspace->balsara;
+    fields->balsara_before = workspace->balsara_before;
     fields->ratio = a->ratio;
     fields->h_inverse = a->h_inverse;
     fields->P = a->P;
@@ -173,10 +175,10 @@ static void connect_fields(struct simulation *simulation)
     fields->V = a->V;
     fields->b = a->b;
     fields->grad_h = a->grad_h;
-    fields->sum_m = room->sum_m;
-    fields->sum_m_dh = room->sum_m_dh;
-    fields->sum_Z = room->sum_Z;
-    fields->sum_Z_dh = room->sum_Z_dh;
+    fields->sum_m = workspace->sum_m;
+    fields->sum_m_dh = workspace->sum_m_dh;
+    fields->sum_Z = workspace->sum_Z;
+    fields->sum_Z_dh = workspace->sum_Z_dh;
     fields->de = a->de;
     fields->div_v = a->div_v;
     fields->signal = a->signal;
@@ -184,8 +186,8 @@ static void connect_fields(struct simulation *simulation)
 
 static enum status create(struct simulation *simulation, ptrdiff_t n, struct error *error)
 {
-    struct room *room = simulation->room = calloc(1, sizeof *room);
-    if (!room || !allocate_arrays(simulation, (size_t)n))
+    struct workspace *workspace = simulation->workspace = calloc(1, sizeof *workspace);
+    if (!workspace || !allocate_arrays(simulation, (size_t)n))
         return error_set(error, STATUS_ENVIRONMENT, "no memory for %td particles", n);
     /* loops in whole vectors read a little beyond the ends */
     return particles_create(&simulation->particles, simulation->plan.dim, n, 8, error);
@@ -193,10 +195,10 @@ static enum status create(struct simulation *simulation, ptrdiff_t n, struct err
 
 static double bytes(const struct simulation *simulation, double n)
 {
-    struct room room = {0};
+    struct workspace workspace = {0};
     double **of[ARRAYS_MAX];
     const struct cells_method method = method_of(simulation);
-    const double arrays = (double)list_arrays(simulation, &room, of);
+    const double arrays = (double)list_arrays(simulation, &workspace, of);
     /* the first search goes further, and lists hold who is within the wider of two widths */
     const double neighbours = width_neighbours(method.box.dim, simulation->scheme.eta * margin);
     /* outcome; parts and woken; where somebody sleeps, kept, asleep and level */
@@ -206,25 +208,25 @@ static double bytes(const struct simulation *simulation, double n)
            cells_bytes(&method, n, neighbours);
 }
 
-static void forget_sleep(struct room *room)
+static void forget_sleep(struct workspace *workspace)
 {
-    free(room->asleep);
-    free(room->level);
-    free(room->kept);
-    room->asleep = room->level = NULL;
-    room->kept = NULL;
+    free(workspace->asleep);
+    free(workspace->level);
+    free(workspace->kept);
+    workspace->asleep = workspace->level = NULL;
+    workspace->kept = NULL;
 }
 
-static void free_room(struct simulation *simulation)
+static void free_workspace(struct simulation *simulation)
 {
-    struct room *room = room_of(simulation);
-    if (!room) return;
-    cells_destroy(room->cells);
-    free(room->block);
-    free(room->outcome);
-    free(room->parts);
-    forget_sleep(room);
-    free(room);
+    struct workspace *workspace = workspace_of(simulation);
+    if (!workspace) return;
+    cells_destroy(workspace->cells);
+    free(workspace->block);
+    free(workspace->outcome);
+    free(workspace->parts);
+    forget_sleep(workspace);
+    free(workspace);
 }
 
 static void begin(struct simulation *simulation)
@@ -234,9 +236,9 @@ static void begin(struct simulation *simulation)
 
 static void end(struct simulation *simulation)
 {
-    struct room *room = room_of(simulation);
-    cells_destroy(room->cells);
-    room->cells = NULL;
+    struct workspace *workspace = workspace_of(simulation);
+    cells_destroy(workspace->cells);
+    workspace->cells = NULL;
 }
 
 static enum status reserve(struct simulation *simulation, struct error *error)
@@ -251,20 +253,21 @@ static enum status reserve(struct simulation *simulation, struct error *error)
 static enum status arrange(struct simulation *simulation, struct error *error)
 {
     const struct particles *a = &simulation->particles;
-    struct room *room = room_of(simulation);
+    struct workspace *workspace = workspace_of(simulation);
     for (int k = 0; k < a->dim; k++)
         for (ptrdiff_t i = 0; i < a->n; i++)
             if (!isfinite(a->x[k][i]))
                 return breakdown_of(simulation, i, "position", a->x[k][i], error);
-    if (room->cells) {
-        cells_team(room->cells, simulation->team.size);
+    if (workspace->cells) {
+        cells_team(workspace->cells, simulation->team.size);
         return STATUS_OK;
     }
     /* the box is known by now */
     const struct cells_method method = method_of(simulation);
-    room->cells = cells_create(&method, (size_t)a->n);
-    return room->cells ? STATUS_OK
-                       : error_set(error, STATUS_ENVIRONMENT, "no memory for %td particles", a->n);
+    workspace->cells = cells_create(&method, (size_t)a->n);
+    return workspace->cells
+               ? STATUS_OK
+               : error_set(error, STATUS_ENVIRONMENT, "no memory for %td particles", a->n);
 }
 
 /* Beyond half of the narrowest periodic side pairs have no single nearest image. */
@@ -280,18 +283,18 @@ static double half_box(const struct simulation *simulation)
 /* Who takes part in the evaluation of a level; NULL: everybody. */
 static const unsigned char *find_parts(const struct simulation *simulation)
 {
-    const struct room *room = room_of(simulation);
+    const struct workspace *workspace = workspace_of(simulation);
     const struct particles *a = &simulation->particles;
     const double level = simulation->steps.level;
     bool all = true;
-    if (level < 0) return room->asleep;
+    if (level < 0) return workspace->asleep;
     for (ptrdiff_t i = 0; i < a->n; i++) {
-        room->parts[i] = a->level[i] > level   ? CELLS_SUMMED
-                         : a->level[i] < level ? CELLS_RECEIVES
-                                               : CELLS_ACTIVE;
-        all &= room->parts[i] == CELLS_ACTIVE;
+        workspace->parts[i] = a->level[i] > level   ? CELLS_SUMMED
+                              : a->level[i] < level ? CELLS_RECEIVES
+                                                    : CELLS_ACTIVE;
+        all &= workspace->parts[i] == CELLS_ACTIVE;
     }
-    return all ? NULL : room->parts;
+    return all ? NULL : workspace->parts;
 }
 
 /* Finds neighbours within the radii. What is too wide for the box is bad input at the start and a
@@ -299,16 +302,16 @@ static const unsigned char *find_parts(const struct simulation *simulation)
 static enum status search_for(struct simulation *simulation, const unsigned char *parts,
                               struct error *error)
 {
-    struct room *room = room_of(simulation);
+    struct workspace *workspace = workspace_of(simulation);
     const struct particles *a = &simulation->particles;
     const enum status status =
-        cells_arrange(room->cells, &room->fields, room->radius, parts, error);
+        cells_arrange(workspace->cells, &workspace->fields, workspace->radius, parts, error);
     if (status != STATUS_BAD_INPUT || simulation->cost.steps == 0) return status;
     ptrdiff_t widest = 0;
     for (ptrdiff_t i = 1; i < a->n; i++)
-        if (!(room->radius[i] <= room->radius[widest])) widest = i;
+        if (!(workspace->radius[i] <= workspace->radius[widest])) widest = i;
     struct error where;
-    breakdown_of(simulation, widest, "smoothing length", room->radius[widest], &where);
+    breakdown_of(simulation, widest, "smoothing length", workspace->radius[widest], &where);
     return error_set(error, STATUS_BROKE_DOWN,
                      "%.400s, beyond half the box (%g): more particles or a smaller eta are needed",
                      where.message, half_box(simulation));
@@ -329,30 +332,32 @@ static void permute(struct particles *particles, double *array)
 /* Particles that are near each other in space become so in memory, now and then. */
 static void sort_memory(struct simulation *simulation)
 {
-    struct room *room = room_of(simulation);
+    struct workspace *workspace = workspace_of(simulation);
     struct particles *a = &simulation->particles;
-    if (room->sorted && simulation->cost.steps < room->sorted_at + SORT_EVERY) return;
-    const uint32_t *order = grid_order(cells_grid(room->cells));
-    const size_t slots = cells_points(room->cells);
+    if (workspace->sorted && simulation->cost.steps < workspace->sorted_at + SORT_EVERY) return;
+    const uint32_t *order = grid_order(cells_grid(workspace->cells));
+    const size_t slots = cells_points(workspace->cells);
     ptrdiff_t place = 0;
     for (size_t slot = 0; slot < slots; slot++) /* images own no storage */
         if (order[slot] < (size_t)a->n) a->order[place++] = order[slot];
     /* those who sleep keep what the last sums over them left */
-    for (size_t k = 0; k < room->arrays; k++) permute(a, room->block + k * room->stride);
-    if (room->asleep) {
-        permute(a, room->kept);
-        for (ptrdiff_t i = 0; i < a->n; i++) room->outcome[i] = room->asleep[a->order[i]];
-        memcpy(room->asleep, room->outcome, (size_t)a->n);
+    for (size_t k = 0; k < workspace->arrays; k++)
+        permute(a, workspace->block + k * workspace->stride);
+    if (workspace->asleep) {
+        permute(a, workspace->kept);
+        for (ptrdiff_t i = 0; i < a->n; i++) workspace->outcome[i] = workspace->asleep[a->order[i]];
+        memcpy(workspace->asleep, workspace->outcome, (size_t)a->n);
     }
     particles_permute(a);
-    room->sorted = true;
-    room->sorted_at = simulation->cost.steps;
+    workspace->sorted = true;
+    workspace->sorted_at = simulation->cost.steps;
 }
 
 static enum status search_sorted(struct simulation *simulation, struct error *error)
 {
-    const struct room *room = room_of(simulation);
-    const bool due = !room->sorted || simulation->cost.steps >= room->sorted_at + SORT_EVERY;
+    const struct workspace *workspace = workspace_of(simulation);
+    const bool due =
+        !workspace->sorted || simulation->cost.steps >= workspace->sorted_at + SORT_EVERY;
     const enum status status = search(simulation, error);
     if (status || !due) return status;
     sort_memory(simulation);
@@ -395,7 +400,7 @@ static void close_batch(const struct simulation *simulation, ptrdiff_t first, in
 /* The equation of state of all particles, from their sums. */
 static void close_all(struct simulation *simulation, bool predicted)
 {
-    const struct room *room = room_of(simulation);
+    const struct workspace *workspace = workspace_of(simulation);
     const struct particles *a = &simulation->particles;
     const struct scheme *scheme = &simulation->scheme;
     const struct gas gas = {.gamma = simulation->gamma,
@@ -410,11 +415,11 @@ static void close_all(struct simulation *simulation, bool predicted)
         const ptrdiff_t first = b * BATCH_MAX;
         const int len = batch_len(a, first);
         const size_t bytes = (size_t)len * sizeof(double);
-        memcpy(sums.m, room->sum_m + first, bytes);
-        memcpy(sums.m_dh, room->sum_m_dh + first, bytes);
+        memcpy(sums.m, workspace->sum_m + first, bytes);
+        memcpy(sums.m_dh, workspace->sum_m_dh + first, bytes);
         if (simulation->plan.energy_sum) {
-            memcpy(sums.Z, room->sum_Z + first, bytes);
-            memcpy(sums.Z_dh, room->sum_Z_dh + first, bytes);
+            memcpy(sums.Z, workspace->sum_Z + first, bytes);
+            memcpy(sums.Z_dh, workspace->sum_Z_dh + first, bytes);
         }
         if (number) number_to_mass(simulation, first, len, &sums);
         close_batch(simulation, first, len, &gas, &sums);
@@ -427,27 +432,28 @@ static void close_all(struct simulation *simulation, bool predicted)
 /* Looks for the roots of all particles that are open, searching further where one lies beyond. */
 static enum status find_roots(struct simulation *simulation, struct error *error)
 {
-    struct room *room = room_of(simulation);
+    struct workspace *workspace = workspace_of(simulation);
     const struct particles *a = &simulation->particles;
     const struct width_rule rule = width_rule_of(simulation);
     const double half = half_box(simulation);
     ptrdiff_t open = 0;
     for (int try = 0; try < TRIES_MAX; try++) {
-        cells_widths(room->cells, &room->fields, &rule, room->radius, a->h, a->h_inverse,
-                     room->outcome);
+        cells_widths(workspace->cells, &workspace->fields, &rule, workspace->radius, a->h,
+                     a->h_inverse, workspace->outcome);
         bool wider = false;
         for (ptrdiff_t i = 0; i < a->n; i++) {
-            if (room->outcome[i] == CELLS_NO_ROOT)
+            if (workspace->outcome[i] == CELLS_NO_ROOT)
                 return breakdown_of(simulation, i, "smoothing length (no root was found)", a->h[i],
                                     error);
-            if (room->outcome[i] != CELLS_WIDER) continue;
+            if (workspace->outcome[i] != CELLS_WIDER) continue;
             if (!wider) open = i;
             wider = true;
-            room->outcome[i] = CELLS_OPEN;
-            a->h[i] = room->radius[i];
+            workspace->outcome[i] = CELLS_OPEN;
+            a->h[i] = workspace->radius[i];
             /* half of the box is searched before more of it is refused */
-            room->radius[i] =
-                room->radius[i] < half ? least(1.5 * room->radius[i], half) : 1.5 * room->radius[i];
+            workspace->radius[i] = workspace->radius[i] < half
+                                       ? least(1.5 * workspace->radius[i], half)
+                                       : 1.5 * workspace->radius[i];
         }
         if (!wider) return STATUS_OK;
         const enum status status = search(simulation, error);
@@ -459,16 +465,16 @@ static enum status find_roots(struct simulation *simulation, struct error *error
 
 static enum status newton_widths(struct simulation *simulation, struct error *error)
 {
-    struct room *room = room_of(simulation);
+    struct workspace *workspace = workspace_of(simulation);
     const struct particles *a = &simulation->particles;
     const double half = half_box(simulation);
     for (ptrdiff_t i = 0; i < a->n; i++) {
         a->h[i] = least(a->h[i], half); /* a first guess may be anything */
-        room->radius[i] = least(margin * a->h[i], half);
+        workspace->radius[i] = least(margin * a->h[i], half);
     }
     enum status status = search_sorted(simulation, error);
     if (status) return status;
-    memset(room->outcome, CELLS_OPEN, (size_t)a->n);
+    memset(workspace->outcome, CELLS_OPEN, (size_t)a->n);
     status = find_roots(simulation, error);
     if (!status) close_all(simulation, false);
     return status;
@@ -477,24 +483,24 @@ static enum status newton_widths(struct simulation *simulation, struct error *er
 static void find_radii(const struct simulation *simulation)
 {
     const struct particles *a = &simulation->particles;
-    for (ptrdiff_t i = 0; i < a->n; i++) room_of(simulation)->radius[i] = 1 / a->h_inverse[i];
+    for (ptrdiff_t i = 0; i < a->n; i++) workspace_of(simulation)->radius[i] = 1 / a->h_inverse[i];
 }
 
 /* Corrects the pairs that leave a level as particles wake, and ends these particles' steps. */
 static enum status wake(struct simulation *simulation, struct error *error)
 {
-    struct room *room = room_of(simulation);
+    struct workspace *workspace = workspace_of(simulation);
     double spans[STEPS_LEVELS];
     enum status status = STATUS_OK;
     if (steps_uncovered(simulation, spans)) {
-        for (size_t i = 0; i < room->fields.n; i++)
-            room->parts[i] = room->woken[i] ? CELLS_ACTIVE : CELLS_RECEIVES;
-        status = search_for(simulation, room->parts, error);
+        for (size_t i = 0; i < workspace->fields.n; i++)
+            workspace->parts[i] = workspace->woken[i] ? CELLS_ACTIVE : CELLS_RECEIVES;
+        status = search_for(simulation, workspace->parts, error);
         if (status) return status;
-        cells_correct(room->cells, &room->fields, steps_woken_level(simulation), spans);
+        cells_correct(workspace->cells, &workspace->fields, steps_woken_level(simulation), spans);
         fixed_rates(simulation);
     }
-    status = steps_wake(simulation, room->woken, error);
+    status = steps_wake(simulation, workspace->woken, error);
     if (status) return status;
     find_radii(simulation);
     return search(simulation, error);
@@ -503,17 +509,17 @@ static enum status wake(struct simulation *simulation, struct error *error)
 /* Neighbours of active particles that are too coarse wake. */
 static enum status wake_neighbours(struct simulation *simulation, struct error *error)
 {
-    struct room *room = room_of(simulation);
-    struct cells_fields *fields = &room->fields;
+    struct workspace *workspace = workspace_of(simulation);
+    struct cells_fields *fields = &workspace->fields;
     const int to = steps_woken_level(simulation);
     enum status status = STATUS_OK;
     if (to < STEPS_APART) return STATUS_OK;
     fields->coarsest = to + 1 - STEPS_APART;
     fields->wake_to = (unsigned char)to;
     while (!status) {
-        memset(room->woken, 0, fields->n);
-        cells_find_coarse(room->cells, fields);
-        if (!memchr(room->woken, to, fields->n)) break;
+        memset(workspace->woken, 0, fields->n);
+        cells_find_coarse(workspace->cells, fields);
+        if (!memchr(workspace->woken, to, fields->n)) break;
         status = wake(simulation, error);
     }
     return status;
@@ -522,21 +528,21 @@ static enum status wake_neighbours(struct simulation *simulation, struct error *
 static enum status predicted_widths(struct simulation *simulation, double ratio,
                                     struct error *error)
 {
-    struct room *room = room_of(simulation);
+    struct workspace *workspace = workspace_of(simulation);
     const struct particles *a = &simulation->particles;
-    const bool local = room->fields.local = simulation->steps.level >= 0;
+    const bool local = workspace->fields.local = simulation->steps.level >= 0;
     for (ptrdiff_t first = 0; !local && first < a->n; first += BATCH_MAX)
         width_predict(a, first, batch_len(a, first), ratio);
-    for (ptrdiff_t i = 0; room->asleep && i < a->n; i++) {
-        if (local) room->asleep[i] = 0; /* nobody sleeps where most have long steps */
-        if (room->asleep[i]) a->h_inverse[i] = room->kept[i];
+    for (ptrdiff_t i = 0; workspace->asleep && i < a->n; i++) {
+        if (local) workspace->asleep[i] = 0; /* nobody sleeps where most have long steps */
+        if (workspace->asleep[i]) a->h_inverse[i] = workspace->kept[i];
     }
     find_radii(simulation);
     enum status status = search_sorted(simulation, error);
     if (!status && local) status = wake_neighbours(simulation, error);
     if (status) return status;
     if (local) steps_begin_sums(simulation);
-    cells_density(room->cells, &room->fields);
+    cells_density(workspace->cells, &workspace->fields);
     close_all(simulation, true);
     return STATUS_OK;
 }
@@ -552,9 +558,9 @@ static enum status widths(struct simulation *simulation, bool newton, double rat
 /* f_i = (|div v| + eps c/h)/(|div v| + |curl v| + (eps + 1e-4) c/h) (Balsara 1995). */
 static void find_balsara(struct simulation *simulation)
 {
-    struct room *room = room_of(simulation);
+    struct workspace *workspace = workspace_of(simulation);
     const struct particles *a = &simulation->particles;
-    double *const *L = room->fields.slope;
+    double *const *L = workspace->fields.slope;
     const double floor_of = simulation->scheme.balsara_floor;
     for (ptrdiff_t i = 0; i < a->n; i++) {
         if (!simulation_evaluates(simulation, i)) continue;
@@ -568,15 +574,16 @@ static void find_balsara(struct simulation *simulation)
             }
         }
         div = fabs(div);
-        if (room->fields.local) room->balsara_before[i] = room->balsara[i];
-        room->balsara[i] = (div + floor_of * rate) / (div + sqrt(curl2) + (floor_of + 1e-4) * rate);
+        if (workspace->fields.local) workspace->balsara_before[i] = workspace->balsara[i];
+        workspace->balsara[i] =
+            (div + floor_of * rate) / (div + sqrt(curl2) + (floor_of + 1e-4) * rate);
     }
 }
 
 static void matrix(struct simulation *simulation)
 {
-    struct room *room = room_of(simulation);
-    const uint64_t fallen_back = cells_matrix(room->cells, &room->fields);
+    struct workspace *workspace = workspace_of(simulation);
+    const uint64_t fallen_back = cells_matrix(workspace->cells, &workspace->fields);
     simulation->cost.fallen_back += fallen_back;
     if (fallen_back > simulation->cost.fallen_back_most)
         simulation->cost.fallen_back_most = fallen_back;
@@ -594,12 +601,12 @@ static double rate_of_all(const struct simulation *simulation)
 
 static enum status forces(struct simulation *simulation, double *rate, struct error *error)
 {
-    struct room *room = room_of(simulation);
+    struct workspace *workspace = workspace_of(simulation);
     const struct particles *a = &simulation->particles;
     (void)error;
-    room->fields.span = simulation->steps.span;
-    simulation->cost.pair_interactions += cells_forces(room->cells, &room->fields);
-    const struct cells_left_out left_out = cells_left_out(room->cells);
+    workspace->fields.span = simulation->steps.span;
+    simulation->cost.pair_interactions += cells_forces(workspace->cells, &workspace->fields);
+    const struct cells_left_out left_out = cells_left_out(workspace->cells);
     simulation->cost.without_viscosity += left_out.viscosity;
     simulation->cost.without_slope += left_out.slope;
     for (ptrdiff_t first = 0; simulation->plan.alpha && first < a->n; first += BATCH_MAX)
@@ -610,13 +617,13 @@ static enum status forces(struct simulation *simulation, double *rate, struct er
 
 static void find_switch(struct simulation *simulation)
 {
-    const struct room *room = room_of(simulation);
-    cells_switch(room->cells, &room->fields);
+    const struct workspace *workspace = workspace_of(simulation);
+    cells_switch(workspace->cells, &workspace->fields);
 }
 
 static void apply_switch(struct simulation *simulation, double dt)
 {
-    const struct cells_fields *fields = &room_of(simulation)->fields;
+    const struct cells_fields *fields = &workspace_of(simulation)->fields;
     const struct particles *a = &simulation->particles;
     for (ptrdiff_t i = 0; i < a->n; i++) {
         const double above = a->alpha[i] - fields->alpha_local[i];
@@ -627,15 +634,15 @@ static void apply_switch(struct simulation *simulation, double dt)
 
 static double signal(struct simulation *simulation)
 {
-    const struct room *room = room_of(simulation);
-    cells_signal(room->cells, &room->fields);
+    const struct workspace *workspace = workspace_of(simulation);
+    cells_signal(workspace->cells, &workspace->fields);
     return rate_of_all(simulation);
 }
 
 static void describe(const struct simulation *simulation, description_visit *visit, void *context)
 {
-    const struct room *room = room_of(simulation);
-    cells_describe(room->cells, &room->fields, visit, context);
+    const struct workspace *workspace = workspace_of(simulation);
+    cells_describe(workspace->cells, &workspace->fields, visit, context);
 }
 
 /* --- sleep ------------------------------------------------------------------------------------ */
@@ -644,17 +651,17 @@ static void describe(const struct simulation *simulation, description_visit *vis
  * lattice forces vanish, too, and neighbours change all the same. */
 static struct cells_quiet find_quiet(struct simulation *simulation)
 {
-    struct room *room = room_of(simulation);
+    struct workspace *workspace = workspace_of(simulation);
     const struct particles *a = &simulation->particles;
     for (ptrdiff_t i = 0; i < a->n; i++) {
-        room->level[i] = CELLS_CALM;
-        if (room->asleep[i]) continue;
+        workspace->level[i] = CELLS_CALM;
+        if (workspace->asleep[i]) continue;
         const double disturbance = sleep_disturbance(simulation, i, 1);
-        if (!(disturbance <= SLEEP_CALM)) room->level[i] = CELLS_STIRRED;
-        if (!(disturbance <= 1)) room->level[i] = CELLS_DISTURBED;
-        if (!(disturbance <= SLEEP_VIOLENT)) room->level[i] = CELLS_VIOLENT;
+        if (!(disturbance <= SLEEP_CALM)) workspace->level[i] = CELLS_STIRRED;
+        if (!(disturbance <= 1)) workspace->level[i] = CELLS_DISTURBED;
+        if (!(disturbance <= SLEEP_VIOLENT)) workspace->level[i] = CELLS_VIOLENT;
     }
-    return (struct cells_quiet){.level = room->level,
+    return (struct cells_quiet){.level = workspace->level,
                                 .tolerance = sleep_tolerance(simulation),
                                 .sound = simulation->sleep.sound,
                                 .calm = SLEEP_CALM};
@@ -662,28 +669,28 @@ static struct cells_quiet find_quiet(struct simulation *simulation)
 
 static void lull(struct simulation *simulation, const struct cells_quiet *quiet)
 {
-    struct room *room = room_of(simulation);
+    struct workspace *workspace = workspace_of(simulation);
     const struct particles *a = &simulation->particles;
-    if (!cells_lull(room->cells, &room->fields, quiet, room->asleep)) return;
+    if (!cells_lull(workspace->cells, &workspace->fields, quiet, workspace->asleep)) return;
     for (ptrdiff_t i = 0; i < a->n; i++) {
-        if (room->asleep[i] != CELLS_JUST_ASLEEP) continue;
-        room->asleep[i] = CELLS_ASLEEP;
-        room->kept[i] = a->h_inverse[i];
+        if (workspace->asleep[i] != CELLS_JUST_ASLEEP) continue;
+        workspace->asleep[i] = CELLS_ASLEEP;
+        workspace->kept[i] = a->h_inverse[i];
         sleep_begin(simulation, i, 1);
     }
 }
 
-static ptrdiff_t count_awake(const struct room *room, ptrdiff_t n)
+static ptrdiff_t count_awake(const struct workspace *workspace, ptrdiff_t n)
 {
     ptrdiff_t awake = n;
-    for (ptrdiff_t i = 0; room->asleep && i < n; i++) awake -= room->asleep[i];
+    for (ptrdiff_t i = 0; workspace->asleep && i < n; i++) awake -= workspace->asleep[i];
     return awake;
 }
 
 static enum status begin_sleep(struct simulation *simulation, struct error *error)
 {
     struct sleep *sleep = &simulation->sleep;
-    struct room *room = room_of(simulation);
+    struct workspace *workspace = workspace_of(simulation);
     const struct particles *a = &simulation->particles;
     const size_t n = (size_t)a->n;
     /* for the integrators everybody moves: sleepers have no rates */
@@ -693,50 +700,51 @@ static enum status begin_sleep(struct simulation *simulation, struct error *erro
     sleep->span_count = 1;
     sleep->awake_count = a->n;
     if (!simulation->plan.sleep) return STATUS_OK;
-    room->asleep = calloc(n, 1);
-    room->level = calloc(n, 1);
-    room->kept = calloc(n, sizeof *room->kept);
-    if (!room->asleep || !room->level || !room->kept) {
-        forget_sleep(room);
+    workspace->asleep = calloc(n, 1);
+    workspace->level = calloc(n, 1);
+    workspace->kept = calloc(n, sizeof *workspace->kept);
+    if (!workspace->asleep || !workspace->level || !workspace->kept) {
+        forget_sleep(workspace);
         return error_set(error, STATUS_ENVIRONMENT, "no memory for %zu particles", n);
     }
     sleep_scale(simulation);
     const struct cells_quiet quiet = find_quiet(simulation);
     lull(simulation, &quiet);
-    sleep->awake_count = count_awake(room, a->n);
+    sleep->awake_count = count_awake(workspace, a->n);
     return STATUS_OK;
 }
 
 static void update_sleep(struct simulation *simulation)
 {
-    struct room *room = room_of(simulation);
+    struct workspace *workspace = workspace_of(simulation);
     const ptrdiff_t n = simulation->particles.n;
     const bool due = sleep_due(simulation);
-    if (!room->asleep || (simulation->sleep.awake_count == n && !due)) return;
+    if (!workspace->asleep || (simulation->sleep.awake_count == n && !due)) return;
     const struct cells_quiet quiet = find_quiet(simulation);
-    cells_wake(room->cells, &room->fields, &quiet, room->asleep);
+    cells_wake(workspace->cells, &workspace->fields, &quiet, workspace->asleep);
     if (due) lull(simulation, &quiet);
-    simulation->sleep.awake_count = count_awake(room, n);
+    simulation->sleep.awake_count = count_awake(workspace, n);
 }
 
 static bool sleeps(const struct simulation *simulation, ptrdiff_t i)
 {
-    const struct room *room = room_of(simulation);
-    return room->asleep && room->asleep[i];
+    const struct workspace *workspace = workspace_of(simulation);
+    return workspace->asleep && workspace->asleep[i];
 }
 
 /* Neighbours are found anew in every evaluation. */
-static void serialise_room(struct simulation *simulation, struct serialiser *serialiser)
+static void serialise_workspace(struct simulation *simulation, struct serialiser *serialiser)
 {
-    struct room *room = room_of(simulation);
-    serialise(serialiser, room->block, room->arrays * room->stride * sizeof *room->block);
-    if (room->asleep) {
+    struct workspace *workspace = workspace_of(simulation);
+    serialise(serialiser, workspace->block,
+              workspace->arrays * workspace->stride * sizeof *workspace->block);
+    if (workspace->asleep) {
         const size_t n = (size_t)simulation->particles.n;
-        serialise(serialiser, room->asleep, n);
-        serialise(serialiser, room->kept, n * sizeof *room->kept);
+        serialise(serialiser, workspace->asleep, n);
+        serialise(serialiser, workspace->kept, n * sizeof *workspace->kept);
     }
-    SERIALISE(serialiser, room->sorted_at);
-    SERIALISE(serialiser, room->sorted);
+    SERIALISE(serialiser, workspace->sorted_at);
+    SERIALISE(serialiser, workspace->sorted);
 }
 
 const struct sums cells_sums = {
@@ -744,7 +752,7 @@ const struct sums cells_sums = {
     .dim_min = 2,
     .dim_max = 3,
     .create = create,
-    .free = free_room,
+    .free = free_workspace,
     .bytes = bytes,
     .begin = begin,
     .reserve = reserve,
@@ -760,5 +768,5 @@ const struct sums cells_sums = {
     .sleep_update = update_sleep,
     .sleeps = sleeps,
     .end = end,
-    .serialise = serialise_room,
+    .serialise = serialise_workspace,
 };

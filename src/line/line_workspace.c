@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The descriptor of the sums in 1D, and their room. */
+ * The descriptor of the sums in 1D, and their workspace. */
 #include "line.h"
 
 #include <math.h>
@@ -9,7 +9,7 @@ enum { GHOSTS_AT_START = 64, RESERVE = 8 };
 
 static enum status create(struct simulation *simulation, ptrdiff_t n, struct error *error)
 {
-    struct line *line = simulation->room = calloc(1, sizeof *line);
+    struct line *line = simulation->workspace = calloc(1, sizeof *line);
     if (!line) return error_set(error, STATUS_ENVIRONMENT, "no memory");
     loops_choose(&simulation->plan, &simulation->scheme, &line->loops);
     /* room for spans of every length, each of which ends in a range that is not full */
@@ -33,7 +33,7 @@ static double bytes(const struct simulation *simulation, double n)
     return n * sizeof(struct range) / GROUP;
 }
 
-static void free_room(struct simulation *simulation)
+static void free_workspace(struct simulation *simulation)
 {
     struct line *line = line_of(simulation);
     if (!line) return;
@@ -104,7 +104,7 @@ const struct sums line_sums = {
     .dim_min = 1,
     .dim_max = 1,
     .create = create,
-    .free = free_room,
+    .free = free_workspace,
     .bytes = bytes,
     .begin = order_begin,
     .reserve = reserve,
