@@ -14,7 +14,7 @@ FAMILY_LIST(FAMILY)
 
 /* Of 2D: wide smooth kernel and ia, which repairs the error of a uniform pressure, with a viscosity
  * that damps noise and leaves shear alone: the only one that is among the best both for vortices
- * and for Kelvin-Helmholtz (see the table of schemes in README). */
+ * and for Kelvin-Helmholtz (see the tables of cases/README.md). */
 static void default_choices(struct scheme *scheme, const struct scheme_open *open, bool line)
 {
     struct error none;

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Every row of the README's table "Adding things" holds: in a copy of the tree a member of each kind is
+"""Every row of the table "Adding things" in src/README.md holds: in a copy of the tree a member of each kind is
 added by the file and the line that the row names, and nothing else; it must then build, be listed, run,
 be checked and be part of a report. A fault put into it must be noticed where the checks judge it.
 
@@ -553,7 +553,7 @@ const struct command command_greet = {
 
 
 def rows_of(readme):
-    """The first column of the table, from the README."""
+    """The first column of the table, from src/README.md."""
     with open(readme) as f:
         section = f.read().split("## Adding things", 1)[1].split("\n## ", 1)[0]
     return [line.split("|")[1].strip() for line in section.split("\n")
@@ -562,9 +562,9 @@ def rows_of(readme):
 
 def main():
     source, work, words = sys.argv[1], os.path.abspath(sys.argv[2]), sys.argv[3:]
-    rows = rows_of(os.path.join(source, "README.md"))
-    bad = ["the README has a row '%s' without a test" % r for r in rows if r not in ROWS]
-    bad += ["there is a test of '%s', but no such row in the README" % r for r in ROWS if r not in rows]
+    rows = rows_of(os.path.join(source, "src", "README.md"))
+    bad = ["src/README.md has a row '%s' without a test" % r for r in rows if r not in ROWS]
+    bad += ["there is a test of '%s', but no such row in src/README.md" % r for r in ROWS if r not in rows]
     began = time.time()
     tree = Tree(source, work)
     print("%-62s %6.1f s" % ("copy and first build", time.time() - began), flush=True)

@@ -50,10 +50,6 @@ def free_figures(name, text):
     return ["%s: a figure that no command prints: %s" % (name, match.group(0)) for match in FIGURE.finditer(prose(text))]
 
 
-def section(text, heading):
-    return text.split("## %s\n" % heading, 1)[1].split("\n## ", 1)[0]
-
-
 def points(folder):
     """(scheme, n, error, CPU s) of every point in the CSV files."""
     found = []
@@ -83,10 +79,9 @@ def on_the_tree():
     status, said = measure("--text", "--source", SOURCE)
     troubles = [] if status == 0 else [said]
     texts = {}
-    for name in ("README.md", "cases/README.md", "reports/precision/README.md"):
+    for name in ("cases/README.md", "reports/precision/README.md"):
         with open(os.path.join(SOURCE, name), encoding="utf-8") as file:
             texts[name] = file.read()
-    texts["README.md"] = section(texts["README.md"], "Which scheme is the default, and why")
     precision = texts["reports/precision/README.md"]
     texts["reports/precision/README.md"] = precision.replace("2.8 GHz", "")  # the machine
     for name, text in texts.items():

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""readme.py keys PROGRAM README      the README's table of keys is the program's
-   readme.py scripts PROGRAM SOURCE WORK  its scripts: wrong options and --help answer before
+"""readme.py keys PROGRAM PAGE        a page's table of keys is the program's
+   readme.py scripts PROGRAM SOURCE WORK  the scripts: wrong options and --help answer before
                                   anything is built, right ones reach the program as they are, those
                                   of the nightly jobs, too
-   readme.py stories SOURCE WORK  its stories, and all else that it says to type, in a copy of the tree"""
+   readme.py stories SOURCE WORK  the stories of all pages, and what else they say to type, in a copy of the tree"""
 import fnmatch
 import json
 import os
@@ -22,7 +22,7 @@ def keys(program, readme):
     begin, end = "<!-- sphproof list keys --markdown -->\n", "\n<!-- end -->"
     inside = text.split(begin, 1)[1].split(end, 1)[0].strip() if begin in text else ""
     if inside != table:
-        sys.exit("README.md: the table of keys differs from `sphproof list keys --markdown`")
+        sys.exit("the table of keys differs from `sphproof list keys --markdown`")
     # what is wrapped for people is whole: compare with what is written for programs
     keys_ = json.loads(subprocess.run([program, "list", "keys", "--json", "-"], capture_output=True, text=True,
                                       check=True).stdout)["families"]["keys"]
@@ -32,6 +32,15 @@ def keys(program, readme):
         if " ".join(key["label"].split()) not in said or "| %s | %s |" % (key["allowed"], key["label"]) not in table:
             sys.exit("sphproof list keys: what %s means is cut" % key["name"])
     print("the table of keys is the program's")
+
+
+# The pages whose stories are tried, in this order. What else they say to type is tried, too, but for that of cases/README.md,
+# whose commands have a measurement of their own.
+PAGES = ("README.md", "cases/README.md", "src/README.md", "verify/README.md", "reports/README.md")
+
+
+def pages(folder, names=PAGES):
+    return "\n".join(open(os.path.join(folder, name), encoding="utf-8").read() for name in names)
 
 
 # What stands for the words in capitals of what the text says to type; None: tried elsewhere.
@@ -69,11 +78,11 @@ def inline(text):
             continue
         command = PLACES.get(span, span)
         if span not in PLACES and re.search(r"\b[A-Z]{3,}\b", span):
-            sys.exit("README.md: what stands for the words in capitals of `%s`? Tell readme.py" % span)
+            sys.exit("README: what stands for the words in capitals of `%s`? Tell readme.py" % span)
         if command and command not in found:
             found.append(command)
     if len(found) < 8:
-        sys.exit("README.md: only %d commands in its text" % len(found))
+        sys.exit("README: only %d commands in the text" % len(found))
     return found
 
 
@@ -121,7 +130,7 @@ def scripts(program, source, work):
     for name in ("meson", "ninja", "python3"):
         stub(os.path.join(work, "bin", name), "exit 0\n")
     stub(os.path.join(folder, "sphproof"), "printf '%%s\\n' \"$@\" >%s/words\n" % shlex.quote(work))
-    text = open(os.path.join(source, "README.md"), encoding="utf-8").read()
+    text = pages(source, ["reports/README.md"])
     cron = re.search(r"^    15 3 .*(reports/run.*)$", text, flags=re.M).group(1)
     known = subprocess.run([program, "report", "--help"], capture_output=True, text=True, check=True).stdout
     for line in [c for c in job(text) if "reports/run" in c] + [cron, "reports/run --out=a", "reports/run --out a",
@@ -151,12 +160,12 @@ def stories(source, work):
                    cwd=tree, check=True, stdout=subprocess.DEVNULL)
     subprocess.run(["ninja", "-C", "build"], cwd=tree, check=True, stdout=subprocess.DEVNULL)
     environment = dict(os.environ, PATH=os.path.join(tree, "build") + os.pathsep + os.environ["PATH"])
-    text = open(os.path.join(tree, "README.md"), encoding="utf-8").read()
+    text = pages(tree)
     blocks = [part.split("```", 1)[0] for part in text.split("```sh\n")[1:]]
     commands = [line for block in blocks for line in block.splitlines() if line.strip()]
     if len(commands) < 12:
-        sys.exit("README.md: only %d commands in its stories" % len(commands))
-    commands += inline(text)
+        sys.exit("README: only %d commands in the stories" % len(commands))
+    commands += inline(pages(tree, [name for name in PAGES if "cases" not in name]))
     # the job's report, a small share of it: the whole one and its summary are for the test `report`
     commands += [command.replace("--nightly", "--quick --shard 7/60") for command in job(text)
                  if command.startswith("reports/run")]

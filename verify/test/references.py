@@ -4,8 +4,8 @@
 
   references.py SOURCE    in comments of the sources, in scripts and in pages: every equation and section of
                           src/CONVENTIONS.md that is cited, every file (`pair.h`, `src/line/*.c`), every name
-                          after the word `see` (`see run_free`), every heading of a page ("Adding things" in the
-                          README), and every FILE in `WORD in FILE`, with the word in it
+                          after the word `see` (`see run_free`), every heading of a page ("Adding things" in
+                          src/README.md), and every FILE in `WORD in FILE`, with the word in it
 
 The test first tries itself on a small tree with one fault of each kind."""
 import fnmatch
@@ -18,7 +18,7 @@ LAYERS = ("src", "reference", "reports", "verify", "cases")
 TEXTS = (".c", ".h", ".def", ".py", ".sh", ".md", ".txt", ".ini", ".build", ".options")
 SKIP = {os.path.join("reports", "out"), os.path.join("verify", "fuzz", "corpus")}
 # made by the build or a run, or given by the system, or an example's file that the user has
-FOREIGN = {"config.h", "version.h", "cmocka.h", "summary.md", "my_kernel.c", "file.c", "cloud.csv",
+FOREIGN = {"config.h", "version.h", "cmocka.h", "summary.md", "my_kernel.c", "file.c", "cloud.csv", "mine.h",
            "particles.csv", "theirs.csv", "mine.csv", "out.csv", "kh.csv", "code.sh"}
 
 COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.S)
@@ -31,7 +31,7 @@ DEFINED = re.compile(r"^- \((%s)\) " % NUMBER, re.M)
 EQUATION = re.compile(r"\beqs?\. (%s)" % NUMBER)
 SEE = re.compile(r"\bsee\s+(?:also\s+)?`?([a-z]\w*_\w+)\b(?!\.)")
 WORD_IN = re.compile(r"\bsee\s+([A-Z][A-Z_]+)\s+in\s+([\w/]+\.\w+)")
-HEADING = re.compile(r"\"([A-Z][\w ,]+)\"\s+in\s+the\s+README|README,?\s+\"([A-Z][\w ,]+)\"")
+HEADING = re.compile(r"\"([A-Z][\w ,]+)\"\s+in\s+(?:the\s+|\w+/)README|README(?:\.md)?,?\s+\"([A-Z][\w ,]+)\"")
 
 
 def unmarked(text):
@@ -93,7 +93,7 @@ def check(source):
     page = texts.get("src/CONVENTIONS.md") or ""
     equations = DEFINED.findall(page)
     sections = re.findall(r"^## (\d+)\.", page, re.M)
-    headings = re.findall(r"^#+ (.*)$", texts.get("README.md") or "", re.M)
+    headings = [h for p, t in texts.items() if p.endswith("README.md") for h in re.findall(r"^#+ (.*)$", t or "", re.M)]
     names = set(re.findall(r"\w+", " ".join(code(p, t) for p, t in texts.items() if t)))
     troubles = ["src/CONVENTIONS.md: equation %s stands there twice" % e
                 for e in set(equations) if equations.count(e) > 1]
@@ -120,7 +120,7 @@ def check(source):
         for pair in HEADING.findall(words):
             heading = pair[0] or pair[1]
             if heading not in headings:
-                troubles.append('%s: no heading "%s" in the README' % (path, heading))
+                troubles.append('%s: no heading "%s" in a README.md' % (path, heading))
         if path.endswith((".c", ".h", ".def", ".md")):
             for file in FILE.findall(words):
                 if os.path.basename(file) not in FOREIGN and not there(file, texts):
