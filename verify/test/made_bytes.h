@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Memory that a carrier takes a state to, and restores it from. Include after cmocka.h. */
+ * Memory that a serialiser writes a state to, and restores it from. Include after cmocka.h. */
 #ifndef MADE_BYTES_H
 #define MADE_BYTES_H
 
 #include <string.h>
 
-#include "carrier.h"
+#include "serialiser.h"
 
 struct made_bytes {
     unsigned char bytes[1 << 21];
