@@ -49,7 +49,7 @@ PLACES = {
     "sphproof converge sod kernel=cubic_spline eta=4.8":
         "sphproof converge sod kernel=cubic_spline eta=4.8  # exit 1",  # its gate is not for this scheme
     "sphproof run CASE": "sphproof run sod",
-    "sphproof rates": "sphproof rates --help", "sphproof verify GROUP": "sphproof verify kernels",
+    "sphproof verify GROUP": "sphproof verify kernels",
     "sphproof run CASE n=64^2": "sphproof run gresho n=24^2 t_end=0.1",
     "sphproof diff OLD.json NEW.json": "sphproof run sod --json try/a.json; sphproof diff try/a.json try/a.json",
     "sphproof kernel ./mine.so --dim 3": "sphproof kernel build/verify/examples/wendland_c8.so --dim 3",
@@ -74,6 +74,8 @@ def inline(text):
     text = re.sub(r"```.*?```", "", text, flags=re.S)
     for span in re.findall(r"`([^`]+)`", text):
         span = " ".join(span.split())
+        if re.fullmatch(r"sphproof \w+", span):
+            span += " --help"  # the name of a command
         if not re.match(r"(sphproof |reports/\w+ |reports/run$|verify/run|python3 )", span) or span == "verify/run":
             continue
         command = PLACES.get(span, span)
