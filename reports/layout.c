@@ -44,9 +44,9 @@ static void include_cells(struct layout_axis *axis, const double *centres, size_
     }
 }
 
-/* A little air; something sensible where there is no data or no extent. */
-/* What differs by less, relative, is one value to whoever looks at a plot, and to a script in which
- * limits have ten digits. */
+/* Adds a margin; gives a sensible range where there is no data or no extent. */
+/* Values that differ by less than this, relatively, cannot be told apart in a plot, or in a script
+ * whose limits have ten digits. */
 static const double one_value = 1e-8;
 
 static void finish(struct layout_axis *axis, double min, double max, double air)

@@ -67,7 +67,7 @@ static void league_row(struct buffer *to, const json_t *row)
     buffer_add(to, "</tr>\n");
 }
 
-/* Error against momentum defect: nobody is in the corner where both are small. */
+/* Error against momentum defect: no gradient is in the corner where both are small. */
 static void plot_league(struct page_writer *writer, const json_t *rows)
 {
     enum { DIMENSIONS = 3 };

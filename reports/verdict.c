@@ -262,7 +262,7 @@ static void gates_words(struct buffer *to, const struct tally *tally)
         buffer_format(to, ", %d known weakness%s", gates[KNOWN], gates[KNOWN] == 1 ? "" : "es");
 }
 
-/* The failures' number and the first one: what it is and, of a check, of whom. */
+/* The number of failures and the first one: its name and, if it is a check, its subject. */
 static void headline(struct buffer *to, const struct tally *tally, bool checked,
                      const json_t *failures)
 {

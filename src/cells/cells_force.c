@@ -350,7 +350,7 @@ static void coarse_pass(struct cells *cells, const struct cells_fields *fields, 
         const size_t j = lanes_source(cells, fields->n, (size_t)slots[k], &mirrored);
         if (!(fields->level[j] < fields->coarsest)) continue;
 #pragma omp atomic write
-        fields->woken[j] = fields->wake_to; /* whoever writes it */
+        fields->woken[j] = fields->wake_to; /* all threads write the same value */
     }
 }
 

@@ -28,11 +28,11 @@ struct workspace {
     double *sum_m, *sum_m_dh, *sum_Z, *sum_Z_dh;
     size_t arrays, stride; /* that lie in block, and from one to the next */
     unsigned char *outcome;
-    unsigned char *level;  /* of who sleeps and who may: enum in cells.h; likewise */
+    unsigned char *level;  /* of particles that sleep or may: enum in cells.h; likewise */
     unsigned char *parts;  /* local steps: of each particle, in the evaluation of a level; */
     unsigned char *woken;  /* and the level that it wakes to, 0: none */
-    unsigned char *asleep; /* of each particle; NULL: nobody ever sleeps */
-    double *kept;          /* 1/h of those who sleep; likewise */
+    unsigned char *asleep; /* of each particle; NULL: no particle ever sleeps */
+    double *kept;          /* 1/h of particles that sleep; likewise */
     uint64_t sorted_at;    /* steps */
     bool sorted;
 };
@@ -201,7 +201,7 @@ static double bytes(const struct simulation *simulation, double n)
     const double arrays = (double)list_arrays(simulation, &workspace, of);
     /* the first search goes further, and lists hold who is within the wider of two widths */
     const double neighbours = width_neighbours(method.box.dim, simulation->scheme.eta * margin);
-    /* outcome; parts and woken; where somebody sleeps, kept, asleep and level */
+    /* outcome; parts and woken; where particles may sleep, kept, asleep and level */
     const double sleepers = simulation->plan.sleep ? sizeof(double) + 2 : 0,
                  local = simulation->plan.local ? 2 : 0;
     return n * (arrays * sizeof(double) + 1 + local + sleepers) +
@@ -280,7 +280,7 @@ static double half_box(const struct simulation *simulation)
     return half;
 }
 
-/* Who takes part in the evaluation of a level; NULL: everybody. */
+/* Which particles take part in the evaluation of a level; NULL: all. */
 static const unsigned char *find_parts(const struct simulation *simulation)
 {
     const struct workspace *workspace = workspace_of(simulation);
@@ -534,7 +534,7 @@ static enum status predicted_widths(struct simulation *simulation, double ratio,
     for (ptrdiff_t first = 0; !local && first < a->n; first += BATCH_MAX)
         width_predict(a, first, batch_len(a, first), ratio);
     for (ptrdiff_t i = 0; workspace->asleep && i < a->n; i++) {
-        if (local) workspace->asleep[i] = 0; /* nobody sleeps where most have long steps */
+        if (local) workspace->asleep[i] = 0; /* no particle sleeps where most have long steps */
         if (workspace->asleep[i]) a->h_inverse[i] = workspace->kept[i];
     }
     find_radii(simulation);
@@ -647,8 +647,8 @@ static void describe(const struct simulation *simulation, description_visit *vis
 
 /* --- sleep ------------------------------------------------------------------------------------ */
 
-/* Finds everybody's level. Only what moves with its neighbours may sleep: in a shear flow on a
- * lattice forces vanish, too, and neighbours change all the same. */
+/* Finds the level of each particle. Only particles that move with their neighbours may sleep: in a
+ * shear flow on a lattice forces vanish as well, but neighbours change. */
 static struct cells_quiet find_quiet(struct simulation *simulation)
 {
     struct workspace *workspace = workspace_of(simulation);
@@ -693,7 +693,7 @@ static enum status begin_sleep(struct simulation *simulation, struct error *erro
     struct workspace *workspace = workspace_of(simulation);
     const struct particles *a = &simulation->particles;
     const size_t n = (size_t)a->n;
-    /* for the integrators everybody moves: sleepers have no rates */
+    /* integrators advance all particles: the rates of sleeping ones are 0 */
     sleep->spans = malloc(sizeof *sleep->spans);
     if (!sleep->spans) return error_set(error, STATUS_ENVIRONMENT, "no memory");
     sleep->spans[0] = (struct span){0, a->n};

@@ -172,7 +172,7 @@ static enum status lay_cells(struct grid *grid, size_t n, const double *radius, 
 /* Into the box: round-off may end at the upper edge, which is the lower one. */
 static double wrapped(double x, double lo, double side)
 {
-    if (x >= lo && x < lo + side) return x; /* nearly everybody: no division, no call */
+    if (x >= lo && x < lo + side) return x; /* nearly all particles: no division, no call */
     const double y = x - side * floor((x - lo) / side);
     return y < lo + side ? y : lo;
 }

@@ -182,7 +182,8 @@ CLONES static size_t take_plainly(const struct grid *grid, size_t cell, const fl
     return count;
 }
 
-/* The rest of the last 16 is near nobody. Returns how many they are with it. */
+/* Fills the last group of 16 with candidates that no particle is near. Returns their number with
+ * the filling. */
 static size_t fill_up(const struct candidates *candidates, size_t count)
 {
     const size_t whole = (count + COPIED - 1) / COPIED * COPIED;

@@ -289,7 +289,7 @@ CLONES static bool walk(const struct neighbours *nb, const struct query *query,
 enum status neighbours_gather(const struct neighbours *nb, size_t block, double radius,
                               struct candidates *c, struct error *error)
 {
-    /* a little more than asked for, so that round-off in the box distance loses nobody */
+    /* a little more than asked for, so that round-off in the box distance loses no neighbour */
     struct query query = {.radius2 = fmin(radius * radius * (1 + 1e-12), DBL_MAX)};
     for (int a = 0; a < nb->dim; a++) {
         query.lo[a] = nb->lo[0][(size_t)a * nb->stride[0] + block];

@@ -71,7 +71,7 @@ struct operator_settings {
 
 /* Gradients of `fields` fields at once: f[k][i] at point i, component a goes to
  * gradient[k * dim + a][i]. Any units will do (units.h). A point whose matrix has no inverse gets
- * NaN if the operator needs one. point: n, or NULL where nobody asks (that is cheaper); pairs:
+ * NaN if the operator needs one. point: n, or NULL if it is not wanted (which is cheaper); pairs:
  * number of pairs summed, or NULL. STATUS_BAD_INPUT: h, volume or a coordinate out of range (the
  * message names the point); STATUS_ENVIRONMENT: no memory. */
 enum status operator_apply(const struct operator_settings *settings, const struct cloud *cloud,

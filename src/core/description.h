@@ -19,7 +19,7 @@ struct description {
     double condition;  /* of T in the 2-norm: beyond that the standard gradient stands in; NaN: the
                           gradient needs no matrix */
     double angle; /* largest one between C x and x of a neighbour, degrees; NaN: C is not used, or
-                     nobody is near */
+                     there is no neighbour */
 };
 
 /* particle: its place in the snapshot. */

@@ -49,8 +49,8 @@ struct kernel {
 extern const struct family kernel_family;
 
 /* Plug-ins: kernels that a program brings besides those of kernels.def. In kernel_family.members
- * they stand behind its n members, so that who goes through the family does not meet them; they are
- * found by name alone, and have no specialised loops. plugin_w is set, the constants are the
+ * they stand behind its n members: iteration skips plug-ins, and they are found by name. They have
+ * no specialised loops. plugin_w is set, the constants are the
  * plug-in's.
  */
 enum { KERNEL_PLUGINS_MAX = 16 };

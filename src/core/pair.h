@@ -219,7 +219,7 @@ ALWAYS_INLINE double pair_energy_flux(struct pair_terms a, double v_i, double v_
 /* --- time step -------------------------------------------------------------------------------- */
 
 /* Is a distance r inside the wider of two supports? By the widths that sums are taken at (1/h):
- * neighbours are looked for within those, so that whoever counts is always found. */
+ * neighbours are looked for within those, so that every pair that counts is found. */
 ALWAYS_INLINE bool pair_within(double r, double h_inverse_i, double h_inverse_j)
 {
     return r * least(h_inverse_i, h_inverse_j) < 1;

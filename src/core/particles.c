@@ -108,7 +108,8 @@ enum status particles_grow_ghosts(struct particles *particles, ptrdiff_t ghosts,
     return STATUS_OK;
 }
 
-/* Has anybody written here? To read memory that nobody has touched does not make it take room. */
+/* Is the array still as it was allocated? Reading untouched pages does not make them take memory.
+ */
 static bool is_blank(const double *array, ptrdiff_t n)
 {
     static const unsigned char zero[512];

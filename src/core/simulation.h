@@ -110,7 +110,7 @@ void simulation_asleep(const struct simulation *simulation, bool *asleep);
 void simulation_rates(const struct simulation *simulation, struct rates *rates);
 void simulation_conservation(const struct simulation *simulation, struct conservation *sums);
 void simulation_cost(const struct simulation *simulation, struct simulation_cost *cost);
-/* No step is to follow, and nobody will ask for descriptions: frees the neighbours. */
+/* Frees the neighbour lists. No step and no description may follow. */
 void simulation_end(struct simulation *simulation);
 void simulation_destroy(struct simulation *simulation);
 

@@ -41,11 +41,11 @@ struct span {
 };
 
 struct sleep {
-    bool on;            /* somebody sleeps, and spans leave them out */
+    bool on;            /* some particles sleep, and spans leave them out */
     bool at_rest;       /* all sleepers have no velocity: integrators may leave them out, too */
     double rate;        /* largest signal speed / h of the sleepers */
     double sound;       /* c_s; 0 before sleep_scale */
-    struct span *spans; /* of awake particles; all particles where nobody sleeps */
+    struct span *spans; /* of awake particles; all particles where none sleeps */
     ptrdiff_t span_count, awake_count;
 };
 

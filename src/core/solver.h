@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Inside of a simulation: shared by its passes and the integrators, for nobody else. */
+ * The inside of a simulation, shared by its passes and the integrators and by no other code. */
 #ifndef SPHPROOF_SOLVER_H
 #define SPHPROOF_SOLVER_H
 

@@ -137,7 +137,7 @@ double steps_begin_block(struct simulation *simulation, double dt, double left)
     }
     const int before = steps->depth;
     steps->depth = find_depth(simulation, dt, left);
-    /* widths of single steps are predicted from a last step of everybody's */
+    /* widths of single steps are predicted from the last step that all particles took */
     if (steps->depth == 0 && before == 0) {
         steps->single = true;
         steps->rest = REST;

@@ -19,14 +19,14 @@ struct team {
     bool trying;    /* the present stretch is a trial */
 };
 
-/* All at work, until they have been tried. */
+/* Begins with all threads at work; later steps try whether fewer are faster. */
 void team_begin(struct team *team, int most);
 
 /* A step ends at `now`, in seconds of a clock that never goes back. Decides on the size of the team
  * for the next one. */
 void team_step(struct team *team, double now);
 
-/* Steps do not follow each other: time that passes from here on is nobody's. */
+/* Excludes the time from here to the next step from the measurement. */
 void team_pause(struct team *team);
 
 #endif

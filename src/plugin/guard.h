@@ -11,8 +11,8 @@
 
 #include "status.h"
 
-/* What the foreign code is at, in memory that both processes see; call notes what is called before,
- * guard_back after. In the parent, or where nobody guards, it goes nowhere. */
+/* Notes which foreign function is running, in memory that both processes share: guard_call before
+ * the call, guard_back after it. Without a guarding process both do nothing. */
 void guard_call(const char *function, double a, double b, int dim);
 void guard_back(void);
 /* From here on foreign code that fails is a kernel that fails; before, it is no kernel at all. */

@@ -28,7 +28,7 @@ struct watch {
     struct trace traces[GUARD_TRACES];
 };
 
-/* Where this process leaves its traces; NULL: nobody watches. */
+/* Where this process writes its traces; NULL: no other process reads them. */
 extern struct watch *guard_watched;
 
 /* NULL: no memory. Unmap it. */

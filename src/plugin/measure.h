@@ -45,8 +45,8 @@ struct measure_class {
     double at;       /* the point that limits it (0 origin, 1 edge), NaN if none does */
     int extra;       /* break points with a jump that are not among the declared knots */
     double extra_at; /* the first of them */
-    struct { /* break points of few pieces that nobody declared, with a jump in w, w' or w'' */
-        int count, k; /* too small to be meant; the derivative and size of the largest */
+    struct { /* undeclared break points, with a jump in w, w' or w'' too small to be intended */
+        int count, k; /* the number; derivative, place and size of the largest jump */
         double at, jump;
     } accident;
     struct measure_jump jump[MEASURE_CLASS_MAX + 2]; /* of derivative k, the most significant */

@@ -175,8 +175,8 @@ static double deviation(const struct kernel *kernel, int dim)
     return sqrt(moments.second);
 }
 
-/* What eta is where nobody says it: that which makes it as wide as the cubic spline at its own, by
- * the standard deviations of both (Dehnen & Aly 2012, section 2.4), to three places. */
+/* The default eta: it gives the kernel the standard deviation of the cubic spline at the spline's
+ * own eta (Dehnen & Aly 2012, section 2.4), rounded to three places. */
 static double usual_eta(const struct kernel *kernel, int dim)
 {
     struct kernel cubic;
@@ -216,7 +216,7 @@ enum status plugin_prepare(int index, int dim, struct error *error)
 }
 
 enum status plugin_select(struct kernel *kernel, int index, int sinc_order, int dim,
-                         struct error *error)
+                          struct error *error)
 {
     if (plugin_prepare(index, dim, error)) return error->status;
     return kernel_select(kernel, kernel_family.members[index]->name, sinc_order, error);

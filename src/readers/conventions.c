@@ -46,7 +46,7 @@ static int nearer(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Sums over more than NEIGHBOURS_MAX neighbours are nobody's: the reach ends before them. */
+/* No code sums over more than NEIGHBOURS_MAX neighbours: the reach ends before them. */
 static void limit_reach(struct sample *sample, struct near *near)
 {
     if (near->count) qsort(near->neighbour, near->count, sizeof *near->neighbour, nearer);

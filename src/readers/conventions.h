@@ -19,7 +19,7 @@ enum density_sum {
     DENSITY_SUMS
 };
 
-/* What a file's h is, as somebody says it; all 0: nobody does. */
+/* What the user says that a file's h is; all 0: the user says nothing. */
 struct width_meaning {
     double ratio;      /* support radius over h */
     double deviations; /* h over the kernel's standard deviation */

@@ -63,7 +63,7 @@ struct snapshot_file {
 
 struct snapshot_options {
     const char *map; /* column names of the user's, "rho=Density,u=Energy"; NULL: none */
-    bool here;       /* HDF5 is read in this process, which somebody guards already */
+    bool here;       /* HDF5 is read in this process, because the caller guards it already */
 };
 
 struct snapshot_source;

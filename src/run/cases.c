@@ -67,7 +67,7 @@ static enum status unknown_case(const char *name, struct error *error)
     return status;
 }
 
-/* A case that somebody has put beside the installed ones; their copies there are for reading. */
+/* A case that the user has put beside the installed ones, whose copies there are for reading. */
 static enum status load_installed(struct case_file *file, const char *name, struct error *error)
 {
     char wanted[128], path[PLACE_LENGTH];

@@ -18,8 +18,8 @@ enum { CASE_LADDER_MAX = ORDER_LEVELS_MAX, CASE_GATES_MAX = FIELDS * NORMS + 16 
  * functionals (`growth_rate = ORDER BOUND`, of |value - exact|), of the finest error alone: ORDER
  * is then what the bound is raised by where a ladder ends before the case's. Functionals that
  * hardly scatter may have `ORDER LEAST BOUND`: on the case's own ladder, with its own settings, an
- * error below LEAST shows a change that nobody knows of. With `... known: WHY` of a weakness that
- * is shown and fails nothing. The schemes that a report compares with the default have a bound
+ * error below LEAST is too good and shows an unknown change. With `... known: WHY` of a weakness
+ * that is shown and fails nothing. The schemes that a report compares with the default have a bound
  * thrice as wide, or their own, in a line of the same name in [compared]: `density_l1 = BOUND`.
  * `density_l1 = BOUND known: WHY`: they are known to fail the gate, but their error is a number up
  * to BOUND. `density_l1 = none known: WHY`: there is nothing to be measured (no shock to be found),

@@ -120,7 +120,7 @@ enum status particle_file_fill(const struct particle_file *file, const char *pat
 
 /* ---- the start of a run ---- */
 
-/* Where something is at the ends, everybody has to be between them. */
+/* In directions that are not open all particles must lie inside the box. */
 static enum status check_places(const struct particle_file *file, const char *path,
                                 const struct prepared *p, struct error *error)
 {

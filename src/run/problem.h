@@ -22,7 +22,8 @@ struct problem_state {
     double rho, v[3], P, u;
 };
 
-/* A problem with the numbers of one run. Plain data: it may be copied, and nobody frees it. */
+/* A problem with the numbers of one run. Plain data: it may be copied, and owns no
+ * memory. */
 struct prepared {
     const struct problem *problem;
     struct domain domain;

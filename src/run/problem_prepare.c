@@ -164,7 +164,7 @@ static enum status check_file(const struct prepared *p, const struct settings *s
     return STATUS_OK;
 }
 
-/* Where particles start if nobody says it, and whether there is such a thing. */
+/* The default lattice, and whether the lattice exists in this dimension. */
 static enum status choose_lattice(struct settings *settings, int dim, struct error *error)
 {
     static const enum lattice usual[] = {LATTICE_UNIFORM, LATTICE_SQUARE, LATTICE_CUBIC};

@@ -292,7 +292,7 @@ static bool after_step(void *context, double time, uint64_t steps)
     const struct run_settings *settings = &watch->run->asked;
     const double t_end = settings_real(&watch->run->settings, SETTING_t_end);
     struct checkpoint *checkpoint = settings->checkpoint;
-    /* a step is always to follow: what it leaves beside the state describes the end */
+    /* not after the last step: a checkpoint always has a step to go on with */
     if (checkpoint && time < watch->until && checkpoint_due(checkpoint)) {
         checkpoint->snapshot = settings->snapshots ? snapshots_last(settings->snapshots) : -1;
         checkpoint_save(checkpoint, watch->simulation, &watch->result->growth);

@@ -52,12 +52,12 @@ struct run_settings {
     bool each_step;                /* it is called after each: they may be long */
     struct checkpoint *checkpoint; /* where the run's state is kept; NULL: nowhere */
     struct snapshots *snapshots;   /* snapshots on the way; NULL: none */
-    struct trace *trace;           /* {0}: gets what happens through time; NULL: nobody asks */
+    struct trace *trace;           /* {0}: receives the time series; NULL: none is kept */
 };
 
-/* A run with every choice made: no `auto` is left, the problem is solved. Its key, its plan and its
- * result all come from here; whoever changes a key resolves again. What is asked beside the keys
- * (threads, progress, trace ...) may still be changed. */
+/* A run with every choice made: no `auto` is left, and the exact solution is known. Its cache key,
+ * plan and result all come from here; resolve again after a change of a key. What is asked beside
+ * the keys (threads, progress, trace ...) may still be changed. */
 struct run {
     struct run_settings asked;
     struct settings settings;
@@ -74,7 +74,7 @@ struct run_functional {
 struct run_result {
     enum status status;       /* STATUS_OK or STATUS_BROKE_DOWN */
     char message[512];        /* how it broke down */
-    char case_name[256];      /* as case_load knows it; "": nobody said */
+    char case_name[256];      /* as case_load knows it; "": none was given */
     struct settings settings; /* as used: these three are the run's */
     struct scheme scheme;
     struct prepared problem;

@@ -77,7 +77,8 @@ struct order_extrapolation {
 };
 
 /* Of a functional at three levels, coarsest first, spacings strictly falling. exact: its exact
- * value, NaN where nobody knows it; what converges to something else is not called asymptotic. */
+ * value, NaN where it is unknown; a sequence that converges to another value is not called
+ * asymptotic. */
 struct order_extrapolation order_extrapolate(const double spacing[3], const double value[3],
                                              double exact);
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * A string that grows. Out of memory is remembered, not reported at each step: whoever takes the
- * text checks `failed` (or buffer_take's NULL) once at the end. */
+ * A string that grows. Running out of memory is remembered, not reported at each step: the caller
+ * checks `failed` (or buffer_take's NULL) once at the end. */
 #ifndef SPHPROOF_BUFFER_H
 #define SPHPROOF_BUFFER_H
 

@@ -48,8 +48,8 @@ struct cache_census {
     double bytes; /* of the entries that are left */
 };
 
-/* Removes what nobody has used for so many seconds (HUGE_VAL: nothing). STATUS_BAD_INPUT: there is
- * no such folder. */
+/* Removes entries that have not been used for so many seconds (HUGE_VAL: none). STATUS_BAD_INPUT:
+ * there is no such folder. */
 enum status cache_prune(const char *folder, double seconds, struct cache_census *census,
                         struct error *error);
 #define CACHE_MONTH (30. * 24 * 3600) /* seconds */

@@ -129,7 +129,7 @@ enum status output_close(struct output *output, struct error *error)
         return reason && reason != EPIPE ? cannot_write("standard output", reason, error)
                                          : STATUS_OK;
     }
-    /* a write within a long one failed and nobody kept the reason: the next write says it again */
+    /* part of a long write failed without a reason: the next write fails again and gives it */
     if (reason == EIO && output->temporary && write(fileno(output->stream), "", 1) < 0)
         reason = errno;
     if (fclose(output->stream) && !reason) reason = errno;

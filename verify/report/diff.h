@@ -30,7 +30,7 @@ struct diff {
 };
 
 /* STATUS_OK or STATUS_CHECK_FAILED (not well); STATUS_BAD_INPUT: documents of two commands, or a
- * figure that nobody knows how to judge. */
+ * figure that no rule covers. */
 enum status diff_documents(const json_t *old, const json_t *new, double threshold,
                            struct diff *diff, struct error *error);
 void diff_free(struct diff *diff);
@@ -39,7 +39,7 @@ void diff_free(struct diff *diff);
 double diff_ratio(const struct difference *difference);
 
 /* The value that a figure would have at its best: an error's 0, a functional's exact value; NaN
- * where nobody knows. */
+ * where it is unknown. */
 double diff_exact(const struct difference *difference);
 
 /* [{"path", "old", "new", "exact", "ratio", "verdict", "regression"}], the first `most` of them. */

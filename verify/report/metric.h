@@ -38,7 +38,7 @@ struct metrics {
     struct metric *list; /* sorted by path, each once */
     size_t count, room;
     bool failed;       /* no memory */
-    char trouble[400]; /* "", or a figure of which nobody knows what it is: not in the list */
+    char trouble[400]; /* "", or the first figure that no rule covers, which is not in the list */
 };
 
 /* All metrics of a document. Entries of a list that nothing tells apart are one reading, the worst

@@ -15,7 +15,7 @@ struct metric_rule {
     double noise, floor;
 };
 
-/* The rule for a member of the object at path; NULL: nobody knows. */
+/* The rule for a member of the object at path; NULL: there is none. */
 const struct metric_rule *metric_rule(const char *path, const char *name);
 
 /* Is name one of the path's parts outside brackets? */

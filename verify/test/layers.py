@@ -15,7 +15,7 @@ import re
 import sys
 import tempfile
 
-CORE, PUBLIC = "src", "src/include"  # the solver; the headers that are installed: everybody sees both
+CORE, PUBLIC = "src", "src/include"  # the solver; the installed headers: every library may include both
 FOLDERS = ("src", "reference", "reports", "verify")
 GENERATED = {"config.h", "kernel_names.h", "version.h"}
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.M)

@@ -150,9 +150,9 @@ static void predicted_midpoint_synchronise(struct simulation *simulation)
     state->ahead = 0;
 }
 
-/* While steps follow each other, the end of one is joined with the prediction of the next. Should
- * somebody wake in between: those who slept have x_old = x, alpha_old = alpha
- * and no rates, which is what the prediction would have left. */
+/* While steps follow each other, the end of one is joined with the prediction of the next. A
+ * particle that wakes in between has x_old = x, alpha_old = alpha and no rates, which is what the
+ * prediction would have left. */
 static enum status predicted_midpoint_step(struct simulation *simulation, double dt,
                                            struct error *error)
 {

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Binary snapshots of GADGET (Springel 2005, user guide section 6), formats 1 and 2, either byte
  * order: Fortran records, each between two counts of its bytes. The first is the header of 256
- * bytes. In format 2 a record of 8 bytes before each block names it. In format 1 nobody does, and
- * codes insert blocks of their own: which record is what follows from lengths and from values, and
- * where two metrics fit, none is taken. */
+ * bytes. In format 2 a record of 8 bytes before each block names it. Format 1 has no
+ * names, and codes insert blocks of their own: what a record is follows from its length and values,
+ * and a record that two quantities fit is not used. */
 #include <float.h>
 #include <math.h>
 #include <stdint.h>
