@@ -35,6 +35,9 @@ RUNS = [
     "sod_3d n=4000 t_end=0.02 gradient=standard viscosity=constant kernel=wendland_c2",
     "rest_3d n=12^3 t_end=0.1 jitter=0.2",
     "rest_3d n=10^3 t_end=0.1 jitter=0.2 kernel=quintic_spline viscosity=time_dependent h_method=newton",
+    "noh_2d n=2500 t_end=0.06 steps=local kernel=cubic_spline",
+    "sedov_2d n=50^2 t_end=0.02 steps=local skip=none kernel=cubic_spline alpha_u=0.5",
+    "noh_3d n=3000 t_end=0.1 steps=local kernel=cubic_spline",
 ]
 THREADS = [1, 2, 7]
 

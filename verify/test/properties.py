@@ -96,6 +96,48 @@ def draw(program, number):
     return case, keys, rng.randint(1, 3)
 
 
+# Cases with blocks of local steps, and least numbers of particles.
+LOCALS = [("noh_2d", 300, 0.1), ("sedov_2d", 300, 0.05), ("noh_3d", 1000, 0.1), ("sedov_3d", 1000, 0.03)]
+LOCAL_BOUND = 1e-12  # of momentum, and of total energy where that is what is integrated
+
+
+def draw_local(number):
+    """Case, keys and threads of one run with steps=local in 2D or 3D."""
+    rng = random.Random(number)
+    case, least, t_end = rng.choice(LOCALS)
+    keys = {"steps": "local", "kernel": rng.choice(["cubic_spline", "wendland_c2", "quadratic_spline"])}
+    maybe = lambda chance, key, value: keys.update({key: value}) if rng.random() < chance else None
+    maybe(0.3, "gradient", rng.choice(["standard", "ia", "blended"]))
+    maybe(0.3, "viscosity", rng.choice(["constant", "reconstructed", "projected"]))
+    maybe(0.3, "alpha_u", round(rng.uniform(0.1, 1), 2))
+    maybe(0.3, "cfl", log_uniform(rng, 0.05, 0.4))
+    maybe(0.3, "energy", rng.choice(["internal", "total"]))
+    maybe(0.3, "jitter", round(rng.uniform(0, 0.2), 2))
+    maybe(0.4, "skip", "none")
+    keys.update(n=rng.randint(least, 2 * least), t_end=round(t_end * rng.uniform(0.3, 1), 4),
+                seed=rng.randint(0, 4294967295))
+    return case, keys, rng.randint(1, 3)
+
+
+def check_local(program, number):
+    """What is wrong with such a run (None if nothing), its command, its document."""
+    with tempfile.TemporaryDirectory() as folder:
+        done, command = execute(program, *draw_local(number), folder + "/end.csv")
+    if not done or done.returncode not in (0, 3):
+        return done.stderr.strip() if done else "more than %d s" % SECONDS, command, None
+    document = json.loads(done.stdout)
+    if done.returncode == 3:
+        return None, command, document
+    kept = document["conservation"]
+    wrong = wrong_numbers({k: document[k] for k in ("conservation", "cost", "time", "errors")})
+    if wrong:
+        return "not finite: " + ", ".join(wrong), command, document
+    bounds = {"mass": 1e-15, "momentum": LOCAL_BOUND,
+              "energy": LOCAL_BOUND if document["settings"]["energy"] == "total" else ENERGY_TAME}
+    drifts = {name: kept[name] for name, bound in bounds.items() if not kept[name] <= bound}
+    return "not kept: %s" % drifts if drifts else None, command, document
+
+
 def wrong_numbers(value, path=""):
     """Paths of what is not finite in a document."""
     if isinstance(value, dict):
@@ -227,6 +269,17 @@ def main():
                 if document["momentum_error"] > MOMENTUM:
                     drifting.append("momentum error %g\n    %s" % (document["momentum_error"],
                                                                    command))
+    in_blocks = 0
+    for number in range(first, first + max(count // 8, 4)):
+        wrong, command, document = check_local(program.path, number)
+        if wrong:
+            failed += 1
+            print("draw %d of local steps: %s\n    %s" % (number, wrong, command))
+        else:
+            in_blocks += document["settings"]["skip"] == "none" and document["cost"]["skipped_particle_updates"] > 0
+    if not in_blocks:
+        failed += 1
+        print("no run took blocks of local steps")
     if len(drifting) > FEW * count + 1:
         failed += 1
         print("\n".join(["too many with momentum errors beyond round-off:"] + drifting))
