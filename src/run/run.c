@@ -465,6 +465,29 @@ enum status run_execute(const struct run *run, struct run_result *result, struct
     return result->status;
 }
 
+enum status run_start(const struct run *run, struct run_result *result, struct error *error)
+{
+    struct initial initial;
+    struct simulation *simulation = NULL;
+    enum status status = begin(run, result, &initial, error);
+    if (!status) {
+        const struct setup setup = run_setup(run, &initial);
+        status = simulation_take(&setup, &simulation, error);
+    }
+    initial_free(&initial);
+    if (!status) status = simulation_begin(simulation, error);
+    /* no step, but what a run evaluates where it stops: a snapshot at t = 0 has the same bits */
+    if (!status) status = simulation_run(simulation, 0, NULL, NULL, error);
+    if (!status) {
+        struct snapshot seen;
+        simulation_snapshot(simulation, &seen);
+        status = keep_snapshot(result, &seen, error);
+    }
+    simulation_destroy(simulation);
+    if (status) run_free(result);
+    return status;
+}
+
 enum status run_judge(const struct run *run, const struct snapshot *snapshot,
                       struct run_result *result, struct error *error)
 {

@@ -125,6 +125,11 @@ enum status run_execute(const struct run *run, struct run_result *result, struct
  * run_execute, also STATUS_ENVIRONMENT where memory will not do. */
 enum status run_explain(const struct run *run, struct run_result *result, struct error *error);
 
+/* No step: the state at t = 0 of the very particles that run_execute starts from, with the density
+ * and smoothing length that its solver finds; nothing is measured. STATUS_*: as run_execute, and
+ * only STATUS_OK leaves a result. */
+enum status run_start(const struct run *run, struct run_result *result, struct error *error);
+
 /* No run: errors and functionals of a state that another code has computed, by the problem of a run
  * whose t_end is the state's time. In 1D sorted by position; id: 0 ... n - 1.
  * STATUS_BAD_INPUT where the exact solution does not hold in the window. */

@@ -93,8 +93,8 @@ static void set_header(struct image *image, const struct run_result *result)
     set_attribute(image, header, "Dimension", H5T_NATIVE_INT, &dim, 1);
     set_attribute(image, header, "NumFilesPerSnapshot", H5T_NATIVE_INT, &files, 1);
     set_attribute(image, header, "Flag_DoublePrecision", H5T_NATIVE_INT, &yes, 1);
-    static const char *const off[] = {"Flag_Sfr", "Flag_Cooling", "Flag_Feedback",
-                                      "Flag_StellarAge", "Flag_Metals"};
+    static const char *const off[] = {"Flag_Sfr",        "Flag_Cooling", "Flag_Feedback",
+                                      "Flag_StellarAge", "Flag_Metals",  "Flag_Entropy_ICs"};
     for (size_t k = 0; k < sizeof off / sizeof *off; k++)
         set_attribute(image, header, off[k], H5T_NATIVE_INT, &no, 1);
     static const char *const still[] = {"Redshift", "Omega0", "OmegaLambda"};

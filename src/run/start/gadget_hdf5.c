@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * HDF5 for GADGET-4, AREPO and GIZMO: double precision, positions from the lower corner of the box,
+ * InternalEnergy is u. */
+#include "start_format.h"
+
+extern const struct snapshot_writer writer_hdf5;
+
+const struct start_format start_gadget_hdf5 = {
+    .member = {"gadget_hdf5", "HDF5 for GADGET-4, AREPO and GIZMO", "Springel 2005"},
+    .writer = &writer_hdf5,
+    .gamma = "GADGET-4 and AREPO: GAMMA in Config.sh; GIZMO: EOS_GAMMA in Config.sh",
+    .dimension = "GADGET-4: ONEDIMS or TWODIMS, AREPO: ONEDIMS or TWODIMS, GIZMO: "
+                 "BOX_SPATIAL_DIMENSION in Config.sh",
+    .box = "BoxSize in the parameter file, positions count from its lower corner; sides that "
+           "differ: LONG_X, LONG_Y, LONG_Z (GIZMO: BOX_LONG_X ...) in Config.sh",
+    .boundary = "Config.sh (GIZMO: BOX_PERIODIC)",
+    .t_end = "TimeMax in the parameter file",
+};

@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "start_format.h"
+
+#include <stdlib.h>
+
+#include "text.h"
+
+#define START(name) extern const struct start_format start_##name;
+#include "starts.def"
+#undef START
+
+static const struct member *const members[] = {
+#define START(name) &start_##name.member,
+#include "starts.def"
+#undef START
+};
+
+const struct family start_format_family = {"starts",
+                                           "formats of initial states that are written for codes",
+                                           members, sizeof members / sizeof *members};
+
+const struct start_format *start_format_of(const char *name, struct error *error)
+{
+    const int at = family_index(&start_format_family, name);
+    if (at >= 0) return (const struct start_format *)members[at];
+    text_unknown_member(error, "ic", "format", name, &start_format_family);
+    return NULL;
+}
+
+enum status start_write(const struct start_format *format, const struct run_result *result,
+                        const char *path, struct error *error)
+{
+    if (!format->width) return format->writer->write(result, path, error);
+    struct run_result theirs = *result;
+    double factor;
+    if (format->width(result, &factor, error)) return error->status;
+    double *h = malloc(result->n * sizeof *h);
+    if (!h) return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", path);
+    for (size_t i = 0; i < result->n; i++) h[i] = factor * result->snapshot.h[i];
+    theirs.snapshot.h = h;
+    const enum status status = format->writer->write(&theirs, path, error);
+    free(h);
+    return status;
+}

@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Formats in which the initial state of a run is written for other codes: a family, one file in
+ * start/ and one line in starts.def each. The files are those of the writers of snapshots; here
+ * stands what a code understands differently, and where its user sets what no file says. */
+#ifndef SPHPROOF_START_FORMAT_H
+#define SPHPROOF_START_FORMAT_H
+
+#include "snapshot_writer.h"
+
+struct start_format {
+    struct member member;
+    const struct snapshot_writer *writer;
+    /* Where the code's user sets these, in the code's own words; NULL: the file says it. */
+    const char *gamma, *dimension, *box, *boundary, *t_end;
+    /* What the code calls the smoothing length, divided by the support radius, which is what
+     * snapshots have; NULL: the same. */
+    enum status (*width)(const struct run_result *result, double *factor, struct error *error);
+};
+extern const struct family start_format_family;
+
+/* NULL: STATUS_BAD_INPUT in error, which names the formats that there are. */
+const struct start_format *start_format_of(const char *name, struct error *error);
+
+/* The result of run_start in a file. STATUS_ENVIRONMENT: it cannot be written. */
+enum status start_write(const struct start_format *format, const struct run_result *result,
+                        const char *path, struct error *error);
+
+#endif
