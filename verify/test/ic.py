@@ -9,6 +9,7 @@ import struct
 import subprocess
 import sys
 import tempfile
+import time
 
 program = os.path.abspath(sys.argv[1])
 SCENES = (("sod", "%d", (40, 200), ("uniform", "clustered")), ("sound_wave", "%d", (16, 64), ("uniform", "clustered")),
@@ -26,8 +27,12 @@ def call(*words, status=0):
 
 
 def content(path):
+    """Without the times at which HDF5 has made its arrays."""
     with open(path, "rb") as file:
-        return file.read()
+        text = file.read()
+    for back in range(60 if path.endswith("hdf5") else 0):
+        text = text.replace(struct.pack("<I", int(time.time()) - back), bytes(4))
+    return text
 
 
 def judged(path, case):
