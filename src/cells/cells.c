@@ -8,6 +8,7 @@
 #include "lanes.h"
 #include "matrix.h"
 #include "specialise.h"
+#include "traits.h"
 
 static void add_field(struct lanes_layout *layout, enum lanes_field field, int values)
 {
@@ -43,8 +44,8 @@ static void lay_out_force(struct lanes_layout *force, const struct cells_method 
     if (method->balsara) add_field(force, FIELD_BALSARA, 1);
     if (method->conductivity > 0) add_field(force, FIELD_HEAT, 1);
     if (lagrangian) add_field(force, FIELD_LAGRANGIAN, 3);
-    if (method->gradient != GRADIENT_STANDARD) add_field(force, FIELD_MATRIX, symmetric);
-    if (method->gradient == GRADIENT_BLENDED) add_field(force, FIELD_STEEP, 1);
+    if (traits_gradient[method->gradient].matrix) add_field(force, FIELD_MATRIX, symmetric);
+    if (traits_gradient[method->gradient].blends) add_field(force, FIELD_STEEP, 1);
     if (method->viscosity == VISCOSITY_RECONSTRUCTED) add_field(force, FIELD_SLOPE, dim * dim);
     if (method->projected) add_field(force, FIELD_PROJECTOR, symmetric);
 }
@@ -58,11 +59,11 @@ static void lay_out(struct cells *cells)
     add_field(&cells->density, FIELD_WEIGHT, 1);
     if (method->energy_element) add_field(&cells->density, FIELD_ENERGY, 1);
     begin_layout(&cells->matrix,
-                 method->gradient == GRADIENT_CORRECTED ? LANES_DIRECTION : LANES_DISPLACEMENT,
+                 traits_gradient[method->gradient].by_slope ? LANES_DIRECTION : LANES_DISPLACEMENT,
                  dim);
     add_field(&cells->matrix, FIELD_WEIGHT, 1);
     if (method->velocity_gradient) add_field(&cells->matrix, FIELD_VELOCITY, dim);
-    if (method->gradient == GRADIENT_BLENDED) add_field(&cells->matrix, FIELD_H, 1);
+    if (traits_gradient[method->gradient].blends) add_field(&cells->matrix, FIELD_H, 1);
     lay_out_force(&cells->force, method);
     cells->shift = (struct lanes_layout){0};
     if (!method->jump) return;
@@ -272,7 +273,7 @@ static double condition_of(const struct cells *cells, const struct cells_fields 
                            double C[CELLS_SQUARE])
 {
     const int dim = cells->method.box.dim;
-    if (cells->method.gradient == GRADIENT_STANDARD) return nan("");
+    if (!traits_gradient[cells->method.gradient].matrix) return nan("");
     for (int a = 0; a < dim; a++)
         for (int b = 0; b < dim; b++) C[a * dim + b] = fields->matrix[symmetric_at(dim, a, b)][i];
     if (!(fields->condition[i] <= cells->method.worst_condition)) return fields->condition[i];

@@ -6,6 +6,7 @@
 
 #include "pairs.h"
 #include "specialise.h"
+#include "traits.h"
 
 /* q at the particle's own width and at the neighbour's, or at a width of both. */
 CLONES static void widths(enum pair_width width, int count, const double *restrict r,
@@ -201,7 +202,8 @@ static void pair_shapes(const struct cells *cells, const struct pairs *pairs)
     const struct lanes *lanes = pairs->lanes;
     const double h_inverse = *pairs_own(pairs, FIELD_H_INVERSE),
                  *theirs = pairs_theirs(pairs, FIELD_H_INVERSE), *r = lane(lanes, LANE_R);
-    const bool by_w = method->gradient == GRADIENT_IA || method->gradient == GRADIENT_BLENDED;
+    const struct gradient_traits *gradient = &traits_gradient[method->gradient];
+    const bool by_w = gradient->matrix && !gradient->by_slope;
     double *w = lane(lanes, LANE_W), *w_j = lane(lanes, LANE_W_J);
     if (method->pair_width == PAIR_WIDTH_MEAN) {
         (by_w ? shapes->pair_w : shapes->pair_dw)(method->kernel, (size_t)pairs->count, r,
@@ -270,7 +272,7 @@ static void matrix_weights(const struct cells *cells, const struct pairs *pairs)
     const struct lanes *lanes = pairs->lanes;
     const enum pair_width width = cells->method.pair_width;
     pair_shapes(cells, pairs);
-    if (cells->method.gradient != GRADIENT_CORRECTED) return;
+    if (!traits_gradient[cells->method.gradient].by_slope) return;
     double *q = lane(lanes, LANE_Q), *q_j = lane(lanes, LANE_Q_J);
     widths(width, pairs->count, lane(lanes, LANE_R), *pairs_own(pairs, FIELD_H_INVERSE),
            pairs_theirs(pairs, FIELD_H_INVERSE), q, q_j);
@@ -283,7 +285,7 @@ void cells_pair_gradients(const struct cells *cells, const struct pairs *pairs)
     const struct cells_method *method = &cells->method;
     const struct lanes *lanes = pairs->lanes;
     const int dim = method->box.dim, count = pairs->count;
-    if (method->gradient == GRADIENT_STANDARD) {
+    if (!traits_gradient[method->gradient].matrix) {
         standard_gradients(cells, pairs);
         return;
     }
@@ -291,7 +293,7 @@ void cells_pair_gradients(const struct cells *cells, const struct pairs *pairs)
     const double *own = pairs_own(pairs, FIELD_MATRIX), *theirs = pairs_theirs(pairs, FIELD_MATRIX);
     matrix_weights(cells, pairs);
     by_matrix(dim, both, count, lanes, own, theirs);
-    const bool blended = method->gradient == GRADIENT_BLENDED;
+    const bool blended = traits_gradient[method->gradient].blends;
     const double own_share = blended ? *pairs_own(pairs, FIELD_STEEP) : 0,
                  *shares = blended ? pairs_theirs(pairs, FIELD_STEEP) : NULL;
     /* the first entry of a matrix is positive, or 0 where it is not to be used */

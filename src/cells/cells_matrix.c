@@ -8,6 +8,7 @@
 #include "moments.h"
 #include "pairs.h"
 #include "specialise.h"
+#include "traits.h"
 
 static void fill_records(struct cells *cells, const struct cells_fields *fields)
 {
@@ -136,8 +137,8 @@ static void matrix_pass(struct cells *cells, const struct cells_fields *fields, 
                  h_inverse = fields->h_inverse[i];
     double *dw = lane(lanes, LANE_W), *weight = lane(lanes, LANE_W_J);
     double inverse[CELLS_SQUARE], condition;
-    const bool blended = method->gradient == GRADIENT_BLENDED,
-               by_w = blended || method->gradient == GRADIENT_IA;
+    const struct gradient_traits *gradient = &traits_gradient[method->gradient];
+    const bool by_w = gradient->matrix && !gradient->by_slope;
     bool sound = false;
     if (by_w || method->velocity_gradient) {
         moments_weigh(cells, count, lanes, h_inverse, V);
@@ -145,9 +146,10 @@ static void matrix_pass(struct cells *cells, const struct cells_fields *fields, 
     }
     if (method->velocity_gradient)
         velocity_gradient(cells, fields, slot, count, lanes, weight, inverse, sound);
-    if (method->gradient == GRADIENT_STANDARD) return;
-    if (blended) fields->steep[i] = find_steep(cells, slot, count, lanes, weight, inverse, sound);
-    if (method->gradient == GRADIENT_CORRECTED) {
+    if (!gradient->matrix) return;
+    if (gradient->blends)
+        fields->steep[i] = find_steep(cells, slot, count, lanes, weight, inverse, sound);
+    if (gradient->by_slope) {
         double *q = lane(lanes, LANE_Q);
         scale(count, lane(lanes, LANE_R), h_inverse, q);
         cells->shapes.dw(method->kernel, (size_t)count, q, dw);
@@ -166,11 +168,12 @@ static void matrix_pass(struct cells *cells, const struct cells_fields *fields, 
 size_t cells_matrix(struct cells *cells, const struct cells_fields *fields)
 {
     const struct cells_method *method = &cells->method;
-    if (method->gradient == GRADIENT_STANDARD && !method->velocity_gradient) return 0;
+    const bool matrix = traits_gradient[method->gradient].matrix;
+    if (!matrix && !method->velocity_gradient) return 0;
     fill_records(cells, fields);
     lanes_all(cells, fields, matrix_pass);
     size_t fallen_back = 0;
-    for (size_t i = 0; method->gradient != GRADIENT_STANDARD && i < fields->n; i++) {
+    for (size_t i = 0; matrix && i < fields->n; i++) {
         if (lanes_part(cells, i) != CELLS_ACTIVE) continue;
         if (!(fields->condition[i] <= method->worst_condition)) fallen_back++;
     }

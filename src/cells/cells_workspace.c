@@ -10,6 +10,7 @@
 #include "solver.h"
 #include "specialise.h"
 #include "state.h"
+#include "traits.h"
 #include "width.h"
 
 enum {
@@ -51,7 +52,7 @@ static struct cells_method method_of(const struct simulation *simulation)
 {
     const struct scheme *scheme = &simulation->scheme;
     const struct plan *plan = &simulation->plan;
-    const bool projected = scheme->viscosity == VISCOSITY_PROJECTED;
+    const bool projected = traits_viscosity[scheme->viscosity].noise;
     const bool varies = plan->alpha || plan->jump;
     struct cells_method method = {
         .box.dim = plan->dim,
@@ -111,7 +112,7 @@ static size_t list_arrays(const struct simulation *simulation, struct workspace 
     if (plan->energy_sum) of[count++] = &workspace->sum_Z, of[count++] = &workspace->sum_Z_dh;
     if (plan->balsara) of[count++] = &workspace->balsara;
     if (plan->matrix) of[count++] = &workspace->fields.condition;
-    if (simulation->scheme.gradient == GRADIENT_BLENDED) of[count++] = &workspace->fields.steep;
+    if (traits_gradient[simulation->scheme.gradient].blends) of[count++] = &workspace->fields.steep;
     for (size_t k = 0; plan->matrix && k < symmetric; k++)
         of[count++] = &workspace->fields.matrix[k];
     for (size_t k = 0; plan->slope && k < dim * dim; k++) of[count++] = &workspace->fields.slope[k];

@@ -8,9 +8,11 @@
 
 #include "integrator.h"
 #include "simulation.h"
+#include "traits.h"
 
 struct plan plan_make(const struct scheme *scheme, int dim, bool skip, bool specialised)
 {
+    const struct viscosity_traits *viscosity = &traits_viscosity[scheme->viscosity];
     return (struct plan){
         .dim = dim,
         .sums = sums_find(dim),
@@ -18,17 +20,15 @@ struct plan plan_make(const struct scheme *scheme, int dim, bool skip, bool spec
         .newton = scheme->h_method == H_NEWTON,
         .energy_sum = scheme->volume_element == VOLUME_ENERGY,
         .grad_h = scheme->formulation == FORMULATION_LAGRANGIAN,
-        .matrix = scheme->gradient != GRADIENT_STANDARD,
-        .own_gradient = scheme->gradient == GRADIENT_STANDARD &&
+        .matrix = traits_gradient[scheme->gradient].matrix,
+        .own_gradient = !traits_gradient[scheme->gradient].matrix &&
                         (scheme->pair_width == PAIR_WIDTH_MEAN ||
                          scheme->formulation == FORMULATION_LAGRANGIAN),
-        .slope = scheme->viscosity == VISCOSITY_RECONSTRUCTED ||
-                 scheme->viscosity == VISCOSITY_PROJECTED ||
-                 scheme->viscosity == VISCOSITY_CULLEN_DEHNEN || scheme->balsara == BALSARA_ON,
+        .slope = viscosity->slope || scheme->balsara == BALSARA_ON,
         .balsara = scheme->balsara == BALSARA_ON,
-        .viscosity = scheme->viscosity != VISCOSITY_NONE,
-        .alpha = scheme->viscosity == VISCOSITY_TIME_DEPENDENT,
-        .jump = scheme->viscosity == VISCOSITY_CULLEN_DEHNEN,
+        .viscosity = !viscosity->none,
+        .alpha = viscosity->evolves,
+        .jump = viscosity->jumps,
         .local = scheme->steps == STEPS_LOCAL,
         .sleep = skip,
         .quiet = skip,
@@ -92,7 +92,7 @@ static void find_warnings(const struct scheme *scheme, int dim, char *text, size
             "unless viscosity hides it",
             eta, limit, scheme->kernel.member.name,
             scheme_gradient_family.members[scheme->gradient]->name);
-    if (scheme->energy == ENERGY_TOTAL && scheme->viscosity == VISCOSITY_NONE)
+    if (scheme->energy == ENERGY_TOTAL && traits_viscosity[scheme->viscosity].none)
         warn(text, size,
              "energy=total: should the flow get cold (u << v^2), U = E - p^2/2m loses digits");
 }
@@ -152,7 +152,8 @@ size_t plan_explain(const struct setup *setup, struct plan_line *lines, size_t m
          "the integrator changes velocities after the last force", "comes with the pair forces");
     if (setup->dim > 1) {
         line(&writer, "local steps", plan.local,
-             "each particle takes its own, by powers of two, and a pair the shorter one of its two particles",
+             "each particle takes its own, by powers of two, and a pair the shorter one of its two "
+             "particles",
              "steps=global: all particles take the shortest one");
         line(&writer, "conductivity", scheme->alpha_u > 0, "alpha_u > 0, inside the pair loop",
              "alpha_u=0");

@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "integrator.h"
+#include "traits.h"
 
 #define DESCRIPTOR(symbol, key, label, paper, ...)                                                 \
     [symbol] = &(const struct member){key, label, paper},
@@ -22,12 +23,13 @@ static void default_choices(struct scheme *scheme, const struct scheme_open *ope
         kernel_select(&scheme->kernel, line ? "quadratic_spline" : "wendland_c4", 5, &none);
     if (open->gradient) scheme->gradient = line ? GRADIENT_STANDARD : GRADIENT_IA;
     if (open->viscosity) scheme->viscosity = line ? VISCOSITY_CONSTANT : VISCOSITY_PROJECTED;
-    const bool projected = scheme->viscosity == VISCOSITY_PROJECTED,
-               sloped = projected || scheme->viscosity == VISCOSITY_RECONSTRUCTED;
-    if (open->volume_element) scheme->volume_element = projected ? VOLUME_NUMBER : VOLUME_MASS;
+    const struct viscosity_traits *viscosity = &traits_viscosity[scheme->viscosity];
+    if (open->volume_element)
+        scheme->volume_element = viscosity->noise ? VOLUME_NUMBER : VOLUME_MASS;
     if (open->viscosity_form)
-        scheme->viscosity_form = sloped && !line ? VISCOSITY_FORM_SIGNAL : VISCOSITY_FORM_MU;
-    if (open->balsara) scheme->balsara = projected ? BALSARA_ON : BALSARA_OFF;
+        scheme->viscosity_form =
+            viscosity->midpoint && !line ? VISCOSITY_FORM_SIGNAL : VISCOSITY_FORM_MU;
+    if (open->balsara) scheme->balsara = viscosity->noise ? BALSARA_ON : BALSARA_OFF;
 }
 
 void scheme_default(struct scheme *scheme, const struct scheme_open *open, int dim)
@@ -37,7 +39,7 @@ void scheme_default(struct scheme *scheme, const struct scheme_open *open, int d
     const struct integrator *integrator = scheme->integrator;
     const bool predicts = integrator->predicts, own = predicts && dim == 1,
                vanilla = scheme->formulation == FORMULATION_VANILLA_ICE,
-               standard = scheme->gradient == GRADIENT_STANDARD;
+               standard = !traits_gradient[scheme->gradient].matrix;
     if (open->eta)
         scheme->eta = dim > 1 && kernel->cloud_eta > 0 ? kernel->cloud_eta : kernel->default_eta;
     if (open->energy) scheme->energy = predicts ? ENERGY_TOTAL : ENERGY_INTERNAL;
@@ -52,16 +54,15 @@ void scheme_default(struct scheme *scheme, const struct scheme_open *open, int d
                                                : PAIR_WIDTH_MEAN;
     if (!open->cfl) return;
     /* long steps are stable with this much viscosity, and not needed without */
-    const double most_alpha =
-        scheme->viscosity == VISCOSITY_TIME_DEPENDENT ? scheme->alpha_max : scheme->alpha;
+    const struct viscosity_traits *viscosity = &traits_viscosity[scheme->viscosity];
+    const double most_alpha = viscosity->evolves ? scheme->alpha_max : scheme->alpha;
     const bool long_steps =
         own && standard && kernel->predicted.cfl > 0 && scheme->eta == kernel->default_eta &&
-        scheme->viscosity != VISCOSITY_NONE && most_alpha <= kernel->predicted.alpha &&
+        !viscosity->none && most_alpha <= kernel->predicted.alpha &&
         scheme->h_method == H_PREDICTED && scheme->volume_element == VOLUME_MASS;
     /* mu grows as h/r where particles close: in a strong shock (sedov_2d) longer steps would leave
      * cold gas ahead of it without internal energy */
-    const bool bounded = scheme->viscosity == VISCOSITY_NONE ||
-                         scheme->viscosity_form == VISCOSITY_FORM_SIGNAL;
+    const bool bounded = viscosity->none || scheme->viscosity_form == VISCOSITY_FORM_SIGNAL;
     scheme->cfl = long_steps                                        ? kernel->predicted.cfl
                   : dim > 1 && bounded && integrator->cloud_cfl > 0 ? integrator->cloud_cfl
                                                                     : integrator->cfl;
@@ -109,6 +110,13 @@ static enum status check_members(const struct scheme *scheme, int dim, struct er
     return STATUS_OK;
 }
 
+/* Has each particle an alpha of its own? */
+static bool varies(const struct scheme *scheme)
+{
+    const struct viscosity_traits *viscosity = &traits_viscosity[scheme->viscosity];
+    return viscosity->evolves || viscosity->jumps;
+}
+
 /* What local steps go together with. */
 static enum status check_steps(const struct scheme *scheme, struct error *error)
 {
@@ -126,8 +134,7 @@ static enum status check_steps(const struct scheme *scheme, struct error *error)
     } else if (scheme->volume_element == VOLUME_ENERGY) {
         key = "volume_element", name = "energy";
         why = "the volume does not follow from the width";
-    } else if (scheme->viscosity == VISCOSITY_TIME_DEPENDENT ||
-               scheme->viscosity == VISCOSITY_CULLEN_DEHNEN) {
+    } else if (varies(scheme)) {
         key = "viscosity", name = scheme_viscosity_family.members[scheme->viscosity]->name;
         why = "alpha evolves in global steps alone";
     }
@@ -161,8 +168,7 @@ enum status scheme_check(const struct scheme *scheme, int dim, struct error *err
         return out_of_range(error, "alpha", scheme->alpha, ">= 0 and finite");
     if (!(scheme->beta >= 0) || !isfinite(scheme->beta))
         return out_of_range(error, "beta", scheme->beta, ">= 0 and finite");
-    const bool switched = scheme->viscosity == VISCOSITY_TIME_DEPENDENT ||
-                          scheme->viscosity == VISCOSITY_CULLEN_DEHNEN;
+    const bool switched = varies(scheme);
     if (switched && !(scheme->alpha_min >= 0 && scheme->alpha_max >= scheme->alpha_min &&
                       isfinite(scheme->alpha_max)))
         return error_set(error, STATUS_BAD_INPUT,

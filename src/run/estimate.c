@@ -6,6 +6,7 @@
 #include "allowance.h"
 #include "integrator.h"
 #include "memory.h"
+#include "traits.h"
 #include "width.h"
 
 /* The program with its libraries, and what does not grow with n. */
@@ -27,12 +28,10 @@ static double step_ns(const struct setup *setup)
 {
     const struct scheme *scheme = &setup->scheme;
     const double neighbours = width_neighbours(setup->dim, scheme->eta);
-    const bool slopes =
-        scheme->viscosity == VISCOSITY_RECONSTRUCTED || scheme->viscosity == VISCOSITY_PROJECTED ||
-        scheme->viscosity == VISCOSITY_CULLEN_DEHNEN || scheme->balsara == BALSARA_ON;
+    const bool slopes = traits_viscosity[scheme->viscosity].slope || scheme->balsara == BALSARA_ON;
     if (setup->dim == 1) return 5 + neighbours;
     double pair = 12; /* search, density, force */
-    if (scheme->gradient != GRADIENT_STANDARD) pair += 6;
+    if (traits_gradient[scheme->gradient].matrix) pair += 6;
     if (slopes) pair += 6;
     if (scheme->h_method == H_NEWTON) pair += 12;
     return 100 + pair * neighbours;

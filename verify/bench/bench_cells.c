@@ -7,6 +7,7 @@
 
 #include "description.h"
 #include "plan.h"
+#include "traits.h"
 
 static const double jitter = 0.2, gamma_gas = 1.4;
 
@@ -14,7 +15,7 @@ static const double jitter = 0.2, gamma_gas = 1.4;
 static struct cells_method method_of(const struct scheme *s, int dim, bool specialised)
 {
     const struct plan plan = plan_make(s, dim, false, specialised);
-    const bool projected = s->viscosity == VISCOSITY_PROJECTED, varies = plan.alpha || plan.jump;
+    const bool projected = traits_viscosity[s->viscosity].noise, varies = plan.alpha || plan.jump;
     struct cells_method method = {
         .box = {.dim = dim, .hi = {1, 1, 1}, .periodic = {true, true, true}},
         .kernel = &s->kernel,

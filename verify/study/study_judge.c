@@ -8,6 +8,7 @@
 #include "measure.h"
 #include "problem_list.h"
 #include "study_read.h"
+#include "traits.h"
 
 /* An order lost to the lattice sums shows a relative error of this many floors at most. */
 static const double floor_reach = 20;
@@ -202,7 +203,7 @@ static void suspect(struct study_result *result, const struct case_file *file)
 /* Does alpha vary by a switch, between alpha_min and alpha_max? */
 static bool is_switched(int viscosity)
 {
-    return viscosity == VISCOSITY_TIME_DEPENDENT || viscosity == VISCOSITY_CULLEN_DEHNEN;
+    return traits_viscosity[viscosity].evolves || traits_viscosity[viscosity].jumps;
 }
 
 /* Do these settings say anything to the solver that the key could change? `skip` must not. */
@@ -217,7 +218,7 @@ static bool is_read(enum setting key, const struct settings *settings)
         return strcmp(kernel_family.members[kernel]->name, "sinc") == 0;
     case SETTING_alpha:
     case SETTING_beta:
-        return viscosity != VISCOSITY_NONE && !is_switched(viscosity);
+        return !traits_viscosity[viscosity].none && !is_switched(viscosity);
     case SETTING_alpha_min:
     case SETTING_alpha_max:
         return is_switched(viscosity);
