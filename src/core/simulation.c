@@ -400,10 +400,14 @@ void simulation_snapshot(const struct simulation *simulation, struct snapshot *s
 void simulation_rates(const struct simulation *simulation, struct rates *rates)
 {
     const struct particles *a = &simulation->particles;
+    const double dt = simulation->time_step;
+    const int depth =
+        simulation->steps.depth < STEPS_DEPTH ? simulation->steps.depth + 1 : STEPS_DEPTH;
     *rates = (struct rates){.force = {a->F[0], a->F[1], a->F[2]},
                             .energy = a->de,
                             .alpha = simulation->plan.alpha ? a->dalpha : NULL,
-                            .time_step = simulation->time_step};
+                            .time_step = dt,
+                            .furthest = simulation->plan.local ? ldexp(dt, depth) : dt};
 }
 
 /* sum r x p, sum |r x p| and sum |r| m c. */

@@ -66,6 +66,7 @@ struct snapshot {
 struct rates {
     const double *force[3], *energy, *alpha;
     double time_step;
+    double furthest; /* the next step is no longer: with steps=local a block of time steps */
 };
 
 struct conservation { /* sums over all particles; extensive, code units */

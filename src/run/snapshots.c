@@ -92,7 +92,7 @@ bool snapshots_keep(struct snapshots *snapshots, struct simulation *simulation, 
     struct serialiser serialiser = {.bytes = put, .context = &buffer};
     if (snapshots->next >= snapshots->count) return false;
     simulation_rates(simulation, &rates);
-    snapshots->reach = fmin(stop, time + steps_aside * rates.time_step);
+    snapshots->reach = fmin(stop, time + steps_aside * rates.furthest);
     if (snapshots_time(snapshots, snapshots->next) > snapshots->reach) return false;
     simulation_serialise(simulation, &serialiser);
     snapshots->size = buffer.used;

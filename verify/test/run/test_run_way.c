@@ -171,6 +171,33 @@ static void snapshots_change_nothing(void **state)
     }
 }
 
+/* Blocks of local steps do not go over the time of a snapshot. */
+static void snapshots_are_in_time(void **state)
+{
+    static char text[1024];
+    char path[64];
+    struct snapshots snapshots = {.path = path, .every = 0.01};
+    struct run run =
+        resolved("noh_2d", "n=1394 t_end=0.12 steps=local kernel=cubic_spline skip=none");
+    (void)state;
+    snprintf(path, sizeof path, "%s/s.csv", folder);
+    run.asked.snapshots = &snapshots;
+    struct run_result result = executed(&run);
+    assert_int_equal(snapshots.trouble.status, STATUS_OK);
+    assert_true(result.cost.skipped_particle_updates > 0);
+    run_free(&result);
+    for (size_t k = 0; k < 12; k++) {
+        char *file = snapshots_path(&snapshots, k);
+        const size_t n = text_of(file, text, sizeof text - 1);
+        text[n] = '\0';
+        const char *time = strstr(text, "time = ");
+        assert_non_null(time);
+        assert_true(strtod(time + 7, NULL) == snapshots_time(&snapshots, k));
+        unlink(file);
+        free(file);
+    }
+}
+
 static bool stop_at_ten(void *context, double time, uint64_t steps)
 {
     (void)context, (void)time;
@@ -254,6 +281,7 @@ int main(void)
         cmocka_unit_test(what_is_conserved),
         cmocka_unit_test(breakdowns),
         cmocka_unit_test(snapshots_change_nothing),
+        cmocka_unit_test(snapshots_are_in_time),
         cmocka_unit_test(goes_on),
         cmocka_unit_test(growth),
     };
