@@ -66,10 +66,8 @@
            __VA_ARGS__)
 
 /* What is at the ends of the box in a direction. */
-#define BOUNDARY_LINE_LIST(CHOICE, ...)                                                            \
-    CHOICE(BOUNDARY_PERIODIC, "periodic", "the other end follows", "", __VA_ARGS__)
 #define BOUNDARY_LIST(CHOICE, ...)                                                                 \
-    BOUNDARY_LINE_LIST(CHOICE, __VA_ARGS__)                                                        \
+    CHOICE(BOUNDARY_PERIODIC, "periodic", "the other end follows", "", __VA_ARGS__)                \
     CHOICE(BOUNDARY_OPEN, "open", "nothing: gas may leave into a vacuum", "", __VA_ARGS__)         \
     CHOICE(BOUNDARY_REFLECTING, "reflecting", "a wall: mirror images of the particles near it",    \
            "", __VA_ARGS__)                                                                        \

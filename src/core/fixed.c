@@ -68,6 +68,8 @@ void fixed_state(struct simulation *simulation)
                          : element == VOLUME_ENERGY ? a->U[i]
                                                     : a->m[i];
         a->b[i] = a->P[i] * (a->V[i] * a->V[i] / Z);
+        if (simulation->plan.own_gradient)
+            a->g[i] = simulation->scheme.kernel.constant[a->dim] / pow(a->h[i], a->dim + 1);
     }
 }
 

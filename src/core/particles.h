@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Storage of the solver: structure of arrays, vectors by component. In 1D they are sorted by
- * position, with ghost copies of the periodic images at both ends, so that no inner loop knows of a
- * boundary (ghosts is 0 where none are kept). Every array has indices -ghosts .. n-1+ghosts.
+ * position, with ghost copies of images at both ends, so that no inner loop knows of a boundary
+ * (ghosts is 0 where none are kept). Every array has indices -ghosts .. n-1+ghosts.
  * Positions are unwrapped: x may leave the box. */
 #ifndef SPHPROOF_PARTICLES_H
 #define SPHPROOF_PARTICLES_H

@@ -100,12 +100,17 @@ static void find_warnings(const struct scheme *scheme, int dim, char *text, size
 /* How particles find each other. */
 static void explain_neighbours(const struct setup *setup, struct writer *writer)
 {
+    static const char *const ghosts[] = {
+        [BOUNDARY_PERIODIC] = "periodic images, so that no loop knows of a boundary",
+        [BOUNDARY_OPEN] = "copies far away, so that no loop knows of a boundary",
+        [BOUNDARY_REFLECTING] = "mirror images in the walls, so that no loop knows of a boundary",
+        [BOUNDARY_FIXED] = "copies far away; the layers are particles whose state is kept",
+    };
     bool walls = false;
     if (setup->dim == 1) {
         line(writer, "order", true,
              "neighbours are a contiguous range; sorted anew only if particles cross", "");
-        line(writer, "ghost copies", true, "periodic images, so that no loop knows of a boundary",
-             "");
+        line(writer, "ghost copies", true, ghosts[setup->boundary[0]], "");
         return;
     }
     for (int k = 0; k < setup->dim; k++) walls |= setup->boundary[k] == BOUNDARY_REFLECTING;

@@ -77,7 +77,6 @@ size_t scheme_members(const struct family *family, int dim)
     if (family == &scheme_viscosity_family) return VISCOSITY_CULLEN_DEHNEN;
     if (family == &scheme_viscosity_form_family) return VISCOSITY_FORM_SIGNAL;
     if (family == &scheme_balsara_family) return BALSARA_ON;
-    if (family == &scheme_boundary_family) return BOUNDARY_OPEN;
     if (family == &scheme_time_steps_family) return STEPS_LOCAL;
     return family->n;
 }

@@ -71,11 +71,6 @@ static enum status check_setup(const struct setup *setup, struct error *error)
         return error_set(error, STATUS_BAD_INPUT, "gamma = %g: must be > 1", setup->gamma);
     for (int k = 0; k < setup->dim; k++) {
         const double period = setup->hi[k] - setup->lo[k];
-        if (setup->boundary[k] >= scheme_members(&scheme_boundary_family, setup->dim))
-            return error_set(error, STATUS_BAD_INPUT,
-                             "boundary=%s and dimension=1 exclude each other: it is for 2 and 3 "
-                             "dimensions",
-                             scheme_boundary_family.members[setup->boundary[k]]->name);
         if (!isfinite(setup->gravity[k]) || (setup->dim == 1 && setup->gravity[k] != 0))
             return error_set(error, STATUS_BAD_INPUT,
                              "gravity = %g: finite, and 0 in 1 dimension, is needed",

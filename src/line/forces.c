@@ -48,8 +48,8 @@ void forces_matrix(struct simulation *simulation)
     const struct particles *a = &simulation->particles;
     const ptrdiff_t count = line_of(simulation)->reach + 1;
     simulation->cost.without_slope += pass_all(simulation, matrix_pass).without_slope;
-    ghosts_fill(a, a->g, count, 0);
-    if (simulation->plan.slope) ghosts_fill(a, a->dv, count, 0);
+    ghosts_set(simulation, a->g, count, GHOST_SCALAR);
+    if (simulation->plan.slope) ghosts_set(simulation, a->dv, count, GHOST_SCALAR);
 }
 
 enum status forces_reserve_scratch(struct simulation *simulation, ptrdiff_t reach,
@@ -105,6 +105,6 @@ static void signal_pass(struct simulation *simulation, struct range *range, stru
 double forces_signal(struct simulation *simulation)
 {
     const struct particles *a = &simulation->particles;
-    ghosts_fill(a, a->v[0], line_of(simulation)->reach + 1, 0);
+    ghosts_set(simulation, a->v[0], line_of(simulation)->reach + 1, GHOST_VECTOR);
     return pass_all(simulation, signal_pass).rate;
 }

@@ -14,12 +14,32 @@ static int group_len(const struct simulation *simulation, ptrdiff_t group)
     return left < GROUP ? (int)left : GROUP;
 }
 
+/* The velocity next to the outermost particle i, which in a periodic box is that of the other
+ * end's.
+ */
+static double beyond_end(const struct simulation *simulation, ptrdiff_t i, ptrdiff_t other)
+{
+    const double *v = simulation->particles.v[0];
+    if (simulation->boundary[0] == BOUNDARY_PERIODIC) return v[other];
+    return simulation->boundary[0] == BOUNDARY_REFLECTING ? -v[i] : v[i];
+}
+
 /* The speed at which a particle and its right neighbour move against each other, in tolerances. */
 static double against_right(const struct simulation *simulation, ptrdiff_t i, double in_tolerances)
 {
     const struct particles *a = &simulation->particles;
-    const double sound = simulation->sleep.sound, right = a->v[0][i + 1 < a->n ? i + 1 : 0];
+    const double sound = simulation->sleep.sound;
+    const double right = i + 1 < a->n ? a->v[0][i + 1] : beyond_end(simulation, i, 0);
     return in_tolerances * fabs(right - a->v[0][i]) / (a->c[i] < sound ? sound : a->c[i]);
+}
+
+/* The same with its image in the wall on its left, 0 where there is none. */
+static double against_wall(const struct simulation *simulation, ptrdiff_t i, double in_tolerances)
+{
+    const struct particles *a = &simulation->particles;
+    const double sound = simulation->sleep.sound;
+    if (i > 0 || simulation->boundary[0] != BOUNDARY_REFLECTING) return 0;
+    return in_tolerances * fabs(2 * a->v[0][i]) / (a->c[i] < sound ? sound : a->c[i]);
 }
 
 /* The largest disturbance of these particles, in tolerances: their rates, and the speeds at which
@@ -30,7 +50,9 @@ static double disturbance_of(const struct simulation *simulation, ptrdiff_t firs
     const double in_tolerances = 1 / sleep_tolerance(simulation);
     double worst = sleep_disturbance(simulation, first, len);
     for (ptrdiff_t i = first; i < first + len; i++) {
-        const double against = against_right(simulation, i, in_tolerances);
+        const double right = against_right(simulation, i, in_tolerances);
+        const double against =
+            i > 0 ? right : largest(right, against_wall(simulation, i, in_tolerances));
         if (!(against <= worst || isnan(worst))) worst = against;
     }
     return worst;
@@ -232,8 +254,8 @@ static bool sleep_again(struct simulation *simulation)
         (simulation->sleep.on && simulation->sleep.at_rest && found * FEW < groups->count))
         return false;
     /* particles have moved since the last sums */
-    ghosts_fill(a, a->x[0], line->reach + 1, a->period[0]);
-    ghosts_fill(a, a->v[0], line->reach + 1, 0);
+    ghosts_set(simulation, a->x[0], line->reach + 1, GHOST_PLACE);
+    ghosts_set(simulation, a->v[0], line->reach + 1, GHOST_VECTOR);
     for (ptrdiff_t group = 0; group < groups->count; group++)
         if (groups->awake[group] && !stirred_near(groups, group, around)) {
             groups->awake[group] = 0;

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Sums in 1D: particles sorted by position, so that neighbours are a contiguous stretch; periodic
- * images are ghost copies at both ends; loops run over neighbour offsets d = 1..reach and vectorise
- * over the particles of a range. For the files of this folder (and measurements of its loops). */
+ * Sums in 1D: particles sorted by position, so that neighbours are a contiguous stretch; images in
+ * what is at the ends of the box are ghost copies there; loops run over neighbour offsets d
+ * = 1..reach and vectorise over the particles of a range. For the files of this folder (and
+ * measurements of its loops). */
 #ifndef SPHPROOF_LINE_H
 #define SPHPROOF_LINE_H
 
@@ -49,8 +50,8 @@ static inline struct line *line_of(const struct simulation *simulation)
 
 /* --- order.c ---------------------------------------------------------------------------------- */
 
-/* Sorts by position, also across the ends of the box (all into one period that starts at the first
- * particle). false: a position is not finite, and nothing has been done. */
+/* Sorts by position, also across the ends of a periodic box (all into one period that starts at the
+ * first particle). false: a position is not finite, and nothing has been done. */
 bool order_sort(struct particles *particles);
 /* Neighbours out of order among the first len + 1 particles from first (NaN counts). */
 double order_crossings(const struct particles *particles, ptrdiff_t first, ptrdiff_t len);
@@ -63,6 +64,13 @@ enum status order_arrange(struct simulation *simulation, struct error *error);
 /* Copies the periodic images of count particles to both ends of an array; shift: what is added per
  * period (the period for x, 0 for the rest). */
 void ghosts_fill(const struct particles *particles, double *array, ptrdiff_t count, double shift);
+enum ghost_value { GHOST_SCALAR, GHOST_VECTOR, GHOST_PLACE };
+
+/* The same with whatever is at the ends of the simulation's box: periodic images; mirror images,
+ * whose vectors point the other way; or copies of the outermost particles far away (open ends, and
+ * fixed ones, whose layers are particles). */
+void ghosts_set(const struct simulation *simulation, double *array, ptrdiff_t count,
+                enum ghost_value value);
 /* Ghosts of what the density sums read, at least count of them; grows their memory. */
 enum status ghosts_of_density(struct simulation *simulation, ptrdiff_t count, struct error *error);
 /* Ghosts of what the pair sums read, as many as the reach asks for. */

@@ -22,39 +22,94 @@ double order_crossings(const struct particles *particles, ptrdiff_t first, ptrdi
     return crossings_in(particles, first, len);
 }
 
-bool order_sort(struct particles *particles)
+/* Into the period that starts at the first particle. */
+static void bring_round(struct particles *particles)
 {
-    const ptrdiff_t n = particles->n;
     const double period = particles->period[0];
     double *x = particles->x[0], *x_old = particles->x_old[0];
-    for (ptrdiff_t i = 0; i < n; i++)
-        if (!isfinite(x[i])) return false;
-
     const double start = x[0];
-    for (ptrdiff_t i = 0; i < n; i++) {
+    for (ptrdiff_t i = 0; i < particles->n; i++) {
         const double shift = -period * floor((x[i] - start) / period);
         x[i] += shift;
         x_old[i] += shift;
-        particles->order[i] = (size_t)i;
     }
+}
+
+/* Particles that have passed a wall change places with their images, which come in by as much. */
+static void bring_back(const struct simulation *simulation)
+{
+    const struct particles *a = &simulation->particles;
+    const double lo = simulation->lo[0], length = a->period[0];
+    double *const vectors[] = {a->p[0], a->p_old[0], a->v[0], a->F[0], a->F_mean[0], a->impulse[0]};
+    for (ptrdiff_t i = 0; i < a->n; i++) {
+        const double x = a->x[0][i], box = floor((x - lo) / length);
+        if (x >= lo && x <= lo + length) continue;
+        const bool mirrored = fmod(box, 2) != 0;
+        if (mirrored) {
+            const double wall = 2 * lo + (box + 1) * length;
+            a->x[0][i] = fmin(fmax(wall - x, lo), lo + length);
+            a->x_old[0][i] = wall - a->x_old[0][i];
+            for (size_t k = 0; k < sizeof vectors / sizeof *vectors; k++)
+                vectors[k][i] = -vectors[k][i];
+        } else {
+            a->x[0][i] = fmin(fmax(x - box * length, lo), lo + length);
+            a->x_old[0][i] -= box * length;
+        }
+    }
+}
+
+static bool all_finite(const struct particles *particles)
+{
+    for (ptrdiff_t i = 0; i < particles->n; i++)
+        if (!isfinite(particles->x[0][i])) return false;
+    return true;
+}
+
+static void sort_places(struct particles *particles)
+{
+    for (ptrdiff_t i = 0; i < particles->n; i++) particles->order[i] = (size_t)i;
     _Static_assert(sizeof(size_t) <= sizeof(double), "an array of numbers has room for indices");
-    sort_indices(x, (size_t)n, particles->order, (void *)particles->spare);
+    sort_indices(particles->x[0], (size_t)particles->n, particles->order, (void *)particles->spare);
     particles_permute(particles);
+}
+
+bool order_sort(struct particles *particles)
+{
+    if (!all_finite(particles)) return false;
+    bring_round(particles);
+    sort_places(particles);
+    return true;
+}
+
+/* Whatever is at the ends. */
+static bool sort_inside_ends(struct simulation *simulation)
+{
+    struct particles *a = &simulation->particles;
+    if (simulation->boundary[0] == BOUNDARY_PERIODIC) return order_sort(a);
+    if (!all_finite(a)) return false;
+    if (simulation->boundary[0] == BOUNDARY_REFLECTING) bring_back(simulation);
+    sort_places(a);
     return true;
 }
 
 /* Particles at one place whose own terms alone exceed what a narrow kernel allows have no root h:
  * they are moved apart by a thousandth of their spacing. Sorted positions. */
-static void separate(struct particles *a, const struct scheme *scheme)
+static void separate(struct simulation *simulation)
 {
+    struct particles *a = &simulation->particles;
+    const struct scheme *scheme = &simulation->scheme;
+    const bool periodic = simulation->boundary[0] == BOUNDARY_PERIODIC;
+    const bool open = simulation->boundary[0] == BOUNDARY_OPEN;
+    const double lo = open ? -HUGE_VAL : simulation->lo[0];
+    const double hi = open ? HUGE_VAL : lo + a->period[0];
     const double least_eta = kernel_least_eta(&scheme->kernel, 1);
     double *x = a->x[0];
     for (ptrdiff_t first = 0, end; first < a->n; first = end) {
         for (end = first + 1; end < a->n && x[end] == x[first];) end++;
         const ptrdiff_t count = end - first;
         if (count == 1 || (double)count * least_eta < scheme->eta) continue;
-        const double before = first > 0 ? x[first - 1] : x[a->n - 1] - a->period[0];
-        const double after = end < a->n ? x[end] : x[0] + a->period[0];
+        const double before = first > 0 ? x[first - 1] : periodic ? x[a->n - 1] - a->period[0] : lo;
+        const double after = end < a->n ? x[end] : periodic ? x[0] + a->period[0] : hi;
         const double room = fmin(x[first] - before, after - x[first]);
         const double gap = fmin(1e-3 * a->h[first] / scheme->eta, 0.5 * room / (double)count);
         for (ptrdiff_t k = 0; k < count; k++)
@@ -65,8 +120,8 @@ static void separate(struct particles *a, const struct scheme *scheme)
 
 void order_begin(struct simulation *simulation)
 {
-    order_sort(&simulation->particles);
-    separate(&simulation->particles, &simulation->scheme);
+    sort_inside_ends(simulation);
+    separate(simulation);
 }
 
 /* Neighbours in a range, the end of the one before included. */
@@ -78,12 +133,22 @@ static void order_pass(struct simulation *simulation, struct range *range, struc
     tally->crossings += order_crossings(a, first, (end < a->n ? end : a->n - 1) - first);
 }
 
+/* A periodic box holds one period, and walls hold all particles. */
+static bool inside_ends(const struct simulation *simulation)
+{
+    const struct particles *a = &simulation->particles;
+    const double first = a->x[0][0], last = a->x[0][a->n - 1], lo = simulation->lo[0];
+    if (simulation->boundary[0] == BOUNDARY_PERIODIC) return last <= first + a->period[0];
+    return simulation->boundary[0] != BOUNDARY_REFLECTING ||
+           (first >= lo && last <= lo + a->period[0]);
+}
+
 /* Only what moves can get out of order. */
 static bool in_order(struct simulation *simulation)
 {
     const struct particles *a = &simulation->particles;
     const struct sleep *sleep = &simulation->sleep;
-    if (!(a->x[0][a->n - 1] <= a->x[0][0] + a->period[0])) return false;
+    if (!inside_ends(simulation)) return false;
     if (sleep->on && !sleep->at_rest) return order_crossings(a, 0, a->n - 1) <= 0;
     return pass_all(simulation, order_pass).crossings <= 0;
 }
@@ -92,7 +157,7 @@ enum status order_arrange(struct simulation *simulation, struct error *error)
 {
     struct particles *a = &simulation->particles;
     if (in_order(simulation)) return STATUS_OK;
-    if (!order_sort(a))
+    if (!sort_inside_ends(simulation))
         for (ptrdiff_t i = 0; i < a->n; i++)
             if (!isfinite(a->x[0][i]))
                 return breakdown_of(simulation, i, "position", a->x[0][i], error);

@@ -62,9 +62,9 @@ static enum status choose_ends(struct prepared *p, struct settings *settings, st
                                          family->members[k]->name);
         return error_set(error, STATUS_BAD_INPUT,
                          "boundary=%s along %c and an initial state of kind %s exclude each other: "
-                         "its solution would not hold; allowed:%s%s",
+                         "its solution would not hold; allowed:%s",
                          family->members[p->boundary[d]]->name, "xyz"[d], problem -> member.name,
-                         names, p->domain.dim == 1 ? " (tubes with ends are for judge alone)" : "");
+                         names);
     }
     for (int d = 0; d < p->domain.dim; d++) {
         value->choices[d] = (int)p->boundary[d];

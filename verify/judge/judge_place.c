@@ -179,7 +179,7 @@ static enum status take_box(const struct judge_request *request, struct judged *
     return STATUS_OK;
 }
 
-/* What a case says of the ends of a tube, as --boundary would; the solver itself has none. NULL:
+/* What a case or a snapshot of ours says of the ends of a tube, as --boundary would. NULL:
  * nothing. */
 static const char *case_ends(struct settings *settings)
 {
@@ -297,7 +297,7 @@ static enum status take_keys(struct judged *judged, struct settings *settings, s
         word += strspn(word, " ");
         status = settings_apply(settings, 1, &word, &reason);
     }
-    if (!status && file->dim > 1 && file->boundary[0])
+    if (!status && file->boundary[0] && (file->dim > 1 || strcmp(file->boundary, "periodic") != 0))
         status =
             settings_set(settings, SETTING_boundary, file->boundary, SOURCE_USER, NULL, &reason);
     if (status)

@@ -20,7 +20,7 @@ struct sphproof_setup {
     const double *u;         /**< n: specific internal energies, > 0 */
     double lo[3];            /**< of the box */
     double hi[3];            /**< of the box */
-    const char *boundary[3]; /**< "periodic" (NULL: the same), "open", "reflecting"; 1D: periodic */
+    const char *boundary[3]; /**< "periodic" (NULL: the same), "open", "reflecting", "fixed" */
     double gravity[3];       /**< constant acceleration; 2D, 3D */
     double gamma;            /**< of the ideal gas, > 1 */
     const char *const

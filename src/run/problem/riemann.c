@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Two uniform gases that meet in the middle of the box (Toro 2009, ch. 4). The box is periodic, so
- * a mirrored tube starts at its ends; the window has to stay clear of it. Particles have equal
- * masses, cell-centred on each side, or are graded towards the jumps; in 2D and 3D each gas has a
- * lattice of its own, of a spacing that gives equal masses. */
+ * Two uniform gases that meet in the middle of the box (Toro 2009, ch. 4). Where the box is
+ * periodic a mirrored tube starts at its ends; walls make waves of gas that moves, and send back
+ * what comes to them. The window has to stay clear of either. Particles have equal masses,
+ * cell-centred on each side, or are graded towards the jumps; in 2D and 3D each gas has a lattice
+ * of its own, of a spacing that gives equal masses. */
 #include "riemann.h"
 
 #include <math.h>
@@ -14,7 +15,9 @@
 
 struct tube {
     double x0; /* where the gases meet */
-    struct riemann_solution main, mirror;
+    struct riemann_solution main;
+    struct riemann_solution ends[2]; /* what starts at the left and at the right end */
+    double returning[2];             /* walls: of what they send back; see find_returning() */
 };
 _Static_assert(sizeof(struct tube) <= PROBLEM_OWN_BYTES, "a tube fits");
 
@@ -41,6 +44,52 @@ static double mass_ratio_at_contact(const struct riemann_solution *tube)
     return fmin(fmax(tube->rho_star_right / tube->rho_star_left, 1 / most), most);
 }
 
+/* What a wall on one side makes of a state, which meets its mirror image there. */
+static enum status solve_wall(struct riemann_solution *solution, double gamma, int side,
+                              const double *state, struct error *error)
+{
+    const double image[3] = {state[0], -state[1], state[2]};
+    return side ? solve(solution, gamma, state, image, error)
+                : solve(solution, gamma, image, state, error);
+}
+
+/* How many times as fast as sound what a wall sends back runs into the gas behind the main tube's
+ * wave: a shock comes back as a shock, all else as sound. */
+static enum status find_returning(struct tube *tube, double gamma, int side, struct error *error)
+{
+    const struct riemann_solution *main = &tube->main;
+    const bool shock = (side ? main->right_wave : main->left_wave) == RIEMANN_SHOCK;
+    const double rho = side ? main->rho_star_right : main->rho_star_left;
+    const double state[3] = {rho, main->v_star, main->p_star};
+    struct riemann_solution back;
+    tube->returning[side] = 1;
+    if (!shock) return STATUS_OK;
+    if (solve_wall(&back, gamma, side, state, error)) return error->status;
+    const double head = side ? -back.left_head : back.right_head;
+    const double along = side ? -main->v_star : main->v_star;
+    if (!isnan(head))
+        tube->returning[side] = fmax(1, (head - along) / sqrt(gamma * main->p_star / rho));
+    return STATUS_OK;
+}
+
+static bool has_walls(const struct prepared *p)
+{
+    return p->boundary[0] == BOUNDARY_REFLECTING;
+}
+
+/* What starts at the ends. */
+static enum status find_ends(struct tube *tube, const struct prepared *p, const double *left,
+                             const double *right, struct error *error)
+{
+    for (int side = 0; side < 2; side++)
+        if (has_walls(p)
+                ? solve_wall(&tube->ends[side], p->gamma, side, side ? right : left, error) ||
+                      find_returning(tube, p->gamma, side, error)
+                : solve(&tube->ends[side], p->gamma, right, left, error))
+            return error->status;
+    return STATUS_OK;
+}
+
 static enum status prepare(struct prepared *p, struct settings *settings, struct error *error)
 {
     struct tube *tube = (struct tube *)p->own.bytes;
@@ -49,12 +98,12 @@ static enum status prepare(struct prepared *p, struct settings *settings, struct
     struct setting_value *mass_ratio = &settings->value[SETTING_mass_ratio];
     tube->x0 = p->window.centre[0];
     const double reach = 0.25 * domain_length(&p->domain, 0);
-    if (settings->value[SETTING_window].automatic)
+    const bool at_rest = left[1] == 0 && right[1] == 0;
+    if (settings->value[SETTING_window].automatic && !(has_walls(p) && at_rest))
         p->window.lo[0] = tube->x0 - reach, p->window.hi[0] = tube->x0 + reach;
     if (problem_check_state(settings, SETTING_left, error) ||
         problem_check_state(settings, SETTING_right, error) ||
-        solve(&tube->main, p->gamma, left, right, error) ||
-        solve(&tube->mirror, p->gamma, right, left, error))
+        solve(&tube->main, p->gamma, left, right, error) || find_ends(tube, p, left, right, error))
         return error->status;
     if (mass_ratio->automatic)
         mass_ratio->real[0] =
@@ -219,22 +268,25 @@ static double fastest(const struct riemann_solution *s, double mach, double sign
     return speed;
 }
 
-/* How far the mirrored tube's front has come at t, from the box's end towards the middle; gas: the
- * state it runs into; sign: its direction. The bound is sharp until the front meets the waves of
- * the main tube and safe from there on. */
+/* How far a front from the box's end has come towards the middle at t; sign: its direction. The
+ * bound is sharp until the front meets the waves of the main tube and safe from there on. At a wall
+ * beside gas at rest there is none until they come. */
 static double front(const struct prepared *p, double sign, double t)
 {
-    const struct riemann_solution *tube = &tube_of(p)->main, *mirror = &tube_of(p)->mirror;
+    const struct riemann_solution *tube = &tube_of(p)->main;
+    const struct riemann_solution *end = &tube_of(p)->ends[sign < 0];
     const struct riemann_state *gas = sign > 0 ? &tube->left : &tube->right;
     const double length = tube_of(p)->x0 - p->domain.lo[0];
     const double c = sqrt(tube->gamma * gas->P / gas->rho);
-    const double head = sign > 0 ? mirror->right_head : -mirror->left_head;
+    const double head = sign > 0 ? end->right_head : -end->left_head;
+    const bool quiet = has_walls(p) && gas->v == 0;
     const double ahead = sign > 0 ? -tube->left_head : tube->right_head;
-    const double speed = isnan(head) ? sign * gas->v + c : head;
+    const double speed = quiet ? 0 : isnan(head) ? sign * gas->v + c : head;
     /* nothing where both run away from each other, or there is no wave in the gas ahead */
     const double meet = length / fmax(0, speed + ahead);
     if (t <= meet) return speed * t;
-    const double mach = fmax(1, (speed - sign * gas->v) / c);
+    const double mach =
+        fmax(has_walls(p) ? tube_of(p)->returning[sign < 0] : 1, (speed - sign * gas->v) / c);
     return speed * meet + fmax(speed, fastest(tube, mach, sign)) * (t - meet);
 }
 
@@ -246,6 +298,11 @@ static bool holds(const struct prepared *p, double t)
 
 static enum status refuse(const struct prepared *p, double t, double longest, struct error *error)
 {
+    if (has_walls(p))
+        return error_set(error, STATUS_BAD_INPUT,
+                         "t_end=%g: waves from the walls at the ends of the box reach the window "
+                         "[%g, %g] at t = %.4g; allowed: t_end <= %.4g, or a narrower window",
+                         t, p->window.lo[0], p->window.hi[0], longest, longest);
     return error_set(error, STATUS_BAD_INPUT,
                      "t_end=%g: the box is periodic, and waves of the mirrored tube at its ends "
                      "reach the window [%g, %g] at t = %.4g; allowed: t_end <= %.4g, or a narrower "
@@ -344,6 +401,14 @@ static double edge(const struct riemann_solution *tube, double sign)
                     : -fmin(tube->left_head, tube->left_tail);
 }
 
+/* The same of what the box's end sends inwards; sign: its direction. */
+static double end_edge(const struct prepared *p, double sign)
+{
+    const struct tube *tube = tube_of(p);
+    const double v = sign > 0 ? tube->main.left.v : tube->main.right.v;
+    return has_walls(p) && v == 0 ? 0 : edge(&tube->ends[sign < 0], sign);
+}
+
 /* Is a place so far ahead of a wave, which has run a way (backwards: < 0), that its gas has to be
  * at rest? Counted in h (a shock's precursor falls tenfold from particle to particle), and as a
  * part of the way that the wave has run (a fan's head is dispersed, over many h), and beyond what
@@ -361,7 +426,7 @@ static double ahead(const struct prepared *p, const double place[3], double t)
     const double x = place[0], sign = x > tubes->x0 ? 1 : -1;
     const double from_end = sign > 0 ? p->domain.hi[0] - x : x - p->domain.lo[0];
     return fmin(sign * (x - tubes->x0) - edge(&tubes->main, sign) * t,
-                from_end - edge(&tubes->mirror, -sign) * t);
+                from_end - end_edge(p, -sign) * t);
 }
 
 /* Undisturbed gas lies between the main tube's wave and the one that comes from the box's end. */
@@ -376,7 +441,7 @@ static double stillness(const struct prepared *p, const struct snapshot *s)
         const struct riemann_state *gas = sign > 0 ? &tube->right : &tube->left;
         const double from_end = sign > 0 ? p->domain.hi[0] - x : x - p->domain.lo[0];
         if (!far_ahead(sign * (x - tubes->x0), edge(tube, sign) * s->time, s->h[i], widest) ||
-            !far_ahead(from_end, edge(&tubes->mirror, -sign) * s->time, s->h[i], widest))
+            !far_ahead(from_end, end_edge(p, -sign) * s->time, s->h[i], widest))
             continue;
         const double c = sqrt(tube->gamma * gas->P / gas->rho);
         moved = fmax(moved, fabs(s->v[0][i] - gas->v) / c);
@@ -405,9 +470,9 @@ const struct problem problem_riemann = {
     .reference = "riemann",
     .least_dim = 1,
     .most_dim = 3,
-    .ends = {{0},
+    .ends = {{.also = PROBLEM_END(REFLECTING)},
              {.also = PROBLEM_END(REFLECTING)},
-             {.also = PROBLEM_END(REFLECTING)}}, /* gas moves along x */
+             {.also = PROBLEM_END(REFLECTING)}},
     .keys = keys,
     .key_count = sizeof keys / sizeof *keys,
     .prepare = prepare,

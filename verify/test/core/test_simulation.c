@@ -129,10 +129,7 @@ static void setups_that_are_refused(void **state)
                               : "gravity = inf: finite, and 0 in 1 dimension, is needed");
         refused_with(&setup, &setup.scheme.cfl, 0, "cfl = 0: cfl must be positive and finite");
     }
-    struct setup line = plain(1, 0, NULL), plane = plain(2, 2, few_neighbours);
-    line.boundary[0] = BOUNDARY_OPEN;
-    refused(&line,
-            "boundary=open and dimension=1 exclude each other: it is for 2 and 3 dimensions");
+    struct setup plane = plain(2, 2, few_neighbours);
     refused_with(&plane, &x[1][9], 2.75, "particle 9: y = 2.75 is outside the box");
     plane.boundary[1] = BOUNDARY_OPEN;
     refused_with(&plane, &x[1][9], INFINITY, "particle 9: y = inf is outside the box");

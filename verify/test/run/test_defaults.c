@@ -364,7 +364,6 @@ static void choices_that_are_refused(void **state)
         {&scheme_viscosity_form_family, "viscosity_form", "signal",
          offsetof(struct scheme, viscosity_form)},
         {&scheme_balsara_family, "balsara", "on", offsetof(struct scheme, balsara)},
-        {&scheme_boundary_family, "", "open", 0},
     };
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         const struct family *family = rows[k].family;
