@@ -410,6 +410,19 @@ def writer(tree):
     with open(path) as f:
         if f.read().count(";") < 300:
             raise Failed("not written by the new member")
+
+
+@row("format of initial states for other codes")
+def start(tree):
+    csv = tree.read("src/run/start/csv.c")
+    tree.new("src/run/start/text.c", csv.replace("start_csv", "start_text").replace('{"csv"', '{"text"'))
+    tree.append("src/run/starts.def", "START(text)")
+    tree.build()
+    path = os.path.join(tree.work, "s.txt")
+    tree.program("ic", "sod", "n=64", "--format", "text", "--out", path)
+    with open(path) as f:
+        if len(f.readlines()) < 64:
+            raise Failed("not written by the new member")
     if ".table" not in tree.program("run", "sod", "--snapshot", "s.tables", status=2):
         raise Failed("the message does not name the new ending")
     tree.keep()
