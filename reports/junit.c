@@ -6,19 +6,15 @@
 #include "html.h"
 #include "value.h"
 
-struct suite_writer {
-    struct buffer cases;
-    size_t tests, failures, skipped;
-};
-
-static void test_case(struct suite_writer *suite, const char *class, const char *name,
-                      const char *status, const char *message)
+void junit_case(struct junit_suite *suite, const char *class, const char *name, double seconds,
+                const char *status, const char *message)
 {
     suite->tests++;
     buffer_add(&suite->cases, "    <testcase classname=\"");
     buffer_escape(&suite->cases, class);
     buffer_add(&suite->cases, "\" name=\"");
     buffer_escape(&suite->cases, name);
+    if (seconds >= 0) buffer_format(&suite->cases, "\" time=\"%.6f", seconds);
     bool skipped = !strcmp(status, "skip") || !strcmp(status, "known") ||
                    !strcmp(status, "smoke") || !strcmp(status, "undetermined");
     if (!strcmp(status, "pass") || !strcmp(status, "ok")) {
@@ -33,30 +29,48 @@ static void test_case(struct suite_writer *suite, const char *class, const char 
     buffer_add(&suite->cases, "\"/></testcase>\n");
 }
 
-static void suite_end(struct buffer *to, const char *name, struct suite_writer *suite)
+void junit_suite_end(struct buffer *to, const char *name, struct junit_suite *suite)
 {
     if (suite->tests) {
         buffer_add(to, "  <testsuite name=\"");
         buffer_escape(to, name);
-        buffer_format(to, "\" tests=\"%zu\" failures=\"%zu\" skipped=\"%zu\">\n", suite->tests,
-                      suite->failures, suite->skipped);
+        buffer_format(to, "\" tests=\"%zu\" failures=\"%zu\" skipped=\"%zu\" errors=\"0\">\n",
+                      suite->tests, suite->failures, suite->skipped);
         if (suite->cases.data) buffer_add(to, suite->cases.data);
         buffer_add(to, "  </testsuite>\n");
     }
     if (suite->cases.failed) to->failed = true;
     buffer_free(&suite->cases);
-    *suite = (struct suite_writer){0};
+    *suite = (struct junit_suite){0};
+}
+
+void junit_begin(struct buffer *to)
+{
+    buffer_add(to, "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<testsuites name=\"sphproof\">\n");
+}
+
+char *junit_take(struct buffer *to)
+{
+    buffer_add(to, "</testsuites>\n");
+    return buffer_take(to);
+}
+
+/* What the page does not time. */
+static void test_case(struct junit_suite *suite, const char *class, const char *name,
+                      const char *status, const char *message)
+{
+    junit_case(suite, class, name, -1, status, message);
 }
 
 static void runs(struct buffer *to, const json_t *results)
 {
-    struct suite_writer suite = {0};
+    struct junit_suite suite = {0};
     size_t i, j;
     const json_t *entry, *order;
     json_array_foreach(json_object_get(results, "runs"), i, entry)
         test_case(&suite, value_text(entry, "case"), value_text(entry, "reproduce"),
                   value_text(entry, "status"), value_text(entry, "message"));
-    suite_end(to, "runs", &suite);
+    junit_suite_end(to, "runs", &suite);
     json_array_foreach(json_object_get(results, "studies"), i, entry) {
         json_array_foreach(json_object_get(entry, "orders"), j, order) {
             if (!json_is_object(json_object_get(order, "gate"))) continue;
@@ -73,17 +87,17 @@ static void runs(struct buffer *to, const json_t *results)
             buffer_free(&message);
         }
     }
-    suite_end(to, "convergence", &suite);
+    junit_suite_end(to, "convergence", &suite);
 }
 
 static void checks(struct buffer *to, const json_t *verify)
 {
-    struct suite_writer suite = {0};
+    struct junit_suite suite = {0};
     size_t i;
     const json_t *entry;
     const char *group = "";
     json_array_foreach(json_object_get(verify, "checks"), i, entry) {
-        if (strcmp(group, value_text(entry, "group"))) suite_end(to, group, &suite);
+        if (strcmp(group, value_text(entry, "group"))) junit_suite_end(to, group, &suite);
         group = value_text(entry, "group");
         struct buffer message = {0};
         buffer_add(&message, "value ");
@@ -95,19 +109,19 @@ static void checks(struct buffer *to, const json_t *verify)
                       value_text(entry, "status"), message.data);
         buffer_free(&message);
     }
-    suite_end(to, group, &suite);
+    junit_suite_end(to, group, &suite);
     json_array_foreach(json_object_get(verify, "mutants"), i, entry)
         test_case(&suite, value_text(entry, "check"), value_text(entry, "mutant"),
                   json_is_true(json_object_get(entry, "detected")) ? "pass" : "fail",
                   "this deliberate fault was not caught");
-    suite_end(to, "deliberate faults", &suite);
+    junit_suite_end(to, "deliberate faults", &suite);
 }
 
 /* What the verdict has found beside what is a test case above or below. */
 static void others(struct buffer *to, const json_t *verdict)
 {
     static const char *const areas[] = {"suspicion", "harness", "budget", "study", "stress"};
-    struct suite_writer suite = {0};
+    struct junit_suite suite = {0};
     size_t i;
     const json_t *failure;
     json_array_foreach(json_object_get(verdict, "failures"), i, failure) {
@@ -117,12 +131,12 @@ static void others(struct buffer *to, const json_t *verdict)
                 test_case(&suite, area, value_text(failure, "name"), "fail",
                           value_text(failure, "detail"));
     }
-    suite_end(to, "report", &suite);
+    junit_suite_end(to, "report", &suite);
 }
 
 static void faults(struct buffer *to, const json_t *faults)
 {
-    struct suite_writer suite = {0};
+    struct junit_suite suite = {0};
     size_t i;
     const json_t *entry;
     json_array_foreach(json_object_get(faults, "faults"), i, entry) {
@@ -130,35 +144,30 @@ static void faults(struct buffer *to, const json_t *faults)
         test_case(&suite, value_text(entry, "part"), value_text(entry, "fault"), status,
                   value_text(entry, strcmp(status, "fail") ? "message" : "detail"));
     }
-    suite_end(to, "faults around it", &suite);
+    junit_suite_end(to, "faults around it", &suite);
 }
-
-static const char head[] =
-    "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<testsuites name=\"sphproof\">\n";
 
 char *junit_judge_text(const json_t *document)
 {
     struct buffer to = {0};
-    struct suite_writer suite = {0};
+    struct junit_suite suite = {0};
     size_t i;
     const json_t *finding;
-    buffer_add(&to, head);
+    junit_begin(&to);
     json_array_foreach(json_object_get(document, "findings"), i, finding)
         test_case(&suite, value_text(document, "case"), value_text(finding, "name"),
                   value_text(finding, "status"), value_text(finding, "message"));
-    suite_end(&to, "judge", &suite);
-    buffer_add(&to, "</testsuites>\n");
-    return buffer_take(&to);
+    junit_suite_end(&to, "judge", &suite);
+    return junit_take(&to);
 }
 
 char *junit_text(const json_t *results)
 {
     struct buffer to = {0};
-    buffer_add(&to, head);
+    junit_begin(&to);
     runs(&to, results);
     checks(&to, json_object_get(results, "verify"));
     others(&to, json_object_get(results, "verdict"));
     faults(&to, json_object_get(results, "faults"));
-    buffer_add(&to, "</testsuites>\n");
-    return buffer_take(&to);
+    return junit_take(&to);
 }

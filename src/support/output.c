@@ -143,7 +143,8 @@ enum status output_close(struct output *output, struct error *error)
 enum status output_text(const char *path, const char *text, struct error *error)
 {
     struct output output;
-    if (output_open(&output, path, error)) return error->status;
+    const enum status status = output_open(&output, path, error);
+    if (status) return status;
     fputs(text, output.stream); /* output_close tells whether it worked */
     return output_close(&output, error);
 }

@@ -9,11 +9,12 @@
 #include <unistd.h>
 
 #include "headline.h"
+#include "junit.h"
 #include "output.h"
 #include "plot.h"
 #include "result.h"
 
-enum { SERIES_SHOWN = 8, PATH_LENGTH = 1024 };
+enum { SERIES_SHOWN = 8, PATH_LENGTH = 1024, CLASS_LENGTH = 128, MESSAGE_LENGTH = 512 };
 
 static const char *const status_names[] = {"pass", "fail", "skip"};
 
@@ -186,83 +187,53 @@ void suite_output_json(const struct suite *suite, json_t *document)
                                   "detected", (json_int_t)suite->mutants_detected));
 }
 
-static void put_xml(FILE *stream, const char *text)
+static void junit_one(struct junit_suite *suite, const struct check *check, const char *subject,
+                      double seconds, const char *status, const char *message)
 {
-    for (; *text; text++) {
-        const char *special = strchr("&<>\"'", *text);
-        static const char *const entities[] = {"&amp;", "&lt;", "&gt;", "&quot;", "&apos;"};
-        if (special)
-            fputs(entities[special - "&<>\"'"], stream);
-        else
-            fputc((unsigned char)*text < ' ' ? ' ' : *text, stream);
-    }
+    char class[CLASS_LENGTH];
+    snprintf(class, sizeof class, "%s.%s", check->group, check->name);
+    junit_case(suite, class, subject, seconds, status, message);
 }
 
-static void junit_case(FILE *stream, const struct check *check, const char *subject, double seconds)
+static void junit_group(const struct suite *suite, const char *group, struct buffer *to)
 {
-    fprintf(stream, "    <testcase classname=\"%s.%s\" name=\"", check->group, check->name);
-    put_xml(stream, subject);
-    fprintf(stream, "\" time=\"%.6f\">", seconds);
-}
-
-static void junit_group(const struct suite *suite, const char *group, FILE *stream)
-{
-    size_t tests = 0, failed = 0, skipped = 0;
-    for (size_t i = 0; i < suite->figure_count; i++) {
-        if (strcmp(suite->figures[i].check->group, group) != 0) continue;
-        tests++;
-        failed += suite->figures[i].status == FIGURE_FAIL;
-        skipped += suite->figures[i].status == FIGURE_SKIP;
-    }
-    for (size_t i = 0; i < suite->outcome_count; i++)
-        if (strcmp(suite->outcomes[i].check->group, group) == 0) {
-            tests++;
-            failed += !suite->outcomes[i].detected;
-        }
-    fprintf(stream,
-            "  <testsuite name=\"%s\" tests=\"%zu\" failures=\"%zu\" skipped=\"%zu\" "
-            "errors=\"0\">\n",
-            group, tests, failed, skipped);
+    struct junit_suite cases = {0};
     for (size_t i = 0; i < suite->figure_count; i++) {
         const struct figure *figure = &suite->figures[i];
+        char message[CLASS_LENGTH];
         if (strcmp(figure->check->group, group) != 0) continue;
-        junit_case(stream, figure->check, figure->subject, figure->seconds);
-        if (figure->status == FIGURE_FAIL)
-            fprintf(stream, "<failure message=\"got %.6g, bound %.3g, floor %.2g\"/>",
-                    figure->value, figure->bound, figure->floor);
-        if (figure->status == FIGURE_SKIP) fputs("<skipped/>", stream);
-        fputs("</testcase>\n", stream);
+        snprintf(message, sizeof message, "got %.6g, bound %.3g, floor %.2g", figure->value,
+                 figure->bound, figure->floor);
+        junit_one(&cases, figure->check, figure->subject, figure->seconds,
+                  status_names[figure->status],
+                  figure->status == FIGURE_SKIP ? figure->subject : message);
     }
     for (size_t i = 0; i < suite->outcome_count; i++) {
         const struct mutant_outcome *o = &suite->outcomes[i];
+        char message[MESSAGE_LENGTH];
         if (strcmp(o->check->group, group) != 0) continue;
-        junit_case(stream, o->check, o->mutant->name, 0);
-        if (!o->detected) {
-            fputs("<failure message=\"the mutant slipped through: ", stream);
-            put_xml(stream, o->mutant->fault);
-            fputs("\"/>", stream);
-        }
-        fputs("</testcase>\n", stream);
+        snprintf(message, sizeof message, "the mutant slipped through: %s", o->mutant->fault);
+        junit_one(&cases, o->check, o->mutant->name, 0, o->detected ? "pass" : "fail", message);
     }
-    fputs("  </testsuite>\n", stream);
+    junit_suite_end(to, group, &cases);
 }
 
 enum status suite_output_junit(const struct suite *suite, const char *path, struct error *error)
 {
-    struct output output;
-    const enum status status = output_open(&output, path, error);
-    if (status) return status;
-    fputs("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"sphproof verify\">\n",
-          output.stream);
+    struct buffer to = {0};
+    junit_begin(&to);
     for (size_t i = 0; i < suite->figure_count; i++) {
         const char *group = suite->figures[i].check->group;
         bool first = true;
         for (size_t j = 0; j < i; j++)
             first = first && strcmp(suite->figures[j].check->group, group) != 0;
-        if (first) junit_group(suite, group, output.stream);
+        if (first) junit_group(suite, group, &to);
     }
-    fputs("</testsuites>\n", output.stream);
-    return output_close(&output, error);
+    char *text = junit_take(&to);
+    if (!text) return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", path);
+    const enum status status = output_text(path, text, error);
+    free(text);
+    return status;
 }
 
 static json_t *numbers_json(size_t n, const double *values)
