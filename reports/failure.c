@@ -11,7 +11,7 @@
 static const char *const causes[] = {
     "kernels", "gradients", "conservation", "riemann",   "exact",     "norms",   "hydro",
     "clouds",  "stability", "check",        "detection", "suspicion", "harness", "convergence",
-    "budget",  "study",     "run",          "stress",    "fault",
+    "gate",    "budget",    "study",        "run",       "stress",    "fault",
 };
 enum { CAUSES = sizeof causes / sizeof *causes };
 

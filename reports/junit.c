@@ -62,14 +62,36 @@ static void test_case(struct junit_suite *suite, const char *class, const char *
     junit_case(suite, class, name, -1, status, message);
 }
 
+/* Of a run alone: its errors and what it conserves, each against a bound. */
+static void gates_of(struct junit_suite *suite, const json_t *run)
+{
+    size_t i;
+    const json_t *gate;
+    json_array_foreach(json_object_get(run, "gates"), i, gate) {
+        struct buffer name = {0}, message = {0};
+        if (!strcmp(value_text(gate, "status"), "none")) continue; /* not gated */
+        buffer_format(&name, "%s: %s", value_text(run, "label"), value_text(gate, "name"));
+        buffer_format(&message, "%.3g, bound %.3g; %s%s", value_member(gate, "value"),
+                      value_member(gate, "bound"), value_text(gate, "why"),
+                      value_text(gate, "known"));
+        if (name.data && message.data)
+            test_case(suite, value_text(run, "case"), name.data, value_text(gate, "status"),
+                      message.data);
+        buffer_free(&name);
+        buffer_free(&message);
+    }
+}
+
 static void runs(struct buffer *to, const json_t *results)
 {
     struct junit_suite suite = {0};
     size_t i, j;
     const json_t *entry, *order;
-    json_array_foreach(json_object_get(results, "runs"), i, entry)
+    json_array_foreach(json_object_get(results, "runs"), i, entry) {
         test_case(&suite, value_text(entry, "case"), value_text(entry, "reproduce"),
                   value_text(entry, "status"), value_text(entry, "message"));
+        gates_of(&suite, entry);
+    }
     junit_suite_end(to, "runs", &suite);
     json_array_foreach(json_object_get(results, "studies"), i, entry) {
         json_array_foreach(json_object_get(entry, "orders"), j, order) {

@@ -11,8 +11,11 @@ const struct start_format start_gadget_hdf5 = {
     .gamma = "GADGET-4 and AREPO: GAMMA in Config.sh; GIZMO: EOS_GAMMA in Config.sh",
     .dimension = "GADGET-4: ONEDIMS or TWODIMS, AREPO: ONEDIMS or TWODIMS, GIZMO: "
                  "BOX_SPATIAL_DIMENSION in Config.sh",
-    .box = "BoxSize in the parameter file, positions count from its lower corner; sides that "
-           "differ: LONG_X, LONG_Y, LONG_Z (GIZMO: BOX_LONG_X ...) in Config.sh",
-    .boundary = "Config.sh (GIZMO: BOX_PERIODIC)",
+    .box =
+        "BoxSize in the parameter file, positions count from its lower corner; sides that "
+        "differ, in Config.sh: GADGET-4 LONG_X_BITS (BoxSize over a power of two), AREPO LONG_X, "
+        "GIZMO BOX_LONG_X (times BoxSize)",
+    .boundary = "Config.sh: GADGET-4 PERIODIC (it has no walls); AREPO REFLECTIVE_X=1 for walls, 2 "
+                "for open ends; GIZMO BOX_PERIODIC, BOX_REFLECT_X",
     .t_end = "TimeMax in the parameter file",
 };

@@ -25,9 +25,9 @@ const struct start_format start_swift = {
     .member = {"swift", "HDF5 for SWIFT; h is twice the kernel's standard deviation",
                "Schaller et al. 2024"},
     .writer = &writer_hdf5,
-    .gamma = "configure --with-adiabatic-index",
+    .gamma = "configure --with-adiabatic-index: 5/3, 7/5, 4/3 or 2",
     .dimension = "configure --with-hydro-dimension",
-    .boundary = "InitialConditions: periodic",
+    .boundary = "InitialConditions: periodic; SWIFT has no walls",
     .t_end = "TimeIntegration: time_end",
     .width = two_sigma,
 };

@@ -83,6 +83,33 @@ static void summary(void **state)
     json_decref(results);
 }
 
+/* A run whose gate fails is a failure of the report and of its JUnit file, and of a rank of its
+ * own. */
+static void gates_in_junit(void **state)
+{
+    (void)state;
+    json_t *results =
+        json_pack("{s:[{s:s, s:s, s:s, s:[{s:s, s:s, s:f, s:f}, {s:s, s:s, s:f, s:f}]}]}", "runs",
+                  "status", "ok", "case", "sod", "label", "mine", "gates", "name", "density_l1",
+                  "status", "fail", "value", 0.25, "bound", 0.125, "name", "energy", "status",
+                  "pass", "value", 0., "bound", 1.);
+    json_object_set_new(results, "verdict", verdict_make(results));
+    char *text = junit_text(results);
+    assert_non_null(strstr(text, "<testsuite name=\"runs\" tests=\"3\" failures=\"1\""));
+    assert_non_null(strstr(text, "name=\"mine: density_l1\"><failure message=\"0.25, bound 0.125"));
+    free(text);
+    json_decref(results);
+    /* one that breaks down says less than the bound that another exceeds */
+    results = json_pack("{s:[{s:s, s:s}, {s:s, s:s, s:[{s:s, s:s}]}]}", "runs", "status",
+                        "broke_down", "case", "noh_2d", "status", "ok", "case", "sod", "gates",
+                        "name", "density_l1", "status", "fail");
+    json_t *made = verdict_make(results),
+           *first = json_array_get(json_object_get(made, "failures"), 0);
+    assert_string_equal(json_string_value(json_object_get(first, "area")), "gate");
+    json_decref(made);
+    json_decref(results);
+}
+
 /* Twenty failures are listed, the rest is counted. */
 static void long_summary(void **state)
 {
@@ -269,9 +296,11 @@ static void cut(void **state)
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(verdict),      cmocka_unit_test(junit),         cmocka_unit_test(summary),
-        cmocka_unit_test(long_summary), cmocka_unit_test(alone),         cmocka_unit_test(cut),
-        cmocka_unit_test(farthest),     cmocka_unit_test(gates_of_runs),
+        cmocka_unit_test(verdict),       cmocka_unit_test(junit),
+        cmocka_unit_test(summary),       cmocka_unit_test(gates_in_junit),
+        cmocka_unit_test(long_summary),  cmocka_unit_test(alone),
+        cmocka_unit_test(cut),           cmocka_unit_test(farthest),
+        cmocka_unit_test(gates_of_runs),
     };
     folder = argc > 1 ? argv[1] : "";
     return cmocka_run_group_tests(tests, NULL, NULL);
