@@ -141,6 +141,28 @@ static size_t count_rows(const struct text_table *table, size_t from)
     return rows;
 }
 
+/* The refusal of what stands from `at` to the next separator, in place of a number. */
+static enum status no_number(const struct text_table *table, size_t line, size_t column,
+                             const char *at, const char *end, struct error *error)
+{
+    char found[48];
+    size_t n = 0;
+    skip_blanks(&at, end);
+    if (column && table->separator != ' ' && at < end && *at == table->separator) at++;
+    skip_blanks(&at, end);
+    while (at < end && n + 1 < sizeof found && *at != table->separator && !strchr(" \t\r", *at))
+        found[n++] = *at++;
+    found[n] = '\0';
+    status_clean(found);
+    return n ? error_set(error, STATUS_BAD_INPUT,
+                         "%.200s:%zu: column %zu, '%s': no number: '%s'; allowed: such as 1, -0.5, "
+                         "2.5e-3",
+                         table->source->path, line, column + 1, table->names[column], found)
+             : error_set(error, STATUS_BAD_INPUT,
+                         "%.200s:%zu: column %zu, '%s': no number (or a row that is too short)",
+                         table->source->path, line, column + 1, table->names[column]);
+}
+
 static enum status take_rows(const struct text_table *table, size_t from, size_t line,
                              struct snapshot_file *file, double *type, struct error *error)
 {
@@ -153,11 +175,9 @@ static enum status take_rows(const struct text_table *table, size_t from, size_t
         if (!blank(at, stop)) {
             for (size_t c = 0; c < table->columns; c++) {
                 double value;
+                const char *begin = at;
                 if (!take_number(&at, stop, table->separator, c == 0, &value))
-                    return error_set(error, STATUS_BAD_INPUT,
-                                     "%.200s:%zu: column %zu, '%s': no number (or a row that is "
-                                     "too short)",
-                                     table->source->path, line, c + 1, table->names[c]);
+                    return no_number(table, line, c, begin, stop, error);
                 const int meaning = table->meaning[c];
                 if (meaning == TABLE_TYPE)
                     type[row] = value;

@@ -49,14 +49,16 @@ struct comparison {
 
 /* ---- what is asked ---- */
 
-/* Splits at blanks, but for those between quotes; the words lie in text. False: a quote is open. */
+/* Splits at blanks, but for those between quotes; the words lie in text. False: a quote is open, or
+ * there are more than WORDS_MAX words. */
 static bool split(char *text, char *words[WORDS_MAX], int *count)
 {
     char *to = text, quote = 0;
     *count = 0;
-    for (char *from = text; *from && *count < WORDS_MAX;) {
+    for (char *from = text; *from;) {
         while (*from == ' ') from++;
         if (!*from) break;
+        if (*count == WORDS_MAX) return false;
         words[(*count)++] = to;
         for (; *from && (quote || *from != ' '); from++) {
             if (quote ? *from == quote : *from == '"' || *from == '\'')
@@ -90,11 +92,10 @@ static enum status take_side(struct side *side, int threads, struct error *error
     else if (side->is_snapshot)
         ;
     else if (!split(text, words, &count) || count < 1)
-        status =
-            error_set(error, STATUS_BAD_INPUT,
-                      "compare: %s, '%.200s': allowed: \"CASE [KEY=VALUE ...]\" with quotes in "
-                      "pairs, or the path of a snapshot",
-                      side->name, side->text);
+        status = error_set(error, STATUS_BAD_INPUT,
+                           "compare: %s, '%.200s': allowed: \"CASE [KEY=VALUE ...]\" of at most %d "
+                           "words with quotes in pairs, or the path of a snapshot",
+                           side->name, side->text, WORDS_MAX);
     else if (!run_prepare(&side->asked, words[0], count - 1, words + 1, error)) {
         side->asked.threads = threads;
         status = run_resolve(&side->first, &side->asked, error);

@@ -88,7 +88,7 @@ def refusals(paths):
             ((A, "lax"), 2, ("of the case sod", "lax", "the same case")), ((A, "sod_2d"), 2, ("1D", "2D")),
             ((A, A + " gamma=1.3"), 2, ("gamma=1.4", "gamma=1.3")), ((A, A + " left='1 0 2'"), 2, ("left=1 0 1", "left=1 0 2")),
             ((A, A + " t_end=0.1"), 2, ("t_end=0.2", "t_end=0.1")), ((paths[0], A + " t_end=0.1"), 2, ("t_end=",)),
-            ((A, "nothing n=3"), 2, ("nothing",)), ((A, "sod n='3"), 2, ("quotes",)), ((A, ""), 2, ("CASE",)),
+            ((A, "nothing n=3"), 2, ("nothing",)), ((A, "sod" + " n=60" * 64), 2, ("at most 64 words",)), ((A, "sod n='3"), 2, ("quotes",)), ((A, ""), 2, ("CASE",)),
             ((A,), 2, ("two sides",)), ((A, B, "--draws", "0"), 2, ("--draws '0'", "1 to 64"))):
         got, out, err = call("compare", *words)
         assert got == status and not out and all(word in err for word in says), (words, got, err)

@@ -95,7 +95,7 @@ static inline void shuffle(struct table *t)
 
 static inline void random_style(struct table *t)
 {
-    t->separator = drawn(2) ? ',' : ' ';
+    t->separator = ",; "[drawn(3)];
     t->exponent = "eEdD"[drawn(4)];
     t->wide = drawn(2), t->plus = drawn(2), t->returns = drawn(2), t->mark = drawn(2);
     t->comments = drawn(2), t->open_end = drawn(2), t->saved = drawn(2);

@@ -39,11 +39,18 @@ static void take_remark(const char *line, size_t length, struct snapshot_file *f
     }
 }
 
+/* Commas, else semicolons, else blanks. */
+static char separator_of(const char *line, size_t length)
+{
+    return memchr(line, ',', length) ? ',' : memchr(line, ';', length) ? ';' : ' ';
+}
+
 static enum status take_names(struct text_table *table, const char *line, size_t length,
                               struct error *error)
 {
-    const bool commas = memchr(line, ',', length);
-    const char *stops = commas ? "," : " \t";
+    const char separator = separator_of(line, length);
+    const bool blanks = separator == ' ';
+    const char stops[] = {separator, blanks ? '\t' : separator, '\0'};
     for (size_t at = 0; at < length;) {
         size_t n = 0;
         while (at < length && (line[at] == ' ' || line[at] == '\t')) at++;
@@ -52,8 +59,8 @@ static enum status take_names(struct text_table *table, const char *line, size_t
         size_t size = n;
         while (size && strchr(" \t\r", line[at + size - 1])) size--;
         double number;
-        if (!commas && !size) break;
-        const bool last_empty = commas && at + n + 1 == length;
+        if (blanks && !size) break;
+        const bool last_empty = !blanks && at + n + 1 == length;
         if (table->columns == TABLE_COLUMNS_MAX || size >= sizeof table->names[0] || !size ||
             last_empty)
             return error_set(error, STATUS_BAD_INPUT,
@@ -77,7 +84,7 @@ static bool begins_with_number(const char *line)
 {
     char word[48];
     double number;
-    snprintf(word, sizeof word, "%.*s", (int)strcspn(line, " \t\r\n,"), line);
+    snprintf(word, sizeof word, "%.*s", (int)strcspn(line, " \t\r\n,;"), line);
     return text_table_number(word, &number);
 }
 
@@ -97,7 +104,7 @@ static enum status read(const struct snapshot_source *source,
             remark = at + begin + 1, remark_length = length - begin - 1;
         } else if (begin < length) {
             const bool named = !(remark_length && begins_with_number(text + at + begin));
-            table.separator = memchr(text + at, ',', length) ? ',' : ' ';
+            table.separator = separator_of(text + at, length);
             if (take_names(&table, named ? text + at : text + remark,
                            named ? length : remark_length, error))
                 return error->status;
@@ -123,4 +130,6 @@ static enum status read(const struct snapshot_source *source,
 }
 
 const struct snapshot_reader reader_csv = {
-    {"csv", "text with names of columns, commas or blanks", ""}, text_table_is_text, read};
+    {"csv", "text with names of columns, commas, semicolons or blanks", ""},
+    text_table_is_text,
+    read};

@@ -100,14 +100,17 @@ static void spoilt(void **state)
     (void)state;
     for (int draw = 0; draw < 220; draw++) {
         struct table t = table_of(1 + draw % 3, true);
-        char says[80];
+        char says[160];
         t.separator = draw % 2 ? ',' : ' ';
         t.wide = draw / 2 % 2, t.comments = draw / 4 % 2, t.returns = draw / 8 % 2;
         const int row = (int)drawn(ROWS), column = (int)drawn((unsigned)t.columns);
         const char *word = words[draw % (int)(sizeof words / sizeof *words)];
-        snprintf(says, sizeof says, ":%d: column %d, '%s': no number",
-                 2 + row + (t.comments ? 2 + 2 * ((row + 2) / 3) : 0), column + 1, t.name[column]);
+        const int length = snprintf(says, sizeof says, ":%d: column %d, '%s': no number",
+                                    2 + row + (t.comments ? 2 + 2 * ((row + 2) / 3) : 0),
+                                    column + 1, t.name[column]);
+        snprintf(says + length, sizeof says - (size_t)length, ": '%.47s'", word);
         refuses(text, text_of(&t, text, row, column, word), NULL, says);
+        says[length] = '\0';
         if (t.separator == ',') refuses(text, text_of(&t, text, row, column, ""), NULL, says);
         const bool next = t.separator == ',' && column + 1 < (int)t.columns;
         if (next)
