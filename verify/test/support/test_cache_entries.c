@@ -280,6 +280,7 @@ static void what_is_old_goes(void **state)
         same = time(NULL) == now; /* no second has ended meanwhile */
         if (same) assert_true(is_there("00/0.entry"));
     }
+    make_entry("ff/3.entry", 8, 1000); /* gone where a second has ended since it was made */
     assert_int_equal(cache_prune(place, -1, &census, &error), STATUS_OK);
     assert_true(census.entries == 0 && census.removed == 2 && census.bytes == 0);
     assert_true(is_there("ff/README") && is_there("fg/4.entry"));
