@@ -8,7 +8,8 @@
 #include "value.h"
 
 /* From well to worst. */
-static const char *const states[] = {"ok", "known", "undetermined", "smoke", "fail", "broke_down"};
+static const char *const states[] = {"ok",   "known",      "undetermined", "smoke",
+                                     "fail", "broke_down", "failed"};
 enum { STATES = sizeof states / sizeof *states, OPEN = 1, FAILED = 4 };
 
 static int rank(const char *status)

@@ -148,6 +148,7 @@ bool page_make(struct page *page, const json_t *results)
     const json_t *claims = json_object_get(results, "claims");
     const json_t *bench = json_object_get(results, "bench");
     const json_t *skips = json_object_get(results, "skips");
+    const bool of_codes = !strcmp(value_text(results, "mode"), "code");
     head(to, results, verdict);
     buffer_add(to, "<nav>");
     if (json_is_object(json_object_get(history, "since")))
@@ -166,13 +167,16 @@ bool page_make(struct page *page, const json_t *results)
                        " <a href=\"#detection\">Detection</a>");
     buffer_add(to, " <a href=\"#environment\">Environment</a></nav>\n<main>\n");
     failures(to, verdict);
-    page_strip(&writer, results);
+    if (of_codes)
+        page_codes(&writer, results);
+    else
+        page_strip(&writer, results);
     page_cases(&writer, results);
     size_t start = to->size;
 #define FOLDED(part) start = to->size, part, fold_section(to, start)
     if (history) FOLDED(page_history(&writer, history));
-    FOLDED(page_overview(&writer, results));
-    FOLDED(page_bench(&writer, bench));
+    if (!of_codes) FOLDED(page_overview(&writer, results));
+    FOLDED(page_bench(&writer, bench, of_codes));
     if (json_array_size(skips)) FOLDED(page_skips(&writer, skips));
     if (gradients) FOLDED(page_gradients(&writer, gradients));
     if (stress) FOLDED(page_stress(&writer, stress));

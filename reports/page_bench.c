@@ -142,18 +142,30 @@ static void cheapest_table(struct buffer *to, const json_t *ways)
     html_table_end(to);
 }
 
-void page_bench(struct page_writer *writer, const json_t *bench)
+/* of_codes: from the levels of their ladders. */
+static void explain(struct buffer *to, bool of_codes)
+{
+    buffer_add(to, of_codes
+                       ? "<section id=\"cost\"><h2>What an error costs</h2>\n<p>The levels of "
+                         "each ladder: means over the runs of a level. CPU time is of all "
+                         "processes of a run, of another code with its start and its files."
+                         "</p>\n"
+                       : "<section id=\"cost\"><h2>What an error costs</h2>\n<p>Each scheme at "
+                         "several resolutions. At order p in d dimensions, the merit "
+                         "error^((d+1)/p) × CPU time does not depend on the resolution (L1² for "
+                         "shock tubes in 1D, L1 for smooth flow): the gain compares it with the "
+                         "seed program's corrected method in plain C, in 2D and 3D with SPH as "
+                         "textbooks have it. Times are the least of several samples, taken in "
+                         "turn.</p>\n");
+}
+
+void page_bench(struct page_writer *writer, const json_t *bench, bool of_codes)
 {
     struct buffer *to = &writer->to;
     const json_t *document;
     size_t i;
     if (!json_array_size(bench)) return;
-    buffer_add(to, "<section id=\"cost\"><h2>What an error costs</h2>\n<p>Each scheme at several "
-                   "resolutions. At order p in d dimensions, the merit error^((d+1)/p) × CPU time "
-                   "does not depend on the resolution (L1² for shock tubes in 1D, L1 for smooth "
-                   "flow): the gain compares it with the seed program's corrected method in plain "
-                   "C, in 2D and 3D with SPH as textbooks have it. Times are the least of several "
-                   "samples, taken in turn.</p>\n");
+    explain(to, of_codes);
     json_array_foreach(bench, i, document) {
         size_t most = json_array_size(json_object_get(document, "schemes"));
         struct curve *curves = calloc(most + 1, sizeof *curves);

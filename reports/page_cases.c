@@ -262,7 +262,7 @@ static void shape_table(struct buffer *to, const struct curves *curves, const js
 
 static bool is_failure(const char *state)
 {
-    return !strcmp(state, "fail") || !strcmp(state, "broke_down");
+    return !strcmp(state, "fail") || !strcmp(state, "broke_down") || !strcmp(state, "failed");
 }
 
 /* What is seen of a case that is folded. */
@@ -322,7 +322,7 @@ static void one_case(struct page_writer *writer, const json_t *results, const ch
     buffer_add(to, "<div class=\"figures\">\n");
     if (is_cloud(runs, run_count)) {
         buffer_add(to, "</div>\n");
-        page_cloud_plots(writer, name, runs, run_count);
+        page_cloud_plots(writer, name, runs, run_count, false);
     } else {
         if (curves.runs) plot_profiles(writer, name, &curves);
         if (curves.runs) plot_residuals(writer, name, &curves);

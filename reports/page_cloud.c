@@ -20,6 +20,7 @@ struct map {
 };
 
 static const char *const map_names[MAPS] = {"density", "speed", "error"};
+static const char *const titles[MAPS] = {"density", "speed |v|", "error |v − exact v|"};
 
 static void read_map(struct map *map, const json_t *run)
 {
@@ -105,7 +106,6 @@ static bool has_voids(const struct map *map, int k)
 static void plot_first(struct page_writer *writer, const char *case_name, const json_t *run,
                        const struct map *map)
 {
-    static const char *const titles[MAPS] = {"density", "speed |v|", "error |v − exact v|"};
     char what[32], slice[96] = "", caption[256];
     const json_t *z =
         json_object_get(json_object_get(json_object_get(run, "profile"), "map"), "slice");
@@ -128,11 +128,10 @@ static void plot_first(struct page_writer *writer, const char *case_name, const 
     buffer_add(&writer->to, "</div>\n");
 }
 
-/* One map of every scheme, on one colour scale: the error, or density where nothing is exact. */
-static void plot_others(struct page_writer *writer, const char *case_name,
-                        const json_t *const *runs, const struct map *maps, size_t count)
+/* Map k of every scheme, on one colour scale. */
+static void plot_each(struct page_writer *writer, const char *case_name, const json_t *const *runs,
+                      const struct map *maps, size_t count, int k)
 {
-    const int k = maps[0].z[2] ? 2 : 0;
     double low = (double)INFINITY, high = -(double)INFINITY;
     size_t n = 0;
     for (size_t r = 0; r < count; r++) {
@@ -143,16 +142,16 @@ static void plot_others(struct page_writer *writer, const char *case_name,
         }
     }
     if (n < 2) return;
-    buffer_add(&writer->to, k == 2 ? "<h4>The error |v − exact v| of each scheme</h4>"
-                                   : "<h4>Density of each scheme</h4>");
-    buffer_add(&writer->to, "<p class=\"note\">With the same number of particles, on one colour "
-                            "scale.</p><div class=\"maps\">\n");
+    buffer_format(&writer->to,
+                  "<h4>The %s of each scheme</h4><p class=\"note\">With the same number of "
+                  "particles, on one colour scale.</p><div class=\"maps\">\n",
+                  titles[k]);
     for (size_t r = 0; r < count; r++) {
         char what[32];
         if (!maps[r].cells || !maps[r].z[k]) continue;
         struct plot_heat heat = heat_of(&maps[r], k);
         heat.low = low, heat.high = high;
-        snprintf(what, sizeof what, "scheme-%zu", r + 1);
+        snprintf(what, sizeof what, "scheme-%s-%zu", map_names[k], r + 1);
         plot_map(writer, case_name, what, &maps[r], &heat, value_text(runs[r], "label"),
                  value_text(runs[r], "label"));
     }
@@ -250,7 +249,7 @@ static void plot_profiles(struct page_writer *writer, const char *case_name,
 }
 
 void page_cloud_plots(struct page_writer *writer, const char *case_name, const json_t *const *runs,
-                      size_t count)
+                      size_t count, bool all_maps)
 {
     struct map *maps = calloc(count, sizeof *maps);
     struct curves *curves = calloc(count, sizeof *curves);
@@ -259,8 +258,11 @@ void page_cloud_plots(struct page_writer *writer, const char *case_name, const j
             read_map(&maps[r], runs[r]);
             read_curves(&curves[r], runs[r]);
         }
-        if (maps[0].cells) plot_first(writer, case_name, runs[0], &maps[0]);
-        if (maps[0].cells) plot_others(writer, case_name, runs, maps, count);
+        const int first = all_maps ? 0 : maps[0].z[MAPS - 1] ? MAPS - 1 : 0;
+        const int last = all_maps ? MAPS - 1 : first;
+        if (maps[0].cells && !all_maps) plot_first(writer, case_name, runs[0], &maps[0]);
+        for (int k = first; maps[0].cells && k <= last; k++)
+            plot_each(writer, case_name, runs, maps, count, k);
         buffer_add(&writer->to, "<div class=\"figures\">\n");
         if (curves[0].quantities) plot_profiles(writer, case_name, runs, curves, count);
     } else {

@@ -9,10 +9,11 @@
 #include "page_plot.h"
 
 /* Ends within an open <div class="figures">, for what else there is to show beside the last one.
- * Pictures of the runs (run documents) of one case: the first one's maps, what the others have
- * wrong beside it, all of them over the exact curve. */
+ * Pictures of the runs (run documents) of one case: the first one's maps, the errors of all (the
+ * densities, where nothing is exact) on one colour scale, and all of them over the exact curve.
+ * all_maps: every map of all runs on one colour scale, in place of the first one's. */
 void page_cloud_plots(struct page_writer *writer, const char *case_name, const json_t *const *runs,
-                      size_t count);
+                      size_t count, bool all_maps);
 
 /* Errors, conservation and cost; scalars beside what they should be. */
 void page_cloud_tables(struct buffer *to, const json_t *const *runs, size_t count);

@@ -116,7 +116,7 @@ bool page_make_compare(struct page *page, const json_t *document)
     table(to, document);
     buffer_add(to, "</section>\n<section><h2>Side by side</h2>\n");
     if (value_member(document, "dim") > 1) {
-        page_cloud_plots(&writer, "compare", runs, SIDES);
+        page_cloud_plots(&writer, "compare", runs, SIDES, true);
         buffer_add(to, "</div>\n");
     } else {
         lines(&writer, runs);

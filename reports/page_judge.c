@@ -89,7 +89,7 @@ static void cloud(struct page_writer *writer, const json_t *judged, size_t numbe
     if (!labelled || json_object_set_new(labelled, "label", json_string("this snapshot")))
         writer->to.failed = true;
     else
-        page_cloud_plots(writer, which, one, 1);
+        page_cloud_plots(writer, which, one, 1, false);
     if (labelled) buffer_add(&writer->to, "</div>\n");
     json_decref(labelled);
 }

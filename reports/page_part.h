@@ -20,7 +20,9 @@ void page_strip(struct page_writer *writer, const json_t *results);
 void page_overview(struct page_writer *writer, const json_t *results);
 void page_cases(struct page_writer *writer, const json_t *results);
 void page_skips(struct page_writer *writer, const json_t *skips);
-void page_bench(struct page_writer *writer, const json_t *bench);
+/* of_codes: of a report of other codes. */
+void page_bench(struct page_writer *writer, const json_t *bench, bool of_codes);
+void page_codes(struct page_writer *writer, const json_t *results);
 void page_gradients(struct page_writer *writer, const json_t *gradients);
 void page_stress(struct page_writer *writer, const json_t *stress);
 void page_claims(struct page_writer *writer, const json_t *claims);

@@ -123,7 +123,7 @@ static void judge_gate(struct tally *tally, const json_t *run, const json_t *gat
 
 static void judge_run(struct tally *tally, const json_t *run)
 {
-    static const char *const words[] = {"ok", "broke_down", NULL};
+    static const char *const words[] = {"ok", "broke_down", "failed", NULL};
     char message[VALUE_MESSAGE];
     const int word = value_need_word(run, "status", words, message);
     size_t i;
@@ -131,10 +131,11 @@ static void judge_run(struct tally *tally, const json_t *run)
     tally->runs++;
     json_array_foreach(json_object_get(run, "gates"), i, gate) judge_gate(tally, run, gate);
     if (word < 0) unreadable(tally, value_text(run, "case"), message);
-    if (word != 1) return;
+    if (word < 1) return;
     tally->broke_down++;
     struct buffer detail = {0};
-    buffer_format(&detail, "broke down: %s", value_text(run, "message"));
+    buffer_format(&detail, "%s: %s", word == 1 ? "broke down" : words[word],
+                  value_text(run, "message"));
     fail(tally, "run", value_text(run, "case"), &detail, value_text(run, "reproduce"));
 }
 
@@ -200,10 +201,12 @@ static void judge_study(struct tally *tally, const json_t *study)
         fail(tally, "suspicion", value_text(study, "case"), &detail,
              value_text(study, "reproduce"));
     }
-    if (!strcmp(value_text(study, "status"), "broke_down")) {
+    const bool failed = !strcmp(value_text(study, "status"), "failed");
+    if (failed || !strcmp(value_text(study, "status"), "broke_down")) {
         struct buffer detail = {0};
         tally->gates[FAIL]++;
-        buffer_format(&detail, "broke down: %s", value_text(study, "message"));
+        buffer_format(&detail, "%s: %s", failed ? "failed" : "broke down",
+                      value_text(study, "message"));
         fail(tally, "study", value_text(study, "case"), &detail, value_text(study, "reproduce"));
     }
 }

@@ -4,7 +4,7 @@
  *
  * results.json, a document of command "report" (each entry below is also what its own command
  * writes, see verify/schema; what a report has not is left out):
- *   mode            "quick" or "nightly"
+ *   mode            "quick" or "nightly"; "code" of other codes (--code)
  *   runs            [run documents, and "label", "reproduce", "profile": {"x", "density",
  *                   "velocity", "pressure", "exact_density", ... at the particles of the window,
  *                   "exact": {"x", "density", "velocity", "pressure"}}, "through_time": {"time",

@@ -66,8 +66,8 @@ setup_libclang() {
     python3 -c 'import sys; sys.path.append("/usr/lib/python3/dist-packages"); import clang.cindex' 2>/dev/null
 }
 
-# numpy, for the Python of the system: that of the package meson.
-setup_numpy() { /usr/bin/python3 -c 'import numpy' 2>/dev/null; }
+# numpy and h5py, for the Python of the system: that of the package meson.
+setup_numpy() { /usr/bin/python3 -c 'import numpy, h5py' 2>/dev/null; }
 
 # Slurm's daemons and the one that they trust.
 setup_cluster() { (PATH=$PATH:/usr/sbin; setup_has slurmctld && setup_has slurmd && setup_has munged); }
@@ -88,7 +88,7 @@ setup_missing() {
         setup_compiles clang || echo clang
         setup_compiles clang -fopenmp || echo libomp-dev
         setup_libclang || echo python3-clang
-        setup_numpy || echo python3-numpy
+        setup_numpy || echo python3-numpy python3-h5py
         # elsewhere than with apt a test is skipped where there is no cluster
         setup_cluster || ! setup_has apt-get || echo slurm-wlm munge ;;
     esac

@@ -7,8 +7,39 @@
 
 #include "lanes.h"
 #include "matrix.h"
+#include "plan.h"
 #include "specialise.h"
-#include "traits.h"
+
+struct cells_method cells_method_of(const struct scheme *scheme, const struct plan *plan)
+{
+    return (struct cells_method){
+        .box.dim = plan->dim,
+        .kernel = &scheme->kernel,
+        .specialised = plan->specialised,
+        .gradient = scheme->gradient,
+        .formulation = scheme->formulation,
+        .pair_width = scheme->pair_width,
+        .energy = scheme->energy,
+        .energy_element = plan->energy_sum,
+        .number = scheme->volume_element == VOLUME_NUMBER,
+        .viscosity = scheme->viscosity,
+        .signal_form = viscosity_of[scheme->viscosity].noise ||
+                       scheme->viscosity_form == VISCOSITY_FORM_SIGNAL,
+        .balsara = plan->balsara,
+        .velocity_gradient = plan->slope,
+        .div_v = plan->alpha,
+        .conductivity = scheme->alpha_u,
+        .worst_condition = DESCRIPTION_CONDITION,
+        .local = plan->local,
+        .alpha_min = scheme->alpha_min,
+        .alpha_max = scheme->alpha_max,
+        .numbers = {.alpha = scheme->alpha,
+                    .beta = scheme->beta,
+                    .beta_ratio = scheme->alpha > 0 ? scheme->beta / scheme->alpha : 2,
+                    .near = 1 / scheme->eta,
+                    .noise = scheme->noise},
+    };
+}
 
 static void add_field(struct lanes_layout *layout, enum lanes_field field, int values)
 {
@@ -26,54 +57,56 @@ static void add_numbers(struct lanes_layout *layout, enum lanes_field first, enu
 static void begin_layout(struct lanes_layout *layout, enum lanes_geometry geometry, int dim)
 {
     *layout = (struct lanes_layout){.geometry = geometry};
-    add_field(layout, FIELD_PLACE, dim);
+    add_field(layout, RECORD_PLACE, dim);
 }
 
 static void lay_out_force(struct lanes_layout *force, const struct cells_method *method)
 {
     const int dim = method->box.dim, symmetric = dim * (dim + 1) / 2;
-    const bool dissipates = method->viscosity != VISCOSITY_NONE || method->conductivity > 0,
+    const struct viscosity_descriptor *viscosity = &viscosity_of[method->viscosity];
+    const struct gradient_descriptor *gradient = &gradient_of[method->gradient];
+    const bool dissipates = !viscosity->none || method->conductivity > 0,
                lagrangian = method->formulation == FORMULATION_LAGRANGIAN;
     begin_layout(force, LANES_CLOSING, dim);
-    if (dissipates || lagrangian) add_field(force, FIELD_WEIGHT, 1);
-    add_field(force, FIELD_VELOCITY, dim);
-    add_field(force, FIELD_H_INVERSE, 1);
-    add_numbers(force, FIELD_VOLUME, FIELD_SOUND);
-    if (dissipates) add_field(force, FIELD_DENSITY, 1);
-    if (method->viscosity == VISCOSITY_TIME_DEPENDENT) add_field(force, FIELD_ALPHA, 1);
-    if (method->balsara) add_field(force, FIELD_BALSARA, 1);
-    if (method->conductivity > 0) add_field(force, FIELD_HEAT, 1);
-    if (lagrangian) add_field(force, FIELD_LAGRANGIAN, 3);
-    if (traits_gradient[method->gradient].matrix) add_field(force, FIELD_MATRIX, symmetric);
-    if (traits_gradient[method->gradient].blends) add_field(force, FIELD_STEEP, 1);
-    if (method->viscosity == VISCOSITY_RECONSTRUCTED) add_field(force, FIELD_SLOPE, dim * dim);
-    if (method->projected) add_field(force, FIELD_PROJECTOR, symmetric);
+    if (dissipates || lagrangian) add_field(force, RECORD_WEIGHT, 1);
+    add_field(force, RECORD_VELOCITY, dim);
+    add_field(force, RECORD_H_INVERSE, 1);
+    add_numbers(force, RECORD_VOLUME, RECORD_SOUND);
+    if (dissipates) add_field(force, RECORD_DENSITY, 1);
+    if (viscosity_varies(method->viscosity)) add_field(force, RECORD_ALPHA, 1);
+    if (method->balsara) add_field(force, RECORD_BALSARA, 1);
+    if (method->conductivity > 0) add_field(force, RECORD_HEAT, 1);
+    if (lagrangian) add_field(force, RECORD_LAGRANGIAN, 3);
+    if (gradient->weight != WEIGHT_NONE) add_field(force, RECORD_MATRIX, symmetric);
+    if (gradient->share) add_field(force, RECORD_STEEP, 1);
+    if (viscosity->midpoint || viscosity->noise) add_field(force, RECORD_SLOPE, dim * dim);
+    if (viscosity->noise) add_field(force, RECORD_PROJECTOR, symmetric);
 }
 
 /* Which values each pass needs of a neighbour. */
 static void lay_out(struct cells *cells)
 {
     const struct cells_method *method = &cells->method;
+    const struct gradient_descriptor *gradient = &gradient_of[method->gradient];
     const int dim = method->box.dim;
     begin_layout(&cells->density, LANES_DISTANCE, dim);
-    add_field(&cells->density, FIELD_WEIGHT, 1);
-    if (method->energy_element) add_field(&cells->density, FIELD_ENERGY, 1);
-    begin_layout(&cells->matrix,
-                 traits_gradient[method->gradient].by_slope ? LANES_DIRECTION : LANES_DISPLACEMENT,
+    add_field(&cells->density, RECORD_WEIGHT, 1);
+    if (method->energy_element) add_field(&cells->density, RECORD_ENERGY, 1);
+    begin_layout(&cells->matrix, gradient->weight > WEIGHT_W ? LANES_DIRECTION : LANES_DISPLACEMENT,
                  dim);
-    add_field(&cells->matrix, FIELD_WEIGHT, 1);
-    if (method->velocity_gradient) add_field(&cells->matrix, FIELD_VELOCITY, dim);
-    if (traits_gradient[method->gradient].blends) add_field(&cells->matrix, FIELD_H, 1);
+    add_field(&cells->matrix, RECORD_WEIGHT, 1);
+    if (method->velocity_gradient) add_field(&cells->matrix, RECORD_VELOCITY, dim);
+    if (gradient->share) add_field(&cells->matrix, RECORD_H, 1);
     lay_out_force(&cells->force, method);
     cells->shift = (struct lanes_layout){0};
-    if (!method->jump) return;
+    if (!viscosity_of[method->viscosity].find_goal) return;
     begin_layout(&cells->shift, LANES_DIRECTION, dim);
-    add_field(&cells->shift, FIELD_WEIGHT, 1);
-    add_field(&cells->shift, FIELD_VELOCITY, dim);
-    add_field(&cells->shift, FIELD_H_INVERSE, 1);
-    add_field(&cells->shift, FIELD_VOLUME, 1);
-    add_field(&cells->shift, FIELD_SOUND, 1);
-    add_field(&cells->shift, FIELD_ACCELERATION, dim);
+    add_field(&cells->shift, RECORD_WEIGHT, 1);
+    add_field(&cells->shift, RECORD_VELOCITY, dim);
+    add_field(&cells->shift, RECORD_H_INVERSE, 1);
+    add_field(&cells->shift, RECORD_VOLUME, 1);
+    add_field(&cells->shift, RECORD_SOUND, 1);
+    add_field(&cells->shift, RECORD_ACCELERATION, dim);
 }
 
 double cells_bytes(const struct cells_method *method, double n, double neighbours)
@@ -273,7 +306,7 @@ static double condition_of(const struct cells *cells, const struct cells_fields 
                            double C[CELLS_SQUARE])
 {
     const int dim = cells->method.box.dim;
-    if (!traits_gradient[cells->method.gradient].matrix) return nan("");
+    if (gradient_of[cells->method.gradient].weight == WEIGHT_NONE) return nan("");
     for (int a = 0; a < dim; a++)
         for (int b = 0; b < dim; b++) C[a * dim + b] = fields->matrix[symmetric_at(dim, a, b)][i];
     if (!(fields->condition[i] <= cells->method.worst_condition)) return fields->condition[i];

@@ -13,6 +13,7 @@
 #include <stdint.h>
 
 #include "description.h"
+#include "gradient.h"
 #include "grid.h"
 #include "kernel.h"
 #include "pair.h"
@@ -36,22 +37,24 @@ struct cells_method {
     bool number;         /* Z = 1 */
     enum viscosity viscosity;
     bool signal_form;       /* of viscosity: else the mu form */
-    bool projected;         /* VISCOSITY_RECONSTRUCTED with the linear term of `projected` */
     bool balsara;           /* viscosity times the mean factor of the pair */
     bool velocity_gradient; /* something needs it */
     bool div_v;             /* and the divergence by the pair gradient */
     double conductivity;    /* alpha_u; 0: none */
-    double noise;           /* nu of `projected` */
     double
         worst_condition; /* of a moment matrix; beyond it the pair's gradient is the standard one */
     bool local;          /* local steps may be taken */
-    bool jump;           /* alpha by the switch: */
-    double alpha_min, alpha_max;
+    double alpha_min, alpha_max; /* where each particle has its own alpha */
     struct pair_numbers numbers;
     double still; /* in sound speeds: viscosity and velocity gradients of neighbours that move
                      together to this are left out; 0: none are */
     int threads;  /* at most */
 };
+
+/* What a scheme with this plan asks for; what it does not know (box, walls, threads, still) is 0.
+ */
+struct plan;
+struct cells_method cells_method_of(const struct scheme *scheme, const struct plan *plan);
 
 /* What a particle has to do with an evaluation that is of some particles alone. Its value is the
  * grid's. */

@@ -8,7 +8,7 @@
 static void fill_records(struct cells *cells, const struct cells_fields *fields)
 {
     const struct lanes_layout *layout = &cells->density;
-    const int weight = layout->offset[FIELD_WEIGHT], energy = layout->offset[FIELD_ENERGY];
+    const int weight = layout->offset[RECORD_WEIGHT], energy = layout->offset[RECORD_ENERGY];
     size_t count;
     const struct grid_run *runs = grid_runs(cells->grid, &count);
 #pragma omp parallel for num_threads(cells->team) if (cells->team > 1)
@@ -30,13 +30,13 @@ static void sum_at(const struct cells *cells, const struct lanes *lanes, int cou
     const struct kernel *kernel = cells->method.kernel;
     const struct lanes_layout *layout = &cells->density;
     const double dim = cells->method.box.dim, own = cells->own_w, *r = lane(lanes, LANE_R);
-    cells->shapes.sums(kernel, (size_t)count, r, h_inverse, lane_of(lanes, layout, FIELD_WEIGHT),
+    cells->shapes.sums(kernel, (size_t)count, r, h_inverse, lane_of(lanes, layout, RECORD_WEIGHT),
                        sums);
     sums[0] += m * own;
     sums[1] += m * (dim * own);
     sums[2] = sums[3] = 0;
     if (!cells->method.energy_element) return;
-    cells->shapes.sums(kernel, (size_t)count, r, h_inverse, lane_of(lanes, layout, FIELD_ENERGY),
+    cells->shapes.sums(kernel, (size_t)count, r, h_inverse, lane_of(lanes, layout, RECORD_ENERGY),
                        sums + 2);
     sums[2] += U * own;
     sums[3] += U * (dim * own);

@@ -17,9 +17,9 @@ static void fill_sentinel(struct cells *cells)
     double *record = lanes_sentinel(cells, layout);
     /* far beyond its own width, too; a density keeps quotients finite, and its matrix is as good as
      * any */
-    record[at[FIELD_H_INVERSE]] = 16 / (record[0] > 0 ? record[0] : 1);
-    if (at[FIELD_DENSITY]) record[at[FIELD_DENSITY]] = 1;
-    if (at[FIELD_MATRIX]) record[at[FIELD_MATRIX]] = 1;
+    record[at[RECORD_H_INVERSE]] = 16 / (record[0] > 0 ? record[0] : 1);
+    if (at[RECORD_DENSITY]) record[at[RECORD_DENSITY]] = 1;
+    if (at[RECORD_MATRIX]) record[at[RECORD_MATRIX]] = 1;
 }
 
 /* Values of an inactive particle, extrapolated from its last two evaluations. */
@@ -55,20 +55,20 @@ ALWAYS_INLINE void fill_matrices(int dim, int mirrored, const struct cells *cell
     const int *at = cells->force.offset, symmetric = dim * (dim + 1) / 2;
     const bool active = lanes_part(cells, i) == CELLS_ACTIVE;
     double projector[CELLS_SYMMETRIC] = {0}, C[CELLS_SYMMETRIC] = {0}, L[CELLS_SQUARE] = {0};
-    for (int k = 0; at[FIELD_MATRIX] && active && k < symmetric; k++) C[k] = fields->matrix[k][i];
-    if (at[FIELD_MATRIX] && !active) extrapolate_matrix(dim, fields->ratio[i], fields, i, C);
-    for (int k = 0; at[FIELD_SLOPE] && active && k < dim * dim; k++) L[k] = fields->slope[k][i];
-    if (at[FIELD_SLOPE] && !active)
+    for (int k = 0; at[RECORD_MATRIX] && active && k < symmetric; k++) C[k] = fields->matrix[k][i];
+    if (at[RECORD_MATRIX] && !active) extrapolate_matrix(dim, fields->ratio[i], fields, i, C);
+    for (int k = 0; at[RECORD_SLOPE] && active && k < dim * dim; k++) L[k] = fields->slope[k][i];
+    if (at[RECORD_SLOPE] && !active)
         extrapolate(dim * dim, fields->ratio[i], fields->slope, fields->slope_before, i, L);
-    if (at[FIELD_PROJECTOR]) cells_project(dim, L, projector);
+    if (at[RECORD_PROJECTOR]) cells_project(dim, L, projector);
     for (int a = 0; a < dim; a++)
         for (int b = 0; b < dim; b++) {
             const double sign = lanes_sign(mirrored, a) * lanes_sign(mirrored, b);
             const int ab = symmetric_at(dim, a, b), full = a * dim + b;
-            if (at[FIELD_SLOPE]) record[at[FIELD_SLOPE] + full] = sign * L[full];
+            if (at[RECORD_SLOPE]) record[at[RECORD_SLOPE] + full] = sign * L[full];
             if (b < a) continue;
-            if (at[FIELD_MATRIX]) record[at[FIELD_MATRIX] + ab] = sign * C[ab];
-            if (at[FIELD_PROJECTOR]) record[at[FIELD_PROJECTOR] + ab] = sign * projector[ab];
+            if (at[RECORD_MATRIX]) record[at[RECORD_MATRIX] + ab] = sign * C[ab];
+            if (at[RECORD_PROJECTOR]) record[at[RECORD_PROJECTOR] + ab] = sign * projector[ab];
         }
 }
 
@@ -78,29 +78,29 @@ ALWAYS_INLINE void fill_record(int dim, const struct cells *cells,
 {
     const struct cells_method *method = &cells->method;
     const int *at = cells->force.offset;
-    if (at[FIELD_WEIGHT]) record[at[FIELD_WEIGHT]] = fields->m[i];
+    if (at[RECORD_WEIGHT]) record[at[RECORD_WEIGHT]] = fields->m[i];
     for (int a = 0; a < dim; a++)
-        record[at[FIELD_VELOCITY] + a] = lanes_sign(mirrored, a) * fields->v[a][i];
-    record[at[FIELD_H_INVERSE]] = fields->h_inverse[i];
-    record[at[FIELD_VOLUME]] = fields->V[i];
-    record[at[FIELD_PRESSURE]] = fields->P[i];
-    record[at[FIELD_SOUND]] = fields->c[i];
-    if (at[FIELD_DENSITY]) record[at[FIELD_DENSITY]] = fields->rho[i];
-    if (at[FIELD_ALPHA]) record[at[FIELD_ALPHA]] = fields->alpha[i];
-    if (at[FIELD_BALSARA]) {
+        record[at[RECORD_VELOCITY] + a] = lanes_sign(mirrored, a) * fields->v[a][i];
+    record[at[RECORD_H_INVERSE]] = fields->h_inverse[i];
+    record[at[RECORD_VOLUME]] = fields->V[i];
+    record[at[RECORD_PRESSURE]] = fields->P[i];
+    record[at[RECORD_SOUND]] = fields->c[i];
+    if (at[RECORD_DENSITY]) record[at[RECORD_DENSITY]] = fields->rho[i];
+    if (at[RECORD_ALPHA]) record[at[RECORD_ALPHA]] = fields->alpha[i];
+    if (at[RECORD_BALSARA]) {
         double f = fields->balsara[i];
         if (lanes_part(cells, i) != CELLS_ACTIVE)
             f = largest(0, least(1, f + fields->ratio[i] * (f - fields->balsara_before[i])));
-        record[at[FIELD_BALSARA]] = f;
+        record[at[RECORD_BALSARA]] = f;
     }
-    if (at[FIELD_HEAT]) record[at[FIELD_HEAT]] = fields->U[i] / fields->m[i];
-    if (at[FIELD_LAGRANGIAN]) {
-        double *group = record + at[FIELD_LAGRANGIAN];
+    if (at[RECORD_HEAT]) record[at[RECORD_HEAT]] = fields->U[i] / fields->m[i];
+    if (at[RECORD_LAGRANGIAN]) {
+        double *group = record + at[RECORD_LAGRANGIAN];
         group[0] = fields->b[i];
         group[1] = fields->grad_h[i];
         group[2] = method->energy_element ? fields->U[i] : method->number ? 1 : fields->m[i];
     }
-    if (at[FIELD_STEEP]) record[at[FIELD_STEEP]] = fields->steep[i];
+    if (at[RECORD_STEEP]) record[at[RECORD_STEEP]] = fields->steep[i];
     fill_matrices(dim, mirrored, cells, fields, i, record);
 }
 
@@ -176,21 +176,21 @@ static struct pressure find_pressure(const struct cells_method *method, const st
 {
     if (method->formulation == FORMULATION_VANILLA_ICE)
         return (struct pressure){
-            .own = {.V = *pairs_own(pairs, FIELD_VOLUME), .P = *pairs_own(pairs, FIELD_PRESSURE)},
-            .V = pairs_theirs(pairs, FIELD_VOLUME),
-            .P = pairs_theirs(pairs, FIELD_PRESSURE)};
-    const double *own = pairs_own(pairs, FIELD_LAGRANGIAN),
-                 *b = pairs_theirs(pairs, FIELD_LAGRANGIAN), *grad_h = b + pairs->lanes->stride,
+            .own = {.V = *pairs_own(pairs, RECORD_VOLUME), .P = *pairs_own(pairs, RECORD_PRESSURE)},
+            .V = pairs_theirs(pairs, RECORD_VOLUME),
+            .P = pairs_theirs(pairs, RECORD_PRESSURE)};
+    const double *own = pairs_own(pairs, RECORD_LAGRANGIAN),
+                 *b = pairs_theirs(pairs, RECORD_LAGRANGIAN), *grad_h = b + pairs->lanes->stride,
                  *Z = grad_h + pairs->lanes->stride;
     return (struct pressure){
         .own = {.b = own[0],
                 .grad_h = own[1],
                 .Z = own[2],
-                .m = method->number ? own[2] : *pairs_own(pairs, FIELD_WEIGHT)},
+                .m = method->number ? own[2] : *pairs_own(pairs, RECORD_WEIGHT)},
         .b = b,
         .grad_h = grad_h,
         .Z = Z,
-        .m = method->number ? Z : pairs_theirs(pairs, FIELD_WEIGHT)};
+        .m = method->number ? Z : pairs_theirs(pairs, RECORD_WEIGHT)};
 }
 
 /* Force, energy and signal of all neighbours in the lanes; vanilla_ice has one gradient for both
@@ -211,12 +211,12 @@ ALWAYS_INLINE void add_body(enum formulation formulation, int dim, enum energy e
                            *restrict G_j = lane(lanes, LANE_GX_J),
                            *restrict r = lane(lanes, LANE_R),
                            *restrict closing = lane(lanes, LANE_CLOSING),
-                           *restrict v = pairs_theirs(pairs, FIELD_VELOCITY),
-                           *restrict c = pairs_theirs(pairs, FIELD_SOUND),
-                           *restrict h_inverse = pairs_theirs(pairs, FIELD_H_INVERSE);
-    const double *own_v = pairs_own(pairs, FIELD_VELOCITY);
-    const double own_c = *pairs_own(pairs, FIELD_SOUND),
-                 own_h_inverse = *pairs_own(pairs, FIELD_H_INVERSE);
+                           *restrict v = pairs_theirs(pairs, RECORD_VELOCITY),
+                           *restrict c = pairs_theirs(pairs, RECORD_SOUND),
+                           *restrict h_inverse = pairs_theirs(pairs, RECORD_H_INVERSE);
+    const double *own_v = pairs_own(pairs, RECORD_VELOCITY);
+    const double own_c = *pairs_own(pairs, RECORD_SOUND),
+                 own_h_inverse = *pairs_own(pairs, RECORD_H_INVERSE);
     double f[3][GRID_LANES] = {{0}}, e[GRID_LANES] = {0};
     struct signals signals = {{0}, {0}};
     for (int k = 0; k < pairs->count; k += GRID_LANES)
@@ -307,7 +307,7 @@ static void force_pass(struct cells *cells, const struct cells_fields *fields, s
     struct pairs pairs = {.lanes = lanes,
                           .layout = layout,
                           .record = cells->records + (ptrdiff_t)slot * layout->size};
-    struct totals totals = {.signal = 2 * *pairs_own(&pairs, FIELD_SOUND)};
+    struct totals totals = {.signal = 2 * *pairs_own(&pairs, RECORD_SOUND)};
     bool viscous = list.count == 0;
     for (int from = 0; from < list.count; from += pairs.count) {
         pairs.count = lanes_gather_part(cells, layout, slot, &list, from, lanes);
@@ -386,10 +386,10 @@ CLONES static double find_signal(const struct pairs *pairs)
 {
     const struct lanes *lanes = pairs->lanes;
     const double *restrict r = lane(lanes, LANE_R), *restrict closing = lane(lanes, LANE_CLOSING),
-                           *restrict c = pairs_theirs(pairs, FIELD_SOUND),
-                           *restrict h_inverse = pairs_theirs(pairs, FIELD_H_INVERSE);
-    const double own_c = *pairs_own(pairs, FIELD_SOUND),
-                 own_h_inverse = *pairs_own(pairs, FIELD_H_INVERSE);
+                           *restrict c = pairs_theirs(pairs, RECORD_SOUND),
+                           *restrict h_inverse = pairs_theirs(pairs, RECORD_H_INVERSE);
+    const double own_c = *pairs_own(pairs, RECORD_SOUND),
+                 own_h_inverse = *pairs_own(pairs, RECORD_H_INVERSE);
     struct signals signals = {{0}, {0}};
     int64_t inside = 0;
     for (int k = 0; k < pairs->count; k += GRID_LANES)

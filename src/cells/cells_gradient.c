@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Pair gradients in 2D and 3D, the one part of the pair force that knows the kernel: standard, by a
- * matrix with the weight W (ia) or -W'/r (corrected), or of standard and ia what the particles'
- * shares say (blended), at the widths that the scheme asks for. */
+ * matrix with the gradient's weight, or of both what the particles' shares say, at the widths that
+ * the scheme asks for. */
 #include <math.h>
 
 #include "pairs.h"
 #include "specialise.h"
-#include "traits.h"
 
 /* q at the particle's own width and at the neighbour's, or at a width of both. */
 CLONES static void widths(enum pair_width width, int count, const double *restrict r,
@@ -77,11 +76,26 @@ CLONES static void standard_means(int dim, int count, double constant, double h_
         standard_means_body(3, count, constant, h_inverse, theirs, lanes);
 }
 
-/* -w'(q)/q from w', in place, as weight of a matrix. */
-CLONES static void corrected_weight(int count, const double *restrict q, double *restrict dw)
+/* The weight of a matrix from w'(q), in place of w(q). */
+ALWAYS_INLINE void weigh_body(enum gradient gradient, int count, const double *restrict q,
+                              const double *restrict dw, double *restrict w)
 {
+    const bool by_both = gradient_of[gradient].weight == WEIGHT_BOTH;
 #pragma omp simd
-    for (int k = 0; k < count; k++) dw[k] = q[k] > 0 ? -dw[k] / q[k] : 0;
+    for (int k = 0; k < count; k++)
+        w[k] = gradient_weight(gradient, by_both ? w[k] : 0, q[k] > 0 ? -dw[k] / q[k] : 0);
+}
+
+#define WEIGH(symbol, name, ...)                                                                   \
+    case symbol:                                                                                   \
+        if (gradient_of[symbol].weight > WEIGHT_W) weigh_body(symbol, count, q, dw, w);            \
+        break;
+CLONES static void weigh(enum gradient gradient, int count, const double *restrict q,
+                         const double *restrict dw, double *restrict w)
+{
+    switch (gradient) {
+        GRADIENT_LIST(WEIGH, )
+    }
 }
 
 /* G = s x. */
@@ -194,26 +208,24 @@ CLONES static void blend(int count, const double *restrict part, const double *r
     for (int k = 0; k < count; k++) G[k] = (1 - part[k]) * G[k] + part[k] * (s[k] * x[k]);
 }
 
-/* w(q) or, of the gradients that have w' in them, w'(q) at both widths. */
-static void pair_shapes(const struct cells *cells, const struct pairs *pairs)
+/* w(q) or w'(q) at both widths. */
+static void pair_shapes(const struct cells *cells, const struct pairs *pairs, bool by_w,
+                        double *shape, double *shape_j)
 {
     const struct cells_method *method = &cells->method;
     const struct shapes *shapes = &cells->shapes;
     const struct lanes *lanes = pairs->lanes;
-    const double h_inverse = *pairs_own(pairs, FIELD_H_INVERSE),
-                 *theirs = pairs_theirs(pairs, FIELD_H_INVERSE), *r = lane(lanes, LANE_R);
-    const struct gradient_traits *gradient = &traits_gradient[method->gradient];
-    const bool by_w = gradient->matrix && !gradient->by_slope;
-    double *w = lane(lanes, LANE_W), *w_j = lane(lanes, LANE_W_J);
+    const double h_inverse = *pairs_own(pairs, RECORD_H_INVERSE),
+                 *theirs = pairs_theirs(pairs, RECORD_H_INVERSE), *r = lane(lanes, LANE_R);
     if (method->pair_width == PAIR_WIDTH_MEAN) {
         (by_w ? shapes->pair_w : shapes->pair_dw)(method->kernel, (size_t)pairs->count, r,
-                                                  h_inverse, theirs, w, w_j);
+                                                  h_inverse, theirs, shape, shape_j);
         return;
     }
     double *q = lane(lanes, LANE_Q);
     widths(method->pair_width, pairs->count, r, h_inverse, theirs, q, lane(lanes, LANE_Q_J));
-    (by_w ? shapes->w : shapes->dw)(method->kernel, (size_t)pairs->count, q, w);
-    for (int k = 0; k < pairs->count; k++) w_j[k] = w[k];
+    (by_w ? shapes->w : shapes->dw)(method->kernel, (size_t)pairs->count, q, shape);
+    for (int k = 0; k < pairs->count; k++) shape_j[k] = shape[k];
 }
 
 /* The standard pair gradient's s at both widths, into the lanes of w. */
@@ -223,8 +235,8 @@ static void standard_pair(const struct cells *cells, const struct pairs *pairs)
     const struct lanes *lanes = pairs->lanes;
     const int dim = method->box.dim, count = pairs->count;
     const double C = method->kernel->constant[dim], *r_inverse = lane(lanes, LANE_R_INVERSE),
-                 h_inverse = *pairs_own(pairs, FIELD_H_INVERSE),
-                 *theirs = pairs_theirs(pairs, FIELD_H_INVERSE);
+                 h_inverse = *pairs_own(pairs, RECORD_H_INVERSE),
+                 *theirs = pairs_theirs(pairs, RECORD_H_INVERSE);
     const bool mean_width = method->pair_width == PAIR_WIDTH_MEAN;
     double *q = lane(lanes, LANE_Q), *q_j = lane(lanes, LANE_Q_J), *s = lane(lanes, LANE_W),
            *s_j = lane(lanes, LANE_W_J);
@@ -248,9 +260,9 @@ static void standard_gradients(const struct cells *cells, const struct pairs *pa
     const bool both = method->formulation == FORMULATION_LAGRANGIAN;
     double *w = lane(lanes, LANE_W), *w_j = lane(lanes, LANE_W_J);
     if (!both && method->pair_width == PAIR_WIDTH_MEAN) {
-        pair_shapes(cells, pairs);
+        pair_shapes(cells, pairs, false, w, w_j);
         standard_means(dim, count, method->kernel->constant[dim],
-                       *pairs_own(pairs, FIELD_H_INVERSE), pairs_theirs(pairs, FIELD_H_INVERSE),
+                       *pairs_own(pairs, RECORD_H_INVERSE), pairs_theirs(pairs, RECORD_H_INVERSE),
                        lanes);
         return;
     }
@@ -266,18 +278,23 @@ static void standard_gradients(const struct cells *cells, const struct pairs *pa
     }
 }
 
-/* The weights of the matrices: w, or -w'/q for gradient=corrected. */
+/* The weights of the matrices at both widths, into the lanes of w. */
 static void matrix_weights(const struct cells *cells, const struct pairs *pairs)
 {
     const struct lanes *lanes = pairs->lanes;
     const enum pair_width width = cells->method.pair_width;
-    pair_shapes(cells, pairs);
-    if (!traits_gradient[cells->method.gradient].by_slope) return;
-    double *q = lane(lanes, LANE_Q), *q_j = lane(lanes, LANE_Q_J);
-    widths(width, pairs->count, lane(lanes, LANE_R), *pairs_own(pairs, FIELD_H_INVERSE),
-           pairs_theirs(pairs, FIELD_H_INVERSE), q, q_j);
-    corrected_weight(pairs->count, q, lane(lanes, LANE_W));
-    corrected_weight(pairs->count, width == PAIR_WIDTH_MEAN ? q_j : q, lane(lanes, LANE_W_J));
+    const enum gradient gradient = cells->method.gradient;
+    const enum gradient_weight weight = gradient_of[gradient].weight;
+    double *w = lane(lanes, LANE_W), *w_j = lane(lanes, LANE_W_J), *q = lane(lanes, LANE_Q),
+           *q_j = lane(lanes, LANE_Q_J), *dw = lane(lanes, LANE_SLOPE_I),
+           *dw_j = lane(lanes, LANE_SLOPE_J);
+    if (weight != WEIGHT_SLOPE) pair_shapes(cells, pairs, true, w, w_j);
+    if (weight == WEIGHT_W) return;
+    pair_shapes(cells, pairs, false, dw, dw_j);
+    widths(width, pairs->count, lane(lanes, LANE_R), *pairs_own(pairs, RECORD_H_INVERSE),
+           pairs_theirs(pairs, RECORD_H_INVERSE), q, q_j);
+    weigh(gradient, pairs->count, q, dw, w);
+    weigh(gradient, pairs->count, width == PAIR_WIDTH_MEAN ? q_j : q, dw_j, w_j);
 }
 
 void cells_pair_gradients(const struct cells *cells, const struct pairs *pairs)
@@ -285,17 +302,18 @@ void cells_pair_gradients(const struct cells *cells, const struct pairs *pairs)
     const struct cells_method *method = &cells->method;
     const struct lanes *lanes = pairs->lanes;
     const int dim = method->box.dim, count = pairs->count;
-    if (!traits_gradient[method->gradient].matrix) {
+    if (gradient_of[method->gradient].weight == WEIGHT_NONE) {
         standard_gradients(cells, pairs);
         return;
     }
     const bool both = method->formulation == FORMULATION_LAGRANGIAN;
-    const double *own = pairs_own(pairs, FIELD_MATRIX), *theirs = pairs_theirs(pairs, FIELD_MATRIX);
+    const double *own = pairs_own(pairs, RECORD_MATRIX),
+                 *theirs = pairs_theirs(pairs, RECORD_MATRIX);
     matrix_weights(cells, pairs);
     by_matrix(dim, both, count, lanes, own, theirs);
-    const bool blended = traits_gradient[method->gradient].blends;
-    const double own_share = blended ? *pairs_own(pairs, FIELD_STEEP) : 0,
-                 *shares = blended ? pairs_theirs(pairs, FIELD_STEEP) : NULL;
+    const bool blended = gradient_of[method->gradient].share;
+    const double own_share = blended ? *pairs_own(pairs, RECORD_STEEP) : 0,
+                 *shares = blended ? pairs_theirs(pairs, RECORD_STEEP) : NULL;
     /* the first entry of a matrix is positive, or 0 where it is not to be used */
     const bool all_sound = own[0] > 0 && positive(count, theirs) == count,
                any_steep = blended && (own_share > 0 || positive(count, shares) > 0);

@@ -1,20 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The moment matrix T_i = sum_j V_j x x^T W and its inverse (Garcia-Senz, Cabezon & Escartin 2012),
- * for gradient=corrected with -W'/r in place of W (Bonet & Lok 1999), and the linear_exact velocity
- * gradient (grad v)_i = sum_j V_j (v_j - v_i) (x) C_i x W (Price 2004). C/h^d cancels between
- * matrix and gradient, so both are written with w(q) alone. x = r_j - r_i. */
+ * with the weight that the gradient has in place of W, and the linear_exact velocity gradient
+ * (grad v)_i = sum_j V_j (v_j - v_i) (x) C_i x W (Price 2004). C/h^d cancels between matrix and
+ * gradient, so both are written with w(q) alone. x = r_j - r_i. */
 #include <math.h>
 
 #include "moments.h"
 #include "pairs.h"
 #include "specialise.h"
-#include "traits.h"
 
 static void fill_records(struct cells *cells, const struct cells_fields *fields)
 {
     const struct lanes_layout *layout = &cells->matrix;
-    const int dim = cells->method.box.dim, weight = layout->offset[FIELD_WEIGHT],
-              velocity = layout->offset[FIELD_VELOCITY], width = layout->offset[FIELD_H];
+    const int dim = cells->method.box.dim, weight = layout->offset[RECORD_WEIGHT],
+              velocity = layout->offset[RECORD_VELOCITY], width = layout->offset[RECORD_H];
     size_t count;
     const struct grid_run *runs = grid_runs(cells->grid, &count);
 #pragma omp parallel for num_threads(cells->team) if (cells->team > 1)
@@ -38,53 +37,40 @@ CLONES static void scale(int count, const double *restrict r, double h_inverse, 
     for (int k = 0; k < count; k++) q[k] = r[k] * h_inverse;
 }
 
-/* V times -w'(q)/q, the weight of gradient=corrected; 0 where points coincide. */
-CLONES static void slope_weight(int count, double h, const struct lanes *lanes,
-                                const double *restrict V)
+/* V times the gradient's weight into LANE_W_J, from w'(q) in LANE_W and w(q) in LANE_SPARE;
+ * -w'(q)/q is 0 where points coincide. */
+ALWAYS_INLINE void weigh_body(enum gradient gradient, int count, double h,
+                              const struct lanes *lanes, const double *restrict V)
 {
-    const double *restrict r_inverse = lane(lanes, LANE_R_INVERSE), *restrict dw =
-                                                                        lane(lanes, LANE_W);
+    const double *restrict r_inverse = lane(lanes, LANE_R_INVERSE),
+                           *restrict dw = lane(lanes, LANE_W),
+                           *restrict w = lane(lanes, LANE_SPARE);
+    const bool by_both = gradient_of[gradient].weight == WEIGHT_BOTH;
     double *restrict weight = lane(lanes, LANE_W_J);
 #pragma omp simd
-    for (int k = 0; k < count; k++) weight[k] = V[k] * (-dw[k] * (r_inverse[k] * h));
+    for (int k = 0; k < count; k++)
+        weight[k] =
+            V[k] * gradient_weight(gradient, by_both ? w[k] : 0, -dw[k] * (r_inverse[k] * h));
 }
 
-/* A A^T. */
-ALWAYS_INLINE void times_transposed(int dim, const double A[CELLS_SQUARE],
-                                    double product[CELLS_SQUARE])
+#define WEIGH(symbol, name, ...)                                                                   \
+    case symbol:                                                                                   \
+        if (gradient_of[symbol].weight > WEIGHT_W) weigh_body(symbol, count, h, lanes, V);         \
+        break;
+CLONES static void weigh(enum gradient gradient, int count, double h, const struct lanes *lanes,
+                         const double *restrict V)
 {
-    for (int a = 0; a < dim; a++)
-        for (int b = 0; b < dim; b++) {
-            double sum = 0;
-            for (int c = 0; c < dim; c++) sum += A[a * dim + c] * A[b * dim + c];
-            product[a * dim + b] = sum;
-        }
-}
-
-/* P = kappa M^2/tr M^2 with M = L L^T and kappa = smoothstep((s - 0.7)/0.25),
- * s = 2 tr M^2/(tr M)^2 - 1: 1 for simple shear, 0 for rotation. Where M is 0 so is P. */
-ALWAYS_INLINE void project_body(int dim, const double L[CELLS_SQUARE],
-                                double projector[CELLS_SYMMETRIC])
-{
-    double M[CELLS_SQUARE], M2[CELLS_SQUARE], trace = 0, trace2 = 0;
-    times_transposed(dim, L, M);
-    times_transposed(dim, M, M2);
-    for (int a = 0; a < dim; a++) trace += M[a * dim + a], trace2 += M2[a * dim + a];
-    for (int k = 0; k < CELLS_SYMMETRIC; k++) projector[k] = 0;
-    if (!(trace2 > 0)) return;
-    const double s = 2 * trace2 / (trace * trace) - 1;
-    const double t = least(1, largest(0, (s - 0.7) / 0.25)), kappa = t * t * (3 - 2 * t);
-    int k = 0;
-    for (int a = 0; a < dim; a++)
-        for (int b = a; b < dim; b++) projector[k++] = kappa * M2[a * dim + b] / trace2;
+    switch (gradient) {
+        GRADIENT_LIST(WEIGH, )
+    }
 }
 
 void cells_project(int dim, const double L[CELLS_SQUARE], double projector[CELLS_SYMMETRIC])
 {
     if (dim == 2)
-        project_body(2, L, projector);
+        projected_projector(2, L, projector);
     else
-        project_body(3, L, projector);
+        projected_projector(3, L, projector);
 }
 
 static void velocity_gradient(struct cells *cells, const struct cells_fields *fields, size_t slot,
@@ -95,10 +81,11 @@ static void velocity_gradient(struct cells *cells, const struct cells_fields *fi
     const size_t i = cells->order[slot];
     const int dim = cells->method.box.dim;
     const double *own = cells->records + (ptrdiff_t)slot * layout->size +
-                        layout->offset[FIELD_VELOCITY],
-                 *v = lane_of(lanes, layout, FIELD_VELOCITY),
+                        layout->offset[RECORD_VELOCITY],
+                 *v = lane_of(lanes, layout, RECORD_VELOCITY),
                  /* the direction of `projected` is that of the smallest slope, too */
-        limit = cells->method.projected ? 0 : cells->method.still * fields->c[i];
+        limit =
+            viscosity_of[cells->method.viscosity].noise ? 0 : cells->method.still * fields->c[i];
     double L[CELLS_SQUARE] = {0};
     if (fabs(*v - *own) < limit &&
         lanes_agree(dim, cells->lists[slot].count, lanes->stride, own, v, limit))
@@ -111,19 +98,18 @@ static void velocity_gradient(struct cells *cells, const struct cells_fields *fi
     }
 }
 
-/* The standard gradient's share, CONVENTIONS eq. 4.8: smoothstep((|grad h| - 0.05)/0.1), grad h by
- * linear_exact; all of it where there is none. */
+/* The standard gradient's share where h changes, grad h by linear_exact; all of it where there is
+ * none. */
 static double find_steep(const struct cells *cells, size_t slot, int count,
                          const struct lanes *lanes, const double *weight,
                          const double inverse[CELLS_SQUARE], bool sound)
 {
     const struct lanes_layout *layout = &cells->matrix;
-    const double own = cells->records[(ptrdiff_t)slot * layout->size + layout->offset[FIELD_H]];
+    const double own = cells->records[(ptrdiff_t)slot * layout->size + layout->offset[RECORD_H]];
     if (!sound) return 1;
     const double slope = moments_steepness(cells->method.box.dim, count, lanes, weight, inverse,
-                                           lane_of(lanes, layout, FIELD_H), own);
-    const double t = least(1, largest(0, (slope - 0.05) / 0.1));
-    return t * t * (3 - 2 * t);
+                                           lane_of(lanes, layout, RECORD_H), own);
+    return gradient_of[cells->method.gradient].share(slope);
 }
 
 static void matrix_pass(struct cells *cells, const struct cells_fields *fields, size_t slot,
@@ -133,27 +119,28 @@ static void matrix_pass(struct cells *cells, const struct cells_fields *fields, 
     const size_t i = cells->order[slot];
     if (lanes_part(cells, i) != CELLS_ACTIVE) return;
     const int dim = method->box.dim, count = lanes_gather(cells, &cells->matrix, slot, lanes);
-    const double *V = lane_of(lanes, &cells->matrix, FIELD_WEIGHT),
+    const double *V = lane_of(lanes, &cells->matrix, RECORD_WEIGHT),
                  h_inverse = fields->h_inverse[i];
     double *dw = lane(lanes, LANE_W), *weight = lane(lanes, LANE_W_J);
     double inverse[CELLS_SQUARE], condition;
-    const struct gradient_traits *gradient = &traits_gradient[method->gradient];
-    const bool by_w = gradient->matrix && !gradient->by_slope;
+    const struct gradient_descriptor *gradient = &gradient_of[method->gradient];
     bool sound = false;
-    if (by_w || method->velocity_gradient) {
+    if (gradient->weight == WEIGHT_W || method->velocity_gradient) {
         moments_weigh(cells, count, lanes, h_inverse, V);
         sound = moments_invert(method, count, lanes, weight, inverse, &condition);
     }
     if (method->velocity_gradient)
         velocity_gradient(cells, fields, slot, count, lanes, weight, inverse, sound);
-    if (!gradient->matrix) return;
-    if (gradient->blends)
+    if (gradient->weight == WEIGHT_NONE) return;
+    if (gradient->share)
         fields->steep[i] = find_steep(cells, slot, count, lanes, weight, inverse, sound);
-    if (gradient->by_slope) {
+    if (gradient->weight > WEIGHT_W) {
         double *q = lane(lanes, LANE_Q);
         scale(count, lane(lanes, LANE_R), h_inverse, q);
         cells->shapes.dw(method->kernel, (size_t)count, q, dw);
-        slope_weight(count, 1 / h_inverse, lanes, V);
+        if (gradient->weight == WEIGHT_BOTH)
+            cells->shapes.w(method->kernel, (size_t)count, q, lane(lanes, LANE_SPARE));
+        weigh(method->gradient, count, 1 / h_inverse, lanes, V);
         sound = moments_invert(method, count, lanes, weight, inverse, &condition);
     }
     fields->condition[i] = condition;
@@ -168,7 +155,7 @@ static void matrix_pass(struct cells *cells, const struct cells_fields *fields, 
 size_t cells_matrix(struct cells *cells, const struct cells_fields *fields)
 {
     const struct cells_method *method = &cells->method;
-    const bool matrix = traits_gradient[method->gradient].matrix;
+    const bool matrix = gradient_of[method->gradient].weight != WEIGHT_NONE;
     if (!matrix && !method->velocity_gradient) return 0;
     fill_records(cells, fields);
     lanes_all(cells, fields, matrix_pass);

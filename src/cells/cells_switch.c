@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The switch of Cullen & Dehnen 2010, CONVENTIONS eqs. 6.6 and 6.7: what alpha jumps up to where
- * the flow is about to be compressed, and how fast it decays to it. The change of div v along the
- * flow comes from the gradient of the acceleration, d(div v)/dt = div a - tr(L L), so that it
- * belongs to the state of the rates and needs no step before it. h is the support radius, about
- * twice what the paper writes h for. */
+ * What a switch of alpha reads of a particle's flow (CONVENTIONS eqs. 6.6 and 6.7; the formula is
+ * in the viscosity's file). The change of div v along the flow comes from the gradient of the
+ * acceleration, d(div v)/dt = div a - tr(L L), so that it belongs to the state of the rates and
+ * needs no step before it. */
 #include <math.h>
 
 #include "moments.h"
@@ -25,21 +24,21 @@ static void fill_records(struct cells *cells, const struct cells_fields *fields)
         double *record = lanes_record(cells, layout, s);
         for (int f = dim; f < layout->size; f++) record[f] = 0;
         if (s == cells->points) {
-            record[at[FIELD_H_INVERSE]] = HUGE_VAL;
+            record[at[RECORD_H_INVERSE]] = HUGE_VAL;
             continue;
         }
         int mirrored;
         const size_t i = lanes_source(cells, fields->n, s, &mirrored);
         const double divergence = divergence_of(dim, fields, i);
-        record[at[FIELD_WEIGHT]] = fields->m[i] * (divergence > 0 ? 1 : divergence < 0 ? -1 : 0);
+        record[at[RECORD_WEIGHT]] = fields->m[i] * (divergence > 0 ? 1 : divergence < 0 ? -1 : 0);
         for (int a = 0; a < dim; a++) {
             const double sign = lanes_sign(mirrored, a);
-            record[at[FIELD_VELOCITY] + a] = sign * fields->v[a][i];
-            record[at[FIELD_ACCELERATION] + a] = sign * (fields->F[a][i] / fields->m[i]);
+            record[at[RECORD_VELOCITY] + a] = sign * fields->v[a][i];
+            record[at[RECORD_ACCELERATION] + a] = sign * (fields->F[a][i] / fields->m[i]);
         }
-        record[at[FIELD_H_INVERSE]] = fields->h_inverse[i];
-        record[at[FIELD_VOLUME]] = fields->V[i];
-        record[at[FIELD_SOUND]] = fields->c[i];
+        record[at[RECORD_H_INVERSE]] = fields->h_inverse[i];
+        record[at[RECORD_VOLUME]] = fields->V[i];
+        record[at[RECORD_SOUND]] = fields->c[i];
     }
 }
 
@@ -68,19 +67,6 @@ CLONES static double signal_of(int dim, int count, const struct lanes *lanes, do
     return most;
 }
 
-/* xi of eq. 6.7: 1 where compression rules, 0 in shear. */
-static double limiter(int dim, const double L[CELLS_SQUARE], double divergence, double R)
-{
-    double shear = -divergence * divergence / dim;
-    for (int a = 0; a < dim; a++)
-        for (int b = 0; b < dim; b++) {
-            const double s = 0.5 * (L[a * dim + b] + L[b * dim + a]);
-            shear += s * s;
-        }
-    const double one = 1 - R, t = 2 * (one * one * one * one) * divergence;
-    return t * t > 0 ? t * t / (t * t + largest(shear, 0)) : 0;
-}
-
 static void switch_pass(struct cells *cells, const struct cells_fields *fields, size_t slot,
                         struct lanes *lanes)
 {
@@ -91,11 +77,11 @@ static void switch_pass(struct cells *cells, const struct cells_fields *fields, 
     const double *record = cells->records + (ptrdiff_t)slot * layout->size,
                  *weight = lane(lanes, LANE_W_J), *w = lane(lanes, LANE_W);
     double inverse[CELLS_SQUARE], condition, A_of[CELLS_SQUARE], L[CELLS_SQUARE], change = 0;
-    moments_weigh(cells, count, lanes, fields->h_inverse[i], lane_of(lanes, layout, FIELD_VOLUME));
+    moments_weigh(cells, count, lanes, fields->h_inverse[i], lane_of(lanes, layout, RECORD_VOLUME));
     if (moments_invert(method, count, lanes, weight, inverse, &condition)) {
         moments_gradient(dim, count, lanes, weight, inverse,
-                         lane_of(lanes, layout, FIELD_ACCELERATION),
-                         record + layout->offset[FIELD_ACCELERATION], A_of);
+                         lane_of(lanes, layout, RECORD_ACCELERATION),
+                         record + layout->offset[RECORD_ACCELERATION], A_of);
         for (int a = 0; a < dim; a++) change += A_of[a * dim + a];
     }
     for (int k = 0; k < dim * dim; k++) L[k] = fields->slope[k][i];
@@ -104,17 +90,24 @@ static void switch_pass(struct cells *cells, const struct cells_fields *fields, 
     const double h_inverse = fields->h_inverse[i];
     double scale = method->kernel->constant[dim] / fields->rho[i];
     for (int a = 0; a < dim; a++) scale *= h_inverse;
-    const double R = scale * (record[layout->offset[FIELD_WEIGHT]] * cells->own_w +
-                              lanes_dot(lane_of(lanes, layout, FIELD_WEIGHT), w, count));
-    const double A = limiter(dim, L, divergence_of(dim, fields, i), R) * largest(-change, 0);
+    const double R = scale * (record[layout->offset[RECORD_WEIGHT]] * cells->own_w +
+                              lanes_dot(lane_of(lanes, layout, RECORD_WEIGHT), w, count));
     const double rate = h_inverse * signal_of(dim, count, lanes, h_inverse, fields->c[i],
-                                              record + layout->offset[FIELD_VELOCITY],
-                                              lane_of(lanes, layout, FIELD_VELOCITY),
-                                              lane_of(lanes, layout, FIELD_H_INVERSE),
-                                              lane_of(lanes, layout, FIELD_SOUND));
-    fields->alpha_local[i] =
-        largest(method->alpha_min, method->alpha_max * (A / (A + rate * rate)));
-    fields->decay[i] = 2 * 0.05 * rate;
+                                              record + layout->offset[RECORD_VELOCITY],
+                                              lane_of(lanes, layout, RECORD_VELOCITY),
+                                              lane_of(lanes, layout, RECORD_H_INVERSE),
+                                              lane_of(lanes, layout, RECORD_SOUND));
+    const struct viscosity_goal goal = viscosity_of[method->viscosity].find_goal(
+        &(const struct viscosity_flow){.dim = dim,
+                                       .L = L,
+                                       .divergence = divergence_of(dim, fields, i),
+                                       .change = change,
+                                       .R = R,
+                                       .rate = rate,
+                                       .alpha_min = method->alpha_min,
+                                       .alpha_max = method->alpha_max});
+    fields->alpha_local[i] = goal.alpha;
+    fields->decay[i] = goal.decay;
 }
 
 void cells_switch(struct cells *cells, const struct cells_fields *fields)

@@ -6,7 +6,7 @@
 #include "pairs.h"
 #include "specialise.h"
 
-/* What find_slopes reads, at the particle and at its neighbours; P NULL: not projected. */
+/* What find_slopes reads, at the particle and at its neighbours; P NULL: noise is not wanted. */
 struct slopes {
     const double *x, *own_L, *L, *own_P, *P, *own_v, *v;
     ptrdiff_t stride;
@@ -36,19 +36,19 @@ ALWAYS_INLINE struct slope_terms slope_along(int dim, bool projected, int a, ptr
     return (struct slope_terms){xa * u, xa * u_j, (xa - 0.5 * e) * moving};
 }
 
-/* x . L x/r^2 of the particle and of its neighbours and, of viscosity=projected, how fast its noise
+/* x . L x/r^2 of the particle and of its neighbours and, where it is wanted, how fast noise
  * closes, x/r . (1 - P_ij) (v_ij + (L_i + L_j) x/2). */
 ALWAYS_INLINE void slopes_body(int dim, bool projected, const struct pairs *pairs)
 {
     const struct lanes *lanes = pairs->lanes;
     const struct slopes slopes = {
         .x = lane(lanes, LANE_DX),
-        .own_L = pairs_own(pairs, FIELD_SLOPE),
-        .L = pairs_theirs(pairs, FIELD_SLOPE),
-        .own_P = projected ? pairs_own(pairs, FIELD_PROJECTOR) : NULL,
-        .P = projected ? pairs_theirs(pairs, FIELD_PROJECTOR) : NULL,
-        .own_v = pairs_own(pairs, FIELD_VELOCITY),
-        .v = pairs_theirs(pairs, FIELD_VELOCITY),
+        .own_L = pairs_own(pairs, RECORD_SLOPE),
+        .L = pairs_theirs(pairs, RECORD_SLOPE),
+        .own_P = projected ? pairs_own(pairs, RECORD_PROJECTOR) : NULL,
+        .P = projected ? pairs_theirs(pairs, RECORD_PROJECTOR) : NULL,
+        .own_v = pairs_own(pairs, RECORD_VELOCITY),
+        .v = pairs_theirs(pairs, RECORD_VELOCITY),
         .stride = lanes->stride,
     };
     const double *restrict r_inverse = lane(lanes, LANE_R_INVERSE);
@@ -93,40 +93,35 @@ ALWAYS_INLINE double approach(int dim, ptrdiff_t stride, ptrdiff_t k, const doub
     return sum;
 }
 
-/* K, what viscosity adds to a_i and a_j alike, for G = 1.
- *
- * With slopes viscosity that would cool is left out: with a matrix a pair may approach against its
- * gradient. The linear term of viscosity=projected has both signs (CONVENTIONS, projected):
- * PI = -nu cbar e . (1 - P_ij) u_ij/rhobar, u_ij = v_ij + (L_i + L_j) x/2, e = -x/r, times
- * 1 - (v_ij . e/cbar)^2 or 0: what is as fast as sound is no noise, and to damp it may cool. */
+/* K, what viscosity adds to a_i and a_j alike, for G = 1. With slopes viscosity that would cool is
+ * left out: with a matrix a pair may approach against its gradient. */
 ALWAYS_INLINE void viscous_body(enum viscosity viscosity, bool signal_form, int dim,
                                 const struct cells_method *method, const struct pairs *pairs)
 {
     const struct lanes *lanes = pairs->lanes;
     const struct pair_numbers numbers = method->numbers;
-    const bool varying = viscosity == VISCOSITY_TIME_DEPENDENT,
-               projected = viscosity == VISCOSITY_PROJECTED,
-               sloped = projected || viscosity == VISCOSITY_RECONSTRUCTED;
-    const double *restrict m = pairs_theirs(pairs, FIELD_WEIGHT),
-                           *restrict h_inverse = pairs_theirs(pairs, FIELD_H_INVERSE),
-                           *restrict c = pairs_theirs(pairs, FIELD_SOUND),
-                           *restrict rho = pairs_theirs(pairs, FIELD_DENSITY),
-                           *restrict alpha = varying ? pairs_theirs(pairs, FIELD_ALPHA) : NULL,
-                           *restrict v = pairs_theirs(pairs, FIELD_VELOCITY),
-                           *restrict factor = method->balsara ? pairs_theirs(pairs, FIELD_BALSARA)
+    const bool varying = viscosity_varies(viscosity), noisy = viscosity_of[viscosity].noise,
+               sloped = viscosity_of[viscosity].midpoint;
+    const double *restrict m = pairs_theirs(pairs, RECORD_WEIGHT),
+                           *restrict h_inverse = pairs_theirs(pairs, RECORD_H_INVERSE),
+                           *restrict c = pairs_theirs(pairs, RECORD_SOUND),
+                           *restrict rho = pairs_theirs(pairs, RECORD_DENSITY),
+                           *restrict alpha = varying ? pairs_theirs(pairs, RECORD_ALPHA) : NULL,
+                           *restrict v = pairs_theirs(pairs, RECORD_VELOCITY),
+                           *restrict factor = method->balsara ? pairs_theirs(pairs, RECORD_BALSARA)
                                                               : lane(lanes, LANE_ONE);
     const double
         *restrict slope_i = lane(lanes, LANE_SLOPE_I),
                   *restrict slope_j = lane(lanes, LANE_SLOPE_J), *restrict r = lane(lanes, LANE_R),
                   *restrict closing = lane(lanes, LANE_CLOSING),
                   *restrict noise = lane(lanes, LANE_SPARE), *restrict G = lane(lanes, LANE_GX);
-    const double *own_v = pairs_own(pairs, FIELD_VELOCITY);
-    const double own_m = *pairs_own(pairs, FIELD_WEIGHT),
-                 own_h_inverse = *pairs_own(pairs, FIELD_H_INVERSE),
-                 own_c = *pairs_own(pairs, FIELD_SOUND), own_rho = *pairs_own(pairs, FIELD_DENSITY),
-                 own_alpha = varying ? *pairs_own(pairs, FIELD_ALPHA) : 0,
-                 own_factor = method->balsara ? *pairs_own(pairs, FIELD_BALSARA) : 1,
-                 half_nu = 0.5 * method->noise;
+    const double *own_v = pairs_own(pairs, RECORD_VELOCITY);
+    const double own_m = *pairs_own(pairs, RECORD_WEIGHT),
+                 own_h_inverse = *pairs_own(pairs, RECORD_H_INVERSE),
+                 own_c = *pairs_own(pairs, RECORD_SOUND),
+                 own_rho = *pairs_own(pairs, RECORD_DENSITY),
+                 own_alpha = varying ? *pairs_own(pairs, RECORD_ALPHA) : 0,
+                 own_factor = method->balsara ? *pairs_own(pairs, RECORD_BALSARA) : 1;
     double *restrict K = lane(lanes, LANE_K);
 #pragma omp simd
     for (int k = 0; k < pairs->count; k++) {
@@ -142,67 +137,58 @@ ALWAYS_INLINE void viscous_body(enum viscosity viscosity, bool signal_form, int 
                                     .rho = rho[k],
                                     .alpha = varying ? alpha[k] : 0,
                                     .slope = sloped ? slope_j[k] : 0};
-        const double f = 0.5 * (own_factor + factor[k]);
+        const struct viscosity_pair pair = {.r = r[k],
+                                            .closing = closing[k],
+                                            .factor = 0.5 * (own_factor + factor[k]),
+                                            .noise = noisy ? noise[k] : 0};
+        const struct viscosity_seen seen = viscosity_sees(viscosity, &numbers, &i, &j, &pair);
         const struct pair_mean_width h_bar = pair_mean_width_inverse(own_h_inverse, h_inverse[k]);
-        double term = signal_form
-                          ? pair_viscous_signal(viscosity, &numbers, &i, &j, r[k], closing[k], 1)
-                          : pair_viscous(viscosity, &numbers, &i, &j, h_bar, r[k], closing[k], 1);
-        term *= projected ? f * f : f;
+        double term = signal_form ? pair_viscous_signal(sloped, seen, &i, &j, 1)
+                                  : pair_viscous(seen, &i, &j, h_bar, r[k], 1);
+        term *= seen.factor;
         if (sloped) term = approach(dim, lanes->stride, k, own_v, v, G) > 0 ? term : 0;
-        if (projected) {
-            /* K = m_i m_j PI/2; fading towards the speed of sound */
-            const double c_sum = own_c + c[k], rho_sum = own_rho + rho[k];
-            const double inverse = 1 / (c_sum * rho_sum), mach = 2 * closing[k] * rho_sum * inverse;
-            const double still_noise = largest(1 - mach * mach, 0);
-            term += own_m * m[k] * half_nu * still_noise * (c_sum * c_sum * inverse) * noise[k];
-        }
+        if (noisy) term += seen.extra;
         K[k] = term;
     }
 }
 
-#define VISCOUS_CASE(symbol, name, label, paper, signal_form, dim)                                 \
+#define VISCOUS_CASE(symbol, name, signal_form, dim)                                               \
     case symbol:                                                                                   \
-        viscous_body(symbol, signal_form, dim, method, pairs);                                     \
+        if (signal_form || !viscosity_of[symbol].noise)                                            \
+            viscous_body(symbol, signal_form, dim, method, pairs);                                 \
         break;
 
-#define VISCOUS(name, LIST, signal_form, dim, ...)                                                 \
+#define VISCOUS(name, signal_form, dim)                                                            \
     CLONES static void name(enum viscosity viscosity, const struct cells_method *method,           \
                             const struct pairs *pairs)                                             \
     {                                                                                              \
         switch (viscosity) {                                                                       \
-            LIST(VISCOUS_CASE, signal_form, dim)                                                   \
-            __VA_ARGS__                                                                            \
-        case VISCOSITY_CULLEN_DEHNEN: /* comes as time_dependent */                                \
-            break;                                                                                 \
+            VISCOSITY_LIST(VISCOUS_CASE, signal_form, dim)                                         \
         }                                                                                          \
     }
-#define MU_NEVER case VISCOSITY_PROJECTED: /* has the signal form */
-#define SIGNAL_LIST(CHOICE, ...)                                                                   \
-    VISCOSITY_LINE_LIST(CHOICE, __VA_ARGS__)                                                       \
-    CHOICE(VISCOSITY_PROJECTED, "", "", "", __VA_ARGS__)
-VISCOUS(viscous_mu_2, VISCOSITY_LINE_LIST, false, 2, MU_NEVER)
-VISCOUS(viscous_mu_3, VISCOSITY_LINE_LIST, false, 3, MU_NEVER)
-VISCOUS(viscous_signal_2, SIGNAL_LIST, true, 2, )
-VISCOUS(viscous_signal_3, SIGNAL_LIST, true, 3, )
+VISCOUS(viscous_mu_2, false, 2)
+VISCOUS(viscous_mu_3, false, 3)
+VISCOUS(viscous_signal_2, true, 2)
+VISCOUS(viscous_signal_3, true, 3)
 
 /* Does no pair move against the other, and has none a slope? */
 static bool all_still(const struct cells_method *method, const struct pairs *pairs)
 {
     const struct lanes *lanes = pairs->lanes;
     const int dim = method->box.dim, count = pairs->neighbours;
-    const double *own_v = pairs_own(pairs, FIELD_VELOCITY),
-                 *v = pairs_theirs(pairs, FIELD_VELOCITY),
-                 limit = method->still * *pairs_own(pairs, FIELD_SOUND);
+    const double *own_v = pairs_own(pairs, RECORD_VELOCITY),
+                 *v = pairs_theirs(pairs, RECORD_VELOCITY),
+                 limit = method->still * *pairs_own(pairs, RECORD_SOUND);
     static const double none[CELLS_SQUARE];
     /* one neighbour tells it of most gas that moves */
-    if (!(count > 0 && fabs(*v - *own_v) < limit) || method->viscosity == VISCOSITY_NONE)
+    if (!(count > 0 && fabs(*v - *own_v) < limit) || viscosity_of[method->viscosity].none)
         return false;
-    if (method->viscosity == VISCOSITY_RECONSTRUCTED) {
-        const double *own_L = pairs_own(pairs, FIELD_SLOPE),
-                     rate = limit * *pairs_own(pairs, FIELD_H_INVERSE);
+    if (viscosity_of[method->viscosity].midpoint) {
+        const double *own_L = pairs_own(pairs, RECORD_SLOPE),
+                     rate = limit * *pairs_own(pairs, RECORD_H_INVERSE);
         for (int k = 0; k < dim * dim; k++)
             if (!(fabs(own_L[k]) <= rate)) return false;
-        if (!lanes_agree(dim * dim, count, lanes->stride, none, pairs_theirs(pairs, FIELD_SLOPE),
+        if (!lanes_agree(dim * dim, count, lanes->stride, none, pairs_theirs(pairs, RECORD_SLOPE),
                          rate))
             return false;
     }
@@ -214,13 +200,14 @@ bool cells_viscosity(const struct cells *cells, const struct pairs *pairs)
     const struct cells_method *method = &cells->method;
     const int dim = method->box.dim;
     const bool still = all_still(method, pairs);
-    if (method->viscosity == VISCOSITY_NONE || still) {
+    if (viscosity_of[method->viscosity].none || still) {
         double *K = lane(pairs->lanes, LANE_K);
         for (int k = 0; k < pairs->count; k++) K[k] = 0;
         return !still;
     }
-    if (method->viscosity == VISCOSITY_RECONSTRUCTED) find_slopes(dim, method->projected, pairs);
-    const enum viscosity viscosity = method->projected ? VISCOSITY_PROJECTED : method->viscosity;
+    const enum viscosity viscosity = method->viscosity;
+    const bool noisy = viscosity_of[viscosity].noise;
+    if (viscosity_of[viscosity].midpoint || noisy) find_slopes(dim, noisy, pairs);
     if (method->signal_form)
         (dim == 2 ? viscous_signal_2 : viscous_signal_3)(viscosity, method, pairs);
     else
@@ -237,12 +224,14 @@ CLONES static double conducted(int dim, double alpha_u, const struct pairs *pair
     const int count = pairs->count;
     const double *x = lane(lanes, LANE_DX),
                  *G = lane(lanes, LANE_GX), *restrict r_inverse = lane(lanes, LANE_R_INVERSE);
-    const double *restrict m = pairs_theirs(pairs, FIELD_WEIGHT),
-                           *restrict rho = pairs_theirs(pairs, FIELD_DENSITY),
-                           *restrict P = pairs_theirs(pairs, FIELD_PRESSURE),
-                           *restrict u = pairs_theirs(pairs, FIELD_HEAT);
-    const double own_m = *pairs_own(pairs, FIELD_WEIGHT), own_P = *pairs_own(pairs, FIELD_PRESSURE),
-                 own_rho = *pairs_own(pairs, FIELD_DENSITY), own_u = *pairs_own(pairs, FIELD_HEAT);
+    const double *restrict m = pairs_theirs(pairs, RECORD_WEIGHT),
+                           *restrict rho = pairs_theirs(pairs, RECORD_DENSITY),
+                           *restrict P = pairs_theirs(pairs, RECORD_PRESSURE),
+                           *restrict u = pairs_theirs(pairs, RECORD_HEAT);
+    const double own_m = *pairs_own(pairs, RECORD_WEIGHT),
+                 own_P = *pairs_own(pairs, RECORD_PRESSURE),
+                 own_rho = *pairs_own(pairs, RECORD_DENSITY),
+                 own_u = *pairs_own(pairs, RECORD_HEAT);
     double *restrict s = lane(lanes, LANE_SPARE);
     for (int k = 0; k < count; k++) s[k] = 0;
     for (int a = 0; a < dim; a++) {
@@ -268,8 +257,8 @@ double cells_conduction(const struct cells *cells, const struct pairs *pairs)
 ALWAYS_INLINE void approaches_in(int dim, const struct pairs *pairs, double *restrict found)
 {
     const struct lanes *lanes = pairs->lanes;
-    const double *own_v = pairs_own(pairs, FIELD_VELOCITY),
-                 *restrict v = pairs_theirs(pairs, FIELD_VELOCITY),
+    const double *own_v = pairs_own(pairs, RECORD_VELOCITY),
+                 *restrict v = pairs_theirs(pairs, RECORD_VELOCITY),
                  *restrict G = lane(lanes, LANE_GX);
 #pragma omp simd
     for (int k = 0; k < pairs->count; k++) found[k] = approach(dim, lanes->stride, k, own_v, v, G);
@@ -287,5 +276,5 @@ double cells_divergence(const struct cells *cells, const struct pairs *pairs)
 {
     double *found = lane(pairs->lanes, LANE_SPARE);
     approaches(cells->method.box.dim, pairs, found);
-    return -lanes_dot(pairs_theirs(pairs, FIELD_VOLUME), found, pairs->count);
+    return -lanes_dot(pairs_theirs(pairs, RECORD_VOLUME), found, pairs->count);
 }

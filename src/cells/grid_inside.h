@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Inside of a grid: shared by its cells (grid.c) and its lists (grid_lists.c). */
+ * Inside of a grid: shared by its cells (grid.c), its lists (grid_lists.c) and
+ * the loops that tell who is near (grid_near.c). */
 #ifndef SPHPROOF_GRID_INSIDE_H
 #define SPHPROOF_GRID_INSIDE_H
 
@@ -19,7 +20,7 @@ enum {
 };
 
 /* Memory for lists, in chunks that never move. */
-struct pool {
+struct grid_pool {
     int32_t **chunks;
     size_t *sizes;
     size_t count, used_chunks, used; /* chunks there are; in use; words used of the last one */
@@ -89,7 +90,7 @@ struct grid {
     size_t candidates_most;     /* of a cell */
     size_t active;              /* points that may have lists */
     const unsigned char *flags; /* of the last search */
-    struct pool *pools;
+    struct grid_pool *pools;
     struct candidates *candidates;
     take_loop *take;
     find_loop *find;
@@ -154,12 +155,19 @@ static inline ptrdiff_t grid_folded(const struct grid *grid, int axis, ptrdiff_t
     return c < 0 ? c + grid->cells[axis] : c >= grid->cells[axis] ? c - grid->cells[axis] : c;
 }
 
-/* --- grid_lists.c ----------------------------------------------------------------------------- */
+/* --- grid_near.c ------------------------------------------------------------------------------ */
 
 /* The fastest loops that this processor runs. */
 take_loop *grid_take_choose(void);
 find_loop *grid_find_choose(void);
 read_loop *grid_read_choose(void);
+
+/* What a find_loop does in a box hardly wider than the radii: of all images the nearest one; side:
+ * period in units, HUGE_VALF where there is none. */
+int32_t grid_find_images(int dim, const struct candidates *candidates, size_t count,
+                         const float at[3], float radius2, const float side[3], uint16_t *marks);
+
+/* --- grid_lists.c ----------------------------------------------------------------------------- */
 
 /* Lists of all active points, from the cells. STATUS_ENVIRONMENT: no memory. */
 enum status grid_make_lists(struct grid *grid, struct error *error);

@@ -12,11 +12,7 @@
 #include <omp.h>
 #endif
 
-#if SPHPROOF_CLONES && defined __x86_64__
-#include <immintrin.h>
-#endif
-
-static int32_t *pool_take(struct pool *pool, size_t most)
+static int32_t *pool_take(struct grid_pool *pool, size_t most)
 {
     if (pool->used_chunks == 0 || pool->used + most > pool->sizes[pool->used_chunks - 1]) {
         while (pool->used_chunks < pool->count && pool->sizes[pool->used_chunks] < most)
@@ -63,32 +59,6 @@ static bool reserve_candidates(struct candidates *candidates, size_t count, size
     return true;
 }
 
-/* Which candidates are near the point at x? `near` gets 0 or 1; count in whole 16s. */
-#define NEAR(name, dim)                                                                            \
-    CLONES static void name(size_t count, const float at[3], float radius2,                        \
-                            const float *restrict x, const float *restrict y,                      \
-                            const float *restrict z, const float *restrict other,                  \
-                            uint8_t *restrict near)                                                \
-    {                                                                                              \
-        const float x0 = at[0], y0 = at[1], z0 = at[2];                                            \
-        _Pragma("omp simd") for (size_t k = 0; k < count; k++)                                     \
-        {                                                                                          \
-            const float dx = x[k] - x0, dy = y[k] - y0, dz = dim == 3 ? z[k] - z0 : 0;             \
-            const float r2 = dim == 3 ? dx * dx + dy * dy + dz * dz : dx * dx + dy * dy;           \
-            const float most = other[k] > radius2 ? other[k] : radius2;                            \
-            near[k] = r2 < most;                                                                   \
-        }                                                                                          \
-    }
-NEAR(near_2, 2)
-NEAR(near_3, 3)
-
-/* The difference of two positions that is nearest to 0. */
-ALWAYS_INLINE float nearest(float d, float side)
-{
-    const float half = 0.5f * side;
-    return d > half ? d - side : d < -half ? d + side : d;
-}
-
 /* All points of a cell, in whole vectors, whose rest the next cell overwrites. */
 CLONES static size_t take_all(const struct grid *grid, size_t cell, const float moved[3],
                               struct candidates *to, size_t count)
@@ -105,81 +75,6 @@ CLONES static size_t take_all(const struct grid *grid, size_t cell, const float 
         memcpy(to->radius2 + count + begin, grid->radius2 + first + begin, COPIED * sizeof(float));
     }
     return count + n;
-}
-
-/* Bytes of 0 and 1 as bits. Returns how many are 1. */
-static int32_t pack(const uint8_t *near, size_t count, uint16_t *marks)
-{
-    const uint64_t to_top = 0x0102040810204080u, sum = 0x0101010101010101u;
-    uint64_t found = 0;
-    for (size_t k = 0; k < count; k += 16) {
-        uint64_t half[2];
-        memcpy(half, near + k, sizeof half);
-        const uint64_t low = half[0] * to_top >> 56, high = half[1] * to_top >> 56;
-        marks[k / 16] = (uint16_t)(low | high << 8);
-        found += (half[0] + half[1]) * sum >> 56;
-    }
-    return (int32_t)found;
-}
-
-/* Marks of 16 points from the one numbered `at` on; those before it stay. */
-ALWAYS_INLINE void put_marks(uint16_t *marks, size_t at, uint32_t near)
-{
-    const uint32_t before = marks[at / 16] & ((1u << at % 16) - 1), wide = near << at % 16 | before;
-    marks[at / 16] = (uint16_t)wide;
-    marks[at / 16 + 1] = (uint16_t)(wide >> 16);
-}
-
-/* How far outside of lo .. hi is x? */
-ALWAYS_INLINE float outside(float x, float lo, float hi)
-{
-    const float above = x - hi, below = lo - x, d = above > below ? above : below;
-    return d > 0 ? d : 0;
-}
-
-/* Rounding keeps order: no distance to a point between lo and hi comes out less than that to the
- * box. */
-CLONES static size_t take_plainly(const struct grid *grid, size_t cell, const float moved[3],
-                                  const struct surroundings *around, struct candidates *to,
-                                  size_t count, size_t at)
-{
-    const size_t first = grid->start[cell], all = grid->start[cell + 1] - first;
-    const float moved_x = moved[0], moved_y = moved[1], moved_z = moved[2],
-                radius2 = around->radius2;
-    const float x0 = around->lo[0], y0 = around->lo[1], z0 = around->lo[2], x1 = around->hi[0],
-                y1 = around->hi[1], z1 = around->hi[2];
-    for (size_t begin = 0; begin < all; begin += COPIED) {
-        const size_t n = all - begin < COPIED ? all - begin : COPIED;
-        const size_t from = first + begin;
-        const float *restrict x = grid->place[0] + from, *restrict y = grid->place[1] + from,
-                              *restrict z = grid->place[2] + from,
-                              *restrict theirs = grid->radius2 + from;
-        float at_x[COPIED], at_y[COPIED], at_z[COPIED];
-        uint8_t near[COPIED];
-#pragma omp simd
-        for (int k = 0; k < COPIED; k++) {
-            at_x[k] = x[k] + moved_x;
-            at_y[k] = y[k] + moved_y;
-            at_z[k] = z[k] + moved_z;
-            const float dx = outside(at_x[k], x0, x1), dy = outside(at_y[k], y0, y1),
-                        dz = outside(at_z[k], z0, z1);
-            const float r2 = dx * dx + dy * dy + dz * dz;
-            const float widest = theirs[k] > radius2 ? theirs[k] : radius2;
-            near[k] = r2 <= widest;
-        }
-        uint16_t marks;
-        pack(near, COPIED, &marks);
-        if (n < COPIED) marks &= (uint16_t)((1u << n) - 1);
-        for (uint32_t left = marks; left; left &= left - 1, count++) {
-            const int k = __builtin_ctz(left);
-            to->x[0][count] = at_x[k];
-            to->x[1][count] = at_y[k];
-            to->x[2][count] = at_z[k];
-            to->radius2[count] = theirs[k];
-        }
-        put_marks(to->marks, at + begin, marks);
-    }
-    return count;
 }
 
 /* Fills the last group of 16 with candidates that no particle is near. Returns their number with
@@ -297,154 +192,6 @@ static size_t find_slots(const struct grid *grid, const struct region *region, i
     return count;
 }
 
-/* The same in a box hardly wider than the radii: of all images the nearest one; side: period in
- * units, HUGE_VALF where there is none. */
-CLONES static void near_images(int dim, size_t count, const float at[3], float radius2,
-                               const float side[3], const struct candidates *candidates)
-{
-    const float *restrict x = candidates->x[0], *restrict y = candidates->x[1],
-                          *restrict z = candidates->x[2], *restrict other = candidates->radius2;
-    uint8_t *restrict near = candidates->near;
-    const float x0 = at[0], y0 = at[1], z0 = at[2], sx = side[0], sy = side[1], sz = side[2];
-#pragma omp simd
-    for (size_t k = 0; k < count; k++) {
-        const float dx = nearest(x[k] - x0, sx), dy = nearest(y[k] - y0, sy),
-                    dz = dim == 3 ? nearest(z[k] - z0, sz) : 0;
-        const float r2 = dx * dx + dy * dy + dz * dz;
-        const float most = other[k] > radius2 ? other[k] : radius2;
-        near[k] = r2 < most;
-    }
-}
-
-static int32_t find_plainly(int dim, const struct candidates *candidates, size_t count,
-                            const float at[3], float radius2, uint16_t *marks)
-{
-    (dim == 2 ? near_2 : near_3)(count, at, radius2, candidates->x[0], candidates->x[1],
-                                 candidates->x[2], candidates->radius2, candidates->near);
-    return pack(candidates->near, count, marks);
-}
-
-/* Four marks at once: loops that end are what costs. */
-static int32_t read_plainly(const int32_t *candidates, const uint16_t *marks, size_t count,
-                            int32_t *list)
-{
-    int32_t found = 0;
-    for (size_t k = 0; k < count; k += 64) {
-        uint64_t left = 0;
-        for (size_t m = k; m < k + 64 && m < count; m += 16)
-            left |= (uint64_t)marks[m / 16] << (m - k);
-        for (; left; left &= left - 1)
-            list[found++] = candidates[k + (size_t)__builtin_ctzll(left)];
-    }
-    return found;
-}
-
-#if SPHPROOF_CLONES && defined __x86_64__
-
-__attribute__((target("avx512f,popcnt"))) static int32_t
-find_in_vectors(int dim, const struct candidates *candidates, size_t count, const float at[3],
-                float radius2, uint16_t *marks)
-{
-    const __m512 x0 = _mm512_set1_ps(at[0]), y0 = _mm512_set1_ps(at[1]), z0 = _mm512_set1_ps(at[2]),
-                 own = _mm512_set1_ps(radius2);
-    const float *const x = candidates->x[0], *const y = candidates->x[1],
-                       *const z = candidates->x[2], *const radius2_of = candidates->radius2;
-    int32_t found = 0;
-    for (size_t k = 0; k < count; k += 16) {
-        const __m512 dx = _mm512_sub_ps(_mm512_loadu_ps(x + k), x0),
-                     dy = _mm512_sub_ps(_mm512_loadu_ps(y + k), y0);
-        __m512 r2 = _mm512_add_ps(_mm512_mul_ps(dx, dx), _mm512_mul_ps(dy, dy));
-        if (dim == 3) {
-            const __m512 dz = _mm512_sub_ps(_mm512_loadu_ps(z + k), z0);
-            r2 = _mm512_add_ps(r2, _mm512_mul_ps(dz, dz));
-        }
-        const __m512 most = _mm512_max_ps(_mm512_loadu_ps(radius2_of + k), own);
-        const __mmask16 near = _mm512_cmp_ps_mask(r2, most, _CMP_LT_OQ);
-        marks[k / 16] = near;
-        found += _mm_popcnt_u32(near);
-    }
-    return found;
-}
-
-/* Lanes that stay are moved together in a register. */
-__attribute__((target("avx512f,popcnt"))) static size_t
-take_in_vectors(const struct grid *grid, size_t cell, const float moved[3],
-                const struct surroundings *around, struct candidates *to, size_t count, size_t at)
-{
-    const size_t first = grid->start[cell], all = grid->start[cell + 1] - first;
-    const __m512 none = _mm512_setzero_ps(), own = _mm512_set1_ps(around->radius2);
-    for (size_t begin = 0; begin < all; begin += COPIED) {
-        const size_t n = all - begin;
-        const __mmask16 there = (__mmask16)(n < COPIED ? (1u << n) - 1 : 0xffffu);
-        __m512 x[3], r2 = none;
-        for (int a = 0; a < 3; a++) {
-            x[a] = _mm512_add_ps(_mm512_loadu_ps(grid->place[a] + first + begin),
-                                 _mm512_set1_ps(moved[a]));
-            const __m512 above = _mm512_sub_ps(x[a], _mm512_set1_ps(around->hi[a])),
-                         below = _mm512_sub_ps(_mm512_set1_ps(around->lo[a]), x[a]),
-                         d = _mm512_max_ps(_mm512_max_ps(above, below), none);
-            r2 = _mm512_add_ps(r2, _mm512_mul_ps(d, d));
-        }
-        const __m512 theirs = _mm512_loadu_ps(grid->radius2 + first + begin);
-        const __mmask16 near =
-            _mm512_mask_cmp_ps_mask(there, r2, _mm512_max_ps(theirs, own), _CMP_LE_OQ);
-        for (int a = 0; a < 3; a++)
-            _mm512_storeu_ps(to->x[a] + count, _mm512_maskz_compress_ps(near, x[a]));
-        _mm512_storeu_ps(to->radius2 + count, _mm512_maskz_compress_ps(near, theirs));
-        put_marks(to->marks, at + begin, near);
-        count += (size_t)_mm_popcnt_u32(near);
-    }
-    return count;
-}
-
-/* The same with slots. */
-__attribute__((target("avx512f,popcnt"))) static int32_t
-read_by_compressing(const int32_t *candidates, const uint16_t *marks, size_t count, int32_t *list)
-{
-    int32_t found = 0;
-    for (size_t k = 0; k < count; k += 16) {
-        const __mmask16 near = marks[k / 16];
-        const __m512i slot = _mm512_loadu_si512(candidates + k);
-        _mm512_storeu_si512(list + found, _mm512_maskz_compress_epi32(near, slot));
-        found += _mm_popcnt_u32(near);
-    }
-    return found;
-}
-
-take_loop *grid_take_choose(void)
-{
-    return __builtin_cpu_supports("avx512f") ? take_in_vectors : take_plainly;
-}
-
-find_loop *grid_find_choose(void)
-{
-    return __builtin_cpu_supports("avx512f") ? find_in_vectors : find_plainly;
-}
-
-read_loop *grid_read_choose(void)
-{
-    return __builtin_cpu_supports("avx512f") ? read_by_compressing : read_plainly;
-}
-
-#else
-
-take_loop *grid_take_choose(void)
-{
-    return take_plainly;
-}
-
-find_loop *grid_find_choose(void)
-{
-    return find_plainly;
-}
-
-read_loop *grid_read_choose(void)
-{
-    return read_plainly;
-}
-
-#endif
-
 /* beside: a listed point may be near. */
 static bool is_listed(const struct grid *grid, uint32_t slot, bool beside)
 {
@@ -525,7 +272,7 @@ static void read_list(const struct grid *grid, const int32_t *candidates, const 
 
 /* The lists of a cell's points. Returns the longest one, -1: no memory. */
 static int search_cell(struct grid *grid, const ptrdiff_t c[3], struct candidates *candidates,
-                       struct pool *pool)
+                       struct grid_pool *pool)
 {
     const size_t cell = grid_cell_at(grid, c);
     if (grid->start[cell] == grid->start[cell + 1]) return 0;
@@ -568,8 +315,8 @@ static int search_cell(struct grid *grid, const ptrdiff_t c[3], struct candidate
         uint16_t *marks = marked ? (uint16_t *)(void *)kept : candidates->marks;
         const float at[3] = {grid->place[0][s], grid->place[1][s], grid->place[2][s]};
         if (region.all) {
-            near_images(grid->box.dim, count, at, grid->radius2[s], side, candidates);
-            list->count = pack(candidates->near, count, marks);
+            list->count = grid_find_images(grid->box.dim, candidates, count, at, grid->radius2[s],
+                                           side, marks);
         } else {
             list->count = grid->find(grid->box.dim, candidates, count, at, grid->radius2[s], marks);
         }

@@ -120,7 +120,7 @@ static void gather(const struct cells *cells, const struct lanes_layout *layout,
     const int dim = cells->method.box.dim;
     struct geometry g = {.at = cells->place[slot],
                          .side = cells->side,
-                         .x = lane_of(lanes, layout, FIELD_PLACE),
+                         .x = lane_of(lanes, layout, RECORD_PLACE),
                          .d = lane(lanes, LANE_DX),
                          .r = lane(lanes, LANE_R),
                          .r_inverse = lane(lanes, LANE_R_INVERSE),
@@ -139,8 +139,8 @@ static void gather(const struct cells *cells, const struct lanes_layout *layout,
         find_directions(dim, wrapped, count, &g);
         break;
     case LANES_CLOSING:
-        g.v = lane_of(lanes, layout, FIELD_VELOCITY);
-        g.own_v = cells->records + (ptrdiff_t)slot * layout->size + layout->offset[FIELD_VELOCITY];
+        g.v = lane_of(lanes, layout, RECORD_VELOCITY);
+        g.own_v = cells->records + (ptrdiff_t)slot * layout->size + layout->offset[RECORD_VELOCITY];
         find_closing(dim, wrapped, count, &g);
         break;
     }

@@ -12,26 +12,26 @@
 /* What a record may hold of a particle; which of it there is, is the method's. Records are what
  * costs: they come from the second-level cache, again for every neighbour. */
 enum lanes_field {
-    FIELD_PLACE,     /* x y (z) */
-    FIELD_WEIGHT,    /* density: m, or 1; matrix: V; forces: m; switch: m sign(div v) */
-    FIELD_ENERGY,    /* density with the energy element: U */
-    FIELD_VELOCITY,  /* vx vy (vz) */
-    FIELD_H_INVERSE, /* 1/h */
-    FIELD_H,         /* of the matrix pass alone */
-    FIELD_VOLUME,    /* V */
-    FIELD_PRESSURE,
-    FIELD_SOUND,      /* c */
-    FIELD_DENSITY,    /* rho */
-    FIELD_ALPHA,      /* of the viscosity */
-    FIELD_BALSARA,    /* factor of the viscosity */
-    FIELD_HEAT,       /* u */
-    FIELD_LAGRANGIAN, /* b grad_h Z */
-    FIELD_MATRIX,     /* symmetric; all 0: not to be used, the pair has the standard gradient */
-    FIELD_STEEP,      /* share of the standard gradient: blended */
-    FIELD_SLOPE,
-    FIELD_PROJECTOR,    /* symmetric */
-    FIELD_ACCELERATION, /* ax ay (az) */
-    FIELDS
+    RECORD_PLACE,     /* x y (z) */
+    RECORD_WEIGHT,    /* density: m, or 1; matrix: V; forces: m; switch: m sign(div v) */
+    RECORD_ENERGY,    /* density with the energy element: U */
+    RECORD_VELOCITY,  /* vx vy (vz) */
+    RECORD_H_INVERSE, /* 1/h */
+    RECORD_H,         /* of the matrix pass alone */
+    RECORD_VOLUME,    /* V */
+    RECORD_PRESSURE,
+    RECORD_SOUND,      /* c */
+    RECORD_DENSITY,    /* rho */
+    RECORD_ALPHA,      /* of the viscosity */
+    RECORD_BALSARA,    /* factor of the viscosity */
+    RECORD_HEAT,       /* u */
+    RECORD_LAGRANGIAN, /* b grad_h Z */
+    RECORD_MATRIX,     /* symmetric; all 0: not to be used, the pair has the standard gradient */
+    RECORD_STEEP,      /* share of the standard gradient: blended */
+    RECORD_SLOPE,
+    RECORD_PROJECTOR,    /* symmetric */
+    RECORD_ACCELERATION, /* ax ay (az) */
+    RECORD_FIELDS
 };
 
 /* What is found of every pair when its records are gathered. */
@@ -44,8 +44,8 @@ enum lanes_geometry {
 
 struct lanes_layout {
     enum lanes_geometry geometry;
-    int used, size;     /* doubles of a record; in whole groups */
-    int offset[FIELDS]; /* 0: absent, but for the place, which comes first */
+    int used, size;            /* doubles of a record; in whole groups */
+    int offset[RECORD_FIELDS]; /* 0: absent, but for the place, which comes first */
     gather_loop *gather;
 };
 

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "kernel_names.h"
+#include "family_names.h"
 #include "specialise.h"
 
 /* One loop over q. */

@@ -1,26 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Families whose members are choices in the equations, not functions of their own. The list of a
- * family is read for its enum (here), its descriptors (scheme.c) and its axis in the tables of
- * specialised loops: a member cannot be forgotten in one of them, nor stand at another's place.
+ * Families whose members are choices in the equations. The list of a family is read for its enum
+ * (here), its descriptors (scheme.c) and its axis in the tables of specialised loops: a member
+ * cannot be forgotten in one of them, nor stand at another's place. Gradients and viscosities have
+ * a file each, and their lists are generated (family_names.h).
  *
  * A member: CHOICE(symbol, name, label, paper); a list hands on what follows the first argument, so
  * that lists nest: FORMULATION_LIST(F, a) makes F(symbol, name, label, paper, a) of each member. */
 #ifndef SPHPROOF_FAMILIES_H
 #define SPHPROOF_FAMILIES_H
 
-/* Lists called _LINE are of members that have a form in 1D; those that need two dimensions follow
- * them in the whole list (scheme_members counts). Loops in 1D are specialised for the former. */
-#define GRADIENT_LINE_LIST(CHOICE, ...)                                                            \
-    CHOICE(GRADIENT_STANDARD, "standard", "derivative of the kernel, e_ij dW/dr", "Monaghan 1992", \
-           __VA_ARGS__)                                                                            \
-    CHOICE(GRADIENT_IA, "ia", "Integral Approach, conservative form, C x W",                       \
-           "Garcia-Senz, Cabezon & Escartin 2012", __VA_ARGS__)
-
-#define GRADIENT_LIST(CHOICE, ...)                                                                 \
-    GRADIENT_LINE_LIST(CHOICE, __VA_ARGS__)                                                        \
-    CHOICE(GRADIENT_CORRECTED, "corrected", "as ia with the weight -W'/r in place of W",           \
-           "Bonet & Lok 1999, in conservative form", __VA_ARGS__)                                  \
-    CHOICE(GRADIENT_BLENDED, "blended", "ia, but standard where h changes steeply", "", __VA_ARGS__)
+#include "family_names.h"
 
 #define FORMULATION_LIST(CHOICE, ...)                                                              \
     CHOICE(FORMULATION_VANILLA_ICE, "vanilla_ice", "(P_i + P_j)/(rho_i rho_j), lambda = 1",        \
@@ -34,25 +23,6 @@
            "Saitoh & Makino 2013", __VA_ARGS__)                                                    \
     CHOICE(VOLUME_NUMBER, "number", "Z = 1: number density, for unequal masses",                   \
            "Ritchie & Thomas 2001", __VA_ARGS__)
-
-#define VISCOSITY_LINE_LIST(CHOICE, ...)                                                           \
-    CHOICE(VISCOSITY_NONE, "none", "none", "", __VA_ARGS__)                                        \
-    CHOICE(VISCOSITY_CONSTANT, "constant", "fixed alpha and beta", "Monaghan 1992", __VA_ARGS__)   \
-    CHOICE(VISCOSITY_TIME_DEPENDENT, "time_dependent",                                             \
-           "alpha grows in compression, decays behind", "Morris & Monaghan 1997", __VA_ARGS__)     \
-    CHOICE(VISCOSITY_RECONSTRUCTED, "reconstructed",                                               \
-           "velocities extrapolated to the midpoint, limited", "Rosswog 2020", __VA_ARGS__)        \
-    CHOICE(VISCOSITY_FADING, "fading",                                                             \
-           "constant, but quadratic in compression below 0.01 c a pair",                           \
-           "von Neumann & Richtmyer 1950", __VA_ARGS__)
-
-#define VISCOSITY_LIST(CHOICE, ...)                                                                \
-    VISCOSITY_LINE_LIST(CHOICE, __VA_ARGS__)                                                       \
-    CHOICE(VISCOSITY_CULLEN_DEHNEN, "cullen_dehnen",                                               \
-           "alpha jumps up where div v falls, decays behind", "Cullen & Dehnen 2010", __VA_ARGS__) \
-    CHOICE(VISCOSITY_PROJECTED, "projected",                                                       \
-           "reconstructed in shocks; noise damped, but not along the local shear", "",             \
-           __VA_ARGS__)
 
 #define VISCOSITY_FORM_LIST(CHOICE, ...)                                                           \
     CHOICE(VISCOSITY_FORM_MU, "mu", "by mu = hbar v.r/(r^2 + 0.01 hbar^2)", "Monaghan 1992",       \
@@ -93,22 +63,23 @@
            "extrapolated from the last steps; one density sum, and a Newton step for the next",    \
            "", __VA_ARGS__)
 
-#define STEPS_LINE_LIST(CHOICE, ...)                                                               \
-    CHOICE(STEPS_GLOBAL, "global", "one time step for all particles", "", __VA_ARGS__)
 #define STEPS_LIST(CHOICE, ...)                                                                    \
-    STEPS_LINE_LIST(CHOICE, __VA_ARGS__)                                                           \
+    CHOICE(STEPS_GLOBAL, "global", "one time step for all particles", "", __VA_ARGS__)             \
     CHOICE(STEPS_LOCAL, "local",                                                                   \
            "one for each particle, by powers of two; pairs exchange impulses and energy", "",      \
            __VA_ARGS__)
 
-/* FAMILY(name, list, number of members, plural, title): enum name, scheme_name_family. */
-#define FAMILY_LIST(FAMILY)                                                                        \
+/* FAMILY(name, list, number of members, plural, title): enum name, scheme_name_family. Families
+ * whose members have a file and a descriptor each: gradient.h, viscosity.h; those of plain choices;
+ * all. */
+#define FAMILY_FILE_LIST(FAMILY)                                                                   \
     FAMILY(gradient, GRADIENT_LIST, GRADIENTS, "gradients",                                        \
            "gradients of the equations of motion")                                                 \
+    FAMILY(viscosity, VISCOSITY_LIST, VISCOSITIES, "viscosities", "artificial viscosities")
+#define FAMILY_CHOICE_LIST(FAMILY)                                                                 \
     FAMILY(formulation, FORMULATION_LIST, FORMULATIONS, "formulations", "equations of motion")     \
     FAMILY(volume_element, VOLUME_ELEMENT_LIST, VOLUME_ELEMENTS, "volume_elements",                \
            "what the kernel sum adds up")                                                          \
-    FAMILY(viscosity, VISCOSITY_LIST, VISCOSITIES, "viscosities", "artificial viscosities")        \
     FAMILY(viscosity_form, VISCOSITY_FORM_LIST, VISCOSITY_FORMS, "viscosity_forms",                \
            "what artificial viscosity takes for the closing speed")                                \
     FAMILY(balsara, BALSARA_LIST, BALSARAS, "balsara_factors", "artificial viscosity in shear")    \
@@ -118,6 +89,8 @@
            "width at which a pair's gradient is taken")                                            \
     FAMILY(h_method, H_METHOD_LIST, H_METHODS, "h_methods", "how the smoothing length is found")   \
     FAMILY(time_steps, STEPS_LIST, TIME_STEPS, "time_steps", "whose time step it is")
+
+#define FAMILY_LIST(FAMILY) FAMILY_FILE_LIST(FAMILY) FAMILY_CHOICE_LIST(FAMILY)
 
 #define FAMILY_SYMBOL(symbol, ...) symbol,
 #define FAMILY_COUNTED(...)        +1

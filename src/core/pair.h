@@ -17,28 +17,10 @@
 
 #include "scheme.h"
 #include "specialise.h"
-
-/* What one particle brings into a pair; a term reads what it needs, and what none reads costs
- * nothing, as everything here is inlined. */
-struct pair_side {
-    double m, Z;      /* mass; what the density sum adds up: m, or U with the energy element */
-    double V;         /* volume Z/y */
-    double h_inverse; /* 1/h */
-    double P, rho, c; /* pressure, density of the equation of state, sound speed */
-    double alpha;     /* viscosity of the particle: time_dependent */
-    double b, grad_h; /* lagrangian: Z P/y^2 and 1 - f */
-    double slope;     /* reconstructed: e . (grad v) e along the pair; in 1D dv/dx */
-};
+#include "viscosity.h"
 
 struct pair_terms {
     double i, j;
-};
-
-/* The numbers of the viscosity, the same for all pairs. */
-struct pair_numbers {
-    double alpha, beta; /* not of time_dependent */
-    double beta_ratio;  /* time_dependent: beta/alpha, alpha the mean of the pair */
-    double near;        /* reconstructed: 1/eta, pairs closer than near * h are damped */
 };
 
 /* --- pressure --------------------------------------------------------------------------------- */
@@ -79,66 +61,6 @@ ALWAYS_INLINE struct pair_terms pair_pressure(enum formulation formulation,
 
 /* --- viscosity -------------------------------------------------------------------------------- */
 
-/* exp(-z) for 0 <= z <= 7, to 8e-7 relative: (exp(-z/16))^16 by the series, in pairs of terms, as
- * the length of the chain of operations is what costs. */
-ALWAYS_INLINE double pair_damping(double z)
-{
-    const double t = -0.0625 * z, t2 = t * t;
-    const double low = (1 + t) + t2 * (1. / 2 + t * (1. / 6));
-    const double high = (1. / 24 + t * (1. / 120)) + t2 * (1. / 720 + t * (1. / 5040));
-    double s = low + t2 * t2 * high;
-    s *= s;
-    s *= s;
-    s *= s;
-    return s * s;
-}
-
-/* Closing speed of a pair extrapolated to its midpoint with a limited slope, CONVENTIONS eqs. 5.11
- * and 5.12 (Frontiere, Raskin & Owen 2017; Rosswog 2020, eqs. 18-22): closing + phi/2 (s_i + s_j)
- * r, phi = max(0, 4 s_i s_j/(s_i + s_j)^2) exp(-((q - near)/0.2)^2 where q = r/max(h_i, h_j) <
- * near). Returned as a numerator over *scale, so that the pair needs one division. Zero where the
- * pair itself recedes: the heating uses v_ij, and viscosity never cools. */
-ALWAYS_INLINE double pair_closing_at_midpoint(const struct pair_side *i, const struct pair_side *j,
-                                              double r, double closing, double near, double *scale)
-{
-    const double sum = i->slope + j->slope, product = i->slope * j->slope;
-    const double q = r * least(i->h_inverse, j->h_inverse);
-    const double z = q < near ? least((near - q) * 5, 2.6) : 0;
-    const double one_sided = product > 0 ? 2 * r * product * pair_damping(z * z) : 0;
-    *scale = product > 0 ? sum : 1;
-    const double at_midpoint = closing * *scale + one_sided;
-    return closing > 0 && at_midpoint * *scale > 0 ? at_midpoint : 0;
-}
-
-/* Viscosity fading, CONVENTIONS eq. 5.13: the linear term sees the speed of sound only where a pair
- * closes faster than this part of it, and a proportionally smaller one below: smooth flow is left
- * alone, to second order, while shocks (0.1 c and more a pair) do not notice. */
-static const double pair_fade_below = 0.01;
-
-/* What tells a viscosity's pair term from the plain one. Every member of the list has its place
- * here: another one does not compile without. */
-struct pair_form {
-    bool midpoint, varying, fading;
-};
-
-ALWAYS_INLINE struct pair_form pair_form_of(enum viscosity viscosity)
-{
-    switch (viscosity) {
-    case VISCOSITY_NONE:
-    case VISCOSITY_CONSTANT:
-        return (struct pair_form){0};
-    case VISCOSITY_TIME_DEPENDENT:
-    case VISCOSITY_CULLEN_DEHNEN:
-        return (struct pair_form){.varying = true};
-    case VISCOSITY_RECONSTRUCTED:
-    case VISCOSITY_PROJECTED: /* its shock term */
-        return (struct pair_form){.midpoint = true};
-    case VISCOSITY_FADING:
-        return (struct pair_form){.fading = true};
-    }
-    return (struct pair_form){0};
-}
-
 /* hbar = (h_i + h_j)/4 as a quotient: who has only 1/h needs no division for it. */
 struct pair_mean_width {
     double over, under;
@@ -158,45 +80,29 @@ ALWAYS_INLINE struct pair_mean_width pair_mean_width_inverse(double h_inverse_i,
  * of Monaghan 1992, CONVENTIONS eqs. 5.6 to 5.8: PI = (-alpha cbar mu + beta mu^2)/rhobar, mu =
  * -hbar closing r/(r^2 + 0.01 hbar^2), hbar = (h_i + h_j)/4, 0 where the pair recedes. G: mean of
  * both gradients. */
-ALWAYS_INLINE double pair_viscous(enum viscosity viscosity, const struct pair_numbers *numbers,
-                                  const struct pair_side *i, const struct pair_side *j,
-                                  struct pair_mean_width h_bar, double r, double closing, double G)
+ALWAYS_INLINE double pair_viscous(struct viscosity_seen seen, const struct pair_side *i,
+                                  const struct pair_side *j, struct pair_mean_width h_bar, double r,
+                                  double G)
 {
-    const struct pair_form form = pair_form_of(viscosity);
-    double scale = 1;
-    const double w = form.midpoint
-                         ? pair_closing_at_midpoint(i, j, r, closing, numbers->near, &scale)
-                         : largest(closing, 0);
     /* mu = -t under/D2; cbar and rhobar are halves of sums: alpha_half goes with the sum of c, and
      * the 1/2 of the heating with the sum of rho */
-    const double over = h_bar.over, under = h_bar.under, c_sum = i->c + j->c;
-    const double t = over * r * w, D2 = (r * r * (under * under) + 0.01 * (over * over)) * scale;
-    const double alpha_half = form.varying ? 0.25 * (i->alpha + j->alpha) : 0.5 * numbers->alpha;
-    const double beta = form.varying ? 2 * numbers->beta_ratio * alpha_half : numbers->beta;
-    const double c_seen = form.fading ? least(c_sum, w * (2 / pair_fade_below)) : c_sum;
-    return i->m * j->m * G * t * (alpha_half * c_seen * D2 + beta * t * under) * under /
-           (D2 * D2 * (i->rho + j->rho));
+    const double over = h_bar.over, under = h_bar.under, t = over * r * seen.closing;
+    const double D2 = (r * r * (under * under) + 0.01 * (over * over)) * seen.scale;
+    return i->m * j->m * G * t * (seen.alpha_half * seen.c_sum * D2 + seen.beta * t * under) *
+           under / (D2 * D2 * (i->rho + j->rho));
 }
 
 /* The same term with the signal velocity (Monaghan 1997, CONVENTIONS eq. 6.2), for closing = -w_ij
- * > 0: PI = (alpha cbar + (beta/2) closing) closing/rhobar. */
-ALWAYS_INLINE double pair_viscous_signal(enum viscosity viscosity,
-                                         const struct pair_numbers *numbers,
+ * > 0: PI = (alpha cbar + (beta/2) closing) closing/rhobar. midpoint: the scale is not 1. */
+ALWAYS_INLINE double pair_viscous_signal(bool midpoint, struct viscosity_seen seen,
                                          const struct pair_side *i, const struct pair_side *j,
-                                         double r, double closing, double G)
+                                         double G)
 {
-    const struct pair_form form = pair_form_of(viscosity);
-    double scale = 1;
-    const double w = form.midpoint
-                         ? pair_closing_at_midpoint(i, j, r, closing, numbers->near, &scale)
-                         : largest(closing, 0);
     /* one division for both quotients, by the scale and by the densities */
-    const double rho_sum = i->rho + j->rho, inverse = 1 / (scale * rho_sum), c_sum = i->c + j->c;
-    const double speed = form.midpoint ? w * rho_sum * inverse : w;
-    const double alpha_half = form.varying ? 0.25 * (i->alpha + j->alpha) : 0.5 * numbers->alpha;
-    const double beta = form.varying ? 2 * numbers->beta_ratio * alpha_half : numbers->beta;
-    const double c_seen = form.fading ? least(c_sum, speed * (2 / pair_fade_below)) : c_sum;
-    return i->m * j->m * G * speed * (alpha_half * c_seen + 0.5 * beta * speed) * (scale * inverse);
+    const double rho_sum = i->rho + j->rho, inverse = 1 / (seen.scale * rho_sum);
+    const double speed = midpoint ? seen.closing * rho_sum * inverse : seen.closing;
+    return i->m * j->m * G * speed * (seen.alpha_half * seen.c_sum + 0.5 * seen.beta * speed) *
+           (seen.scale * inverse);
 }
 
 /* --- energy ----------------------------------------------------------------------------------- */

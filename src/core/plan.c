@@ -6,13 +6,15 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "gradient.h"
 #include "integrator.h"
 #include "simulation.h"
-#include "traits.h"
+#include "viscosity.h"
 
 struct plan plan_make(const struct scheme *scheme, int dim, bool skip, bool specialised)
 {
-    const struct viscosity_traits *viscosity = &traits_viscosity[scheme->viscosity];
+    const struct viscosity_descriptor *viscosity = &viscosity_of[scheme->viscosity];
+    const bool matrix = gradient_of[scheme->gradient].weight != WEIGHT_NONE;
     return (struct plan){
         .dim = dim,
         .sums = sums_find(dim),
@@ -20,15 +22,14 @@ struct plan plan_make(const struct scheme *scheme, int dim, bool skip, bool spec
         .newton = scheme->h_method == H_NEWTON,
         .energy_sum = scheme->volume_element == VOLUME_ENERGY,
         .grad_h = scheme->formulation == FORMULATION_LAGRANGIAN,
-        .matrix = traits_gradient[scheme->gradient].matrix,
-        .own_gradient = !traits_gradient[scheme->gradient].matrix &&
-                        (scheme->pair_width == PAIR_WIDTH_MEAN ||
-                         scheme->formulation == FORMULATION_LAGRANGIAN),
-        .slope = viscosity->slope || scheme->balsara == BALSARA_ON,
+        .matrix = matrix,
+        .own_gradient = !matrix && (scheme->pair_width == PAIR_WIDTH_MEAN ||
+                                    scheme->formulation == FORMULATION_LAGRANGIAN),
+        .slope = viscosity_needs_slope(scheme->viscosity) || scheme->balsara == BALSARA_ON,
         .balsara = scheme->balsara == BALSARA_ON,
         .viscosity = !viscosity->none,
-        .alpha = viscosity->evolves,
-        .jump = viscosity->jumps,
+        .alpha = viscosity->evolve,
+        .jump = viscosity->find_goal,
         .local = scheme->steps == STEPS_LOCAL,
         .sleep = skip,
         .quiet = skip,
@@ -92,7 +93,7 @@ static void find_warnings(const struct scheme *scheme, int dim, char *text, size
             "unless viscosity hides it",
             eta, limit, scheme->kernel.member.name,
             scheme_gradient_family.members[scheme->gradient]->name);
-    if (scheme->energy == ENERGY_TOTAL && traits_viscosity[scheme->viscosity].none)
+    if (scheme->energy == ENERGY_TOTAL && viscosity_of[scheme->viscosity].none)
         warn(text, size,
              "energy=total: should the flow get cold (u << v^2), U = E - p^2/2m loses digits");
 }

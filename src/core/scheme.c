@@ -3,15 +3,19 @@
 
 #include <math.h>
 
+#include "gradient.h"
 #include "integrator.h"
-#include "traits.h"
+#include "viscosity.h"
 
-#define DESCRIPTOR(symbol, key, label, paper, ...)                                                 \
-    [symbol] = &(const struct member){key, label, paper},
-#define FAMILY(name, LIST, count, plural, title)                                                   \
-    static const struct member *const name##_members[count] = {LIST(DESCRIPTOR, )};                \
+#define CHOICE(symbol, key, label, paper, ...) [symbol] = &(const struct member){key, label, paper},
+#define DESCRIBED(symbol, member_name, family) [symbol] = &family##_of[symbol].member,
+#define FAMILY_OF(MEMBER, name, LIST, count, plural, title)                                        \
+    static const struct member *const name##_members[count] = {LIST(MEMBER, name)};                \
     const struct family scheme_##name##_family = {plural, title, name##_members, count};
-FAMILY_LIST(FAMILY)
+#define FAMILY_OF_FILES(...)   FAMILY_OF(DESCRIBED, __VA_ARGS__)
+#define FAMILY_OF_CHOICES(...) FAMILY_OF(CHOICE, __VA_ARGS__)
+FAMILY_FILE_LIST(FAMILY_OF_FILES)
+FAMILY_CHOICE_LIST(FAMILY_OF_CHOICES)
 
 /* Of 2D: wide smooth kernel and ia, which repairs the error of a uniform pressure, with a viscosity
  * that damps noise and leaves shear alone: the only one that is among the best both for vortices
@@ -23,23 +27,22 @@ static void default_choices(struct scheme *scheme, const struct scheme_open *ope
         kernel_select(&scheme->kernel, line ? "quadratic_spline" : "wendland_c4", 5, &none);
     if (open->gradient) scheme->gradient = line ? GRADIENT_STANDARD : GRADIENT_IA;
     if (open->viscosity) scheme->viscosity = line ? VISCOSITY_CONSTANT : VISCOSITY_PROJECTED;
-    const struct viscosity_traits *viscosity = &traits_viscosity[scheme->viscosity];
-    if (open->volume_element)
-        scheme->volume_element = viscosity->noise ? VOLUME_NUMBER : VOLUME_MASS;
+    const struct viscosity_descriptor *viscosity = &viscosity_of[scheme->viscosity];
+    if (open->volume_element) scheme->volume_element = viscosity->defaults.volume_element;
     if (open->viscosity_form)
-        scheme->viscosity_form =
-            viscosity->midpoint && !line ? VISCOSITY_FORM_SIGNAL : VISCOSITY_FORM_MU;
-    if (open->balsara) scheme->balsara = viscosity->noise ? BALSARA_ON : BALSARA_OFF;
+        scheme->viscosity_form = line ? VISCOSITY_FORM_MU : viscosity->defaults.cloud_form;
+    if (open->balsara) scheme->balsara = viscosity->defaults.balsara;
 }
 
 void scheme_default(struct scheme *scheme, const struct scheme_open *open, int dim)
 {
     default_choices(scheme, open, dim == 1);
     const struct kernel *kernel = &scheme->kernel;
+    const struct viscosity_descriptor *viscosity = &viscosity_of[scheme->viscosity];
     const struct integrator *integrator = scheme->integrator;
     const bool predicts = integrator->predicts, own = predicts && dim == 1,
                vanilla = scheme->formulation == FORMULATION_VANILLA_ICE,
-               standard = !traits_gradient[scheme->gradient].matrix;
+               standard = gradient_of[scheme->gradient].weight == WEIGHT_NONE;
     if (open->eta)
         scheme->eta = dim > 1 && kernel->cloud_eta > 0 ? kernel->cloud_eta : kernel->default_eta;
     if (open->energy) scheme->energy = predicts ? ENERGY_TOTAL : ENERGY_INTERNAL;
@@ -48,14 +51,13 @@ void scheme_default(struct scheme *scheme, const struct scheme_open *open, int d
     if (open->beta) scheme->beta = 2 * scheme->alpha;
     if (open->h_method) scheme->h_method = predicts && vanilla ? H_PREDICTED : H_NEWTON;
     if (open->pair_width)
-        scheme->pair_width = !predicts || !vanilla                          ? PAIR_WIDTH_MEAN
-                             : scheme->viscosity == VISCOSITY_RECONSTRUCTED ? PAIR_WIDTH_HARMONIC
-                             : own && standard ? kernel->predicted.pair_width
-                                               : PAIR_WIDTH_MEAN;
+        scheme->pair_width = !predicts || !vanilla           ? PAIR_WIDTH_MEAN
+                             : viscosity->defaults.predicted ? viscosity->defaults.predicted
+                             : own && standard               ? kernel->predicted.pair_width
+                                                             : PAIR_WIDTH_MEAN;
     if (!open->cfl) return;
     /* long steps are stable with this much viscosity, and not needed without */
-    const struct viscosity_traits *viscosity = &traits_viscosity[scheme->viscosity];
-    const double most_alpha = viscosity->evolves ? scheme->alpha_max : scheme->alpha;
+    const double most_alpha = viscosity->evolve ? scheme->alpha_max : scheme->alpha;
     const bool long_steps =
         own && standard && kernel->predicted.cfl > 0 && scheme->eta == kernel->default_eta &&
         !viscosity->none && most_alpha <= kernel->predicted.alpha &&
@@ -71,10 +73,17 @@ void scheme_default(struct scheme *scheme, const struct scheme_open *open, int d
 
 size_t scheme_members(const struct family *family, int dim)
 {
+    size_t n = 0;
     if (dim > 1) return family->n;
-    if (family == &scheme_gradient_family) return GRADIENT_CORRECTED;
+    if (family == &scheme_gradient_family) {
+        while (n < GRADIENTS && gradient_of[n].least_dim == 1) n++;
+        return n;
+    }
+    if (family == &scheme_viscosity_family) {
+        while (n < VISCOSITIES && viscosity_of[n].least_dim == 1) n++;
+        return n;
+    }
     if (family == &scheme_volume_element_family) return VOLUME_NUMBER;
-    if (family == &scheme_viscosity_family) return VISCOSITY_CULLEN_DEHNEN;
     if (family == &scheme_viscosity_form_family) return VISCOSITY_FORM_SIGNAL;
     if (family == &scheme_balsara_family) return BALSARA_ON;
     if (family == &scheme_time_steps_family) return STEPS_LOCAL;
@@ -109,13 +118,6 @@ static enum status check_members(const struct scheme *scheme, int dim, struct er
     return STATUS_OK;
 }
 
-/* Has each particle an alpha of its own? */
-static bool varies(const struct scheme *scheme)
-{
-    const struct viscosity_traits *viscosity = &traits_viscosity[scheme->viscosity];
-    return viscosity->evolves || viscosity->jumps;
-}
-
 /* What local steps go together with. */
 static enum status check_steps(const struct scheme *scheme, struct error *error)
 {
@@ -133,7 +135,7 @@ static enum status check_steps(const struct scheme *scheme, struct error *error)
     } else if (scheme->volume_element == VOLUME_ENERGY) {
         key = "volume_element", name = "energy";
         why = "the volume does not follow from the width";
-    } else if (varies(scheme)) {
+    } else if (viscosity_varies(scheme->viscosity)) {
         key = "viscosity", name = scheme_viscosity_family.members[scheme->viscosity]->name;
         why = "alpha evolves in global steps alone";
     }
@@ -167,7 +169,7 @@ enum status scheme_check(const struct scheme *scheme, int dim, struct error *err
         return out_of_range(error, "alpha", scheme->alpha, ">= 0 and finite");
     if (!(scheme->beta >= 0) || !isfinite(scheme->beta))
         return out_of_range(error, "beta", scheme->beta, ">= 0 and finite");
-    const bool switched = varies(scheme);
+    const bool switched = viscosity_varies(scheme->viscosity);
     if (switched && !(scheme->alpha_min >= 0 && scheme->alpha_max >= scheme->alpha_min &&
                       isfinite(scheme->alpha_max)))
         return error_set(error, STATUS_BAD_INPUT,

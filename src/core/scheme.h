@@ -43,8 +43,8 @@ struct scheme_open {
     bool eta, alpha, beta, cfl, energy, pair_width, h_method;
 };
 
-/* Fills what is open: choices with those of the best scheme that was measured in so many dimensions,
- * then numbers from the descriptors of what has been chosen. */
+/* Fills what is open: choices with those of the best scheme that was measured in so many
+ * dimensions, then numbers from the descriptors of what has been chosen. */
 void scheme_default(struct scheme *scheme, const struct scheme_open *open, int dim);
 
 /* How many members of a family have a form in dim dimensions: they stand first in its list. */

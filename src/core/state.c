@@ -5,6 +5,7 @@
 
 #include "cube_root.h"
 #include "specialise.h"
+#include "viscosity.h"
 
 /* Stamped functions are static here, and the public ones call them: clang 14 gives the dispatched
  * symbol a name of its own, so that another file would not find it. */
@@ -153,12 +154,8 @@ void state_close(const struct particles *particles, ptrdiff_t first, int len,
 void state_dalpha(const struct particles *particles, ptrdiff_t first, int len,
                   const struct scheme *scheme)
 {
-    const struct particles *a = particles;
-    for (ptrdiff_t i = first; i < first + len; i++) {
-        const double growth =
-            largest(-a->div_v[i], 0) * largest(scheme->alpha_max - a->alpha[i], 0);
-        a->dalpha[i] = growth - (a->alpha[i] - scheme->alpha_min) * 0.2 * a->c[i] / a->h[i];
-    }
+    viscosity_of[scheme->viscosity].evolve(particles, first, len, scheme->alpha_min,
+                                           scheme->alpha_max);
 }
 
 CLONES static double rate(const struct particles *particles, ptrdiff_t first, int len)

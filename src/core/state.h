@@ -25,8 +25,7 @@ struct gas {
 void state_close(const struct particles *particles, ptrdiff_t first, int len,
                  const struct plan *plan, const struct gas *gas, const struct density_sums *sums);
 
-/* Time-dependent viscosity, CONVENTIONS eq. 5.9 (Morris & Monaghan 1997):
- * dalpha/dt = max(-div v, 0)(alpha_max - alpha) - (alpha - alpha_min)/tau, tau = h/(0.2 c). */
+/* dalpha/dt by the scheme's viscosity, of those that let alpha evolve. */
 void state_dalpha(const struct particles *particles, ptrdiff_t first, int len,
                   const struct scheme *scheme);
 

@@ -2,7 +2,7 @@
  * Kernel sums of density, smoothing length and grad-h (CONVENTIONS eqs. 3.1 and 3.9). */
 #include <math.h>
 
-#include "kernel_names.h"
+#include "family_names.h"
 #include "loops.h"
 #include "specialise.h"
 

@@ -73,12 +73,14 @@ ALWAYS_INLINE double pairs_at(ptrdiff_t d, enum formulation formulation, enum vi
                                right = side_of(particles, Z, o + i + d);
         const double r = x[i + d] - x[i], closing = v[i] - v[i + d];
         struct pair_terms a = pair_pressure(formulation, &left, &right, G[i], G_j[i]);
-        if (viscosity != VISCOSITY_NONE) {
+        if (!viscosity_of[viscosity].none) {
             const double G_bar =
                 formulation == FORMULATION_VANILLA_ICE ? G[i] : 0.5 * (G[i] + G_j[i]);
+            const struct viscosity_pair pair = {r, closing, .factor = 1};
+            const struct viscosity_seen seen =
+                viscosity_sees(viscosity, &numbers, &left, &right, &pair);
             const struct pair_mean_width h_bar = pair_mean_width(h[i], h[i + d]);
-            const double half =
-                pair_viscous(viscosity, &numbers, &left, &right, h_bar, r, closing, G_bar);
+            const double half = pair_viscous(seen, &left, &right, h_bar, r, G_bar);
             a.i += half;
             a.j += half;
         }
@@ -130,8 +132,8 @@ ALWAYS_INLINE double force_body(enum formulation formulation, enum viscosity vis
 }
 
 /* Every formulation with every viscosity and every energy. */
-#define OVER_VISCOSITIES(f, name, label, paper, X)   VISCOSITY_LINE_LIST(OVER_ENERGIES, X, f)
-#define OVER_ENERGIES(v, name, label, paper, X, f)   ENERGY_LIST(OVER_NOTHING, X, f, v)
+#define OVER_VISCOSITIES(f, name, label, paper, X)   VISCOSITY_LIST(OVER_ENERGIES, X, f)
+#define OVER_ENERGIES(v, name, X, f)                 ENERGY_LIST(OVER_NOTHING, X, f, v)
 #define OVER_NOTHING(e, name, label, paper, X, f, v) X(f, v, e)
 #define ALL(X)                                       FORMULATION_LIST(OVER_VISCOSITIES, X)
 
@@ -140,6 +142,7 @@ ALWAYS_INLINE double force_body(enum formulation formulation, enum viscosity vis
                                       const struct particles *particles, ptrdiff_t first, int len, \
                                       ptrdiff_t D, double *scratch)                                \
     {                                                                                              \
+        if (viscosity_of[viscosity].least_dim > 1) return 0;                                       \
         return force_body(formulation, viscosity, energy, loops, particles, first, len, D,         \
                           scratch);                                                                \
     }

@@ -4,23 +4,19 @@
  * standard: -C/h^2 w'(r/h), ia: g r w(r/h), g = 1/sum V x^2 w (CONVENTIONS eqs. 4.1 and 4.3). */
 #include <math.h>
 
-#include "kernel_names.h"
+#include "family_names.h"
 #include "loops.h"
 #include "specialise.h"
 
 ALWAYS_INLINE double own_gradient(const struct kernel *kernel, kernel_shape *w, kernel_shape *dw,
                                   enum gradient gradient, double g, double r, double h_inverse)
 {
-    switch (gradient) { /* every member of the list: another one does not compile without */
-    case GRADIENT_STANDARD:
-        return -g * dw(kernel, r * h_inverse, 1);
-    case GRADIENT_IA:
-        return g * (r * w(kernel, r * h_inverse, 1));
-    case GRADIENT_CORRECTED: /* these need two dimensions */
-    case GRADIENT_BLENDED:
-        break;
-    }
-    return 0;
+    const double q = r * h_inverse;
+    const enum gradient_weight weight = gradient_of[gradient].weight;
+    if (weight == WEIGHT_NONE) return -g * dw(kernel, q, 1);
+    const double shape = weight == WEIGHT_SLOPE ? 0 : w(kernel, q, 1);
+    const double slope = weight > WEIGHT_W && q > 0 ? -dw(kernel, q, 1) / q : 0;
+    return g * (r * gradient_weight(gradient, shape, slope));
 }
 
 ALWAYS_INLINE void gradients_of_pairs(const struct kernel *kernel, kernel_shape *w,
@@ -48,8 +44,9 @@ ALWAYS_INLINE void gradients_of_pairs(const struct kernel *kernel, kernel_shape 
         } else {
             const double inverse = width == PAIR_WIDTH_MAX ? least(h_inverse[i], h_inverse[j])
                                                            : 0.5 * (h_inverse[i] + h_inverse[j]);
-            const double scale =
-                gradient == GRADIENT_IA ? 0.5 * (g[i] + g[j]) : constant * (inverse * inverse);
+            const double scale = gradient_of[gradient].weight == WEIGHT_NONE
+                                     ? constant * (inverse * inverse)
+                                     : 0.5 * (g[i] + g[j]);
             G[i] = own_gradient(kernel, w, dw, gradient, scale, r, inverse);
         }
     }
@@ -60,14 +57,14 @@ ALWAYS_INLINE void gradients_of_pairs(const struct kernel *kernel, kernel_shape 
                                     const struct particles *particles, ptrdiff_t first, int pairs, \
                                     ptrdiff_t d, double *G, double *G_j)                           \
     {                                                                                              \
+        if (gradient_of[gradient].least_dim > 1) return;                                           \
         gradients_of_pairs(kernel, w, dw, gradient, width, particles, first, pairs, d, G, G_j);    \
     }
 
 /* Every gradient at every width, for one kernel k. */
-#define AT_WIDTHS(g, name, label, paper, X, k)                                                     \
-    PAIR_WIDTH_LIST(AT_WIDTH, X, k, g) X(k, g, PAIR_WIDTH_OWN)
+#define AT_WIDTHS(g, name, X, k)                     PAIR_WIDTH_LIST(AT_WIDTH, X, k, g) X(k, g, PAIR_WIDTH_OWN)
 #define AT_WIDTH(width, name, label, paper, X, k, g) X(k, g, width)
-#define ALL(X, k)                                    GRADIENT_LINE_LIST(AT_WIDTHS, X, k)
+#define ALL(X, k)                                    GRADIENT_LIST(AT_WIDTHS, X, k)
 
 #define ENTRY(k, g, width) [g][width] = k##_##g##_##width,
 

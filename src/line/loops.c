@@ -22,10 +22,8 @@ void loops_choose(const struct plan *plan, const struct scheme *scheme, struct l
     };
     loops->density = loop_density(kernel, plan->energy_sum ? DENSITY_ENERGY : DENSITY_MASS);
     if (plan->matrix || plan->slope)
-        loops->matrix = loop_matrix(kernel, !plan->slope   ? MATRIX_MOMENT
-                                            : plan->matrix ? MATRIX_BOTH
-                                                           : MATRIX_SLOPE);
-    if (plan->matrix) loops->matrix_receding = loop_matrix(kernel, MATRIX_MOMENT);
+        loops->matrix = loop_matrix(kernel, scheme->gradient, plan->slope);
+    if (plan->matrix) loops->matrix_receding = loop_matrix(kernel, scheme->gradient, false);
     loops->gradient = loop_gradient(kernel, scheme->gradient,
                                     plan->grad_h ? PAIR_WIDTH_OWN : (int)scheme->pair_width);
     loops->force = loop_force(kernel >= 0, scheme->formulation, loops->viscosity, scheme->energy);

@@ -9,6 +9,7 @@
 
 #include <stdbool.h>
 
+#include "gradient.h"
 #include "pair.h"
 #include "particles.h"
 #include "plan.h"
@@ -30,14 +31,9 @@ typedef void density_loop(const struct kernel *kernel, const struct particles *p
                           ptrdiff_t first, int len, ptrdiff_t D, const double *h_inverse,
                           struct density_sums *sums);
 
-/* --- g = 1/sum V x^2 w and, for reconstruction, dv = g sum V (v_j - v_i) x w ------------------ */
-
-#define MATRIX_LIST(TERMS, ...)                                                                    \
-    TERMS(MATRIX_MOMENT, __VA_ARGS__) /* g */                                                      \
-    TERMS(MATRIX_BOTH, __VA_ARGS__)   /* g and dv */                                               \
-    TERMS(MATRIX_SLOPE, __VA_ARGS__)  /* dv alone: g belongs to the standard gradient */
-enum matrix_terms { MATRIX_LIST(FAMILY_SYMBOL, ) };
-enum { MATRIX_TERMS = 0 MATRIX_LIST(FAMILY_COUNTED, ) };
+/* --- g = 1/sum V x^2 weight, of gradients that have a weight, and, where slopes are wanted,
+ * dv = sum V (v_j - v_i) x w/sum V x^2 w ----------------------------------------------------------
+ */
 
 typedef void matrix_loop(const struct kernel *kernel, const struct particles *particles,
                          ptrdiff_t first, int len, ptrdiff_t D);
@@ -91,7 +87,7 @@ void loops_choose(const struct plan *plan, const struct scheme *scheme, struct l
  * files that specialisation kernels are compiled once with the tables and once for each kernel
  * (specialise.c.in). */
 density_loop *loop_density(int kernel, enum density_terms terms);
-matrix_loop *loop_matrix(int kernel, enum matrix_terms terms);
+matrix_loop *loop_matrix(int kernel, enum gradient gradient, bool slopes);
 gradient_loop *loop_gradient(int kernel, enum gradient gradient, int width);
 force_loop *loop_force(bool specialised, enum formulation formulation, enum viscosity viscosity,
                        enum energy energy);

@@ -50,9 +50,10 @@ struct snapshot_file {
     double *column[SNAPSHOT_COLUMNS]; /* n each; NULL: the file has none */
     double precision[2];              /* relative, of positions and of what is stored besides */
     struct snapshot_value time, gamma;
-    bool boxed;    /* the file says how large its box is */
-    bool placed;   /* the file says where its box begins: at corner[] */
-    double box[3]; /* > 0 along the dimensions that it has */
+    bool impossible; /* it was refused for a value that no gas has: not finite, or not positive */
+    bool boxed;      /* the file says how large its box is */
+    bool placed;     /* the file says where its box begins: at corner[] */
+    double box[3];   /* > 0 along the dimensions that it has */
     double corner[3];
     char case_name[256], boundary[64], keys[1024]; /* what snapshots of ours say; "" */
     int parts, part; /* files that the snapshot is spread over; this one's number */

@@ -237,8 +237,7 @@ static enum status read_parts(const char *path, const struct snapshot_options *o
 
 /* ---- what no snapshot may hold ---- */
 
-static enum status check_values(const char *path, const struct snapshot_file *file,
-                                struct error *error)
+static enum status check_values(const char *path, struct snapshot_file *file, struct error *error)
 {
     for (int c = 0; c < SNAPSHOT_COLUMNS; c++) {
         const bool above = c == SNAPSHOT_M || c == SNAPSHOT_RHO || c == SNAPSHOT_H;
@@ -248,6 +247,7 @@ static enum status check_values(const char *path, const struct snapshot_file *fi
             if (isfinite(value) && fabs(value) < 1e100 && !(above && !(value > 0)) &&
                 !(below && value < 0))
                 continue;
+            file->impossible = true;
             return error_set(error, STATUS_BAD_INPUT,
                              "%.200s: %s of particle %zu is %g; allowed: %s", path,
                              snapshot_column_names[c], i, value,
@@ -333,6 +333,7 @@ enum status snapshot_read(const char *path, const struct snapshot_options *optio
     if (!status) status = check_values(path, file, error);
     if (!status) status = find_dimension(path, file, error);
     if (!status && file->time.known && !isfinite(file->time.value))
-        status = error_set(error, STATUS_BAD_INPUT, "%.200s: time = %g", path, file->time.value);
+        status = error_set(error, STATUS_BAD_INPUT, "%.200s: time = %g; allowed: a finite number",
+                           path, file->time.value);
     return status;
 }

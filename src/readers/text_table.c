@@ -143,7 +143,8 @@ static size_t count_rows(const struct text_table *table, size_t from)
 
 /* The refusal of what stands from `at` to the next separator, in place of a number. */
 static enum status no_number(const struct text_table *table, size_t line, size_t column,
-                             const char *at, const char *end, struct error *error)
+                             const char *at, const char *end, struct snapshot_file *file,
+                             struct error *error)
 {
     char found[48];
     size_t n = 0;
@@ -154,6 +155,7 @@ static enum status no_number(const struct text_table *table, size_t line, size_t
         found[n++] = *at++;
     found[n] = '\0';
     status_clean(found);
+    file->impossible = n && !isfinite(strtod(found, NULL)); /* "nan", "-inf" */
     return n ? error_set(error, STATUS_BAD_INPUT,
                          "%.200s:%zu: column %zu, '%s': no number: '%s'; allowed: such as 1, -0.5, "
                          "2.5e-3",
@@ -177,7 +179,7 @@ static enum status take_rows(const struct text_table *table, size_t from, size_t
                 double value;
                 const char *begin = at;
                 if (!take_number(&at, stop, table->separator, c == 0, &value))
-                    return no_number(table, line, c, begin, stop, error);
+                    return no_number(table, line, c, begin, stop, file, error);
                 const int meaning = table->meaning[c];
                 if (meaning == TABLE_TYPE)
                     type[row] = value;

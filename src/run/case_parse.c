@@ -1,21 +1,17 @@
-/* SPDX-License-Identifier: GPL-3.0-or-later
- * inih does the INI syntax, line by line from our own reader: it cuts long lines, takes a folder
- * for an empty file and does not tell its callback the line, so text is checked before it. */
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cases.h"
 
-#include <ini.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "ini_text.h"
 #include "list.h"
 #include "problem.h"
 #include "problem_list.h"
 #include "problem_prepare.h"
 #include "text.h"
-
-enum { LINE_LENGTH_MAX = 180 };
 
 /* Keys of a case file beside settings_keys: SECTION, KEY. */
 #define EXTRA_LIST(EXTRA)                                                                          \
@@ -39,57 +35,25 @@ static const char *const sections[] = {"case",    "domain",   "initial",  "schem
 
 struct parser {
     struct case_file *file;
-    const char *path;
-    const char *text, *end; /* what is left to read */
-    int line;
+    struct ini_text at;
     char reference[64];
     /* lines */
     int seen_settings[SETTINGS], seen_extras[EXTRAS], seen_gates[CASE_GATES_MAX],
         seen_compared[CASE_GATES_MAX], seen_finer[CASE_GATES_MAX];
-    struct error *error;
-    bool failed;
 };
-
-static enum status fail(struct parser *parser, const char *what, const char *allowed)
-{
-    parser->failed = true;
-    return error_set(parser->error, STATUS_BAD_INPUT, "%.200s:%d: %.120s%s%.160s", parser->path,
-                     parser->line, what, *allowed ? "; allowed: " : "", allowed);
-}
-
-static enum status fail_value(struct parser *parser, const char *key, const char *value,
-                              const char *allowed)
-{
-    char what[120];
-    snprintf(what, sizeof what, "%.40s = %.60s", key, value);
-    return fail(parser, what, allowed);
-}
-
-/* True the first time; else fails with the line of the first. */
-static bool first_time(struct parser *parser, int *line, const char *key)
-{
-    char what[120];
-    if (!*line) {
-        *line = parser->line;
-        return true;
-    }
-    snprintf(what, sizeof what, "key %.40s is given twice, first in line %d", key, *line);
-    fail(parser, what, "");
-    return false;
-}
 
 static void set_fields(struct parser *parser, const char *name, const char *value, bool *fields)
 {
-    char copy[LINE_LENGTH_MAX + 1], where[256], *rest = NULL;
+    char copy[INI_TEXT_LINE + 1], where[256], *rest = NULL;
     snprintf(copy, sizeof copy, "%s", value);
-    snprintf(where, sizeof where, "%.200s:%d", parser->path, parser->line);
+    snprintf(where, sizeof where, "%.200s:%d", parser->at.path, parser->at.line);
     memset(fields, 0, FIELDS * sizeof *fields);
-    if (!*value) fail_value(parser, name, value, "names of fields");
+    if (!*value) ini_text_fail_value(&parser->at, name, value, "names of fields");
     for (char *word = strtok_r(copy, " \t,", &rest); word; word = strtok_r(NULL, " \t,", &rest)) {
         const int field = family_index(&field_family, word);
         if (field < 0) {
-            text_unknown_member(parser->error, where, "field", word, &field_family);
-            parser->failed = true;
+            text_unknown_member(parser->at.error, where, "field", word, &field_family);
+            parser->at.failed = true;
             return;
         }
         fields[field] = true;
@@ -100,7 +64,7 @@ static void set_fields(struct parser *parser, const char *name, const char *valu
 static void set_ladder(struct parser *parser, const char *name, const char *value, bool order,
                        size_t *ladder, size_t *count)
 {
-    char copy[LINE_LENGTH_MAX + 1], *rest = NULL;
+    char copy[INI_TEXT_LINE + 1], *rest = NULL;
     const struct setting_key *key = &setting_keys[SETTING_n];
     const char *allowed =
         order ? "rising numbers of particles, at least four" : "rising numbers of particles";
@@ -110,18 +74,19 @@ static void set_ladder(struct parser *parser, const char *name, const char *valu
         int exponent;
         if (!text_count(word, &n, &exponent) || n < key->lo || n > key->hi ||
             *count == CASE_LADDER_MAX || (*count && n <= (double)ladder[*count - 1])) {
-            fail_value(parser, name, value, allowed);
+            ini_text_fail_value(&parser->at, name, value, allowed);
             return;
         }
         ladder[(*count)++] = (size_t)n;
     }
-    if (*count < (order ? ORDER_LEVELS_MIN : 1)) fail_value(parser, name, value, allowed);
+    if (*count < (order ? ORDER_LEVELS_MIN : 1))
+        ini_text_fail_value(&parser->at, name, value, allowed);
 }
 
 static void set_flag(struct parser *parser, const char *name, const char *value, bool *flag)
 {
     *flag = strcmp(value, "yes") == 0;
-    if (!*flag && strcmp(value, "no") != 0) fail_value(parser, name, value, "yes no");
+    if (!*flag && strcmp(value, "no") != 0) ini_text_fail_value(&parser->at, name, value, "yes no");
 }
 
 static void set_reference(struct parser *parser, const char *value)
@@ -135,12 +100,12 @@ static void set_reference(struct parser *parser, const char *value)
         known = strcmp(name, value) == 0;
         if (list_grow(&names, n, sizeof *names)) names[n++] = name;
     }
-    snprintf(where, sizeof where, "%.200s:%d", parser->path, parser->line);
+    snprintf(where, sizeof where, "%.200s:%d", parser->at.path, parser->at.line);
     if (known) {
         snprintf(parser->reference, sizeof parser->reference, "%s", value);
     } else {
-        text_unknown(parser->error, where, "reference", value, names, n);
-        parser->failed = true;
+        text_unknown(parser->at.error, where, "reference", value, names, n);
+        parser->at.failed = true;
     }
     free(names);
 }
@@ -148,15 +113,15 @@ static void set_reference(struct parser *parser, const char *value)
 static void set_extra(struct parser *parser, enum extra extra, const char *value)
 {
     struct case_file *file = parser->file;
-    if (!first_time(parser, &parser->seen_extras[extra], extras[extra].name)) return;
+    if (!ini_text_first(&parser->at, &parser->seen_extras[extra], extras[extra].name)) return;
     switch (extra) {
     case EXTRA_title:
-        if (!*value) fail_value(parser, "title", value, "a text");
+        if (!*value) ini_text_fail_value(&parser->at, "title", value, "a text");
         snprintf(file->title, sizeof file->title, "%s", value);
         return;
     case EXTRA_dimension:
         if (!(*value >= '1' && *value <= '3') || value[1])
-            fail_value(parser, "dimension", value, "1 2 3");
+            ini_text_fail_value(&parser->at, "dimension", value, "1 2 3");
         file->dimension = file->settings.dim = *value - '0';
         return;
     case EXTRA_reference:
@@ -242,14 +207,14 @@ static void add_gate(struct parser *parser, const char *name, struct case_gate g
     struct case_file *file = parser->file;
     const size_t there = find_gate(file, gate.functional, gate.field, gate.norm);
     if (there < file->gate_count) {
-        first_time(parser, &parser->seen_gates[there], name);
+        ini_text_first(&parser->at, &parser->seen_gates[there], name);
         return;
     }
     if (file->gate_count == CASE_GATES_MAX) {
-        fail(parser, "too many gates", "");
+        ini_text_fail(&parser->at, "too many gates", "");
         return;
     }
-    parser->seen_gates[file->gate_count] = parser->line;
+    parser->seen_gates[file->gate_count] = parser->at.line;
     gate.known.bound = INFINITY;
     snprintf(gate.known.why, sizeof gate.known.why, "%s", why);
     file->gates[file->gate_count++] = gate;
@@ -271,9 +236,9 @@ static void set_compared(struct parser *parser, struct case_gate *gate, const ch
     const char *why;
     if (!read_absence(value, &compared->bound, &why) &&
         !read_gate(value, 1, &compared->bound, &why))
-        fail_value(parser, name, value,
-                   "bound of the finest error, or none where there is nothing to be "
-                   "measured" KNOWN_FAILURE);
+        ini_text_fail_value(&parser->at, name, value,
+                            "bound of the finest error, or none where there is nothing to be "
+                            "measured" KNOWN_FAILURE);
     else
         snprintf(compared->why, sizeof compared->why, "%s", why);
 }
@@ -283,7 +248,8 @@ static void set_finer(struct parser *parser, struct case_gate *gate, const char 
                       const char *value)
 {
     if (!text_real(value, &gate->finer) || !(gate->finer > 0))
-        fail_value(parser, name, value, "bound of the error beyond the case's own ladder");
+        ini_text_fail_value(&parser->at, name, value,
+                            "bound of the error beyond the case's own ladder");
 }
 
 /* A key of [compared] or [finer] belongs to a gate of [converge]. */
@@ -298,8 +264,9 @@ static void amend_gate(struct parser *parser, const char *section, const char *f
     if (i == file->gate_count) {
         snprintf(what, sizeof what, "key %.40s in [%.10s] has no gate above, in [converge]", name,
                  section);
-        fail(parser, what, "");
-    } else if (first_time(parser, &(finer ? parser->seen_finer : parser->seen_compared)[i], name)) {
+        ini_text_fail(&parser->at, what, "");
+    } else if (ini_text_first(&parser->at, &(finer ? parser->seen_finer : parser->seen_compared)[i],
+                              name)) {
         (finer ? set_finer : set_compared)(parser, &file->gates[i], name, value);
     }
 }
@@ -320,9 +287,9 @@ static void set_gate(struct parser *parser, const char *functional, int field, i
     else if (read_gate(value, 2, numbers, &why) && numbers[0] >= 0)
         gate.gate = (struct order_gate){numbers[0], INFINITY, numbers[1]};
     else {
-        fail_value(parser, name, value,
-                   functional ? ERROR_GATE SMOOTH_GATE KNOWN_FAILURE
-                              : ORDER_GATE ERROR_GATE KNOWN_FAILURE);
+        ini_text_fail_value(&parser->at, name, value,
+                            functional ? ERROR_GATE SMOOTH_GATE KNOWN_FAILURE
+                                       : ORDER_GATE ERROR_GATE KNOWN_FAILURE);
         return;
     }
     add_gate(parser, name, gate, why);
@@ -334,17 +301,18 @@ static void unknown(struct parser *parser, const char *section, const char *name
     char where[256], what[120];
     const char *names[SETTINGS + EXTRAS];
     size_t n = 0;
-    parser->failed = true;
-    snprintf(where, sizeof where, "%.200s:%d", parser->path, parser->line);
+    parser->at.failed = true;
+    snprintf(where, sizeof where, "%.200s:%d", parser->at.path, parser->at.line);
     bool section_exists = false;
     for (size_t i = 0; i < sizeof sections / sizeof *sections; i++)
         section_exists |= strcmp(sections[i], section) == 0;
     if (!*section) {
-        fail(parser, "a key before the first section", "[case] and the other sections");
+        ini_text_fail(&parser->at, "a key before the first section",
+                      "[case] and the other sections");
         return;
     }
     if (!section_exists) {
-        text_unknown(parser->error, where, "section", section, sections,
+        text_unknown(parser->at.error, where, "section", section, sections,
                      sizeof sections / sizeof *sections);
         return;
     }
@@ -352,7 +320,7 @@ static void unknown(struct parser *parser, const char *section, const char *name
     if (elsewhere >= 0) {
         snprintf(what, sizeof what, "key %.40s stands in the section [%s], not in [%s]", name,
                  setting_keys[elsewhere].section, section);
-        fail(parser, what, "");
+        ini_text_fail(&parser->at, what, "");
         return;
     }
     for (int i = 0; i < SETTINGS; i++)
@@ -363,17 +331,17 @@ static void unknown(struct parser *parser, const char *section, const char *name
         strcmp(section, "finer") == 0)
         names[n++] = "density_l1";
     snprintf(what, sizeof what, "key in [%.20s]", section);
-    text_unknown(parser->error, where, what, name, names, n);
+    text_unknown(parser->at.error, where, what, name, names, n);
 }
 
 /* A path of a case file is relative to it. */
 static const char *beside_case(const struct parser *parser, const char *value,
                                char path[2 * SETTING_TEXT_MAX])
 {
-    const char *slash = strrchr(parser->path, '/');
+    const char *slash = strrchr(parser->at.path, '/');
     if (!slash || *value == '/' || !*value) return value;
-    snprintf(path, 2 * SETTING_TEXT_MAX, "%.*s%s", (int)(slash + 1 - parser->path), parser->path,
-             value);
+    snprintf(path, 2 * SETTING_TEXT_MAX, "%.*s%s", (int)(slash + 1 - parser->at.path),
+             parser->at.path, value);
     return path;
 }
 
@@ -382,7 +350,6 @@ static int take_pair(void *context, const char *section, const char *name, const
     struct parser *parser = context;
     char where[256];
     int field, norm;
-    if (parser->failed) return 1;
     for (int i = 0; i < EXTRAS; i++)
         if (strcmp(extras[i].section, section) == 0 && strcmp(extras[i].name, name) == 0) {
             set_extra(parser, (enum extra)i, value);
@@ -390,13 +357,13 @@ static int take_pair(void *context, const char *section, const char *name, const
         }
     const int key = setting_find(name);
     if (key >= 0 && strcmp(setting_keys[key].section, section) == 0) {
-        snprintf(where, sizeof where, "%.200s:%d", parser->path, parser->line);
+        snprintf(where, sizeof where, "%.200s:%d", parser->at.path, parser->at.line);
         char path[2 * SETTING_TEXT_MAX];
         if (setting_keys[key].type == SETTING_PATH) value = beside_case(parser, value, path);
-        if (first_time(parser, &parser->seen_settings[key], name) &&
+        if (ini_text_first(&parser->at, &parser->seen_settings[key], name) &&
             settings_set(&parser->file->settings, (enum setting)key, value, SOURCE_CASE, where,
-                         parser->error))
-            parser->failed = true;
+                         parser->at.error))
+            parser->at.failed = true;
     } else if (strcmp(section, "converge") == 0 && gate_name(name, &field, &norm)) {
         set_gate(parser, NULL, field, norm, name, value);
     } else if (strcmp(section, "converge") == 0 && problem_functional_name(name)) {
@@ -410,53 +377,10 @@ static int take_pair(void *context, const char *section, const char *name, const
     return 1;
 }
 
-/* Hands inih one line without its blanks at the start (it would take them for a continuation). */
-static char *take_line(char *line, int size, void *context)
-{
-    struct parser *parser = context;
-    if (parser->text == parser->end || parser->failed) return NULL;
-    const char *newline = memchr(parser->text, '\n', (size_t)(parser->end - parser->text));
-    const char *next = newline ? newline + 1 : parser->end;
-    const char *start = parser->text;
-    while (start < next && (*start == ' ' || *start == '\t')) start++;
-    snprintf(line, (size_t)size, "%.*s", (int)(next - start), start);
-    parser->text = next;
-    parser->line++;
-    return line;
-}
-
-/* Nothing that inih would cut or misread: long lines, NUL and other bytes that are not text. */
-static bool check_text(struct parser *parser)
-{
-    char what[64];
-    int length = 0;
-    parser->line = 1;
-    for (const char *c = parser->text; c < parser->end; c++) {
-        if (*c == '\n') {
-            parser->line++;
-            length = 0;
-            continue;
-        }
-        const bool line_end = *c == '\r' && c + 1 < parser->end && c[1] == '\n';
-        if (((*c < ' ' || *c > '~') && *c != '\t' && !line_end)) {
-            snprintf(what, sizeof what, "byte 0x%02x is not ASCII text", (unsigned)(*c & 0xff));
-            fail(parser, what, "printable ASCII");
-            return false;
-        }
-        if (++length > LINE_LENGTH_MAX) {
-            snprintf(what, sizeof what, "a line of more than %d characters", LINE_LENGTH_MAX);
-            fail(parser, what, "");
-            return false;
-        }
-    }
-    parser->line = 0;
-    return true;
-}
-
 static enum status missing(struct parser *parser, const char *section, const char *name)
 {
-    return error_set(parser->error, STATUS_BAD_INPUT, "%.200s: key %s is missing in [%s]",
-                     parser->path, name, section);
+    return error_set(parser->at.error, STATUS_BAD_INPUT, "%.200s: key %s is missing in [%s]",
+                     parser->at.path, name, section);
 }
 
 static enum status missing_key(struct parser *parser, enum setting key)
@@ -483,8 +407,8 @@ static enum status check_keys(struct parser *parser)
             char what[120];
             snprintf(what, sizeof what, "key %s and kind = %s exclude each other",
                      setting_keys[i].name, problem->member.name);
-            parser->line = parser->seen_settings[i];
-            return fail(parser, what, "");
+            parser->at.line = parser->seen_settings[i];
+            return ini_text_fail(&parser->at, what, "");
         }
     return STATUS_OK;
 }
@@ -513,16 +437,16 @@ static enum status check_gates(struct parser *parser)
         const char *functional = file->gates[i].functional;
         char what[120];
         if (!functional) continue;
-        parser->line = parser->seen_gates[i];
+        parser->at.line = parser->seen_gates[i];
         if (!problem_functional(problem, functional)) {
             snprintf(what, sizeof what, "key %.40s and kind = %.40s exclude each other", functional,
                      problem->member.name);
-            return fail(parser, what, "");
+            return ini_text_fail(&parser->at, what, "");
         }
         if (file->dimension == 1) {
             snprintf(what, sizeof what,
                      "key %.40s in [converge] and dimension = 1 exclude each other", functional);
-            return fail(parser, what, "");
+            return ini_text_fail(&parser->at, what, "");
         }
     }
     return STATUS_OK;
@@ -531,18 +455,20 @@ static enum status check_gates(struct parser *parser)
 static enum status check_complete(struct parser *parser)
 {
     find_judge(parser);
-    if (check_keys(parser) || check_gates(parser)) return parser->error->status;
+    if (check_keys(parser) || check_gates(parser)) return parser->at.error->status;
     const char *reference = problem_of(&parser->file->settings)->reference;
     if (strcmp(parser->reference, reference) == 0) return STATUS_OK;
-    parser->line = parser->seen_extras[EXTRA_reference];
-    return fail_value(parser, "reference", parser->reference, reference);
+    parser->at.line = parser->seen_extras[EXTRA_reference];
+    return ini_text_fail_value(&parser->at, "reference", parser->reference, reference);
 }
 
 enum status case_parse(struct case_file *file, const char *path, const char *text, size_t length,
                        struct error *error)
 {
     struct parser parser = {
-        .file = file, .path = path, .text = text, .end = text + length, .error = error};
+        .file = file,
+        .at = {
+            .path = path, .kind = "case file", .rest = text, .end = text + length, .error = error}};
     const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path;
     const char *dot = strrchr(base, '.');
     *file = (struct case_file){.fields = {true, true, true, true}, .bench = true};
@@ -550,16 +476,8 @@ enum status case_parse(struct case_file *file, const char *path, const char *tex
              base);
     status_clean(file->name);
     settings_init(&file->settings);
-    if (length == 0)
-        return error_set(error, STATUS_BAD_INPUT, "%.200s: the case file is empty", path);
-    if (!check_text(&parser)) return error->status;
-    const int line = ini_parse_stream(take_line, &parser, take_pair, &parser);
-    if (parser.failed) return error->status;
-    parser.line = line;
-    if (line)
-        return fail(&parser, "not a line of a case file", "[section], key = value, ; comment");
-    const enum status status = check_complete(&parser);
-    if (status) return status;
+    if (ini_text_read(&parser.at, take_pair, &parser) || check_complete(&parser))
+        return error->status;
     struct settings trial = file->settings;
     /* of a tube, ends that are not periodic: judge knows them, and a run refuses them */
     if (file->dimension == 1 && problem_reads(problem_of(&trial), SETTING_left))
@@ -571,4 +489,23 @@ enum status case_parse(struct case_file *file, const char *path, const char *tex
         settings_scheme(&trial, file->dimension, &scheme, &reason))
         return error_set(error, STATUS_BAD_INPUT, "%.160s: %.340s", path, reason.message);
     return STATUS_OK;
+}
+
+bool case_amend(struct case_file *file, struct ini_text *at, const char *name, const char *value)
+{
+    struct parser parser = {.file = file, .at = *at};
+    const char *functional = problem_functional_name(name);
+    int field = 0, norm = 0;
+    const bool ladder = strcmp(name, extras[EXTRA_n].name) == 0;
+    if (!ladder && !functional && !gate_name(name, &field, &norm)) return false;
+    if (ladder) {
+        file->ladder_count = 0;
+        set_extra(&parser, EXTRA_n, value);
+    } else {
+        set_gate(&parser, functional, field, norm, name, value);
+        for (size_t i = 0; i < file->gate_count; i++) parser.seen_gates[i] = at->line;
+        if (!parser.at.failed) check_gates(&parser);
+    }
+    at->failed = parser.at.failed;
+    return true;
 }

@@ -1,53 +1,22 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cases.h"
 
-#include <errno.h>
-#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
+#include "ini_text.h"
 #include "list.h"
 #include "place.h"
 #include "text.h"
 
-enum { SIZE_MAX_FILE = 65536 };
-
-static enum status cannot_read(const char *path, const char *why, struct error *error)
-{
-    return error_set(error, STATUS_BAD_INPUT, "case file '%.200s': %s", path, why);
-}
-
 static enum status load_path(struct case_file *file, const char *path, struct error *error)
 {
-    static const char too_large[] = "larger than 64 KiB: not a case file";
-    enum status status;
-    struct stat info;
-    /* a pipe must not hold us up */
-    const int descriptor = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-    if (descriptor < 0) return cannot_read(path, strerror(errno), error);
-    char *text = NULL;
-    if (fstat(descriptor, &info) || S_ISDIR(info.st_mode))
-        status = cannot_read(path, strerror(EISDIR), error);
-    else if (!S_ISREG(info.st_mode))
-        status = cannot_read(path, "not a regular file", error);
-    else if (info.st_size > SIZE_MAX_FILE)
-        status = cannot_read(path, too_large, error);
-    else if (!(text = malloc(SIZE_MAX_FILE + 1)))
-        status = error_set(error, STATUS_ENVIRONMENT, "no memory to read '%.200s'", path);
-    else {
-        size_t length = 0;
-        ssize_t got;
-        while (length <= SIZE_MAX_FILE &&
-               (got = read(descriptor, text + length, SIZE_MAX_FILE + 1 - length)) > 0)
-            length += (size_t)got;
-        status = length > SIZE_MAX_FILE ? cannot_read(path, too_large, error)
-                                        : case_parse(file, path, text, length, error);
-    }
+    char *text;
+    size_t length;
+    if (ini_text_load(path, "case file", &text, &length, error)) return error->status;
+    const enum status status = case_parse(file, path, text, length, error);
     free(text);
-    close(descriptor);
     return status;
 }
 

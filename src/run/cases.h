@@ -8,6 +8,7 @@
 #include <stddef.h>
 
 #include "field.h"
+#include "ini_text.h"
 #include "order.h"
 #include "settings.h"
 #include "status.h"
@@ -70,5 +71,9 @@ enum status case_load(struct case_file *file, const char *name, struct error *er
 /* The same from a text of length bytes; path is used in messages and for the name. */
 enum status case_parse(struct case_file *file, const char *path, const char *text, size_t length,
                        struct error *error);
+
+/* Takes a key of [converge] from another file: n in place of the case's, or one gate more. at says
+ * where it stands, and fails where the value is wrong. False: there is no such key. */
+bool case_amend(struct case_file *file, struct ini_text *at, const char *name, const char *value);
 
 #endif

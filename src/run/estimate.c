@@ -4,9 +4,10 @@
 #include <math.h>
 
 #include "allowance.h"
+#include "gradient.h"
 #include "integrator.h"
 #include "memory.h"
-#include "traits.h"
+#include "viscosity.h"
 #include "width.h"
 
 /* The program with its libraries, and what does not grow with n. */
@@ -28,10 +29,10 @@ static double step_ns(const struct setup *setup)
 {
     const struct scheme *scheme = &setup->scheme;
     const double neighbours = width_neighbours(setup->dim, scheme->eta);
-    const bool slopes = traits_viscosity[scheme->viscosity].slope || scheme->balsara == BALSARA_ON;
+    const bool slopes = viscosity_needs_slope(scheme->viscosity) || scheme->balsara == BALSARA_ON;
     if (setup->dim == 1) return 5 + neighbours;
     double pair = 12; /* search, density, force */
-    if (traits_gradient[scheme->gradient].matrix) pair += 6;
+    if (gradient_of[scheme->gradient].weight != WEIGHT_NONE) pair += 6;
     if (slopes) pair += 6;
     if (scheme->h_method == H_NEWTON) pair += 12;
     return 100 + pair * neighbours;

@@ -4,6 +4,8 @@
 #ifndef SPHPROOF_FIELD_H
 #define SPHPROOF_FIELD_H
 
+#include <math.h>
+
 #include "family.h"
 #include "window.h"
 
@@ -23,6 +25,14 @@ struct domain {
 static inline double domain_length(const struct domain *domain, int direction)
 {
     return domain->hi[direction] - domain->lo[direction];
+}
+
+/* A position from the lower corner of the box, as codes want it: below the length of the box where
+ * x is in it, also where rounding would make it that. */
+static inline double domain_offset(const struct domain *domain, int direction, double x)
+{
+    const double from = x - domain->lo[direction], length = domain_length(domain, direction);
+    return from >= length && x < domain->hi[direction] ? nextafter(length, 0) : from;
 }
 
 #endif

@@ -40,14 +40,33 @@ struct run_outcome {
  * STATUS_OK nor STATUS_BROKE_DOWN leaves no snapshot. */
 typedef void run_solver(const struct setup *setup, struct run_outcome *outcome);
 
+struct run;
+
+/* Another program that computes runs, from outside of this one: begins what its maker knows of it.
+ */
+struct run_external {
+    const char *title;
+    /* Adds all that decides the result beside the case and its keys. STATUS_BAD_INPUT: keys that
+     * mean nothing to it. */
+    enum status (*add_key)(const struct run_external *external, const struct run *run, json_t *key,
+                           struct error *error);
+    /* The document of `sphproof run`, with its profile if that is wanted. STATUS_BROKE_DOWN: the
+     * run has failed, which the document says. */
+    enum status (*compute)(const struct run_external *external, const struct run *run, bool profile,
+                           json_t **document, struct error *error);
+    /* Adds "code", what it is, to the document of many runs. */
+    void (*describe)(const struct run_external *external, json_t *document);
+};
+
 struct run_settings {
     struct case_file file;
-    struct settings settings;      /* the case's with the user's on top; `auto` still in it */
-    int threads;                   /* >= 1 */
-    bool any_window;               /* run also where the mirrored tube reaches the window */
-    bool generic;                  /* by the loops that look every choice up */
-    run_solver *solver;            /* computes the run; NULL: the core solver */
-    simulation_progress *progress; /* called every 32 steps; may be NULL */
+    struct settings settings;            /* the case's with the user's on top; `auto` still in it */
+    int threads;                         /* >= 1 */
+    bool any_window;                     /* run also where the mirrored tube reaches the window */
+    bool generic;                        /* by the loops that look every choice up */
+    run_solver *solver;                  /* computes the run; NULL: the core solver */
+    const struct run_external *external; /* computes its document; NULL: this program */
+    simulation_progress *progress;       /* called every 32 steps; may be NULL */
     void *progress_context;
     bool each_step;                /* it is called after each: they may be long */
     struct checkpoint *checkpoint; /* where the run's state is kept; NULL: nowhere */

@@ -12,6 +12,7 @@
 struct snapshot_writer {
     struct member member;
     const char *endings; /* of the names of its files: ".hdf5 .h5" */
+    bool from_corner;    /* positions count from the lower corner of the box */
     double memory;       /* bytes for each particle that writing takes beside the state */
     /* NULL: always possible. STATUS_ENVIRONMENT: this program was built without it. */
     enum status (*possible)(const char *path, struct error *error);

@@ -15,9 +15,9 @@ static const struct member *const members[] = {
 #undef START
 };
 
-const struct family start_format_family = {"starts",
-                                           "formats of initial states that are written for codes",
-                                           members, sizeof members / sizeof *members};
+const struct family start_format_family = {
+    "formats", "initial states for other codes, as `sphproof ic` writes them", members,
+    sizeof members / sizeof *members};
 
 const struct start_format *start_format_of(const char *name, struct error *error)
 {
@@ -27,13 +27,32 @@ const struct start_format *start_format_of(const char *name, struct error *error
     return NULL;
 }
 
+enum status start_possible(const struct start_format *format, const struct prepared *problem,
+                           struct error *error)
+{
+    if (format->dim && problem->domain.dim != format->dim)
+        return error_set(error, STATUS_BAD_INPUT,
+                         "ic: a problem in %dD: the code that reads '%s' is for %dD",
+                         problem->domain.dim, format->member.name, format->dim);
+    for (int d = 0; d < problem->domain.dim; d++) {
+        const enum boundary boundary = problem->boundary[d];
+        if (format->no_walls && boundary != BOUNDARY_PERIODIC && boundary != BOUNDARY_OPEN)
+            return error_set(error, STATUS_BAD_INPUT,
+                             "ic: boundary '%s' along %c: the code that reads '%s' has no walls; "
+                             "allowed: periodic open",
+                             scheme_boundary_family.members[boundary]->name, "xyz"[d],
+                             format -> member.name);
+    }
+    return STATUS_OK;
+}
+
 enum status start_write(const struct start_format *format, const struct run_result *result,
                         const char *path, struct error *error)
 {
-    if (!format->width) return format->writer->write(result, path, error);
+    double factor = format->h_over_support;
+    if (format->width && format->width(result, &factor, error)) return error->status;
+    if (factor == 0) return format->writer->write(result, path, error);
     struct run_result theirs = *result;
-    double factor;
-    if (format->width(result, &factor, error)) return error->status;
     double *h = malloc(result->n * sizeof *h);
     if (!h) return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", path);
     for (size_t i = 0; i < result->n; i++) h[i] = factor * result->snapshot.h[i];

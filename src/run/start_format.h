@@ -12,14 +12,22 @@ struct start_format {
     const struct snapshot_writer *writer;
     /* Where the code's user sets these, in the code's own words; NULL: the file says it. */
     const char *gamma, *dimension, *box, *boundary, *t_end;
+    const char *precision; /* NULL: as ours, float64 */
+    int dim;               /* the code's; 0: any */
+    bool no_walls;         /* the code knows periodic and open boxes alone */
     /* What the code calls the smoothing length, divided by the support radius, which is what
-     * snapshots have; NULL: the same. */
+     * snapshots have; 0: the same, or what width finds. */
+    double h_over_support;
     enum status (*width)(const struct run_result *result, double *factor, struct error *error);
 };
 extern const struct family start_format_family;
 
 /* NULL: STATUS_BAD_INPUT in error, which names the formats that there are. */
 const struct start_format *start_format_of(const char *name, struct error *error);
+
+/* STATUS_BAD_INPUT: the code cannot be given such a problem; the message says why. */
+enum status start_possible(const struct start_format *format, const struct prepared *problem,
+                           struct error *error);
 
 /* The result of run_start in a file. STATUS_ENVIRONMENT: it cannot be written. */
 enum status start_write(const struct start_format *format, const struct run_result *result,

@@ -7,39 +7,16 @@
 
 #include "description.h"
 #include "plan.h"
-#include "traits.h"
 
 static const double jitter = 0.2, gamma_gas = 1.4;
 
-/* As the solver asks for them (src/cells/cells_workspace.c). */
+/* As the solver asks for them (src/cells/workspace.c). */
 static struct cells_method method_of(const struct scheme *s, int dim, bool specialised)
 {
     const struct plan plan = plan_make(s, dim, false, specialised);
-    const bool projected = traits_viscosity[s->viscosity].noise, varies = plan.alpha || plan.jump;
-    struct cells_method method = {
-        .box = {.dim = dim, .hi = {1, 1, 1}, .periodic = {true, true, true}},
-        .kernel = &s->kernel,
-        .specialised = specialised,
-        .gradient = s->gradient,
-        .formulation = s->formulation,
-        .pair_width = s->pair_width,
-        .energy = s->energy,
-        .energy_element = plan.energy_sum,
-        .number = s->volume_element == VOLUME_NUMBER,
-        .viscosity = projected ? VISCOSITY_RECONSTRUCTED
-                     : varies  ? VISCOSITY_TIME_DEPENDENT
-                               : s->viscosity,
-        .signal_form = projected || s->viscosity_form == VISCOSITY_FORM_SIGNAL,
-        .projected = projected,
-        .balsara = plan.balsara,
-        .velocity_gradient = plan.slope,
-        .div_v = plan.alpha,
-        .conductivity = s->alpha_u,
-        .noise = s->noise,
-        .worst_condition = DESCRIPTION_CONDITION,
-        .numbers = {.alpha = s->alpha, .beta = s->beta, .beta_ratio = 2, .near = 1 / s->eta},
-        .threads = 1,
-    };
+    struct cells_method method = cells_method_of(s, &plan);
+    method.box = (struct grid_box){.dim = dim, .hi = {1, 1, 1}, .periodic = {true, true, true}};
+    method.threads = 1;
     return method;
 }
 

@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-#include "kernel_names.h"
+#include "family_names.h"
 #include "specialise.h"
 #include "matrix.h"
 

@@ -69,9 +69,39 @@ struct job {
     struct judged judged;
 };
 
+/* What a run's document says of the error that its case is judged by. */
+static double error_of(const json_t *document, int dim)
+{
+    const char *first = json_string_value(json_array_get(json_object_get(document, "measured"), 0));
+    const char *name = dim == 1 || !first ? "density" : first;
+    const json_t *scalar = value_named(json_object_get(document, "functionals"), name);
+    return scalar ? fabs(value_member(scalar, "value") - value_member(scalar, "reference"))
+                  : value_inner(json_object_get(document, "errors"), name, "l1");
+}
+
+/* By another code; point and taken may be NULL. */
+static enum status run_other(const struct run *run, double *value, struct precision_point *point,
+                             struct clock_taken *taken, struct error *error)
+{
+    const struct run_external *external = run->asked.external;
+    json_t *document = NULL;
+    const enum status status = external->compute(external, run, false, &document, error);
+    if (!status) *value = error_of(document, run->asked.file.dimension);
+    if (!status && point) {
+        taken->wall_s += value_inner(document, "cost", "wall_s");
+        taken->cpu_s += value_inner(document, "cost", "cpu_s");
+        point->n = (size_t)value_member(document, "n");
+        point->pairs = (double)NAN;
+        point->settings = run->settings;
+    }
+    json_decref(document);
+    return status;
+}
+
 static enum status error_at(const struct run *run, double *value, struct error *error)
 {
     struct run_result result;
+    if (run->asked.external) return run_other(run, value, NULL, NULL, error);
     struct judged judged = {"", (double)NAN, (double)NAN};
     const enum status status = run_execute(run, &result, error);
     if (!status) judged_of(&run->asked.file, &result, &judged);
@@ -120,6 +150,11 @@ static enum status execute(void *context, uint64_t times, struct clock_taken *ta
     struct job *job = context;
     for (uint64_t i = 0; i < times; i++) {
         struct run_result result;
+        if (job->run.asked.external) {
+            if (run_other(&job->run, &job->point->error, job->point, taken, error))
+                return error->status;
+            continue;
+        }
         const enum status status = run_execute(&job->run, &result, error);
         if (status == STATUS_BROKE_DOWN) run_free(&result);
         if (status) return status;
@@ -204,7 +239,14 @@ static enum status prepare(const struct precision *precision, const struct sweep
                            struct run_settings *settings, struct error *error)
 {
     struct precision_scheme *scheme = &precision->schemes[i];
+    const struct run_external *external = precision->settings->external;
     *settings = *precision->settings;
+    if (external && i == sweep->count) {
+        snprintf(scheme->label, sizeof scheme->label, "%s", external->title);
+        snprintf(scheme->brief, sizeof scheme->brief, "%s", external->title);
+        return STATUS_OK;
+    }
+    settings->external = NULL;
     if (i < sweep->count) {
         sweep_label(sweep, i, scheme->label);
         shorten(scheme->label, scheme->brief);
@@ -213,7 +255,7 @@ static enum status prepare(const struct precision *precision, const struct sweep
             strcpy(scheme->brief, "as given");
         }
         if (sweep_apply(sweep, i, settings, error)) return error->status;
-    } else if (i == sweep->count && want_graded(precision->settings, sweep)) {
+    } else if (i == sweep->count + (external != NULL) && want_graded(precision->settings, sweep)) {
         scheme->reference = REFERENCE_GRADED;
         snprintf(scheme->label, sizeof scheme->label, "graded masses %s", graded_key);
         strcpy(scheme->brief, "graded masses");
@@ -325,7 +367,8 @@ static enum status lay_out(const struct run_settings *settings, const struct swe
                            struct error *error)
 {
     const size_t compared = settings->file.dimension > 1 ? 1 : 2; /* plain C knows 1D */
-    const size_t schemes = sweep->count + compared + want_graded(settings, sweep),
+    const size_t schemes = sweep->count + (settings->external != NULL) + compared +
+                           want_graded(settings, sweep),
                  most = schemes * count;
     *precision = (struct precision){.settings = settings, .scheme_count = schemes};
     struct precision_work *work = precision->work = calloc(1, sizeof *work);
@@ -391,7 +434,7 @@ static json_t *measured_json(const struct bench_subject *subject, const struct j
     return json_pack("{s:i, s:s, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:I, s:i, s:s, s:o}", "status",
                      (int)subject->failure.status, "message", subject->failure.message, "n",
                      (json_int_t)point->n, "error", result_number(point->error), "error_spread",
-                     result_number(point->error_spread), "pairs", result_number(point->pairs),
+                     result_number(point->error_spread), "pairs", result_number_or_null(point->pairs),
                      "wall_s", result_number(time->wall_s), "cpu_s", result_number(time->cpu_s),
                      "spread", result_number(time->spread), "times", (json_int_t)time->times,
                      "samples", time->samples, "error_of", job->judged.name ? job->judged.name : "",
@@ -407,6 +450,7 @@ static enum status measure_level(const void *context, json_t **document, struct 
     size_t n = 0;
     if (!list) return error_set(error, STATUS_ENVIRONMENT, "no memory for points");
     rules.progress = NULL;
+    if (work->precision->settings->external) pool_end_with_parent();
     for (size_t i = 0; i < work->count; i++)
         if (work->level[i] == level->number) list[n++] = work->subjects[i];
     const enum status status = bench_measure(list, n, &rules, error);

@@ -65,7 +65,8 @@ struct precision {
     struct precision_work *work; /* what is to be measured; its own */
 };
 
-/* ladder: count rising numbers of particles. settings must live as long as the result. Schemes that
+/* ladder: count rising numbers of particles. Where settings have an external program, it is one
+ * scheme more, and the others are ours. settings must live as long as the result. Schemes that
  * keys exclude, or that break down at some n, are kept with the reason. STATUS_BAD_INPUT: nothing
  * is left. Free with precision_free, also after a failure. */
 enum status precision_measure(const struct run_settings *settings, const struct sweep *sweep,

@@ -267,7 +267,7 @@ static json_t *point_json(const struct precision *precision, const struct precis
         "error_spread", result_number(point->error_spread), "wall_s",
         result_number(point->time.wall_s), "cpu_s", result_number(point->time.cpu_s), "spread",
         result_number(point->time.spread), "samples", point->time.samples, "pair_interactions",
-        result_number(point->pairs), "figure_of_merit",
+        result_number_or_null(point->pairs), "figure_of_merit",
         result_number(precision_merit(precision, point->error, point->time.cpu_s)), "on_front",
         point->on_front);
     if (scheme->reference)

@@ -3,13 +3,10 @@
  * the oracle, for the choices that stand in the sums: every geometry of a pair with one physics,
  * and every physics with one geometry, turn by turn, in 3D a share of them; in the slow suite every
  * one with every other in 2D, and all of those in 3D. */
-#include <math.h>
-
 #include "check.h"
+#include "hydro_against.h"
 #include "hydro_cloud.h"
 #include "hydro_setup.h"
-#include "oracle.h"
-#include "worst.h"
 
 /* Boxes of three to four widths in 2D; in 3D hardly more than two. */
 static size_t side_of(int dim)
@@ -20,7 +17,7 @@ static size_t side_of(int dim)
 /* A scheme in a dimension; or what a mutant does to the solver's setup, where the scheme is
  * hydro_cloud_scheme() with a geometry and physics of its own. */
 struct cloud_subject {
-    void (*spoil)(struct setup *setup);
+    hydro_spoil *spoil;
     int dim;
     struct scheme scheme;
 };
@@ -88,59 +85,6 @@ static void all_subjects(struct check_run *run)
         }
 }
 
-/* Largest |got - want| over the particles, relative to the largest |want|. */
-struct comparison {
-    double error, scale;
-};
-
-static void compare(struct comparison *c, double got, long double want)
-{
-    worst_keep(&c->error, (double)fabsl(got - want));
-    c->scale = fmax(c->scale, (double)fabsl(want));
-}
-
-static void report(struct check_run *run, const struct comparison *c, double bound, double floor,
-                   const char *quantity, const char *where)
-{
-    check_measure(run, c->scale > 0 ? c->error / c->scale : c->error, bound, floor, "%s, %s",
-                  quantity, where);
-}
-
-static void judge(struct check_run *run, const struct simulation *simulation,
-                  const struct oracle *oracle, const char *where)
-{
-    struct snapshot got;
-    struct rates rates;
-    simulation_snapshot(simulation, &got);
-    simulation_rates(simulation, &rates);
-    struct comparison h = {0}, rho = {0}, P = {0}, V = {0}, F = {0}, de = {0}, dalpha = {0};
-    for (size_t i = 0; i < got.n; i++) {
-        const struct oracle_particle *want = &oracle->particles[got.id[i]];
-        compare(&h, got.h[i], want->h);
-        compare(&rho, got.rho[i], want->rho);
-        compare(&P, got.P[i], want->P);
-        compare(&V, got.volume[i], want->V);
-        for (int a = 0; a < oracle->dim; a++) compare(&F, rates.force[a][i], want->F[a]);
-        compare(&de, rates.energy[i], want->de);
-        if (rates.alpha) compare(&dalpha, rates.alpha[i], want->dalpha);
-    }
-    if (got.n != oracle->n) h.error = (double)NAN;
-    /* in src the damping of close pairs is a series, good to 8e-7 of itself at its end */
-    const bool series = oracle->scheme.viscosity == VISCOSITY_RECONSTRUCTED ||
-                        oracle->scheme.viscosity == VISCOSITY_PROJECTED;
-    const double bound = series ? 1e-10 : 1e-12, floor = series ? 1e-12 : 2e-14;
-    report(run, &h, 1e-13, 2e-15, "smoothing length", where);
-    report(run, &rho, 1e-13, 2e-15, "density", where);
-    report(run, &P, 1e-13, 2e-15, "pressure", where);
-    report(run, &V, 1e-13, 2e-15, "volume", where);
-    report(run, &F, bound, floor, "force", where);
-    report(run, &de, bound, floor, "rate of energy", where);
-    if (oracle->scheme.viscosity == VISCOSITY_TIME_DEPENDENT)
-        report(run, &dalpha, 1e-12, 2e-14, "rate of alpha", where);
-    const double step = (double)oracle_time_step(oracle);
-    check_measure(run, fabs(rates.time_step / step - 1), 1e-13, 2e-15, "time step, %s", where);
-}
-
 static struct cloud_subject of_mutant(const struct cloud_subject *mutant);
 
 static void measure(struct check_run *run, const void *subject)
@@ -149,30 +93,9 @@ static void measure(struct check_run *run, const void *subject)
     const struct cloud_subject s = given->spoil ? of_mutant(given) : *given;
     static struct hydro_cloud cloud;
     hydro_cloud_sheared(&cloud, s.dim, side_of(s.dim));
-    struct setup setup = hydro_cloud_setup(&cloud, &s.scheme);
-    struct oracle oracle;
-    struct simulation *simulation = NULL;
-    struct error error = {0};
     char where[CLOUD_TEXT];
     hydro_cloud_describe(&s.scheme, s.dim, where);
-    if (scheme_check(&s.scheme, s.dim, &error)) {
-        check_skip(run, "%s: %s", where, error.message);
-        return;
-    }
-    if (!oracle_covers(&s.scheme)) {
-        check_skip(run, "%s: the oracle lacks one of these choices", where);
-        return;
-    }
-    enum status status = oracle_create(&oracle, &setup, &error);
-    if (!status) {
-        status = oracle_evaluate(&oracle, &error);
-        if (s.spoil) s.spoil(&setup);
-        if (!status) status = simulation_create(&setup, &simulation, &error);
-        if (!status) judge(run, simulation, &oracle, where);
-        simulation_destroy(simulation);
-        oracle_free(&oracle);
-    }
-    if (status) check_measure(run, 1, 0, 0, "%s: %s", where, error.message);
+    hydro_against_rates(run, hydro_cloud_setup(&cloud, &s.scheme), s.spoil, where);
 }
 
 /* --- mutants ---------------------------------------------------------------------------------- */

@@ -4,8 +4,8 @@
 #include <math.h>
 
 #include "check.h"
+#include "hydro_against.h"
 #include "hydro_setup.h"
-#include "oracle.h"
 #include "solver.h"
 #include "worst.h"
 
@@ -14,7 +14,7 @@ enum { PARTICLES = 82 };
 /* A state and a scheme of it, and what a mutant does to the solver's setup; the oracle keeps the
  * right one. A mutant names no state: hydro_scheme() on hydro_disordered(). */
 struct rates_subject {
-    void (*spoil)(struct setup *setup);
+    hydro_spoil *spoil;
     void (*state)(struct hydro_state *state, size_t n);
     struct scheme scheme;
 };
@@ -53,89 +53,15 @@ static void subjects(struct check_run *run)
                 }
 }
 
-/* Largest |got - want| over the particles, relative to the largest |want|. */
-struct comparison {
-    double error, scale;
-};
-
-static void compare(struct comparison *c, double got, long double want)
-{
-    const double error = (double)fabsl(got - want);
-    worst_keep(&c->error, error);
-    c->scale = fmax(c->scale, (double)fabsl(want));
-}
-
-static void report(struct check_run *run, const struct comparison *c, double bound, double floor,
-                   const char *quantity, const char *where)
-{
-    check_measure(run, c->scale > 0 ? c->error / c->scale : c->error, bound, floor, "%s, %s",
-                  quantity, where);
-}
-
-static void judge(struct check_run *run, const struct simulation *simulation,
-                  const struct oracle *oracle, const char *where)
-{
-    struct snapshot got;
-    struct rates rates;
-    simulation_snapshot(simulation, &got);
-    simulation_rates(simulation, &rates);
-    struct comparison h = {0}, rho = {0}, P = {0}, V = {0}, F = {0}, de = {0}, dalpha = {0};
-    for (size_t i = 0; i < got.n; i++) {
-        const struct oracle_particle *want = &oracle->particles[got.id[i]];
-        compare(&h, got.h[i], want->h);
-        compare(&rho, got.rho[i], want->rho);
-        compare(&P, got.P[i], want->P);
-        compare(&V, got.volume[i], want->V);
-        compare(&F, rates.force[0][i], want->F[0]);
-        compare(&de, rates.energy[i], want->de);
-        if (rates.alpha) compare(&dalpha, rates.alpha[i], want->dalpha);
-    }
-    if (got.n != oracle->n) h.error = (double)NAN;
-    /* MAGMA2's damping of close pairs is a series good to 1e-9 in src */
-    const bool series = oracle->scheme.viscosity == VISCOSITY_RECONSTRUCTED;
-    const double bound = series ? 1e-8 : 1e-12, floor = series ? 1e-9 : 2e-14;
-    report(run, &h, 1e-13, 2e-15, "smoothing length", where);
-    report(run, &rho, 1e-13, 2e-15, "density", where);
-    report(run, &P, 1e-13, 2e-15, "pressure", where);
-    report(run, &V, 1e-13, 2e-15, "volume", where);
-    report(run, &F, bound, floor, "force", where);
-    report(run, &de, bound, floor, "rate of energy", where);
-    if (oracle->scheme.viscosity == VISCOSITY_TIME_DEPENDENT)
-        report(run, &dalpha, 1e-12, 2e-14, "rate of alpha", where);
-    const double step = (double)oracle_time_step(oracle);
-    check_measure(run, fabs(rates.time_step / step - 1), 1e-13, 2e-15, "time step, %s", where);
-}
-
 static void measure(struct check_run *run, const void *subject)
 {
     const struct rates_subject *s = subject;
     const struct scheme scheme = s->state ? s->scheme : hydro_scheme();
     static struct hydro_state state;
     (s->state ? s->state : hydro_disordered)(&state, PARTICLES);
-    struct setup setup = hydro_setup(&state, &scheme);
-    struct oracle oracle;
-    struct simulation *simulation = NULL;
-    struct error error = {0};
     char where[HYDRO_TEXT];
     hydro_describe(&scheme, where);
-    if (scheme_check(&scheme, 1, &error)) {
-        check_skip(run, "%s: %s", where, error.message);
-        return;
-    }
-    if (!oracle_covers(&scheme)) {
-        check_skip(run, "%s: the oracle lacks one of these choices", where);
-        return;
-    }
-    enum status status = oracle_create(&oracle, &setup, &error);
-    if (!status) {
-        status = oracle_evaluate(&oracle, &error);
-        if (s->spoil) s->spoil(&setup);
-        if (!status) status = simulation_create(&setup, &simulation, &error);
-        if (!status) judge(run, simulation, &oracle, where);
-        simulation_destroy(simulation);
-        oracle_free(&oracle);
-    }
-    if (status) check_measure(run, 1, 0, 0, "%s: %s", where, error.message);
+    hydro_against_rates(run, hydro_setup(&state, &scheme), s->spoil, where);
 }
 
 static void wrong_constant(struct setup *setup)

@@ -1,13 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Whole runs over a few natural time steps, with particles that cross the ends of the box, against
  * the oracle: every integrator, each with its own choice of time steps, and the last ones cut. */
-#include <math.h>
-
 #include "check.h"
+#include "hydro_against.h"
 #include "hydro_setup.h"
 #include "integrator.h"
-#include "oracle.h"
-#include "worst.h"
 
 enum { PARTICLES = 34, FAR_PARTICLES = 150, STEPS = 5 };
 
@@ -18,7 +15,7 @@ enum start { RUNNING, PASSING, CONTACT };
 /* A run; or a mutant: what is done to the solver's setup, where the right one is hydro_scheme()
  * with this integrator and viscosity. */
 struct steps_subject {
-    void (*spoil)(struct setup *setup);
+    hydro_spoil *spoil;
     const char *integrator;
     struct scheme scheme;
     double part; /* t_end = (STEPS + part) first steps */
@@ -66,55 +63,6 @@ static struct steps_subject of_mutant(const struct steps_subject *mutant)
     return subject;
 }
 
-/* The largest difference over the particles. */
-static void widen(double *error, long double difference)
-{
-    worst_keep(error, (double)fabsl(difference));
-}
-
-static void judge(struct check_run *run, const struct simulation *simulation,
-                  const struct oracle *oracle, const char *where)
-{
-    struct snapshot got;
-    struct rates rates;
-    struct simulation_cost cost;
-    double x = 0, v = 0, u = 0, rho = 0, P = 0, h = 0, volume = 0, alpha = 0, outside = 0;
-    const long double kinetic = oracle->scheme.energy == ENERGY_TOTAL ? 0.5L : 0;
-    simulation_snapshot(simulation, &got);
-    simulation_rates(simulation, &rates);
-    simulation_cost(simulation, &cost);
-    for (size_t i = 0; i < got.n; i++) {
-        const struct oracle_particle *want = &oracle->particles[got.id[i]];
-        const long double away = got.x[0][i] - want->x[0];
-        widen(&x, away - oracle->period[0] * roundl(away / oracle->period[0]));
-        outside += !(got.x[0][i] >= (double)oracle->lo[0] &&
-                     got.x[0][i] < (double)(oracle->lo[0] + oracle->period[0]));
-        widen(&v, got.v[0][i] - want->p[0] / want->m);
-        widen(&u, got.u[i] - (want->e - kinetic * want->p[0] * want->p[0] / want->m) / want->m);
-        widen(&rho, got.rho[i] - want->rho);
-        widen(&P, got.P[i] - want->P);
-        widen(&h, got.h[i] - want->h);
-        widen(&volume, got.volume[i] - want->V);
-        if (rates.alpha) widen(&alpha, rates.alpha[i] - want->dalpha);
-    }
-    if (got.n != oracle->n) x = (double)NAN;
-    const double bound = 1e-11, floor = 2e-13;
-    check_measure(run, x, bound, floor, "position, %s", where);
-    check_measure(run, outside, 0, 0, "positions outside the box, %s", where);
-    check_measure(run, v, bound, floor, "velocity, %s", where);
-    check_measure(run, u, bound, floor, "internal energy, %s", where);
-    /* of the state at t_end, whatever the last step has evaluated */
-    check_measure(run, rho, 10 * bound, floor, "density, %s", where);
-    check_measure(run, P, 10 * bound, floor, "pressure, %s", where);
-    check_measure(run, h, 10 * bound, floor, "smoothing length, %s", where);
-    check_measure(run, volume, bound, floor, "volume, %s", where);
-    if (rates.alpha && oracle->scheme.integrator->ends_evaluated)
-        check_measure(run, alpha, 100 * bound, 10 * floor, "rate of alpha, %s", where);
-    check_measure(run, fabs((double)cost.steps - (double)oracle->steps), 0, 0,
-                  "number of steps (%zu), %s", oracle->steps, where);
-    check_measure(run, fabs(got.time - (double)oracle->time), 0, 0, "time, %s", where);
-}
-
 static void prepare(struct hydro_state *state, enum start start)
 {
     if (start == CONTACT) {
@@ -142,29 +90,9 @@ static void measure(struct check_run *run, const void *subject)
     const struct steps_subject s = given->spoil ? of_mutant(given) : *given;
     static struct hydro_state state;
     prepare(&state, s.start);
-    struct setup setup = hydro_setup(&state, &s.scheme);
-    struct oracle oracle;
-    struct simulation *simulation = NULL;
-    struct error error = {0};
     char where[HYDRO_TEXT];
     hydro_describe(&s.scheme, where);
-    if (!oracle_covers(&s.scheme) || !oracle_covers_step(s.scheme.integrator)) {
-        check_skip(run, "%s: the oracle lacks one of these choices", where);
-        return;
-    }
-    enum status status = oracle_create(&oracle, &setup, &error);
-    if (!status) {
-        status = oracle_evaluate(&oracle, &error);
-        const double t_end = (double)oracle_time_step(&oracle) * (STEPS + s.part);
-        if (!status) status = oracle_run(&oracle, t_end, &error);
-        if (s.spoil) s.spoil(&setup);
-        if (!status) status = simulation_create(&setup, &simulation, &error);
-        if (!status) status = simulation_run(simulation, t_end, NULL, NULL, &error);
-        if (!status) judge(run, simulation, &oracle, where);
-        simulation_destroy(simulation);
-        oracle_free(&oracle);
-    }
-    if (status) check_measure(run, 1, 0, 0, "%s: %s", where, error.message);
+    hydro_against_steps(run, hydro_setup(&state, &s.scheme), s.spoil, STEPS + s.part, where);
 }
 
 static struct integrator replaced;

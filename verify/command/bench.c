@@ -8,6 +8,7 @@
 #include "bench_kernels.h"
 #include "bench_scaling.h"
 #include "bench_skips.h"
+#include "code_run.h"
 #include "command.h"
 #include "output.h"
 #include "picture.h"
@@ -67,11 +68,20 @@ static enum status write_result(const struct request *request, json_t *document,
 /* --- work-precision --------------------------------------------------------------------------- */
 
 /* The case, sod if none is named; resolutions belong to --n. */
-static enum status prepare_case(const struct request *request, struct run_settings *settings,
+static enum status prepare_case(const struct request *request, struct code *code,
+                                struct code_external *external, struct run_settings *settings,
                                 struct error *error)
 {
-    const char *name = request->case_name ? request->case_name : "sod";
-    if (run_prepare(settings, name, request->n, request->arguments, error)) return error->status;
+    const char *name = request->case_name ? request->case_name : "sod",
+               *path = options_value(request->options, "code"),
+               *work = options_value(request->options, "work");
+    if (work && !path) return error_set(error, STATUS_BAD_INPUT, "bench: --work needs --code FILE");
+    if (path &&
+        (code_load(code, path, error) ||
+         code_prepare(code, name, work, request->n, request->arguments, external, settings, error)))
+        return error->status;
+    if (!path && run_prepare(settings, name, request->n, request->arguments, error))
+        return error->status;
     settings->threads = request->options->threads;
     if (settings->settings.value[SETTING_n].source != SOURCE_USER) return STATUS_OK;
     return error_set(error, STATUS_BAD_INPUT,
@@ -130,15 +140,16 @@ static enum status in_shares(struct request *request, const struct run_settings 
     return status;
 }
 
-static enum status work_precision(struct request *request, struct error *error)
+static enum status measure(struct request *request, struct code *code, struct error *error)
 {
+    static struct code_external external;
     static struct run_settings settings;
     static struct sharing sharing;
     struct sweep sweep;
     struct precision precision = {0};
     size_t ladder[CASE_LADDER_MAX], count;
     const char *plot = options_value(request->options, "plot");
-    if (prepare_case(request, &settings, error) ||
+    if (prepare_case(request, code, &external, &settings, error) ||
         sweep_parse(&sweep, options_value(request->options, "vary"), error) ||
         take_ladder(request, &settings, ladder, &count, error) ||
         (plot && picture_probe(plot, error)) ||
@@ -152,6 +163,14 @@ static enum status work_precision(struct request *request, struct error *error)
     progress_end(&request->progress);
     if (!status) status = present(request, &precision, plot, error);
     precision_free(&precision);
+    return status;
+}
+
+static enum status work_precision(struct request *request, struct error *error)
+{
+    struct code code = {.case_count = 0};
+    const enum status status = measure(request, &code, error);
+    code_free(&code);
     return status;
 }
 
@@ -269,7 +288,7 @@ static enum status scaling(struct request *request, struct error *error)
     const char *plot = options_value(request->options, "plot");
     const int threads = request->options->threads > 1 ? request->options->threads : 2;
     if (refuse_option(request, "--scaling", "vary", error) ||
-        prepare_case(request, &settings, error) ||
+        prepare_case(request, NULL, NULL, &settings, error) ||
         sweep_ladder(sizes ? sizes : usual_sizes, 1, settings.file.dimension, ladder, &count,
                      error) ||
         (plot && picture_probe(plot, error)))
@@ -315,7 +334,7 @@ static enum status run(const struct options *options, int n, char **arguments, s
                                  "--kernels, --skips and --scaling exclude each other");
         chosen = modes[m].run;
     }
-    static const char *const of_shares[] = {"shard", "list", "cache", "engine"};
+    static const char *const of_shares[] = {"shard", "list", "cache", "engine", "code", "work"};
     for (size_t i = 0; chosen != work_precision && i < sizeof of_shares / sizeof *of_shares; i++)
         if (refuse_option(&request, "--kernels, --skips or --scaling", of_shares[i], error))
             return error->status;
@@ -337,6 +356,8 @@ static const struct command_option own_options[] = {
     {"scaling", NULL, "time and memory against n, with exponents; gain of threads"},
     {"time", "S", "CPU time of a sample, at least (default 0.02 s)"},
     {"samples", "N", "samples of each measurement (default 5); the least counts"},
+    {"code", "CODE.ini", "the points of another program, which that file describes, beside ours"},
+    {"work", "DIR", CODE_WORK_HELP},
     SHARING_OPTIONS,
     {NULL, NULL, NULL},
 };

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "code_run.h"
 #include "command.h"
 #include "result.h"
 #include "settings_output.h"
@@ -156,7 +157,7 @@ static void print_study(const struct study *study, const struct study_result *re
     print_orders(file, result, &style);
     printf("%sorder: least squares of log(error) against log(box/n), Student t%s%s\n", style.faint,
            study->replicates > 1 ? ", weights and intervals from the deviations" : "", style.end);
-    print_floor(result, &style);
+    if (!study->settings.external) print_floor(result, &style);
     print_functionals(result, &style);
     print_budget(result, &style);
     if (result->suspicion[0])
@@ -173,7 +174,8 @@ static void print_all(const struct study *study, const struct options *options)
         if (result->excluded)
             printf("%s: excluded: %s\n\n", label, result->message);
         else if (result->status == STATUS_BROKE_DOWN)
-            printf("%s%sbroke down: %s\n\n", label, *label ? ": " : "", result->message);
+            printf("%s%s%s: %s\n\n", label, *label ? ": " : "",
+                   study->settings.external ? "failed" : "broke down", result->message);
         else
             print_study(study, result, label, options);
     }
@@ -239,7 +241,8 @@ static enum status serialise_out(struct study *study, const struct options *opti
     pool_free(&pool);
     if (status || !*whole) return status;
     if (study->status == STATUS_BROKE_DOWN)
-        json_object_set_new(document, "status", json_string("broke_down"));
+        json_object_set_new(document, "status",
+                            json_string(study->settings.external ? "failed" : "broke_down"));
     study_add_json(study, document);
     const char *message = json_string_value(json_object_get(document, "message"));
     return study->status == STATUS_BROKE_DOWN
@@ -247,13 +250,27 @@ static enum status serialise_out(struct study *study, const struct options *opti
                : study->status;
 }
 
-static enum status run(const struct options *options, int n, char **arguments, struct error *error)
+/* The case, of our solver or of the code that --code describes. */
+static enum status prepare(const struct options *options, int n, char **arguments,
+                           struct code *code, struct code_external *external,
+                           struct run_settings *settings, struct error *error)
+{
+    const char *path = options_value(options, "code"), *work = options_value(options, "work");
+    if (work && !path)
+        return error_set(error, STATUS_BAD_INPUT, "converge: --work needs --code FILE");
+    if (!path) return run_prepare(settings, arguments[0], n - 1, arguments + 1, error);
+    if (code_load(code, path, error)) return error->status;
+    return code_prepare(code, arguments[0], work, n - 1, arguments + 1, external, settings, error);
+}
+
+static enum status converge(const struct options *options, int n, char **arguments,
+                            struct code *code, struct error *error)
 {
     struct study study = {0};
     struct sharing sharing;
+    struct code_external external;
     bool whole;
-    if (n < 1) return command_usage(options, error, "a case is needed (`sphproof list cases`)");
-    if (run_prepare(&study.settings, arguments[0], n - 1, arguments + 1, error) ||
+    if (prepare(options, n, arguments, code, &external, &study.settings, error) ||
         sweep_parse(&study.sweep, options_value(options, "vary"), error) ||
         take_ladder(&study, options, error) || take_replicates(&study, options, error) ||
         sharing_take(&sharing, options, 1, NULL, false, error))
@@ -266,6 +283,7 @@ static enum status run(const struct options *options, int n, char **arguments, s
     struct error trouble = {0};
     if (!run_resolve(&as_given, &study.settings, &trouble))
         json_object_set_new(document, "settings", settings_json(&as_given.settings));
+    if (study.settings.external) external.base.describe(&external.base, document);
     enum status status = serialise_out(&study, options, &sharing, document, &whole, error);
     const bool sound = status == STATUS_OK || status == STATUS_CHECK_FAILED;
     const bool told = whole && (sound || status == STATUS_BROKE_DOWN);
@@ -279,6 +297,15 @@ static enum status run(const struct options *options, int n, char **arguments, s
     return status;
 }
 
+static enum status run(const struct options *options, int n, char **arguments, struct error *error)
+{
+    struct code code = {.case_count = 0};
+    if (n < 1) return command_usage(options, error, "a case is needed (`sphproof list cases`)");
+    const enum status status = converge(options, n, arguments, &code, error);
+    code_free(&code);
+    return status;
+}
+
 static const struct command_option own_options[] = {
     {"n", "N1,N2,...", "numbers of particles, at least four distinct ones (default: the case's)"},
     {"vary", "KEY[=A,B][,...]", "repeat for every member of a family, or for these values"},
@@ -286,6 +313,8 @@ static const struct command_option own_options[] = {
      "runs of each level: with other seeds where the start is random (default there: 3), else "
      "with n within 2.5 % (default: 9, of smooth solutions 1)"},
     {"jobs", "J", "runs side by side (default 1); results do not depend on it"},
+    {"code", "CODE.ini", CODE_OPTION_HELP},
+    {"work", "DIR", CODE_WORK_HELP},
     SHARING_OPTIONS,
     {NULL, NULL, NULL},
 };
@@ -304,5 +333,6 @@ const struct command command_converge = {
                 "sphproof converge sod --vary kernel=cubic_spline,wendland_c2,gradient\n"
                 "sphproof converge sound_wave jitter=0.1 --replicates 5 --jobs 2\n"
                 "sphproof converge gresho --cache shared --shard 1/2   # 2/2 on another machine\n"
+                "sphproof converge gresho --code mine.ini --jobs 4 --cache kept\n"
                 "sphproof converge sound_wave --json orders.json",
 };

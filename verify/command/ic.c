@@ -30,6 +30,7 @@ static void print_missing(const struct start_format *format, const struct run_re
                  {"box", box, format->box},
                  {"boundary", boundary, format->boundary},
                  {"end time", t_end, format->t_end}};
+    if (format->precision) printf("positions and fields: %s\n", format->precision);
     for (size_t k = 0; k < sizeof lines / sizeof *lines; k++)
         if (lines[k].place)
             printf("set %-12s %s  (%s)\n", lines[k].what, lines[k].value, lines[k].place);
@@ -67,7 +68,8 @@ static enum status write_ic(const struct options *options, int n, char **argumen
                          out);
     if (run_prepare(&settings, arguments[0], n - 1, arguments + 1, error)) return error->status;
     settings.threads = options->threads;
-    if (run_resolve(&run, &settings, error)) return error->status;
+    if (run_resolve(&run, &settings, error) || start_possible(format, &run.problem, error))
+        return error->status;
     if (format->writer->possible && format->writer->possible(out, error)) return error->status;
     if (!streamed && output_probe(out, error)) return error->status;
     enum status status = run_start(&run, &result, error);
@@ -83,10 +85,7 @@ static enum status write_ic(const struct options *options, int n, char **argumen
 }
 
 static const struct command_option own_options[] = {
-    {"format", "FORMAT",
-     "csv: text, a line a particle; gadget_hdf5: GADGET-4, AREPO, GIZMO; swift: SWIFT, h twice "
-     "the\n"
-     "kernel's standard deviation; vtu: TrixiParticles, ParaView"},
+    {"format", "FORMAT", "one of `sphproof list formats`"},
     {"out", "FILE", "the file"},
     {NULL, NULL, NULL},
 };

@@ -6,6 +6,7 @@
 
 #include "cases.h"
 #include "check_registry.h"
+#include "code_file.h"
 #include "command.h"
 #include "integrator.h"
 #include "kernel.h"
@@ -17,6 +18,7 @@
 #include "settings.h"
 #include "snapshot_file.h"
 #include "snapshot_writer.h"
+#include "start_format.h"
 #include "stress.h"
 #include "suite.h"
 #include "table.h"
@@ -72,6 +74,27 @@ static const struct family *keys(void)
     for (int i = 0; i < SETTINGS; i++)
         made_add(&made, setting_keys[i].name, setting_keys[i].meaning, "");
     return made_family(&made);
+}
+
+static const struct family *keys_of_codes(void)
+{
+    static struct made made = {.family = {"code_keys", "keys of a code file (--code)", NULL, 0}};
+    char label[256];
+    if (made.members) return &made.family;
+    for (int i = 0; i < CODE_KEYS; i++) {
+        const struct code_key_text *key = &code_keys[i];
+        snprintf(label, sizeof label, "%s: %s%s%s%s", key->meaning, key->allowed,
+                 *key->fallback ? " [" : "", key->fallback, *key->fallback ? "]" : "");
+        made_add(&made, key->name, label, "");
+    }
+    return made_family(&made);
+}
+
+static const struct family *words_of_codes(void)
+{
+    static const struct family family = {
+        "code_words", "@WORDS@ of a code file's commands and templates", code_words, CODE_WORDS};
+    return &family;
 }
 
 static const struct family *checks(void)
@@ -132,6 +155,7 @@ PLAIN(field, field)
 PLAIN(norm, field_norm)
 PLAIN(snapshot, snapshot_reader)
 PLAIN(writer, snapshot_writer)
+PLAIN(format, start_format)
 
 static const struct family *(*const lists[])(void) = {cases,
                                                       problem_list,
@@ -152,10 +176,13 @@ static const struct family *(*const lists[])(void) = {cases,
                                                       norm_list,
                                                       snapshot_list,
                                                       writer_list,
+                                                      format_list,
                                                       checks,
                                                       mutants,
                                                       stress,
-                                                      keys};
+                                                      keys,
+                                                      keys_of_codes,
+                                                      words_of_codes};
 enum { LISTS = sizeof lists / sizeof *lists };
 
 static void print_family(const struct family *family, const struct table_style *style)
@@ -282,7 +309,8 @@ const struct command command_list = {
         "the names of cases, kernels, gradients, keys ..., one line each\n"
         "FAMILY: cases problems kernels gradients operators formulations volume_elements\n"
         "integrators viscosities viscosity_forms balsara_factors lattices energies pair_widths\n"
-        "h_methods fields norms snapshots writers checks mutants stress keys",
+        "h_methods fields norms snapshots writers formats checks mutants stress keys\n"
+        "code_keys code_words",
     .run = run,
     .options = own_options,
     .examples = "sphproof list\nsphproof list kernels\nsphproof list keys",

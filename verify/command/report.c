@@ -8,6 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "code_run.h"
 #include "command.h"
 #include "history.h"
 #include "junit.h"
@@ -29,6 +30,9 @@ static const struct command_option report_options[] = {
     {"jobs", "J", "so many computations side by side (default: one for each core)"},
     SHARING_OPTIONS_OF_CACHE,
     {"history", "FILE", "one line a night is added there (default: DIR/history.jsonl)"},
+    {"code", "CODE.ini ...",
+     "in place of our own: what the codes that these files describe make of their cases"},
+    {"work", "DIR", CODE_WORK_HELP},
     {"resume", NULL, "go on after an interruption: what was finished is in DIR/cache"},
     {"force", NULL, "compute everything, also what DIR/cache has from this build"},
     {NULL, NULL, NULL},
@@ -75,6 +79,12 @@ static enum status check_options(const struct options *options, struct error *er
     if (options_value(options, "quick") && options_value(options, "nightly"))
         return error_set(error, STATUS_BAD_INPUT,
                          "report: --quick and --nightly exclude each other");
+    if (options_value(options, "code") && options_value(options, "nightly"))
+        return error_set(error, STATUS_BAD_INPUT,
+                         "report: --nightly and --code exclude each other: a code file says how "
+                         "large its runs are");
+    if (options_value(options, "work") && !options_value(options, "code"))
+        return error_set(error, STATUS_BAD_INPUT, "report: --work needs --code FILE");
     if (options_value(options, "resume") && options_value(options, "force"))
         return error_set(error, STATUS_BAD_INPUT,
                          "report: --resume and --force exclude each other");
@@ -186,14 +196,88 @@ static enum status serialise_out(const struct options *options, struct report *r
     return status;
 }
 
+/* ---- other codes ---- */
+
+/* What a report of codes is made of. */
+struct codes {
+    size_t count;
+    struct code code[REPORT_CODES_MAX];
+    struct code_external *externals[REPORT_CODES_MAX];
+    struct run_settings *settings[REPORT_CODES_MAX];
+    char option[REPORT_CODES_MAX][PATH_LENGTH];
+    struct report_code of[REPORT_CODES_MAX];
+};
+
+static void codes_free(struct codes *codes)
+{
+    for (size_t k = 0; codes && k < codes->count; k++) {
+        code_free(&codes->code[k]);
+        free(codes->externals[k]), free(codes->settings[k]);
+    }
+    free(codes);
+}
+
+static enum status add_code(struct codes *codes, const char *path, const struct options *options,
+                            struct error *error)
+{
+    const size_t k = codes->count;
+    struct code *code = &codes->code[k];
+    if (k == REPORT_CODES_MAX)
+        return error_set(error, STATUS_BAD_INPUT, "report: more than %d times --code",
+                         REPORT_CODES_MAX);
+    if (code_load(code, path, error)) return error->status;
+    codes->count++;
+    struct code_external *externals = codes->externals[k] =
+        calloc(code->case_count, sizeof *externals);
+    struct run_settings *settings = codes->settings[k] = calloc(code->case_count, sizeof *settings);
+    if (!externals || !settings)
+        return error_set(error, STATUS_ENVIRONMENT, "no memory for the cases of %.200s", path);
+    for (size_t c = 0; c < code->case_count; c++) {
+        if (code_prepare(code, code->cases[c].file.asked, options_value(options, "work"), 0, NULL,
+                         &externals[c], &settings[c], error))
+            return error->status;
+        settings[c].threads = options->threads;
+    }
+    snprintf(codes->option[k], PATH_LENGTH, " --code %.*s", PATH_LENGTH - 16, path);
+    codes->of[k] = (struct report_code){code->way.value[CODE_title], codes->option[k],
+                                        code->case_count, settings};
+    for (size_t i = 0; i < k; i++)
+        if (strcmp(codes->of[i].title, codes->of[k].title) == 0)
+            return error_set(error, STATUS_BAD_INPUT,
+                             "report: two codes are called '%.60s'; allowed: a title each",
+                             codes->of[k].title);
+    return STATUS_OK;
+}
+
+static enum status take_codes(const struct options *options, struct codes **codes,
+                              struct error *error)
+{
+    const char *given = options_value(options, "code");
+    char *paths = strdup(given), *rest = paths;
+    enum status status = STATUS_OK;
+    *codes = calloc(1, sizeof **codes);
+    if (!paths || !*codes) status = error_set(error, STATUS_ENVIRONMENT, "no memory for codes");
+    for (char *path; !status && (path = strtok_r(rest, "\n", &rest));)
+        status = add_code(*codes, path, options, error);
+    free(paths);
+    return status;
+}
+
 static enum status run(const struct options *options, int n, char **arguments, struct error *error)
 {
-    struct report *report;
+    struct report *report = NULL;
+    struct codes *codes = NULL;
     if (n) return command_usage(options, error, "no argument is known: '%.40s'", arguments[0]);
     const enum report_mode mode = options_value(options, "nightly") ? REPORT_NIGHTLY : REPORT_QUICK;
-    if (check_options(options, error) || report_create(mode, &report, error)) return error->status;
-    const enum status status = serialise_out(options, report, error);
+    if (check_options(options, error)) return error->status;
+    enum status status;
+    if (!options_value(options, "code"))
+        status = report_create(mode, &report, error);
+    else if (!(status = take_codes(options, &codes, error)))
+        status = report_create_codes(codes->of, codes->count, &report, error);
+    if (!status) status = serialise_out(options, report, error);
     report_destroy(report);
+    codes_free(codes);
     return status;
 }
 
@@ -210,6 +294,7 @@ const struct command command_report = {
     .run = run,
     .options = report_options,
     .examples =
-        "sphproof report\nsphproof report --nightly --out /tmp/report --jobs 2\n"
+        "sphproof report\nsphproof report --code mine.ini --code theirs.ini --out codes\nsphproof "
+        "report --nightly --out /tmp/report --jobs 2\n"
         "sphproof report --nightly --out shared --shard 3/8   # on the third machine of eight",
 };

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "cache.h"
+#include "code_run.h"
 #include "command.h"
 #include "description_output.h"
 #include "output.h"
@@ -20,6 +21,7 @@
 #include "snapshot_writer.h"
 #include "table.h"
 #include "text.h"
+#include "value.h"
 
 /* eta beside the numbers that other codes state for the same width. */
 static void print_width(const struct settings *settings)
@@ -119,16 +121,22 @@ static void print_errors(const struct run_settings *settings, const struct run_r
            style->faint, result->errors[0].n, window, result->time, style->end);
 }
 
-static void print_rest(const struct run_result *result, const struct table_style *style)
+static void print_conservation(const struct run_result *result, const struct table_style *style)
 {
-    const struct simulation_cost *cost = &result->cost;
-    char turning[48] = "", matrix[DESCRIPTION_TEXT];
+    char turning[48] = "";
     if (result->problem.domain.dim > 1)
         snprintf(turning, sizeof turning, "angular momentum %.1e  ", result->angular_momentum);
     printf("\n%sconservation%s     mass %.1e  momentum %.1e  %senergy %.1e  (relative, t = %g "
            "against 0)\n",
            style->bold, style->end, result->mass, result->momentum, turning, result->energy,
            result->time);
+}
+
+static void print_rest(const struct run_result *result, const struct table_style *style)
+{
+    const struct simulation_cost *cost = &result->cost;
+    char matrix[DESCRIPTION_TEXT];
+    print_conservation(result, style);
     description_text(&result->matrix, result->n, matrix);
     if (result->problem.domain.dim > 1 && matrix[0])
         printf("%smatrices%s         %s\n", style->bold, style->end, matrix);
@@ -393,6 +401,90 @@ static enum status take_checkpoint(struct kept *kept, const struct options *opti
     return STATUS_OK;
 }
 
+/* ---- of another code ---- */
+
+static void print_other(const struct run_settings *settings, const struct judged *judged,
+                        const json_t *document, const struct options *options)
+{
+    const struct table_style style = table_style(options->color);
+    const struct run_result *result = &judged->result;
+    const struct snapshot_notes *notes = &judged->file.notes;
+    printf("%s%s%s: %s\ncomputed by %s: %s\n", style.bold, settings->file.name, style.end,
+           settings->file.title, settings->external->title,
+           value_text(json_object_get(document, "code"), "command"));
+    printf("n=%zu t=%g\n\nassumed:\n", result->n, result->time);
+    for (size_t k = 0; k < notes->count; k++)
+        printf("  %-16s %s  %s%s%s\n", notes->note[k].what, notes->note[k].value, style.faint,
+               notes->note[k].evidence, style.end);
+    print_errors(settings, result, &style);
+    if (result->problem.domain.dim > 1) print_functionals(result, &style);
+    print_conservation(result, &style);
+    printf("%scost%s             %.4g s wall, %.4g s CPU\n", style.bold, style.end,
+           result->cost.wall_s, result->cost.cpu_s);
+}
+
+static enum status present_other(const struct options *options, const struct run_settings *settings,
+                                 const struct judged *judged, const json_t *document,
+                                 struct error *error)
+{
+    const char *plot = options_value(options, "plot");
+    if (judged) remark(options, judged->result.suspicion);
+    if (judged && options->speak) print_other(settings, judged, document, options);
+    if (options->json && result_write(document, options->json, error)) return error->status;
+    return plot && judged ? run_plot(&judged->run.asked, &judged->result, plot, NULL, error)
+                          : STATUS_OK;
+}
+
+/* A snapshot, a checkpoint and a plan are our solver's. */
+static enum status check_other(const struct options *options, struct error *error)
+{
+    static const char *const ours[] = {"snapshot", "snapshot-every", "checkpoint",
+                                       "every",    "resume",         "explain"};
+    const char *plot = options_value(options, "plot");
+    for (size_t k = 0; k < sizeof ours / sizeof *ours; k++)
+        if (options_value(options, ours[k]))
+            return error_set(error, STATUS_BAD_INPUT,
+                             "run: --%s and --code exclude each other (--work DIR keeps what the "
+                             "code writes)",
+                             ours[k]);
+    if (plot && movie_wanted(plot))
+        return error_set(error, STATUS_BAD_INPUT, "run: --plot '%.150s': no movie with --code",
+                         plot);
+    return plot ? picture_probe(plot, error) : STATUS_OK;
+}
+
+static enum status run_other(const struct options *options, int n, char **arguments,
+                             struct error *error)
+{
+    struct code code;
+    struct code_external external;
+    struct run_settings settings;
+    struct judged *judged = calloc(1, sizeof *judged);
+    struct run *run = calloc(1, sizeof *run);
+    struct error trouble;
+    json_t *document = NULL;
+    enum status status = STATUS_OK;
+    if (!judged || !run) status = error_set(error, STATUS_ENVIRONMENT, "no memory for a run");
+    if (!status) status = check_other(options, error);
+    if (!status) status = code_load(&code, options_value(options, "code"), error);
+    if (status) goto end;
+    status = code_prepare(&code, arguments[0], options_value(options, "work"), n - 1, arguments + 1,
+                          &external, &settings, error);
+    settings.threads = options->threads;
+    if (!status) status = run_resolve(run, &settings, error);
+    if (!status) status = code_run(run, judged, &document, error);
+    if (document && present_other(options, &settings, status ? NULL : judged, document, &trouble)) {
+        *error = trouble;
+        status = trouble.status;
+    }
+    if (document && !json_object_get(document, "reason")) judge_free(judged);
+    code_free(&code);
+end:
+    json_decref(document);
+    free(judged), free(run);
+    return status;
+}
+
 static enum status run_case(const struct options *options, int n, char **arguments,
                             struct error *error)
 {
@@ -400,6 +492,9 @@ static enum status run_case(const struct options *options, int n, char **argumen
     struct run_result result;
     struct run run;
     if (n < 1) return command_usage(options, error, "a case is needed (`sphproof list cases`)");
+    if (options_value(options, "code")) return run_other(options, n, arguments, error);
+    if (options_value(options, "work"))
+        return error_set(error, STATUS_BAD_INPUT, "run: --work needs --code FILE");
     if (run_prepare(&settings, arguments[0], n - 1, arguments + 1, error)) return error->status;
     settings.threads = options->threads;
     if (run_resolve(&run, &settings, error)) return error->status;
@@ -451,6 +546,8 @@ static const struct command_option own_options[] = {
     {"plot", "FILE.svg|.png|.gif|.mp4",
      "draw profiles over the exact solution and the error; in 2D and 3D maps, with FILE.dat\n"
      "and FILE.gp beside them: edit, and `gnuplot FILE.gp` draws FILE.svg again (needs gnuplot)"},
+    {"code", "CODE.ini", CODE_OPTION_HELP},
+    {"work", "DIR", CODE_WORK_HELP},
     {"explain", NULL,
      "print the plan: what would run and why, memory and time it would take; run nothing"},
     {NULL, NULL, NULL},
@@ -471,5 +568,6 @@ const struct command command_run = {
                 "sphproof run ./my_tube.ini --snapshot end.csv\n"
                 "sphproof run sedov_3d n=64^3 --checkpoint sedov.state --resume\n"
                 "sphproof run gresho --snapshot gresho.hdf5 --snapshot-every 0.5\n"
+                "sphproof run sod --code mine.ini --work runs\n"
                 "sphproof run sound_wave --explain",
 };

@@ -12,10 +12,12 @@
 enum { SINC_ORDER = 5 };
 
 /* A median error above this part of the range of the exact values is no error at jumps. */
-#define JUDGE_FOREIGN      0.06
-#define JUDGE_FOREIGN_MEAN 0.2 /* and an L1 above this none of jumps that are a few h wide */
-#define JUDGE_FOREIGN_PART 0.5 /* and a functional that is off by more than this of its value */
-#define JUDGE_FOREIGN_MASS 0.3 /* and gas whose mass is off by this of what fills its box */
+#define JUDGE_FOREIGN       0.06
+#define JUDGE_FOREIGN_MEAN  0.2  /* and an L1 above this none of jumps that are a few h wide */
+#define JUDGE_FOREIGN_PART  0.5  /* and a functional that is off by more than this of its value */
+#define JUDGE_FOREIGN_AHEAD 0.03 /* and motion in this part of the window, where no wave has been  \
+                                  */
+#define JUDGE_FOREIGN_MASS 0.3   /* and gas whose mass is off by this of what fills its box */
 
 /* A stored pressure that is that of the gas law to the file's precision is taken from it: it has
  * been rounded once more. */
@@ -164,6 +166,18 @@ static void add_to_sums(const struct prepared *problem, const double x[3], const
     sums->turning_scale += sqrt(distance) * m * c;
 }
 
+void judge_sum(const struct prepared *problem, const struct snapshot *s, const double shift[3],
+               struct conservation *sums)
+{
+    double x[3] = {0}, v[3] = {0};
+    for (size_t i = 0; i < s->n; i++) {
+        for (int d = 0; d < problem->domain.dim; d++)
+            x[d] = s->x[d][i] + shift[d], v[d] = s->v[d][i];
+        add_to_sums(problem, x, v, s->m[i], s->u[i], sqrt(problem->gamma * s->P[i] / s->rho[i]),
+                    sums);
+    }
+}
+
 /* Of the snapshot, and of the particles that a run of the case in this box would begin with, on
  * the case's own lattice; none where that is a glass, which takes its time. */
 static void measure_sums(struct judged *judged)
@@ -175,10 +189,7 @@ static void measure_sums(struct judged *judged)
     struct error ignored = {0};
     struct run start;
     double x[3] = {0}, v[3] = {0};
-    for (size_t i = 0; i < s->n; i++) {
-        for (int d = 0; d < p->domain.dim; d++) x[d] = s->x[d][i], v[d] = s->v[d][i];
-        add_to_sums(p, x, v, s->m[i], s->u[i], sqrt(p->gamma * s->P[i] / s->rho[i]), &judged->sums);
-    }
+    judge_sum(p, s, x, &judged->sums);
     if (!judged->boxed) return;
     plain.settings.value[SETTING_lattice] = plain.file.settings.value[SETTING_lattice];
     plain.settings.value[SETTING_equal_masses] = plain.file.settings.value[SETTING_equal_masses];
@@ -243,18 +254,43 @@ static bool counts(const struct judged *judged, size_t i, struct problem_state *
     return window_contains(&p->window, place);
 }
 
-/* At which every scheme errs. */
-static bool near_jump(const struct judged *judged, size_t i)
+/* The region of the exact solution that a particle is in; "" where the problem has none. */
+static const char *region_of(const struct judged *judged, size_t i)
 {
     const struct prepared *p = &judged->run.problem;
     const struct snapshot *s = &judged->result.snapshot;
     const struct regions *regions = p->problem->regions;
     double place[3];
-    if (!regions) return false;
+    if (!regions) return "";
     problem_place(p, s, i, place);
-    const char *name =
-        regions->names[regions->at(p, place, BUDGET_REACH * s->h[i], judged->result.time)];
+    return regions->names[regions->at(p, place, BUDGET_REACH * s->h[i], judged->result.time)];
+}
+
+/* At which every scheme errs. */
+static bool near_jump(const struct judged *judged, size_t i)
+{
+    const char *name = region_of(judged, i);
     return strcmp(name, "shock") == 0 || strcmp(name, "contact") == 0;
+}
+
+/* Part of the window's particles that move by more than a tenth of the range of velocities where
+ * the exact solution knows of no wave yet: of a scheme waves are near the exact ones, of another
+ * time or place they are not. */
+static double moves_ahead(const struct judged *judged, double range)
+{
+    const struct snapshot *s = &judged->result.snapshot;
+    size_t all = 0, ahead = 0;
+    for (size_t i = 0; i < s->n; i++) {
+        struct problem_state now, before;
+        if (!counts(judged, i, &now, &before)) continue;
+        all++;
+        if (strcmp(region_of(judged, i), "undisturbed")) continue;
+        double squares = 0;
+        for (int d = 0; d < judged->run.problem.domain.dim; d++)
+            squares += (s->v[d][i] - now.v[d]) * (s->v[d][i] - now.v[d]);
+        ahead += sqrt(squares) > 0.1 * range;
+    }
+    return all ? (double)ahead / (double)all : 0;
 }
 
 static double value_of(const struct problem_state *state, int f, int dim)
@@ -333,7 +369,9 @@ static enum status measure_wrong(struct judged *judged, struct error *error)
         double range = INFINITY;
         const double median = median_error(judged, f, errors, &range);
         const double mean = judged->result.errors[f].l1 / range;
-        const double part = fmax(median, mean * JUDGE_FOREIGN / JUDGE_FOREIGN_MEAN);
+        double part = fmax(median, mean * JUDGE_FOREIGN / JUDGE_FOREIGN_MEAN);
+        if (f == FIELD_VELOCITY)
+            part = fmax(part, moves_ahead(judged, range) * JUDGE_FOREIGN / JUDGE_FOREIGN_AHEAD);
         if (part > judged->wrong) judged->wrong = part, judged->wrong_field = (enum field)f;
     }
     free(errors);
@@ -421,6 +459,21 @@ static void write_verdict(struct judged *judged)
                       judged->wrong / JUDGE_FOREIGN);
 }
 
+static enum status refuse_window(const struct judged *judged, struct error *error)
+{
+    const struct settings *settings = &judged->run.settings;
+    const double radius = settings_real(settings, SETTING_window_radius);
+    char window[SETTING_TEXT_MAX];
+    if (radius > 0)
+        snprintf(window, sizeof window, "%.6g about the middle", radius);
+    else
+        settings_text(settings, SETTING_window, window);
+    return error_set(error, STATUS_BAD_INPUT,
+                     "%.200s: no particle lies in the window, %s; allowed: one with particles in "
+                     "it: --window asks for another, --x0 tells where the case is",
+                     judged->path, window);
+}
+
 enum status judge_as(const char *path, const struct judge_request *request, bool glance,
                      struct judged *judged, struct error *error)
 {
@@ -449,9 +502,7 @@ enum status judge_as(const char *path, const struct judge_request *request, bool
     }
     if (!status && judged->result.problem.problem->fieldless == false &&
         isnan(judged->result.errors[FIELD_DENSITY].l1))
-        status =
-            error_set(error, STATUS_BAD_INPUT,
-                      "%.200s: no particle lies in the window; --x0 tells where the case is", path);
+        status = refuse_window(judged, error);
     if (!status) measure_growth(judged);
     if (!status) status = measure_wrong(judged, error);
     if (!status) {

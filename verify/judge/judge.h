@@ -15,6 +15,7 @@ enum { JUDGE_SNAPSHOTS_MAX = 64 };
 /* What is asked. */
 struct judge_request {
     const char *case_name;                 /* NULL: the file's; with left and right: of its box */
+    const struct run_settings *asked;      /* the case with its keys; NULL: by its name alone */
     const char *left, *right;              /* "rho v P"; NULL: the case's */
     struct snapshot_value gamma, x0, time; /* where the user says them */
     const char *box;                       /* as snapshot_take_box reads it; NULL: the file's */
@@ -67,6 +68,11 @@ enum status judge_as(const char *path, const struct judge_request *request, bool
 /* Gamma, time, box and place of the case in it: resolves judged->run. */
 enum status judge_place(const struct judge_request *request, struct judged *judged,
                         double period[3], struct error *error);
+
+/* Adds what the particles of a snapshot conserve, each moved by `shift`, as a run counts it: no
+ * momentum where walls or gravity push. */
+void judge_sum(const struct prepared *problem, const struct snapshot *snapshot,
+               const double shift[3], struct conservation *sums);
 
 /* ---- several ---- */
 

@@ -56,7 +56,7 @@ static enum status take_gamma(const struct judge_request *request, struct judged
     else if (file->gamma.known)
         gamma = unrounded(file->gamma.value), evidence = "the file says so";
     else if (proved)
-        gamma = unrounded(round(stored * 1e6) / 1e6),
+        gamma = unrounded(stored),
         evidence = "the file has none, but P = (gamma - 1) rho u of its particles";
     if (request->case_name && !request->gamma.known && fabs(gamma - case_gamma) > 1e-3)
         judged->case_gamma = case_gamma;
@@ -329,7 +329,10 @@ enum status judge_place(const struct judge_request *given, struct judged *judged
                          "--right",
                          judged->path);
     if (!request->case_name) snapshot_note(&judged->file.notes, "case", name, "the file says so");
-    if (run_prepare(&asked, name, 0, NULL, error)) return error->status;
+    if (request->asked)
+        asked = *request->asked;
+    else if (run_prepare(&asked, name, 0, NULL, error))
+        return error->status;
     judged->case_dim = asked.file.dimension;
     if (strcmp(name, said) == 0 && !request->x0.known && take_keys(judged, settings, error))
         return error->status;

@@ -22,14 +22,17 @@ JUDGED = ("src/", "reference/", "verify/command/", "verify/judge/", "verify/libr
 PURE = set("""fabs sqrt cbrt pow exp expm1 log log1p log10 sin cos tan atan2 atan hypot floor ceil round fmin fmax
 fma isfinite isnan lround largest least power labs abs""".split())
 SWAPPED_CALLS = {"fmin": "fmax", "fmax": "fmin", "fminl": "fmaxl", "fmaxl": "fminl", "least": "largest", "largest": "least"}
-COMMUTE = {"fmin", "fmax", "fminl", "fmaxl", "least", "largest", "hypot", "strcmp", "calloc"}  # of strings equality is asked
+# Of strings equality is asked.
+COMMUTE = {"fmin", "fmax", "fminl", "fmaxl", "least", "largest", "hypot", "strcmp", "strncmp", "memcmp", "json_equal",
+           "calloc", "fwrite", "swap"}
+ROOM = {"malloc", "calloc", "realloc"}  # more of it changes nothing
 ARITHMETIC = {"+": "-", "-": "+", "*": "/", "/": "*"}
 COMPARE = {"<": ("<=", ">"), ">": (">=", "<"), "<=": ("<", ">="), ">=": (">", "<="), "==": ("!=",), "!=": ("==",),
            "&&": ("||",), "||": ("&&",)}
 BITS = {"&": "|", "|": "&", "<<": ">>", ">>": "<<", "%": "*"}
 ASSIGN = {"+=": "-=", "-=": "+=", "*=": "/=", "/=": "*=", "&=": "|=", "|=": "&=", "%=": "+="}
 # A leak is the sanitizers' business, text the messages' own.
-DROPPED_BY_NOBODY = re.compile(r"^(\w*free\w*|fclose|closedir|json_decref|\(void\))\b|^\(void\)")
+DROPPED_BY_NOBODY = re.compile(r"^(\w*free\w*|fclose|closedir|json_decref|H5\w+close|\(void\))\b|^\(void\)")
 
 
 def refuse(text, code=4):
@@ -59,10 +62,15 @@ def load_libclang():
 class Site:
     """A range of a file with what may stand there instead."""
 
-    def __init__(self, start, end, how, alternative, change, pure):
+    def __init__(self, start, end, how, alternative, change, pure, function):
         self.start, self.end, self.how, self.alternative = start, end, how, alternative
-        self.change, self.pure = change, pure
+        self.change, self.pure, self.function = change, pure, function
         self.number = 0
+
+    @property
+    def new(self):
+        """What stands in the mutant's text, where it is a piece of text."""
+        return {"value": "(%s)" % self.alternative, "statement": "(void)0", "jump": ";"}.get(self.how)
 
 
 class Source:
@@ -85,11 +93,11 @@ class Source:
         start = self.text.rfind("\n", 0, offset) + 1
         return self.text[start:self.text.find("\n", offset)].strip()
 
-    def add(self, start, end, how, alternative, change, pure):
+    def add(self, start, end, how, alternative, change, pure, function="-"):
         key = (start, end, alternative)
         if key not in self.seen:
             self.seen.add(key)
-            self.sites.append(Site(start, end, how, alternative, change, pure))
+            self.sites.append(Site(start, end, how, alternative, change, pure, function))
 
 
 def flat(text):
@@ -104,6 +112,7 @@ class Walker:
         self.c, self.tree, self.sources, self.done = cindex, tree, sources, done
         self.kind = cindex.CursorKind
         self.returns = self.spans = None
+        self.either, self.in_room = set(), False
 
     def file_of(self, cursor):
         f = cursor.location.file
@@ -128,6 +137,7 @@ class Walker:
                 self.starts = [a for a, b in spans]
                 self.reach = list(itertools.accumulate((b for a, b in spans), max))
             if cursor.kind == self.kind.FUNCTION_DECL and cursor.is_definition():
+                self.function, self.compares = cursor.spelling, self.is_comparison(cursor)
                 self.returns = cursor.result_type.get_canonical().spelling
                 self.returns_bool = cursor.result_type.get_canonical().kind == self.c.TypeKind.BOOL
                 for child in cursor.get_children():
@@ -187,7 +197,35 @@ class Walker:
 
     def add(self, cursor, alternative, change=None, pure=False, how="value"):
         a, b = self.span(cursor)
-        self.source.add(a, b, how, alternative, change or "%s -> %s" % (self.code(cursor), alternative), pure)
+        self.source.add(a, b, how, alternative, change or "%s -> %s" % (self.code(cursor), alternative), pure,
+                        self.function)
+
+    # --- what no result can show ---
+
+    def is_comparison(self, function):
+        """One for qsort: of what it returns the sign matters, and of equal ones either may be first."""
+        types = [a.type.get_canonical().spelling for a in function.get_arguments()]
+        return types == ["const void *"] * 2 and function.result_type.spelling == "int"
+
+    def chooses(self, condition, one, other):
+        """Where one of two that are equal is taken, as in a < b ? a : b, it is the same one."""
+        for c in condition.walk_preorder():
+            op, left, right = self.operator(c) if c.kind == self.kind.BINARY_OPERATOR else ("", None, None)
+            if op in ("<", ">", "<=", ">=") and {self.code(left), self.code(right)} == {one, other}:
+                self.either.add(self.span(c))
+
+    def boundary_shows(self, cursor, op, left):
+        """Would < for <=, or > for >=, make a difference?"""
+        handle = left.type.spelling == "hid_t" and op in ("<", ">=")  # none is 0
+        return not (self.compares or handle or self.span(cursor) in self.either)
+
+    def is_first_letter(self, cursor):
+        """text[0] where it is asked whether there is a text."""
+        base, index = cursor.get_children()
+        a, b = self.span(cursor)
+        return (self.code(index) == "0" and self.code(cursor) == self.code(base) + "[0]"
+                and cursor.type.get_canonical().kind == self.c.TypeKind.CHAR_S
+                and re.match(r"\s*(\)|&&|\|\||\?)", self.text[b:b + 80]) is not None)
 
     # --- statements ---
 
@@ -204,6 +242,10 @@ class Walker:
         elif cursor.kind in (k.IF_STMT, k.WHILE_STMT, k.SWITCH_STMT, k.DO_STMT):
             children = list(cursor.get_children())
             where = len(children) - 1 if cursor.kind == k.DO_STMT else 0
+            if cursor.kind == k.IF_STMT and children[1].kind == k.BINARY_OPERATOR:
+                op, to, value = self.operator(children[1])
+                if op == "=":
+                    self.chooses(children[0], self.code(to), self.code(value))
             for i, child in enumerate(children):
                 if i == where:
                     self.condition(child, cursor.kind == k.IF_STMT)
@@ -267,13 +309,14 @@ class Walker:
         word = self.text[a:b]
         end = self.text.find(";", b)
         if not self.text[b:end].strip():
-            self.source.add(a, end + 1, "jump", word, "%s; -> ;" % word, False)
+            self.source.add(a, end + 1, "jump", word, "%s; -> ;" % word, False, self.function)
 
     def returned(self, cursor):
         children = list(cursor.get_children())
         if not children:
             a, b = self.span(cursor)
-            self.source.add(a, self.text.find(";", b) + 1, "jump", "return", "return; -> ;", False)
+            self.source.add(a, self.text.find(";", b) + 1, "jump", "return", "return; -> ;", False,
+                            self.function)
             return
         value = children[0]
         code = self.code(value)
@@ -325,11 +368,14 @@ class Walker:
         elif cursor.kind == k.CALL_EXPR:
             self.call(cursor, children)
         elif cursor.kind == k.ARRAY_SUBSCRIPT_EXPR and len(children) == 2:
+            if self.is_first_letter(cursor):
+                return
             index = children[1]
             if not re.match(r"^\d+$", self.code(index)) and self.scalar(index) == "integer" and not self.in_macro(index):
                 self.add(index, "(%s) + 1" % self.code(index), "[%s] -> + 1" % self.code(index),
                          self.pure(index))
         elif cursor.kind == k.CONDITIONAL_OPERATOR and len(children) == 3:
+            self.chooses(children[0], self.code(children[1]), self.code(children[2]))
             self.condition(children[0], True)
             for child in children[1:]:
                 self.expression(child, self.scalar(cursor) == "real")
@@ -346,9 +392,11 @@ class Walker:
                     continue
                 self.initialised(child)
             return
+        outer, self.in_room = self.in_room, self.in_room or cursor.kind == k.CALL_EXPR and cursor.spelling in ROOM
         for child in children:
             if child.kind.is_expression():
                 self.expression(child)
+        self.in_room = outer
 
     def initialised(self, cursor):
         """A member of a compound literal: .name = value is an expression around its value."""
@@ -366,7 +414,8 @@ class Walker:
         if not re.match(r"^[0-9.]", code) or code.startswith("0x"):
             return
         if not real:
-            self.add(cursor, "%s + 1" % code, pure=True)
+            if not self.in_room and not (self.compares and code == "1"):
+                self.add(cursor, "%s + 1" % code, pure=True)
             if code != "0":
                 self.add(cursor, "%s - 1" % code, pure=True)
         elif float(code.rstrip("fFlL")) == 0:
@@ -393,7 +442,7 @@ class Walker:
         elif op in ("+", "-") and types == ("pointer", "integer"):
             new, pure = [ARITHMETIC[op]], False
         elif op in COMPARE:
-            new = COMPARE[op]
+            new = COMPARE[op] if len(COMPARE[op]) == 1 or self.boundary_shows(cursor, op, left) else COMPARE[op][1:]
             if op in ("&&", "||"):
                 pure = False
         elif op in BITS:

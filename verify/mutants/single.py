@@ -14,7 +14,7 @@ TYPED = re.compile(r'"(\d+(?:\.\d+)?(?:e[-+]?\d+)?)"')
 class Constant:
     """A number of a source's text, and what stands there instead."""
 
-    number = 0  # no switch
+    number, function = 0, "-"  # no switch
 
     def __init__(self, source, start, end, new, change):
         self.source, self.file, self.start, self.end, self.new = source, source.name, start, end, new

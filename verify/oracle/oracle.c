@@ -7,8 +7,9 @@
 #include "integrator.h"
 #include "oracle_parts.h"
 
-/* Has every choice of a scheme its formula here? Switches without a default: a member that joins
- * one of the lists does not compile until it is placed. (pair_width: see find_gradients.) */
+/* Has every choice of a scheme its formula here? Gradients and viscosities may join their lists
+ * without one. Switches without a default: a member that joins one of those lists does not compile
+ * until it is placed. (pair_width: see find_gradients.) */
 bool oracle_covers(const struct scheme *scheme)
 {
     switch (scheme->gradient) {
@@ -17,6 +18,8 @@ bool oracle_covers(const struct scheme *scheme)
     case GRADIENT_CORRECTED:
     case GRADIENT_BLENDED:
         break;
+    default:
+        return false;
     }
     switch (scheme->formulation) {
     case FORMULATION_VANILLA_ICE:
@@ -38,6 +41,8 @@ bool oracle_covers(const struct scheme *scheme)
     case VISCOSITY_PROJECTED:
     case VISCOSITY_CULLEN_DEHNEN:
         break;
+    default:
+        return false;
     }
     switch (scheme->viscosity_form) {
     case VISCOSITY_FORM_MU:

@@ -11,6 +11,7 @@
 #include "check_registry.h"
 #include "claims.h"
 #include "clock.h"
+#include "code_cost.h"
 #include "gates.h"
 #include "list.h"
 #include "pairing.h"
@@ -27,20 +28,26 @@
  * with the other gradient, and SPH as textbooks have it. */
 static const struct scheme_label {
     const char *label, *keys;
+    const struct run_settings *other; /* another code computes it; */
+    const char *option;               /* what says so on a command line */
 } line_schemes[] =
     {
-        {"default", ""},
-        {"standard", "kernel=cubic_spline eta=2 gradient=standard integrator=modified_leapfrog "
-                     "energy=internal"},
-        {"ia",
-         "kernel=cubic_spline eta=2 gradient=ia integrator=modified_leapfrog energy=internal"},
+        {.label = "default", .keys = ""},
+        {.label = "standard",
+         .keys = "kernel=cubic_spline eta=2 gradient=standard integrator=modified_leapfrog "
+                 "energy=internal"},
+        {.label = "ia",
+         .keys =
+             "kernel=cubic_spline eta=2 gradient=ia integrator=modified_leapfrog energy=internal"},
 },
   cloud_schemes[] = {
-      {"default", ""},
-      {"standard gradient", "gradient=standard"},
-      {"textbook SPH", "kernel=cubic_spline eta=2.4 gradient=standard viscosity=constant"},
+      {.label = "default", .keys = ""},
+      {.label = "standard gradient", .keys = "gradient=standard"},
+      {.label = "textbook SPH",
+       .keys = "kernel=cubic_spline eta=2.4 gradient=standard viscosity=constant"},
 };
 enum { SCHEMES = sizeof line_schemes / sizeof *line_schemes };
+enum { ENTRIES = SCHEMES + REPORT_CODES_MAX };
 enum { KEYS_MAX = 16, COMMAND_TEXT = 1024 };
 enum { COMPARED = 8000 }; /* particles by day up to which other schemes are compared */
 enum { QUICK = 1000 };    /* particles by day of a case in 2D or 3D that says nothing else */
@@ -48,10 +55,11 @@ enum { QUICK = 1000 };    /* particles by day of a case in 2D or 3D that says no
 /* What a report has of a case. */
 struct reported {
     const char *name;
-    int dimension, schemes, studied; /* so many of the schemes have a run, and a study */
-    char more[256]; /* what the command line of its studies has beside their keys */
-    char size[32];  /* what that of its runs has: "n=48^2", or nothing */
-    struct study studies[SCHEMES];
+    int dimension, schemes, studied; /* so many of the entries have a run, and a study */
+    struct scheme_label entries[ENTRIES];
+    char more[ENTRIES][256]; /* what the command lines of the studies have beside their keys */
+    char size[32];           /* what those of the runs have: "n=48^2", or nothing */
+    struct study studies[ENTRIES];
 };
 
 struct report {
@@ -64,36 +72,52 @@ struct report {
     struct stress stress;
     struct claims claims;
     struct pairing pairing;
+    const struct report_code *codes; /* of a report of other codes */
+    size_t code_count;
 };
 
 /* ---- what is to be computed ---- */
 
 static const struct scheme_label *scheme_of(const struct reported *of, int s)
 {
-    return &(of->dimension > 1 ? cloud_schemes : line_schemes)[s];
+    return &of->entries[s];
 }
 
-/* The case with the scheme's keys. */
-static enum status prepare(const struct reported *of, int s, struct run_settings *settings,
-                           struct error *error)
+/* KEY=VALUE words. */
+static enum status apply(const char *words, struct settings *settings, struct error *error)
 {
     char text[512], *arguments[KEYS_MAX], *rest = text;
     int n = 0;
-    snprintf(text, sizeof text, "%s %s", of->size, scheme_of(of, s)->keys);
+    snprintf(text, sizeof text, "%s", words);
     for (char *word; (word = strtok_r(rest, " ", &rest));) {
         if (n == KEYS_MAX)
-            return error_set(error, STATUS_ENVIRONMENT, "scheme %s: more than %d keys",
-                             scheme_of(of, s)->label, KEYS_MAX);
+            return error_set(error, STATUS_ENVIRONMENT, "more than %d keys: %.200s", KEYS_MAX,
+                             words);
         arguments[n++] = word;
     }
-    return run_prepare(settings, of->name, n, arguments, error);
+    return settings_apply(settings, n, arguments, error);
+}
+
+/* The case with the scheme's keys. Beside other codes ours is not judged. */
+static enum status prepare(const struct reported *of, int s, struct run_settings *settings,
+                           struct error *error)
+{
+    const struct scheme_label *scheme = scheme_of(of, s);
+    const struct run_settings *other = of->entries[0].other;
+    if (!other && run_prepare(settings, of->name, 0, NULL, error)) return error->status;
+    if (other) *settings = scheme->other ? *scheme->other : *other;
+    if (other && !scheme->other) settings->external = NULL, settings->file.gate_count = 0;
+    return apply(of->size, &settings->settings, error)
+               ? error->status
+               : apply(scheme->keys, &settings->settings, error);
 }
 
 /* The ladder of a case: its own, by day a smaller one if it has one, by night with more on top. */
-static void take_ladder(const struct report *report, struct reported *of, struct study *study)
+static void take_ladder(const struct report *report, struct reported *of, int s)
 {
+    struct study *study = &of->studies[s];
     const struct case_file *file = &study->settings.file;
-    const bool day = !report->nightly && file->quick_count;
+    const bool codes = report->codes, day = !report->nightly && file->quick_count && !codes;
     const size_t *from = day ? file->quick : file->ladder;
     size_t *n = &study->level_count;
     memcpy(study->ladder, from, sizeof study->ladder);
@@ -103,10 +127,12 @@ static void take_ladder(const struct report *report, struct reported *of, struct
             study->ladder[(*n)++] = file->night[i];
     else if (report->nightly && *n < CASE_LADDER_MAX)
         study->ladder[*n] = study->ladder[*n - 1] << file->dimension, ++*n;
-    if (study->ladder[*n - 1] == file->ladder[file->ladder_count - 1] && !day) return;
-    int used = snprintf(of->more, sizeof of->more, " --n ");
-    for (size_t i = 0; i < *n && used < (int)sizeof of->more; i++)
-        used += snprintf(of->more + used, sizeof of->more - (size_t)used, "%s%zu", i ? "," : "",
+    const bool own = study->ladder[*n - 1] == file->ladder[file->ladder_count - 1] && !day;
+    if (codes ? scheme_of(of, s)->other != NULL : own) return;
+    char *more = of->more[s];
+    int used = snprintf(more, sizeof of->more[s], " --n ");
+    for (size_t i = 0; i < *n && used < (int)sizeof of->more[s]; i++)
+        used += snprintf(more + used, sizeof of->more[s] - (size_t)used, "%s%zu", i ? "," : "",
                          study->ladder[i]);
 }
 
@@ -116,8 +142,8 @@ static enum status add_study(struct report *report, struct reported *of, int s,
     struct study *study = &of->studies[s];
     study->settings = *settings;
     if (sweep_parse(&study->sweep, NULL, error)) return error->status;
-    if (s) gates_compare(&study->settings.file);
-    take_ladder(report, of, study);
+    if (s && !report->codes) gates_compare(&study->settings.file);
+    take_ladder(report, of, s);
     study->replicates = study_replicates(settings);
     return study_plan(study, &report->pool, error);
 }
@@ -164,6 +190,7 @@ static enum status find_cases(struct report *report, struct error *error)
             return error_set(error, STATUS_ENVIRONMENT, "no memory for the cases");
         struct reported *of = &report->cases[report->case_count++];
         *of = (struct reported){.name = builtin->name};
+        memcpy(of->entries, file.dimension > 1 ? cloud_schemes : line_schemes, sizeof line_schemes);
         plan_case(report, &file, of);
     }
     return STATUS_OK;
@@ -272,9 +299,9 @@ static void describe(const char *command, const struct reported *of, int s, cons
                      json_t *document)
 {
     char reproduce[COMMAND_TEXT];
-    const char *keys = scheme_of(of, s)->keys;
-    snprintf(reproduce, sizeof reproduce, "sphproof %s %s%s%s%s", command, of->name, more,
-             *keys ? " " : "", keys);
+    const struct scheme_label *scheme = scheme_of(of, s);
+    snprintf(reproduce, sizeof reproduce, "sphproof %s %s%s%s%s%s", command, of->name, more,
+             *scheme->keys ? " " : "", scheme->keys, scheme->option ? scheme->option : "");
     json_object_set_new(document, "label", json_string(scheme_of(of, s)->label));
     json_object_set_new(document, "reproduce", json_string(reproduce));
 }
@@ -290,20 +317,23 @@ static void describe_run(const struct reported *of, int s, json_t *document)
 static json_t *study_document(const struct reported *of, int s)
 {
     const struct study *study = &of->studies[s];
+    const struct run_external *external = study->settings.external;
     json_t *document = result_new("converge");
     json_object_set_new(document, "case", json_string(study->settings.file.name));
     json_object_set_new(document, "title", json_string(study->settings.file.title));
     json_object_set_new(document, "status",
-                        json_string(study->status == STATUS_BROKE_DOWN ? "broke_down"
-                                    : study->status                    ? "fail"
-                                                                       : "pass"));
+                        json_string(study->status == STATUS_BROKE_DOWN
+                                        ? (external ? "failed" : "broke_down")
+                                    : study->status ? "fail"
+                                                    : "pass"));
     study_add_json(study, document);
-    describe("converge", of, s, of->more, document);
+    if (external) external->describe(external, document);
+    describe("converge", of, s, of->more[s], document);
     return document;
 }
 
 /* Two schemes of a case with the same errors to the last bit: one setting was not read. */
-static void suspect_same(const struct reported *of, json_t *documents[SCHEMES])
+static void suspect_same(const struct reported *of, json_t *documents[ENTRIES])
 {
     for (int s = 1; s < of->studied; s++) {
         const struct study_result *a = &of->studies[s - 1].results[0],
@@ -326,10 +356,11 @@ static void add_trouble(json_t *results, const char *name, const char *message)
 static void add_gates(const struct reported *of, const struct report_piece *piece, json_t *document)
 {
     struct case_file file = piece->settings.file;
+    const bool external = piece->settings.external;
     json_t *gates = json_array();
-    if (piece->scheme) gates_compare(&file);
+    if (piece->scheme && !external) gates_compare(&file);
     if (piece->scheme >= of->studied) gates_add_errors(&file, document, gates);
-    gates_add_conserved(document, gates);
+    if (!external) gates_add_conserved(document, gates);
     json_object_set_new(document, "gates", gates);
 }
 
@@ -403,24 +434,9 @@ static void add_written(json_t *results, const char *name, const char *folder)
         add_trouble(results, name, error.message);
 }
 
-static json_t *collect(struct report *report, const char *folder, double seconds)
+/* What only a report of our own program has. */
+static void add_own(struct report *report, const char *folder, json_t *results)
 {
-    json_t *results = result_new("report"), *studies = json_array();
-    json_object_set_new(results, "mode", json_string(report->nightly ? "nightly" : "quick"));
-    json_object_set_new(results, "seconds", result_number(seconds));
-    json_object_set_new(results, "computations", json_integer((json_int_t)report->pool.count));
-    json_object_set_new(results, "found", json_integer((json_int_t)report->pool.found));
-    for (size_t c = 0; c < report->case_count; c++) {
-        const struct reported *of = &report->cases[c];
-        json_t *documents[SCHEMES];
-        for (int s = 0; s < of->studied; s++) {
-            documents[s] = study_document(of, s);
-            json_array_append_new(studies, documents[s]);
-        }
-        if (of->studied) suspect_same(of, documents);
-    }
-    json_object_set_new(results, "studies", studies);
-    add_documents(report, results);
     json_t *stress = result_new("stress");
     stress_judge(&report->stress, &report->pool, stress);
     json_object_set_new(results, "stress", stress);
@@ -432,6 +448,33 @@ static json_t *collect(struct report *report, const char *folder, double seconds
     json_object_set_new(results, "claims", claims);
     add_written(results, "faults", folder);
     add_written(results, "score", folder);
+}
+
+static json_t *collect(struct report *report, const char *folder, double seconds)
+{
+    json_t *results = result_new("report"), *studies = json_array();
+    json_object_set_new(results, "mode",
+                        json_string(report->codes     ? "code"
+                                    : report->nightly ? "nightly"
+                                                      : "quick"));
+    json_object_set_new(results, "seconds", result_number(seconds));
+    json_object_set_new(results, "computations", json_integer((json_int_t)report->pool.count));
+    json_object_set_new(results, "found", json_integer((json_int_t)report->pool.found));
+    for (size_t c = 0; c < report->case_count; c++) {
+        const struct reported *of = &report->cases[c];
+        json_t *documents[ENTRIES];
+        for (int s = 0; s < of->studied; s++) {
+            documents[s] = study_document(of, s);
+            json_array_append_new(studies, documents[s]);
+        }
+        if (of->studied && !report->codes) suspect_same(of, documents);
+    }
+    json_object_set_new(results, "studies", studies);
+    add_documents(report, results);
+    if (report->codes)
+        code_cost_add(results);
+    else
+        add_own(report, folder, results);
     json_object_set_new(results, "verdict", verdict_make(results));
     return results;
 }
@@ -460,7 +503,7 @@ void report_destroy(struct report *report)
 {
     if (!report) return;
     for (size_t c = 0; report->cases && c < report->case_count; c++)
-        for (int s = 0; s < SCHEMES; s++) study_free(&report->cases[c].studies[s]);
+        for (int s = 0; s < ENTRIES; s++) study_free(&report->cases[c].studies[s]);
     for (size_t k = 0; k < report->piece_count; k++) free(report->pieces[k]);
     stress_free(&report->stress);
     claims_free(&report->claims);
@@ -470,19 +513,69 @@ void report_destroy(struct report *report)
     free(report);
 }
 
-enum status report_create(enum report_mode mode, struct report **report, struct error *error)
+/* ---- other codes ---- */
+
+static struct reported *reported_of(struct report *report, const struct case_file *file)
+{
+    for (size_t c = 0; c < report->case_count; c++)
+        if (strcmp(report->cases[c].name, file->asked) == 0) return &report->cases[c];
+    if (!list_grow(&report->cases, report->case_count, sizeof *report->cases)) return NULL;
+    struct reported *of = &report->cases[report->case_count++];
+    *of = (struct reported){.name = file->asked, .dimension = file->dimension};
+    if (file->ladder_count)
+        snprintf(of->size, sizeof of->size, "n=%zu", file->ladder[file->ladder_count - 1]);
+    return of;
+}
+
+/* The codes come first: by them a case is judged. */
+static enum status add_codes(struct report *report, struct error *error)
+{
+    for (size_t k = 0; k < report->code_count; k++)
+        for (size_t c = 0; c < report->codes[k].count; c++) {
+            const struct report_code *code = &report->codes[k];
+            struct reported *of = reported_of(report, &code->cases[c].file);
+            if (!of) return error_set(error, STATUS_ENVIRONMENT, "no memory for the cases");
+            of->entries[of->schemes++] =
+                (struct scheme_label){code->title, "", &code->cases[c], code->option};
+        }
+    for (size_t c = 0; c < report->case_count; c++) {
+        struct reported *of = &report->cases[c];
+        const struct scheme_label *ours = of->dimension > 1 ? cloud_schemes : line_schemes;
+        of->entries[of->schemes++] = ours[0];
+        of->entries[of->schemes++] = of->dimension > 1 ? ours[2] : ours[1];
+        of->studied = *of->size ? of->schemes : 0;
+        if (add_case(report, c, error)) return error->status;
+    }
+    return STATUS_OK;
+}
+
+static enum status create(struct report **report, const struct report_code *codes, size_t count,
+                          bool nightly, struct error *error)
 {
     *report = calloc(1, sizeof **report);
     if (!*report) return error_set(error, STATUS_ENVIRONMENT, "no memory for a report");
-    (*report)->nightly = mode == REPORT_NIGHTLY;
+    (*report)->nightly = nightly;
+    (*report)->codes = codes;
+    (*report)->code_count = count;
     (*report)->began = clock_wall();
     gsl_set_error_handler_off();
-    const enum status status = add_all(*report, error);
+    const enum status status = (codes ? add_codes : add_all)(*report, error);
     if (status) {
         report_destroy(*report);
         *report = NULL;
     }
     return status;
+}
+
+enum status report_create(enum report_mode mode, struct report **report, struct error *error)
+{
+    return create(report, NULL, 0, mode == REPORT_NIGHTLY, error);
+}
+
+enum status report_create_codes(const struct report_code *codes, size_t count,
+                                struct report **report, struct error *error)
+{
+    return create(report, codes, count, false, error);
 }
 
 struct pool *report_pool(struct report *report)

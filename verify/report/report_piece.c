@@ -25,6 +25,7 @@ static enum status compute_run(const struct report_piece *piece, json_t **docume
     struct run_result result;
     struct run run = piece->run;
     struct trace trace = {0};
+    if (run.asked.external) return run_job_external(&run, true, document, error);
     run.asked.trace = &trace;
     const enum status status = run_execute(&run, &result, error);
     if (status != STATUS_OK && status != STATUS_BROKE_DOWN) return status;

@@ -74,11 +74,21 @@ static bool find_width(const struct scheme *scheme, double *h)
     return true;
 }
 
+bool stability_covers(enum gradient gradient)
+{
+    return gradient == GRADIENT_STANDARD || gradient == GRADIENT_IA;
+}
+
 enum status stability_begin(struct stability *lattice, const struct scheme *scheme, double gamma,
                             struct error *error)
 {
     *lattice = (struct stability){.scheme = *scheme, .gamma = gamma, .approaching = 0.5};
     if (scheme_check(scheme, 1, error)) return error->status;
+    if (!stability_covers(scheme->gradient))
+        return error_set(
+            error, STATUS_BAD_INPUT,
+            "linear stability: there is no theory of gradient %s; allowed: standard ia",
+            scheme_gradient_family.members[scheme->gradient]->name);
     if (scheme->viscosity != VISCOSITY_NONE && scheme->viscosity != VISCOSITY_CONSTANT)
         return error_set(error, STATUS_BAD_INPUT,
                          "linear stability: viscosity %s is not linear; allowed: none constant",

@@ -26,8 +26,11 @@ struct stability {
     struct stability_pair pair[STABILITY_REACH_MAX + 1]; /* at offsets 0 .. reach */
 };
 
+/* Is there a theory of this gradient? */
+bool stability_covers(enum gradient gradient);
+
 /* The lattice of a scheme; pair_width max is linearised as mean (it has no derivative). Viscosity
- * none or constant. STATUS_BAD_INPUT: another viscosity, no root h, or a width beyond
+ * none or constant. STATUS_BAD_INPUT: another viscosity or gradient, no root h, or a width beyond
  * STABILITY_REACH_MAX spacings. */
 enum status stability_begin(struct stability *lattice, const struct scheme *scheme, double gamma,
                             struct error *error);

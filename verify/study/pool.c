@@ -9,6 +9,9 @@
 #include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#ifdef __linux__
+#include <sys/prctl.h>
+#endif
 
 #include "list.h"
 #include "result.h"
@@ -63,6 +66,13 @@ void pool_free(struct pool *pool)
 }
 
 /* ---- in the worker's process ---- */
+
+void pool_end_with_parent(void)
+{
+#ifdef __linux__
+    prctl(PR_SET_PDEATHSIG, SIGTERM);
+#endif
+}
 
 /* {"status", "message", "document", "note"}: what a job said, and why it could not be kept. */
 static json_t *reply_of(const struct pool_job *job, const struct cache *cache)

@@ -76,6 +76,10 @@ enum status pool_divide(const struct pool *pool, int of, int *shares, struct err
  * in them. */
 enum status pool_run(struct pool *pool, const struct pool_settings *settings, struct error *error);
 
+/* For a job whose work goes on in processes of its own: it, and with it they, end when the process
+ * of the pool does. */
+void pool_end_with_parent(void);
+
 void pool_free(struct pool *pool);
 
 #endif

@@ -31,6 +31,11 @@ char *run_job_key(const struct run *run, const char *kind, struct error *error)
                             run->asked.any_window, "settings", settings_json(&run->settings));
     if (key && run->settings.file[0])
         json_object_set_new(key, "content", json_integer((json_int_t)content(run->settings.file)));
+    const struct run_external *external = run->asked.external;
+    if (key && external && external->add_key(external, run, key, error)) {
+        json_decref(key);
+        return NULL;
+    }
     char *text =
         key ? json_dumps(key, JSON_COMPACT | JSON_SORT_KEYS | JSON_REAL_PRECISION(17)) : NULL;
     json_decref(key);
@@ -46,10 +51,19 @@ double run_job_weight(const struct run *run)
     return 0.002 + (dim == 1 ? 5e-8 : 1e-5) * pow(n, 1 + 1. / dim);
 }
 
+enum status run_job_external(const struct run *run, bool profile, json_t **document,
+                             struct error *error)
+{
+    const struct run_external *external = run->asked.external;
+    pool_end_with_parent();
+    return external->compute(external, run, profile, document, error);
+}
+
 static enum status compute(const void *context, json_t **document, struct error *error)
 {
     const struct run *run = context;
     struct run_result result;
+    if (run->asked.external) return run_job_external(run, false, document, error);
     const enum status status = run_execute(run, &result, error);
     if (status != STATUS_OK && status != STATUS_BROKE_DOWN) return status;
     *document = result_new("run");

@@ -20,4 +20,8 @@ double run_job_weight(const struct run *run);
  * document is that of `sphproof run`. */
 enum status run_job_add(struct pool *pool, const struct run *run, size_t *job, struct error *error);
 
+/* In a job of a pool: the document that another program computes, run->asked.external. */
+enum status run_job_external(const struct run *run, bool profile, json_t **document,
+                             struct error *error);
+
 #endif

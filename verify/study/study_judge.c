@@ -8,7 +8,7 @@
 #include "measure.h"
 #include "problem_list.h"
 #include "study_read.h"
-#include "traits.h"
+#include "viscosity.h"
 
 /* An order lost to the lattice sums shows a relative error of this many floors at most. */
 static const double floor_reach = 20;
@@ -140,7 +140,8 @@ static bool is_known(const struct case_file *file, const struct case_gate *gate,
     return false;
 }
 
-static void judge_gates(struct study_result *result, const struct case_file *file)
+/* of_ours: by our own solver, whose kernel is known. */
+static void judge_gates(struct study_result *result, const struct case_file *file, bool of_ours)
 {
     const struct study_level *finest = &result->levels[result->level_count - 1];
     const bool standard = result->scheme.gradient == GRADIENT_STANDARD;
@@ -164,7 +165,7 @@ static void judge_gates(struct study_result *result, const struct case_file *fil
             order->status = GATE_KNOWN;
         if (order->status != GATE_FAIL) continue;
         result->status = STATUS_CHECK_FAILED;
-        result->floor_explains |= isfinite(gate->gate.high) &&
+        result->floor_explains |= of_ours && isfinite(gate->gate.high) &&
                                   !(order->fit.order >= order->gate.low) &&
                                   finest->errors[gate->field][gate->norm] <= floor_reach * floor;
     }
@@ -200,10 +201,14 @@ static void suspect(struct study_result *result, const struct case_file *file)
 
 /* ---- settings without effect ---- */
 
-/* Does alpha vary by a switch, between alpha_min and alpha_max? */
-static bool is_switched(int viscosity)
+/* Is the key among the parameters of a viscosity? */
+static bool reads(int viscosity, enum setting key)
 {
-    return traits_viscosity[viscosity].evolves || traits_viscosity[viscosity].jumps;
+    const char *parameters = viscosity_of[viscosity].parameters, *name = setting_keys[key].name;
+    const size_t length = strlen(name);
+    for (const char *at = parameters; (at = strstr(at, name)); at += length)
+        if ((at == parameters || at[-1] == ' ') && (at[length] == ' ' || !at[length])) return true;
+    return false;
 }
 
 /* Do these settings say anything to the solver that the key could change? `skip` must not. */
@@ -218,10 +223,10 @@ static bool is_read(enum setting key, const struct settings *settings)
         return strcmp(kernel_family.members[kernel]->name, "sinc") == 0;
     case SETTING_alpha:
     case SETTING_beta:
-        return !traits_viscosity[viscosity].none && !is_switched(viscosity);
     case SETTING_alpha_min:
     case SETTING_alpha_max:
-        return is_switched(viscosity);
+    case SETTING_noise:
+        return reads(viscosity, key);
     case SETTING_seed:
         return study_is_random(settings);
     case SETTING_grade_ratio:
@@ -282,7 +287,7 @@ enum status study_judge(struct study *study, const struct pool *pool, struct err
                 (study->settings.file.dimension > 1 && fit_cloud_orders(result, error)))
                 return error->status;
             extrapolate(result);
-            judge_gates(result, &study->settings.file);
+            judge_gates(result, &study->settings.file, !study->settings.external);
             judge_stillness(result);
             suspect(result, &study->settings.file);
         }

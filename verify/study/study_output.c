@@ -170,7 +170,10 @@ static void add_result(const struct study *study, const struct study_result *res
                 varied);
     for (size_t i = 0; i < result->functional_count; i++)
         add(document, "functionals", functional_json(result, i), varied);
-    add(document, "floors", floor_json(result), varied);
+    if (!study->settings.external)
+        add(document, "floors", floor_json(result), varied);
+    else if (result->suspicion[0])
+        add(document, "floors", json_pack("{s:s}", "suspicion", result->suspicion), varied);
     if (result->levels[0].budget.regions)
         add(document, "budgets", budget_orders_json(result), varied);
 }

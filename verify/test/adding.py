@@ -228,30 +228,101 @@ def operator(tree):
     tree.undo()
 
 
-@row("choice in the pair loop (gradient, formulation, viscosity)")
+def runs_in_all_dimensions(tree, choice):
+    """The runs with a new choice differ from those with the default in each dimension."""
+    for case, n in (("sod", "100"), ("gresho", "24^2"), ("sedov_3d", "10^3")):
+        out = []
+        for words in ([], [choice]):
+            path = os.path.join(tree.work, "adding.csv")
+            tree.program("run", case, "n=" + n, "t_end=0.002", "--quiet", "--snapshot", path, *words)
+            with open(path) as f:
+                out.append(f.read())
+        if out[0] == out[1]:
+            raise Failed("%s does not change the run of %s" % (choice, case))
+
+
+def skips_equations(tree, name):
+    """What has no second writing of its equations says so."""
+    if not [c for c in tree.checks("hydro/rates") if c["status"] == "skip" and name in c["subject"]]:
+        raise Failed("hydro/rates does not skip %s" % name)
+
+
+@row("gradient of the equations of motion, 1D to 3D")
+def gradient(tree):
+    tree.new("src/core/gradient/mixed.h", r"""
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * As ia with the mean of W and -W'/q in place of W. */
+#ifndef GRADIENT_MIXED_H
+#define GRADIENT_MIXED_H
+
+ALWAYS_INLINE double mixed_weight(double w, double slope)
+{
+    return 0.5 * (w + slope);
+}
+
+#endif
+GRADIENT(mixed, .member = {"mixed", "as ia with the mean of W and -W'/q", ""}, .least_dim = 1, .weight = WEIGHT_BOTH)
+""")
+    # those with a form in 1D stand first
+    tree.replace("src/core/gradient/gradients.def", '#include "gradient/corrected.h"',
+                 '#include "gradient/mixed.h"\n#include "gradient/corrected.h"')
+    tree.build()
+    tree.listed("gradients", "mixed")
+    runs_in_all_dimensions(tree, "gradient=mixed")
+    tree.checked("mixed", "hydro/conservation", "hydro/specialised")
+    skips_equations(tree, "mixed")
+    tree.reported("^checks of hydro$")
+    tree.replace("verify/oracle/oracle.c", "    case GRADIENT_IA:\n", "    case GRADIENT_IA:\n    case GRADIENT_MIXED:\n")
+    weight = "    return oracle->scheme.gradient == GRADIENT_CORRECTED"
+    tree.replace("verify/oracle/oracle_matrix.c", weight,
+                 "    if (oracle->scheme.gradient == GRADIENT_MIXED)\n"
+                 "        return (oracle_W(oracle, r, h) - h * h * oracle_dW_dr(oracle, r, h) / r) / 2;\n" + weight)
+    tree.build()
+    tree.checked("mixed", "hydro/rates")
+    tree.keep()
+    tree.replace("src/core/gradient/mixed.h", "(w + slope)", "(w + 1.01 * slope)")
+    tree.build()
+    tree.rejected("hydro/rates")
+    tree.undo()
+
+
+@row("artificial viscosity, 1D to 3D")
 def viscosity(tree):
-    line = ('CHOICE(VISCOSITY_QUADRATIC, "quadratic", "quadratic in compression", "von Neumann & Richtmyer 1950", '
-            '__VA_ARGS__)')
-    last = re.search(r'    CHOICE\(VISCOSITY_FADING.*?__VA_ARGS__\)', tree.read("src/core/families.h"), re.S).group()
-    tree.replace("src/core/families.h", last, last + " " + line)
-    if "VISCOSITY_QUADRATIC" not in tree.call(["ninja", "-C", tree.folder, "sphproof"], status=1):
-        raise Failed("a viscosity that has no formula compiles")
-    tree.replace("src/core/pair.h", "bool midpoint, varying, fading;", "bool midpoint, varying, fading, quadratic;")
-    tree.replace("src/core/pair.h", "    case VISCOSITY_FADING:\n", "    case VISCOSITY_QUADRATIC:\n"
-                 "        return (struct pair_form){.quadratic = true};\n    case VISCOSITY_FADING:\n")
-    tree.replace("src/core/pair.h", "form.fading ?", "form.quadratic ? 0 : form.fading ?")
+    tree.new("src/core/viscosity/quadratic.h", r"""
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Quadratic in compression (von Neumann & Richtmyer 1950): constant without its linear term. */
+#ifndef VISCOSITY_QUADRATIC_H
+#define VISCOSITY_QUADRATIC_H
+
+ALWAYS_INLINE struct viscosity_seen quadratic_viscous(const struct pair_numbers *numbers, const struct pair_side *i,
+                                                      const struct pair_side *j, const struct viscosity_pair *pair)
+{
+    struct viscosity_seen seen = constant_viscous(numbers, i, j, pair);
+    seen.alpha_half = 0;
+    return seen;
+}
+
+#endif
+VISCOSITY(quadratic, .member = {"quadratic", "quadratic in compression", "von Neumann & Richtmyer 1950"},
+          .least_dim = 1, .parameters = "beta")
+""")
+    tree.replace("src/core/viscosity/viscosities.def", '#include "viscosity/cullen_dehnen.h"',
+                 '#include "viscosity/quadratic.h"\n#include "viscosity/cullen_dehnen.h"')
+    tree.build()
+    tree.listed("viscosities", "quadratic")
+    runs_in_all_dimensions(tree, "viscosity=quadratic")
+    tree.checked("viscosity quadratic", "hydro/conservation", "hydro/specialised")
+    skips_equations(tree, "quadratic")
+    tree.reported("^checks of hydro$")
+    fading = "    if (scheme->viscosity == VISCOSITY_FADING) c = "
     tree.replace("verify/oracle/oracle.c", "    case VISCOSITY_FADING:\n",
                  "    case VISCOSITY_FADING:\n    case VISCOSITY_QUADRATIC:\n")
-    fading = "    if (scheme->viscosity == VISCOSITY_FADING) c = "
     tree.replace("verify/oracle/oracle_pair.c", fading,
                  "    if (scheme->viscosity == VISCOSITY_QUADRATIC) c = 0;\n" + fading)
     tree.build()
-    tree.listed("viscosities", "quadratic")
-    tree.program("run", "sod", "viscosity=quadratic", "n=100", "--quiet")
-    tree.checked("viscosity quadratic", "hydro/conservation", "hydro/specialised", "hydro/rates")
-    tree.reported("^checks of hydro$")
+    tree.checked("viscosity quadratic", "hydro/rates")
     tree.keep()
-    tree.replace("src/core/pair.h", "form.quadratic ? 0 :", "form.quadratic ? 0.01 * c_sum :")
+    tree.replace("src/core/viscosity/quadratic.h", "alpha_half = 0;", "alpha_half *= 0.01;")
     tree.build()
     tree.rejected("hydro/rates")
     tree.undo()

@@ -344,6 +344,11 @@ def own(folder):
     # what is far fails, also beside one that is not, unless that is allowed
     judge(path, "--case", "sod_2d", "--time", "0.12", status=1)
     assert judge(path, "--case", "sod_2d", "--time", "0.12", "--allow-far", status=0)["foreign"]
+    # a tube of another time is far, though most of its gas rests in both and plateaus agree
+    tube = os.path.join(folder, "tube.csv")
+    subprocess.run([PROGRAM, "run", "sod", "n=398", "--snapshot", tube, "--quiet"], check=True)
+    for words, far in ((["--time", "0.15"], True), (["--x0", "0.06"], True), (["--time", "0.195"], False)):
+        assert judge(tube, "--case", "sod", *words)["foreign"] == far, words
     warm = os.path.join(folder, "warm.csv")
     subprocess.run([PROGRAM, "run", "sod", "n=198", "gamma=1.3", "--snapshot", warm, "--quiet"], check=True)
     judge(warm, status=0)  # our own snapshot says what it is

@@ -18,7 +18,7 @@ LAYERS = ("src", "reference", "reports", "verify", "cases")
 TEXTS = (".c", ".h", ".def", ".py", ".sh", ".md", ".txt", ".ini", ".build", ".options")
 SKIP = {os.path.join("reports", "out"), os.path.join("verify", "fuzz", "corpus")}
 # made by the build or a run, or given by the system, or an example's file that the user has
-FOREIGN = {"config.h", "version.h", "cmocka.h", "summary.md", "my_kernel.c", "file.c", "cloud.csv", "mine.h",
+FOREIGN = {"config.h", "version.h", "family_names.h", "cmocka.h", "summary.md", "my_kernel.c", "file.c", "cloud.csv", "mine.h",
            "particles.csv", "theirs.csv", "mine.csv", "out.csv", "kh.csv", "code.sh"}
 
 COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.S)

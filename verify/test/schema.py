@@ -38,7 +38,7 @@ class Validator:
     def nothing(self, value, rule, schema, path):
         return ()
 
-    do_title = do_description = do_defs = do_schema = do_then = nothing
+    do_title = do_description = do_defs = do_schema = do_then = do_else = nothing
 
     def do_ref(self, value, rule, schema, path):
         target = self.root
@@ -111,7 +111,7 @@ class Validator:
             yield "%s: %r fits no alternative" % (path, value)
 
     def do_if(self, value, rule, schema, path):
-        return self.faults(value, schema["then"], path) if self.valid(value, rule) else ()
+        return self.faults(value, schema.get("then" if self.valid(value, rule) else "else", {}), path)
 
 
 SNAPSHOTS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "data", "snapshots", "")

@@ -1,13 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The macros of near.h: what they must accept and, above all, what they must refuse. */
-#include <setjmp.h>
-#include <stdarg.h>
+#include "test.h"
+
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
-#include <cmocka.h>
 
 static int refused;
 static char message[256];
@@ -32,9 +29,8 @@ static char message[256];
         assert_int_equal(refused, 0);                                                              \
     } while (0)
 
-static void test_accepts(void **state)
+TEST(test_accepts)
 {
-    (void)state;
     ACCEPTS(near_absolute(1 + 1e-9, 1, 1e-8));
     ACCEPTS(near_absolute(-1e-17, 0, 1e-16));
     ACCEPTS(near_relative(2e-18, 2e-18 * (1 + 1e-12), 1e-10));
@@ -42,9 +38,8 @@ static void test_accepts(void **state)
     ACCEPTS(near_inside(2, 2, 2));
 }
 
-static void test_refuses_far(void **state)
+TEST(test_refuses_far)
 {
-    (void)state;
     REFUSES(near_absolute(1 + 5e-8, 1, 1e-8));
     REFUSES(near_relative(1e-18, 2e-18, 1e-10));
     REFUSES(near_below(1e-16, 0));
@@ -52,9 +47,8 @@ static void test_refuses_far(void **state)
     REFUSES(near_inside(4, 2, 3));
 }
 
-static void test_refuses_nan(void **state)
+TEST(test_refuses_nan)
 {
-    (void)state;
     REFUSES(near_absolute((double)NAN, 1, 1e-8));
     REFUSES(near_absolute(1, (double)NAN, 1e-8));
     REFUSES(near_absolute(1, 1, (double)NAN));
@@ -65,27 +59,15 @@ static void test_refuses_nan(void **state)
     REFUSES(near_inside((double)NAN, 0, 1));
 }
 
-static void test_refuses_idle_bounds(void **state)
+TEST(test_refuses_idle_bounds)
 {
-    (void)state;
     REFUSES(near_absolute(1e-18, 1e-18, 1e-10));
     REFUSES(near_relative(1, 1, 1));
 }
 
-static void test_message(void **state)
+TEST(test_message)
 {
-    (void)state;
     const double rho = 1.5;
     REFUSES(near_absolute(rho, 1, 0.125));
     assert_non_null(strstr(message, "rho: got 1.5, expected 1, error 0.5 > bound 0.125"));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_accepts),     cmocka_unit_test(test_refuses_far),
-        cmocka_unit_test(test_refuses_nan), cmocka_unit_test(test_refuses_idle_bounds),
-        cmocka_unit_test(test_message),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,10 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What is said where there is no memory: places of particles, checks, jobs. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include <gsl/gsl_qrng.h>
 #include <gsl/gsl_rng.h>
@@ -142,9 +138,8 @@ static enum status explained(struct error *error)
     return run_explain(&run, &result, error);
 }
 
-static void places_of_particles(void **state)
+TEST(places_of_particles)
 {
-    (void)state;
     without_memory(fill, 1, true);
     without_memory(created, 2, true);
     without_memory(equal, 3, true);
@@ -185,9 +180,8 @@ static enum status unknown(struct error *error)
     return status == STATUS_BAD_INPUT ? STATUS_OK : status;
 }
 
-static void files(void **state)
+TEST(files)
 {
-    (void)state;
     FILE *file = fopen(path, "w");
     assert_non_null(file);
     for (const struct case_builtin *builtin = case_builtins; builtin->name; builtin++)
@@ -273,9 +267,8 @@ static enum status as_junit(struct error *error)
     return STATUS_OK;
 }
 
-static void checks_and_suites(void **state)
+TEST(checks_and_suites)
 {
-    (void)state;
     without_memory(as_junit, 3, true);
     without_memory(checked, 10, true);
     without_memory(joined, 10, true);
@@ -431,9 +424,8 @@ static void resume(void)
     simulation_destroy(to_resume);
 }
 
-static void jobs_and_tables(void **state)
+TEST(jobs_and_tables)
 {
-    (void)state;
     resume();
     without_memory(divided, 100, true);
     without_memory(computed, 13, false); /* the reply is there when its end is looked for */
@@ -456,11 +448,5 @@ static int remove_file(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(places_of_particles),
-        cmocka_unit_test(files),
-        cmocka_unit_test(checks_and_suites),
-        cmocka_unit_test(jobs_and_tables),
-    };
-    return cmocka_run_group_tests(tests, make_file, remove_file);
+    return test_run(make_file, remove_file);
 }

@@ -221,16 +221,6 @@ def refused():
     run("run", "sod", "n=64", "t_end=0", "--quiet", "--snapshot", "s.vtu")
     with open("s.vtu", encoding="ascii") as file:
         whole = file.read()
-    for old, new, words in (("NumberOfPoints=\"64\"", "NumberOfPoints=\"1e8\"", "room for"), ("NumberOfPoints=\"64\"", "NumberOfPoints=\"63\"", "not the numbers"),
-                            ("Name=\"mass\"", "Name=\"density\"", "two arrays"),
-                            ("byte_order=", "compressor=\"vtkLZ4DataCompressor\" byte_order=", "vtkZLibDataCompressor"), ("Name=\"mass\"", "Name=\"weight\"", "no m; found"),
-                            ("\"Float64\" Name=\"mass\"", "\"Float16\" Name=\"mass\"", "type 'Float16'"), ("format=\"binary\"", "format=\"appended\"", "appended"),
-                            ("<Piece ", "<Pieces ", "Piece"), ("</Piece>", "</Piece><Piece NumberOfPoints=\"64\">", "more than one")):
-        assert whole.count(old) >= 1, old
-        with open("bad.vtu", "w", encoding="ascii") as file:
-            file.write(whole.replace(old, new, 1))
-        said = run("judge", "bad.vtu", status=2)
-        assert "bad.vtu" in said and words in said, (new, said)
     for part in (0.01, 0.3, 0.9, 0.999):
         with open("bad.vtu", "w", encoding="ascii") as file:
             file.write(whole[:int(part * len(whole))])

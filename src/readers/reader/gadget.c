@@ -96,16 +96,17 @@ static enum status read_header(struct binary *b, struct error *error)
     const char *path = b->source->path;
     if (b->count < 3 || b->record[0].size != HEADER)
         return error_set(error, STATUS_BAD_INPUT,
-                         "%.200s: %zu records; allowed: a header of 256 bytes, positions, "
-                         "velocities ...",
-                         path, b->count);
+                         "%.200s: %zu records, the first of %zu bytes; allowed: a header of %d "
+                         "bytes, positions, velocities ...",
+                         path, b->count, b->record[0].size, HEADER);
     for (int t = 0; t < TYPES; t++) {
         b->particles[t] = (size_t)integer(b, h + 4 * t, 4);
         b->mass[t] = real(b, h + 24 + 8 * t, 8);
         if (b->particles[t] > SNAPSHOT_ROWS_MAX || !(b->mass[t] >= 0 && isfinite(b->mass[t])))
             return error_set(error, STATUS_BAD_INPUT,
-                             "%.200s: header: %zu particles of type %d, of mass %g", path,
-                             b->particles[t], t, b->mass[t]);
+                             "%.200s: header: %zu particles of type %d, of mass %g; allowed: up "
+                             "to %d, of masses that are not negative",
+                             path, b->particles[t], t, b->mass[t], SNAPSHOT_ROWS_MAX);
         b->all += b->particles[t];
         if (b->mass[t] == 0) b->massive += b->particles[t];
     }
@@ -117,8 +118,10 @@ static enum status read_header(struct binary *b, struct error *error)
         return error_set(error, STATUS_BAD_INPUT, "%.200s: no gas: %zu particles of other types%s",
                          path, b->all, b->particles[1] ? " (dark matter only?)" : "");
     if (!isfinite(b->time) || b->parts < 0 || b->parts > SNAPSHOT_PARTS_MAX)
-        return error_set(error, STATUS_BAD_INPUT, "%.200s: header: time %g, %d files", path,
-                         b->time, b->parts);
+        return error_set(
+            error, STATUS_BAD_INPUT,
+            "%.200s: header: time %g, %d files; allowed: a finite time, up to %d files", path,
+            b->time, b->parts, SNAPSHOT_PARTS_MAX);
     if (b->redshift > 0 && fabs(b->time * (1 + b->redshift) - 1) < 1e-6)
         return error_set(error, STATUS_BAD_INPUT,
                          "%.200s: comoving units (redshift %g at time %g); allowed: runs in a box "
@@ -216,11 +219,14 @@ static enum status infer(const struct binary *b, struct layout *layout,
     int dim, fits = 0;
     double volume;
     size_t where = 0;
+    struct layout found = {0};
     extent(b, &b->record[1], &dim, &volume);
     for (size_t first = 3; first < b->count; first++) {
         struct layout tried = *layout;
         if (!try_layout(b, first, &tried) || !plausible(b, &tried, volume, dim)) continue;
-        if (!fits++) *layout = tried, where = first;
+        if (tried.block[WIDTHS] && !found.block[WIDTHS]) fits = 0; /* the better proof */
+        if (!tried.block[WIDTHS] && found.block[WIDTHS]) continue;
+        if (!fits++) found = tried, where = first;
     }
     if (fits != 1)
         return error_set(error, STATUS_BAD_INPUT,
@@ -229,6 +235,7 @@ static enum status infer(const struct binary *b, struct layout *layout,
                          "HDF5",
                          b->source->path, b->count,
                          fits ? "more than one choice fits" : "none fit");
+    *layout = found;
     layout->block[IDS] = &b->record[3];
     char value[64];
     snprintf(value, sizeof value, "%s from record %zu on", b->massive ? "masses" : "energies",
@@ -240,6 +247,15 @@ static enum status infer(const struct binary *b, struct layout *layout,
                   b->count, volume,
                   where > 4 ? "; the records before them are the code's own" : "");
     return STATUS_OK;
+}
+
+static enum status refuse_block(const struct binary *b, const char *tag, struct error *error)
+{
+    char names[200] = "";
+    for (size_t r = 1, used = 0; r < b->count && used < sizeof names - 8; r++)
+        used += (size_t)snprintf(names + used, 8, " '%s'", b->record[r].tag);
+    return error_set(error, STATUS_BAD_INPUT, "%.200s: no block '%s'; it has:%s", b->source->path,
+                     tag, names);
 }
 
 static enum status find_blocks(const struct binary *b, struct layout *layout,
@@ -265,8 +281,7 @@ static enum status find_blocks(const struct binary *b, struct layout *layout,
     static const int needed[] = {MASSES, DENSITIES};
     for (int k = 0; k < 2; k++)
         if (!layout->block[needed[k]] && !(needed[k] == MASSES && !b->massive))
-            return error_set(error, STATUS_BAD_INPUT, "%.200s: no block '%s'", b->source->path,
-                             tags[needed[k]]);
+            return refuse_block(b, tags[needed[k]], error);
     return STATUS_OK;
 }
 

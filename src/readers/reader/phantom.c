@@ -19,6 +19,7 @@ struct dump {
     bool swapped;
     size_t at, count;    /* where the next record begins; how many there were */
     size_t bytes[KINDS]; /* of a number of each kind */
+    char arrays[200];    /* names of the particles' arrays, as far as they fit */
 };
 
 /* The first record: magic numbers as an integer, a real and two or three integers, all of the
@@ -141,6 +142,16 @@ static const struct {
                {"vx", SNAPSHOT_VX}, {"vy", SNAPSHOT_VX + 1},  {"vz", SNAPSHOT_VX + 2},
                {"u", SNAPSHOT_U},   {"pressure", SNAPSHOT_P}, {"h", SNAPSHOT_H}};
 
+static void note_array(struct dump *dump, const unsigned char *tag)
+{
+    char name[TAG + 1];
+    const size_t used = strlen(dump->arrays);
+    snprintf(name, sizeof name, "%.*s", TAG, (const char *)tag);
+    name[strcspn(name, " ")] = '\0';
+    status_clean(name);
+    snprintf(dump->arrays + used, sizeof dump->arrays - used, " %s", name);
+}
+
 /* One array of the particles: into its column, into types, or nowhere. */
 static enum status take_array(struct dump *dump, int kind, struct snapshot_file *file,
                               double **types, struct error *error)
@@ -150,6 +161,7 @@ static enum status take_array(struct dump *dump, int kind, struct snapshot_file 
     if (next(dump, TAG, "a tag", &tag, error) ||
         next(dump, dump->bytes[kind] * file->n, "an array", &array, error))
         return error->status;
+    note_array(dump, tag.bytes);
     for (size_t c = 0; c < sizeof columns / sizeof *columns; c++) {
         if (!is_tag(tag.bytes, columns[c].tag) || kind < FIRST_REAL) continue;
         if (!snapshot_file_make(file, columns[c].column))
@@ -182,8 +194,10 @@ static enum status read_arrays(struct dump *dump, struct snapshot_file *file, do
     }
     const double rows = n >= 1 ? fortran_integer(first.bytes, 8, dump->swapped) : 0;
     if (!(rows >= 1 && rows <= SNAPSHOT_ROWS_MAX))
-        return error_set(error, STATUS_BAD_INPUT, "%.200s: %g groups of arrays, %g particles",
-                         dump->source->path, n, rows);
+        return error_set(error, STATUS_BAD_INPUT,
+                         "%.200s: %g groups of arrays, %g particles; allowed: at least one group, "
+                         "1 to %d particles",
+                         dump->source->path, n, rows, SNAPSHOT_ROWS_MAX);
     file->n = file->gas = (size_t)rows;
     for (int kind = 0; kind < KINDS; kind++) {
         const double arrays = fortran_integer(first.bytes + 8 + 4 * kind, 4, dump->swapped);
@@ -237,8 +251,9 @@ static enum status read(const struct snapshot_source *source,
     enum status status = read_arrays(&dump, file, &types, error);
     if (!status && (!file->column[SNAPSHOT_X] || !file->column[SNAPSHOT_X + 1] ||
                     !file->column[SNAPSHOT_X + 2] || !file->column[SNAPSHOT_H]))
-        status = error_set(error, STATUS_BAD_INPUT, "%.200s: its particles lack x, y, z or h",
-                           source->path);
+        status = error_set(error, STATUS_BAD_INPUT,
+                           "%.200s: its particles need real arrays x, y, z and h; they have:%s",
+                           source->path, dump.arrays);
     file->parts = 1;
     file->dim = file->columns = 3;
     snprintf(file->code, sizeof file->code, "%.79s", words + 3);

@@ -5,6 +5,7 @@
  * case, boundary and keys. */
 #include <ctype.h>
 #include <math.h>
+#include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -41,10 +42,16 @@ struct array {
     bool text, raw;
 };
 
-static bool refuse(const struct vtk *vtk, const char *what, const char *found)
+/* False, for its callers to return. */
+__attribute__((format(printf, 2, 3))) static bool refuse(const struct vtk *vtk, const char *format,
+                                                         ...)
 {
-    error_set(vtk->error, STATUS_BAD_INPUT, "%.200s: XML of VTK: %s '%.60s'", vtk->source->path,
-              what, found);
+    char what[300];
+    va_list values;
+    va_start(values, format);
+    vsnprintf(what, sizeof what, format, values);
+    va_end(values);
+    error_set(vtk->error, STATUS_BAD_INPUT, "%.200s: XML of VTK: %s", vtk->source->path, what);
     return false;
 }
 
@@ -182,7 +189,8 @@ static bool unpack(const struct vtk *vtk, struct array array, size_t blocks, uns
                    size_t want)
 {
     (void)array, (void)blocks, (void)to, (void)want;
-    return refuse(vtk, "this program was built without zlib, which packed", "the numbers");
+    return refuse(vtk, "its numbers are packed by zlib, which this program was built without; "
+                       "allowed: numbers that are not packed");
 }
 #endif
 
@@ -194,7 +202,10 @@ static bool take_bytes(const struct vtk *vtk, const struct array *array, unsigne
     if (!fetch(array, vtk->head, head, NULL)) return false;
     const uint64_t size = size_at(vtk, head);
     if (vtk->compressed) return unpack(vtk, *array, size, to + vtk->head, want);
-    return size == want && fetch(array, vtk->head + want, to, NULL);
+    if (size != want)
+        return refuse(vtk, "the array '%s' has %llu bytes; its points need %zu", array->name,
+                      (unsigned long long)size, want);
+    return fetch(array, vtk->head + want, to, NULL);
 }
 
 /* ---- numbers ---- */
@@ -233,7 +244,7 @@ static double number_at(const char *type, const unsigned char *at)
     return NAN;
 }
 
-static bool take_text(const struct array *array, double *to, size_t n)
+static bool take_text(const struct vtk *vtk, const struct array *array, double *to, size_t n)
 {
     const char *at = array->at;
     for (size_t i = 0; i < n; i++) {
@@ -243,7 +254,9 @@ static bool take_text(const struct array *array, double *to, size_t n)
         while (at < array->end && !isspace((unsigned char)*at) && length + 1 < sizeof word)
             word[length++] = *at++;
         word[length] = '\0';
-        if (!text_table_number(word, to + i)) return false;
+        if (!text_table_number(word, to + i))
+            return refuse(vtk, "the array '%s' has '%s' as number %zu of the %zu that it needs",
+                          array->name, word, i + 1, n);
     }
     return true;
 }
@@ -252,9 +265,12 @@ static bool take_text(const struct array *array, double *to, size_t n)
 static bool take_numbers(const struct vtk *vtk, const struct array *array, double *to, size_t n)
 {
     const size_t width = width_of(array->type);
-    if (!width) return refuse(vtk, "numbers of the type", array->type);
-    if (array->text)
-        return take_text(array, to, n) || refuse(vtk, "too few numbers in the array", array->name);
+    if (!width)
+        return refuse(vtk,
+                      "the array '%s' has numbers of the type '%s'; allowed: Float64, Float32, "
+                      "and Int and UInt of 8 to 64 bits",
+                      array->name, array->type);
+    if (array->text) return take_text(vtk, array, to, n);
     unsigned char *bytes = malloc(width * n + sizeof(uint64_t));
     bool well = bytes && take_bytes(vtk, array, bytes, width * n);
     if (well && vtk->swapped) turn(bytes + vtk->head, n, width);
@@ -262,7 +278,8 @@ static bool take_numbers(const struct vtk *vtk, const struct array *array, doubl
         to[i] = number_at(array->type, bytes + vtk->head + i * width);
     free(bytes);
     if (!well && !vtk->error->status)
-        refuse(vtk, "not the numbers that its points need: the array", array->name);
+        refuse(vtk, "the array '%s' is cut off or damaged; its points need %zu numbers of type %s",
+               array->name, n, array->type);
     return well;
 }
 
@@ -282,15 +299,20 @@ static bool take_array(const struct vtk *vtk, const struct tag *tag, struct arra
     array->text = !strcmp(format, "ascii"), array->raw = false;
     array->at = tag->behind;
     array->end = memchr(array->at, '<', (size_t)(end - array->at));
-    if (!array->end) return refuse(vtk, "cut off in the array", array->name);
+    if (!array->end) return refuse(vtk, "the array '%s' is cut off: no tag ends it", array->name);
     if (!strcmp(format, "appended")) {
         if (!vtk->appended || !text_real(value_of(tag, "offset", number), &value) || value < 0 ||
             value > (double)(vtk->ended - vtk->appended))
-            return refuse(vtk, "no appended data of the array", array->name);
+            return refuse(vtk,
+                          "the array '%s' has the offset '%s'; allowed: 0 to %zu, the length "
+                          "of the appended data",
+                          array->name, number,
+                          vtk->appended ? (size_t)(vtk->ended - vtk->appended) : 0);
         array->at = vtk->appended + (size_t)value, array->end = vtk->ended;
         array->raw = vtk->raw;
     } else if (!array->text && strcmp(format, "binary"))
-        return refuse(vtk, "allowed: ascii, binary, appended; found: format", format);
+        return refuse(vtk, "the array '%s' has the format '%s'; allowed: ascii, binary, appended",
+                      array->name, format);
     while (!array->raw && array->at < array->end && isspace((unsigned char)*array->at)) array->at++;
     return true;
 }
@@ -310,7 +332,8 @@ static bool take_points(const struct vtk *vtk, const struct array *array, int co
         const enum snapshot_column to = (enum snapshot_column)(column + (int)c);
         if (file->column[to]) {
             free(all);
-            return refuse(vtk, "two arrays for one quantity; the second is", array->name);
+            return refuse(vtk, "the array '%s' is a second one for %s; allowed: one", array->name,
+                          snapshot_column_names[to]);
         }
         well = snapshot_file_make(file, to);
         for (size_t i = 0; well && i < file->n; i++)
@@ -344,7 +367,8 @@ static bool take_field(const struct vtk *vtk, const struct tag *tag, const struc
     if (!known[which] || !width_of(array->type)) return true;
     text_real(value_of(tag, "NumberOfTuples", word), &tuples);
     if (!(tuples >= 1 && tuples * (double)array->components <= FIELD_MOST))
-        return refuse(vtk, "too many numbers, or none: the field", array->name);
+        return refuse(vtk, "the field '%s' has %g x %zu numbers; allowed: 1 to %d", array->name,
+                      tuples, array->components, FIELD_MOST);
     const size_t n = (size_t)tuples * array->components;
     if (!take_numbers(vtk, array, numbers, n)) return false;
     const struct snapshot_value value = {true, numbers[0]};
@@ -366,7 +390,10 @@ static bool take_field(const struct vtk *vtk, const struct tag *tag, const struc
         for (size_t d = 0; file->boxed && d < n / 2; d++) {
             file->corner[d] = numbers[2 * d], file->box[d] = numbers[2 * d + 1] - numbers[2 * d];
             if (!(file->box[d] > 0 && isfinite(file->box[d])))
-                return refuse(vtk, "no lower and upper ends: the field", array->name);
+                return refuse(vtk,
+                              "the field 'box' goes from %g to %g; allowed: from the lower to "
+                              "the upper end",
+                              numbers[2 * d], numbers[2 * d + 1]);
         }
         break;
     case 6:
@@ -390,7 +417,7 @@ static bool begin(struct vtk *vtk, const struct tag *tag)
     vtk->head = strcmp(value_of(tag, "header_type", word), "UInt64") ? 4 : 8;
     vtk->compressed = *value_of(tag, "compressor", word);
     if (vtk->compressed && strcmp(word, "vtkZLibDataCompressor"))
-        return refuse(vtk, "allowed: vtkZLibDataCompressor, or none; found: compressor", word);
+        return refuse(vtk, "the compressor '%s'; allowed: vtkZLibDataCompressor, or none", word);
     struct tag appended = *tag;
     const char *end = (const char *)vtk->source->bytes + vtk->source->size;
     while (next_tag(appended.behind, end, &appended))
@@ -398,7 +425,7 @@ static bool begin(struct vtk *vtk, const struct tag *tag)
             vtk->raw = !strcmp(value_of(&appended, "encoding", word), "raw");
             vtk->appended = memchr(appended.behind, '_', (size_t)(end - appended.behind));
             vtk->ended = end;
-            if (!vtk->appended) return refuse(vtk, "no '_' in", "AppendedData");
+            if (!vtk->appended) return refuse(vtk, "AppendedData has no '_' before its bytes");
             vtk->appended++;
             break;
         }
@@ -415,13 +442,15 @@ static bool take_tag(struct vtk *vtk, const struct tag *tag, const char **sectio
     double n;
     if (is_tag(tag, "VTKFile") && !tag->closes) return begin(vtk, tag);
     if (is_tag(tag, "Piece") && !tag->closes) {
-        if (file->n) return refuse(vtk, "more than one", "Piece");
+        if (file->n) return refuse(vtk, "has a second Piece; allowed: one with all points");
         /* nothing is packed more than 1032 fold by zlib */
         const double most = (double)vtk->source->size * (vtk->compressed ? 1032 : 1);
         if (!text_real(value_of(tag, "NumberOfPoints", word), &n) || !(n >= 1) ||
             n > fmin(SNAPSHOT_ROWS_MAX, most) || n != floor(n))
             return refuse(vtk,
-                          "no number of points that the file has room for: NumberOfPoints =", word);
+                          "NumberOfPoints = '%s'; allowed: 1 to %d, and no more than the file "
+                          "has room for",
+                          word, SNAPSHOT_ROWS_MAX);
         file->n = file->gas = (size_t)n;
     }
     for (size_t k = 0; k < sizeof sections / sizeof *sections; k++)
@@ -429,7 +458,8 @@ static bool take_tag(struct vtk *vtk, const struct tag *tag, const char **sectio
     if (!is_tag(tag, "DataArray") || tag->closes || !**section || **section == 'C') return true;
     if (!take_array(vtk, tag, &array)) return false;
     if (!strcmp(*section, "FieldData")) return take_field(vtk, tag, &array, file);
-    if (!file->n) return refuse(vtk, "before any Piece: the array", array.name);
+    if (!file->n)
+        return refuse(vtk, "the array '%s' stands before any Piece; allowed: in one", array.name);
     if (!strcmp(*section, "Points")) return take_points(vtk, &array, SNAPSHOT_X, file);
     if (!strcmp(*section, "PointData"))
         return take_points(vtk, &array, snapshot_column_of(array.name), file);
@@ -461,7 +491,7 @@ static enum status read_vtu(const struct snapshot_source *source,
     while (next_tag(tag.behind, vtk.appended ? vtk.appended : end, &tag))
         if (!take_tag(&vtk, &tag, &section, file)) return error->status;
     if (!file->n) {
-        refuse(&vtk, "no points: no", "Piece");
+        refuse(&vtk, "has no Piece; allowed: one, with points");
         return error->status;
     }
     file->columns = !file->column[1] ? 1 : !file->column[2] ? 2 : 3;

@@ -27,7 +27,8 @@ const struct start_format start_swift = {
     .writer = &writer_hdf5,
     .gamma = "configure --with-adiabatic-index: 5/3, 7/5, 4/3 or 2",
     .dimension = "configure --with-hydro-dimension",
-    .boundary = "InitialConditions: periodic; SWIFT has no walls",
+    .boundary = "InitialConditions: periodic 1, or 0 where it is open",
+    .no_walls = true,
     .t_end = "TimeIntegration: time_end",
     .width = two_sigma,
 };

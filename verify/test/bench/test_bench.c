@@ -1,14 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The benchmark's own arithmetic on made-up data (no test looks at a real clock), and its plain C
  * baseline against the solver. */
+#include "test.h"
+
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 #include <gsl/gsl_rng.h>
 
 #include "bench.h"
@@ -46,9 +43,8 @@ static enum status fake_work(void *context, uint64_t times, struct clock_taken *
 
 static const struct bench_rules rules = {.least_s = 0.01, .most_s = 1e9, .samples = 5};
 
-static void test_samples_double_until_they_are_long_enough(void **state)
+TEST(test_samples_double_until_they_are_long_enough)
 {
-    (void)state;
     /* calls: warm-up; 1, 2, 4, 8 ms ... 16 ms is the first sample */
     struct fake fake = {.once = 1e-3, .warm_up = 0.1};
     fake.noise[6] = 1.5, fake.noise[7] = 3, fake.noise[8] = 1.25, fake.noise[9] = 1.75;
@@ -64,9 +60,8 @@ static void test_samples_double_until_they_are_long_enough(void **state)
     near_relative(subject.time.spread, 0.5, 1e-12); /* 1 1.25 1.5 1.75 3 */
 }
 
-static void test_first_call_does_not_count(void **state)
+TEST(test_first_call_does_not_count)
 {
-    (void)state;
     struct fake fake = {.once = 0.02, .warm_up = 0.05};
     struct bench_subject subject = {.work = fake_work, .context = &fake};
     fake.noise[0] = 0.1; /* a first call that is too fast to be true */
@@ -75,9 +70,8 @@ static void test_first_call_does_not_count(void **state)
     assert_int_equal(fake.calls, 6);
 }
 
-static void test_long_work_is_not_repeated_for_ever(void **state)
+TEST(test_long_work_is_not_repeated_for_ever)
 {
-    (void)state;
     struct fake fake = {.once = 3};
     struct bench_subject subject = {.work = fake_work, .context = &fake};
     const struct bench_rules short_of_time = {.least_s = 0.01, .most_s = 4, .samples = 5};
@@ -86,9 +80,8 @@ static void test_long_work_is_not_repeated_for_ever(void **state)
     assert_int_equal(subject.time.samples, 2);
 }
 
-static void test_samples_are_taken_in_turn(void **state)
+TEST(test_samples_are_taken_in_turn)
 {
-    (void)state;
     struct fake fake = {.once = 0.02};
     struct bench_subject subjects[2] = {{.work = fake_work, .context = &fake},
                                         {.work = fake_work, .context = &fake}};
@@ -101,9 +94,8 @@ static void test_samples_are_taken_in_turn(void **state)
     near_absolute(subjects[1].time.spread, 0, 1e-12);
 }
 
-static void test_breakdown_leaves_the_others(void **state)
+TEST(test_breakdown_leaves_the_others)
 {
-    (void)state;
     struct error error = {0};
     struct fake sound = {.once = 0.02}, unsound = {.once = 0.02, .breaks_at = 4},
                 hopeless = {.once = 0.02, .breaks_at = 1};
@@ -128,9 +120,8 @@ static void test_breakdown_leaves_the_others(void **state)
 
 /* --- front and ways --------------------------------------------------------------------------- */
 
-static void test_front(void **state)
+TEST(test_front)
 {
-    (void)state;
     static const double cost[] = {1, 2, 3, 4, 2, 1, 5, (double)NAN, 0.5, 4};
     static const double error[] = {8, 4, 5, 2, 4, 9, 2, 0.1, (double)INFINITY, 1.5};
     /* 2: dearer and worse than 1; 1 and 4 tie; 3, 6: worse than 9 */
@@ -143,9 +134,8 @@ static void test_front(void **state)
     precision_front(0, cost, error, front);
 }
 
-static void test_cost_of_an_error(void **state)
+TEST(test_cost_of_an_error)
 {
-    (void)state;
     /* error = cost^-1/2 from 1e-1 to 1e-3 */
     const double cost[] = {1e2, 1e4, 1e6}, error[] = {1e-1, 1e-2, 1e-3};
     near_relative(precision_cost_of(3, cost, error, 2e-2), 2500, 1e-12);
@@ -198,9 +188,8 @@ static void compare_limit(const struct kernel *kernel, const struct operator_for
     near_below(wrong / scale, 1e-10);
 }
 
-static void test_limit_does_the_same_arithmetic(void **state)
+TEST(test_limit_does_the_same_arithmetic)
 {
-    (void)state;
     for (size_t k = 0; k < kernel_family.n; k++) {
         struct kernel kernel;
         assert_int_equal(kernel_select(&kernel, kernel_family.members[k]->name, 5, NULL), 0);
@@ -212,13 +201,12 @@ static void test_limit_does_the_same_arithmetic(void **state)
 }
 
 /* Who is near, by the plain definition, and that both kinds are there. */
-static void test_limit_of_the_search(void **state)
+TEST(test_limit_of_the_search)
 {
     enum { PLACES = 192 };
     float x[3][PLACES];
     const float *const at[3] = {x[0], x[1], x[2]};
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
-    (void)state;
     for (int a = 0; a < 3; a++)
         for (int k = 0; k < PLACES; k++) x[a][k] = (float)(2 * gsl_rng_uniform(rng) - 1);
     for (int dim = 2; dim <= 3; dim++) {
@@ -239,9 +227,8 @@ static void test_limit_of_the_search(void **state)
 
 /* However often the loops are repeated, they work on ordinary numbers: no overflow, nothing that
  * settles at zero and becomes cheap. */
-static void test_loops_stand_still(void **state)
+TEST(test_loops_stand_still)
 {
-    (void)state;
     static char *const keys[][2] = {{"kernel=quadratic_spline", "gradient=standard"},
                                     {"kernel=quintic_spline", "gradient=ia"}};
     for (size_t k = 0; k < 2; k++) {
@@ -325,18 +312,16 @@ static void compare_plain(const char *name, int n, char *const *more)
     free(settings);
 }
 
-static void test_plain_is_the_solver(void **state)
+TEST(test_plain_is_the_solver)
 {
-    (void)state;
     compare_plain("sod", 2, (char *[]){"n=126", "t_end=0.15"});
     compare_plain("sod_standard", 3, (char *[]){"n=100", "eta=2", "cfl=0.15"});
     compare_plain("strong_shock", 3, (char *[]){"n=80", "t_end=0.006", "jitter=0.1"});
     compare_plain("sound_wave", 3, (char *[]){"n=48", "background=1 0.7 1", "viscosity=none"});
 }
 
-static void test_plain_refuses_other_schemes(void **state)
+TEST(test_plain_refuses_other_schemes)
 {
-    (void)state;
     static char *const keys[] = {"n=60", "kernel=wendland_c2"};
     struct run_settings *settings = calloc(1, sizeof *settings);
     struct run run;
@@ -352,9 +337,8 @@ static void test_plain_refuses_other_schemes(void **state)
 
 /* --- left-out work ---------------------------------------------------------------------------- */
 
-static void test_difference_of_states(void **state)
+TEST(test_difference_of_states)
 {
-    (void)state;
     double x[2][3] = {{-0.999999999, 0.1, 0.4}, {0.999999999, 0.1, 0.4}}, v[3] = {0, -4, 2},
            w[3] = {0, -4, 2 + 4e-9}, one[3] = {1, 1, 1};
     struct snapshot a = {.n = 3, .x = {x[0]}, .v = {v}, .rho = one, .u = one, .P = one, .h = one},
@@ -378,9 +362,8 @@ static void test_difference_of_states(void **state)
     assert_true(isinf(bench_skips_difference(&nothing, &nothing, 2)));
 }
 
-static void test_promises_are_kept_or_seen_broken(void **state)
+TEST(test_promises_are_kept_or_seen_broken)
 {
-    (void)state;
     static struct run_settings settings;
     struct bench_skips skips;
     struct error error = {0};
@@ -399,9 +382,8 @@ static void test_promises_are_kept_or_seen_broken(void **state)
 }
 
 /* Without viscosity and with one of strength 0: the same bits, at the same time steps. */
-static void test_no_viscosity(void **state)
+TEST(test_no_viscosity)
 {
-    (void)state;
     static struct run_settings settings;
     struct bench_skips skips;
     struct error error = {0};
@@ -424,9 +406,8 @@ static void test_no_viscosity(void **state)
     }
 }
 
-static void test_positions_along_every_axis_count(void **state)
+TEST(test_positions_along_every_axis_count)
 {
-    (void)state;
     double x[3] = {0.1, 0.2, 0.3}, y[3] = {0.1, 0.5, 0.9}, z[3] = {0.1, 0.5, 0.900001};
     struct snapshot a = {.n = 3, .x = {x, y}, .v = {x, y}, .rho = x, .u = x, .P = x, .h = x};
     struct snapshot b = a;
@@ -437,9 +418,8 @@ static void test_positions_along_every_axis_count(void **state)
     near_relative(bench_skips_difference(&a, &b, 1), 1e-6 / 0.9, 1e-6);
 }
 
-static void test_promises_in_2d(void **state)
+TEST(test_promises_in_2d)
 {
-    (void)state;
     static struct run_settings settings;
     struct bench_skips skips;
     struct error error = {0};
@@ -463,9 +443,8 @@ static void test_promises_in_2d(void **state)
 /* --- sums in 2D and 3D ------------------------------------------------------------------------ */
 
 /* Pairs, counted over all of them; each pass does what it is called, and no more. */
-static void test_cells(void **state)
+TEST(test_cells)
 {
-    (void)state;
     struct run_settings asked;
     static struct run run;
     static struct bench_cells bench;
@@ -501,9 +480,8 @@ static void test_cells(void **state)
 
 /* --- how cost grows --------------------------------------------------------------------------- */
 
-static void test_scaling(void **state)
+TEST(test_scaling)
 {
-    (void)state;
     static struct run_settings settings;
     static struct scaling scaling;
     static const size_t ladder[] = {90, 180, 270, 810};
@@ -523,9 +501,8 @@ static void test_scaling(void **state)
 
 /* --- a small study: order and consistency of its points --------------------------------------- */
 
-static void test_study(void **state)
+TEST(test_study)
 {
-    (void)state;
     static struct run_settings settings;
     static const size_t ladder[] = {45, 90};
     struct sweep sweep;
@@ -574,9 +551,8 @@ static void test_study(void **state)
 }
 
 /* In shares: each n by itself; of two processors each has a front of its own. */
-static void test_processors(void **state)
+TEST(test_processors)
 {
-    (void)state;
     static struct run_settings settings;
     static const size_t ladder[] = {40, 60};
     static const char *const processors[] = {"this", "that"};
@@ -613,9 +589,8 @@ static void test_processors(void **state)
 }
 
 /* A sound wave: errors in parts of the wave, not of the gas that carries it; second order. */
-static void test_signal(void **state)
+TEST(test_signal)
 {
-    (void)state;
     static struct run_settings settings;
     static const size_t ladder[] = {32, 64};
     struct sweep sweep;
@@ -642,9 +617,8 @@ static void test_signal(void **state)
 
 /* A vortex in 2D: errors of the velocity along its circles, in parts of how far it is from uniform;
  * work grows as n^(3/2), and the merit at order 2 is error^(3/2) x CPU. */
-static void test_plane(void **state)
+TEST(test_plane)
 {
-    (void)state;
     static struct run_settings settings;
     static const size_t ladder[] = {144, 256};
     struct sweep sweep;
@@ -668,34 +642,4 @@ static void test_plane(void **state)
     near_relative(precision.schemes[0].merit, pow(finest->error, 1.5) * finest->time.cpu_s, 1e-12);
     near_relative(precision.cheapest[0].error, 0.1 * precision.signal, 1e-12);
     precision_free(&precision);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_samples_double_until_they_are_long_enough),
-        cmocka_unit_test(test_first_call_does_not_count),
-        cmocka_unit_test(test_long_work_is_not_repeated_for_ever),
-        cmocka_unit_test(test_samples_are_taken_in_turn),
-        cmocka_unit_test(test_breakdown_leaves_the_others),
-        cmocka_unit_test(test_front),
-        cmocka_unit_test(test_cost_of_an_error),
-        cmocka_unit_test(test_limit_does_the_same_arithmetic),
-        cmocka_unit_test(test_limit_of_the_search),
-        cmocka_unit_test(test_loops_stand_still),
-        cmocka_unit_test(test_plain_is_the_solver),
-        cmocka_unit_test(test_plain_refuses_other_schemes),
-        cmocka_unit_test(test_difference_of_states),
-        cmocka_unit_test(test_promises_are_kept_or_seen_broken),
-        cmocka_unit_test(test_no_viscosity),
-        cmocka_unit_test(test_positions_along_every_axis_count),
-        cmocka_unit_test(test_promises_in_2d),
-        cmocka_unit_test(test_cells),
-        cmocka_unit_test(test_scaling),
-        cmocka_unit_test(test_study),
-        cmocka_unit_test(test_processors),
-        cmocka_unit_test(test_signal),
-        cmocka_unit_test(test_plane),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,10 +2,8 @@
  * Runs in 2D and 3D against each other: what must be the same with and without sleep, for any
  * number of threads, in a walled box and in the periodic one that its mirror image completes, with
  * and without a constant acceleration. Setups are drawn at random. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
+#include "test.h"
+
 #include <gsl/gsl_rng.h>
 #include <math.h>
 #include <stdlib.h>
@@ -150,11 +148,10 @@ static void heat(struct particles_of *p, gsl_rng *rng)
 static struct particles_of p;
 static struct end plain, other;
 
-static void sleep_changes_nothing(void **state)
+TEST(sleep_changes_nothing)
 {
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
     uint64_t skipped = 0;
-    (void)state;
     gsl_rng_set(rng, 2385);
     for (int k = 0; k < DRAWS; k++) {
         const int dim = 2 + k % 2;
@@ -182,10 +179,9 @@ static void sleep_changes_nothing(void **state)
     gsl_rng_free(rng);
 }
 
-static void threads_change_no_bit(void **state)
+TEST(threads_change_no_bit)
 {
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
-    (void)state;
     gsl_rng_set(rng, 317);
     for (int k = 0; k < DRAWS / 2; k++) {
         const int dim = 2 + k % 2;
@@ -236,11 +232,10 @@ static size_t complete(struct particles_of *all, const struct particles_of *half
     return all->n;
 }
 
-static void walls_are_mirrors(void **state)
+TEST(walls_are_mirrors)
 {
     static struct particles_of all;
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
-    (void)state;
     gsl_rng_set(rng, 71);
     for (int k = 0; k < DRAWS; k++) {
         const int dim = 2 + k % 2;
@@ -275,10 +270,9 @@ static void walls_are_mirrors(void **state)
 }
 
 /* In a periodic box everything falls alike: g t^2/2 and g t apart from the run without. */
-static void gravity_is_a_fall(void **state)
+TEST(gravity_is_a_fall)
 {
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
-    (void)state;
     gsl_rng_set(rng, 5);
     for (int k = 0; k < DRAWS; k++) {
         const int dim = 2 + k % 2;
@@ -304,10 +298,9 @@ static void gravity_is_a_fall(void **state)
 }
 
 /* Where nothing but gravity acts, what is lost in height is won in speed, and no heat is made. */
-static void gravity_keeps_energy(void **state)
+TEST(gravity_keeps_energy)
 {
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
-    (void)state;
     gsl_rng_set(rng, 13);
     for (size_t k = 0; k < integrator_family.n; k++) {
         const int dim = 2 + (int)k % 2;
@@ -334,11 +327,10 @@ static void gravity_keeps_energy(void **state)
 
 /* Gas at rest between layers of kept state stays at rest, and the layers do not move when it does
  * not. */
-static void layers_hold(void **state)
+TEST(layers_hold)
 {
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
     size_t held = 0, moved = 0;
-    (void)state;
     gsl_rng_set(rng, 9);
     const struct scheme scheme = draw_scheme(rng, 2);
     lattice(&p, 2, 30, 1);
@@ -365,10 +357,9 @@ static void layers_hold(void **state)
 
 /* Where h changes by less than 0.05 over its own length, blended forces are those of ia to the last
  * bit, and only there. */
-static void blended_is_ia_at_even_widths(void **state)
+TEST(blended_is_ia_at_even_widths)
 {
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
-    (void)state;
     gsl_rng_set(rng, 77);
     for (int k = 0; k < 2 * DRAWS; k++) {
         const int dim = 2 + k / 2 % 2;
@@ -391,18 +382,4 @@ static void blended_is_ia_at_even_widths(void **state)
             assert_memory_not_equal(plain.v, other.v, sizeof plain.v);
     }
     gsl_rng_free(rng);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sleep_changes_nothing),
-        cmocka_unit_test(threads_change_no_bit),
-        cmocka_unit_test(walls_are_mirrors),
-        cmocka_unit_test(gravity_is_a_fall),
-        cmocka_unit_test(gravity_keeps_energy),
-        cmocka_unit_test(layers_hold),
-        cmocka_unit_test(blended_is_ia_at_even_widths),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,12 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What a scheme's numbers do in 2D and 3D: beta where there is no alpha, Balsara's factor, signal
  * speeds, what is counted, and how far from a disturbance everybody is awake. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
+#include "test.h"
 
 #include <math.h>
 #include <string.h>
@@ -54,9 +49,8 @@ static void find_forces(struct simulation *simulation)
 }
 
 /* Of an alpha that varies beta is a multiple, beta/alpha of the scheme; 2 where it has no alpha. */
-static void test_beta(void **state)
+TEST(test_beta)
 {
-    (void)state;
     static const double numbers[][2] = {{1, 2}, {0, 5}, {2, 4}, {0.5, 1.5}};
     static double F[N], de[N];
     for (int dim = 2; dim <= 3; dim++)
@@ -79,9 +73,8 @@ static void test_beta(void **state)
 
 /* Gas that is drawn together and turned evenly, in its middle, where all have the same factor: so
  * much of the heat of friction is left. */
-static void test_balsara(void **state)
+TEST(test_balsara)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++)
         for (int k = 0; k < 3; k++) {
             static const double floors[] = {0, 1e-4, 0.3};
@@ -138,9 +131,8 @@ static double separation(const struct particles *p, size_t i, size_t j, double d
 
 /* 2 c of everybody, and c_i + c_j + 3 times how fast the pair closes within the wider width; with
  * the forces and alone. */
-static void test_signals(void **state)
+TEST(test_signals)
 {
-    (void)state;
     for (int k = 0; k < 4; k++) {
         const int dim = 2 + k % 2;
         const double unit = k < 2 ? 1 : 1e-10; /* of speeds: cold gas */
@@ -182,9 +174,8 @@ static void test_signals(void **state)
 
 /* The pressure of the lagrangian form, CONVENTIONS eq. 5.3, of every volume element, from both
  * widths of a pair; heat by the particle's own. */
-static void test_lagrangian(void **state)
+TEST(test_lagrangian)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++)
         for (int e = 0; e < VOLUME_ELEMENTS; e++) {
             struct scheme scheme = made_scheme();
@@ -229,9 +220,8 @@ static void test_lagrangian(void **state)
 }
 
 /* Who has no neighbours feels no force and has the signal speed of its own sound. */
-static void test_alone(void **state)
+TEST(test_alone)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         const struct scheme scheme = made_scheme();
         const struct cells_method method = {
@@ -267,9 +257,8 @@ static void test_alone(void **state)
 }
 
 /* Where all masses are the same, numbers are as good as masses. */
-static void test_equal_masses(void **state)
+TEST(test_equal_masses)
 {
-    (void)state;
     static double of[5][N];
     for (int dim = 2; dim <= 3; dim++)
         for (int number = 0; number < 2; number++) {
@@ -292,9 +281,8 @@ static void test_equal_masses(void **state)
 
 /* Axes in another order give the same forces in that order, with walls and whatever the gradient.
  */
-static void test_axes_are_alike(void **state)
+TEST(test_axes_are_alike)
 {
-    (void)state;
     static double F[3][N];
     for (int dim = 2; dim <= 3; dim++)
         for (int g = 0; g < 2 * GRADIENTS; g++) {
@@ -329,9 +317,8 @@ static void test_axes_are_alike(void **state)
 
 /* Matrices of particles that lie in a line cannot be used: as many as they are, each time; at most
  * so many at once. */
-static void test_fallen_back(void **state)
+TEST(test_fallen_back)
 {
-    (void)state;
     struct scheme scheme = made_scheme();
     scheme.gradient = GRADIENT_IA;
     for (int dim = 2; dim <= 3; dim++) {
@@ -382,9 +369,8 @@ static ptrdiff_t add_neighbours(const struct particles *p, const bool *set, bool
 }
 
 /* Neighbours of the neighbours of a particle that feels a force are awake, wherever that is. */
-static void test_awake(void **state)
+TEST(test_awake)
 {
-    (void)state;
     const struct scheme scheme = made_scheme();
     for (size_t row = 0; row < 30; row += 3) {
         bool pushed[1024], near[1024];
@@ -403,9 +389,8 @@ static void test_awake(void **state)
 
 /* Gas that moves as one sleeps; where it slides along other gas, however slowly, and feels no
  * force, neighbours on both sides are awake. */
-static void test_awake_in_flow(void **state)
+TEST(test_awake_in_flow)
 {
-    (void)state;
     const struct scheme scheme = made_scheme();
     for (int boosted = 0; boosted < 2; boosted++) {
         const struct setup setup = long_box(&scheme);
@@ -435,9 +420,8 @@ static bool note_asleep(void *context, double time, uint64_t steps)
 
 /* Gas in which neighbours move against each other is awake, and falls asleep once viscosity has
  * brought it to rest; with and without sleep it comes to the same. */
-static void test_asleep_again(void **state)
+TEST(test_asleep_again)
 {
-    (void)state;
     double ends[2][256];
     for (int skip = 0; skip < 2; skip++) {
         const struct scheme scheme = made_scheme();
@@ -459,17 +443,4 @@ static void test_asleep_again(void **state)
         simulation_destroy(seen.simulation);
     }
     for (size_t i = 0; i < 256; i++) near_below(fabs(ends[1][i] - ends[0][i]), 1e-11);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_asleep_again),   cmocka_unit_test(test_beta),
-        cmocka_unit_test(test_balsara),        cmocka_unit_test(test_signals),
-        cmocka_unit_test(test_fallen_back),    cmocka_unit_test(test_lagrangian),
-        cmocka_unit_test(test_alone),          cmocka_unit_test(test_equal_masses),
-        cmocka_unit_test(test_axes_are_alike), cmocka_unit_test(test_awake),
-        cmocka_unit_test(test_awake_in_flow),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

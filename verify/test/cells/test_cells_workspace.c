@@ -2,12 +2,7 @@
  * What stands between a simulation and its sums in 2D and 3D: memory in the order of cells, and for
  * how long; first guesses of widths; what cannot be searched, said as a refusal or a breakdown;
  * room, in bytes, by the scheme. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
+#include "test.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -71,9 +66,8 @@ static bool watch(void *context, double time, uint64_t steps)
 
 /* In the order of cells from the start on, and again every 32 steps: where cells are wider than all
  * that happens in one, along x first. */
-static void test_order_in_memory(void **state)
+TEST(test_order_in_memory)
 {
-    (void)state;
     struct sorting sorting = {0};
     struct scheme scheme = made_scheme();
     struct setup setup = setup_of(2, 16, &scheme);
@@ -90,9 +84,8 @@ static void test_order_in_memory(void **state)
 }
 
 /* Whatever is in memory beside each other belongs together, also those who sleep. */
-static void test_everybody_moves_whole(void **state)
+TEST(test_everybody_moves_whole)
 {
-    (void)state;
     for (int skip = 0; skip < 2; skip++) {
         struct scheme scheme = made_scheme();
         struct setup setup = setup_of(3, 7, &scheme);
@@ -110,9 +103,8 @@ static void test_everybody_moves_whole(void **state)
 }
 
 /* A first guess of the density may be anything: the widths are the same. */
-static void test_first_guess(void **state)
+TEST(test_first_guess)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         double h[N];
         const struct scheme scheme = made_scheme();
@@ -137,9 +129,8 @@ static void test_first_guess(void **state)
 }
 
 /* The search for a root goes on 63 times, each 1.5 times as far, and no further. */
-static void test_far_roots(void **state)
+TEST(test_far_roots)
 {
-    (void)state;
     struct error error;
     for (int dim = 2; dim <= 3; dim++) {
         const struct scheme scheme = made_scheme();
@@ -187,9 +178,8 @@ static double kernel_sum(const struct snapshot *s, int dim, const struct kernel 
 }
 
 /* Density and volume of every particle are sums over all others, whatever the volume element. */
-static void test_densities(void **state)
+TEST(test_densities)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++)
         for (int e = 0; e < VOLUME_ELEMENTS; e++) {
             struct scheme scheme = made_scheme();
@@ -217,9 +207,8 @@ static void test_densities(void **state)
 
 /* After a step alpha is what it jumps up to at once, or decays to: alpha_l + above/(1 + dt rate).
  */
-static void test_switch(void **state)
+TEST(test_switch)
 {
-    (void)state;
     struct scheme scheme = made_scheme();
     scheme.viscosity = VISCOSITY_CULLEN_DEHNEN;
     struct setup setup = setup_of(2, 13, &scheme);
@@ -260,9 +249,8 @@ static bool ten_steps(void *context, double time, uint64_t steps)
 
 /* A state that is kept and comes back goes on to the last bit, with those who sleep, and is sorted
  * at the same steps. */
-static void test_carried(void **state)
+TEST(test_carried)
 {
-    (void)state;
     static struct made_bytes kept;
     for (int kind = 0; kind < 3; kind++) { /* asleep, with predicted widths; all moving */
         struct scheme scheme = made_scheme();
@@ -312,9 +300,8 @@ static void test_carried(void **state)
 }
 
 /* Rates of alpha of every particle, in whole batches and not. */
-static void test_alpha(void **state)
+TEST(test_alpha)
 {
-    (void)state;
     struct scheme scheme = made_scheme();
     scheme.viscosity = VISCOSITY_TIME_DEPENDENT;
     for (size_t side = 8; side <= 12; side += 2) { /* 64, 100, 144 */
@@ -350,9 +337,8 @@ static void count_neighbours(void *context, size_t particle, const struct descri
 }
 
 /* What is described of those who sleep, in a box whose far end has heard nothing. */
-static void test_described_asleep(void **state)
+TEST(test_described_asleep)
 {
-    (void)state;
     struct scheme scheme = made_scheme();
     scheme.gradient = GRADIENT_IA;
     for (int dim = 2; dim <= 3; dim++) {
@@ -381,9 +367,8 @@ static void test_described_asleep(void **state)
 }
 
 /* Too wide for the box: bad input at the start. */
-static void test_too_wide(void **state)
+TEST(test_too_wide)
 {
-    (void)state;
     struct simulation *simulation = NULL;
     struct error error;
     for (int dim = 2; dim <= 3; dim++) {
@@ -406,9 +391,8 @@ static void test_too_wide(void **state)
 }
 
 /* In the open one particle is so heavy that all the others are not mass enough around it. */
-static void test_too_heavy(void **state)
+TEST(test_too_heavy)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct simulation *simulation = NULL;
         struct error error = {0};
@@ -428,9 +412,8 @@ static void test_too_heavy(void **state)
 }
 
 /* Later a breakdown, of the particle that reaches furthest. */
-static void test_grown_too_wide(void **state)
+TEST(test_grown_too_wide)
 {
-    (void)state;
     for (int predicted = 0; predicted < 2; predicted++) {
         struct scheme scheme = made_scheme();
         if (predicted) {
@@ -472,9 +455,8 @@ static void test_grown_too_wide(void **state)
 }
 
 /* A position that is no number is told with its particle and its value. */
-static void test_no_position(void **state)
+TEST(test_no_position)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++)
         for (int a = 0; a < dim; a++)
             for (int last = 0; last < 2; last++) {
@@ -511,9 +493,8 @@ static void expect_bytes(int dim, const struct scheme *scheme, int arrays, int r
 
 /* The room's: radius, two sums; two of U; condition, matrix, slope, switch,
  * share, factor. Records: place, v, 1/h, V, P, c; and more. */
-static void test_bytes(void **state)
+TEST(test_bytes)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         const bool plane = dim == 2;
         struct scheme scheme = made_scheme();
@@ -540,18 +521,4 @@ static void test_bytes(void **state)
         scheme.viscosity = VISCOSITY_PROJECTED;
         expect_bytes(dim, &scheme, plane ? 15 : 23, plane ? 28 : 40); /* slope, P: 26, 39 */
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_order_in_memory),  cmocka_unit_test(test_everybody_moves_whole),
-        cmocka_unit_test(test_first_guess),      cmocka_unit_test(test_densities),
-        cmocka_unit_test(test_far_roots),        cmocka_unit_test(test_switch),
-        cmocka_unit_test(test_carried),          cmocka_unit_test(test_alpha),
-        cmocka_unit_test(test_described_asleep), cmocka_unit_test(test_too_wide),
-        cmocka_unit_test(test_too_heavy),        cmocka_unit_test(test_grown_too_wide),
-        cmocka_unit_test(test_no_position),      cmocka_unit_test(test_bytes),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

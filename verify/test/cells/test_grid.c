@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Neighbour lists of the grid against all pairs, on setups drawn at random: dimension, number,
  * boundaries, radii from equal to very different, clumps and points in one place. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
+#include "test.h"
+
 #include <gsl/gsl_rng.h>
 #include <math.h>
 #include <stdlib.h>
@@ -119,12 +117,11 @@ static void compare(const struct points *p, const struct grid *grid, size_t acti
     grid_reader_free(&reader);
 }
 
-static void lists_hold_every_pair(void **state)
+TEST(lists_hold_every_pair)
 {
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
     struct points *p = malloc(sizeof *p);
     size_t compared = 0, sound = 0;
-    (void)state;
     assert_non_null(p);
     gsl_rng_set(rng, 2385);
     for (int k = 0; k < DRAWS; k++) {
@@ -148,12 +145,11 @@ static void lists_hold_every_pair(void **state)
 
 /* Points so close together, or so much closer than others, that cells are 10 to 1e9 times as large
  * as their radii: single precision knows their places no better than that. */
-static void clumps_hold_every_pair(void **state)
+TEST(clumps_hold_every_pair)
 {
     struct points *p = calloc(1, sizeof *p);
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
     size_t compared = 0;
-    (void)state;
     assert_non_null(p);
     gsl_rng_set(rng, 2385);
     for (int k = 0; k < 36; k++) {
@@ -200,14 +196,13 @@ static void clumps_hold_every_pair(void **state)
 }
 
 /* What cannot be searched is refused with the point's number. */
-static void refuses(void **state)
+TEST(refuses)
 {
     const struct grid_box box = {2, {0, 0}, {1, 1}, {true, true}};
     double x[] = {0.1, 0.2, 0.3}, y[] = {0.1, 0.5, 0.9}, radius[] = {0.1, 0.1, 0.1};
     const double *const at[] = {x, y};
     struct error error = {0};
     struct grid *grid = grid_create(&box, 3, 1);
-    (void)state;
     assert_non_null(grid);
     assert_int_equal(grid_search(grid, 3, 3, at, radius, NULL, &error), STATUS_OK);
     radius[2] = 0.51;
@@ -224,12 +219,11 @@ static void refuses(void **state)
 }
 
 /* Records of every size that has a loop of its own, and of one that has none. */
-static void gathers(void **state)
+TEST(gathers)
 {
     enum { RECORDS = 37, LARGEST = 56, COUNT = 24, STRIDE = 40 };
     static _Alignas(64) double records[RECORDS * LARGEST], out[LARGEST * STRIDE];
     int32_t slots[COUNT];
-    (void)state;
     for (int k = 0; k < RECORDS * LARGEST; k++) records[k] = 2.385 * k;
     for (int k = 0; k < COUNT; k++) slots[k] = k * 17 % RECORDS;
     for (int size = GATHER_GROUP; size <= LARGEST; size += GATHER_GROUP) {
@@ -243,26 +237,13 @@ static void gathers(void **state)
 }
 
 /* Of every size that a density may have in some units. */
-static void cube_roots(void **state)
+TEST(cube_roots)
 {
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
-    (void)state;
     for (int k = 0; k < 20000; k++) {
         const double x = ldexp(1 + gsl_rng_uniform(rng), k % 2000 - 1000);
         near_relative(cube_root(x), (double)cbrtl(x), 4.5e-16); /* cbrt errs by more */
     }
     assert_true(isnan(cube_root(NAN)));
     gsl_rng_free(rng);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lists_hold_every_pair),
-        cmocka_unit_test(clumps_hold_every_pair),
-        cmocka_unit_test(refuses),
-        cmocka_unit_test(gathers),
-        cmocka_unit_test(cube_roots),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,11 +2,8 @@
  * Inside of a grid, on setups drawn at random: its cells, their order in memory, how far they are
  * looked through, parts, lists with their order, and who is woken, each once more in plain loops.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -397,9 +394,8 @@ static void check_rim(struct grid *grid)
     }
 }
 
-static void test_setups(void **state)
+TEST(test_setups)
 {
-    (void)state;
     size_t compared = 0;
     for (int trial = 0; trial < 40; trial++) {
         make(trial);
@@ -435,9 +431,8 @@ static struct grid *spread_over(int dim, size_t n, double x, double y, bool peri
 }
 
 /* Twice as many cells as points and 64 more, to the last one; else cells 1.3 times as large. */
-static void test_number_of_cells(void **state)
+TEST(test_number_of_cells)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct grid *grid = spread_over(dim, 18, 100.5, 1.5, false);
         assert_int_equal(grid->cell_count, 100);
@@ -456,9 +451,8 @@ static void test_number_of_cells(void **state)
 }
 
 /* Radii wider than an open box: who is nobody is far from them all the same. */
-static void test_wide(void **state)
+TEST(test_wide)
 {
-    (void)state;
     struct grid *grid = spread_over(2, 30, 0.1, 0.2, false);
     check_points(grid);
     assert_int_equal(check_lists(grid), 30 * 29);
@@ -466,9 +460,8 @@ static void test_wide(void **state)
 }
 
 /* Nobody has a neighbour: alone, and two who are far apart. */
-static void test_nobody_near(void **state)
+TEST(test_nobody_near)
 {
-    (void)state;
     for (size_t n = 1; n <= 2; n++) {
         struct grid *grid = spread_over(2, n, 60.5, 1.5, false);
         check_cells(grid);
@@ -480,9 +473,8 @@ static void test_nobody_near(void **state)
 }
 
 /* Lists that fill more than one piece of memory, found again and again. */
-static void test_long_lists(void **state)
+TEST(test_long_lists)
 {
-    (void)state;
     struct grid *grid = spread_over(2, POINTS_MAX - 1, 7.5, 7.5, true);
     const double *const x[] = {setup.x[0], setup.x[1]};
     for (int k = 0; k < 3; k++) {
@@ -494,9 +486,8 @@ static void test_long_lists(void **state)
 }
 
 /* A second search has as many cells as its own radii ask for, whatever size they had before. */
-static void test_searched_again(void **state)
+TEST(test_searched_again)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct grid *grid = spread_over(dim, 100, 10.5, 1.5, false);
         const double *const x[] = {setup.x[0], setup.x[1], setup.x[2]};
@@ -525,9 +516,8 @@ static void refused(struct grid *grid, size_t n, const char *message)
     assert_string_equal(error.message, message);
 }
 
-static void test_refused(void **state)
+TEST(test_refused)
 {
-    (void)state;
     make(1);
     setup.n = 5;
     for (int a = 0; a < 3; a++) {
@@ -558,23 +548,11 @@ static void test_refused(void **state)
 }
 
 /* Bytes of a point and of its list, by what is allocated for them. */
-static void test_bytes(void **state)
+TEST(test_bytes)
 {
-    (void)state;
     const double point = 4 + 4 + 24 + 4 + 12 + 16;
     near_relative(grid_bytes(2, 1000, 50), 1000 * (point + 4 * (50 + 4.)), 1e-15);
     near_relative(grid_bytes(2, 3, 0), 3 * (point + 16), 1e-15);
     near_relative(grid_bytes(3, 1000, 50), 1000 * (point + (50 * 20.6 / 4.19 + 43) / 8), 1e-15);
     near_relative(grid_bytes(3, 3, 0), 3 * (point + 43. / 8), 1e-15);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_setups),      cmocka_unit_test(test_number_of_cells),
-        cmocka_unit_test(test_wide),        cmocka_unit_test(test_long_lists),
-        cmocka_unit_test(test_nobody_near), cmocka_unit_test(test_searched_again),
-        cmocka_unit_test(test_refused),     cmocka_unit_test(test_bytes),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

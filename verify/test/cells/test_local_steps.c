@@ -2,12 +2,7 @@
  * steps=local: what each particle's own step must not change (momentum, total energy, the order in
  * time, the bits for any number of threads and after a resume), the steps of global where all
  * particles are on one level, and that neighbours are never further apart than two levels. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
+#include "test.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -121,9 +116,8 @@ enum { SCHEMES = sizeof schemes / sizeof *schemes };
 
 /* --- conservation ----------------------------------------------------------------------------- */
 
-static void keeps_momentum_and_energy(void **state)
+TEST(keeps_momentum_and_energy)
 {
-    (void)state;
     static const double heat[SCHEMES] = {300, 1e4, 1e4, 300};
     uint64_t woken[2] = {0};
     for (size_t k = 0; k < 2 * SCHEMES; k++) {
@@ -154,9 +148,8 @@ static void keeps_momentum_and_energy(void **state)
 
 /* --- bits ------------------------------------------------------------------------------------- */
 
-static void threads_do_not_matter(void **state)
+TEST(threads_do_not_matter)
 {
-    (void)state;
     const struct scheme scheme = scheme_with(2, "steps=local");
     seed = 7;
     struct setup setup = setup_of(2, 32, 0.2, 300, false, &scheme);
@@ -172,9 +165,8 @@ static void threads_do_not_matter(void **state)
     simulation_destroy(one);
 }
 
-static void one_level_is_global(void **state)
+TEST(one_level_is_global)
 {
-    (void)state;
     for (size_t k = 0; k < SCHEMES; k++) {
         struct simulation *both[2];
         for (int local = 0; local < 2; local++) {
@@ -207,9 +199,8 @@ static bool keep_the_fifth(void *context, double time, uint64_t steps)
     return true;
 }
 
-static void goes_on_to_the_last_bit(void **state)
+TEST(goes_on_to_the_last_bit)
 {
-    (void)state;
     const struct scheme scheme = scheme_with(2, "steps=local alpha_u=0.5");
     seed = 11;
     const struct setup setup = setup_of(2, 24, 0.2, 300, false, &scheme);
@@ -258,9 +249,8 @@ static struct simulation *smooth_run(int dim, double cfl, enum time_steps steps)
     return simulation;
 }
 
-static void second_order_in_time(void **state)
+TEST(second_order_in_time)
 {
-    (void)state;
     struct simulation *exact = smooth_run(2, 0.01, STEPS_GLOBAL);
     double error[2];
     for (int k = 0; k < 2; k++) {
@@ -299,9 +289,8 @@ static enum status look_at_levels(struct simulation *simulation, double *rate, s
 }
 
 /* Cold gas beside blasts 10^4 times as hot wakes before anything arrives. */
-static void neighbours_are_no_further_apart(void **state)
+TEST(neighbours_are_no_further_apart)
 {
-    (void)state;
     uint64_t woken = 0;
     for (int k = 0; k < 4; k++) {
         const int dim = k % 2 ? 3 : 2;
@@ -325,9 +314,8 @@ static void neighbours_are_no_further_apart(void **state)
 }
 
 /* What pairs that change levels have been given, against the evaluations of all levels in turn. */
-static void pairs_are_given_what_is_missing(void **state)
+TEST(pairs_are_given_what_is_missing)
 {
-    (void)state;
     enum { FINEST = 6 };
     struct simulation simulation = {.steps.clock = {.finest = FINEST, .end = 2 << FINEST}};
     struct steps_clock *clock = &simulation.steps.clock;
@@ -355,9 +343,8 @@ static void pairs_are_given_what_is_missing(void **state)
     assert_true(unlike > 10);
 }
 
-static void says_what_excludes_it(void **state)
+TEST(says_what_excludes_it)
 {
-    (void)state;
     static const char *const pairs[][2] = {
         {"integrator=leapfrog", "integrator=leapfrog"},
         {"h_method=newton", "h_method=newton"},
@@ -381,19 +368,4 @@ static void says_what_excludes_it(void **state)
     assert_int_equal(scheme_check(&line, 1, &error), STATUS_BAD_INPUT);
     assert_string_equal(error.message, "steps=local and dimension=1 exclude each other: it is for "
                                        "2 and 3 dimensions");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(keeps_momentum_and_energy),
-        cmocka_unit_test(threads_do_not_matter),
-        cmocka_unit_test(one_level_is_global),
-        cmocka_unit_test(goes_on_to_the_last_bit),
-        cmocka_unit_test(second_order_in_time),
-        cmocka_unit_test(neighbours_are_no_further_apart),
-        cmocka_unit_test(pairs_are_given_what_is_missing),
-        cmocka_unit_test(says_what_excludes_it),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,12 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Inverses and condition numbers of small matrices, and the moments over neighbours that they are
  * made of, against quadruple precision and against matrices whose singular values are known. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
+#include "test.h"
 
 #include "near.h"
 
@@ -107,9 +102,8 @@ static void with_singular_values(int dim, double s, double t, double *a)
 
 /* Drawn matrices, plain ones and nearly singular ones; then with lengths in units along each axis
  * that powers of 2 lie between, which the inverse of a moment matrix must not notice. */
-static void test_inverse(void **state)
+TEST(test_inverse)
 {
-    (void)state;
     double worst[4] = {0}, in_units[4] = {0};
     for (int trial = 0; trial < 6000; trial++) {
         const int dim = 1 + trial % 3;
@@ -145,9 +139,8 @@ static void test_inverse(void **state)
 }
 
 /* With columns that differ in size, however much, the condition number is as good as any. */
-static void test_condition(void **state)
+TEST(test_condition)
 {
-    (void)state;
     double worst[2] = {0};
     for (int trial = 0; trial < 3000; trial++) {
         const int dim = 1 + trial % 3;
@@ -179,9 +172,8 @@ static void test_condition(void **state)
 
 /* No number among four, at each place: no inverse and no condition number. What overflows has none
  * either, and neither has what is singular; the caller's array is left alone. */
-static void test_none(void **state)
+TEST(test_none)
 {
-    (void)state;
     for (int dim = 1; dim <= 3; dim++)
         for (int k = 0; k < dim * dim; k++)
             for (int kind = 0; kind < 3; kind++) {
@@ -263,9 +255,8 @@ static double norm_of(int n, const double *a)
 
 /* Singular is what has a scaled condition number of 1/(16 epsilon) or more in Frobenius' norm: that
  * of (1 1; 1 1 + e) is a little less than 4/e. */
-static void test_singular_from(void **state)
+TEST(test_singular_from)
 {
-    (void)state;
     for (int e = 60; e < 69; e++) {
         double inverse[4];
         const double a[] = {1, 1, 1, 1 + e * DBL_EPSILON};
@@ -289,9 +280,8 @@ static void test_singular_from(void **state)
 
 /* Which way is taken shows in the last bits: in 1D 1/a by elimination, which is right to the last
  * one, by cofactors 1/(a/|a| |a|); of diag(1, d) by elimination 1 and 1/d, by cofactors d (1/d). */
-static void test_way(void **state)
+TEST(test_way)
 {
-    (void)state;
     int plain[2] = {0};
     for (int trial = 0; trial < 4000; trial++) {
         const double a = pow(10, trial % 2 ? 110 * draw() : copysign(100, draw()) + 2 * draw()),
@@ -331,9 +321,8 @@ static void test_way(void **state)
 
 /* Neither what stands behind the last element is read, nor what stands behind the inverse written.
  */
-static void test_room(void **state)
+TEST(test_room)
 {
-    (void)state;
     const size_t page = (size_t)sysconf(_SC_PAGESIZE);
     char *pages = mmap(NULL, 2 * page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     assert_true(pages != MAP_FAILED);
@@ -351,9 +340,8 @@ static void test_room(void **state)
 }
 
 /* The same bits, also where pivots are alike: the first of them is taken. */
-static void test_pivots(void **state)
+TEST(test_pivots)
 {
-    (void)state;
     static const double elements[] = {1, -1, 0.999, -0.999, 0.3, 0};
     int met = 0;
     for (int trial = 0; trial < 20000; trial++) {
@@ -421,9 +409,8 @@ static double sum_of(const struct drawn *drawn, int count, int a, int b, bool of
 /* Against sums in quadruple precision. The condition number is that of Frobenius' norm where this
  * suffices, else that of the 2-norm, and at most the worst that is allowed where there is an
  * inverse. */
-static void test_moments(void **state)
+TEST(test_moments)
 {
-    (void)state;
     int by_norm = 0;
     for (int trial = 0; trial < 600; trial++) {
         const int dim = 2 + trial % 2, count = GRID_LANES * (1 + trial % 3);
@@ -485,9 +472,8 @@ static void test_moments(void **state)
 }
 
 /* w(q) and V w(q) of either kind of kernel loop. */
-static void test_weights(void **state)
+TEST(test_weights)
 {
-    (void)state;
     for (int trial = 0; trial < 40; trial++) {
         const int dim = 2 + trial % 2, count = GRID_LANES * (1 + trial % 3);
         struct drawn drawn;
@@ -504,16 +490,4 @@ static void test_weights(void **state)
             near_below(fabs(lane(&drawn.lanes, LANE_W_J)[k] - drawn.weight[k] * w), 1e-14);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_inverse), cmocka_unit_test(test_condition),
-        cmocka_unit_test(test_none),    cmocka_unit_test(test_singular_from),
-        cmocka_unit_test(test_way),     cmocka_unit_test(test_room),
-        cmocka_unit_test(test_pivots),  cmocka_unit_test(test_moments),
-        cmocka_unit_test(test_weights),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

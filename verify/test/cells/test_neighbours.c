@@ -2,11 +2,8 @@
  * The neighbour search of clouds: the order along the Hilbert curve against Skilling's algorithm as
  * he wrote it and against what makes a curve of Hilbert's, boxes and candidates against all blocks,
  * what is refused word for word. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
+
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -79,9 +76,8 @@ static double last_cell(int dim)
 
 /* Points on whole numbers that fill the curve's cube: sorted by its key, equal ones as they came.
  */
-static void test_order(void **state)
+TEST(test_order)
 {
-    (void)state;
     static uint64_t key[POINTS_MAX];
     for (int trial = 0; trial < 30; trial++) {
         const int dim = 1 + trial % 3, bits = bits_of[dim];
@@ -113,9 +109,8 @@ static void test_order(void **state)
 
 /* A cube of 2^k cells each way, anywhere in the box and of cells of any size, is passed through
  * without a pause, each step to the next cell. */
-static void test_curve(void **state)
+TEST(test_curve)
 {
-    (void)state;
     for (int trial = 0; trial < 60; trial++) {
         const int dim = 2 + trial % 2, k = dim == 2 ? 4 : 3, bits = bits_of[dim];
         const int level = (int)(draw_bits() % (uint64_t)(bits - k + 1));
@@ -153,9 +148,8 @@ static void test_curve(void **state)
 }
 
 /* Points that are moved and stretched, and some that coincide, are in the same order. */
-static void test_order_is_of_shape(void **state)
+TEST(test_order_is_of_shape)
 {
-    (void)state;
     for (int trial = 0; trial < 30; trial++) {
         const int dim = 1 + trial % 3;
         const size_t n = 200;
@@ -177,9 +171,8 @@ static void test_order_is_of_shape(void **state)
 }
 
 /* Clouds too narrow for cells whose size is a number keep the order in which they came. */
-static void test_narrowest(void **state)
+TEST(test_narrowest)
 {
-    (void)state;
     static const struct {
         double factor;
         bool sorted;
@@ -209,9 +202,8 @@ static void test_narrowest(void **state)
 }
 
 /* Into lo <= x < hi, also where round-off ends at hi. */
-static void test_wrapped(void **state)
+TEST(test_wrapped)
 {
-    (void)state;
     static const double at[] = {-1.5, -1, -0.75, 0, 0.4, 0.5, 1.25, 2, -0x1p-60, 7.75};
     static const double into[] = {-1.5, 0.5 - 1.5, -0.75, -1.5, -1.1, -1, -0.25, -1, -1.5, -1.25};
     const size_t n = sizeof at / sizeof *at;
@@ -247,9 +239,8 @@ static void cloud_of(struct points *points, int dim, size_t n, bool periodic)
 
 /* Every level's boxes are the smallest around what they enclose; those that enclose nothing are
  * empty. */
-static void test_boxes(void **state)
+TEST(test_boxes)
 {
-    (void)state;
     static const size_t numbers[] = {0, 1, 7, 8, 9, 63, 64, 65, 511, 512, 513, 4096, 4097, 5000};
     for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++)
         for (int dim = 1; dim <= 3; dim++) {
@@ -329,9 +320,8 @@ static size_t compare(const struct neighbours *nb, size_t block, double radius,
     return compared;
 }
 
-static void test_candidates(void **state)
+TEST(test_candidates)
 {
-    (void)state;
     size_t compared = 0;
     for (int trial = 0; trial < 90; trial++) {
         static const size_t most[] = {0, 2000, 900, 700};
@@ -354,9 +344,8 @@ static void test_candidates(void **state)
 
 /* Radii to the last digits: a block as far as the radius is in, and one a little further, which
  * round-off may have moved. Radii whose squares are no numbers take everybody, and no fillings. */
-static void test_radius(void **state)
+TEST(test_radius)
 {
-    (void)state;
     for (size_t i = 0; i < 24; i++) place[0][i] = i < 8 ? -5 : i < 16 ? 0 : 3;
     const struct points points = points_of(1, 24);
     struct neighbours *nb = made(&points);
@@ -382,9 +371,8 @@ static void test_radius(void **state)
 }
 
 /* As many images as a radius needs: whole boxes to the last digit, eight at most. */
-static void test_images(void **state)
+TEST(test_images)
 {
-    (void)state;
     struct candidates c = {0};
     for (int dim = 1; dim <= 2; dim++) {
         struct points points;
@@ -424,9 +412,8 @@ static void refused(const struct points *points, const char *message)
     assert_string_equal(error.message, message);
 }
 
-static void test_refused(void **state)
+TEST(test_refused)
 {
-    (void)state;
     struct points points;
     cloud_of(&points, 3, 9, false);
     place[2][8] = HUGE_VAL;
@@ -465,21 +452,4 @@ static void test_refused(void **state)
     points.lo[1] = -1e300 * (1 + 1e-7), points.hi[1] = 1e300;
     refused(&points, "periodic box from -1e+300 to 1e+300 in y is empty");
     neighbours_destroy(NULL);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_order),
-        cmocka_unit_test(test_curve),
-        cmocka_unit_test(test_order_is_of_shape),
-        cmocka_unit_test(test_narrowest),
-        cmocka_unit_test(test_wrapped),
-        cmocka_unit_test(test_boxes),
-        cmocka_unit_test(test_candidates),
-        cmocka_unit_test(test_radius),
-        cmocka_unit_test(test_images),
-        cmocka_unit_test(test_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

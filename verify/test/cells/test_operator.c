@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Gradient operators against brute force in long double; specialised against generic, threads, and
  * clouds that invite trouble. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
+#include "test.h"
+
 #include <gsl/gsl_linalg.h>
 #include <gsl/gsl_rng.h>
 #include <float.h>
@@ -100,9 +98,8 @@ static double departure(const struct operator_settings *settings, const struct c
     return 2 * compared > FIELDS * cloud->points.n ? worst : (double)NAN;
 }
 
-static void test_brute_force(void **state)
+TEST(test_brute_force)
 {
-    (void)state;
     const size_t sides[] = {0, 97, 13, 6};
     for (int dim = 1; dim <= 3; dim++)
         for (size_t o = 0; o < operator_family.n; o++)
@@ -123,9 +120,8 @@ static void test_brute_force(void **state)
 }
 
 /* The same bits, whatever the number of threads; the generic loop agrees to round-off. */
-static void test_same_result(void **state)
+TEST(test_same_result)
 {
-    (void)state;
     for (int dim = 1; dim <= 3; dim++)
         for (size_t o = 0; o < operator_family.n; o++) {
             const struct kernel kernel = kernel_named(kernel_family.members[o + 1]->name);
@@ -152,9 +148,8 @@ static void test_same_result(void **state)
 }
 
 /* A periodic lattice looks the same from every point, also where h exceeds the box. */
-static void test_periodic(void **state)
+TEST(test_periodic)
 {
-    (void)state;
     const struct kernel kernel = kernel_named("cubic_spline");
     double x[16], y[16], V[16], h[16];
     for (size_t i = 0; i < 16; i++) {
@@ -182,9 +177,8 @@ static void test_periodic(void **state)
 }
 
 /* States at their limits: dim + 1 points including itself, condition number 1e6. */
-static void test_states(void **state)
+TEST(test_states)
 {
-    (void)state;
     const struct kernel kernel = kernel_named("quadratic_spline");
     const double V[] = {1, 1, 1, 1, 1}, h[] = {1, 1, 1, 1, 1};
     const struct operator_settings settings = {operator_at(3), &kernel, false, 1};
@@ -218,9 +212,8 @@ static void test_states(void **state)
 
 /* What is exactly h away is no neighbour; pairs are those of the lists, with any number of threads;
  * and a volume that is none is refused by its point. */
-static void test_edges(void **state)
+TEST(test_edges)
 {
-    (void)state;
     const struct kernel kernel = kernel_named("wendland_c4");
     const double x[] = {0, 0.5, 1, 0.75}, y[] = {0, 0, 0, 0.25}, h[] = {0.5, 0.50000001, 2, 0.4};
     double V[] = {1, 1, 1, 1};
@@ -247,9 +240,8 @@ static void test_edges(void **state)
     }
 }
 
-static void test_odd_clouds(void **state)
+TEST(test_odd_clouds)
 {
-    (void)state;
     const struct kernel kernel = kernel_named("wendland_c2");
     double zero[40] = {0}, line[40], V[40], h[40], far[40], flat[40];
     for (size_t i = 0; i < 40; i++) {
@@ -301,9 +293,8 @@ static void test_odd_clouds(void **state)
 }
 
 /* h and rho solve their two equations (brute force), and a uniform cloud has density 1. */
-static void test_summation(void **state)
+TEST(test_summation)
 {
-    (void)state;
     for (int dim = 1; dim <= 3; dim++)
         for (int kind = 0; kind < CLOUDS_KINDS; kind++) {
             const struct kernel kernel = kernel_named("wendland_c4");
@@ -346,9 +337,8 @@ static void test_summation(void **state)
 
 /* A cloud in units of 2^e, its fields in units of 2^g: the same gradients, densities and states but
  * for their exponents, to the last bit. */
-static void test_units(void **state)
+TEST(test_units)
 {
-    (void)state;
     static const int exponents[] = {-330, -200, 129, 300, 500, -990};
     for (int dim = 1; dim <= 3; dim++)
         for (size_t u = 0; u < sizeof exponents / sizeof *exponents; u++) {
@@ -413,9 +403,8 @@ static void test_units(void **state)
 }
 
 /* Inverse and condition number against GSL's singular values, also badly scaled. */
-static void test_matrix(void **state)
+TEST(test_matrix)
 {
-    (void)state;
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
     for (int trial = 0; trial < 600; trial++) {
         const int dim = 1 + trial % 3;
@@ -455,16 +444,4 @@ static void test_matrix(void **state)
     near_relative(inverse[3], 1e200, 1e-15);
     assert_true(isinf(matrix_condition(2, (double[]){0, 0, 0, 0})));
     assert_true(isnan(matrix_condition(2, (double[]){(double)NAN, 0, 0, 1})));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_brute_force), cmocka_unit_test(test_same_result),
-        cmocka_unit_test(test_periodic),    cmocka_unit_test(test_states),
-        cmocka_unit_test(test_odd_clouds),  cmocka_unit_test(test_summation),
-        cmocka_unit_test(test_edges),       cmocka_unit_test(test_matrix),
-        cmocka_unit_test(test_units),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

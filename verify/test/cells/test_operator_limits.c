@@ -2,29 +2,19 @@
  * Gradient operators at the limits of numbers: clouds in any units, one quantity extreme and the
  * others not, what leaves the range of double, what cannot be computed, distances that differ from
  * h in the last digits, what is refused word for word, and promises that are kept. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
+
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "draw.h"
 #include "naive.h"
 #include "near.h"
 #include "operator.h"
 
 enum { POINTS_MAX = 200, FIELDS = 2 };
-
-static uint64_t state_of_draws = 1;
-
-static double draw(double low, double high)
-{
-    state_of_draws = state_of_draws * 6364136223846793005u + 1442695040888963407u;
-    return low + (high - low) * ldexp((double)((state_of_draws ^ state_of_draws >> 29) >> 11), -53);
-}
 
 static struct kernel kernel;
 
@@ -139,9 +129,8 @@ static size_t same_in(int length, int volume, const int *field, const struct ope
 }
 
 /* Whatever is large or small, alone or together, no digit changes. */
-static void test_units(void **state)
+TEST(test_units)
 {
-    (void)state;
     static const struct {
         int length, volume, field[FIELDS];
     } units[] = {
@@ -166,9 +155,8 @@ static void test_units(void **state)
 }
 
 /* Units in which some gradients are no longer numbers, or only subnormal ones. */
-static void test_lost(void **state)
+TEST(test_lost)
 {
-    (void)state;
     size_t lost = 0, kept = 0;
     for (int dim = 1; dim <= 3; dim++)
         for (size_t o = 0; o < operator_family.n; o++) {
@@ -197,9 +185,8 @@ static void test_lost(void **state)
 }
 
 /* The smallest normal number is one. */
-static void test_least_normal(void **state)
+TEST(test_least_normal)
 {
-    (void)state;
     size_t found = 0;
     for (int trial = 0; trial < 40; trial++) {
         const double step = draw(0.2, 0.4);
@@ -235,9 +222,8 @@ static double departure(const struct operator_form *form, size_t i)
 }
 
 /* A neighbour that is very near pulls as hard as its field is large. */
-static void test_close(void **state)
+TEST(test_close)
 {
-    (void)state;
     for (int dim = 1; dim <= 3; dim++)
         for (size_t o = 0; o < operator_family.n; o++) {
             fill(&one, dim, 60, false);
@@ -251,9 +237,8 @@ static void test_close(void **state)
 
 /* Who is nearer than h by one part in 1e13 is a neighbour, and who is as much further is none; with
  * as many neighbours as fill whole lanes, or not. */
-static void test_edge(void **state)
+TEST(test_edge)
 {
-    (void)state;
     for (size_t n = 3; n < 40; n++) {
         fill(&one, 2, n, false);
         for (size_t i = 0; i < n; i++) one.x[0][i] *= 0.5, one.x[1][i] *= 0.5, one.h[i] = 1;
@@ -275,9 +260,8 @@ static void test_edge(void **state)
 }
 
 /* Where a neighbour's field is no number no gradient is one, and that is said; elsewhere it is. */
-static void test_no_number(void **state)
+TEST(test_no_number)
 {
-    (void)state;
     for (int dim = 1; dim <= 3; dim++)
         for (size_t o = 0; o < operator_family.n; o++)
             for (int k = 0; k < FIELDS; k++) {
@@ -300,9 +284,8 @@ static void test_no_number(void **state)
 }
 
 /* A condition number of exactly the limit is well; the next larger one is not. */
-static void test_limit(void **state)
+TEST(test_limit)
 {
-    (void)state;
     size_t at = 0, above = 0;
     connect(&one, 2, 5, false);
     for (size_t i = 0; i < 5; i++) {
@@ -331,9 +314,8 @@ static void test_limit(void **state)
 
 /* A field of any size is no width: where the last block is full its end is not one point further.
  */
-static void test_last_block(void **state)
+TEST(test_last_block)
 {
-    (void)state;
     for (size_t n = 8; n <= 64; n += 8)
         for (int dim = 1; dim <= 3; dim++) {
             fill(&one, dim, n, true);
@@ -352,9 +334,8 @@ static void refused(const char *message)
     assert_int_equal(apply(&one, form_at(1), NULL), STATUS_BAD_INPUT);
 }
 
-static void test_refused(void **state)
+TEST(test_refused)
 {
-    (void)state;
     fill(&one, 2, 20, true);
     one.h[0] = -0.5;
     refused("point 0: support radius h = -0.5; it must be positive");
@@ -381,9 +362,8 @@ static void test_refused(void **state)
 }
 
 /* The first moment, which has no inverse matrix: sum V f x W, and with f_j - f_i. */
-static void test_moment(void **state)
+TEST(test_moment)
 {
-    (void)state;
     for (int dim = 1; dim <= 3; dim++)
         for (int difference = 0; difference < 2; difference++) {
             const struct operator_form moment = {.pair_vector = VECTOR_POSITION,
@@ -434,9 +414,8 @@ static double error_of(const struct operator_form *form, int degree, size_t firs
 
 /* An operator promises what it keeps, no more and no less: polynomials that are exact everywhere,
  * and on a lattice (where, by symmetry, squares are as exact as constants). */
-static void test_promises(void **state)
+TEST(test_promises)
 {
-    (void)state;
     for (int dim = 1; dim <= 3; dim++)
         for (size_t o = 0; o < operator_family.n; o++) {
             const struct operator_form *form = form_at(o);
@@ -464,14 +443,6 @@ static void test_promises(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_units),        cmocka_unit_test(test_lost),
-        cmocka_unit_test(test_least_normal), cmocka_unit_test(test_close),
-        cmocka_unit_test(test_edge),         cmocka_unit_test(test_no_number),
-        cmocka_unit_test(test_limit),        cmocka_unit_test(test_last_block),
-        cmocka_unit_test(test_refused),      cmocka_unit_test(test_moment),
-        cmocka_unit_test(test_promises),
-    };
     if (kernel_select(&kernel, "wendland_c4", 5, NULL)) return 1;
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return test_run(NULL, NULL);
 }

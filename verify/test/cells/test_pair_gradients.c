@@ -2,13 +2,9 @@
  * Gradients of pairs in 2D and 3D, lane by lane, against their formulas in extended precision:
  * every gradient at every width, with matrices that are not to be used and shares of the standard
  * gradient. What lies behind the pairs, and what nobody asked for, stays as it is. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "test.h"
 
-#include <cmocka.h>
-
+#include "draw.h"
 #include "near.h"
 
 #include "cells/lanes.h"
@@ -22,14 +18,6 @@ enum { COUNT = 24, STRIDE = 40, RECORD_MAX = 64 };
 static double untouched(int array)
 {
     return 1234 + 0.5 * array;
-}
-
-static uint64_t state_of_draws = 1;
-
-static double draw(double low, double high)
-{
-    state_of_draws = state_of_draws * 6364136223846793005u + 1442695040888963407u;
-    return low + (high - low) * ldexp((double)((state_of_draws ^ state_of_draws >> 29) >> 11), -53);
 }
 
 /* One particle and its neighbours. */
@@ -69,7 +57,7 @@ static void draw_pairs(int unsound, int steep)
         drawn.block[k] = untouched(k / STRIDE);
     drawn.lanes = (struct lanes){.block = drawn.block, .stride = STRIDE};
     drawn.pairs = (struct pairs){COUNT, COUNT, &drawn.lanes, &drawn.cells->force, drawn.record};
-    *own(FIELD_H_INVERSE) = draw(0.8, 1.5);
+    *own(RECORD_H_INVERSE) = draw(0.8, 1.5);
     for (int k = 0; k < COUNT; k++) {
         real r2 = 0;
         for (int a = 0; a < dim; a++) {
@@ -79,18 +67,18 @@ static void draw_pairs(int unsound, int steep)
         }
         lane(&drawn.lanes, LANE_R)[k] = (double)sqrtl(r2);
         lane(&drawn.lanes, LANE_R_INVERSE)[k] = r2 > 0 ? 1 / (double)sqrtl(r2) : 0;
-        theirs(FIELD_H_INVERSE)[k] = draw(0.8, 1.5);
+        theirs(RECORD_H_INVERSE)[k] = draw(0.8, 1.5);
     }
     if (drawn.method.gradient == GRADIENT_STANDARD) return;
-    draw_matrix(dim, own(FIELD_MATRIX), 1, unsound != OWN_UNSOUND);
+    draw_matrix(dim, own(RECORD_MATRIX), 1, unsound != OWN_UNSOUND);
     for (int k = 0; k < COUNT; k++)
-        draw_matrix(dim, theirs(FIELD_MATRIX) + k, STRIDE,
+        draw_matrix(dim, theirs(RECORD_MATRIX) + k, STRIDE,
                     !(unsound == ONE_UNSOUND && k == 9) &&
                         !(unsound == LAST_UNSOUND && k == COUNT - 1));
     if (drawn.method.gradient != GRADIENT_BLENDED) return;
-    *own(FIELD_STEEP) = steep == OWN_STEEP || steep == ALL_STEEP ? draw(0, 1) : 0;
+    *own(RECORD_STEEP) = steep == OWN_STEEP || steep == ALL_STEEP ? draw(0, 1) : 0;
     for (int k = 0; k < COUNT; k++)
-        theirs(FIELD_STEEP)[k] =
+        theirs(RECORD_STEEP)[k] =
             steep == ALL_STEEP || (steep == LAST_STEEP && k == COUNT - 1) ? draw(0, 1) : 0;
 }
 
@@ -139,13 +127,13 @@ static void check_pair(int k)
     const bool both = method->formulation == FORMULATION_LAGRANGIAN,
                matrix = method->gradient != GRADIENT_STANDARD,
                blended = method->gradient == GRADIENT_BLENDED;
-    const double *C = matrix ? own(FIELD_MATRIX) : NULL,
-                 *C_j = matrix ? theirs(FIELD_MATRIX) + k : NULL;
+    const double *C = matrix ? own(RECORD_MATRIX) : NULL,
+                 *C_j = matrix ? theirs(RECORD_MATRIX) + k : NULL;
     const bool used = matrix && C[0] > 0 && C_j[0] > 0;
     const real part = !used     ? 1
-                      : blended ? ((real)*own(FIELD_STEEP) + theirs(FIELD_STEEP)[k]) / 2
+                      : blended ? ((real)*own(RECORD_STEEP) + theirs(RECORD_STEEP)[k]) / 2
                                 : 0;
-    const double mine = *own(FIELD_H_INVERSE), other = theirs(FIELD_H_INVERSE)[k];
+    const double mine = *own(RECORD_H_INVERSE), other = theirs(RECORD_H_INVERSE)[k];
     for (int a = 0; a < method->box.dim; a++) {
         real at_i[2], at_j[2];
         gradient_at(k, a, width_at(mine, other), C, 1, at_i);
@@ -206,9 +194,8 @@ static void make(int dim, enum gradient gradient, enum pair_width width,
     assert_true(drawn.cells->force.size <= RECORD_MAX);
 }
 
-static void test_gradients(void **state)
+TEST(test_gradients)
 {
-    (void)state;
     assert_int_equal(kernel_select(&drawn.kernel, "quartic_spline", 5, NULL), STATUS_OK);
     for (int dim = 2; dim <= 3; dim++)
         for (int g = 0; g < GRADIENTS; g++)
@@ -226,12 +213,4 @@ static void test_gradients(void **state)
                         }
                         cells_destroy(drawn.cells);
                     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_gradients),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

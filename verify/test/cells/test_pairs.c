@@ -70,23 +70,23 @@ static void make(struct drawn *drawn, const struct cells_method *method)
     drawn->pairs = (struct pairs){COUNT, COUNT, &drawn->lanes, &drawn->cells->force, drawn->record};
     for (size_t i = 0; i < n; i++) drawn->lanes.block[i] = draw(-1, 1);
     for (int i = 0; i < 64; i++) drawn->record[i] = draw(-1, 1);
-    fill(drawn, FIELD_WEIGHT, 1, 0.5, 2);
-    fill(drawn, FIELD_VELOCITY, dim, -1, 1);
-    fill(drawn, FIELD_H_INVERSE, 1, 0.5, 2);
-    fill(drawn, FIELD_VOLUME, 1, 0.5, 2);
-    fill(drawn, FIELD_PRESSURE, 1, 0.5, 2);
-    fill(drawn, FIELD_SOUND, 1, 0.1, 2);
-    fill(drawn, FIELD_DENSITY, 1, 0.5, 2);
-    fill(drawn, FIELD_ALPHA, 1, 0.1, 1);
-    fill(drawn, FIELD_BALSARA, 1, 0, 1);
-    fill(drawn, FIELD_HEAT, 1, 0.5, 2);
+    fill(drawn, RECORD_WEIGHT, 1, 0.5, 2);
+    fill(drawn, RECORD_VELOCITY, dim, -1, 1);
+    fill(drawn, RECORD_H_INVERSE, 1, 0.5, 2);
+    fill(drawn, RECORD_VOLUME, 1, 0.5, 2);
+    fill(drawn, RECORD_PRESSURE, 1, 0.5, 2);
+    fill(drawn, RECORD_SOUND, 1, 0.1, 2);
+    fill(drawn, RECORD_DENSITY, 1, 0.5, 2);
+    fill(drawn, RECORD_ALPHA, 1, 0.1, 1);
+    fill(drawn, RECORD_BALSARA, 1, 0, 1);
+    fill(drawn, RECORD_HEAT, 1, 0.5, 2);
     for (int k = 0; k < ROOM; k++) {
         double r2 = 0, closing = 0;
         lane(&drawn->lanes, LANE_ONE)[k] = 1;
         for (int a = 0; a < dim; a++) {
             const double x = lane(&drawn->lanes, LANE_DX + a)[k];
             r2 += x * x;
-            closing += (get(drawn, FIELD_VELOCITY, a, -1) - get(drawn, FIELD_VELOCITY, a, k)) * x;
+            closing += (get(drawn, RECORD_VELOCITY, a, -1) - get(drawn, RECORD_VELOCITY, a, k)) * x;
         }
         lane(&drawn->lanes, LANE_R)[k] = sqrt(r2);
         lane(&drawn->lanes, LANE_R_INVERSE)[k] = 1 / sqrt(r2);
@@ -109,7 +109,7 @@ static long double slope_of(const struct drawn *drawn, int k, bool own)
         for (int b = 0; b < dim; b++) {
             const long double x = lane(&drawn->lanes, LANE_DX + a)[k],
                               y = lane(&drawn->lanes, LANE_DX + b)[k];
-            sum += get(drawn, FIELD_SLOPE, a * dim + b, own ? -1 : k) * x * y;
+            sum += get(drawn, RECORD_SLOPE, a * dim + b, own ? -1 : k) * x * y;
             r2 += a == b ? x * x : 0;
         }
     return sum / r2;
@@ -121,19 +121,19 @@ static long double noise_of(const struct drawn *drawn, int k)
     const int dim = drawn->cells->method.box.dim;
     long double sum = 0;
     for (int a = 0; a < dim; a++) {
-        long double moving = (long double)get(drawn, FIELD_VELOCITY, a, -1) -
-                             get(drawn, FIELD_VELOCITY, a, k),
+        long double moving = (long double)get(drawn, RECORD_VELOCITY, a, -1) -
+                             get(drawn, RECORD_VELOCITY, a, k),
                     across = lane(&drawn->lanes, LANE_DX + a)[k];
         for (int b = 0; b < dim; b++) {
             const long double x = lane(&drawn->lanes, LANE_DX + b)[k];
             static const int place[2][3][3] = {{{0, 1}, {1, 2}}, {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}}};
             const int ab = place[dim - 2][a][b];
             moving += x / 2 *
-                      ((long double)get(drawn, FIELD_SLOPE, a * dim + b, -1) +
-                       get(drawn, FIELD_SLOPE, a * dim + b, k));
+                      ((long double)get(drawn, RECORD_SLOPE, a * dim + b, -1) +
+                       get(drawn, RECORD_SLOPE, a * dim + b, k));
             across -= x / 2 *
-                      ((long double)get(drawn, FIELD_PROJECTOR, ab, -1) +
-                       get(drawn, FIELD_PROJECTOR, ab, k));
+                      ((long double)get(drawn, RECORD_PROJECTOR, ab, -1) +
+                       get(drawn, RECORD_PROJECTOR, ab, k));
         }
         sum += across * moving;
     }
@@ -145,8 +145,9 @@ static long double approach_of(const struct drawn *drawn, int k)
 {
     long double sum = 0;
     for (int a = 0; a < drawn->cells->method.box.dim; a++)
-        sum -= ((long double)get(drawn, FIELD_VELOCITY, a, -1) - get(drawn, FIELD_VELOCITY, a, k)) *
-               lane(&drawn->lanes, LANE_GX + a)[k];
+        sum -=
+            ((long double)get(drawn, RECORD_VELOCITY, a, -1) - get(drawn, RECORD_VELOCITY, a, k)) *
+            lane(&drawn->lanes, LANE_GX + a)[k];
     return sum;
 }
 
@@ -155,8 +156,8 @@ static long double at_midpoint(const struct drawn *drawn, int k, long double clo
 {
     const long double s = slope_of(drawn, k, true), t = slope_of(drawn, k, false),
                       r = lane(&drawn->lanes, LANE_R)[k],
-                      narrow = fminl(get(drawn, FIELD_H_INVERSE, 0, -1),
-                                     get(drawn, FIELD_H_INVERSE, 0, k)),
+                      narrow = fminl(get(drawn, RECORD_H_INVERSE, 0, -1),
+                                     get(drawn, RECORD_H_INVERSE, 0, k)),
                       near_by = drawn->cells->method.numbers.near;
     const long double z = r * narrow < near_by ? fminl((near_by - r * narrow) / 0.2L, 2.6L) : 0;
     const long double phi = s * t > 0 ? 4 * s * t / ((s + t) * (s + t)) * expl(-z * z) : 0;
@@ -165,20 +166,23 @@ static long double at_midpoint(const struct drawn *drawn, int k, long double clo
 }
 
 /* m_i m_j PI/2, and what it is made of; *size: of its terms. */
-static long double viscosity_of(const struct drawn *drawn, int k, long double *size)
+static long double term_of(const struct drawn *drawn, int k, long double *size)
 {
     const struct cells_method *method = &drawn->cells->method;
-    const bool sloped = method->viscosity == VISCOSITY_RECONSTRUCTED;
+    const bool projected = method->viscosity == VISCOSITY_PROJECTED,
+               sloped = projected || method->viscosity == VISCOSITY_RECONSTRUCTED;
     const long double
         r = lane(&drawn->lanes, LANE_R)[k],
         closing = lane(&drawn->lanes, LANE_CLOSING)[k],
-        m2 = (long double)get(drawn, FIELD_WEIGHT, 0, -1) * get(drawn, FIELD_WEIGHT, 0, k),
-        c = ((long double)get(drawn, FIELD_SOUND, 0, -1) + get(drawn, FIELD_SOUND, 0, k)) / 2,
-        rho = ((long double)get(drawn, FIELD_DENSITY, 0, -1) + get(drawn, FIELD_DENSITY, 0, k)) / 2;
+        m2 = (long double)get(drawn, RECORD_WEIGHT, 0, -1) * get(drawn, RECORD_WEIGHT, 0, k),
+        c = ((long double)get(drawn, RECORD_SOUND, 0, -1) + get(drawn, RECORD_SOUND, 0, k)) / 2,
+        rho =
+            ((long double)get(drawn, RECORD_DENSITY, 0, -1) + get(drawn, RECORD_DENSITY, 0, k)) / 2;
     const long double w = sloped ? at_midpoint(drawn, k, closing) : fmaxl(closing, 0);
     long double alpha = method->numbers.alpha, beta = method->numbers.beta, f = 1;
-    if (method->viscosity == VISCOSITY_TIME_DEPENDENT) {
-        alpha = ((long double)get(drawn, FIELD_ALPHA, 0, -1) + get(drawn, FIELD_ALPHA, 0, k)) / 2;
+    if (method->viscosity == VISCOSITY_TIME_DEPENDENT ||
+        method->viscosity == VISCOSITY_CULLEN_DEHNEN) {
+        alpha = ((long double)get(drawn, RECORD_ALPHA, 0, -1) + get(drawn, RECORD_ALPHA, 0, k)) / 2;
         beta = alpha * method->numbers.beta_ratio;
     }
     const long double seen = method->viscosity == VISCOSITY_FADING ? fminl(c, 100 * w) : c;
@@ -186,21 +190,21 @@ static long double viscosity_of(const struct drawn *drawn, int k, long double *s
     if (method->signal_form) {
         pi = (alpha * seen + beta / 2 * w) * w / rho;
     } else {
-        const long double h = (1 / (long double)get(drawn, FIELD_H_INVERSE, 0, -1) +
-                               1 / (long double)get(drawn, FIELD_H_INVERSE, 0, k)) /
+        const long double h = (1 / (long double)get(drawn, RECORD_H_INVERSE, 0, -1) +
+                               1 / (long double)get(drawn, RECORD_H_INVERSE, 0, k)) /
                               4,
                           mu = h * w * r / (r * r + 0.01L * h * h);
         pi = (alpha * seen * mu + beta * mu * mu) / rho;
     }
     if (method->balsara)
-        f = ((long double)get(drawn, FIELD_BALSARA, 0, -1) + get(drawn, FIELD_BALSARA, 0, k)) / 2;
-    if (method->projected) f *= f;
+        f = ((long double)get(drawn, RECORD_BALSARA, 0, -1) + get(drawn, RECORD_BALSARA, 0, k)) / 2;
+    if (projected) f *= f;
     if (sloped && approach_of(drawn, k) <= 0) f = 0;
     long double K = m2 / 2 * pi * f;
     *size = fabsl(K);
-    if (method->projected) {
-        const long double mach = closing / c, linear = m2 / 2 * (long double)method->noise * c /
-                                                       rho * fmaxl(0, 1 - mach * mach);
+    if (projected) {
+        const long double mach = closing / c, linear = m2 / 2 * (long double)method->numbers.noise *
+                                                       c / rho * fmaxl(0, 1 - mach * mach);
         K += linear * noise_of(drawn, k);
         *size += linear * 10;
     }
@@ -208,30 +212,30 @@ static long double viscosity_of(const struct drawn *drawn, int k, long double *s
 }
 
 /* Every viscosity in both forms, with and without Balsara's factor. The damping of close pairs has
- * seven digits (pair.h), the rest all. */
+ * seven digits (reconstructed.h), the rest all. */
 static void test_viscosity(void **state)
 {
     (void)state;
-    static const enum viscosity all[] = {VISCOSITY_CONSTANT, VISCOSITY_TIME_DEPENDENT,
-                                         VISCOSITY_RECONSTRUCTED, VISCOSITY_FADING};
+    static const enum viscosity all[] = {VISCOSITY_CONSTANT,      VISCOSITY_TIME_DEPENDENT,
+                                         VISCOSITY_RECONSTRUCTED, VISCOSITY_FADING,
+                                         VISCOSITY_CULLEN_DEHNEN, VISCOSITY_PROJECTED};
+    enum { ALL = sizeof all / sizeof *all };
     struct kernel kernel;
     assert_int_equal(kernel_select(&kernel, "wendland_c4", 5, NULL), STATUS_OK);
     int zero = 0, other = 0;
-    for (int trial = 0; trial < 2 * 5 * 2 * 2 * 2 * 4; trial++) {
-        const int which = trial / 2 % 5, round = trial / 40;
-        const bool projected = which == 4;
+    for (int trial = 0; trial < 2 * ALL * 2 * 2 * 2 * 4; trial++) {
+        const int which = trial / 2 % ALL, round = trial / (8 * ALL);
+        const bool projected = all[which] == VISCOSITY_PROJECTED;
         const struct cells_method method = {.box = {.dim = 2 + trial % 2, .hi = {1, 1, 1}},
                                             .kernel = &kernel,
-                                            .viscosity =
-                                                projected ? VISCOSITY_RECONSTRUCTED : all[which],
-                                            .projected = projected,
-                                            .signal_form = projected || trial / 10 % 2,
-                                            .balsara = trial / 20 % 2,
-                                            .noise = 0.7,
+                                            .viscosity = all[which],
+                                            .signal_form = projected || trial / (2 * ALL) % 2,
+                                            .balsara = trial / (4 * ALL) % 2,
                                             .numbers = {.alpha = 0.9,
                                                         .beta = 1.7,
                                                         .beta_ratio = 2.1,
-                                                        .near = round % 2 ? 0.6 : 1e-3},
+                                                        .near = round % 2 ? 0.6 : 1e-3,
+                                                        .noise = 0.7},
                                             .threads = 1};
         struct drawn drawn;
         make(&drawn, &method);
@@ -243,7 +247,7 @@ static void test_viscosity(void **state)
         cells_viscosity(drawn.cells, &drawn.pairs);
         for (int k = 0; k < COUNT; k++) {
             long double size;
-            const long double expected = viscosity_of(&drawn, k, &size);
+            const long double expected = term_of(&drawn, k, &size);
             near_below((double)fabsl(K[k] - expected), (round % 2 ? 3e-6 : 1e-12) * (double)size);
             zero += expected == 0, other += expected != 0;
         }
@@ -290,23 +294,23 @@ static void test_sums(void **state)
         make(&drawn, &method);
         long double heat = 0, divergence = 0, size = 0;
         for (int k = 0; k < COUNT; k++) {
-            const long double rho = ((long double)get(&drawn, FIELD_DENSITY, 0, -1) +
-                                     get(&drawn, FIELD_DENSITY, 0, k)) /
+            const long double rho = ((long double)get(&drawn, RECORD_DENSITY, 0, -1) +
+                                     get(&drawn, RECORD_DENSITY, 0, k)) /
                                     2,
-                              speed = sqrtl(fabsl((long double)get(&drawn, FIELD_PRESSURE, 0, -1) -
-                                                  get(&drawn, FIELD_PRESSURE, 0, k)) /
+                              speed = sqrtl(fabsl((long double)get(&drawn, RECORD_PRESSURE, 0, -1) -
+                                                  get(&drawn, RECORD_PRESSURE, 0, k)) /
                                             rho);
             long double along = 0;
             for (int a = 0; a < dim; a++)
                 along += (long double)lane(&drawn.lanes, LANE_DX + a)[k] *
                          lane(&drawn.lanes, LANE_GX + a)[k] / lane(&drawn.lanes, LANE_R)[k];
             const long double term =
-                (long double)get(&drawn, FIELD_WEIGHT, 0, -1) * get(&drawn, FIELD_WEIGHT, 0, k) *
+                (long double)get(&drawn, RECORD_WEIGHT, 0, -1) * get(&drawn, RECORD_WEIGHT, 0, k) *
                 (long double)method.conductivity * speed *
-                ((long double)get(&drawn, FIELD_HEAT, 0, -1) - get(&drawn, FIELD_HEAT, 0, k)) /
+                ((long double)get(&drawn, RECORD_HEAT, 0, -1) - get(&drawn, RECORD_HEAT, 0, k)) /
                 rho * fminl(along, 0);
             heat += term, size += fabsl(term);
-            divergence -= get(&drawn, FIELD_VOLUME, 0, k) * approach_of(&drawn, k);
+            divergence -= get(&drawn, RECORD_VOLUME, 0, k) * approach_of(&drawn, k);
         }
         const double last = lane(&drawn.lanes, LANE_SPARE)[COUNT];
         near_below((double)fabsl(cells_conduction(drawn.cells, &drawn.pairs) - heat),
@@ -319,10 +323,10 @@ static void test_sums(void **state)
 
 /* Where the fields of a record lie, in the order of their names, and as many values of each as in
  * `values`: none beside them, in whole groups. */
-static void expect_layout(const struct lanes_layout *layout, const int values[FIELDS])
+static void expect_layout(const struct lanes_layout *layout, const int values[RECORD_FIELDS])
 {
     int used = 0;
-    for (int field = 0; field < FIELDS; field++) {
+    for (int field = 0; field < RECORD_FIELDS; field++) {
         assert_int_equal(layout->offset[field], values[field] ? used : 0);
         used += values[field];
     }
@@ -348,50 +352,53 @@ static void test_records(void **state)
                                           .velocity_gradient = draw(0, 1) < 0.5,
                                           .balsara = draw(0, 1) < 0.5,
                                           .conductivity = draw(0, 1) < 0.5 ? 0.1 : 0,
-                                          .projected = draw(0, 1) < 0.5,
-                                          .jump = draw(0, 1) < 0.5,
                                           .threads = 1};
             const bool blended = method.gradient == GRADIENT_BLENDED,
                        lagrangian = method.formulation == FORMULATION_LAGRANGIAN,
+                       projected = method.viscosity == VISCOSITY_PROJECTED,
+                       sloped = projected || method.viscosity == VISCOSITY_RECONSTRUCTED,
+                       jumps = method.viscosity == VISCOSITY_CULLEN_DEHNEN,
                        dissipates = method.viscosity != VISCOSITY_NONE || method.conductivity > 0;
             const int symmetric = dim == 2 ? 3 : 6;
             struct cells *cells = cells_create(&method, 8);
             assert_non_null(cells);
-            expect_layout(&cells->density, (int[FIELDS]){[FIELD_PLACE] = dim,
-                                                         [FIELD_WEIGHT] = 1,
-                                                         [FIELD_ENERGY] = method.energy_element});
-            expect_layout(&cells->matrix,
-                          (int[FIELDS]){[FIELD_PLACE] = dim,
-                                        [FIELD_WEIGHT] = 1,
-                                        [FIELD_VELOCITY] = method.velocity_gradient ? dim : 0,
-                                        [FIELD_H] = blended});
+            expect_layout(&cells->density,
+                          (int[RECORD_FIELDS]){[RECORD_PLACE] = dim,
+                                               [RECORD_WEIGHT] = 1,
+                                               [RECORD_ENERGY] = method.energy_element});
+            expect_layout(
+                &cells->matrix,
+                (int[RECORD_FIELDS]){[RECORD_PLACE] = dim,
+                                     [RECORD_WEIGHT] = 1,
+                                     [RECORD_VELOCITY] = method.velocity_gradient ? dim : 0,
+                                     [RECORD_H] = blended});
             expect_layout(
                 &cells->force,
-                (int[FIELDS]){[FIELD_PLACE] = dim,
-                              [FIELD_WEIGHT] = dissipates || lagrangian,
-                              [FIELD_VELOCITY] = dim,
-                              [FIELD_H_INVERSE] = 1,
-                              [FIELD_VOLUME] = 1,
-                              [FIELD_PRESSURE] = 1,
-                              [FIELD_SOUND] = 1,
-                              [FIELD_DENSITY] = dissipates,
-                              [FIELD_ALPHA] = method.viscosity == VISCOSITY_TIME_DEPENDENT,
-                              [FIELD_BALSARA] = method.balsara,
-                              [FIELD_HEAT] = method.conductivity > 0,
-                              [FIELD_LAGRANGIAN] = lagrangian ? 3 : 0,
-                              [FIELD_MATRIX] = method.gradient == GRADIENT_STANDARD ? 0 : symmetric,
-                              [FIELD_STEEP] = blended,
-                              [FIELD_SLOPE] =
-                                  method.viscosity == VISCOSITY_RECONSTRUCTED ? dim * dim : 0,
-                              [FIELD_PROJECTOR] = method.projected ? symmetric : 0});
-            expect_layout(&cells->shift, method.jump ? (int[FIELDS]){[FIELD_PLACE] = dim,
-                                                                     [FIELD_WEIGHT] = 1,
-                                                                     [FIELD_VELOCITY] = dim,
-                                                                     [FIELD_H_INVERSE] = 1,
-                                                                     [FIELD_VOLUME] = 1,
-                                                                     [FIELD_SOUND] = 1,
-                                                                     [FIELD_ACCELERATION] = dim}
-                                                     : (int[FIELDS]){0});
+                (int[RECORD_FIELDS]){
+                    [RECORD_PLACE] = dim,
+                    [RECORD_WEIGHT] = dissipates || lagrangian,
+                    [RECORD_VELOCITY] = dim,
+                    [RECORD_H_INVERSE] = 1,
+                    [RECORD_VOLUME] = 1,
+                    [RECORD_PRESSURE] = 1,
+                    [RECORD_SOUND] = 1,
+                    [RECORD_DENSITY] = dissipates,
+                    [RECORD_ALPHA] = jumps || method.viscosity == VISCOSITY_TIME_DEPENDENT,
+                    [RECORD_BALSARA] = method.balsara,
+                    [RECORD_HEAT] = method.conductivity > 0,
+                    [RECORD_LAGRANGIAN] = lagrangian ? 3 : 0,
+                    [RECORD_MATRIX] = method.gradient == GRADIENT_STANDARD ? 0 : symmetric,
+                    [RECORD_STEEP] = blended,
+                    [RECORD_SLOPE] = sloped ? dim * dim : 0,
+                    [RECORD_PROJECTOR] = projected ? symmetric : 0});
+            expect_layout(&cells->shift, jumps ? (int[RECORD_FIELDS]){[RECORD_PLACE] = dim,
+                                                                      [RECORD_WEIGHT] = 1,
+                                                                      [RECORD_VELOCITY] = dim,
+                                                                      [RECORD_H_INVERSE] = 1,
+                                                                      [RECORD_VOLUME] = 1,
+                                                                      [RECORD_SOUND] = 1,
+                                                                      [RECORD_ACCELERATION] = dim}
+                                               : (int[RECORD_FIELDS]){0});
             assert_true(method.gradient != GRADIENT_CORRECTED ||
                         cells->matrix.geometry == LANES_DIRECTION);
             cells_destroy(cells);

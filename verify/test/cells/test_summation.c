@@ -2,30 +2,18 @@
  * Widths of clouds: where the search for a root begins and how far it goes, step by step. With
  * coarse tolerances the answer depends on both, so that each is told by its last digits. What has
  * no width is refused word for word. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
+#include "test.h"
 
 #include <float.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "draw.h"
 #include "near.h"
 #include "summation.h"
 #include "width.h"
 
 enum { N = 300, BLOCK = NEIGHBOURS_BLOCK };
-
-static uint64_t state_of_draws = 1;
-
-static double draw(double low, double high)
-{
-    state_of_draws = state_of_draws * 6364136223846793005u + 1442695040888963407u;
-    return low + (high - low) * ldexp((double)((state_of_draws ^ state_of_draws >> 29) >> 11), -53);
-}
 
 static double x[3][N], m[N], h[N], rho[N];
 static struct kernel kernel;
@@ -134,9 +122,8 @@ static int check(const struct summation *sum)
 
 static const double tolerances[] = {1e-12, 0.03, 0.4};
 
-static void test_anywhere(void **state)
+TEST(test_anywhere)
 {
-    (void)state;
     int grown = 0;
     for (int dim = 1; dim <= 3; dim++)
         for (int periodic = 0; periodic < 2; periodic++)
@@ -149,9 +136,8 @@ static void test_anywhere(void **state)
 }
 
 /* Stretched along each axis in turn, so that it alone tells how far apart points are. */
-static void test_stretched(void **state)
+TEST(test_stretched)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++)
         for (int along = 0; along < dim; along++)
             for (int t = 0; t < 3; t++) {
@@ -164,9 +150,8 @@ static void test_stretched(void **state)
 
 /* Eight points and more in one place, or close together, and the others far away; all of them in
  * one place of a periodic box. */
-static void test_together(void **state)
+TEST(test_together)
 {
-    (void)state;
     int most = 0;
     for (int dim = 1; dim <= 3; dim++)
         for (int t = 0; t < 3; t++) {
@@ -195,9 +180,8 @@ static void refused(const struct summation *sum, enum status status, const char 
     assert_int_equal(summation_solve(sum, h, rho, NULL), status);
 }
 
-static void test_refused(void **state)
+TEST(test_refused)
 {
-    (void)state;
     char text[200];
     for (int dim = 1; dim <= 3; dim++) {
         const double least = kernel_least_eta(&kernel, dim);
@@ -257,9 +241,8 @@ static void test_refused(void **state)
 }
 
 /* The smallest masses that are nearly nothing in ordinary units are weighed as any others. */
-static void test_light(void **state)
+TEST(test_light)
 {
-    (void)state;
     for (int dim = 1; dim <= 3; dim++) {
         struct summation sum = cloud_of(dim, 40, false, 1.8, 1e-12);
         double all = 0, heaviest = 0;
@@ -277,9 +260,8 @@ static void test_light(void **state)
 }
 
 /* A cloud of no points is solved. */
-static void test_empty(void **state)
+TEST(test_empty)
 {
-    (void)state;
     for (int periodic = 0; periodic < 2; periodic++) {
         const struct summation sum = cloud_of(2, 0, periodic, 2, 1e-10);
         h[0] = rho[0] = 5;
@@ -290,9 +272,8 @@ static void test_empty(void **state)
 
 /* Far from ordinary sizes: the same widths and densities in other units, as long as they are
  * normal numbers. */
-static void test_units(void **state)
+TEST(test_units)
 {
-    (void)state;
     static const int lengths[] = {-600, -129, 0, 129, 600}, weights[] = {-900, 0, 900};
     static double plain_h[N], plain_rho[N], plain_x[3][N], plain_m[N];
     size_t lost = 0, kept = 0;
@@ -334,12 +315,6 @@ static void test_units(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_anywhere), cmocka_unit_test(test_stretched),
-        cmocka_unit_test(test_together), cmocka_unit_test(test_refused),
-        cmocka_unit_test(test_empty),    cmocka_unit_test(test_units),
-        cmocka_unit_test(test_light),
-    };
     if (kernel_select(&kernel, "wendland_c2", 5, NULL)) return 1;
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return test_run(NULL, NULL);
 }

@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Which numbers need other units, which units those are, and copies in them; loops of kernels by
  * the kernel they were made for. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
+
 #include <math.h>
 #include <stdlib.h>
 
@@ -13,9 +10,8 @@
 #include "shapes.h"
 #include "units.h"
 
-static void test_ordinary(void **state)
+TEST(test_ordinary)
 {
-    (void)state;
     static const struct {
         double value;
         bool ordinary;
@@ -43,9 +39,8 @@ static void test_ordinary(void **state)
     assert_true(units_ordinary(0, (double[]){0x1p200}));
 }
 
-static void test_exponents(void **state)
+TEST(test_exponents)
 {
-    (void)state;
     for (int e = -1073; e <= 1024; e++) {
         const double largest = ldexp(e < -1021 ? 0.5 : 0.7, e);
         assert_int_equal(units_exponent(3, (double[]){0, -largest, largest / 2, 1e308}), e);
@@ -59,9 +54,8 @@ static void test_exponents(void **state)
     assert_int_equal(units_exponent(1, (double[]){1}), 1);
 }
 
-static void test_copies(void **state)
+TEST(test_copies)
 {
-    (void)state;
     const double x[] = {3, -0.1, 0x1p900, 0}, y[] = {5, 7, -0x1p901, 1};
     struct points copy, points = {2, 4, {x, y}, true, {-2, 3}, {4, 5}};
     double *values = units_copy(4, x, 17);
@@ -83,9 +77,8 @@ static void test_copies(void **state)
 }
 
 /* Loops of a kernel, its own or those of any: its shape functions at every place. */
-static void test_loops(void **state)
+TEST(test_loops)
 {
-    (void)state;
     enum { COUNT = 24 };
     for (size_t k = 0; k < kernel_family.n; k++)
         for (int dim = 1; dim <= 3; dim++)
@@ -139,15 +132,4 @@ static void test_loops(void **state)
                 assert_true((shapes_of(&kernel, dim, true).w == shapes_of(&kernel, dim, false).w) ==
                             (kernel_specialisation(&kernel) < 0));
             }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_ordinary),
-        cmocka_unit_test(test_exponents),
-        cmocka_unit_test(test_copies),
-        cmocka_unit_test(test_loops),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

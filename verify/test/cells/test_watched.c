@@ -2,15 +2,13 @@
  * The searches and sums on clouds with memory that is watched: nothing is read before it was
  * written, no end overrun, all given back, and whatever call finds no memory, that is what is said.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "draw.h"
 #include "cells.h"
 #include "grid.h"
 #include "integrator.h"
@@ -21,14 +19,6 @@
 #include "watched.h"
 
 enum { POINTS_MAX = 3000 };
-
-static uint64_t state_of_draws = 1;
-
-static double draw(double low, double high)
-{
-    state_of_draws = state_of_draws * 6364136223846793005u + 1442695040888963407u;
-    return low + (high - low) * ldexp((double)((state_of_draws ^ state_of_draws >> 29) >> 11), -53);
-}
 
 static double place[3][POINTS_MAX], field[POINTS_MAX], volume[POINTS_MAX], width[POINTS_MAX],
     out[3][POINTS_MAX];
@@ -258,9 +248,8 @@ static long refused_in_turn(work *doing, int dim, size_t n)
     }
 }
 
-static void test_every_call(void **state)
+TEST(test_every_call)
 {
-    (void)state;
     static const struct {
         work *doing;
         int least_dim;
@@ -286,9 +275,8 @@ static void test_every_call(void **state)
 }
 
 /* Of every number of points, from none on: the ends of all arrays. */
-static void test_ends(void **state)
+TEST(test_ends)
 {
-    (void)state;
     static work *const all[] = {find, differentiate, differentiate_all, weigh, list, arrange};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++)
         for (int dim = all[k] == list || all[k] == arrange ? 2 : 1; dim <= 3; dim++)
@@ -344,9 +332,8 @@ static long reserve(const struct grid *grid, struct grid_reader *reader)
 
 /* What there is room for, to the last entry, takes no call; one more does, of every array that it
  * lacks, and makes room for more. */
-static void test_room_of_grids(void **state)
+TEST(test_room_of_grids)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         const struct grid_box box = open_box(dim);
         static const struct {
@@ -391,9 +378,8 @@ static long arrange_together(struct cells *cells, size_t n)
     return watched_calls - before;
 }
 
-static void test_room_of_cells(void **state)
+TEST(test_room_of_cells)
 {
-    (void)state;
     static const struct {
         size_t n;
         long calls;
@@ -426,9 +412,8 @@ struct shapes __wrap_shapes_of(const struct kernel *of, int dim, bool specialise
     return __real_shapes_of(of, dim, specialised);
 }
 
-static void test_generic(void **state)
+TEST(test_generic)
 {
-    (void)state;
     const struct cloud cloud = {points_of(2, 30, false), volume, width};
     make(30, 0.45, 1);
     for (int generic = 0; generic < 2; generic++) {
@@ -442,11 +427,6 @@ static void test_generic(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_every_call),    cmocka_unit_test(test_ends),
-        cmocka_unit_test(test_room_of_grids), cmocka_unit_test(test_room_of_cells),
-        cmocka_unit_test(test_generic),
-    };
     if (kernel_select(&kernel, "cubic_spline", 5, NULL)) return 1;
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return test_run(NULL, NULL);
 }

@@ -2,11 +2,7 @@
  * The engine slurm on a cluster that is made up (made_slurm.h): what becomes of a study for every
  * fate of its tasks, and what is submitted. */
 #define _GNU_SOURCE /* nftw */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include "made_slurm_call.h"
 
@@ -41,9 +37,8 @@ static const struct {
 enum { ROWS = sizeof rows / sizeof *rows };
 
 /* Once: share 2 meets its fate and is submitted again, and only it. */
-static void once(void **state)
+TEST(once)
 {
-    (void)state;
     for (int r = 0; r < ROWS; r++) {
         char note[200];
         again();
@@ -71,9 +66,8 @@ static void once(void **state)
 }
 
 /* Three times: it is given up, the others are not; what is missing and where to look is said. */
-static void thrice(void **state)
+TEST(thrice)
 {
-    (void)state;
     for (int r = 0; r < ROWS; r++) {
         if (!rows[r].state) continue;
         char text[400], what[200], name[64] = "";
@@ -114,9 +108,8 @@ static void thrice(void **state)
 }
 
 /* All shares at once, and each after another fate. */
-static void many(void **state)
+TEST(many)
 {
-    (void)state;
     srand(26);
     for (int draw = 0; draw < 24; draw++) {
         size_t expected[SHARES + 1] = {0}; /* submissions of each share */
@@ -145,9 +138,8 @@ static void many(void **state)
 }
 
 /* What is said of a share is of its last task. */
-static void one_after_the_other(void **state)
+TEST(one_after_the_other)
 {
-    (void)state;
     again();
     made.fates[2][0] = ENDS_BADLY, made.fates[2][1] = NEVER_SEEN, made.fates[2][2] = TIMES_OUT;
     assert_int_equal(compute_all(), STATUS_ENVIRONMENT);
@@ -162,9 +154,8 @@ static void submit_share_2(void)
 }
 
 /* A share that two tasks are at, in whichever order they are listed: one that lives counts. */
-static void two_tasks_of_a_share(void **state)
+TEST(two_tasks_of_a_share)
 {
-    (void)state;
     for (int backwards = 0; backwards < 2; backwards++)
         for (int older = 0; older < 2; older++) {
             again();
@@ -181,9 +172,8 @@ static void two_tasks_of_a_share(void **state)
 }
 
 /* What ended well is waited for 30 s: folders of other machines show things later. */
-static void what_ended_well_may_be_late(void **state)
+TEST(what_ended_well_may_be_late)
 {
-    (void)state;
     again();
     made.fates[2][0] = USELESS;
     assert_int_equal(compute_all(), STATUS_OK);
@@ -196,13 +186,12 @@ static void what_ended_well_may_be_late(void **state)
 
 /* ---- what is submitted ---- */
 
-static void only_what_is_missing(void **state)
+TEST(only_what_is_missing)
 {
     static const struct {
         int there; /* the share that is in the cache */
         const char *array;
     } there[] = {{0, "1-3 "}, {1, "2-3 "}, {2, "1,3 "}, {3, "1-2 "}};
-    (void)state;
     for (size_t i = 0; i < 4; i++) {
         again();
         if (there[i].there) store_share(there[i].there, SHARES);
@@ -217,7 +206,7 @@ static void only_what_is_missing(void **state)
 }
 
 /* Ten minutes' work each, and no more tasks than computations. */
-static void how_many_shares(void **state)
+TEST(how_many_shares)
 {
     static const struct {
         double weight; /* of each of the 8 computations */
@@ -227,7 +216,6 @@ static void how_many_shares(void **state)
                  {149, 1, 0, 1, "1 "},   {150, 2, 0, 1, "1 "},  {300, 2, 0, 2, "1-2 "},
                  {300, 1, 0, 4, "1-4 "}, {10, 1, 4, 4, "1-4 "}, {1e9, 1, 1, 1, "1 "},
                  {224, 1, 0, 2, "1-2 "}, {225, 1, 0, 3, "1-3 "}};
-    (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char of[40];
         again();
@@ -242,10 +230,9 @@ static void how_many_shares(void **state)
 }
 
 /* The share's command line is this one's, without what is the caller's; a shell reads it back. */
-static void the_line_of_a_share(void **state)
+TEST(the_line_of_a_share)
 {
     char program[1000], text[3000];
-    (void)state;
     again();
     const ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
     assert_true(length > 0);
@@ -276,11 +263,10 @@ static void the_line_of_a_share(void **state)
 }
 
 /* One that knows no --jobs is not told any. */
-static void a_command_without_jobs(void **state)
+TEST(a_command_without_jobs)
 {
     static const struct command bench = {.name = "bench", .options = list + 1};
     char text[100];
-    (void)state;
     again();
     call.options.command = &bench;
     call.options.values = call.values + 1;
@@ -293,10 +279,9 @@ static void a_command_without_jobs(void **state)
     assert_non_null(strstr(made.wrap, text));
 }
 
-static void too_many_words(void **state)
+TEST(too_many_words)
 {
     char words[400] = "";
-    (void)state;
     again();
     for (int i = 0; i < 54; i++) strcat(words, "-x ");
     set("engine-options", words);
@@ -310,10 +295,9 @@ static void too_many_words(void **state)
 }
 
 /* The same study in the same folder has the same name, another one another. */
-static void its_name(void **state)
+TEST(its_name)
 {
     char name[64];
-    (void)state;
     again();
     assert_int_equal(compute_all(), STATUS_OK);
     assert_true(begins(made.name, "sphproof-") && strlen(made.name) == 9 + 16);

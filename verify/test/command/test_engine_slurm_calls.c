@@ -2,19 +2,14 @@
  * The engine slurm on a cluster that is made up (made_slurm.h): a controller that does not answer,
  * interrupts, several calls for one study, what is left behind. */
 #define _GNU_SOURCE /* nftw */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include "made_slurm_call.h"
 
 /* ---- who does not answer ---- */
 
-static void what_sbatch_says(void **state)
+TEST(what_sbatch_says)
 {
-    (void)state;
     again();
     made.answers = ";elsewhere"; /* of several clusters */
     assert_int_equal(compute_all(), STATUS_OK);
@@ -34,7 +29,7 @@ static void what_sbatch_says(void **state)
     assert_string_equal(made.arrays, "1-3 2 2 ");
 }
 
-static void a_controller_that_is_away(void **state)
+TEST(a_controller_that_is_away)
 {
     static const struct {
         double from, to;
@@ -44,7 +39,6 @@ static void a_controller_that_is_away(void **state)
         {101, 102, STATUS_OK},          {101, 200, STATUS_OK},
         {102, 219, STATUS_OK},          {102, 250, STATUS_ENVIRONMENT},
     };
-    (void)state;
     for (size_t i = 0; i < sizeof times / sizeof *times; i++)
         for (int quiet = 0; quiet < 2; quiet++) {
             again();
@@ -75,9 +69,8 @@ static void go_away_again(void)
     if (made.now > 300 && made.now < 310) made.away_from = 320, made.away_to = 430;
 }
 
-static void away_twice(void **state)
+TEST(away_twice)
 {
-    (void)state;
     again();
     made.fates[2][0] = STAYS;
     made.away_from = 101, made.away_to = 211;
@@ -99,9 +92,8 @@ static void results_appear(void)
 }
 
 /* What a task that goes on was for is there already: it is cancelled, if Slurm lets us. */
-static void nothing_is_left_to_do(void **state)
+TEST(nothing_is_left_to_do)
 {
-    (void)state;
     for (int refused = 0; refused < 2; refused++) {
         char text[100];
         again();
@@ -116,9 +108,8 @@ static void nothing_is_left_to_do(void **state)
 }
 
 /* A task that Slurm holds, and does not let us cancel, is waited for. */
-static void held_for_ever(void **state)
+TEST(held_for_ever)
 {
-    (void)state;
     again();
     made.fates[2][0] = HELD;
     made.refuses_cancel = true;
@@ -129,14 +120,13 @@ static void held_for_ever(void **state)
 }
 
 /* Ctrl-C: without a terminal, or without a yes, the tasks go on, and who calls again attaches. */
-static void interrupted(void **state)
+TEST(interrupted)
 {
     static const struct {
         const char *answer; /* NULL: no terminal */
         bool cancelled;
     } answers[] = {{NULL, false},   {"n\n", false}, {"\n", false},     {"", false},
                    {"yes\n", true}, {"Y\n", true},  {"no, y\n", false}};
-    (void)state;
     for (size_t i = 0; i < sizeof answers / sizeof *answers; i++)
         for (int refused = 0; refused < 2; refused++) {
             char text[200], path[200];
@@ -180,10 +170,9 @@ static void interrupted(void **state)
 }
 
 /* The signal's usual meaning is there again afterwards. */
-static void the_signal_is_given_back(void **state)
+TEST(the_signal_is_given_back)
 {
     struct sigaction before, now; /* a background job of a shell ignores it */
-    (void)state;
     again();
     assert_int_equal(sigaction(SIGINT, NULL, &before), 0);
     assert_int_equal(compute_all(), STATUS_OK);
@@ -192,9 +181,8 @@ static void the_signal_is_given_back(void **state)
 }
 
 /* Tasks that were submitted before, by somebody who has died since: their tries count. */
-static void attached(void **state)
+TEST(attached)
 {
-    (void)state;
     for (int fate = 0; fate < 2; fate++) {
         again();
         made.fates[2][0] = STAYS;
@@ -224,7 +212,7 @@ static void write_state(void)
 }
 
 /* What is remembered between calls, as another one may have left it. */
-static void the_state(void **state)
+TEST(the_state)
 {
     static const struct {
         const char *text;
@@ -238,7 +226,6 @@ static void the_state(void **state)
         {"{\"tasks\": 4, \"tries\": [1, 1, 1, 1], \"jobs\": [7, 7, 7, 7]}", STATUS_ENVIRONMENT,
          "1-3 "},
     };
-    (void)state;
     for (size_t i = 0; i < sizeof states / sizeof *states; i++) {
         again();
         made.fates[2][0] = STAYS;
@@ -284,9 +271,8 @@ static void the_state(void **state)
 }
 
 /* How many shares there are is remembered, whatever the next call asks for. */
-static void shares_stay(void **state)
+TEST(shares_stay)
 {
-    (void)state;
     again();
     made.fates[2][0] = STAYS;
     made.interrupt = 120;
@@ -300,7 +286,7 @@ static void shares_stay(void **state)
 }
 
 /* Of a share that is given up the last line of its log that says something; the log stays. */
-static void the_last_line(void **state)
+TEST(the_last_line)
 {
     static const struct {
         const char *text, *line;
@@ -309,7 +295,6 @@ static void the_last_line(void **state)
                 {"", "(empty)\n"},
                 {"one", "one\n"},
                 {"a\x1b[31mb\n", "a"}};
-    (void)state;
     for (size_t i = 0; i < sizeof logs / sizeof *logs; i++) {
         char path[400], text[200];
         again();
@@ -332,9 +317,8 @@ static void the_last_line(void **state)
 }
 
 /* Logs of what is done are not kept. */
-static void logs_go(void **state)
+TEST(logs_go)
 {
-    (void)state;
     again();
     made.fates[2][0] = STAYS;
     made.interrupt = 120;
@@ -352,9 +336,8 @@ static void logs_go(void **state)
 }
 
 /* Looks become rarer, from half a second to a quarter of a minute. */
-static void how_often_it_looks(void **state)
+TEST(how_often_it_looks)
 {
-    (void)state;
     again();
     made.fates[2][0] = STAYS;
     made.interrupt = 1100;

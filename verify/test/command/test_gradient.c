@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * sphproof gradient on files: results against brute force, the judgement of given gradients, and
  * every way in which a file or an option can be wrong. Argument: a folder to write to. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
+#include "test.h"
+
 #include <jansson.h>
 #include <math.h>
 #include <stdio.h>
@@ -69,9 +67,8 @@ static void write_cloud(struct clouds_cloud *cloud, const struct operator_form *
     fclose(stream);
 }
 
-static void test_judgement(void **state)
+TEST(test_judgement)
 {
-    (void)state;
     for (size_t o = 0; o < operator_family.n; o++) {
         const struct clouds_settings how = {CLOUDS_JITTERED, DIM, SIDE, 0.35, 3.3, 7};
         const struct operator_form *form = (const struct operator_form *)operator_family.members[o];
@@ -107,9 +104,8 @@ static void test_judgement(void **state)
 }
 
 /* No gradient is null, an infinite condition number is "inf", and both leave exit status 0. */
-static void test_flagged(void **state)
+TEST(test_flagged)
 {
-    (void)state;
     static const char text[] = "x,y,volume,f\n0,0,1,3\n0.5,0.5,1,2\n1,1,1,1\n9,9,1,0\n";
     json_t *document;
     write_text(text, sizeof text - 1);
@@ -135,9 +131,8 @@ static void test_flagged(void **state)
     json_decref(document);
 }
 
-static void test_bad_files(void **state)
+TEST(test_bad_files)
 {
-    (void)state;
     static const struct {
         const char *text, *place; /* what the message must contain */
     } bad[] = {
@@ -190,9 +185,8 @@ static void test_bad_files(void **state)
     csv_free(&csv);
 }
 
-static void test_bad_options(void **state)
+TEST(test_bad_options)
 {
-    (void)state;
     static const char text[] = "x,volume,f,g\n0,1,3,1\n1,1,2,1\n";
     static const char *const bad[] = {
         "--operator iaa --kernel cubic_spline --dim 1 --eta 2",
@@ -227,12 +221,6 @@ static void test_bad_options(void **state)
 
 int main(int argc, char **argv)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_judgement),
-        cmocka_unit_test(test_flagged),
-        cmocka_unit_test(test_bad_files),
-        cmocka_unit_test(test_bad_options),
-    };
     if (argc > 1 && chdir(argv[1])) return EXIT_FAILURE;
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return test_run(NULL, NULL);
 }

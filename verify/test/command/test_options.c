@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Options that several commands share: every kernel by its name, and what is none. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "test.h"
+
 #include <string.h>
-#include <cmocka.h>
 
 #include "command.h"
 #include "kernel.h"
@@ -14,9 +11,8 @@ static const struct command_option list[] = {
     {"eta", "ETA", ""}, {"kernel", "NAME", ""}, {NULL, NULL, NULL}};
 static const struct command command = {.name = "judge", .synopsis = "FILE", .options = list};
 
-static void values_by_name(void **state)
+TEST(values_by_name)
 {
-    (void)state;
     const struct command bare = {.name = "list"};
     const char *values[] = {"2.385", "sinc"}, *none[] = {NULL, NULL};
     const struct options given = {.command = &command, .values = values},
@@ -30,9 +26,8 @@ static void values_by_name(void **state)
     assert_null(options_value(&without, "kernel"));
 }
 
-static void kernels_by_name(void **state)
+TEST(kernels_by_name)
 {
-    (void)state;
     const char *values[] = {"2.385", NULL};
     const struct options options = {.command = &command, .values = values};
     struct error error = {0};
@@ -51,11 +46,4 @@ static void kernels_by_name(void **state)
         assert_int_equal(options_kernel(&options, &index, &error), STATUS_BAD_INPUT);
         assert_non_null(strstr(error.message, wrong[k]));
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(values_by_name),
-                                       cmocka_unit_test(kernels_by_name)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,14 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * sphproof riemann as other programs see it: JSON, samples, exit status. Argument: the program. */
+#include "test.h"
+
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/wait.h>
-#include <cmocka.h>
 #include <jansson.h>
 
 #include "near.h"
@@ -50,9 +47,8 @@ static double number(const json_t *object, const char *key)
     return json_real_value(value);
 }
 
-static void test_sod(void **state)
+TEST(test_sod)
 {
-    (void)state;
     json_t *document = solve("1 0 1 0.125 0 0.1 --sample -0.25:0.75:5 --time 0.2 --x0 0.25");
     assert_string_equal(json_string_value(json_object_get(document, "schema")), "sphproof/1");
     assert_string_equal(json_string_value(json_object_get(document, "command")), "riemann");
@@ -79,9 +75,8 @@ static void test_sod(void **state)
     json_decref(document);
 }
 
-static void test_fan_off_origin(void **state)
+TEST(test_fan_off_origin)
 {
-    (void)state;
     /* inside the fan v = 2/(gamma+1) (c_L + (x - x0)/t) */
     json_t *document = solve("1 0 1 0.125 0 0.1 --sample 0.1:0.1:1 --time 0.2 --x0 0.25");
     const json_t *sample = json_array_get(json_object_get(document, "samples"), 0);
@@ -92,9 +87,8 @@ static void test_fan_off_origin(void **state)
     json_decref(document);
 }
 
-static void test_vacuum(void **state)
+TEST(test_vacuum)
 {
-    (void)state;
     json_t *document = solve("1 -5 0.4 1 5 0.4 --sample -1:1:3 --time 1");
     const json_t *speeds = json_object_get(document, "speeds");
     assert_true(number(document, "p_star") == 0 && number(document, "rho_star_left") == 0);
@@ -116,9 +110,8 @@ static void test_vacuum(void **state)
     json_decref(document);
 }
 
-static void test_start_and_gamma(void **state)
+TEST(test_start_and_gamma)
 {
-    (void)state;
     json_t *document =
         solve("1 -2 3 4 5 -0 --gamma=1.6666666666666667 --sample -1:1:2 --time 0 --x0 0");
     const json_t *samples = json_object_get(document, "samples");
@@ -128,9 +121,8 @@ static void test_start_and_gamma(void **state)
     json_decref(document);
 }
 
-static void test_table(void **state)
+TEST(test_table)
 {
-    (void)state;
     char output[4096];
     assert_int_equal(run("1 0 1 0.125 0 0.1", "", output, sizeof output), 0);
     assert_non_null(strstr(output, "left star         0.42631942818"));
@@ -139,9 +131,8 @@ static void test_table(void **state)
     assert_string_equal(output, "");
 }
 
-static void test_bad_input(void **state)
+TEST(test_bad_input)
 {
-    (void)state;
     static const struct {
         const char *arguments, *word;
     } cases[] = {
@@ -187,10 +178,5 @@ int main(int argc, char **argv)
 {
     if (argc < 2) return 1;
     program = argv[1];
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_sod),    cmocka_unit_test(test_fan_off_origin),
-        cmocka_unit_test(test_vacuum), cmocka_unit_test(test_start_and_gamma),
-        cmocka_unit_test(test_table),  cmocka_unit_test(test_bad_input),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return test_run(NULL, NULL);
 }

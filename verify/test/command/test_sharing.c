@@ -2,11 +2,7 @@
  * Shares: what comes of one for every outcome of its computations, in whatever order shares are
  * computed and joined; what is missing is computed by the last, plain call; every wrong option. */
 #define _GNU_SOURCE /* nftw */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include <fcntl.h>
 
@@ -142,9 +138,8 @@ static const struct {
 enum { OUTCOMES = sizeof outcomes / sizeof *outcomes };
 
 /* A share that has one computation of each outcome; the other shares do not notice. */
-static void a_share_ends_as_its_computations(void **state)
+TEST(a_share_ends_as_its_computations)
 {
-    (void)state;
     for (int k = 0; k < OUTCOMES; k++)
         for (int i = k % 2; i < N; i += 3) {
             char shard[16], text[100];
@@ -180,11 +175,10 @@ static void a_share_ends_as_its_computations(void **state)
 }
 
 /* The plain call that follows has every outcome as one machine alone has it. */
-static void joined_in_every_order(void **state)
+TEST(joined_in_every_order)
 {
     static const int orders[][SHARES] = {{1, 2, 3}, {1, 3, 2}, {2, 1, 3}, {2, 3, 1}, {3, 1, 2},
                                          {3, 2, 1}, {2, 2, 1}, {1, 0, 0}, {0, 0, 3}, {0, 0, 0}};
-    (void)state;
     for (size_t o = 0; o < sizeof orders / sizeof *orders; o++) {
         size_t there = 0;
         end(NULL), begin(NULL);
@@ -219,10 +213,9 @@ static void joined_in_every_order(void **state)
 }
 
 /* Damaged entries and a cache that cannot keep: said, and an error for a share. */
-static void what_is_remarkable(void **state)
+TEST(what_is_remarkable)
 {
     char path[CACHE_PATH_MAX];
-    (void)state;
     assert_int_equal(run_share("1/1"), STATUS_OK);
     pool_free(&call.pool);
     cache_path(&call.place.cache, "task 1", path);
@@ -258,9 +251,8 @@ static void what_is_remarkable(void **state)
 }
 
 /* What --speak is off for is not said. */
-static void a_share_may_be_silent(void **state)
+TEST(a_share_may_be_silent)
 {
-    (void)state;
     call.options.speak = 0;
     assert_int_equal(run_share("2/3"), STATUS_OK);
     assert_string_equal(call.said, "");
@@ -268,11 +260,10 @@ static void a_share_may_be_silent(void **state)
 }
 
 /* --list: what there is, in whose share, and whether it is kept. */
-static void listing(void **state)
+TEST(listing)
 {
     static const char *const shards[] = {NULL, "1/3", "2/3", "3/3"};
     int shares[N], said[2], usual[2];
-    (void)state;
     fill_planned();
     assert_int_equal(pool_divide(&call.pool, SHARES, shares, &call.error), STATUS_OK);
     pool_free(&call.pool);
@@ -305,7 +296,7 @@ static void listing(void **state)
 
 /* ---- options ---- */
 
-static void wrong_options(void **state)
+TEST(wrong_options)
 {
     static const struct {
         const char *names[3], *values[3];
@@ -375,7 +366,6 @@ static void wrong_options(void **state)
         {{"only-build", "cache"}, {"0123", "c"}, false, ", not 0123: another program, C library"},
         {{"only-build"}, {"0123"}, false, NULL},
     };
-    (void)state;
     for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
         struct sharing sharing;
         end(NULL), begin(NULL);
@@ -398,10 +388,9 @@ static void wrong_options(void **state)
 }
 
 /* What right options come to. */
-static void right_options(void **state)
+TEST(right_options)
 {
     struct sharing sharing;
-    (void)state;
     assert_int_equal(sharing_take(&sharing, &call.options, 5, NULL, false, &call.error), STATUS_OK);
     assert_int_equal(sharing.pool.jobs, 5);
     assert_true(!sharing.list && !sharing.pool.cache && !sharing.pool.share.of && !sharing.tasks);

@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Slurm's answers and how they are read: recorded from Slurm 22.05 (two nodes on one host), and
  * answers that are none. Scripts in a folder of their own stand for its commands. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -87,7 +83,7 @@ static void queue_is(const char *output, const struct expected *tasks, size_t n)
 }
 
 /* Each with what squeue said of a task after what became of it. */
-static void recorded_answers(void **state)
+TEST(recorded_answers)
 {
     static const struct {
         const char *line;
@@ -127,7 +123,6 @@ static void recorded_answers(void **state)
     };
     struct expected all[sizeof rows / sizeof *rows];
     char text[4000] = "";
-    (void)state;
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         queue_is(rows[i].line, &rows[i].task, 1);
         strcat(text, rows[i].line);
@@ -138,21 +133,19 @@ static void recorded_answers(void **state)
 }
 
 /* Lines that are none are left out, the others are read; the last one may have no end. */
-static void odd_answers(void **state)
+TEST(odd_answers)
 {
     const struct expected two[] = {{1, 1, true, "RUNNING", "None"}, {1, 2, true, "RUNNING", "x y"}};
-    (void)state;
     queue_is("1 1 RUNNING None\n\nsqueue: hello\n1 2\n1 2 RUNNING x y\n", two, 2);
     queue_is("\n\n", NULL, 0);
     queue_is("x 1 RUNNING None\n", NULL, 0);
 }
 
-static void no_queue(void **state)
+TEST(no_queue)
 {
     struct slurm_task *found;
     struct error error;
     size_t count = 7;
-    (void)state;
     command_says("squeue", "", "slurm_load_jobs error: Unable to contact slurm controller", 1);
     assert_int_equal(slurm_queue("name", &found, &count, &error), STATUS_ENVIRONMENT);
     assert_string_equal(error.message,
@@ -173,7 +166,7 @@ static void no_queue(void **state)
 
 /* ---- submitting and cancelling ---- */
 
-static void submissions(void **state)
+TEST(submissions)
 {
     static const struct {
         const char *output, *complaint;
@@ -194,7 +187,6 @@ static void submissions(void **state)
          "sbatch failed (exit status 255): sbatch: unrecognized option '--nonsense'"},
     };
     const char *const words[] = {"sbatch", "--parsable", "--array=1-3", "a b", NULL};
-    (void)state;
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         struct error error = {0};
         long job = -1;
@@ -211,11 +203,10 @@ static void submissions(void **state)
     }
 }
 
-static void cancelling(void **state)
+TEST(cancelling)
 {
     const struct slurm_task task = {.job = 12, .index = 3};
     struct error error = {0};
-    (void)state;
     command_says("scancel", "", "", 0);
     assert_int_equal(slurm_cancel("name", &error), STATUS_OK);
     assert_string_equal(told("scancel"), "[--name=name]");
@@ -231,10 +222,5 @@ static void cancelling(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(recorded_answers), cmocka_unit_test(odd_answers),
-        cmocka_unit_test(no_queue),         cmocka_unit_test(submissions),
-        cmocka_unit_test(cancelling),
-    };
-    return cmocka_run_group_tests(tests, take_path, give_path_back);
+    return test_run(take_path, give_path_back);
 }

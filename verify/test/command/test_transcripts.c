@@ -8,11 +8,7 @@
  * FILE. "$ show FILE" prints a file; of rows of numbers their sums. There is a gnuplot that keeps
  * its script as drawn.gp. With SPHPROOF_KEEP=FOLDER the transcripts are written there as they
  * should be, and NAME.whole with the outputs whole, to be compared with those of another build. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include <ctype.h>
 #include <errno.h>

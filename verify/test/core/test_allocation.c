@@ -2,11 +2,7 @@
  * No memory is asked for or given back while a simulation steps. The linker's --wrap brings every
  * such call of the project, and every simulation_run, here first: calls inside of it are counted.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include <stdatomic.h>
 #include <stdlib.h>
@@ -95,18 +91,16 @@ static bool waste(void *context, double time, uint64_t steps)
     return true;
 }
 
-static void test_counts(void **state)
+TEST(test_counts)
 {
-    (void)state;
     if (calls_in("sod", "n=200", 1, waste) < 2) {
         print_message("this linker does not wrap: allocations cannot be counted here\n");
         skip();
     }
 }
 
-static void test_no_calls(void **state)
+TEST(test_no_calls)
 {
-    (void)state;
     static const char *const schemes[] = {
         "",
         "skip=none lattice=clustered jitter=0.3",
@@ -131,18 +125,16 @@ static void test_no_calls(void **state)
 }
 
 /* Widths of half the box, whose neighbours are images of images: room is made now and then. */
-static void test_room_is_made_rarely(void **state)
+TEST(test_room_is_made_rarely)
 {
-    (void)state;
     const int found = calls_in("two_rarefactions", "n=100 kernel=cubic_spline eta=40", 1, NULL);
     assert_in_range(found, 0, 8);
 }
 
 /* In 2D and 3D lists of neighbours are as long as they come to be: there is room for half as many
  * again as at the start. */
-static void test_clouds(void **state)
+TEST(test_clouds)
 {
-    (void)state;
     static const char *const flows[][2] = {
         {"gresho", "n=16^2 t_end=0.1"},
         {"gresho", "n=16^2 t_end=0.05 viscosity=cullen_dehnen h_method=newton"},
@@ -157,16 +149,4 @@ static void test_clouds(void **state)
             if (found > (threads == 1 ? 0 : 12))
                 fail_msg("%s %s, %d threads: %d calls", flows[k][0], flows[k][1], threads, found);
         }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-
-        cmocka_unit_test(test_counts),
-        cmocka_unit_test(test_no_calls),
-        cmocka_unit_test(test_clouds),
-        cmocka_unit_test(test_room_is_made_rarely),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What a run says that it has done, on lattices whose neighbours can be counted on paper. */
+#include "test.h"
+
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-#include <cmocka.h>
 
 #include "settings.h"
 #include "simulation.h"
@@ -58,9 +55,8 @@ static uint64_t neighbours(int dim)
 
 /* Each pair once an evaluation, whatever the number of threads; where all sleep, none but those of
  * the start. */
-static void pairs_and_updates(void **state)
+TEST(pairs_and_updates)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++)
         for (int threads = 1; threads <= 2; threads++)
             for (int sleep = 0; sleep < 2; sleep++) {
@@ -80,10 +76,4 @@ static void pairs_and_updates(void **state)
                 assert_int_equal(end.pair_interactions, pairs * (sleep ? 1 : 1 + end.steps));
                 simulation_destroy(simulation);
             }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(pairs_and_updates)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

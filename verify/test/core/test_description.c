@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What is said of matrices: the sums over particles, of matrices that are those of the state; in
  * words and in a document, where there are some and where none. */
+#include "test.h"
+
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
 
 #include "description_output.h"
 #include "solver.h"
@@ -31,9 +28,8 @@ static const struct sums known = {.describe = describe, .matrix = make};
 
 /* Of matrices that are used: their largest values and means, which some have no angle of; the rest
  * is counted. */
-static void sums_over_particles(void **state)
+TEST(sums_over_particles)
 {
-    (void)state;
     static const struct description mixed[] = {{5, 3, 20},
                                                {5, DESCRIPTION_CONDITION, (double)NAN},
                                                {5, 1000.0001, (double)NAN},
@@ -63,9 +59,8 @@ static void sums_over_particles(void **state)
 }
 
 /* Made anew where a step has ended with another evaluation than one of rates, and at no cost. */
-static void matrices_of_the_state(void **state)
+TEST(matrices_of_the_state)
 {
-    (void)state;
     static const struct description one[] = {{5, 3, 20}, {5, -1, 0}};
     described = one;
     for (uint64_t steps = 0; steps < 2; steps++)
@@ -81,7 +76,7 @@ static void matrices_of_the_state(void **state)
         }
 }
 
-static void words_and_documents(void **state)
+TEST(words_and_documents)
 {
     static const struct {
         struct description_sums sums;
@@ -104,7 +99,6 @@ static void words_and_documents(void **state)
          "{\"condition\": {\"max\": null, \"mean\": null}, \"angle\": {\"max\": null, \"mean\": "
          "null}, \"fallen_back\": 9}"},
     };
-    (void)state;
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         char text[DESCRIPTION_TEXT] = "before";
         json_t *json = description_json(&rows[k].sums), *want = json_loads(rows[k].json, 0, NULL);
@@ -114,14 +108,4 @@ static void words_and_documents(void **state)
         json_decref(json);
         json_decref(want);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sums_over_particles),
-        cmocka_unit_test(matrices_of_the_state),
-        cmocka_unit_test(words_and_documents),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,27 +2,17 @@
  * An evaluation with sums that do nothing but say what they were asked for: what is called, in
  * which order, with what; gravity, the limit of the time step, and who is named where something is
  * not sound. */
+#include "test.h"
+
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
-#include <cmocka.h>
 
+#include "draw.h"
 #include "near.h"
 #include "solver.h"
 
 enum { N = 9 };
-
-static uint64_t drawn = 1;
-
-static double draw(double low, double high)
-{
-    drawn = drawn * 6364136223846793005u + 1442695040888963407u;
-    return low + (high - low) * ldexp((double)((drawn ^ drawn >> 29) >> 11), -53);
-}
 
 /* A letter for each call; what widths were asked for; where it fails; what forces find. */
 static struct {
@@ -116,9 +106,8 @@ static void begin(struct simulation *s, int dim, bool total)
     }
 }
 
-static void primitives_of_a_state(void **state)
+TEST(primitives_of_a_state)
 {
-    (void)state;
     for (int dim = 1; dim <= 3; dim++)
         for (int total = 0; total < 2; total++)
             for (int rates = 0; rates < 2; rates++) {
@@ -147,9 +136,8 @@ static void primitives_of_a_state(void **state)
 }
 
 /* The first one without internal energy is named, and nothing is computed of it. */
-static void without_energy(void **state)
+TEST(without_energy)
 {
-    (void)state;
     static const double left[] = {0, -3.25, (double)NAN};
     for (int first = 0; first < N; first += 4)
         for (int k = 0; k < 3; k++)
@@ -172,9 +160,8 @@ static void without_energy(void **state)
 }
 
 /* Matrices before the forces, the switch after them; nothing after what fails. */
-static void what_is_called(void **state)
+TEST(what_is_called)
 {
-    (void)state;
     for (int way = 0; way < 8; way++)
         for (const char *fails = "_awf"; *fails; fails++) {
             struct simulation s;
@@ -196,9 +183,8 @@ static void what_is_called(void **state)
 
 /* Widths are predicted over half of the step before and half of this one; by Newton where there is
  * no step yet, and then the change of 1/h is none. */
-static void widths_are_predicted(void **state)
+TEST(widths_are_predicted)
 {
-    (void)state;
     static const struct {
         double before, dt, ratio;
     } rows[] = {{0, 0, 0}, {0, 0.5, 0}, {0.5, 0.5, 1}, {0.5, 0.25, 0.75}, {0.25, 1, 2.5}};
@@ -222,9 +208,8 @@ static void widths_are_predicted(void **state)
 }
 
 /* Force m g, and its work where the total energy is integrated. */
-static void gas_falls(void **state)
+TEST(gas_falls)
 {
-    (void)state;
     for (int dim = 1; dim <= 3; dim++)
         for (int total = 0; total < 2; total++)
             for (int gravity = 0; gravity < 2; gravity++) {
@@ -249,9 +234,8 @@ static void gas_falls(void **state)
 }
 
 /* Who is held has the density that it began with, and no rates; where all went well so far. */
-static void some_are_held(void **state)
+TEST(some_are_held)
 {
-    (void)state;
     for (const char *fails = "_wf"; *fails; fails++) {
         struct simulation s;
         struct error error;
@@ -273,9 +257,8 @@ static void some_are_held(void **state)
 }
 
 /* cfl over the largest signal speed / h, of those who sleep, too. */
-static void time_is_limited(void **state)
+TEST(time_is_limited)
 {
-    (void)state;
     for (int dim = 1; dim <= 3; dim++)
         for (int asleep = 0; asleep < 2; asleep++) {
             struct simulation s;
@@ -297,18 +280,4 @@ static void time_is_limited(void **state)
             for (int k = 0; k < dim; k++) assert_true(a->v[k][N] == 77);
             particles_destroy(&s.particles);
         }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(primitives_of_a_state),
-        cmocka_unit_test(without_energy),
-        cmocka_unit_test(what_is_called),
-        cmocka_unit_test(widths_are_predicted),
-        cmocka_unit_test(gas_falls),
-        cmocka_unit_test(time_is_limited),
-        cmocka_unit_test(some_are_held),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,13 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Layers of particles that are kept, in a simulation that nobody steps and whose particles are in
  * another order than the setup's. */
+#include "test.h"
+
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "fixed.h"
 #include "near.h"
@@ -56,9 +53,8 @@ static double depth_of(int i)
     return fmin(2. * i / N, 2 - 2. * i / N) / 0.25;
 }
 
-static void nothing_where_no_end_is_fixed(void **state)
+TEST(nothing_where_no_end_is_fixed)
 {
-    (void)state;
     static const enum boundary others[] = {BOUNDARY_PERIODIC, BOUNDARY_OPEN, BOUNDARY_REFLECTING};
     for (int k = 0; k < 3; k++) {
         struct simulation s;
@@ -77,9 +73,8 @@ static void nothing_where_no_end_is_fixed(void **state)
 }
 
 /* Of every dimension, element and energy, with the fixed ends of each direction alone. */
-static void layers_are_kept(void **state)
+TEST(layers_are_kept)
 {
-    (void)state;
     int outermost = 0, inner = 0, moving = 0;
     for (int dim = 1; dim <= 3; dim++)
         for (int fixed = 0; fixed < dim; fixed++)
@@ -140,11 +135,10 @@ static void layers_are_kept(void **state)
 
 /* Where half of the energy has come or gone a run has broken down, but not beside layers that are
  * kept, which give it and take it. */
-static void energy_of_layers(void **state)
+TEST(energy_of_layers)
 {
     enum { SIDE = 32, ALL = SIDE * SIDE };
     static double x[2][ALL], v[2][ALL], m[ALL], u[ALL], rho[ALL];
-    (void)state;
     for (int i = 0; i < ALL; i++) {
         x[0][i] = (i % SIDE + 0.5) / SIDE, x[1][i] = ((double)(i / SIDE) + 0.5) / SIDE;
         v[0][i] = 0.1, v[1][i] = 0, m[i] = 1. / ALL, u[i] = 1, rho[i] = 1;
@@ -178,14 +172,4 @@ static void energy_of_layers(void **state)
                          fixed ? STATUS_OK : STATUS_BROKE_DOWN);
         simulation_destroy(simulation);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(nothing_where_no_end_is_fixed),
-        cmocka_unit_test(layers_are_kept),
-        cmocka_unit_test(energy_of_layers),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,29 +2,19 @@
  * One step of each integrator, with rates that are another set of numbers at each evaluation: the
  * states at which it evaluates and the one it ends with, against its scheme in extended precision;
  * and what an integrator that has predicted the next step does when there is none. */
+#include "test.h"
+
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 
+#include "draw.h"
 #include "near.h"
 #include "solver.h"
 
 typedef long double real;
 
 enum { N = 64 * WORTH_A_THREAD + 5, STAGES = 4 };
-
-static uint64_t drawn = 1;
-
-static double draw(double low, double high)
-{
-    drawn = drawn * 6364136223846793005u + 1442695040888963407u;
-    return low + (high - low) * ldexp((double)((drawn ^ drawn >> 29) >> 11), -53);
-}
 
 /* x and p of each direction, e and alpha. */
 struct point {
@@ -195,9 +185,8 @@ static void primitives(const struct point *at, int evaluation, ptrdiff_t i, int 
     near_below(fabs((double)(seen_U[evaluation][i] - U)), 4e-14);
 }
 
-static void one_step(void **state)
+TEST(one_step)
 {
-    (void)state;
     static const char *const names[] = {
         "symplectic_euler", "leapfrog", "modified_leapfrog", "rk2", "vl2", "rk3"};
     assert_int_equal(integrator_family.n, sizeof names / sizeof *names + 1);
@@ -234,9 +223,8 @@ static void one_step(void **state)
 }
 
 /* Whichever evaluation fails, the step says so and goes no further. */
-static void evaluations_that_fail(void **state)
+TEST(evaluations_that_fail)
 {
-    (void)state;
     for (size_t k = 0; k < integrator_family.n; k++) {
         const struct integrator *integrator =
             (const struct integrator *)integrator_family.members[k];
@@ -290,9 +278,8 @@ static struct point after(ptrdiff_t i, const struct point *from, const struct sl
 
 /* One step that is the last, then one whose successor is predicted with it, then the last again; or
  * one that turns out to be shorter than was predicted. Also where others share the work. */
-static void from_middle_to_middle(void **state)
+TEST(from_middle_to_middle)
 {
-    (void)state;
     for (int dim = 1; dim <= 3; dim++)
         for (int way = 0; way < 16; way++) {
             const bool total = way & 1, evolves = way & 2, shorter = way & 4, many = way & 8;
@@ -327,9 +314,8 @@ static void from_middle_to_middle(void **state)
 }
 
 /* Synchronised, a state that was ahead is at the present time. */
-static void back_from_the_middle(void **state)
+TEST(back_from_the_middle)
 {
-    (void)state;
     for (int evolves = 0; evolves < 2; evolves++) {
         struct simulation s;
         struct error error;
@@ -351,9 +337,8 @@ static void back_from_the_middle(void **state)
 }
 
 /* Where others sleep at rest, only who is awake moves; sleepers in moving gas drift. */
-static void sleepers_stay(void **state)
+TEST(sleepers_stay)
 {
-    (void)state;
     for (int way = 0; way < 3; way++) {
         struct span spans[] = {{2, 3}, {7, 2}};
         struct simulation s;
@@ -370,16 +355,4 @@ static void sleepers_stay(void **state)
         }
         end(&s);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_step),
-        cmocka_unit_test(evaluations_that_fail),
-        cmocka_unit_test(from_middle_to_middle),
-        cmocka_unit_test(back_from_the_middle),
-        cmocka_unit_test(sleepers_stay),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,14 +2,10 @@
  * What integrators say of themselves: those that keep the start of a step, and no others, write to
  * the arrays that an estimate of memory counts for them, as every scheme does to its own; none
  * writes beyond the particles; what they leave without internal energy is named. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "test.h"
+
 #include <stdio.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "hydro_setup.h"
 #include "memory.h"
@@ -23,9 +19,8 @@ static bool is_used(const double *array, ptrdiff_t n)
     return false;
 }
 
-static void test_start_of_a_step(void **state)
+TEST(test_start_of_a_step)
 {
-    (void)state;
     size_t keep = 0;
     for (size_t k = 0; k < integrator_family.n; k++) {
         static struct hydro_state start;
@@ -117,9 +112,8 @@ static struct setup setup_of(size_t integrator, int dim, const char *viscosity, 
 }
 
 /* In a plane there are no images: what stands behind the last particle is nobody's. */
-static void test_nothing_beyond(void **state)
+TEST(test_nothing_beyond)
 {
-    (void)state;
     static const char *const viscosities[] = {"time_dependent", "cullen_dehnen"};
     for (size_t k = 0; k < integrator_family.n; k++)
         for (int v = 0; v < 2; v++) {
@@ -139,9 +133,8 @@ static void test_nothing_beyond(void **state)
 }
 
 /* A particle that loses its last energy in a step is named with what is left of it. */
-static void test_without_energy(void **state)
+TEST(test_without_energy)
 {
-    (void)state;
     static const char *const energies[] = {"internal", "total"};
     for (int total = 0; total < 2; total++)
         for (int dim = 1; dim <= 2; dim++) {
@@ -166,9 +159,8 @@ static void test_without_energy(void **state)
 }
 
 /* The estimate counts the arrays that are written to, the snapshot's and three more; no others. */
-static void test_arrays_that_are_counted(void **state)
+TEST(test_arrays_that_are_counted)
 {
-    (void)state;
     static char *const schemes[][3] = {
         {"viscosity=constant", "gradient=standard", "formulation=vanilla_ice"},
         {"viscosity=time_dependent", "gradient=standard", "formulation=vanilla_ice"},
@@ -205,15 +197,4 @@ static void test_arrays_that_are_counted(void **state)
                              (memory_bytes(&setup) - room) / (8 * N), used);
                 simulation_destroy(simulation);
             }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_start_of_a_step),
-        cmocka_unit_test(test_nothing_beyond),
-        cmocka_unit_test(test_without_energy),
-        cmocka_unit_test(test_arrays_that_are_counted),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,11 +2,7 @@
  * The kernels against data/kernels.csv (W, dW/dq, dW/dh at h = 1, 20 digits, computed with exact
  * rational arithmetic from the definitions, independently of this code), scaled to several h; and
  * kernel_select; what descriptors say, against the shapes. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include <float.h>
 #include <math.h>
@@ -72,9 +68,8 @@ static void compare(const struct kernel *kernel, const struct line *line, double
     }
 }
 
-static void test_table(void **state)
+TEST(test_table)
 {
-    (void)state;
     FILE *file = fopen(table_path, "r");
     assert_non_null(file);
     char header[128];
@@ -95,9 +90,8 @@ static void test_table(void **state)
 
 /* Constants of the sinc family to 20 digits: C_d = 1/(S_d int_0^1 q^(d-1) w dq), computed with
  * 30-digit quadrature. */
-static void test_sinc_constants(void **state)
+TEST(test_sinc_constants)
 {
-    (void)state;
     static const struct {
         int n;
         double constant[3];
@@ -131,9 +125,8 @@ static void test_sinc_constants(void **state)
 }
 
 /* s^n and its derivative at small and large q against the series and the expansion at the edge. */
-static void test_sinc_limits(void **state)
+TEST(test_sinc_limits)
 {
-    (void)state;
     struct kernel kernel;
     assert_int_equal(kernel_select(&kernel, "sinc", 5, NULL), STATUS_OK);
     assert_true(kernel.w(&kernel, 0, 1) == 1 && kernel.dw(&kernel, 0, 1) == 0);
@@ -153,9 +146,8 @@ static void test_sinc_limits(void **state)
     assert_true(kernel.w(&kernel, 7, 3) == 0 && kernel.dw(&kernel, INFINITY, 3) == 0);
 }
 
-static void test_select(void **state)
+TEST(test_select)
 {
-    (void)state;
     for (size_t i = 0; i < kernel_family.n; i++) {
         struct kernel kernel;
         assert_int_equal(kernel_select(&kernel, kernel_family.members[i]->name, 5, NULL), 0);
@@ -180,9 +172,8 @@ static void test_select(void **state)
 
 /* Exactly 0 from the edge on, however near it; on both sides of a knot the same to what one step of
  * q makes of it; flat at the origin. */
-static void test_edges(void **state)
+TEST(test_edges)
 {
-    (void)state;
     static const double beyond[] = {0, DBL_EPSILON, 1e-12, 1e-9, 1e-7, 5e-7, 1e-6, 1e-3, 0.5, 1e9};
     for (size_t i = 0; i < kernel_family.n; i++)
         for (int dim = 1; dim <= 3; dim++) {
@@ -241,9 +232,8 @@ static double normalisation(const struct kernel *kernel, int dim)
 
 /* What a kernel says of itself: its constants are those of its shape, its knots and its class those
  * of its kind; lattice sums of a spline are exact from n/2 on, those of the others never. */
-static void test_descriptors(void **state)
+TEST(test_descriptors)
 {
-    (void)state;
     assert_int_equal(kernel_family.n, KINDS);
     for (int k = 0; k < KINDS; k++) {
         struct kernel kernel;
@@ -270,9 +260,8 @@ static void test_descriptors(void **state)
 }
 
 /* Each kernel has the specialisations of its own shape; no other pair of functions has any. */
-static void test_specialisations(void **state)
+TEST(test_specialisations)
 {
-    (void)state;
     for (int k = 0; k < KINDS; k++) {
         struct kernel kernel, other;
         assert_int_equal(kernel_select(&kernel, kinds[k].name, 5, NULL), STATUS_OK);
@@ -304,9 +293,8 @@ static double plugin_dh(double r, double h, int dim)
 
 /* As many as there is room for are found by name behind the others, as they are: constants are the
  * plug-in's, also where it has none. The last test: who has come stays. */
-static void test_plugins(void **state)
+TEST(test_plugins)
 {
-    (void)state;
     static struct kernel plugins[KERNEL_PLUGINS_MAX + 1];
     static char names[KERNEL_PLUGINS_MAX + 1][24];
     static const double knots[] = {0.3, 0.5};
@@ -351,11 +339,5 @@ int main(int argc, char **argv)
 {
     if (argc != 2) return 2;
     table_path = argv[1];
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_table),           cmocka_unit_test(test_sinc_constants),
-        cmocka_unit_test(test_sinc_limits),     cmocka_unit_test(test_select),
-        cmocka_unit_test(test_edges),           cmocka_unit_test(test_descriptors),
-        cmocka_unit_test(test_specialisations), cmocka_unit_test(test_plugins),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return test_run(NULL, NULL);
 }

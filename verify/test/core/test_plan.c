@@ -1,15 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What a run says that it will do, before it does: every pass once, running where the scheme needs
  * it, for reasons that are true of it; warnings where they are due. */
+#include "test.h"
+
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "integrator.h"
 #include "plan.h"
@@ -180,9 +177,8 @@ static void every_choice(const char *name, int dim, const char *size)
     }
 }
 
-static void plans(void **state)
+TEST(plans)
 {
-    (void)state;
     every_choice("sod", 1, "n=40");
     every_choice("gresho", 2, "n=8^2");
     every_choice("rest_3d", 3, "n=4^3");
@@ -213,9 +209,8 @@ static void warns(const char *name, const char *words, const char *what)
 
 /* Off the widths whose sums are exact by more than 3 %; beyond what is stable; what loses digits.
  */
-static void warnings(void **state)
+TEST(warnings)
 {
-    (void)state;
     warns("sod", "n=40", "");
     warns("sod", "n=40 kernel=cubic_spline eta=2", "");
     warns("sod", "n=40 kernel=cubic_spline eta=4 gradient=ia", "");
@@ -254,9 +249,8 @@ static size_t explained(const struct setup *setup, char *warnings, size_t size)
 }
 
 /* What has room is written, and no more; how many lines there are is said all the same. */
-static void room(void **state)
+TEST(room)
 {
-    (void)state;
     const struct setup setup = setup_of(5, GRADIENT_IA);
     struct plan_line all[PASSES], some[PASSES];
     const size_t count = plan_explain(&setup, all, PASSES, NULL, 0);
@@ -291,9 +285,8 @@ static void room(void **state)
 }
 
 /* Three per cent, exactly the limit, less than one width, and half way between two. */
-static void limits(void **state)
+TEST(limits)
 {
-    (void)state;
     static const struct {
         double eta;
         enum gradient gradient;
@@ -327,9 +320,8 @@ static void limits(void **state)
 }
 
 /* What each choice needs; loops are specialised unless the oracle is asked for. */
-static void needs(void **state)
+TEST(needs)
 {
-    (void)state;
     for (int choice = 0; choice < GRADIENTS * FORMULATIONS * PAIR_WIDTHS; choice++)
         for (int generic = 0; generic < 2; generic++) {
             struct setup setup = setup_of(2, (enum gradient)(choice % GRADIENTS));
@@ -350,9 +342,8 @@ static void needs(void **state)
 }
 
 /* Gravity in any direction is gravity, and wakes everybody. */
-static void gravity(void **state)
+TEST(gravity)
 {
-    (void)state;
     for (int axis = 0; axis < 4; axis++)
         for (int dim = 2; dim <= 3; dim++)
             for (int skip = 0; skip < 2; skip++) {
@@ -372,13 +363,4 @@ static void gravity(void **state)
                     if (wall < 3) setup.boundary[wall] = BOUNDARY_PERIODIC;
                 }
             }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(plans),  cmocka_unit_test(warnings), cmocka_unit_test(room),
-        cmocka_unit_test(limits), cmocka_unit_test(gravity),  cmocka_unit_test(needs),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

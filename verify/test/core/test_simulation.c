@@ -1,30 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What surrounds the steps of a simulation: which setups it takes, the state it begins with, sums
  * over its particles, the length of a step, and how a breakdown is told. */
+#include "test.h"
+
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 
+#include "draw.h"
 #include "breakdown.h"
 #include "made_simulation.h"
 #include "near.h"
 #include "solver.h"
 
 typedef long double real;
-
-static uint64_t drawn = 1;
-
-static double draw(double low, double high)
-{
-    drawn = drawn * 6364136223846793005u + 1442695040888963407u;
-    return low + (high - low) * ldexp((double)((drawn ^ drawn >> 29) >> 11), -53);
-}
 
 /* --- setups ----------------------------------------------------------------------------------- */
 
@@ -93,9 +83,8 @@ static void refused_with(const struct setup *setup, double *place, double value,
     *place = kept;
 }
 
-static void setups_that_are_refused(void **state)
+TEST(setups_that_are_refused)
 {
-    (void)state;
     for (int dim = 1; dim <= 2; dim++) {
         struct setup setup = plain(dim, 2, few_neighbours);
         setup.dim = 0;
@@ -139,9 +128,8 @@ static void setups_that_are_refused(void **state)
 }
 
 /* The ends of a box belong to it; two particles are enough. */
-static void setups_that_are_taken(void **state)
+TEST(setups_that_are_taken)
 {
-    (void)state;
     for (int dim = 1; dim <= 2; dim++) {
         struct setup setup = plain(dim, 2, few_neighbours);
         x[0][0] = -1, x[0][7] = 3;
@@ -154,9 +142,8 @@ static void setups_that_are_taken(void **state)
 }
 
 /* The state that a simulation begins with, and its threads. */
-static void the_state_of_a_setup(void **state)
+TEST(the_state_of_a_setup)
 {
-    (void)state;
     static char *const schemes[][2] = {
         {"energy=total", "viscosity=constant"},
         {"energy=internal", "viscosity=constant"},
@@ -204,9 +191,8 @@ static void the_state_of_a_setup(void **state)
 
 /* Three particles at one place are laid a thousandth of their spacing apart: as the setup's density
  * says, or the mean one where it says none. */
-static void the_first_guess_of_widths(void **state)
+TEST(the_first_guess_of_widths)
 {
-    (void)state;
     char *keys[] = {"kernel=quadratic_spline", "eta=1.5"};
     for (int known = 0; known < 3; known++) {
         struct setup setup = plain(1, 2, keys);
@@ -262,9 +248,8 @@ static void near_sum(double got, real want, real size)
     near_below(fabs(got - (double)want), 4e-16 * (double)size);
 }
 
-static void conserved_sums(void **state)
+TEST(conserved_sums)
 {
-    (void)state;
     for (int dim = 1; dim <= 3; dim++)
         for (int total = 0; total < 2; total++)
             for (int walls = 0; walls < 2; walls++) {
@@ -311,9 +296,8 @@ static void conserved_sums(void **state)
             }
 }
 
-static void snapshots_are_wrapped(void **state)
+TEST(snapshots_are_wrapped)
 {
-    (void)state;
     for (int dim = 1; dim <= 3; dim++) {
         struct simulation s;
         struct snapshot snapshot;
@@ -360,9 +344,8 @@ static void snapshots_are_wrapped(void **state)
 /* --- the length of a step ----------------------------------------------------------------------
  */
 
-static void steps_meet_the_end(void **state)
+TEST(steps_meet_the_end)
 {
-    (void)state;
     struct simulation s;
     scattered(&s, 2, 40);
     s.time = 3, s.t_end = 5, s.dt = 0.5;
@@ -397,9 +380,8 @@ static void steps_meet_the_end(void **state)
 
 /* The first step: no longer than cfl sqrt(h/a), and a part of the limit where the integrator wants
  * that. */
-static void the_first_step(void **state)
+TEST(the_first_step)
 {
-    (void)state;
     for (int way = 0; way < 9; way++) {
         const int dim = 1 + way % 3, strong = way < 3 ? 20 : way < 6 ? 0 : 39;
         struct simulation s;
@@ -432,9 +414,8 @@ static void the_first_step(void **state)
     }
 }
 
-static void places_are_named(void **state)
+TEST(places_are_named)
 {
-    (void)state;
     static const char *const said[] = {
         "broke down at t = 0.375: heat of particle 35 at x = 0.5 is -3.25",
         "broke down at t = 0.375: heat of particle 35 at x = 0.5, y = -1.25 is -3.25",
@@ -450,16 +431,4 @@ static void places_are_named(void **state)
         assert_string_equal(error.message, said[dim - 1]);
         gone(&s);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(setups_that_are_refused), cmocka_unit_test(setups_that_are_taken),
-        cmocka_unit_test(the_state_of_a_setup),    cmocka_unit_test(the_first_guess_of_widths),
-        cmocka_unit_test(conserved_sums),          cmocka_unit_test(snapshots_are_wrapped),
-        cmocka_unit_test(steps_meet_the_end),      cmocka_unit_test(the_first_step),
-        cmocka_unit_test(places_are_named),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

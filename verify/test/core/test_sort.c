@@ -1,14 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The sort of positions: right, stable, and n log n in comparisons whatever the order given; so is
  * the start of a simulation, whose particles may come in any order. */
+#include "test.h"
+
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "hydro_setup.h"
 #include "simulation.h"
@@ -48,9 +45,8 @@ static size_t most(size_t n)
     return 2 * n * ((size_t)ceil(log2((double)n)) + 1);
 }
 
-static void test_any_order(void **state)
+TEST(test_any_order)
 {
-    (void)state;
     unsigned seed = 7;
     for (size_t n = 2; n <= N; n *= 2) {
         for (size_t i = 0; i < n; i++) x[i] = (double)random_next(&seed);
@@ -67,9 +63,8 @@ static void test_any_order(void **state)
         }
 }
 
-static void test_nearly_in_order(void **state)
+TEST(test_nearly_in_order)
 {
-    (void)state;
     for (size_t i = 0; i < N; i++) x[i] = (double)i;
     assert_true(sorted(N) <= N);
     for (size_t i = N / 2; i + 1 < N / 2 + 10; i += 2) /* five neighbours have crossed */
@@ -78,18 +73,16 @@ static void test_nearly_in_order(void **state)
 }
 
 /* A rotation: particles have left the box at one end. Two stretches, whatever their lengths. */
-static void test_across_the_ends(void **state)
+TEST(test_across_the_ends)
 {
-    (void)state;
     for (size_t i = 0; i < N; i++) x[i] = (double)((i + 77) % N);
     assert_true(sorted(N) <= 4 * (size_t)N);
 }
 
 /* The same particles in another order are the same simulation, but for the round-off of where the
  * box is taken to begin. */
-static void test_shuffled_particles(void **state)
+TEST(test_shuffled_particles)
 {
-    (void)state;
     static struct hydro_state plain, shuffled;
     const struct scheme scheme = hydro_scheme();
     struct simulation *a = NULL, *b = NULL;
@@ -123,15 +116,4 @@ static void test_shuffled_particles(void **state)
     }
     simulation_destroy(a);
     simulation_destroy(b);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_any_order),
-        cmocka_unit_test(test_nearly_in_order),
-        cmocka_unit_test(test_across_the_ends),
-        cmocka_unit_test(test_shuffled_particles),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

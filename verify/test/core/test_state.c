@@ -158,7 +158,8 @@ static void closed(void **state)
 static void alpha_grows_and_decays(void **state)
 {
     (void)state;
-    const struct scheme scheme = {.alpha_min = 0.1, .alpha_max = 1.5};
+    const struct scheme scheme = {
+        .viscosity = VISCOSITY_TIME_DEPENDENT, .alpha_min = 0.1, .alpha_max = 1.5};
     struct particles a = gas(2);
     for (int i = 0; i < N; i++) a.dalpha[i] = untouched;
     state_dalpha(&a, 20, 90, &scheme);

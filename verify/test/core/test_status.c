@@ -1,13 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Texts that are made fit to print: every character of Unicode in UTF-8, every pair of bytes, and
  * what no character is. */
-#include <setjmp.h>
-#include <stdarg.h>
+#include "test.h"
+
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "status.h"
 
@@ -24,9 +21,8 @@ static size_t encode(unsigned long code, char *text)
 
 /* Characters that are not control characters stay; each byte of the others is a question mark, the
  * end of a line a blank. */
-static void every_character(void **state)
+TEST(every_character)
 {
-    (void)state;
     for (unsigned long code = 1; code < 0x140000; code++) {
         char text[8], want[8];
         const size_t length = encode(code, text);
@@ -40,9 +36,8 @@ static void every_character(void **state)
 }
 
 /* Two bytes and a letter: a character of two, one of one, or none. */
-static void every_pair(void **state)
+TEST(every_pair)
 {
-    (void)state;
     for (int first = 1; first < 256; first++)
         for (int second = 1; second < 256; second++) {
             char text[] = {(char)first, (char)second, 'e', 0};
@@ -59,9 +54,8 @@ static void every_pair(void **state)
 }
 
 /* Cut off, too long for what they mean, with a byte that does not follow. */
-static void no_characters(void **state)
+TEST(no_characters)
 {
-    (void)state;
     static const char *const texts[][2] = {
         {"\xe2\x82\xac", "\xe2\x82\xac"}, /* a euro */
         {"\xe2\x82", "??"},
@@ -89,14 +83,4 @@ static void no_characters(void **state)
         status_clean(text);
         assert_string_equal(text, texts[k][1]);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_character),
-        cmocka_unit_test(every_pair),
-        cmocka_unit_test(no_characters),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

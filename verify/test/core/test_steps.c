@@ -2,16 +2,13 @@
  * What a simulation does around its steps, with an integrator and sums that do nothing, so that
  * every number is known: what is called, when a run stops or has broken down, what its clocks show
  * and what is kept and restored. */
+#include "test.h"
+
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
-#include <cmocka.h>
 
 #include "line/line.h"
 #include "made_bytes.h"
@@ -104,9 +101,8 @@ static struct simulation *standing(void)
     return s;
 }
 
-static void what_a_run_calls(void **state)
+TEST(what_a_run_calls)
 {
-    (void)state;
     struct error error;
     for (int way = 0; way < 16; way++) {
         struct simulation *s = standing();
@@ -157,9 +153,8 @@ static double now(void)
 
 /* Eight steps of two milliseconds each take as long as this clock says, in the fractions of a
  * second, too. */
-static void clocks_show_seconds(void **state)
+TEST(clocks_show_seconds)
 {
-    (void)state;
     const struct integrator slow = {.step = slow_step, .ends_evaluated = true};
     const double before = now();
     struct simulation *s = standing();
@@ -171,9 +166,8 @@ static void clocks_show_seconds(void **state)
 }
 
 /* Stopped from outside, or by a step that fails: synchronised, and no further. */
-static void a_run_that_stops(void **state)
+TEST(a_run_that_stops)
 {
-    (void)state;
     struct error error;
     for (int fail = 0; fail < 2; fail++) {
         struct simulation *s = standing();
@@ -199,9 +193,8 @@ static void a_run_that_stops(void **state)
  */
 
 /* A billionth of the longest step is too short, and one that time does not notice; not the last. */
-static void steps_that_collapse(void **state)
+TEST(steps_that_collapse)
 {
-    (void)state;
     static const struct {
         double time, dt, longest, end;
         bool broken;
@@ -237,9 +230,8 @@ static void steps_that_collapse(void **state)
 }
 
 /* The particle that limits a step has the least h/signal. */
-static void who_limits(void **state)
+TEST(who_limits)
 {
-    (void)state;
     for (int last = 0; last < 40; last++) {
         struct simulation *s = standing();
         struct error error;
@@ -257,9 +249,8 @@ static void who_limits(void **state)
 }
 
 /* More pairs than 1e5 + 100 n a particle for each of the longest steps to the end. */
-static void too_much_work(void **state)
+TEST(too_much_work)
 {
-    (void)state;
     for (int beyond = 0; beyond < 2; beyond++) {
         struct simulation *s = standing();
         struct error error;
@@ -278,9 +269,8 @@ static void too_much_work(void **state)
 
 /* Half of the energy has come or gone: seen at the end, and after every 128 steps where energy is
  * not what is integrated. */
-static void runaway_energy(void **state)
+TEST(runaway_energy)
 {
-    (void)state;
     for (int total = 0; total < 2; total++)
         for (int k = 0; k < 4; k++) {
             struct simulation *s = standing();
@@ -309,9 +299,8 @@ static void runaway_energy(void **state)
 }
 
 /* Exactly half may come or go. */
-static void half_of_the_energy(void **state)
+TEST(half_of_the_energy)
 {
-    (void)state;
     for (int k = 0; k < 4; k++) {
         static const double left[] = {0.5, 1.5, 0.4999999999, 1.5000000001};
         struct simulation *s = standing();
@@ -329,9 +318,8 @@ static void half_of_the_energy(void **state)
  */
 
 /* The clocks of a simulation that is restored go on from where the other's stood. */
-static void clocks_go_on(void **state)
+TEST(clocks_go_on)
 {
-    (void)state;
     static struct made_bytes bag;
     struct simulation *kept = made_simulation(40), *restored = made_simulation(40);
     struct serialiser out = {.bytes = made_put, .context = &bag},
@@ -363,9 +351,8 @@ static void clocks_go_on(void **state)
 }
 
 /* What the integrator, the sums and those who sleep keep, too. */
-static void all_is_carried(void **state)
+TEST(all_is_carried)
 {
-    (void)state;
     static struct made_bytes bag;
     bag.used = bag.read = 0;
     struct simulation *kept = made_simulation(40), *restored = made_simulation(40);
@@ -401,16 +388,4 @@ static void all_is_carried(void **state)
     assert_memory_equal(line->groups.rate, of->groups.rate, 5 * sizeof(double));
     simulation_destroy(kept);
     simulation_destroy(restored);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_a_run_calls), cmocka_unit_test(clocks_show_seconds),
-        cmocka_unit_test(a_run_that_stops), cmocka_unit_test(steps_that_collapse),
-        cmocka_unit_test(who_limits),       cmocka_unit_test(too_much_work),
-        cmocka_unit_test(runaway_energy),   cmocka_unit_test(half_of_the_energy),
-        cmocka_unit_test(clocks_go_on),     cmocka_unit_test(all_is_carried),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,15 +2,12 @@
  * The arrays of particles: each has its own room, ghosts included, whatever the numbers; values
  * stay where room grows, are carried out and back with their ghosts, and follow a new order. Large
  * pages are asked for where arrays are as long as one, and only there. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "test.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-#include <cmocka.h>
 
 #include "made_bytes.h"
 #include "near.h"
@@ -66,9 +63,8 @@ static void filled(const struct particles *a, ptrdiff_t ghosts)
         }
 }
 
-static void every_array_has_its_room(void **state)
+TEST(every_array_has_its_room)
 {
-    (void)state;
     for (int dim = 1; dim <= 3; dim++)
         for (ptrdiff_t n = 2; n < 40; n += 1 + n / 12)
             for (ptrdiff_t ghosts = 0; ghosts < 30; ghosts += 7) {
@@ -93,9 +89,8 @@ static void every_array_has_its_room(void **state)
             }
 }
 
-static void room_for_more_ghosts(void **state)
+TEST(room_for_more_ghosts)
 {
-    (void)state;
     for (ptrdiff_t ghosts = 8; ghosts < 60; ghosts += 9) {
         struct particles a = made(1, 21, 8);
         struct error error;
@@ -112,9 +107,8 @@ static void room_for_more_ghosts(void **state)
 
 /* Those arrays that somebody has written to, wherever that was; the others take no room, and become
  * blank where they were not. */
-static void carried_with_ghosts(void **state)
+TEST(carried_with_ghosts)
 {
-    (void)state;
     static struct made_bytes bag;
     for (int dim = 1; dim <= 3; dim++)
         for (ptrdiff_t n = 3; n < 300; n += 59)
@@ -158,9 +152,8 @@ static bool nothing(void *context, void *bytes, size_t n)
 }
 
 /* What cannot be carried leaves the rest as it is. */
-static void failed_to_carry(void **state)
+TEST(failed_to_carry)
 {
-    (void)state;
     struct particles a = made(1, 9, 8);
     fill(&a, 8);
     for (int calls = 1; calls < 5; calls++) {
@@ -176,9 +169,8 @@ static void failed_to_carry(void **state)
 /* --- order --------------------------------------------------------------------------------------
  */
 
-static void a_new_order(void **state)
+TEST(a_new_order)
 {
-    (void)state;
     for (int dim = 1; dim <= 3; dim++)
         for (ptrdiff_t n = 2; n < 200; n += 1 + n / 2) {
             struct particles a = made(dim, n, 8);
@@ -203,9 +195,8 @@ static void a_new_order(void **state)
         }
 }
 
-static void sizes_of_vectors(void **state)
+TEST(sizes_of_vectors)
 {
-    (void)state;
     for (int dim = 1; dim <= 3; dim++) {
         struct particles a = made(dim, 9, 0);
         for (int k = 0; k < dim; k++)
@@ -252,9 +243,8 @@ static void expect_pages(int dim, ptrdiff_t n, const char *array, bool asked)
     if (found != asked) fail_msg("%d-D, %td particles, %s: %d", dim, n, array, found);
 }
 
-static void large_pages(void **state)
+TEST(large_pages)
 {
-    (void)state;
     if (access("/sys/kernel/mm/transparent_hugepage/enabled", R_OK) ||
         asked_for((uintptr_t)&state) < 0)
         skip();
@@ -264,18 +254,4 @@ static void large_pages(void **state)
         expect_pages(dim, 1 << 18, "x", true);
         expect_pages(dim, 1 << 19, "signal", true);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_array_has_its_room),
-        cmocka_unit_test(room_for_more_ghosts),
-        cmocka_unit_test(carried_with_ghosts),
-        cmocka_unit_test(failed_to_carry),
-        cmocka_unit_test(a_new_order),
-        cmocka_unit_test(sizes_of_vectors),
-        cmocka_unit_test(large_pages),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,13 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * How many threads work, on clocks that are made up: as fast as the better choice, wherever other
  * programs come and go. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "test.h"
 
-#include <cmocka.h>
+#include <math.h>
 
 #include "near.h"
 #include "team.h"
@@ -30,9 +26,8 @@ static double loss(struct team *team, double *now, double pace, double ratio)
 static const double paces[] = {2e-6, 1e-4, 3e-3, 0.05, 1.5};
 enum { PACES = sizeof paces / sizeof *paces };
 
-static void stay_near_the_better_choice(void **state)
+TEST(stay_near_the_better_choice)
 {
-    (void)state;
     for (int k = 0; k < PACES; k++)
         for (int t = 2; t <= 16; t *= 2) {
             struct team team;
@@ -53,21 +48,19 @@ static void stay_near_the_better_choice(void **state)
         }
 }
 
-static void alone_there_is_no_choice(void **state)
+TEST(alone_there_is_no_choice)
 {
     struct team team;
     double now = 7;
-    (void)state;
     team_begin(&team, 1);
     assert_true(loss(&team, &now, 1e-3, 1) <= 1);
     assert_int_equal(team.size, 1);
 }
 
-static void pauses_count_for_nobody(void **state)
+TEST(pauses_count_for_nobody)
 {
     struct team team;
     double now = 7;
-    (void)state;
     team_begin(&team, 2);
     int together = 0;
     for (int k = 0; k < 4000; k++) {
@@ -98,9 +91,8 @@ static int stretch(struct team *team, double *now, double step)
 
 /* Trials of 4 ms; stretches between them of 16 to 256 times that, in time and in steps, twice as
  * long each time that nothing has changed; a change only where it saves 5 %. */
-static void stretches_are_as_long_as_said(void **state)
+TEST(stretches_are_as_long_as_said)
 {
-    (void)state;
     static const double exact[] = {0x1p-20, 0x1p-14, 0x1p-10, 0x1p-8, 0x1p-7, 0.25};
     for (size_t k = 0; k < sizeof exact / sizeof *exact; k++) {
         const double pace = exact[k];
@@ -158,9 +150,8 @@ static void stretches_are_as_long_as_said(void **state)
 }
 
 /* A trial that lasts exactly as long as it should is over. */
-static void four_milliseconds(void **state)
+TEST(four_milliseconds)
 {
-    (void)state;
     struct team team;
     team_begin(&team, 2);
     team_step(&team, 4e-3);
@@ -168,16 +159,4 @@ static void four_milliseconds(void **state)
     assert_int_equal(team.size, 2);
     team_step(&team, 8e-3);
     assert_int_equal(team.size, 1);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(stay_near_the_better_choice),
-        cmocka_unit_test(alone_there_is_no_choice),
-        cmocka_unit_test(pauses_count_for_nobody),
-        cmocka_unit_test(stretches_are_as_long_as_said),
-        cmocka_unit_test(four_milliseconds),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

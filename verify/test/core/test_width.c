@@ -1,15 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Newton's method for smoothing lengths, one step at a time, against CONVENTIONS eqs. 3.4, 3.10 and
  * 3.11 in extended precision. */
+#include "test.h"
+
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 
+#include "draw.h"
 #include "near.h"
 #include "solver.h"
 #include "width.h"
@@ -17,14 +15,6 @@
 typedef long double real;
 
 static const double constants[] = {0, 1.25, 2.5, 3.75};
-
-static uint64_t drawn = 1;
-
-static double draw(double low, double high)
-{
-    drawn = drawn * 6364136223846793005u + 1442695040888963407u;
-    return low + (high - low) * ldexp((double)((drawn ^ drawn >> 29) >> 11), -53);
-}
 
 static struct width_rule rule_of(int dim, double tolerance)
 {
@@ -38,9 +28,8 @@ static real target(const struct width_rule *rule, double m, double sum, double h
     return rule->eta * powl(m / rho, 1.0L / rule->dim);
 }
 
-static void widths_of_even_gas(void **state)
+TEST(widths_of_even_gas)
 {
-    (void)state;
     for (int dim = 1; dim <= 3; dim++) {
         const struct width_rule rule = rule_of(dim, 1e-3);
         near_relative(width_of(&rule, 3, 7), 2.2 * pow(3. / 7, 1. / dim), 1e-15);
@@ -50,9 +39,8 @@ static void widths_of_even_gas(void **state)
 }
 
 /* As strict as the scheme, and at the start as 1e-10 at least. */
-static void rules_of_simulations(void **state)
+TEST(rules_of_simulations)
 {
-    (void)state;
     for (int dim = 1; dim <= 3; dim++)
         for (int later = 0; later < 2; later++)
             for (int k = 0; k < 3; k++) {
@@ -92,9 +80,8 @@ static struct batch drawn_batch(const struct width_rule *rule, double high)
 }
 
 /* A step is Newton's; the bracket closes in from the side of the old width. */
-static void steps_are_newtons(void **state)
+TEST(steps_are_newtons)
 {
-    (void)state;
     for (int dim = 1; dim <= 3; dim++)
         for (int setup = 0; setup < 50; setup++) {
             const struct width_rule rule = rule_of(dim, 1e-12);
@@ -118,9 +105,8 @@ static void steps_are_newtons(void **state)
 }
 
 /* Within the tolerance a width stays as it is, and so does its bracket. */
-static void converged_ones_stay(void **state)
+TEST(converged_ones_stay)
 {
-    (void)state;
     for (int dim = 1; dim <= 3; dim++)
         for (int k = 0; k < 4; k++) {
             const struct width_rule rule = rule_of(dim, 1e-3);
@@ -143,9 +129,8 @@ static void converged_ones_stay(void **state)
 
 /* Where Newton's step leaves the bracket, or goes the wrong way: half of the bracket, or twice the
  * width while there is no end; a bracket of two neighbouring numbers closes. */
-static void brackets_hold(void **state)
+TEST(brackets_hold)
 {
-    (void)state;
     const struct width_rule rule = rule_of(1, 1e-12);
     const double even = rule.eta / rule.constant;  /* of m = 1: the sum that asks for h itself */
     static const double end = 0x1.0000000000001p0; /* the number after 1 */
@@ -180,9 +165,8 @@ static void brackets_hold(void **state)
 }
 
 /* The first that is off by more than a millionth. */
-static void who_has_no_root(void **state)
+TEST(who_has_no_root)
 {
-    (void)state;
     for (int dim = 1; dim <= 3; dim++)
         for (int first = 0; first <= LEN; first++)
             for (int k = 0; k < 5; k++) {
@@ -201,9 +185,8 @@ static void who_has_no_root(void **state)
 }
 
 /* 1/h goes on as it has changed, by no more than a quarter up and a fifth down. */
-static void predicted_widths(void **state)
+TEST(predicted_widths)
 {
-    (void)state;
     for (int len = BATCH_MAX - 1; len <= BATCH_MAX; len++) {
         struct particles a;
         struct error error;
@@ -229,15 +212,4 @@ static void predicted_widths(void **state)
             if (i < 4 || i >= 4 + len) assert_true(a.h_inverse[i] == 5 && a.h_inverse_old[i] == 7);
         particles_destroy(&a);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(widths_of_even_gas), cmocka_unit_test(rules_of_simulations),
-        cmocka_unit_test(steps_are_newtons),  cmocka_unit_test(converged_ones_stay),
-        cmocka_unit_test(brackets_hold),      cmocka_unit_test(who_has_no_root),
-        cmocka_unit_test(predicted_widths),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What is judged as what: the case, its keys, box, window and ends, as the file or the user says
  * them; and what is refused. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include "made_snapshot.h"
 #include "near.h"
@@ -32,7 +28,7 @@ static bool is_noted(const struct judged *judged, const char *what)
 
 /* ---- case and keys ---- */
 
-static void said(void **state)
+TEST(said)
 {
     static const struct {
         const char *head, *name;
@@ -45,7 +41,6 @@ static void said(void **state)
                 {"# case = sod\n" KEYED, "sod", false, 0.9, true},
                 {"# case = sod\n" KEYED, "lax", false, 0.571, false},
                 {"# case = sod\n" KEYED, NULL, true, 0.1, false}};
-    (void)state;
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         const struct judge_request request = {
             .case_name = rows[k].name, .kernel = -1, .x0 = {rows[k].x0, 1}};
@@ -67,7 +62,7 @@ static void said(void **state)
 }
 
 /* Boundaries of a plane are the file's or the user's; those of a line are no key of its run. */
-static void boundaries(void **state)
+TEST(boundaries)
 {
     static const struct {
         int dim;
@@ -78,7 +73,6 @@ static void boundaries(void **state)
         {2, "reflecting reflecting", NULL, {BOUNDARY_REFLECTING, BOUNDARY_REFLECTING}, false},
         {2, "periodic reflecting", NULL, {BOUNDARY_PERIODIC, BOUNDARY_REFLECTING}, false},
         {2, "", NULL, {BOUNDARY_PERIODIC, BOUNDARY_PERIODIC}, false}};
-    (void)state;
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         const struct judge_request request = {.boundary = rows[k].asked, .kernel = -1};
         struct judged judged;
@@ -93,7 +87,7 @@ static void boundaries(void **state)
     }
 }
 
-static void refused(void **state)
+TEST(refused)
 {
     static const struct {
         int dim;
@@ -117,7 +111,6 @@ static void refused(void **state)
         {2, "# time = 0.1\n# box = 0:2 0.01:1.01\n", "sod", NULL, NULL, NULL,
          "a.csv: the file's box reaches from 0.01 to 1.01 along y, but positions from 0 to 1"},
         {1, "# time = 50\n# box = 2\n", "sod", NULL, NULL, NULL, "(t_end: the snapshot's time)"}};
-    (void)state;
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         const struct judge_request request = {.case_name = rows[k].name,
                                               .left = rows[k].left,
@@ -147,7 +140,7 @@ static char *own_case(void)
     return path;
 }
 
-static void windows(void **state)
+TEST(windows)
 {
     static const struct {
         const char *head, *asked, *name;
@@ -178,7 +171,6 @@ static void windows(void **state)
         {"# box = 2\n", "0.7 1.9", NULL, 0, 2, {0.7, 1.9}, "window", NULL, "--window"},
         {"# box = 9\n", "0.7 1.9", NULL, 0, 9, {0.7, 1.9}, "window", NULL, "--window"},
     };
-    (void)state;
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         struct judge_request request = {.case_name = own_case(), .time = {true, 0}, .kernel = -1};
         struct judged judged;
@@ -204,9 +196,8 @@ static void windows(void **state)
 }
 
 /* A disc or a ball; the size of the box is said where it is not the case's. */
-static void sizes(void **state)
+TEST(sizes)
 {
-    (void)state;
     for (int k = 0; k < 4; k++) {
         const double length = k < 2 ? 1 : k == 2 ? 1 + 1e-4 : 2;
         struct judge_request request = {
@@ -230,9 +221,8 @@ static void sizes(void **state)
 }
 
 /* Of a flow along x alone, in more dimensions than its case has; also of particles on one line. */
-static void dimensions(void **state)
+TEST(dimensions)
 {
-    (void)state;
     for (int dim = 1; dim <= 3; dim++) {
         const struct judge_request request = uniform_gas();
         struct judged judged;
@@ -252,11 +242,10 @@ static void dimensions(void **state)
 }
 
 /* Particles that the box takes back stand in the order of a line. */
-static void wraps(void **state)
+TEST(wraps)
 {
     struct judge_request request = uniform_gas();
     struct judged judged;
-    (void)state;
     request.x0 = (struct snapshot_value){true, 0.5};
     request.box = "-0.25:2.25";
     plant(1, 0, "");
@@ -293,7 +282,7 @@ static void put_tube(const struct riemann_state sides[2], double x0)
     }
 
 /* Ends that are open or walls are found where gas beside both is as it was. */
-static void found_ends(void **state)
+TEST(found_ends)
 {
     static const struct {
         struct riemann_state sides[2];
@@ -323,7 +312,6 @@ static void found_ends(void **state)
         {{{0.89, 0.25, 1}, {1, 0.25, 1}}, 0.2, {0.02, 0.03}, 0, 0, true},
         {{{0.91, 0.25, 1}, {1, 0.25, 1}}, 0.2, {0.02, 0.03}, 0, 0, false},
     };
-    (void)state;
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
         for (int side = 0; side < 2; side++) {
             const struct riemann_state *sides = rows[k].sides;
@@ -381,10 +369,9 @@ static double fastest(const struct riemann_state sides[2], bool mirrored)
 }
 
 /* The window leaves out what waves from the ends may have reached; the box holds all of them. */
-static void drawn_tubes(void **state)
+TEST(drawn_tubes)
 {
     int clean = 0, cut = 0, spoilt = 0;
-    (void)state;
     for (int k = 0; k < 60; k++) {
         struct judge_request request = uniform_gas();
         struct riemann_state sides[2];
@@ -458,10 +445,5 @@ static void drawn_tubes(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(said),    cmocka_unit_test(boundaries), cmocka_unit_test(refused),
-        cmocka_unit_test(windows), cmocka_unit_test(sizes),      cmocka_unit_test(dimensions),
-        cmocka_unit_test(wraps),   cmocka_unit_test(found_ends), cmocka_unit_test(drawn_tubes),
-    };
-    return cmocka_run_group_tests(tests, make_place, remove_place);
+    return test_run(make_place, remove_place);
 }

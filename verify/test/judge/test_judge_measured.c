@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Snapshots of drawn gas, judged: the gas that is compared is that of the file, in order and in the
  * box, and how far it is from the solution is what a plain calculation says. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include "budget.h"
 #include "made_snapshot.h"
@@ -184,10 +180,9 @@ static void verdict_is(const struct judged *judged, const char *kernel)
         fail_msg("%s: not: %s", judged->verdict, says);
 }
 
-static void drawn(void **state)
+TEST(drawn)
 {
     int far = 0, draws = 0;
-    (void)state;
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++)
         for (int twice = 0; twice < 2; twice++) {
             const double noise = pow(10, uniform(-2, 0));
@@ -238,6 +233,5 @@ static void drawn(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(drawn)};
-    return cmocka_run_group_tests(tests, make_place, remove_place);
+    return test_run(make_place, remove_place);
 }

@@ -1,10 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The document of judged snapshots says what was found, of each of them and of all. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include "made_snapshot.h"
 #include "near.h"
@@ -86,7 +82,7 @@ static void is_one(const json_t *one, const struct judged *judged, double rho)
     }
 }
 
-static void documents(void **state)
+TEST(documents)
 {
     struct judged judged[2];
     static const char *const statuses[] = {"pass", "fail"};
@@ -95,7 +91,6 @@ static void documents(void **state)
                               "density_l1", "relation", "<=", "value", 0.25, "bound", 0.5, "status",
                               "pass", "source", "x", "name", "velocity_l2", "relation",
                               "<=", "value", 3., "bound", 2., "status", "fail", "source", "x");
-    (void)state;
     judged_of(1.01, 0.05, 2, &judged[0]);
     judged_of(1.02, 0.1, 2.5, &judged[1]);
     for (size_t n = 1; n <= 2; n++) {
@@ -182,11 +177,10 @@ static void documents(void **state)
 }
 
 /* On a line there is neither noise nor angular momentum. */
-static void on_a_line(void **state)
+TEST(on_a_line)
 {
     const struct judge_request request = uniform_gas();
     struct judged judged[2];
-    (void)state;
     for (int k = 0; k < 2; k++) {
         struct judge_request later = request;
         later.time.value = 0.1 + 0.1 * k;
@@ -202,9 +196,5 @@ static void on_a_line(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(documents),
-        cmocka_unit_test(on_a_line),
-    };
-    return cmocka_run_group_tests(tests, make_place, remove_place);
+    return test_run(make_place, remove_place);
 }

@@ -1,18 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Gamma and time, the place of the case in the box of a snapshot, columns that it lacks, and what
  * is asked for in vain. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include "made_snapshot.h"
 #include "near.h"
 
 /* ---- gamma, time ---- */
 
-static void gammas(void **state)
+TEST(gammas)
 {
     static const struct {
         double said, in_file, planted, scatter, want; /* 0: not there */
@@ -31,7 +27,6 @@ static void gammas(void **state)
         {0, 0, 1.25, 9e-6, 1.25, "the file has none, but P = (gamma - 1) rho u"},
         {0, 0, 1.25, 3e-5, 1.4, "the file has none: the case's"},
         {0, 0, 0, 0, 1.4, "the file has none: the case's"}};
-    (void)state;
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         struct judge_request request = uniform_gas();
         struct judged judged;
@@ -56,11 +51,10 @@ static void gammas(void **state)
     }
 }
 
-static void times(void **state)
+TEST(times)
 {
     struct judge_request request = uniform_gas();
     struct judged judged;
-    (void)state;
     plant(1, 0, "# time = 0.125\n");
     judges(&request, &judged);
     assert_true(judged.result.time == 0.1 && judged.file.time.value == 0.1);
@@ -86,7 +80,7 @@ static void times(void **state)
 
 /* ---- place ---- */
 
-static void places(void **state)
+TEST(places)
 {
     static const struct {
         double lo, hi; /* of the particles */
@@ -124,7 +118,6 @@ static void places(void **state)
         {-0.9, 1, "# box = -0.95:1.05\n", 9, -0.95, 1.05, {-0.45, 0.55}, true, "the file says so"},
         {-1.1, 0.8, "# box = -1.1:0.9\n", 9, -1.1, 0.9, {-0.6, 0.4}, true, "the file says so"},
     };
-    (void)state;
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         struct judge_request request = uniform_gas();
         struct judged judged;
@@ -169,9 +162,8 @@ static void places(void **state)
 
 /* ---- what is not there, what is asked for in vain ---- */
 
-static void completed(void **state)
+TEST(completed)
 {
-    (void)state;
     for (int which = 0; which < 4; which++) {
         struct judge_request request = uniform_gas();
         struct judged judged;
@@ -197,10 +189,9 @@ static void completed(void **state)
     }
 }
 
-static void in_vain(void **state)
+TEST(in_vain)
 {
     struct judge_request request = uniform_gas();
-    (void)state;
     plant(2, 0, "# box = 2 1\n");
     request.case_name = "gresho", request.left = request.right = NULL;
     request.x0 = (struct snapshot_value){true, 0};
@@ -218,14 +209,10 @@ static void in_vain(void **state)
     plant(1, 0, "# box = 2\n");
     for (int i = 2; i < N; i++) gas.x[0][i] = uniform(0, 0.4);
     gas.x[0][1] = 0.4;
-    refuses(&request, "no particle lies in the window; --x0");
+    refuses(&request, "no particle lies in the window, ");
 }
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(gammas),    cmocka_unit_test(times),   cmocka_unit_test(places),
-        cmocka_unit_test(completed), cmocka_unit_test(in_vain),
-    };
-    return cmocka_run_group_tests(tests, make_place, remove_place);
+    return test_run(make_place, remove_place);
 }

@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * A snapshot judged, with values planted whose answer is known: noise, sums, and what is far from
  * the solution. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include "made_snapshot.h"
 #include "near.h"
@@ -13,9 +9,8 @@
 /* ---- noise ---- */
 
 /* rms over the volume in the window, of the velocities across the flow alone. */
-static void noise(void **state)
+TEST(noise)
 {
-    (void)state;
     for (int dim = 1; dim <= 3; dim++)
         for (int only = 0; only <= dim; only++) { /* which velocity there is; dim: all */
             struct judged judged;
@@ -58,9 +53,8 @@ static void noise(void **state)
 
 /* ---- sums ---- */
 
-static void sums(void **state)
+TEST(sums)
 {
-    (void)state;
     for (int dim = 1; dim <= 3; dim++)
         for (int shifted = 0; shifted < 2; shifted++) {
             struct judged judged;
@@ -120,7 +114,7 @@ static void sums(void **state)
 
 /* Uniform gas has nothing to go by but means: of half of its value, of velocities the sound speed,
  * 0.2 are too much. (A fifth called our own gas at rest far, with 2 % of noise in its pressure.) */
-static void uniform_is_far(void **state)
+TEST(uniform_is_far)
 {
     static const struct {
         double rho, v, u;
@@ -132,7 +126,6 @@ static void uniform_is_far(void **state)
                 {0, 0.21, 0, FIELD_VELOCITY, 1.05},
                 {0, 0, 0.0975, FIELD_INTERNAL_ENERGY, 0.975},
                 {0, 0, -0.1025, FIELD_INTERNAL_ENERGY, 1.025}};
-    (void)state;
     for (int dim = 1; dim <= 3; dim++)
         for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
             const struct judge_request request = uniform_gas();
@@ -155,9 +148,8 @@ static void uniform_is_far(void **state)
 }
 
 /* Sod's tube, exact but for one error everywhere: its median is that error. */
-static void tube_is_far(void **state)
+TEST(tube_is_far)
 {
-    (void)state;
     for (int field = 0; field < FIELDS; field++)
         for (int far = 0; far < 2; far++) {
             struct judge_request request = {.case_name = "sod", .time = {true, 0.2}, .kernel = -1};
@@ -195,11 +187,5 @@ static void tube_is_far(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(noise),
-        cmocka_unit_test(sums),
-        cmocka_unit_test(uniform_is_far),
-        cmocka_unit_test(tube_is_far),
-    };
-    return cmocka_run_group_tests(tests, make_place, remove_place);
+    return test_run(make_place, remove_place);
 }

@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What several judged snapshots say together, on results that are made here: in whatever order they
  * are given, the same ones are gated, compared and fitted, and what comes out is known. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "test.h"
+
 #include <string.h>
-#include <cmocka.h>
 
 #include "judge.h"
 #include "near.h"
@@ -64,9 +61,8 @@ static const struct {
     {5, {{50, 0.1}, {50, 0.2}, {50, 0.3}, {50, 0.4}, {50, 0.5}}, 4, 0, 4, {4, -1}},
 };
 
-static void every_order(void **state)
+TEST(every_order)
 {
-    (void)state;
     problem = (struct problem){0};
     for (size_t g = 0; g < sizeof groups / sizeof *groups; g++)
         for (int k = 0; k < 120; k++) {
@@ -116,13 +112,12 @@ static void every_order(void **state)
 }
 
 /* Of the same time, whichever was given first. */
-static void ties(void **state)
+TEST(ties)
 {
     struct judged judged[4] = {made(50, 0.1, 2), made(50, 0.2, 2), made(50, 0.2, 2),
                                made(50, 0.1, 2)};
     struct trace_drift drift;
     size_t pair[2];
-    (void)state;
     assert_ptr_equal(judge_main(judged, 4), &judged[1]);
     assert_true(judge_drift(judged, 4, &drift, pair));
     assert_int_equal(pair[0], 0);
@@ -136,9 +131,8 @@ static void ties(void **state)
 }
 
 /* Errors that fall with a power of the spacing have that order, in any dimension. */
-static void orders(void **state)
+TEST(orders)
 {
-    (void)state;
     for (int dim = 1; dim <= 3; dim++)
         for (int count = 2; count <= MOST; count++) {
             struct judged judged[MOST];
@@ -203,13 +197,12 @@ static const char *status_at(const json_t *gates, size_t k)
     return json_string_value(json_object_get(json_array_get(gates, k), "status"));
 }
 
-static void gates(void **state)
+TEST(gates)
 {
     static const char *const fields[] = {"density",         "velocity",  "pressure",
                                          "internal_energy", "azimuthal", "radial"},
                              *const norms[] = {"l1", "l2", "linf", "particle_mean", "l1_whole"};
     struct judged judged = made(50, 0.2, 2);
-    (void)state;
     for (int f = 0; f < 6; f++) {
         struct norms *of = f < FIELDS    ? &judged.result.errors[f]
                            : f == FIELDS ? &judged.result.azimuthal
@@ -294,11 +287,10 @@ static void gates(void **state)
 }
 
 /* What is no error of a field: values, parts of an error, noise, what is conserved. */
-static void other_gates(void **state)
+TEST(other_gates)
 {
     static const struct regions regions = {.names = {"fan", "shock"}};
     struct judged judged = made(50, 0.2, 2);
-    (void)state;
     problem.circular = CIRCULAR_NOT;
     judged.result.functional_count = 2;
     judged.result.functionals[0] = (struct run_functional){"peak", 3, 3.5};
@@ -332,11 +324,10 @@ static void other_gates(void **state)
 }
 
 /* An order passes where its whole interval does, and fails where none of it does. */
-static void gates_of_orders(void **state)
+TEST(gates_of_orders)
 {
     struct judged judged[MOST];
     char text[200];
-    (void)state;
     for (int i = 0; i < MOST; i++) {
         judged[i] = made((size_t)(100 << i), 0.2, 1);
         for (int f = 0; f < FIELDS; f++)
@@ -374,14 +365,4 @@ static void gates_of_orders(void **state)
     assert_string_equal(status_at(found, 0), "undetermined");
     json_decref(found);
     json_decref(orders);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_order), cmocka_unit_test(ties),
-        cmocka_unit_test(orders),      cmocka_unit_test(gates),
-        cmocka_unit_test(other_gates), cmocka_unit_test(gates_of_orders),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,15 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * One evaluation in the order of the setup, and rates of others against it: what is said of the
  * differences, by how much, and what each of them comes from. */
+#include "test.h"
+
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "near.h"
 #include "oracle.h"
@@ -99,10 +96,9 @@ static struct rate_table table_of(const struct setup *setup)
 /* ---- the table ---- */
 
 /* Values belong to the particles as the setup has them: whoever comes first. */
-static void in_the_setups_order(void **state)
+TEST(in_the_setups_order)
 {
     static struct gas gas, turned;
-    (void)state;
     for (int dim = 1; dim <= 3; dim++) {
         char words[400];
         snprintf(words, sizeof words, "%s gradient=ia", schemes[dim]);
@@ -150,10 +146,9 @@ static void in_the_setups_order(void **state)
 
 /* dU/dt is the same whichever energy is integrated; with a force from outside sums do not vanish.
  */
-static void whichever_energy(void **state)
+TEST(whichever_energy)
 {
     static struct gas gas;
-    (void)state;
     make(&gas, 2, 6, USUAL " energy=internal");
     gas.setup.gravity[0] = 0.25, gas.setup.gravity[1] = -2;
     struct rate_table internal = table_of(&gas.setup);
@@ -178,12 +173,11 @@ static void whichever_energy(void **state)
     rate_table_free(&total);
 }
 
-static void no_setup_no_table(void **state)
+TEST(no_setup_no_table)
 {
     static struct gas gas;
     struct rate_table table;
     struct error error = {0};
-    (void)state;
     make(&gas, 2, 6, USUAL);
     gas.m[7] = -1;
     assert_int_equal(rate_table_make(&table, &gas.setup, &error), STATUS_BAD_INPUT);
@@ -230,12 +224,11 @@ static struct rate_check checked(const struct file *file, const struct gas *gas,
     return check;
 }
 
-static void equal_columns(void **state)
+TEST(equal_columns)
 {
     static struct gas gas;
     static struct file file;
     struct error error = {0};
-    (void)state;
     for (int dim = 1; dim <= 3; dim++) {
         make(&gas, dim, sides[dim], schemes[dim]);
         struct rate_table ours = table_of(&gas.setup);
@@ -284,12 +277,11 @@ static double scale_of(const struct gas *gas, const struct rate_table *t, int co
 
 /* Two particles are off, the second by more: how far, which one, and what is still good; also of
  * rates that are all tiny, and of which the first particle has by far the largest. */
-static void how_far_off(void **state)
+TEST(how_far_off)
 {
     static struct gas gas;
     static struct file file;
     static const size_t who[2][2] = {{3, 11}, {11, 0}};
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         make(&gas, dim, sides[dim], schemes[dim]);
         struct rate_table ours = table_of(&gas.setup);
@@ -339,7 +331,7 @@ static const char *cause_of(const struct rate_check *check, const char *quantity
     return NULL;
 }
 
-static void each_choice_is_named(void **state)
+TEST(each_choice_is_named)
 {
     static const struct {
         const char *ours, *theirs, *quantity, *cause;
@@ -380,7 +372,6 @@ static void each_choice_is_named(void **state)
     static struct gas gas;
     static struct file file;
     char words[400];
-    (void)state;
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         snprintf(words, sizeof words, "%s %s", USUAL, rows[k].ours);
         make(&gas, 2, 7, words);
@@ -414,11 +405,10 @@ static void each_choice_is_named(void **state)
 }
 
 /* A change explains what becomes a thousand times better, or as good as is asked for. */
-static void better_by_a_thousand(void **state)
+TEST(better_by_a_thousand)
 {
     static struct gas gas;
     static struct file file;
-    (void)state;
     make(&gas, 2, 6, USUAL);
     struct rate_table ours = table_of(&gas.setup);
     struct setup changed = gas.setup;
@@ -458,11 +448,10 @@ static void better_by_a_thousand(void **state)
 }
 
 /* Differences that no choice of a scheme makes. */
-static void plain_differences(void **state)
+TEST(plain_differences)
 {
     static struct gas gas;
     static struct file file;
-    (void)state;
     for (int dim = 1; dim <= 3; dim++)
         for (int c = 0; c < 7; c++) {
             if (c >= 3 && c < 6 && c - 3 >= dim) continue;
@@ -506,13 +495,12 @@ static void plain_differences(void **state)
 }
 
 /* They explain what they leave a thousand times smaller. */
-static void plainly_enough(void **state)
+TEST(plainly_enough)
 {
     static struct gas gas;
     static struct file file;
     static const char *const causes[] = {
         "theirs is 0.8125", "self-contribution", "", "the sign", "", "", "they give dU/dt"};
-    (void)state;
     make(&gas, 2, 6, USUAL);
     struct rate_table ours = table_of(&gas.setup);
     const double n = (double)gas.setup.n;
@@ -543,11 +531,10 @@ static void plainly_enough(void **state)
 }
 
 /* Of a kernel that is not 1 at 0: 66 (7/478 pi) 3^2/h^2 is the quintic spline's W(0) in a plane. */
-static void self_contribution(void **state)
+TEST(self_contribution)
 {
     static struct gas gas;
     static struct file file;
-    (void)state;
     make(&gas, 2, 8, USUAL " kernel=quintic_spline eta=2.5");
     struct rate_table ours = table_of(&gas.setup);
     write_file(&file, &gas, &ours, 1 << 1);
@@ -560,12 +547,11 @@ static void self_contribution(void **state)
 
 /* How well a factor explains an acceleration is relative to the largest one, not to a particle's
  * own, of which the smallest is off here. */
-static void factor_of_an_acceleration(void **state)
+TEST(factor_of_an_acceleration)
 {
     static struct gas gas;
     static struct file file;
     size_t least = 0;
-    (void)state;
     make(&gas, 2, 6, USUAL);
     struct rate_table ours = table_of(&gas.setup);
     write_file(&file, &gas, &ours, 1 << 3);
@@ -581,11 +567,10 @@ static void factor_of_an_acceleration(void **state)
 }
 
 /* Beside rates that are all 0 every difference is beyond bounds: no choice explains it. */
-static void beside_nothing(void **state)
+TEST(beside_nothing)
 {
     static struct gas gas;
     static struct file file;
-    (void)state;
     make(&gas, 2, 6, USUAL);
     struct rate_table ours = table_of(&gas.setup);
     write_file(&file, &gas, &ours, 1 << 3);
@@ -600,11 +585,10 @@ static void beside_nothing(void **state)
 }
 
 /* What is wrong after the first wrong one follows from it; what comes before it does not. */
-static void what_follows(void **state)
+TEST(what_follows)
 {
     static struct gas gas;
     static struct file file;
-    (void)state;
     make(&gas, 2, 6, USUAL);
     struct rate_table ours = table_of(&gas.setup);
     for (int first = 0; first < 7; first++) {
@@ -628,12 +612,11 @@ static void what_follows(void **state)
 
 /* Rates of the lagrangian formulation without its grad-h factors, in a periodic box without forces
  * from outside: only there the oracle has them. */
-static void no_grad_h(void **state)
+TEST(no_grad_h)
 {
     static const char cause[] = "grad-h: their lagrangian formulation has no grad-h factors";
     static struct gas gas;
     static struct file file;
-    (void)state;
     for (int dim = 1; dim <= 3; dim++) {
         char words[400];
         snprintf(words, sizeof words, "%s formulation=lagrangian", schemes[dim]);
@@ -674,25 +657,4 @@ static void no_grad_h(void **state)
         assert_string_not_equal(cause_of(&check, "ax"), cause);
         rate_table_free(&ours);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(in_the_setups_order),
-        cmocka_unit_test(whichever_energy),
-        cmocka_unit_test(no_setup_no_table),
-        cmocka_unit_test(equal_columns),
-        cmocka_unit_test(how_far_off),
-        cmocka_unit_test(each_choice_is_named),
-        cmocka_unit_test(better_by_a_thousand),
-        cmocka_unit_test(plain_differences),
-        cmocka_unit_test(plainly_enough),
-        cmocka_unit_test(self_contribution),
-        cmocka_unit_test(factor_of_an_acceleration),
-        cmocka_unit_test(beside_nothing),
-        cmocka_unit_test(what_follows),
-        cmocka_unit_test(no_grad_h),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,11 +2,7 @@
  * Certificates against what is known of the kernels: exact second moments, sign and size of the
  * transform (from an independent computation with exact rational arithmetic), class, onset of
  * pairing (Dehnen & Aly 2012 and relaxation runs); and the numbers of `sphproof kernel --json`. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -51,9 +47,8 @@ static const struct known list[] = {
     {"sinc", 1, 4, 0.053806, {14.5, 15.5}, -7e-5, {-1, -1}},
 };
 
-static void test_known(void **state)
+TEST(test_known)
 {
-    (void)state;
     for (size_t i = 0; i < sizeof list / sizeof *list; i++) {
         const struct known *known = &list[i];
         struct kernel kernel;
@@ -87,9 +82,8 @@ static double number(const json_t *object, const char *key)
     return json_number_value(value);
 }
 
-static void test_json(void **state)
+TEST(test_json)
 {
-    (void)state;
     char path[4096], command[8192];
     snprintf(path, sizeof path, "%s/certificate.json", folder);
     snprintf(command, sizeof command,
@@ -127,9 +121,5 @@ int main(int argc, char **argv)
     if (argc != 3) return 2;
     program = argv[1];
     folder = argv[2];
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_known),
-        cmocka_unit_test(test_json),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return test_run(NULL, NULL);
 }

@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The public library through its own headers: what is right passes, what is wrong is named. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "test.h"
 
-#include <cmocka.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -57,9 +53,8 @@ static void see(void *context, const struct sphproof_figure *figure)
         snprintf(seen->first, sizeof seen->first, "%s", figure->property);
 }
 
-static void a_kernel_of_ones_own_is_certified(void **state)
+TEST(a_kernel_of_ones_own_is_certified)
 {
-    (void)state;
     struct sphproof_kernel *kernel;
     struct sphproof_error error;
     struct seen seen = {0};
@@ -81,9 +76,8 @@ static void a_kernel_of_ones_own_is_certified(void **state)
     slope = 1;
 }
 
-static void a_kernel_that_is_none_is_refused(void **state)
+TEST(a_kernel_that_is_none_is_refused)
 {
-    (void)state;
     static const double knots[] = {0.7, 0.3};
     struct sphproof_kernel *kernel;
     struct sphproof_error error;
@@ -143,9 +137,8 @@ static int tried(const char *name, enum fault fault, int dim,
     return status;
 }
 
-static void an_operator_is_held_to_its_promise(void **state)
+TEST(an_operator_is_held_to_its_promise)
 {
-    (void)state;
     const struct sphproof_gradient_promise linear = {2, 0.85, 2.4, true, true, true, true},
                                            conserving = {0, -1.2, 2.4, true, true, true, true};
     struct sphproof_gradient_promise smaller = linear;
@@ -171,9 +164,8 @@ static void an_operator_is_held_to_its_promise(void **state)
     assert_int_equal(tried("ia", RIGHT, 1, smaller, &error), SPHPROOF_BAD_INPUT);
 }
 
-static void densities_of_a_lattice(void **state)
+TEST(densities_of_a_lattice)
 {
-    (void)state;
     enum { N = 40 };
     double x[N], m[N], h[N], rho[N];
     struct sphproof_cloud cloud = {
@@ -193,9 +185,8 @@ static void densities_of_a_lattice(void **state)
 /* ---- solutions ---- */
 
 /* Jump conditions and invariants, not figures: mass flux through Sod's shock is continuous. */
-static void solutions_obey_their_equations(void **state)
+TEST(solutions_obey_their_equations)
 {
-    (void)state;
     const double left[] = {1, 0, 1}, right[] = {0.125, 0, 0.1};
     double x[2], rho[2], v[2], P[2], shock;
     struct sphproof_star star;
@@ -226,9 +217,8 @@ static void solutions_obey_their_equations(void **state)
     assert_true(fabs(P[0] - pow(rho[0], 1.4)) < 1e-13);
 }
 
-static void nonsense_is_refused(void **state)
+TEST(nonsense_is_refused)
 {
-    (void)state;
     const double left[] = {1, 0, 1}, wrong[] = {-1, 0, 1};
     double x = 0, y[3] = {7, 7, 7};
     struct sphproof_error e;
@@ -249,9 +239,8 @@ static void nonsense_is_refused(void **state)
 
 /* ---- convergence ---- */
 
-static void an_order_passes_its_gate(void **state)
+TEST(an_order_passes_its_gate)
 {
-    (void)state;
     const double spacing[] = {0.1, 0.05, 0.025, 0.0125};
     const struct sphproof_gate gate = {1.8, 2.2, 1}, narrow = {2.1, 2.2, 1},
                                small = {1.8, 2.2, 1e-9};
@@ -306,9 +295,8 @@ static struct sphproof_setup setup_of_a_wave(void)
                                    .keys = keys};
 }
 
-static void rates_conserve(void **state)
+TEST(rates_conserve)
 {
-    (void)state;
     const struct sphproof_setup setup = setup_of_a_wave();
     double force[N], dU[N], P[N], total = 0, power = 0, largest = 0;
     const struct sphproof_rates rates = {.force = {force}, .dU = dU, .P = P};
@@ -322,9 +310,8 @@ static void rates_conserve(void **state)
     assert_true(largest > 1e-3 && fabs(total) < 1e-13 && fabs(power) < 1e-13);
 }
 
-static void a_simulation_conserves(void **state)
+TEST(a_simulation_conserves)
 {
-    (void)state;
     struct sphproof_setup setup = setup_of_a_wave();
     struct sphproof_simulation *simulation;
     struct sphproof_error error;
@@ -344,9 +331,8 @@ static void a_simulation_conserves(void **state)
 }
 
 /* Up to its own time there is nothing to compute, and earlier ones are past. */
-static void times_of_a_simulation(void **state)
+TEST(times_of_a_simulation)
 {
-    (void)state;
     const double refused[] = {-1e-300, 0.01, nextafter(0.02, 0), (double)NAN, HUGE_VAL, -HUGE_VAL};
     struct sphproof_setup setup = setup_of_a_wave();
     struct sphproof_simulation *simulation;
@@ -372,9 +358,8 @@ static void times_of_a_simulation(void **state)
 
 /* Gas that fills a periodic box falls freely, along each direction as that direction's gravity
  * says. */
-static void gas_falls(void **state)
+TEST(gas_falls)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         enum { SIDE = 10, MOST = SIDE * SIDE * SIDE };
         static double place[3][MOST], mass[MOST], energy[MOST];
@@ -400,9 +385,8 @@ static void gas_falls(void **state)
     }
 }
 
-static void a_setup_that_is_none_is_refused(void **state)
+TEST(a_setup_that_is_none_is_refused)
 {
-    (void)state;
     static const char *const foreign[] = {"n=100", NULL}, *const unknown[] = {"kernle=ia", NULL};
     const struct sphproof_rates rates = {0};
     struct sphproof_error error;

@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The library's certificate of a kernel on figures that are planted, and every shape that is none:
  * knots, constants, values, dimensions. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -68,10 +64,9 @@ static bool holds(const struct figure *figure, bool single)
     return !(figure->value > bound) && !(figure->floor > bound);
 }
 
-static void every_planted_figure(void **state)
+TEST(every_planted_figure)
 {
     struct sphproof_kernel *kernel;
-    (void)state;
     assert_int_equal(sphproof_kernels_find("cubic_spline", &kernel, NULL), SPHPROOF_OK);
     for (size_t v = 0; v < sizeof values / sizeof *values; v++)
         for (size_t b = 0; b < sizeof bounds / sizeof *bounds; b++)
@@ -105,10 +100,9 @@ static void every_planted_figure(void **state)
 }
 
 /* Single precision loosens a bound at 1e-6, where there is one, and nothing else. */
-static void single_precision(void **state)
+TEST(single_precision)
 {
     struct sphproof_kernel *kernel;
-    (void)state;
     assert_int_equal(sphproof_kernels_find("cubic_spline", &kernel, NULL), SPHPROOF_OK);
     for (int single = 0; single < 2; single++) {
         kernel->single = single;
@@ -127,11 +121,10 @@ static void single_precision(void **state)
     sphproof_kernels_free(kernel);
 }
 
-static void dimensions(void **state)
+TEST(dimensions)
 {
     static const int all[] = {-1, 0, 1, 2, 3, 4};
     struct sphproof_kernel *kernel;
-    (void)state;
     planted = (struct figure){0, 1, 0, false};
     assert_int_equal(sphproof_kernels_find("wendland_c2", &kernel, NULL), SPHPROOF_OK);
     for (int own = 0; own <= 3; own++)
@@ -200,7 +193,7 @@ static enum sphproof_status own(const struct sphproof_shape *shape, const char *
 }
 
 /* Knots are strictly within ]0, 1[, and ascend. */
-static void knots(void **state)
+TEST(knots)
 {
     static const struct {
         int count, wrong; /* wrong: the number of the first one that is; 0: none */
@@ -233,7 +226,6 @@ static void knots(void **state)
         {3, 3, {0.2, 0.5, 1}},
         {-1, 0, {7}}, /* they are found */
     };
-    (void)state;
     for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
         struct sphproof_shape shape = usual;
         char text[100] = "";
@@ -247,12 +239,11 @@ static void knots(void **state)
     }
 }
 
-static void what_a_shape_needs(void **state)
+TEST(what_a_shape_needs)
 {
     static const double knot = 0.5;
     static const char needs[] = "a kernel needs w, dw, its knots (";
     struct sphproof_shape shape = usual;
-    (void)state;
     assert_int_equal(own(&shape, ""), SPHPROOF_OK);
     shape.w = NULL;
     assert_int_equal(own(&shape, needs), SPHPROOF_BAD_INPUT);
@@ -273,11 +264,10 @@ static void what_a_shape_needs(void **state)
 
 /* Values that are not finite, at the origin, within and at the edge, in each dimension of its own.
  */
-static void values_of_a_shape(void **state)
+TEST(values_of_a_shape)
 {
     static const double at[] = {0, 0.25, 0.5, 0.75, 1};
     static const enum odd kinds[] = {NAN_W, NAN_DW, INF_W, INF_DW};
-    (void)state;
     for (size_t k = 0; k < 4; k++)
         for (size_t i = 0; i < 5; i++)
             for (int dim = 0; dim <= 3; dim++) {
@@ -298,10 +288,9 @@ static void values_of_a_shape(void **state)
 }
 
 /* A constant is declared, or else found; it is finite and above 0. */
-static void constants(void **state)
+TEST(constants)
 {
     static const double wrong[] = {-1, (double)NAN, (double)INFINITY, -(double)INFINITY};
-    (void)state;
     for (int dim = 1; dim <= 3; dim++) {
         struct sphproof_shape shape = usual;
         struct sphproof_kernel *kernel;
@@ -330,9 +319,8 @@ static void constants(void **state)
 }
 
 /* What is declared reaches the properties; a class that is not is measured. */
-static void what_is_declared(void **state)
+TEST(what_is_declared)
 {
-    (void)state;
     for (int how = 0; how < 8; how++) {
         struct sphproof_shape shape = usual;
         struct sphproof_kernel *kernel;
@@ -350,11 +338,10 @@ static void what_is_declared(void **state)
 }
 
 /* W, dW/dr and dW/dh of one's own kernel and of a built-in one, from w and dw. */
-static void values_and_slopes(void **state)
+TEST(values_and_slopes)
 {
     static const double r[] = {0, 0.3, 1, 1.9, 2, 2.5}, h = 2;
     struct sphproof_kernel *kernel;
-    (void)state;
     assert_int_equal(sphproof_kernels_own(&usual, &kernel, NULL), SPHPROOF_OK);
     for (int dim = 1; dim <= 3; dim++)
         for (size_t i = 0; i < sizeof r / sizeof *r; i++) {
@@ -380,20 +367,4 @@ static void values_and_slopes(void **state)
         assert_non_null(strstr(error.message, "cubic_spline"));
         assert_int_equal(sphproof_kernels_find(none[i], &kernel, NULL), SPHPROOF_BAD_INPUT);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_planted_figure),
-        cmocka_unit_test(single_precision),
-        cmocka_unit_test(dimensions),
-        cmocka_unit_test(knots),
-        cmocka_unit_test(what_a_shape_needs),
-        cmocka_unit_test(values_of_a_shape),
-        cmocka_unit_test(constants),
-        cmocka_unit_test(what_is_declared),
-        cmocka_unit_test(values_and_slopes),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,11 +2,7 @@
  * The library on drawn input: every number that it hands over, in its place and nowhere else, is
  * what a plain calculation or the solution itself says; and every refusal. The operator whose
  * gradients are checked is none, but each figure of it is known. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -64,10 +60,9 @@ static void ends_at(size_t n)
     for (int k = 0; k < 3; k++) assert_true(found[k][n] == -77);
 }
 
-static void solutions(void **state)
+TEST(solutions)
 {
     double *const rho = found[0], *const v = found[1], *const P = found[2];
-    (void)state;
     for (size_t n = 0; n <= PLACES; n++) {
         const int count = (int)n;
         const double t = n ? uniform(0.1, 0.3) : 0, gamma = uniform(1.2, 2), x0 = uniform(-1, 1);
@@ -143,13 +138,12 @@ static void solutions(void **state)
     }
 }
 
-static void refused_solutions(void **state)
+TEST(refused_solutions)
 {
     const double gas[3] = {1, 0, 1}, wrong[3] = {-1, 0, 1};
     const struct simple_wave wave = {1.4, 1, 0, 1, 0.1, 1};
     double *const rho = found[0], *const v = found[1], *const P = found[2];
     struct sphproof_star star;
-    (void)state;
     draw_places(0, 1);
 #define RIEMANN(left, t)   sphproof_solutions_riemann(1.4, left, gas, 0, t, 1, at, rho, v, P, &error)
 #define SEDOV(dim, t)      sphproof_solutions_sedov(1.4, dim, 1, 1, t, 1, at, rho, v, P, NULL, &error)
@@ -229,7 +223,7 @@ static double sum_of(const struct sphproof_setup *setup, const struct sphproof_k
 }
 
 /* Both at the start: rates of the setup, and the state of a simulation of it. */
-static void setups(void **state)
+TEST(setups)
 {
     static const char *const keys[] = {"kernel=cubic_spline", "eta=1.7",
                                        "volume_element=mass", "energy=internal",
@@ -243,7 +237,6 @@ static void setups(void **state)
                                                 NULL};
     static double got[12][MOST + 1];
     struct sphproof_kernel *kernel;
-    (void)state;
     assert_int_equal(sphproof_kernels_find("cubic_spline", &kernel, NULL), SPHPROOF_OK);
     for (int dim = 1; dim <= 3; dim++)
         for (int left_out = 0; left_out < 5; left_out++) { /* 3: at rest; 4: h is coarse */
@@ -312,10 +305,9 @@ static void setups(void **state)
     sphproof_kernels_free(kernel);
 }
 
-static void refused_setups(void **state)
+TEST(refused_setups)
 {
     struct sphproof_simulation *simulation;
-    (void)state;
     for (int row = 0; row < 12; row++) {
         struct sphproof_setup setup = drawn_setup(2);
         const struct sphproof_rates none = {0};
@@ -356,11 +348,10 @@ static void refused_setups(void **state)
 /* ---- gradients of a cloud ---- */
 
 /* The standard sum and the density, in an open and in a periodic box. */
-static void clouds(void **state)
+TEST(clouds)
 {
     static double h[MOST], volume[MOST], f[MOST], got[4][MOST + 1];
     struct sphproof_kernel *kernel;
-    (void)state;
     assert_int_equal(sphproof_kernels_find("wendland_c4", &kernel, NULL), SPHPROOF_OK);
     for (int dim = 1; dim <= 3; dim++)
         for (int periodic = 0; periodic < 2; periodic++) {
@@ -635,9 +626,8 @@ static void order_is(int dim, double promised)
     figure_is("order", "promised - observed", where, promised - fit.order, 0.2);
 }
 
-static void figures_of_an_operator(void **state)
+TEST(figures_of_an_operator)
 {
-    (void)state;
     for (int dim = 1; dim <= 3; dim++)
         for (int kept = dim == 3; kept < (dim == 3 ? 2 : 6); kept++) {
             const struct sphproof_gradient_promise promise = {.exact = kept < 3 ? 2 - kept : 2,
@@ -671,7 +661,7 @@ static bool zero(void *context, const struct sphproof_cloud *cloud, const double
     return ++calls != refuse_at;
 }
 
-static void promises(void **state)
+TEST(promises)
 {
     const struct sphproof_gradient_promise none = {0, -9, 2.4, true, true, true, true};
     static const struct {
@@ -689,7 +679,6 @@ static void promises(void **state)
                 {1, 3, -9, 2.4, "promise: allowed"},
                 {1, 0, (double)NAN, 2.4, "promise: allowed"},
                 {1, 0, -HUGE_VAL, 2.4, "promise: allowed"}};
-    (void)state;
     refuse_at = 0;
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         struct sphproof_gradient_promise promise = none;
@@ -711,15 +700,4 @@ static void promises(void **state)
         assert_string_equal(error.message, "the operator says that it could not");
     }
     refuse_at = 0;
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(solutions), cmocka_unit_test(refused_solutions),
-        cmocka_unit_test(setups),    cmocka_unit_test(refused_setups),
-        cmocka_unit_test(clouds),    cmocka_unit_test(figures_of_an_operator),
-        cmocka_unit_test(promises),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,36 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What stands around the sums in 1D, on setups drawn at random: order, images at the ends, reach,
  * who sleeps, each against a plain count over all particles. */
+#include "test.h"
+
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include <float.h>
 
+#include "draw.h"
 #include "line/line.h"
 #include "made_simulation.h"
 #include "near.h"
 
 enum { GHOSTS = 256, SETUPS = 40 };
-
-static uint64_t drawn = 1;
-
-static double draw(double low, double high)
-{
-    drawn = drawn * 6364136223846793005u + 1442695040888963407u;
-    return low + (high - low) * ldexp((double)((drawn ^ drawn >> 29) >> 11), -53);
-}
-
-static int draw_count(int low, int high)
-{
-    return low + (int)draw(0, high - low + 1);
-}
 
 /* A simulation that nobody steps: n particles in order on a period of 2, nothing else. */
 static void made(struct simulation *simulation, int n)
@@ -71,9 +56,8 @@ static void unmade(struct simulation *simulation)
 
 /* --- order ------------------------------------------------------------------------------------ */
 
-static void sorted_across_the_ends(void **state)
+TEST(sorted_across_the_ends)
 {
-    (void)state;
     for (int setup = 0; setup < SETUPS; setup++) {
         struct simulation s;
         const int n = draw_count(2, 90);
@@ -100,9 +84,8 @@ static void sorted_across_the_ends(void **state)
     }
 }
 
-static void no_order_of_what_is_no_position(void **state)
+TEST(no_order_of_what_is_no_position)
 {
-    (void)state;
     static const double bad[] = {NAN, INFINITY, -INFINITY};
     for (int k = 0; k < 3; k++)
         for (int at = 0; at < 3; at++) {
@@ -125,9 +108,8 @@ static void no_order_of_what_is_no_position(void **state)
         }
 }
 
-static void crossings_are_counted(void **state)
+TEST(crossings_are_counted)
 {
-    (void)state;
     for (int setup = 0; setup < SETUPS; setup++) {
         struct simulation s;
         const int n = draw_count(3, 200);
@@ -146,9 +128,8 @@ static void crossings_are_counted(void **state)
 
 /* One pair out of order, or the last one beyond the first one's image, is seen wherever it is; what
  * sleeps at rest is not looked at. */
-static void arranged_where_it_is_needed(void **state)
+TEST(arranged_where_it_is_needed)
 {
-    (void)state;
     struct error error;
     for (int at = 0; at < 150; at++) {
         struct simulation s;
@@ -177,9 +158,8 @@ static void arranged_where_it_is_needed(void **state)
 
 /* A kernel's own term alone exceeds what `count` particles at one place allow: they are laid around
  * it, a thousandth of a spacing apart, or evenly in half of the room to the nearer neighbour. */
-static void coincident_ones_are_moved_apart(void **state)
+TEST(coincident_ones_are_moved_apart)
 {
-    (void)state;
     enum { MEMBERS = 12 };
     const struct kernel *kernel =
         (const struct kernel *)kernel_family.members[kernel_index("cubic_spline")];
@@ -234,9 +214,8 @@ static void coincident_ones_are_moved_apart(void **state)
 
 /* While some sleep: who is at rest is not looked at, who drifts is; where the order has changed all
  * wake. */
-static void sleepers_in_order(void **state)
+TEST(sleepers_in_order)
 {
-    (void)state;
     struct error error;
     for (int at_rest = 0; at_rest < 2; at_rest++)
         for (int at = -1; at < 149; at++) {
@@ -266,9 +245,8 @@ static void sleepers_in_order(void **state)
 
 /* --- images and reach ------------------------------------------------------------------------- */
 
-static void images_of_images(void **state)
+TEST(images_of_images)
 {
-    (void)state;
     for (int n = 2; n < 40; n++) {
         struct simulation s;
         made(&s, n);
@@ -290,9 +268,8 @@ static void images_of_images(void **state)
 
 /* What density reads: positions, masses where there are more than before, energies where they are
  * summed; memory grows with a reserve. */
-static void images_for_density(void **state)
+TEST(images_for_density)
 {
-    (void)state;
     struct error error;
     for (int energy_sum = 0; energy_sum < 2; energy_sum++)
         for (int count = 1; count < 4 * GHOSTS; count += count == 248 ? 1 : 13)
@@ -322,9 +299,8 @@ static void images_for_density(void **state)
 }
 
 /* What pairs read, as far as they reach and one more; the rest only where the plan asks for it. */
-static void images_for_pairs(void **state)
+TEST(images_for_pairs)
 {
-    (void)state;
     for (int plan = 0; plan < 8; plan++) {
         struct simulation s;
         made(&s, 30);
@@ -352,9 +328,8 @@ static void images_for_pairs(void **state)
 }
 
 /* A room is divided into ranges that are full but for the last one. */
-static void a_room_is_divided(void **state)
+TEST(a_room_is_divided)
 {
-    (void)state;
     for (size_t n = 20; n<330; n += n % 64> 61 || n % 64 < 3 ? 1 : 7) {
         struct simulation *s = made_simulation(n);
         const struct line *line = line_of(s);
@@ -394,9 +369,8 @@ static int farthest(const struct particles *a, const struct range *range)
     return most;
 }
 
-static void reach_is_what_widths_ask_for(void **state)
+TEST(reach_is_what_widths_ask_for)
 {
-    (void)state;
     for (int setup = 0; setup < SETUPS; setup++) {
         struct simulation s;
         made(&s, draw_count(20, 300));
@@ -432,9 +406,8 @@ static void reach_is_what_widths_ask_for(void **state)
 
 /* The widest reach among ranges that lie closer than it, on either side: as close as the shorter of
  * the ranges between. */
-static void pairs_reach_as_far_as_the_wider_one(void **state)
+TEST(pairs_reach_as_far_as_the_wider_one)
 {
-    (void)state;
     for (int setup = 0; setup < 10 * SETUPS; setup++) {
         struct simulation s;
         made(&s, draw_count(40, 700));
@@ -465,9 +438,8 @@ static void pairs_reach_as_far_as_the_wider_one(void **state)
 }
 
 /* Who stands at a distance of just h is not inside. */
-static void widths_end_at_h(void **state)
+TEST(widths_end_at_h)
 {
-    (void)state;
     struct simulation s;
     made(&s, 70);
     const struct particles *a = &s.particles;
@@ -497,9 +469,8 @@ static void see_all(void *context, size_t i, const struct description *of)
 }
 
 /* As many images as there are; nobody who stands at a distance of just h. */
-static void neighbours_end_somewhere(void **state)
+TEST(neighbours_end_somewhere)
 {
-    (void)state;
     struct simulation s;
     made(&s, 70);
     const struct particles *a = &s.particles;
@@ -524,9 +495,8 @@ static void see(void *context, size_t i, const struct description *of)
     counted++;
 }
 
-static void neighbours_are_described(void **state)
+TEST(neighbours_are_described)
 {
-    (void)state;
     for (int setup = 0; setup < SETUPS; setup++) {
         struct simulation s;
         made(&s, draw_count(20, 100));
@@ -542,9 +512,8 @@ static void neighbours_are_described(void **state)
 
 /* Each limit exactly, and the next number beyond it, in d dimensions; where the setup's mean sound
  * speed and pressure are more than the particle's own, they count. */
-static void disturbed_beyond_a_limit(void **state)
+TEST(disturbed_beyond_a_limit)
 {
-    (void)state;
     for (int dim = 1; dim <= 3; dim++)
         for (int n = 10; n < 9000; n += 1700)
             for (int what = 0; what < 6; what++)
@@ -691,9 +660,8 @@ static void sleep_once_calm(struct simulation *s, ptrdiff_t reach, bool sheared)
 }
 
 /* Who falls asleep at the start, and who wakes when a signal comes near the end of a span. */
-static void groups_sleep_and_wake(void **state)
+TEST(groups_sleep_and_wake)
 {
-    (void)state;
     enum { MOST = 100 };
     for (int setup = 0; setup < 10 * SETUPS; setup++) {
         struct simulation s;
@@ -754,28 +722,4 @@ static void groups_sleep_and_wake(void **state)
         sleep_once_calm(&s, reach, setup % 2);
         unmade(&s);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sorted_across_the_ends),
-        cmocka_unit_test(no_order_of_what_is_no_position),
-        cmocka_unit_test(crossings_are_counted),
-        cmocka_unit_test(arranged_where_it_is_needed),
-        cmocka_unit_test(coincident_ones_are_moved_apart),
-        cmocka_unit_test(images_of_images),
-        cmocka_unit_test(reach_is_what_widths_ask_for),
-        cmocka_unit_test(pairs_reach_as_far_as_the_wider_one),
-        cmocka_unit_test(widths_end_at_h),
-        cmocka_unit_test(neighbours_end_somewhere),
-        cmocka_unit_test(neighbours_are_described),
-        cmocka_unit_test(sleepers_in_order),
-        cmocka_unit_test(images_for_density),
-        cmocka_unit_test(images_for_pairs),
-        cmocka_unit_test(a_room_is_divided),
-        cmocka_unit_test(disturbed_beyond_a_limit),
-        cmocka_unit_test(groups_sleep_and_wake),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -142,7 +142,7 @@ static void matrices(void **state)
 {
     (void)state;
     for (size_t k = 0; k < kernel_family.n; k++)
-        for (int terms = 0; terms < MATRIX_TERMS; terms++)
+        for (int way = 1; way < 4; way++) /* bit 0: with a matrix; bit 1: with slopes */
             for (int specialised = 0; specialised < 2; specialised++)
                 for (int r = 0; r < RANGES; r++) {
                     struct particles a = gas();
@@ -152,8 +152,9 @@ static void matrices(void **state)
                     if (ranges[r].len > 1) a.h_inverse[alone] = 3; /* nobody is near */
                     for (ptrdiff_t i = FIRST_OF_ALL; i < END_OF_ALL; i++)
                         a.g[i] = a.dv[i] = untouched;
-                    loop_matrix(specialised ? (int)k : -1, (enum matrix_terms)terms)(
-                        &asks, &a, first, ranges[r].len, ranges[r].D);
+                    loop_matrix(specialised ? (int)k : -1,
+                                way & 1 ? GRADIENT_IA : GRADIENT_STANDARD,
+                                way & 2)(&asks, &a, first, ranges[r].len, ranges[r].D);
                     for (ptrdiff_t i = FIRST_OF_ALL; i < END_OF_ALL; i++) {
                         const bool inside = i >= first && i < end;
                         real second = 0, slope = 0;
@@ -165,11 +166,11 @@ static void matrices(void **state)
                         }
                         const real g = second > 0 ? 1 / second : 0;
                         const double bound = 1e-13 * fmax(1, (double)g);
-                        if (inside && terms != MATRIX_SLOPE)
+                        if (inside && way & 1)
                             near_sum(a.g[i], g, bound);
                         else
                             assert_true(a.g[i] == untouched);
-                        if (inside && terms != MATRIX_MOMENT)
+                        if (inside && way & 2)
                             near_sum(a.dv[i], g * slope, bound);
                         else
                             assert_true(a.dv[i] == untouched);
@@ -431,7 +432,7 @@ static void specialised_ones_differ(void **state)
     for (int k = -1; k < kernels; k++)
         for (int other = -1; other < k; other++) {
             assert_true(loop_density(k, DENSITY_MASS) != loop_density(other, DENSITY_MASS));
-            assert_true(loop_matrix(k, MATRIX_BOTH) != loop_matrix(other, MATRIX_BOTH));
+            assert_true(loop_matrix(k, GRADIENT_IA, true) != loop_matrix(other, GRADIENT_IA, true));
             assert_true(loop_gradient(k, GRADIENT_IA, PAIR_WIDTH_MEAN) !=
                         loop_gradient(other, GRADIENT_IA, PAIR_WIDTH_MEAN));
         }
@@ -479,9 +480,10 @@ static void chosen_by_plan_and_scheme(void **state)
             assert_true(loops.numbers.beta_ratio == (!plan.alpha ? 0 : way & 64 ? 2 : 2.5));
             assert_true(loops.density ==
                         loop_density(specialisation, way & 2 ? DENSITY_ENERGY : DENSITY_MASS));
-            matrix_loop *const matrices_of[] = {NULL, loop_matrix(specialisation, MATRIX_MOMENT),
-                                                loop_matrix(specialisation, MATRIX_SLOPE),
-                                                loop_matrix(specialisation, MATRIX_BOTH)};
+            matrix_loop *const matrices_of[] = {NULL,
+                                                loop_matrix(specialisation, scheme.gradient, false),
+                                                loop_matrix(specialisation, scheme.gradient, true),
+                                                loop_matrix(specialisation, scheme.gradient, true)};
             assert_true(loops.matrix == matrices_of[way / 4 % 4]);
             assert_true(loops.gradient ==
                         loop_gradient(specialisation, scheme.gradient,

@@ -2,16 +2,13 @@
  * Passes over the ranges of a line: every range once, by as many threads as there are, and what
  * they find; widths that have a root or none; how room is made; what the force loop reads beyond a
  * range and writes to its scratch. */
+#include "test.h"
+
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdatomic.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -46,9 +43,8 @@ static void visit(struct simulation *simulation, struct range *range, struct tal
 }
 
 /* With fewer than 32 ranges, or one thread at work, one does it all. What is found is the same. */
-static void every_range_once(void **state)
+TEST(every_range_once)
 {
-    (void)state;
     for (int size = 1; size <= 3; size++)
         for (ptrdiff_t count = 1; count <= RANGES_MOST;
              count += count == 31 || count == 32 ? 1 : 10)
@@ -100,9 +96,8 @@ static void coincide(struct simulation *s, ptrdiff_t i)
 }
 
 /* The first particle without a root is named, whoever finds it. */
-static void the_first_without_a_root(void **state)
+TEST(the_first_without_a_root)
 {
-    (void)state;
     static const ptrdiff_t places[][2] = {{0, 0},   {62, 62},   {64, 64},   {2559, 2559},
                                           {70, 68}, {2200, 67}, {67, 2200}, {1300, 1200}};
     for (size_t k = 0; k < sizeof places / sizeof *places; k++)
@@ -126,9 +121,8 @@ static void the_first_without_a_root(void **state)
 
 /* In every eighth step a reach that has become too large is lowered, by Newton and where widths are
  * predicted; one that is too small is raised at once. */
-static void reaches_are_lowered_now_and_then(void **state)
+TEST(reaches_are_lowered_now_and_then)
 {
-    (void)state;
     for (int newton = 0; newton < 2; newton++)
         for (uint64_t step = 0; step < 18; step++) {
             struct simulation *s = made_simulation(200);
@@ -151,9 +145,8 @@ static void reaches_are_lowered_now_and_then(void **state)
 
 /* Newton leaves 1/h with h; a sum at a predicted width is taken there, and the pressure follows on
  * the adiabat what the prediction has missed. */
-static void what_sums_leave(void **state)
+TEST(what_sums_leave)
 {
-    (void)state;
     struct simulation *s = made_simulation(200);
     const struct particles *a = &s->particles;
     struct error error;
@@ -189,9 +182,8 @@ static void what_sums_leave(void **state)
 
 /* A box whose widths reach over many images: as many ghosts as it takes, no more passes over ranges
  * that are done; a predicted width beyond all bounds is named. */
-static void ghosts_as_many_as_it_takes(void **state)
+TEST(ghosts_as_many_as_it_takes)
 {
-    (void)state;
     struct simulation *s = made_simulation(20);
     struct error error;
     char said[120];
@@ -227,9 +219,8 @@ static void ghosts_as_many_as_it_takes(void **state)
 
 /* As many ghosts as there were, or as the reach asks for, 8 at least; twice as many where they do
  * not suffice, and those of the pairs after that. */
-static void ghosts_are_kept_filled(void **state)
+TEST(ghosts_are_kept_filled)
 {
-    (void)state;
     static const struct {
         ptrdiff_t filled, reach, then;
     } rows[] = {{0, 1, 8}, {7, 1, 8}, {8, 1, 8}, {9, 1, 9}, {9, 7, 9}, {9, 8, 10}, {0, 20, 22}};
@@ -256,9 +247,8 @@ static void ghosts_are_kept_filled(void **state)
  */
 
 /* Room for eight times the reach, and 8 more to read; ghosts that it moves are filled again. */
-static void room_for_eight_times_the_reach(void **state)
+TEST(room_for_eight_times_the_reach)
 {
-    (void)state;
     for (ptrdiff_t reach = 5; reach < 12; reach++) {
         struct simulation *s = made_simulation(100);
         struct error error;
@@ -284,9 +274,8 @@ static void room_for_eight_times_the_reach(void **state)
 }
 
 /* Scratch is kept while it suffices, and twice as long as was asked for where it does not. */
-static void scratch_is_made_rarely(void **state)
+TEST(scratch_is_made_rarely)
 {
-    (void)state;
     struct simulation *s = made_simulation(100);
     struct error error;
     struct line *line = line_of(s);
@@ -343,9 +332,8 @@ enum { SCHEMES = sizeof schemes / sizeof *schemes };
 /* The loop finds the largest signal speed / h of its pairs, and 2c/h of their left sides, wherever
  * else gas is hotter; and writes
  * to no more scratch than it says. */
-static void rates_and_scratch_of_a_range(void **state)
+TEST(rates_and_scratch_of_a_range)
 {
-    (void)state;
     for (int k = 0; k < SCHEMES; k++)
         for (ptrdiff_t first = 0; first < 30; first += 6)
             for (int len = 1; len <= 64; len += 9) {
@@ -418,9 +406,8 @@ static void asked_matrix(const struct kernel *kernel, const struct particles *pa
 
 /* Each range with its own reach and its thread's own scratch; pairs are counted on both sides in
  * the sums, once in the forces. */
-static void forces_of_every_range(void **state)
+TEST(forces_of_every_range)
 {
-    (void)state;
     for (int way = 0; way < 8; way++) {
         struct simulation *s = made_simulation(34 * BATCH_MAX + 5);
         struct line *line = line_of(s);
@@ -431,6 +418,7 @@ static void forces_of_every_range(void **state)
         s->plan.alpha = way & 4, s->scheme.alpha_max = 2;
         line->scratch_size = 0; /* for so many threads */
         line->loops.force = asked_force;
+        s->scheme.viscosity = VISCOSITY_TIME_DEPENDENT;
         line->loops.matrix = way & 2 ? asked_matrix : NULL;
         line->ranges[3].reach = line->reach += 2;
         for (ptrdiff_t i = 0; i < s->particles.n; i++)
@@ -460,9 +448,8 @@ static void forces_of_every_range(void **state)
 }
 
 /* Images of what the matrices have found, as far as pairs reach and one more. */
-static void matrices_of_every_range(void **state)
+TEST(matrices_of_every_range)
 {
-    (void)state;
     for (int slope = 0; slope < 2; slope++) {
         struct simulation *s = made_simulation(200);
         struct line *line = line_of(s);
@@ -487,9 +474,8 @@ static void matrices_of_every_range(void **state)
 }
 
 /* Signal speeds know velocities that have changed, those of images, too. */
-static void signals_of_every_range(void **state)
+TEST(signals_of_every_range)
 {
-    (void)state;
     for (int at = 0; at < 200; at += 7) {
         struct simulation *s = made_simulation(200);
         const struct particles *a = &s->particles;
@@ -521,23 +507,4 @@ static void signals_of_every_range(void **state)
         assert_true(a->v[0][200 + reach] == a->v[0][reach] && a->v[0][201 + reach] == -77);
         simulation_destroy(s);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_range_once),
-        cmocka_unit_test(the_first_without_a_root),
-        cmocka_unit_test(reaches_are_lowered_now_and_then),
-        cmocka_unit_test(what_sums_leave),
-        cmocka_unit_test(ghosts_are_kept_filled),
-        cmocka_unit_test(ghosts_as_many_as_it_takes),
-        cmocka_unit_test(room_for_eight_times_the_reach),
-        cmocka_unit_test(scratch_is_made_rarely),
-        cmocka_unit_test(rates_and_scratch_of_a_range),
-        cmocka_unit_test(forces_of_every_range),
-        cmocka_unit_test(matrices_of_every_range),
-        cmocka_unit_test(signals_of_every_range),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,11 +2,7 @@
  * The examples of plug-in kernels (examples/): right ones are accepted in all dimensions, subtle
  * faults are rejected by the property that ought to, unusable ones are refused with a message. The
  * program's exit status follows. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -55,9 +51,8 @@ static int rejected(const char *name, int dim, const char *by)
     return by ? by_that : failed;
 }
 
-static void test_right(void **state)
+TEST(test_right)
 {
-    (void)state;
     static const char *const names[] = {"wendland_c8", "gaussian", "super_gaussian",
                                         "table",       "table_12", "faulty_NONE"};
     /* a smooth one and a table in each dimension, others in one; the test `plug-ins, looked at
@@ -68,9 +63,8 @@ static void test_right(void **state)
                 assert_int_equal(rejected(names[i], dim, NULL), 0);
 }
 
-static void test_derived(void **state)
+TEST(test_derived)
 {
-    (void)state;
     struct user_kernel user;
     assert_int_equal(user_kernel_load(&user, path_of("wendland_c8"), 0, NULL, NULL), STATUS_OK);
     assert_true(user.found_constant && user.found_knots && user.found_dh && !user.found_class);
@@ -85,9 +79,8 @@ static void test_derived(void **state)
     user_kernel_unload(&user);
 }
 
-static void test_subtle(void **state)
+TEST(test_subtle)
 {
-    (void)state;
     static const struct {
         const char *name;
         int dim;
@@ -124,9 +117,8 @@ static void refused(const char *path, const char *why)
     if (!strstr(error.message, why)) fail_msg("'%s' lacks '%s'", error.message, why);
 }
 
-static void test_unusable(void **state)
+TEST(test_unusable)
 {
-    (void)state;
     refused(path_of("faulty_NOT_A_NUMBER"), "finite");
     refused(path_of("faulty_CONSTANT_NEGATIVE"), "above 0");
     refused(path_of("faulty_KNOTS_TOO_MANY"), "0 to 4096");
@@ -150,9 +142,8 @@ static int status_of(const char *arguments)
     return WEXITSTATUS(system(command));
 }
 
-static void test_program(void **state)
+TEST(test_program)
 {
-    (void)state;
     assert_int_equal(status_of("kernel cubic_spline --dim 3"), 0);
     assert_int_equal(status_of("kernel '%s/table.so' --dim 1 --json -"), 0);
     assert_int_equal(status_of("kernel '%s/faulty_DH_POWER.so' --dim 1"), 1);
@@ -180,10 +171,5 @@ int main(int argc, char **argv)
     char *slash = strrchr(own, '/');
     if (slash) *slash = '\0';
     folder = own;
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_right),   cmocka_unit_test(test_derived),
-        cmocka_unit_test(test_subtle),  cmocka_unit_test(test_unusable),
-        cmocka_unit_test(test_program),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return test_run(NULL, NULL);
 }

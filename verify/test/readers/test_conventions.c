@@ -1,14 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What kernel and h of a snapshot are, where its densities have been summed here: with every kernel
  * and both sums, in all dimensions, periodic or not; and what is no proof. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "test.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "conventions.h"
 #include "made_place.h"
@@ -111,9 +108,8 @@ static void is_found(const struct conventions *found, const char *name, double r
     assert_true(found->count <= 2 || strstr(found->why, "; the next kernel, "));
 }
 
-static void every_kernel(void **state)
+TEST(every_kernel)
 {
-    (void)state;
     for (int dim = 1; dim <= 3; dim++)
         for (size_t k = 0; k < kernel_family.n; k++) {
             if (dim > 1 && k % 3 != (size_t)dim % 3) continue; /* all of them on a line */
@@ -133,10 +129,9 @@ static void every_kernel(void **state)
 }
 
 /* Densities near the ends of what is not periodic are nobody's: walls, layers, a vacuum. */
-static void ends(void **state)
+TEST(ends)
 {
     const struct kernel kernel = kernel_called("cubic_spline");
-    (void)state;
     for (int dim = 1; dim <= 3; dim++)
         for (int across = 0; across < dim; across++)
             for (int far = 0; far < 2; far++) {
@@ -173,10 +168,9 @@ static void ends(void **state)
 
 /* On a lattice any kernel fits; densities that nobody has summed are nobody's; what is near is none
  * either, and how near is. */
-static void no_proof(void **state)
+TEST(no_proof)
 {
     const struct kernel kernel = kernel_called("wendland_c4");
-    (void)state;
     struct snapshot_file file = scatter(1, 100, 0.02, 0);
     for (size_t i = 0; i < file.n; i++)
         storage[0][i] = (double)i / 100, storage[SNAPSHOT_RHO][i] = 1,
@@ -204,9 +198,8 @@ static void no_proof(void **state)
     assert_string_equal(found.why, "the file has no smoothing lengths");
 }
 
-static void masses(void **state)
+TEST(masses)
 {
-    (void)state;
     for (int more = 0; more < 2; more++)
         for (int sign = -1; sign < 2; sign += 2) {
             const struct snapshot_file file = scatter(1, 100, 0.05, 0);
@@ -217,10 +210,9 @@ static void masses(void **state)
 }
 
 /* Where masses hardly differ both sums fit: the kernel is known all the same, and named once. */
-static void either_sum(void **state)
+TEST(either_sum)
 {
     const struct kernel kernel = kernel_called("quadratic_spline");
-    (void)state;
     const struct snapshot_file file = scatter(1, 120, 0.08, 0);
     for (size_t i = 0; i < file.n; i++) storage[SNAPSHOT_M][i] *= 1 + uniform(-3e-6, 3e-6);
     sum_densities(&file, boxed, &kernel, 1, DENSITY_MASSES);
@@ -233,12 +225,11 @@ static void either_sum(void **state)
 }
 
 /* What the user says is taken, and how well it does is said. */
-static void said(void **state)
+TEST(said)
 {
     const struct kernel cubic = kernel_called("cubic_spline"),
                         quintic = kernel_called("quintic_spline");
     const struct snapshot_file file = scatter(2, 400, 0.075, 1);
-    (void)state;
     sum_densities(&file, boxed, &cubic, 2, DENSITY_MASSES);
     struct conventions found = found_in(&file, boxed, &cubic, NULL); /* h is sought */
     assert_int_equal(found.count, 2);
@@ -274,11 +265,10 @@ static void said(void **state)
 }
 
 /* Sums over more than 4096 neighbours end the search: nearer ratios are still found. */
-static void crowds(void **state)
+TEST(crowds)
 {
     const struct kernel cubic = kernel_called("cubic_spline");
     struct snapshot_file file = scatter(1, MOST, 0.1, 0);
-    (void)state;
     for (size_t i = 0; i < file.n; i++)
         storage[SNAPSHOT_H][i] = 0.1, storage[0][i] = ((double)i + 0.4 * uniform(0, 1)) / MOST;
     for (size_t i = 0; i < file.n; i++) storage[SNAPSHOT_RHO][i] = 1;
@@ -295,9 +285,8 @@ static void crowds(void **state)
 
 /* ---- as columns ---- */
 
-static void as_columns(void **state)
+TEST(as_columns)
 {
-    (void)state;
     for (int dim = 1; dim <= 3; dim++)
         for (int proved = 0; proved < 3; proved++) { /* 2: there is no h */
             const struct kernel kernel = kernel_called("quintic_spline");
@@ -356,10 +345,9 @@ static void as_columns(void **state)
 
 /* ---- notes ---- */
 
-static void notes(void **state)
+TEST(notes)
 {
     struct snapshot_notes notes = {0};
-    (void)state;
     for (int k = 0; k < SNAPSHOT_NOTES_MAX + 2; k++)
         snapshot_note(&notes, "what", k % 2 ? "\x01" : "value", "%d\n%s", k, "evidence");
     assert_int_equal(notes.count, SNAPSHOT_NOTES_MAX);
@@ -387,10 +375,9 @@ static double flat(const struct kernel *kernel, double q, int dim)
 }
 
 /* Of a ball of constant density; and particles that all stand at the ends are asked as well. */
-static void corners(void **state)
+TEST(corners)
 {
     const struct kernel ball = {.w = flat};
-    (void)state;
     for (int dim = 1; dim <= 3; dim++)
         near_relative(conventions_deviation(&ball, dim), sqrt(1. / (dim + 2)), 1e-12);
     const struct snapshot_file file = scatter(2, 4, 1.5, 0);
@@ -403,11 +390,5 @@ static void corners(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(corners),  cmocka_unit_test(every_kernel), cmocka_unit_test(ends),
-        cmocka_unit_test(no_proof), cmocka_unit_test(either_sum),   cmocka_unit_test(masses),
-        cmocka_unit_test(said),     cmocka_unit_test(crowds),       cmocka_unit_test(as_columns),
-        cmocka_unit_test(notes),
-    };
-    return cmocka_run_group_tests(tests, make_place, remove_place);
+    return test_run(make_place, remove_place);
 }

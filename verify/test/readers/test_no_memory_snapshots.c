@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What is said where there is no memory: for snapshots of any format, for judging them, and by the
  * library. The argument is the folder of the fuzzers' examples. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include "made_no_memory.h"
 #include "made_snapshot.h"
@@ -27,12 +23,11 @@ static enum status read_file(struct error *error)
     return status;
 }
 
-static void formats(void **state)
+TEST(formats)
 {
     static const char *const names[] = {
         "csv/table.csv",       "splash/splash.ascii",     "gadget/one.gadget", "gadget/two.gadget",
         "gadget/plain.gadget", "gadget/two_other.gadget", "phantom/big"};
-    (void)state;
     for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
         char path[4096];
         snprintf(path, sizeof path, "%s/%s", corpus, names[k]);
@@ -61,9 +56,8 @@ static enum status judged(struct error *error)
     return status;
 }
 
-static void judging(void **state)
+TEST(judging)
 {
-    (void)state;
     for (int k = 0; k < 3; k++) { /* without u, without P, with both */
         plant(1, 0, "");          /* without a box the case's own start is not asked for */
         gas.has_u = k != 0, gas.has_P = k != 1, gas.has_h = k == 2;
@@ -142,20 +136,14 @@ static enum status setups(struct error *error)
     return passed(status, &theirs, error);
 }
 
-static void library(void **state)
+TEST(library)
 {
-    (void)state;
     without_memory(kernels, 2, true);
     without_memory(setups, 8, true);
 }
 
 int main(int argc, char **argv)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(formats),
-        cmocka_unit_test(judging),
-        cmocka_unit_test(library),
-    };
     corpus = argc > 1 ? argv[1] : "";
-    return cmocka_run_group_tests(tests, make_place, remove_place);
+    return test_run(make_place, remove_place);
 }

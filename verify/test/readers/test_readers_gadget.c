@@ -91,7 +91,8 @@ static void cut_off(void **state)
             refuses(size, "no beginning", "no snapshot that is read");
             put_all(&b);
         }
-        refuses(head, "a header alone", "1 records; allowed: a header of 256 bytes");
+        refuses(head, "a header alone",
+                "1 records, the first of 256 bytes; allowed: a header of 256 bytes");
         for (size_t at = head - 4; at < size; at += at < head ? 1 : 1 + at % 97) {
             put_all(&b);
             bytes[at] ^= 0x40;

@@ -2,11 +2,7 @@
  * Readers of HDF5: every layout is made from a list of all that it may hold. Then each item of the
  * list in turn is left out, stored in every other form (which must change nothing) and spoilt in
  * every way (which must be refused, or read as absent). */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #ifdef HAVE_HDF5
 #include <float.h>
@@ -16,9 +12,8 @@
 
 #include "made_layouts.h"
 
-static void left_out(void **state)
+TEST(left_out)
 {
-    (void)state;
     for (int a = 0; a < LAYOUTS; a++) {
         const struct layout *l = &layouts[a];
         struct item items[ITEMS_MAX];
@@ -97,10 +92,9 @@ static void apart(void **state)
 }
 
 /* Numbers may be stored in any way: nothing that is read differs. */
-static void other_forms(void **state)
+TEST(other_forms)
 {
     static const enum stored numbers[] = {F32, F32_BIG, I64, I32_BIG};
-    (void)state;
     for (int a = 0; a < LAYOUTS; a++) {
         const struct layout *l = &layouts[a];
         for (size_t k = 0; k < l->count; k++) {
@@ -146,9 +140,8 @@ static bool is_dead(const struct layout *l, const struct field *f, double h)
 }
 
 /* Columns of another shape, of words, a group in their place, and values that cannot be. */
-static void spoilt_columns(void **state)
+TEST(spoilt_columns)
 {
-    (void)state;
     for (int a = 0; a < LAYOUTS; a++) {
         const struct layout *l = &layouts[a];
         for (size_t k = 0; k < l->count; k++) {
@@ -210,9 +203,8 @@ static void spoilt_columns(void **state)
 }
 
 /* In the header: words, nothing, no number. */
-static void spoilt_numbers(void **state)
+TEST(spoilt_numbers)
 {
-    (void)state;
     for (int a = 0; a < LAYOUTS; a++) {
         const struct layout *l = &layouts[a];
         for (size_t k = 0; k < l->count; k++) {

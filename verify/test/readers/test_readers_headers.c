@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Headers in HDF5: other names, boxes, dimensions, precision, comoving units, and files that no
  * reader knows. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #ifdef HAVE_HDF5
 #include <float.h>
@@ -26,7 +22,7 @@ static void add_number(struct item *item, const char *path, double value)
     snprintf(item->path, sizeof item->path, "%s", path);
 }
 
-static void other_names(void **state)
+TEST(other_names)
 {
     static const struct {
         int layout;
@@ -37,7 +33,6 @@ static void other_names(void **state)
                 {0, "Header/Gamma", "Parameters/Gamma"},
                 {1, "HydroScheme/Dimension", "Header/Dimension"}};
     struct item items[ITEMS_MAX];
-    (void)state;
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         items_of(&layouts[rows[k].layout], items);
         snprintf(item_called(items, rows[k].from)->path, sizeof items->path, "%s", rows[k].to);
@@ -69,7 +64,7 @@ static void other_names(void **state)
 }
 
 /* Runs in an expanding universe are not read: by what they say, else by redshift and time. */
-static void comoving(void **state)
+TEST(comoving)
 {
     static const struct {
         const char *path;
@@ -85,7 +80,6 @@ static void comoving(void **state)
                 {NULL, 0, 1, 3, false},
                 {NULL, 0, 0, 1, false},
                 {NULL, 0, -0.5, 2, false}};
-    (void)state;
     for (int a = 0; a < 2; a++)
         for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
             struct layout l = layouts[a];
@@ -105,7 +99,7 @@ static void comoving(void **state)
         }
 }
 
-static void boxes(void **state)
+TEST(boxes)
 {
     static const struct {
         int count;
@@ -122,7 +116,6 @@ static void boxes(void **state)
                 {3, {20, -1, 22}, true, {20, 0, 22}},
                 {3, {20, (double)INFINITY, 22}, true, {20, 0, 22}}};
     struct item items[ITEMS_MAX];
-    (void)state;
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         struct snapshot_file file;
         struct error error = {0};
@@ -156,10 +149,9 @@ static void boxes(void **state)
 
 /* Phantom's dead, of which h is not above 0, are left out; its box counts if all others lie in it.
  */
-static void phantom(void **state)
+TEST(phantom)
 {
     static const char *const ends[] = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"};
-    (void)state;
     for (int dead = 0; dead < 3; dead++)
         for (int end = 0; end < 14; end++) { /* one is left out, or lies within; 12: none; 13: all
                                                 are where particles are */
@@ -196,9 +188,8 @@ static void phantom(void **state)
 }
 
 /* Our own say where their box begins, from which positions count, and what they are of. */
-static void placed(void **state)
+TEST(placed)
 {
-    (void)state;
     for (int numbers = 0; numbers <= 4; numbers++) /* of the corner; 4: without a box */
         for (int columns = 1; columns <= 3; columns += 2) {
             struct layout l = layouts[0];
@@ -237,9 +228,8 @@ static void placed(void **state)
 }
 
 /* Precision is that of the coarsest column, positions apart. */
-static void precision(void **state)
+TEST(precision)
 {
-    (void)state;
     for (size_t k = 0; k < layouts[0].count; k++) {
         const struct field *f = &layouts[0].fields[k];
         struct snapshot_file file;
@@ -257,9 +247,8 @@ static void precision(void **state)
 }
 
 /* As many dimensions as positions vary along: the first ones. */
-static void dimensions(void **state)
+TEST(dimensions)
 {
-    (void)state;
     for (int width = 1; width <= 3; width++)
         for (int varies = 0; varies < 1 << width; varies++)
             for (int v = 1; v <= 3; v++) {
@@ -292,7 +281,7 @@ static void dimensions(void **state)
 
 /* ---- what is none of them ---- */
 
-static void unknown(void **state)
+TEST(unknown)
 {
     static const struct {
         const char *paths[3], *says;
@@ -307,7 +296,6 @@ static void unknown(void **state)
         {{"Step#/x"}, "it has: Step#"},
         {{"Step#3x/x"}, "it has: Step#3x"},
         {{"Step#3/y"}, "Step#3 holds no x; it has: y"}};
-    (void)state;
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         struct item items[3] = {0};
         struct layout l = {.name = rows[k].says, .count = 3};
@@ -321,12 +309,7 @@ static void unknown(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(other_names), cmocka_unit_test(comoving),  cmocka_unit_test(boxes),
-        cmocka_unit_test(phantom),     cmocka_unit_test(precision), cmocka_unit_test(placed),
-        cmocka_unit_test(dimensions),  cmocka_unit_test(unknown),
-    };
-    return cmocka_run_group_tests(tests, make_place, remove_place);
+    return test_run(make_place, remove_place);
 }
 #else
 

@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Snapshots in several files: joined in the order of their numbers, whatever lies where, and not
  * joined where their headers differ. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #ifdef HAVE_HDF5
 #include <float.h>
@@ -44,10 +40,9 @@ static enum status read_parts(const char *name, struct snapshot_file *file, stru
 }
 
 /* In whatever order parts lie there, their particles follow each other by the numbers of files. */
-static void every_order(void **state)
+TEST(every_order)
 {
     int order[PARTS_MOST] = {0, 1, 2, 3};
-    (void)state;
     for (int parts = 1; parts <= PARTS_MOST; parts++)
         for (int turn = 0; turn < 6; turn++) {
             struct snapshot_file file;
@@ -83,7 +78,7 @@ static void every_order(void **state)
 }
 
 /* Any of two parts has one item otherwise: they are not joined. */
-static void other_headers(void **state)
+TEST(other_headers)
 {
     static const struct {
         const char *item, *says;
@@ -101,7 +96,6 @@ static void other_headers(void **state)
                 {"PartType0/Masses", "m than the other parts", true, 0},
                 {"PartType0/Pressure", "P than the other parts", true, 0},
                 {"PartType0/Acceleration", "ax than the other parts", true, 0}};
-    (void)state;
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
         for (int which = 0; which < 2; which++) {
             struct snapshot_file file;
@@ -137,9 +131,8 @@ static void other_headers(void **state)
 }
 
 /* Along each direction, and where only the last part is another. */
-static void other_boxes(void **state)
+TEST(other_boxes)
 {
-    (void)state;
     for (int d = 0; d < 3; d++)
         for (int which = 0; which < 3; which++) {
             struct snapshot_file file;
@@ -161,9 +154,8 @@ static void other_boxes(void **state)
 }
 
 /* The coarsest part says how precise the whole is. */
-static void precision(void **state)
+TEST(precision)
 {
-    (void)state;
     for (int which = 0; which < 2; which++) {
         struct snapshot_file file;
         struct error error;
@@ -182,7 +174,7 @@ static void precision(void **state)
     }
 }
 
-static void names(void **state)
+TEST(names)
 {
     static const struct {
         const char *first, *second, *says; /* says NULL: read */
@@ -197,7 +189,6 @@ static void names(void **state)
                 {"c.01.hdf5", "c.11.hdf5", "give the first"},
                 {"d.0/c.hdf5", "d.1/c.hdf5", "give the first"}};
     char command[300];
-    (void)state;
     snprintf(command, sizeof command, "mkdir %s/d.0 %s/d.1", place, place);
     assert_int_equal(system(command), 0);
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
@@ -219,12 +210,7 @@ static void names(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_order), cmocka_unit_test(other_headers),
-        cmocka_unit_test(other_boxes), cmocka_unit_test(precision),
-        cmocka_unit_test(names),
-    };
-    return cmocka_run_group_tests(tests, make_place, remove_place);
+    return test_run(make_place, remove_place);
 }
 #else
 

@@ -270,10 +270,10 @@ static void every_form(void **state)
 
 static void left_out(void **state)
 {
-    static const char *const says[ARRAYS] = {"lack x, y, z or h",
-                                             "lack x, y, z or h",
-                                             "lack x, y, z or h",
-                                             "lack x, y, z or h",
+    static const char *const says[ARRAYS] = {"need real arrays x, y, z and h; they have:",
+                                             "need real arrays x, y, z and h; they have:",
+                                             "need real arrays x, y, z and h; they have:",
+                                             "need real arrays x, y, z and h; they have:",
                                              "no vx",
                                              "no vy",
                                              "no vz",

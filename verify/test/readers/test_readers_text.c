@@ -1,10 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Tables of text in every style: what is planted must be read, to the last bit. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include "made_table.h"
 #ifdef HAVE_ZLIB
@@ -13,9 +9,8 @@
 
 /* ---- styles ---- */
 
-static void random_styles(void **state)
+TEST(random_styles)
 {
-    (void)state;
     for (int draw = 0; draw < 300; draw++) {
         struct table t = table_of(1 + draw % 3, false);
         struct snapshot_file file;
@@ -32,9 +27,8 @@ static void random_styles(void **state)
 }
 
 /* Every column by every name, in any letters, with what is neither letter nor digit. */
-static void spellings(void **state)
+TEST(spellings)
 {
-    (void)state;
     for (int c = 0; c < SNAPSHOT_COLUMNS; c++)
         for (int k = 0; k < 7; k++) {
             struct table t = table_of(3, true);
@@ -56,7 +50,7 @@ static void spellings(void **state)
 
 /* ---- lines that say what columns do not ---- */
 
-static void remarks(void **state)
+TEST(remarks)
 {
     static const struct {
         const char *head;
@@ -89,7 +83,6 @@ static void remarks(void **state)
          0,
          {0}},
     };
-    (void)state;
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
         for (int dim = 1; dim <= 3; dim++) {
             struct table t = table_of(dim, true);
@@ -177,7 +170,7 @@ static void remarks(void **state)
 
 /* ---- SPLASH ---- */
 
-static void splash(void **state)
+TEST(splash)
 {
     static const struct {
         const char *head;
@@ -189,7 +182,6 @@ static void splash(void **state)
         {"# created by SPLASH\n# time:\n#   hot\n", false},
         {"# created by SPLASH\n# times: a\n#   0.5\n", false},
         {"# created by SPLASH\n", false}};
-    (void)state;
     for (int draw = 0; draw < 120; draw++) {
         struct table t = table_of(1 + draw % 3, draw % 2);
         struct snapshot_file file;
@@ -229,7 +221,7 @@ static void splash(void **state)
 
 /* ---- compressed ---- */
 
-static void compressed(void **state)
+TEST(compressed)
 {
 #ifdef HAVE_ZLIB
     static char text[TEXT_MAX], bytes[TEXT_MAX];
@@ -237,7 +229,6 @@ static void compressed(void **state)
     struct error error = {0};
     const struct snapshot_options plain = {0};
     struct snapshot_file file;
-    (void)state;
     t.columns -= 2;
     const size_t size = text_of(&t, text, -1, -1, NULL);
     gzFile out = gzopen(path_of("a.txt"), "wb");
@@ -259,9 +250,5 @@ static void compressed(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(random_styles), cmocka_unit_test(spellings),  cmocka_unit_test(remarks),
-        cmocka_unit_test(splash),        cmocka_unit_test(compressed),
-    };
-    return cmocka_run_group_tests(tests, make_place, remove_place);
+    return test_run(make_place, remove_place);
 }

@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Tables of text that are spoilt at one place, which the message names, and columns that the user
  * names, rightly and wrongly. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include <fcntl.h>
 #include <float.h>
@@ -16,12 +12,11 @@
 
 /* ---- columns by the user's names ---- */
 
-static void maps(void **state)
+TEST(maps)
 {
     struct table t = table_of(1, true);
     struct snapshot_file file;
     static char text[TEXT_MAX];
-    (void)state;
     t.columns -= 2;
     for (size_t c = 0; c < t.columns; c++) {
         struct table other = t;
@@ -90,14 +85,13 @@ static void maps(void **state)
 
 /* ---- faults at one place ---- */
 
-static void spoilt(void **state)
+TEST(spoilt)
 {
     static const char *const words[] = {
         "hot",  "nan",  "inf", "-",     "1e400",
         "1..2", "0x10", "1e",  "\"1\"", "1.00000000000000000000000000000000000000000000001",
         "1;2"};
     static char text[TEXT_MAX];
-    (void)state;
     for (int draw = 0; draw < 220; draw++) {
         struct table t = table_of(1 + draw % 3, true);
         char says[160];
@@ -131,10 +125,9 @@ static void spoilt(void **state)
 }
 
 /* Of any particle, the first and the last among them. */
-static void values(void **state)
+TEST(values)
 {
     static char text[TEXT_MAX];
-    (void)state;
     struct table t = table_of(3, true);
     t.columns -= 2;
     for (size_t c = 0; c < t.columns; c++)
@@ -154,7 +147,7 @@ static void values(void **state)
     snapshot_file_free(&file);
 }
 
-static void no_files(void **state)
+TEST(no_files)
 {
     static const struct snapshot_options plain;
     static const struct {
@@ -163,7 +156,6 @@ static void no_files(void **state)
                 {"folder", "folder: is a directory; allowed: a file"},
                 {"queue", "queue: is no regular file; allowed: a file"},
                 {"empty", "empty: the file is empty"}};
-    (void)state;
     assert_int_equal(mkdir(path_of("folder"), 0700), 0);
     assert_int_equal(mkfifo(path_of("queue"), 0600), 0);
     fclose(fopen(path_of("empty"), "w"));
@@ -182,7 +174,7 @@ static void no_files(void **state)
     }
 }
 
-static void heads(void **state)
+TEST(heads)
 {
     static const struct {
         const char *text, *says;
@@ -207,7 +199,6 @@ static void heads(void **state)
         {"x\x7f,vx\n1,2\n", "no snapshot that is read"},
         {"\n\x1f\x7f", "no snapshot that is read"}};
     char text[8000] = "";
-    (void)state;
     static const char *const needed[] = {"x", "vx", "m", "rho"}; /* each of them */
     for (int k = 0; k < 4; k++) {
         char says[80], head[40];
@@ -239,9 +230,5 @@ static void heads(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(maps),     cmocka_unit_test(spoilt), cmocka_unit_test(values),
-        cmocka_unit_test(no_files), cmocka_unit_test(heads),
-    };
-    return cmocka_run_group_tests(tests, make_place, remove_place);
+    return test_run(make_place, remove_place);
 }

@@ -1,13 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The mode of a layer that grows fastest: it solves the linearised equations, keeps to the ends of
  * its layer and to its mirror images, has its unit, and grows as fast as eigenvalues say. */
+#include "test.h"
+
 #include <complex.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
 
 #include "layer_collocation.h"
 #include "layer_mode.h"
@@ -51,9 +48,8 @@ static double complex slope(const struct layer_mode *mode, double y, bool of_v)
     return sum / step;
 }
 
-static void equations_hold(void **state)
+TEST(equations_hold)
 {
-    (void)state;
     for (int l = 0; l < LAYERS; l++) {
         const struct layer *layer = &layers[l];
         const struct layer_mode mode = modes[l];
@@ -83,9 +79,8 @@ static void equations_hold(void **state)
 }
 
 /* Eigenvalues at points share no method with the shooting. */
-static void growth_is_that_of_eigenvalues(void **state)
+TEST(growth_is_that_of_eigenvalues)
 {
-    (void)state;
     for (int l = 0; l < LAYERS; l++) {
         const struct layer_mode mode = modes[l];
         const double complex other = layer_mode_collocation(&layers[l], 48);
@@ -96,9 +91,8 @@ static void growth_is_that_of_eigenvalues(void **state)
     }
 }
 
-static void units_are_those_of_the_header(void **state)
+TEST(units_are_those_of_the_header)
 {
-    (void)state;
     for (int l = 0; l < LAYERS; l++) {
         const struct layer_mode mode = modes[l];
         double v = 0, xi = 0;
@@ -128,9 +122,8 @@ static void units_are_those_of_the_header(void **state)
 
 /* About y = 1/4 of a periodic layer: where the pressure has its node there it is odd, and so is all
  * but v; elsewhere v is. The period is 1. */
-static void images_are_mirrored(void **state)
+TEST(images_are_mirrored)
 {
-    (void)state;
     for (int l = 0; l < 2; l++) {
         const struct layer_mode mode = modes[l];
         const double rest = layers[l].pressure_node ? -1 : 1;
@@ -155,9 +148,8 @@ static void images_are_mirrored(void **state)
 
 /* Gas without a layer has no growing mode, by either method; nor have waves that are much shorter
  * than their layer is thick. */
-static void nothing_grows(void **state)
+TEST(nothing_grows)
 {
-    (void)state;
     const struct layer still[] = {{1.4, 3, 0.2, 1.3, 0, 0, 1.7, 0, false, 0.6, false},
                                   {1.4, 60, 0.1, 1.5, 0.2, 0.3, 2.5, 0, false, 0.5, false}};
     for (int k = 0; k < 2; k++) {
@@ -168,12 +160,11 @@ static void nothing_grows(void **state)
 }
 
 /* With units of time that are 2^e times as long, and of density, 2^b times as much. */
-static void units_do_not_matter(void **state)
+TEST(units_do_not_matter)
 {
     static const struct {
         int layer, e, b;
     } rows[] = {{1, 20, -30}, {3, -20, 30}};
-    (void)state;
     for (int k = 0; k < 2; k++) {
         const int e = rows[k].e, b = rows[k].b;
         const struct layer_mode *usual = &modes[rows[k].layer];
@@ -196,9 +187,8 @@ static void units_do_not_matter(void **state)
 
 /* Weak gravity moves gas as slowly as it does where nothing is compressed: the growth goes with its
  * root. What would take 1e8 sound times is round-off. */
-static void slow_growth_is_known_as_far_as_it_can_be(void **state)
+TEST(slow_growth_is_known_as_far_as_it_can_be)
 {
-    (void)state;
     struct layer layer = layers[4];
     struct layer_mode mode;
     const double rate = layer.k * sqrt(layer.gamma * layer.P / layer.rho);
@@ -214,14 +204,5 @@ static void slow_growth_is_known_as_far_as_it_can_be(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(equations_hold),
-        cmocka_unit_test(growth_is_that_of_eigenvalues),
-        cmocka_unit_test(units_are_those_of_the_header),
-        cmocka_unit_test(images_are_mirrored),
-        cmocka_unit_test(nothing_grows),
-        cmocka_unit_test(units_do_not_matter),
-        cmocka_unit_test(slow_growth_is_known_as_far_as_it_can_be),
-    };
-    return cmocka_run_group_tests(tests, find_modes, NULL);
+    return test_run(find_modes, NULL);
 }

@@ -2,13 +2,10 @@
  * Exact solutions at single places, on their boundaries and at their limits: vortices, the spinning
  * disc, Noh's collision, Sedov's blast, the layers of McNally, Lyra & Passy, and the base states of
  * layers. Their equations: the group `exact` of checks. */
+#include "test.h"
+
 #include <float.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_rng.h>
@@ -21,9 +18,8 @@
 #include "sedov.h"
 #include "vortex.h"
 
-static void test_vortices(void **state)
+TEST(test_vortices)
 {
-    (void)state;
     const struct {
         double R, v, P;
     } rows[] = {
@@ -53,9 +49,8 @@ static void test_vortices(void **state)
     }
 }
 
-static void test_disc(void **state)
+TEST(test_disc)
 {
-    (void)state;
     /* spin 2 and P = 3/2: a^2 = 1 + 7 t^2 */
     assert_true(disc_radius(2, 1.5, 0) == 1);
     near_relative(disc_radius(2, 1.5, 3), 8, 1e-15);
@@ -71,9 +66,8 @@ static void test_disc(void **state)
     assert_true(disc_sample(2, 1.5, nextafter(1, 2), 0).rho == 0);
 }
 
-static void test_noh(void **state)
+TEST(test_noh)
 {
-    (void)state;
     for (int d = 1; d <= 3; d++) {
         struct noh_state s = noh_sample(3, d, nextafter(0.25, 0), 0.25); /* gamma = 3: R = t */
         assert_true(s.rho == pow(2, d) && s.v == 0 && s.P == s.rho);
@@ -94,9 +88,8 @@ static void test_noh(void **state)
 
 /* ---- Sedov's blast ---- */
 
-static void test_sedov_limits(void **state)
+TEST(test_sedov_limits)
 {
-    (void)state;
     static const double nan = (double)NAN;
     static const struct {
         double gamma, rho, E;
@@ -140,9 +133,8 @@ static void test_sedov_limits(void **state)
 }
 
 /* Where the shock is, by the energy's integral in multiple precision. */
-static void test_sedov_constants(void **state)
+TEST(test_sedov_constants)
 {
-    (void)state;
     static const struct {
         double gamma, xi0[3];
     } rows[] = {{1.4, {0.97543015419251921782, 1.0040216061302775389, 1.0327774677614247945}},
@@ -161,9 +153,8 @@ static void other_handler(const char *reason, const char *file, int line, int nu
     (void)reason, (void)file, (void)line, (void)number;
 }
 
-static void test_sedov_handler(void **state)
+TEST(test_sedov_handler)
 {
-    (void)state;
     struct sedov s;
     gsl_error_handler_t *const before = gsl_set_error_handler(other_handler);
     assert_null(sedov_solve(1.4, 3, 1, 1, &s));
@@ -172,9 +163,8 @@ static void test_sedov_handler(void **state)
 
 /* At the shock the jump of a strong shock; ahead of it the gas as it was; in the middle no density
  * and a pressure, held inside of a part of 1e-12. */
-static void test_sedov_ends(void **state)
+TEST(test_sedov_ends)
 {
-    (void)state;
     for (int d = 1; d <= 3; d++) {
         struct sedov s;
         assert_null(sedov_solve(1.4, d, 2, 3, &s));
@@ -206,9 +196,8 @@ static void test_sedov_ends(void **state)
 
 /* rho/rho_0, v/D and P/(rho_0 D^2) at r/R: the equations of motion, integrated inwards from the
  * shock by Taylor's series in multiple precision. */
-static void test_sedov_inside(void **state)
+TEST(test_sedov_inside)
 {
-    (void)state;
     static const struct {
         double gamma;
         int d;
@@ -240,9 +229,8 @@ static void test_sedov_inside(void **state)
 
 /* At every place of every blast the search ends, and finds no denser gas than right behind the
  * shock. */
-static void test_sedov_anywhere(void **state)
+TEST(test_sedov_anywhere)
 {
-    (void)state;
     gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
     for (int i = 0; i < 3000; i++) {
         double u[4];
@@ -280,9 +268,8 @@ static double way_of(double r, const struct sedov_state *s)
 
 /* All of the energy is behind the shock, and all of the gas that was there; of the gas within a
  * part of the way as much as keeps its share while all grows: rho r^(d - 1) (D r/R - v) R/(D d). */
-static void test_sedov_integrals(void **state)
+TEST(test_sedov_integrals)
 {
-    (void)state;
     static const double ball[] = {0, 2, M_PI, 4 * M_PI / 3};
     gsl_error_handler_t *const before = gsl_set_error_handler(other_handler);
     for (int d = 1; d <= 3; d++) {
@@ -308,9 +295,8 @@ static void test_sedov_integrals(void **state)
 
 /* ---- layers ---- */
 
-static void test_layers_of_mcnally(void **state)
+TEST(test_layers_of_mcnally)
 {
-    (void)state;
     for (int i = 0; i <= 103; i++) { /* exactly on where they join, and right behind */
         const double y = i <= 100 ? i / 100. : 0.25 * (i - 100) * (1 + 9e-7), x = 0.013 * i;
         const double from = fabs(y - (y < 0.5 ? 0.25 : 0.75)), fall = 0.5 * exp(-from / 0.025);
@@ -335,9 +321,8 @@ static void test_layers_of_mcnally(void **state)
     near_relative(kelvin_helmholtz_amplitude(N, x, y, v, w), 2 * sqrt(a * a + b * b) / c, 1e-13);
 }
 
-static void test_table_of_mcnally(void **state)
+TEST(test_table_of_mcnally)
 {
-    (void)state;
     static const struct {
         double t, M;
     } rows[] = {
@@ -360,9 +345,8 @@ static void test_table_of_mcnally(void **state)
 static const struct layer shear = {1.4, 3, 0.07, 1.3, 0.2, 0.4, 1.7, 0, true, 0, false},
                           heavy = {1.4, 3, 0.07, 1.3, 0.2, 0.4, 1.7, 0.3, false, 0.6, false};
 
-static void test_layer_faults(void **state)
+TEST(test_layer_faults)
 {
-    (void)state;
     static const char four[] = "gamma > 1, k > 0, width > 0 and P > 0 are needed",
                       density[] = "density has to be positive everywhere",
                       strong[] = "gravity is too strong: pressure has to be positive everywhere";
@@ -397,9 +381,8 @@ static void test_layer_faults(void **state)
     }
 }
 
-static void test_layer_bases(void **state)
+TEST(test_layer_bases)
 {
-    (void)state;
     for (int i = -50; i <= 50; i++) {
         const double y = 0.012 * i;
         struct layer_base b = layer_base(&heavy, y);
@@ -425,25 +408,4 @@ static void test_layer_bases(void **state)
     near_relative(layer_base(&far, 100).P, 1.7 - 1e-4 * (130 + 0.2 * (100 - 0.07 * M_LN2)), 1e-14);
     near_relative(layer_base(&far, -100).P, 1.7 - 1e-4 * (-130 + 0.2 * (100 - 0.07 * M_LN2)),
                   1e-14);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_vortices),
-        cmocka_unit_test(test_disc),
-        cmocka_unit_test(test_noh),
-        cmocka_unit_test(test_sedov_limits),
-        cmocka_unit_test(test_sedov_constants),
-        cmocka_unit_test(test_sedov_handler),
-        cmocka_unit_test(test_sedov_ends),
-        cmocka_unit_test(test_sedov_inside),
-        cmocka_unit_test(test_sedov_anywhere),
-        cmocka_unit_test(test_sedov_integrals),
-        cmocka_unit_test(test_layers_of_mcnally),
-        cmocka_unit_test(test_table_of_mcnally),
-        cmocka_unit_test(test_layer_faults),
-        cmocka_unit_test(test_layer_bases),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

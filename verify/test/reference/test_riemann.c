@@ -4,16 +4,13 @@
  * its own laws on random problems. Argument: the table.
  * Its columns: kind = std, or vacuum at the left, right or in the middle (vacL, vacR, vacM); waves
  * rar, shock or none; an empty field is a quantity that does not exist. */
+#include "test.h"
+
 #include <float.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "near.h"
 #include "riemann.h"
@@ -104,9 +101,8 @@ static void compare_row(char **f)
     compare(f[CASE], f[RIGHT_HEAD], s.right_head, speed);
 }
 
-static void test_table(void **state)
+TEST(test_table)
 {
-    (void)state;
     char line[1024], *fields[COLUMNS + 1];
     FILE *file = fopen(table_path, "r");
     assert_non_null(file);
@@ -130,9 +126,8 @@ static double bound_of(double a, double b)
     return LDBL_MANT_DIG > DBL_MANT_DIG && 1 + step > 1 ? a : b;
 }
 
-static void test_random(void **state)
+TEST(test_random)
 {
-    (void)state;
     gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
     int shocks = 0, fans = 0, vacuums = 0;
     const double bound = bound_of(1e-14, 1e-13);
@@ -158,9 +153,8 @@ static void test_random(void **state)
     assert_true(shocks > 20000 && fans > 20000 && vacuums > 10000);
 }
 
-static void test_symmetries(void **state)
+TEST(test_symmetries)
 {
-    (void)state;
     gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
     for (int i = 0; i < 20000; i++) {
         const struct riemann_problem p = riemann_random(random, 6);
@@ -197,9 +191,8 @@ static void test_symmetries(void **state)
     gsl_rng_free(random);
 }
 
-static void test_galilean(void **state)
+TEST(test_galilean)
 {
-    (void)state;
     gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
     int compared = 0;
     for (int i = 0; i < 20000; i++) {
@@ -247,9 +240,8 @@ static bool in_order(double a, double b, double c)
 }
 
 /* Whatever comes in: refused, or a solution that makes sense, whose samples make sense. */
-static void test_anything(void **state)
+TEST(test_anything)
 {
-    (void)state;
     gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
     /* in double alone, 600 decades overflow inside */
     const bool wide = bound_of(1, 0) > 0;
@@ -295,9 +287,8 @@ static struct riemann_solution solved(double gamma, struct riemann_state left,
     return s;
 }
 
-static void test_equal_states(void **state)
+TEST(test_equal_states)
 {
-    (void)state;
     const struct riemann_state gas = {0.7, -1.3, 2.1};
     const struct riemann_solution s = solved(1.4, gas, gas);
     assert_int_equal(s.left_wave, RIEMANN_NONE);
@@ -312,9 +303,8 @@ static void test_equal_states(void **state)
 
 /* The same problem in units of velocity of 2^e: p* goes with 2^(2 e), also below the least normal
  * number, where it says so. */
-static void test_underflow(void **state)
+TEST(test_underflow)
 {
-    (void)state;
     static const int exponents[] = {-100, -500, -509, -511, 300};
     const struct riemann_state left = {1, -1, 1}, right = {0.7, 1.3, 1.1};
     struct riemann_solution base, s;
@@ -334,9 +324,8 @@ static void test_underflow(void **state)
 }
 
 /* It is said of a density, too, whichever side it is on: thin gas that runs away from a wall. */
-static void test_underflow_of_one_side(void **state)
+TEST(test_underflow_of_one_side)
 {
-    (void)state;
     for (int side = -1; side <= 1; side += 2) {
         const struct riemann_state thin = {4e-308, side * 1.18e154, 1}, wall = {1, 0, 1e-9};
         struct riemann_solution s;
@@ -348,9 +337,8 @@ static void test_underflow_of_one_side(void **state)
     }
 }
 
-static void test_cold_gas(void **state)
+TEST(test_cold_gas)
 {
-    (void)state;
     /* Noh's problem: P = (gamma+1)/2 rho v^2, rho* = (gamma+1)/(gamma-1), shocks at (gamma-1)/2 */
     const struct riemann_state in = {1, 1, 0}, out = {1, -1, 0};
     const struct riemann_solution s = solved(5. / 3, in, out);
@@ -372,9 +360,8 @@ static void test_cold_gas(void **state)
 
 /* Hot gas, at rest or moving, beside cold gas: its rarefaction and a strong shock of one pressure
  * and one velocity, found by bisection. */
-static void test_hot_beside_cold(void **state)
+TEST(test_hot_beside_cold)
 {
-    (void)state;
     for (int k = 0; k < 8; k++) {
         const double gamma = 1.2 + 0.2 * k, rho = k % 2 ? 0.3 : 5, v = 0.5 * (k % 3) - 0.5;
         const struct riemann_state hot = {1.5, v, 2}, cold = {rho, 0, 0};
@@ -399,9 +386,8 @@ static void test_hot_beside_cold(void **state)
 
 /* Hot gas that almost parts from very heavy cold gas at rest: both move, as slowly as the heavy one
  * can be pushed, v = sqrt(2 p/((gamma + 1) rho)); the light one's own motion is known worse. */
-static void test_heavy_beside_light(void **state)
+TEST(test_heavy_beside_light)
 {
-    (void)state;
     const double gamma = 1.4, c = sqrt(1.4), apart = 2 * c / (gamma - 1);
     for (int k = 0; k <= 18; k++)
         for (int j = 0; j < 6; j++) {
@@ -420,9 +406,8 @@ static void test_heavy_beside_light(void **state)
 }
 
 /* Cold gases that meet: in units of velocity of 2^e all has the same bits. */
-static void test_cold_in_other_units(void **state)
+TEST(test_cold_in_other_units)
 {
-    (void)state;
     gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
     for (int i = 0; i < 200; i++) {
         const int e = i % 2 ? 300 : -250;
@@ -439,9 +424,8 @@ static void test_cold_in_other_units(void **state)
     gsl_rng_free(random);
 }
 
-static void test_sample_regions(void **state)
+TEST(test_sample_regions)
 {
-    (void)state;
     const struct riemann_state left = {1, 0, 1}, right = {0.125, 0, 0.1};
     const struct riemann_solution s = solved(1.4, left, right);
     struct riemann_state at = riemann_sample(&s, 0.25, 0.25, 0);
@@ -471,9 +455,8 @@ static void test_sample_regions(void **state)
     near_relative(sqrt(1.4 * at.P / at.rho), at.v, 1e-14);
 }
 
-static void test_vacuum_samples(void **state)
+TEST(test_vacuum_samples)
 {
-    (void)state;
     const struct riemann_state gas = {1, 0, 1}, none = {0, 7, 0};
     struct riemann_solution s = solved(1.4, gas, none);
     struct riemann_state at = riemann_sample(&s, 6, 0, 1);
@@ -503,9 +486,8 @@ static void test_vacuum_samples(void **state)
     assert_true(riemann_sample(&s, 6, 0, 1).v == 5);
 }
 
-static void test_bad_input(void **state)
+TEST(test_bad_input)
 {
-    (void)state;
     static const double nan = (double)NAN, inf = HUGE_VAL;
     static const char finite[] = "density, velocity and pressure must be finite",
                       negative[] = "density and pressure must not be negative",
@@ -548,9 +530,8 @@ static void test_bad_input(void **state)
 
 /* Two gases that meet gently: a shock of strength d = p* - P on both sides, by Hugoniot a root of
  * d^2 - (gamma + 1)/2 rho w^2 d - gamma P rho w^2. Just vacuum: at the speed at which it opens. */
-static void test_gentle_and_parting(void **state)
+TEST(test_gentle_and_parting)
 {
-    (void)state;
     for (int k = -14; k <= 0; k++)
         for (int digit = 1; digit < 10; digit += 2) {
             const double w = digit * pow(10, k), gamma = 1.4, b = 1.2 * w * w, c = 1.4 * w * w;
@@ -586,23 +567,5 @@ int main(int argc, char **argv)
 {
     if (argc < 2) return 1;
     table_path = argv[1];
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_table),
-        cmocka_unit_test(test_random),
-        cmocka_unit_test(test_symmetries),
-        cmocka_unit_test(test_galilean),
-        cmocka_unit_test(test_anything),
-        cmocka_unit_test(test_equal_states),
-        cmocka_unit_test(test_cold_gas),
-        cmocka_unit_test(test_underflow),
-        cmocka_unit_test(test_underflow_of_one_side),
-        cmocka_unit_test(test_gentle_and_parting),
-        cmocka_unit_test(test_hot_beside_cold),
-        cmocka_unit_test(test_heavy_beside_light),
-        cmocka_unit_test(test_cold_in_other_units),
-        cmocka_unit_test(test_sample_regions),
-        cmocka_unit_test(test_vacuum_samples),
-        cmocka_unit_test(test_bad_input),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return test_run(NULL, NULL);
 }

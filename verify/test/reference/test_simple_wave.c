@@ -1,13 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The simple wave against what is known in closed form: its start, its small-amplitude limit, the
  * speed of its crest, its period, its breaking. */
+#include "test.h"
+
 #include <float.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_rng.h>
@@ -23,9 +20,8 @@ static double sound(const struct simple_wave *w)
     return sqrt(w->gamma * w->P0 / w->rho0);
 }
 
-static void test_start(void **state)
+TEST(test_start)
 {
-    (void)state;
     for (int i = 0; i < 20; i++) {
         const double x = 0.085 * i, rho = 2.385 * (1 + 0.25 * sin(2 * M_PI * x / 1.7));
         const struct simple_wave_state s = simple_wave_sample(&wave, x, 0);
@@ -38,9 +34,8 @@ static void test_start(void **state)
 }
 
 /* A value travels with its own v + c, at any amplitude and until it breaks. */
-static void test_characteristics(void **state)
+TEST(test_characteristics)
 {
-    (void)state;
     const double end = simple_wave_breaking_time(&wave);
     for (int i = 0; i < 200; i++) {
         const double start = 1.7 * i / 200, t = end * (0.05 + 0.9 * i / 200);
@@ -54,9 +49,8 @@ static void test_characteristics(void **state)
     }
 }
 
-static void test_small_amplitude(void **state)
+TEST(test_small_amplitude)
 {
-    (void)state;
     const struct simple_wave small = {1.4, 1, 0.5, 1 / 1.4, 1e-7, 1};
     for (int i = 0; i < 20; i++) {
         const double x = i / 20., t = 2.3;
@@ -68,9 +62,8 @@ static void test_small_amplitude(void **state)
     }
 }
 
-static void test_breaking(void **state)
+TEST(test_breaking)
 {
-    (void)state;
     /* gamma = 3: v + c = v0 + c0 + 2 c0 A sin, so t = L/(4 pi c0 A) */
     const struct simple_wave linear = {3, 1, 0, 1. / 3, 0.4, 2};
     near_relative(simple_wave_breaking_time(&linear), 2 / (4 * M_PI * 0.4), 1e-15);
@@ -96,9 +89,8 @@ static void test_breaking(void **state)
 
 /* The steepest place is sought: 1/t is the greatest of
  * (gamma + 1)/2 c0 k A (1 + A s)^((gamma - 3)/2) sqrt(1 - s^2). */
-static void test_breaking_times(void **state)
+TEST(test_breaking_times)
 {
-    (void)state;
     static const double gammas[] = {1.1, 1.4, 2.2, 3, 5}, amplitudes[] = {1e-3, 0.25, -0.6, 0.95};
     for (int k = 0; k < 20; k++) {
         const double gamma = gammas[k % 5], A = fabs(amplitudes[k / 5]),
@@ -119,9 +111,8 @@ static void test_breaking_times(void **state)
     }
 }
 
-static void test_faults(void **state)
+TEST(test_faults)
 {
-    (void)state;
     static const double nan = (double)NAN, inf = HUGE_VAL;
     static const char gamma[] = "gamma must be finite and above 1",
                       rho[] = "rho0 must be finite and above 0",
@@ -155,9 +146,8 @@ static void test_faults(void **state)
 }
 
 /* Small numbers are none, and late ones neither. */
-static void test_beyond_double(void **state)
+TEST(test_beyond_double)
 {
-    (void)state;
     const struct simple_wave fast = {1.4, 1, 1e308, 1, 1e-3, 1};
     assert_true(isnan(simple_wave_sample(&fast, 0.3, 5).rho)); /* moved: infinitely far */
     assert_true(isnan(simple_wave_sample(&wave, HUGE_VAL, 0).rho));
@@ -176,9 +166,8 @@ static double torn(double x, void *parameters)
 /* The search for a start ends: GSL's stops at what is no number, and whatever wave that is allowed
  * has values between its least and its greatest one at any time until it breaks, or, beyond the
  * range of double, none. */
-static void test_every_search_ends(void **state)
+TEST(test_every_search_ends)
 {
-    (void)state;
     gsl_function f = {torn, NULL};
     gsl_error_handler_t *const handler = gsl_set_error_handler_off();
     gsl_root_fsolver *solver = gsl_root_fsolver_alloc(gsl_root_fsolver_brent);
@@ -208,15 +197,4 @@ static void test_every_search_ends(void **state)
     }
     gsl_rng_free(random);
     assert_true(known > 1500);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_start),           cmocka_unit_test(test_characteristics),
-        cmocka_unit_test(test_small_amplitude), cmocka_unit_test(test_breaking),
-        cmocka_unit_test(test_breaking_times),  cmocka_unit_test(test_faults),
-        cmocka_unit_test(test_beyond_double),   cmocka_unit_test(test_every_search_ends),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,15 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Claims of a report: every run of theirs can be made, by day and by night, both runs of a row
  * differ in one key only, and the verdict follows from the figures, here made up ones. */
+#include "test.h"
+
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 /* after the four that it needs */
-#include <cmocka.h>
 
 #include "claims.h"
 #include "value.h"
@@ -59,11 +56,10 @@ static void expect(struct planned *planned, double without, double with, const c
     json_decref(judged);
 }
 
-static void verdicts_follow_from_figures(void **state)
+TEST(verdicts_follow_from_figures)
 {
     struct planned planned = {0};
     struct error error;
-    (void)state;
     if (claims_plan(&planned.claims, true, &planned.pool, &error)) fail_msg("%s", error.message);
     expect(&planned, 0.2, 0.1, "holds");
     expect(&planned, 0.1, 0.2, "does not hold");
@@ -78,9 +74,8 @@ static void verdicts_follow_from_figures(void **state)
     pool_free(&planned.pool);
 }
 
-static void runs_can_be_made(void **state)
+TEST(runs_can_be_made)
 {
-    (void)state;
     struct planned planned = {0};
     const struct pool *pool = &planned.pool;
     struct error error;
@@ -90,13 +85,4 @@ static void runs_can_be_made(void **state)
             fail_msg("both runs of %s are the same", pool->jobs[i].name);
     claims_free(&planned.claims);
     pool_free(&planned.pool);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(verdicts_follow_from_figures),
-        cmocka_unit_test(runs_can_be_made),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,10 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Which documents can be compared: optional fields absent, odd or unlike, on either side. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include <stdio.h>
 
@@ -13,7 +9,7 @@
 /* ---- two processors ---- */
 
 /* Times are left out only where both documents name a processor, and not the same. */
-static void processors(void **state)
+TEST(processors)
 {
     static const char *const machines[] = {
         NULL,
@@ -30,7 +26,6 @@ static void processors(void **state)
     };
     static const char *const named[] = {"", "", "", "", "", "", "", "", "A", "A", "B"};
     enum { MACHINES = sizeof machines / sizeof *machines };
-    (void)state;
     for (int i = 0; i < MACHINES; i++)
         for (int k = 0; k < MACHINES; k++) {
             json_t *old = run_with(1e-3, 1), *new = run_with(1e-3, 10);
@@ -89,7 +84,7 @@ static void problem_is(const char *command, const char *inside, const char *name
         }
 }
 
-static void members_of_a_problem(void **state)
+TEST(members_of_a_problem)
 {
     static const struct {
         const char *command, *member;
@@ -104,13 +99,12 @@ static void members_of_a_problem(void **state)
         {"run", "label", false},    {"gradient", "h", false},     {"kernel", "operator", false},
         {"run", "version", false},
     };
-    (void)state;
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
         problem_is(rows[i].command, NULL, rows[i].member, rows[i].counts);
 }
 
 /* Of a run's settings those that say what is computed; a scheme is what one wants to compare. */
-static void settings_of_a_problem(void **state)
+TEST(settings_of_a_problem)
 {
     static const char *const scheme[] = {
         "kernel",     "sinc_n",   "eta",    "gradient",       "formulation", "volume_element",
@@ -120,7 +114,6 @@ static void settings_of_a_problem(void **state)
     static const char *const problem[] = {"lo",     "hi",   "boundary", "gravity",   "kind",
                                           "jitter", "seed", "gamma",    "n",         "t_end",
                                           "window", "left", "right",    "background"};
-    (void)state;
     for (size_t i = 0; i < sizeof scheme / sizeof *scheme; i++)
         problem_is("run", "settings", scheme[i], false);
     for (size_t i = 0; i < sizeof problem / sizeof *problem; i++)
@@ -128,10 +121,9 @@ static void settings_of_a_problem(void **state)
 }
 
 /* The command itself: of two there is no comparison. */
-static void two_commands(void **state)
+TEST(two_commands)
 {
     static const char *const commands[] = {NULL, "\"run\"", "\"bench\"", "3", "null"};
-    (void)state;
     for (size_t i = 0; i < 5; i++)
         for (size_t k = 0; k < 5; k++) {
             json_t *old = run_with(1e-3, 1), *new = run_with(1e-3, 1);
@@ -147,9 +139,8 @@ static void two_commands(void **state)
 }
 
 /* A figure that nobody knows, in either document: which one is said. */
-static void unknown_figures(void **state)
+TEST(unknown_figures)
 {
-    (void)state;
     for (int which = 1; which < 4; which++) {
         json_t *old = run_with(1e-3, 1), *new = run_with(1e-3, 1);
         struct diff diff;
@@ -162,16 +153,4 @@ static void unknown_figures(void **state)
         diff_free(&diff);
         json_decref(old), json_decref(new);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(processors),
-        cmocka_unit_test(members_of_a_problem),
-        cmocka_unit_test(settings_of_a_problem),
-        cmocka_unit_test(two_commands),
-        cmocka_unit_test(unknown_figures),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,11 +2,7 @@
  * Result documents drawn from data/drawn/figures.json: their figures, what diff and history say of
  * two or many of them, and where series of figures move, are what they were, byte for byte:
  * data/drawn/diffs.txt; kept by verify/test/keep. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -112,9 +108,8 @@ static void add_readings(struct buffer *to, const json_t *document)
     metric_free(&metrics);
 }
 
-static void diffs(void **state)
+TEST(diffs)
 {
-    (void)state;
     static const char *const kinds[] = {"report", "report", "other", "other", "anything_else"};
     json_t *template = made_template(folder, "figures.json");
     struct made_kept kept;
@@ -148,9 +143,8 @@ static void diffs(void **state)
 }
 
 /* Nights of one document that changes by and by; other modes and damaged lines between them. */
-static void histories(void **state)
+TEST(histories)
 {
-    (void)state;
     json_t *template = made_template(folder, "figures.json");
     struct made_kept kept;
     struct buffer text = {0};
@@ -196,9 +190,8 @@ static void histories(void **state)
 }
 
 /* Levels with scatter, odd nights and steps. */
-static void series(void **state)
+TEST(series)
 {
-    (void)state;
     struct made_kept kept;
     struct buffer text = {0};
     made_open(&kept, folder, "series.txt");
@@ -226,9 +219,8 @@ static void series(void **state)
 }
 
 /* Parts of the checks, joined in any order of their mutants. */
-static void joined(void **state)
+TEST(joined)
 {
-    (void)state;
     struct made_kept kept;
     struct buffer text = {0};
     static const char *const names[] = {"a", "b", "c"};
@@ -258,9 +250,7 @@ static void joined(void **state)
 
 int main(int argc, char **argv)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(diffs), cmocka_unit_test(histories),
-                                       cmocka_unit_test(series), cmocka_unit_test(joined)};
     if (argc != 2) return 2;
     folder = argv[1];
-    return cmocka_run_group_tests(tests, make_place, remove_place);
+    return test_run(make_place, remove_place);
 }

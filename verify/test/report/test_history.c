@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The history of a report: lines as they are added, cut off, mixed; what changed since last night
  * and where figures moved. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -69,9 +65,8 @@ static void new_file(char *path)
     unlink(path);
 }
 
-static void since_last_night(void **state)
+TEST(since_last_night)
 {
-    (void)state;
     char path[32];
     new_file(path);
     json_t *told = night(path, "quick", "one", 1e-3, 0.95);
@@ -109,9 +104,8 @@ static void since_last_night(void **state)
 }
 
 /* A line that was cut off, and others that are none, neither count nor harm what comes next. */
-static void broken_lines(void **state)
+TEST(broken_lines)
 {
-    (void)state;
     char path[32];
     new_file(path);
     json_decref(night(path, "quick", "one", 1e-3, 0.95));
@@ -126,9 +120,8 @@ static void broken_lines(void **state)
     unlink(path);
 }
 
-static void moves_are_dated(void **state)
+TEST(moves_are_dated)
 {
-    (void)state;
     char path[32], git[16];
     json_t *told = NULL;
     new_file(path);
@@ -157,9 +150,8 @@ static void moves_are_dated(void **state)
 }
 
 /* Every check has one figure, its worst; what is no headline is not there. */
-static void one_line(void **state)
+TEST(one_line)
 {
-    (void)state;
     char path[32];
     new_file(path);
     json_decref(night(path, "quick", "one", 1e-3, 0.95));
@@ -174,23 +166,12 @@ static void one_line(void **state)
     unlink(path);
 }
 
-static void cannot_write(void **state)
+TEST(cannot_write)
 {
-    (void)state;
     struct error error = {0};
     json_t *results = report("quick", "one", 1e-3, 1), *told;
     assert_int_equal(history_append(results, "missing/history", &error), STATUS_ENVIRONMENT);
     assert_int_equal(history_tell(results, "missing/history", &told, &error), STATUS_OK);
     json_decref(told);
     json_decref(results);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(since_last_night), cmocka_unit_test(broken_lines),
-        cmocka_unit_test(moves_are_dated),  cmocka_unit_test(one_line),
-        cmocka_unit_test(cannot_write),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

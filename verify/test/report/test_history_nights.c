@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Histories that are generated: of no night, of as many as are kept and of more, with damaged
  * lines, the same night twice and missing fields; and which way a change is better. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -118,12 +114,11 @@ static void same_since(const json_t *history, const struct night *const *nights,
 }
 
 /* Of however many nights the newest 120 are told, this one the last of them. */
-static void the_newest_are_kept(void **state)
+TEST(the_newest_are_kept)
 {
     static const int counts[] = {0, 1, 2, 3, 118, 119, 120, 121, 122, 240, NIGHTS_MOST};
     static struct night made[NIGHTS_MOST + 1];
     const struct night *expected[NIGHTS_MOST + 1];
-    (void)state;
     for (size_t c = 0; c < sizeof counts / sizeof *counts; c++) {
         FILE *file = fopen(path_of("history"), "w");
         for (int i = 0; i <= counts[c]; i++) {
@@ -163,7 +158,7 @@ static json_t *changed(const char *path, double before, double after, int at, in
 
 /* A smaller error and a larger order are better, before and after the oldest nights are left out.
  */
-static void which_way_is_better(void **state)
+TEST(which_way_is_better)
 {
     static const struct {
         const char *path;
@@ -177,7 +172,6 @@ static void which_way_is_better(void **state)
         {order_path, 0.50, -0.5, "worse"},    {order_path, -0.5, 0.50, "better"},
     };
     static const int counts[] = {2, 12, 119, 120, 121, 150};
-    (void)state;
     for (size_t r = 0; r < sizeof rows / sizeof *rows; r++)
         for (size_t c = 0; c < sizeof counts / sizeof *counts; c++) {
             const int count = counts[c], at = count - (count > 2 ? 6 : 1);
@@ -242,7 +236,7 @@ static void in_order_of_since(const json_t *figures)
 
 /* Since last night: each figure's verdict, what is a fault first, and how many there are of each.
  */
-static void since_says_which_way(void **state)
+TEST(since_says_which_way)
 {
     static const struct {
         double error, order; /* last night; this night they are 1e-3 and 0.95 */
@@ -258,7 +252,6 @@ static void since_says_which_way(void **state)
         {1e-4, 1.50, "worse", "worse"},     {9e-3, -0.95, "better", "better"},
     };
     static const char *const words[] = {"same", "better", "worse", "new"};
-    (void)state;
     for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
         struct night last = usual_night(0), now = usual_night(1);
         FILE *file = fopen(path_of("history"), "w");
@@ -297,7 +290,7 @@ static void since_says_which_way(void **state)
 }
 
 /* Which lines are nights, and what is told of those that are not whole. */
-static void lines_of_every_kind(void **state)
+TEST(lines_of_every_kind)
 {
     static const char *const damaged[] = {
         "no JSON",
@@ -314,7 +307,6 @@ static void lines_of_every_kind(void **state)
     };
     enum { DAMAGED = sizeof damaged / sizeof *damaged, DRAWS = 40 };
     static struct night made[NIGHTS_MOST + 1];
-    (void)state;
     srand(1);
     for (int draw = 0; draw < DRAWS; draw++) {
         const struct night *expected[NIGHTS_MOST + 1];
@@ -361,9 +353,8 @@ static void lines_of_every_kind(void **state)
 }
 
 /* Nights without a figure do not count where it moves, nor are they a change. */
-static void nights_that_lack_a_figure(void **state)
+TEST(nights_that_lack_a_figure)
 {
-    (void)state;
     for (int lacking = 0; lacking < 3; lacking++) { /* before the change, around it, at its night */
         FILE *file = fopen(path_of("history"), "w");
         struct night night;
@@ -389,9 +380,8 @@ static void nights_that_lack_a_figure(void **state)
 }
 
 /* Newest changes first; of one night the larger one, whichever figure's it is. */
-static void changes_in_order(void **state)
+TEST(changes_in_order)
 {
-    (void)state;
     for (int larger = 0; larger < 2; larger++) {
         FILE *file = fopen(path_of("history"), "w");
         struct night night;
@@ -420,10 +410,5 @@ static void changes_in_order(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_newest_are_kept),       cmocka_unit_test(which_way_is_better),
-        cmocka_unit_test(since_says_which_way),      cmocka_unit_test(lines_of_every_kind),
-        cmocka_unit_test(nights_that_lack_a_figure), cmocka_unit_test(changes_in_order),
-    };
-    return cmocka_run_group_tests(tests, make_place, remove_place);
+    return test_run(make_place, remove_place);
 }

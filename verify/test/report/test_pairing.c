@@ -1,14 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The claim about pairing: its runs can be made, by day and by night, and the verdict follows from
  * figures, here made up ones: of Wendland functions and of the other kernels. */
+#include "test.h"
+
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
 /* after the four that it needs */
-#include <cmocka.h>
 
 #include "pairing.h"
 #include "value.h"
@@ -104,10 +101,9 @@ static void judge_one_broken(struct planned *planned)
     json_decref(judged);
 }
 
-static void verdicts_follow_from_figures(void **state)
+TEST(verdicts_follow_from_figures)
 {
     struct planned planned;
-    (void)state;
     plan(&planned, false);
     expect(&planned, 0, 0.3, "holds", "no pairs up to", "pairs from");
     expect(&planned, 0.01, 0.011, "holds", "no pairs up to", "pairs from");
@@ -121,21 +117,11 @@ static void verdicts_follow_from_figures(void **state)
     free_all(&planned);
 }
 
-static void runs_can_be_made(void **state)
+TEST(runs_can_be_made)
 {
     struct planned planned;
-    (void)state;
     plan(&planned, true);
     assert_true(planned.pool.count >= 200);
     expect(&planned, 0, 0.3, "holds", "no pairs up to", "pairs from");
     free_all(&planned);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(verdicts_follow_from_figures),
-        cmocka_unit_test(runs_can_be_made),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,11 +2,7 @@
  * What a report plans by day and by night, and what it makes of its computations, of which each is
  * a document drawn from data/drawn/pieces.json here: what it was, byte for byte:
  * data/drawn/reports.txt; kept by verify/test/keep. And some of its pieces are computed. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -147,9 +143,8 @@ static struct report *planned(struct made_kept *kept, enum report_mode mode)
     return report;
 }
 
-static void reports(void **state)
+TEST(reports)
 {
-    (void)state;
     json_t *template = made_template(folder, "pieces.json"), *results;
     struct made_kept kept;
     struct made_draw draw = {0, template};
@@ -183,8 +178,7 @@ static void reports(void **state)
 
 int main(int argc, char **argv)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(reports)};
     if (argc != 2) return 2;
     folder = argv[1];
-    return cmocka_run_group_tests(tests, make_place, remove_place);
+    return test_run(make_place, remove_place);
 }

@@ -1,10 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Change points: steps are found where they are, odd nights and noise are not steps. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
@@ -24,9 +20,8 @@ static size_t changes_of(const double *value, struct trend_change *changes)
     return trend_changes(NIGHTS, value, 0.01, changes, MOST);
 }
 
-static void nothing_changes(void **state)
+TEST(nothing_changes)
 {
-    (void)state;
     double value[NIGHTS];
     struct trend_change changes[MOST];
     level(value, 0, NIGHTS, -5);
@@ -37,9 +32,8 @@ static void nothing_changes(void **state)
     assert_int_equal(trend_changes(0, value, 0.01, changes, MOST), 0);
 }
 
-static void one_step(void **state)
+TEST(one_step)
 {
-    (void)state;
     double value[NIGHTS];
     struct trend_change changes[MOST];
     for (size_t at = 1; at < NIGHTS; at++)
@@ -55,9 +49,8 @@ static void one_step(void **state)
 }
 
 /* One or two odd nights that are over do not count; a last night does. */
-static void odd_nights(void **state)
+TEST(odd_nights)
 {
-    (void)state;
     double value[NIGHTS];
     struct trend_change changes[MOST];
     for (size_t at = 4; at < NIGHTS - 4; at++) {
@@ -74,9 +67,8 @@ static void odd_nights(void **state)
 }
 
 /* An odd night beside a step, on its far side and further than it jumps, does not date it. */
-static void odd_nights_beside_a_step(void **state)
+TEST(odd_nights_beside_a_step)
 {
-    (void)state;
     static const double past[] = {0.5, 1.2, 1.5};
     double value[NIGHTS];
     struct trend_change changes[MOST];
@@ -94,9 +86,8 @@ static void odd_nights_beside_a_step(void **state)
             }
 }
 
-static void several_steps(void **state)
+TEST(several_steps)
 {
-    (void)state;
     double value[NIGHTS];
     struct trend_change changes[MOST];
     level(value, 0, 9, 1);
@@ -120,9 +111,8 @@ static void several_steps(void **state)
 }
 
 /* Noise of 5 %: rarely taken for a step; a step of 50 % is found within a night of its place. */
-static void noise(void **state)
+TEST(noise)
 {
-    (void)state;
     enum { TRIALS = 400 };
     double value[NIGHTS];
     struct trend_change changes[MOST];
@@ -143,14 +133,4 @@ static void noise(void **state)
     print_message("%zu false alarms, %zu of %d steps found\n", false_alarms, found, TRIALS);
     assert_true(false_alarms < TRIALS / 10);
     assert_true(found > TRIALS * 97 / 100);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(nothing_changes), cmocka_unit_test(one_step),
-        cmocka_unit_test(odd_nights),      cmocka_unit_test(odd_nights_beside_a_step),
-        cmocka_unit_test(several_steps),   cmocka_unit_test(noise),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -187,7 +187,8 @@ static void one_scale(void **state)
     size_t found = 0;
     for (size_t k = 0; k < page.plots.file_count; k++) {
         const struct page_file *file = &page.plots.files[k];
-        if (strcmp(file->name, "flow-scheme-1.gp") && strcmp(file->name, "flow-scheme-2.gp"))
+        if (strcmp(file->name, "flow-scheme-error-1.gp") &&
+            strcmp(file->name, "flow-scheme-error-2.gp"))
             continue;
         found++;
         if (!strstr(file->bytes, "set cbrange [0.125:0.75]")) fail_msg("%s", file->bytes);

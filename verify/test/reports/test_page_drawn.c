@@ -2,13 +2,10 @@
  * Pages of documents drawn from data/drawn/report.json, with what lies beside them, are those that
  * were made before, byte for byte: data/drawn/pages.txt. Of gnuplot only the scripts and the data,
  * so that it needs none. A change that is meant is kept by verify/test/keep. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "test.h"
+
 #include <stdio.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "junit.h"
 #include "made_document.h"
@@ -62,9 +59,8 @@ static char *verdict_in_words(const json_t *results)
     return buffer_take(&text);
 }
 
-static void pages(void **state)
+TEST(pages)
 {
-    (void)state;
     json_t *template = made_template(folder, "report.json");
     char *path = strdup(getenv("PATH") ? getenv("PATH") : "");
     struct made_kept kept;
@@ -92,8 +88,7 @@ static void pages(void **state)
 
 int main(int argc, char **argv)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(pages)};
     if (argc != 2) return 2;
     folder = argv[1];
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return test_run(NULL, NULL);
 }

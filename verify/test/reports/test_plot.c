@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Plots: what goes into a page is well-formed, prefixed and self-contained; what can go wrong with
  * gnuplot ends in a status. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include <math.h>
 #include <signal.h>
@@ -76,9 +72,8 @@ static size_t occurrences(const char *text, const char *what)
     return n;
 }
 
-static void inline_svg(void **state)
+TEST(inline_svg)
 {
-    (void)state;
     if (!have_gnuplot()) skip();
     const struct plot *const plots[] = {&stack, &heated};
     for (size_t k = 0; k < 2; k++) {
@@ -101,9 +96,8 @@ static void inline_svg(void **state)
 }
 
 /* Values that differ by round-off alone, or not at all, are a line in a plot, on either axis. */
-static void one_value(void **state)
+TEST(one_value)
 {
-    (void)state;
     if (!have_gnuplot()) skip();
     const double nights[] = {1, 2, 3}, equal[] = {8.761e-4, 8.761e-4, 8.761e-4},
                  nearly[] = {8.761e-4, 8.761e-4 * (1 + 1e-13), 8.761e-4 * (1 - 1e-13)};
@@ -129,9 +123,8 @@ static void one_value(void **state)
     }
 }
 
-static void documents(void **state)
+TEST(documents)
 {
-    (void)state;
     if (!have_gnuplot()) skip();
     char *bytes, message[512] = "", fault[256] = "";
     size_t size;
@@ -149,9 +142,8 @@ static void documents(void **state)
 }
 
 /* The saved script draws the same picture from the saved data. */
-static void source(void **state)
+TEST(source)
 {
-    (void)state;
     char *script, *data;
     assert_true(plot_source(&stack, &script, &data));
     assert_non_null(strstr(script, "'stack-of_2.dat' index 7"));
@@ -162,9 +154,8 @@ static void source(void **state)
     free(data);
 }
 
-static void formats(void **state)
+TEST(formats)
 {
-    (void)state;
     enum plot_format format;
     assert_true(plot_format_of("a/b.svg", &format) && format == PLOT_SVG);
     assert_true(plot_format_of("b.c.png", &format) && format == PLOT_PNG);
@@ -185,9 +176,8 @@ static enum process_status shell(const char *command, const char *input, size_t 
 }
 
 /* A filter that answers before it has read, that reads nothing, that fails, dies, hangs. */
-static void processes(void **state)
+TEST(processes)
 {
-    (void)state;
     const size_t size = 1 << 20;
     char *input = malloc(size), message[512];
     assert_non_null(input);
@@ -223,9 +213,8 @@ static void processes(void **state)
     assert_false(sigismember(&mask, SIGPIPE));
 }
 
-static void missing_gnuplot(void **state)
+TEST(missing_gnuplot)
 {
-    (void)state;
     char *path = strdup(getenv("PATH") ? getenv("PATH") : ""), *svg, message[512];
     setenv("PATH", "/nowhere", 1);
     enum plot_status status = plot_svg(&stack, &svg, message, sizeof message);
@@ -237,9 +226,8 @@ static void missing_gnuplot(void **state)
 }
 
 /* The judge of the other tests must itself be able to say no. */
-static void markup(void **state)
+TEST(markup)
 {
-    (void)state;
     char fault[256];
     assert_true(markup_well_formed("<!doctype html><a b='c'>&amp;<d/></a>", fault, sizeof fault));
     static const char *const bad[] = {
@@ -251,9 +239,8 @@ static void markup(void **state)
 }
 
 /* Where a value is missing the line ends, and begins again after it. */
-static void gap(void **state)
+TEST(gap)
 {
-    (void)state;
     static const double at[] = {1, 2, 3, 4, 5}, gapped[] = {1, 2, NAN, 4, 5};
     const struct plot_series line = {.kind = PLOT_LINES, .n = 5, .x = at, .y = gapped};
     const struct plot_panel panel = {
@@ -273,9 +260,8 @@ static void gap(void **state)
 
 /* Each particle is in one cell, also on an edge between cells and on the box's own; those outside,
  * beside the slice, or nowhere are in none. */
-static void map_counts(void **state)
+TEST(map_counts)
 {
-    (void)state;
     static const double at[3][8] = {{0, 0.5, 1, 0.25, 0.25, 0.5, -0.1, NAN},
                                     {0, 0.5, 1, 0.25, 0.75, 0, 0.5, 0.5},
                                     {0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5}};
@@ -302,9 +288,8 @@ static void map_counts(void **state)
 }
 
 /* A cell has the mean of its particles, an empty one that of its nearest neighbours. */
-static void map_means(void **state)
+TEST(map_means)
 {
-    (void)state;
     static const double at[2][4] = {{0.1, 0.2, 0.9, 0.8}, {0.1, 0.2, 0.9, 0.1}};
     static const double values[] = {1, 3, 8, 5}, h[] = {1, 1, 1, 1};
     struct error error = {0};
@@ -322,9 +307,8 @@ static void map_means(void **state)
 
 /* An image is a bare matrix, and the script says where its cells are; a unit is as long on both
  * axes; panels beside each other do not overlap. */
-static void images(void **state)
+TEST(images)
 {
-    (void)state;
     static const double left[] = {0.5, 1.5, 2.5}, up[] = {1, 3}, z[] = {-1, 2, 3, 4, NAN, 6};
     const struct plot_heat image = {
         .nx = 3, .ny = 2, .x = left, .y = up, .z = z, .image = true, .diverging = true};
@@ -362,9 +346,8 @@ static void images(void **state)
 
 /* Beside a low map the colour bar has ticks as far apart as their labels are high; a high one's are
  * gnuplot's own. */
-static void low_color_bars(void **state)
+TEST(low_color_bars)
 {
-    (void)state;
     static const double at[] = {0.5, 1.5}, values[] = {0, 1, 0.25, 0.75};
     const struct plot_heat square = {
         .nx = 2, .ny = 2, .x = at, .y = at, .z = values, .image = true};
@@ -384,18 +367,4 @@ static void low_color_bars(void **state)
         free(script);
         free(data);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(low_color_bars), cmocka_unit_test(inline_svg),
-        cmocka_unit_test(one_value),      cmocka_unit_test(documents),
-        cmocka_unit_test(source),         cmocka_unit_test(formats),
-        cmocka_unit_test(processes),      cmocka_unit_test(missing_gnuplot),
-        cmocka_unit_test(markup),         cmocka_unit_test(gap),
-        cmocka_unit_test(map_counts),     cmocka_unit_test(map_means),
-        cmocka_unit_test(images),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,14 +2,11 @@
  * Scripts and data of plots drawn at random, and SVG as gnuplot writes it and as it does not,
  * adapted: those that were made before, byte for byte: data/drawn/plots.txt; kept as
  * test_page_drawn.c says. */
+#include "test.h"
+
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "buffer.h"
 #include "layout.h"
@@ -141,9 +138,8 @@ static void draw_plot(struct made_draw *draw, struct drawn *d, struct plot *plot
     }
 }
 
-static void scripts(void **state)
+TEST(scripts)
 {
-    (void)state;
     struct made_kept kept;
     struct drawn d;
     struct plot plot;
@@ -243,9 +239,8 @@ static void draw_elements(struct made_draw *draw, struct buffer *to, size_t dept
     }
 }
 
-static void pictures(void **state)
+TEST(pictures)
 {
-    (void)state;
     struct made_kept kept;
     struct buffer text = {0};
     char name[64];
@@ -279,8 +274,7 @@ static void pictures(void **state)
 
 int main(int argc, char **argv)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(scripts), cmocka_unit_test(pictures)};
     if (argc != 2) return 2;
     folder = argv[1];
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return test_run(NULL, NULL);
 }

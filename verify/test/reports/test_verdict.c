@@ -2,13 +2,10 @@
  * The verdict, the JUnit file and the summary of results in which every count is another one and
  * every way to fail is there: word for word as written down in data/verdict. And nothing checked,
  * or one thing alone. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "test.h"
+
 #include <stdio.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "junit.h"
 #include "summary.h"
@@ -50,9 +47,8 @@ static json_t *judged(void)
     return results;
 }
 
-static void verdict(void **state)
+TEST(verdict)
 {
-    (void)state;
     json_t *results = judged(), *expected = load("verdict.json");
     char *text = json_dumps(json_object_get(results, "verdict"), JSON_INDENT(1) | JSON_SORT_KEYS),
          *same = json_dumps(expected, JSON_INDENT(1) | JSON_SORT_KEYS);
@@ -63,9 +59,8 @@ static void verdict(void **state)
     json_decref(results);
 }
 
-static void junit(void **state)
+TEST(junit)
 {
-    (void)state;
     json_t *results = judged();
     char *text = junit_text(results);
     compare(text, "junit.xml");
@@ -73,9 +68,8 @@ static void junit(void **state)
     json_decref(results);
 }
 
-static void summary(void **state)
+TEST(summary)
 {
-    (void)state;
     json_t *results = judged();
     char *text = summary_text(results);
     compare(text, "summary.md");
@@ -85,9 +79,8 @@ static void summary(void **state)
 
 /* A run whose gate fails is a failure of the report and of its JUnit file, and of a rank of its
  * own. */
-static void gates_in_junit(void **state)
+TEST(gates_in_junit)
 {
-    (void)state;
     json_t *results =
         json_pack("{s:[{s:s, s:s, s:s, s:[{s:s, s:s, s:f, s:f}, {s:s, s:s, s:f, s:f}]}]}", "runs",
                   "status", "ok", "case", "sod", "label", "mine", "gates", "name", "density_l1",
@@ -111,9 +104,8 @@ static void gates_in_junit(void **state)
 }
 
 /* Twenty failures are listed, the rest is counted. */
-static void long_summary(void **state)
+TEST(long_summary)
 {
-    (void)state;
     for (size_t count = 20; count <= 22; count++) {
         json_t *results = json_pack("{s:{s:s, s:[]}}", "verdict", "headline", "bad", "failures");
         json_t *list = json_object_get(json_object_get(results, "verdict"), "failures");
@@ -134,9 +126,8 @@ static void long_summary(void **state)
 }
 
 /* What alone makes a verdict: one figure that passed, one order, one run; faults do not. */
-static void alone(void **state)
+TEST(alone)
 {
-    (void)state;
     static const struct {
         const char *text, *status, *headline;
     } rows[] = {
@@ -186,9 +177,8 @@ static void alone(void **state)
 }
 
 /* What runs have to keep is counted, and told with the run that does not keep it. */
-static void gates_of_runs(void **state)
+TEST(gates_of_runs)
 {
-    (void)state;
     json_t *results = json_pack(
         "{s:[{s:s, s:s, s:s, s:s, s:[{s:s}, {s:s}, {s:s}, {s:s}, {s:s}, {s:s, s:s, s:f, s:f}, "
         "{s:s, s:s, s:s, s:f}]}]}",
@@ -228,9 +218,8 @@ static void gates_of_runs(void **state)
 
 /* A check is told by the figure that is farthest beyond its bound, in units of it; no number is
  * farther than any. And passed, failed and skipped ones are different numbers. */
-static void farthest(void **state)
+TEST(farthest)
 {
-    (void)state;
     static const struct {
         const char *last, *told;
     } rows[] = {{"'value': 0.5, 'bound': 0.125", "c"},
@@ -264,9 +253,8 @@ static void farthest(void **state)
 }
 
 /* A long subject is cut at the end of a word, whose comma goes as well. */
-static void cut(void **state)
+TEST(cut)
 {
-    (void)state;
     static const struct {
         const char *subject, *told;
     } rows[] = {
@@ -295,13 +283,6 @@ static void cut(void **state)
 
 int main(int argc, char **argv)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(verdict),       cmocka_unit_test(junit),
-        cmocka_unit_test(summary),       cmocka_unit_test(gates_in_junit),
-        cmocka_unit_test(long_summary),  cmocka_unit_test(alone),
-        cmocka_unit_test(cut),           cmocka_unit_test(farthest),
-        cmocka_unit_test(gates_of_runs),
-    };
     folder = argc > 1 ? argv[1] : "";
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return test_run(NULL, NULL);
 }

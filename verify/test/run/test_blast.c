@@ -2,13 +2,10 @@
  * Problems of a ball that falls onto its centre and of a disc that flies apart: windows, samples,
  * particles, up to when they hold, and what is measured of them, on states made by hand. Their
  * solutions: the checks `exact blast` and `exact flow`. */
+#include "test.h"
+
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-#include <cmocka.h>
 
 #include "disc.h"
 #include "made_cloud.h"
@@ -17,9 +14,8 @@
 
 /* ---- Noh's collision ---- */
 
-static void gas_falls_in_a_ball(void **state)
+TEST(gas_falls_in_a_ball)
 {
-    (void)state;
     for (int dim = 1; dim <= 3; dim++)
         for (int k = 0; k < 2; k++) {
             struct settings s;
@@ -79,9 +75,8 @@ static void gas_falls_in_a_ball(void **state)
     assert_int_equal(p.problem->fill(&p, &s, &initial, &error), STATUS_BAD_INPUT);
 }
 
-static void balls_last_until_their_edge_comes(void **state)
+TEST(balls_last_until_their_edge_comes)
 {
-    (void)state;
     struct settings s;
     struct prepared p = prepared_of(&s, 1, "kind=noh|gamma=1.6|window=-0.125 0.25");
     lasts_until(&p, 0.25); /* the far end counts */
@@ -106,9 +101,8 @@ static void balls_last_until_their_edge_comes(void **state)
     near_relative(last_time(&p), 0.5 - 0.125 * sqrt(3), 1e-14);
 }
 
-static void collisions_are_measured(void **state)
+TEST(collisions_are_measured)
 {
-    (void)state;
     for (int dim = 1; dim <= 3; dim++)
         for (int k = 0; k < 3; k++) {
             struct settings s;
@@ -159,9 +153,8 @@ static void collisions_are_measured(void **state)
 
 /* ---- the spinning disc ---- */
 
-static void discs_fly_apart(void **state)
+TEST(discs_fly_apart)
 {
-    (void)state;
     struct settings s;
     struct prepared p = prepared_of(&s, 2, "kind=rotation|gamma=2|lo=-1 0|hi=3 2.5");
     const double unit = 0.5; /* a fifth of the shorter side */
@@ -213,9 +206,8 @@ static void discs_fly_apart(void **state)
     prepared_refused(2, "kind=rotation|gamma=1.9999999999989", "known for gamma=2");
 }
 
-static void discs_are_measured(void **state)
+TEST(discs_are_measured)
 {
-    (void)state;
     struct settings s;
     struct cloud cloud;
     const struct prepared p = prepared_of(&s, 2, "kind=rotation|gamma=2|lo=-1 0|hi=3 2.5");
@@ -231,16 +223,4 @@ static void discs_are_measured(void **state)
     near_relative(measured(&p, "angular_speed", &cloud.snapshot), turning / inertia, 1e-11);
     near_relative(exactly(&p, "disc_radius", 0.8), 0.5 * sqrt(1 + 1.5 * 0.64), 1e-14);
     near_relative(exactly(&p, "angular_speed", 0.8), 1 / (1 + 1.5 * 0.64), 1e-14);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(gas_falls_in_a_ball),
-        cmocka_unit_test(balls_last_until_their_edge_comes),
-        cmocka_unit_test(collisions_are_measured),
-        cmocka_unit_test(discs_fly_apart),
-        cmocka_unit_test(discs_are_measured),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

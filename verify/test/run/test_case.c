@@ -1,14 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Case files: what every line of a good one becomes, and of bad ones the whole message: file, line,
  * key, value and what is allowed. */
+#include "test.h"
+
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "cases.h"
 
@@ -22,9 +19,8 @@ static enum status parse(struct case_file *file, const char *text, struct error 
     return case_parse(file, "some/folder/tube.v2.ini", text, strlen(text), error);
 }
 
-static void everything(void **state)
+TEST(everything)
 {
-    (void)state;
     struct case_file file;
     struct error error;
     const char *text = HEAD "; a comment\n[measure]\nfields = density, pressure\nexact = velocity\n"
@@ -97,9 +93,8 @@ static void begins(const char *text, const char *message)
 #define GATE            "least order, greatest order, bound of the finest error; or " ERROR_GATE KNOWN
 
 /* A gate of a functional: the order that raises its bound, and the bound. */
-static void functionals(void **state)
+TEST(functionals)
 {
-    (void)state;
     struct case_file file;
     struct error error;
     if (parse(&file,
@@ -140,9 +135,8 @@ static void functionals(void **state)
 }
 
 /* What schemes that are compared are held to: a bound, or how far they are known to fail. */
-static void compared(void **state)
+TEST(compared)
 {
-    (void)state;
     struct case_file file;
     struct error error;
 #define COMPARED                                                                                   \
@@ -180,11 +174,10 @@ static void compared(void **state)
 }
 
 /* A bound of its own beyond the case's ladder. */
-static void finer(void **state)
+TEST(finer)
 {
     struct case_file file;
     struct error error;
-    (void)state;
 #define BOUNDED FLAT "[converge]\nvelocity_l1 = 0.5 3 0.125\ndisc_error = 0 2e-2\n"
     if (parse(&file, BOUNDED "[finer]\ndisc_error = 0.25\n", &error)) fail_msg("%s", error.message);
     assert_true(file.gates[1].finer == 0.25 && file.gates[0].finer == 0);
@@ -200,9 +193,8 @@ static void finer(void **state)
 #undef BOUNDED
 }
 
-static void bad_lines(void **state)
+TEST(bad_lines)
 {
-    (void)state;
     refused("", "some/folder/tube.v2.ini: the case file is empty");
     refused(HEAD "[measure]\nfields =\n", AT("13") "fields = ; allowed: names of fields");
     begins(HEAD "[measure]\nfields = density mass\n", AT("13") "no field 'mass'");
@@ -261,9 +253,8 @@ static void bad_lines(void **state)
     refused("[case]\n\r \n", AT("2") "byte 0x0d is not ASCII text; allowed: printable ASCII");
 }
 
-static void whole_files(void **state)
+TEST(whole_files)
 {
-    (void)state;
     char text[600], line[200];
     struct case_file file;
     struct error error;
@@ -296,12 +287,11 @@ static void whole_files(void **state)
     assert_true(strncmp(file.title, line, 100) == 0);
 }
 
-static void built_in_cases_are_sound(void **state)
+TEST(built_in_cases_are_sound)
 {
     struct case_file file;
     struct error error;
     size_t n = 0;
-    (void)state;
     for (const struct case_builtin *b = case_builtins; b->name; b++, n++) {
         assert_int_equal(case_load(&file, b->name, &error), STATUS_OK);
         assert_string_equal(file.name, b->name);
@@ -311,12 +301,11 @@ static void built_in_cases_are_sound(void **state)
 }
 
 /* Damaged case files: never a crash, always OK or a message. */
-static void damaged_cases_are_survived(void **state)
+TEST(damaged_cases_are_survived)
 {
     static const char noise[] = "\n[]=;:# \t\r0aZ.,-\"";
     unsigned random = 2385;
     size_t builtins = 1;
-    (void)state;
     while (case_builtins[builtins].name) builtins++;
     for (int round = 0; round < 4000; round++) {
         const struct case_builtin *builtin = &case_builtins[(size_t)round % builtins];
@@ -337,19 +326,4 @@ static void damaged_cases_are_survived(void **state)
         if (status) assert_ptr_equal(strstr(error.message, "damaged.ini"), error.message);
         free(text);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(everything),
-        cmocka_unit_test(functionals),
-        cmocka_unit_test(compared),
-        cmocka_unit_test(finer),
-        cmocka_unit_test(bad_lines),
-        cmocka_unit_test(whole_files),
-        cmocka_unit_test(built_in_cases_are_sound),
-        cmocka_unit_test(damaged_cases_are_survived),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,10 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * How cases are found: built-in ones by name, files by path, and what is no case file at all. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -38,9 +34,8 @@ static void write_case(const char *path, const char *name, size_t bytes)
     assert_int_equal(fclose(file), 0);
 }
 
-static void built_in(void **state)
+TEST(built_in)
 {
-    (void)state;
     size_t n = 0;
     for (const struct case_builtin *builtin = case_builtins; builtin->name; builtin++, n++) {
         struct case_file file;
@@ -52,9 +47,8 @@ static void built_in(void **state)
 }
 
 /* A path is what has a slash or ends in .ini: the file of a name is not looked for. */
-static void paths(void **state)
+TEST(paths)
 {
-    (void)state;
     struct case_file file;
     struct error error = {0};
     write_case(path_of("tube.ini"), "sod", 0);
@@ -87,9 +81,8 @@ static void refused(const char *name, const char *why)
 }
 
 /* A file is read, whatever number it gets, and closed. */
-static void descriptors(void **state)
+TEST(descriptors)
 {
-    (void)state;
     struct case_file file;
     struct error error = {0};
     write_case(path_of("tube.ini"), "sod", 0);
@@ -106,9 +99,8 @@ static void descriptors(void **state)
     unlink(path_of("tube.ini"));
 }
 
-static void no_case_files(void **state)
+TEST(no_case_files)
 {
-    (void)state;
     refused(path_of("none.ini"), "No such file or directory");
     refused(folder, "Is a directory");
     assert_int_equal(mkfifo(path_of("pipe.ini"), 0600), 0);
@@ -153,9 +145,8 @@ static void no_case_files(void **state)
 }
 
 /* All that there are are named, as far as the message goes. */
-static void unknown_names(void **state)
+TEST(unknown_names)
 {
-    (void)state;
     struct case_file file;
     struct error error = {0};
     char said[256], name[200];
@@ -185,10 +176,5 @@ static int remove_folder(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(built_in),      cmocka_unit_test(paths),
-        cmocka_unit_test(descriptors),   cmocka_unit_test(no_case_files),
-        cmocka_unit_test(unknown_names),
-    };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return test_run(make_folder, remove_folder);
 }

@@ -1,15 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The state of a run in a file: it comes back to the last bit, at the right moments, or is refused
  * with the reason. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "test.h"
+
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
-#include <cmocka.h>
 
 #include "cache.h"
 #include "checkpoint.h"
@@ -42,10 +39,9 @@ static int end(void **state)
 }
 
 /* So many seconds after the last time, or after the first question. */
-static void when(void **state)
+TEST(when)
 {
     struct checkpoint checkpoint = {.every = 1000};
-    (void)state;
     const double before = clock_wall();
     assert_false(checkpoint_due(&checkpoint));
     assert_true(checkpoint.written >= before && checkpoint.written <= clock_wall());
@@ -87,9 +83,8 @@ static enum status loaded(struct checkpoint *checkpoint, struct simulation *simu
     return status;
 }
 
-static void goes_on(void **state)
+TEST(goes_on)
 {
-    (void)state;
     struct simulation *self = made_simulation(40), *other = made_simulation(40);
     struct checkpoint checkpoint = usual();
     struct error error = {0};
@@ -138,12 +133,11 @@ static void refused(struct checkpoint checkpoint, const char *why)
     simulation_destroy(simulation);
 }
 
-static void damaged(void **state)
+TEST(damaged)
 {
     static char bytes[1 << 16];
     struct simulation *self = made_simulation(40);
     char head[200];
-    (void)state;
     saved(self);
     simulation_destroy(self);
     const size_t n = read_all(bytes, sizeof bytes);
@@ -183,13 +177,12 @@ static void damaged(void **state)
 }
 
 /* Files whose checksum is right, and which are too short, or begin otherwise. */
-static void forged(void **state)
+TEST(forged)
 {
     enum { LINE = (1 << 16) - 1 };
     static char bytes[1 << 18];
     struct simulation *self = made_simulation(40);
     char head[200];
-    (void)state;
     saved(self);
     const size_t n = read_all(bytes, sizeof bytes);
     snprintf(head, sizeof head, "sphproof-checkpoint/1 %s\n%s\n", build, usual().run);
@@ -216,13 +209,12 @@ static void forged(void **state)
 }
 
 /* More than what is read at once: a fault in any part of it is seen. */
-static void large_ones(void **state)
+TEST(large_ones)
 {
     static char bytes[1 << 23];
     struct simulation *self = made_simulation(8000);
     struct checkpoint checkpoint = usual();
     struct error error = {0};
-    (void)state;
     made_run(self, 1e-6);
     saved(self);
     const size_t n = read_all(bytes, sizeof bytes);
@@ -242,7 +234,7 @@ static void large_ones(void **state)
 }
 
 /* Of another build or run: what differs is said. */
-static void others(void **state)
+TEST(others)
 {
     static const struct {
         const char *run, *why;
@@ -255,7 +247,6 @@ static void others(void **state)
     struct simulation *self = made_simulation(40);
     struct checkpoint checkpoint = usual();
     char why[200];
-    (void)state;
     saved(self);
     simulation_destroy(self);
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
@@ -286,11 +277,10 @@ static void others(void **state)
 }
 
 /* A description of the run fills its line, and may not be longer. */
-static void long_runs(void **state)
+TEST(long_runs)
 {
     enum { MOST = (1 << 16) - 2 }; /* with the line's end and the text's */
     static char text[MOST + 2];
-    (void)state;
     for (size_t more = 0; more < 2; more++) {
         struct simulation *self = made_simulation(40);
         struct checkpoint checkpoint = usual();
@@ -311,14 +301,13 @@ static void long_runs(void **state)
 
 /* Where nothing can be written the trouble says so, until it can; what cannot be opened is refused.
  */
-static void no_room(void **state)
+TEST(no_room)
 {
     struct simulation *self = made_simulation(40);
     struct checkpoint checkpoint = usual();
     struct growth growth = {0};
     struct error error = {0};
     char beside[80];
-    (void)state;
     saved(self);
     snprintf(beside, sizeof beside, "%s/no/such", folder);
     checkpoint.path = beside;
@@ -337,10 +326,5 @@ static void no_room(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(when),      cmocka_unit_test(goes_on), cmocka_unit_test(damaged),
-        cmocka_unit_test(forged),    cmocka_unit_test(others),  cmocka_unit_test(large_ones),
-        cmocka_unit_test(long_runs), cmocka_unit_test(no_room),
-    };
-    return cmocka_run_group_tests(tests, begin, end);
+    return test_run(begin, end);
 }

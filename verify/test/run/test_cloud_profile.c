@@ -1,13 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Profiles of a run in 2D and 3D, of a gas and particles that are made here: maps, the particles of
  * the window over the one coordinate that counts, the exact curve, and when there is none. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "test.h"
+
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "cloud_profile.h"
 #include "map.h"
@@ -140,9 +137,8 @@ static void exact_at(const double at[3], double values[4])
     for (int q = 0; q < 4; q++) values[q] = (around ? round : plain)[q];
 }
 
-static void maps(void **state)
+TEST(maps)
 {
-    (void)state;
     for (int k = 0; k < 4; k++) {
         const int dim = k < 2 ? 2 : 3;
         const size_t n = k % 2 ? MANY : FEW;
@@ -184,9 +180,8 @@ static void maps(void **state)
 }
 
 /* Where only functionals are known there is neither an error nor a curve. */
-static void nothing_to_compare_with(void **state)
+TEST(nothing_to_compare_with)
 {
-    (void)state;
     make(2, false, FEW);
     problem.fieldless = true;
     json_t *profile = cloud_profile_json(&result), *made = json_object_get(profile, "map");
@@ -198,9 +193,8 @@ static void nothing_to_compare_with(void **state)
 
 /* Particles of the window in their order, and the curve from end to end of it, or from the centre.
  */
-static void particles_and_the_curve(void **state)
+TEST(particles_and_the_curve)
 {
-    (void)state;
     for (int k = 0; k < 4; k++) {
         const int dim = 2 + k / 2;
         make(dim, k % 2, FEW);
@@ -259,11 +253,10 @@ static void particles_and_the_curve(void **state)
 }
 
 /* Of many about 600, drawn by Knuth's generator, and not every k-th one. */
-static void some_of_many(void **state)
+TEST(some_of_many)
 {
     uint64_t drawn = 1;
     size_t shown = 0, nearest = 0;
-    (void)state;
     make(2, false, MANY);
     json_t *profile = cloud_profile_json(&result);
     for (size_t i = 0; i < MANY; i++) {
@@ -289,9 +282,8 @@ static bool has_a_curve(void)
 
 /* One particle of a gas that is elsewhere the same stands where one quantity is another one, by a
  * little less or more than a billionth of 1 and of itself. */
-static void what_is_no_function_of_the_coordinate(void **state)
+TEST(what_is_no_function_of_the_coordinate)
 {
-    (void)state;
     for (int k = 0; k < 8; k++) {
         const int q = k % 4;
         const bool circular = k > 3;
@@ -340,16 +332,4 @@ static void what_is_no_function_of_the_coordinate(void **state)
         off[0] = 1;
         assert_int_equal(has_a_curve(), !rows[k].seen);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(maps),
-        cmocka_unit_test(nothing_to_compare_with),
-        cmocka_unit_test(particles_and_the_curve),
-        cmocka_unit_test(some_of_many),
-        cmocka_unit_test(what_is_no_function_of_the_coordinate),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,15 +3,12 @@
  * CONVENTIONS section 9 have them, and what the rest depends on as the keys' meanings say it, for
  * every scheme of these choices in 1D and 2D; and which schemes are refused, at each limit.
  * Argument: CONVENTIONS.md. */
+#include "test.h"
+
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "integrator.h"
 #include "near.h"
@@ -162,29 +159,25 @@ static void every_scheme(const char *name, int dim)
     assert_true(2 * allowed > all);
 }
 
-static void in_a_line(void **state)
+TEST(in_a_line)
 {
-    (void)state;
     every_scheme("sod", 1);
 }
 
-static void in_a_plane(void **state)
+TEST(in_a_plane)
 {
-    (void)state;
     every_scheme("rest_2d", 2);
 }
 
-static void nothing_but_these(void **state)
+TEST(nothing_but_these)
 {
-    (void)state;
     assert_int_equal(kernels.n, kernel_family.n);
     assert_int_equal(integrators.n, integrator_family.n);
 }
 
 /* Where nothing is chosen at all; and what takes long steps away. */
-static void nothing_chosen(void **state)
+TEST(nothing_chosen)
 {
-    (void)state;
     static const struct {
         const char *name, *kernel;
         enum gradient gradient;
@@ -228,9 +221,8 @@ static void nothing_chosen(void **state)
 }
 
 /* sinc: half its exponent. */
-static void sinc(void **state)
+TEST(sinc)
 {
-    (void)state;
     const struct run_settings sod = case_of("sod"), rest = case_of("rest_2d");
     for (int n = 3; n <= 12; n++) {
         char word[32];
@@ -262,9 +254,8 @@ static void with(const struct scheme *scheme, int dim, size_t member, double val
 
 #define WITH(member, value, said) with(&s, dim, offsetof(struct scheme, member), value, said)
 
-static void numbers_that_are_refused(void **state)
+TEST(numbers_that_are_refused)
 {
-    (void)state;
     for (int dim = 1; dim <= 3; dim++) {
         const struct run_settings base = case_of(dim == 1   ? "sod"
                                                  : dim == 2 ? "rest_2d"
@@ -328,9 +319,8 @@ static void numbers_that_are_refused(void **state)
 
 /* Lagrangian forms have no width of a pair. Members of families that stand behind those with a form
  * in a line are for more dimensions. */
-static void choices_that_are_refused(void **state)
+TEST(choices_that_are_refused)
 {
-    (void)state;
     const struct run_settings base = case_of("sod");
     struct run run;
     struct error error = {0};
@@ -389,17 +379,8 @@ static void choices_that_are_refused(void **state)
 
 int main(int argc, char **argv)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(nothing_but_these),
-        cmocka_unit_test(in_a_line),
-        cmocka_unit_test(in_a_plane),
-        cmocka_unit_test(nothing_chosen),
-        cmocka_unit_test(sinc),
-        cmocka_unit_test(numbers_that_are_refused),
-        cmocka_unit_test(choices_that_are_refused),
-    };
     if (argc != 2) return 2;
     read_table(&kernels, argv[1], "kernel");
     read_table(&integrators, argv[1], "integrator");
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return test_run(NULL, NULL);
 }

@@ -1,10 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Particles of equal masses, worked out a second time. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include <gsl/gsl_qrng.h>
 #include <gsl/gsl_rng.h>
@@ -16,9 +12,8 @@
 #include "near.h"
 
 /* Sobol's sequence, its digits exchanged, shifted, each point with the density's probability. */
-static void equal_masses_follow_the_density(void **state)
+TEST(equal_masses_follow_the_density)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         enum { N = 50 };
         static char *keys[] = {"n=50", "lattice=random", "seed=5", "equal_masses=yes"};
@@ -80,9 +75,8 @@ static void sample_special(const struct prepared *p, const double x[3], double t
 }
 
 /* Who stays is decided by the density over 1.01 times the greatest one, to the last digits. */
-static void points_are_kept_by_their_density(void **state)
+TEST(points_are_kept_by_their_density)
 {
-    (void)state;
     static char *keys[] = {"n=20", "lattice=random", "seed=5", "equal_masses=yes"};
     const struct settings settings = gas_settings(4, keys);
     const struct problem problem = {.sample = sample_special};
@@ -111,13 +105,4 @@ static void points_are_kept_by_their_density(void **state)
     }
     gsl_qrng_free(sequence);
     gsl_rng_free(random);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(equal_masses_follow_the_density),
-        cmocka_unit_test(points_are_kept_by_their_density),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,10 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What a run is thought to take, worked out a second time; the limit of what is allowed. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include <stdio.h>
 
@@ -48,9 +44,8 @@ static struct setup plain_setup(int dim)
     return setup;
 }
 
-static void of_particles(void **state)
+TEST(of_particles)
 {
-    (void)state;
     static const double ball[] = {0, 2, M_PI, 4 * M_PI / 3};
     for (int dim = 1; dim <= 3; dim++) {
         struct setup setup = plain_setup(dim);
@@ -112,9 +107,8 @@ static void of_particles(void **state)
 }
 
 /* A million particles of the best scheme in 3D go into a GiB. */
-static void of_a_million(void **state)
+TEST(of_a_million)
 {
-    (void)state;
     struct setup setup = plain_setup(3);
     setup.n = 1000000;
     setup.scheme.integrator =
@@ -129,9 +123,8 @@ static void of_a_million(void **state)
 }
 
 /* Of gas as cold as can be next to nothing is asked; each step takes one evaluation at least. */
-static void of_few_steps(void **state)
+TEST(of_few_steps)
 {
-    (void)state;
     static const double cold[N] = {1e-30, 1e-30, 1e-30}, still[N] = {0};
     struct setup setup = plain_setup(1);
     struct integrator lazy = *setup.scheme.integrator;
@@ -148,9 +141,8 @@ static void of_few_steps(void **state)
 }
 
 /* What is there may be used up. */
-static void more_than_there_is(void **state)
+TEST(more_than_there_is)
 {
-    (void)state;
     const double there = allowance_memory("");
     struct error error;
     char said[160];
@@ -162,15 +154,4 @@ static void more_than_there_is(void **state)
              "n=7 takes about %.3g GB of memory, more than the %.3g GB that there are",
              2 * there / 1e9, there / 1e9);
     assert_string_equal(error.message, said);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(of_particles),
-        cmocka_unit_test(of_a_million),
-        cmocka_unit_test(of_few_steps),
-        cmocka_unit_test(more_than_there_is),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

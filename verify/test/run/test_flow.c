@@ -2,13 +2,10 @@
  * Problems of gas that stays where it is or turns in circles: which boxes and gases they take, what
  * they sample, how they lay their particles, and what is measured of them, on states made by hand.
  * That their solutions are exact: the check `exact flow`. */
+#include "test.h"
+
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-#include <cmocka.h>
 
 #include "kelvin_helmholtz.h"
 #include "lattice.h"
@@ -84,9 +81,8 @@ static struct problem_state sampled(const struct prepared *p, double x, double y
 
 /* ---- vortices ---- */
 
-static void vortices_turn_round_the_middle(void **state)
+TEST(vortices_turn_round_the_middle)
 {
-    (void)state;
     static const char *const names[] = {"gresho", "yee"};
     for (int k = 0; k < 2; k++) {
         char keys[64];
@@ -116,9 +112,8 @@ static void vortices_turn_round_the_middle(void **state)
     prepared_refused(2, "kind=gresho|lo=0 -2|hi=1 -1.5", "lo=-2 hi=-1.5: the vortex");
 }
 
-static void vortex_is_measured(void **state)
+TEST(vortex_is_measured)
 {
-    (void)state;
     struct settings s;
     struct cloud cloud;
     const struct prepared p =
@@ -152,9 +147,8 @@ static void vortex_is_measured(void **state)
 
 /* ---- the layers of McNally, Lyra & Passy ---- */
 
-static void layers_fill_a_square(void **state)
+TEST(layers_fill_a_square)
 {
-    (void)state;
     struct settings s;
     const struct prepared p =
         prepared_of(&s, 2, "kind=kelvin_helmholtz|lo=-1 2|hi=1 4|gamma=1.6|boost=0.5 0.75");
@@ -227,9 +221,8 @@ static void layers_fill_a_square(void **state)
 
 /* ---- shear ---- */
 
-static void layers_slide_past_each_other(void **state)
+TEST(layers_slide_past_each_other)
 {
-    (void)state;
     static const struct {
         int dim;
         const char *keys;
@@ -300,9 +293,8 @@ static void layers_slide_past_each_other(void **state)
 
 /* ---- rest, and particles of a file ---- */
 
-static void gas_rests(void **state)
+TEST(gas_rests)
 {
-    (void)state;
     struct settings s;
     const struct prepared p = prepared_of(&s, 3, "kind=rest|background=1.3 0 0.7|gamma=1.6");
     const struct problem_state have = sampled(&p, 0.1, 0.2, 0.3, 0.4);
@@ -314,9 +306,8 @@ static void gas_rests(void **state)
     prepared_refused(2, "kind=rest|background=1 0 0", "rho v P with rho > 0 and P > 0");
 }
 
-static void nothing_is_known_of_a_file(void **state)
+TEST(nothing_is_known_of_a_file)
 {
-    (void)state;
     struct settings s;
     struct initial initial = {0};
     struct error error = {0};
@@ -337,9 +328,8 @@ static void nothing_is_known_of_a_file(void **state)
 static const char square_keys[] = "kind=square|lo=-1 2 0|hi=3 4 8|gamma=1.6|contrast=5";
 
 /* A corner belongs to the square where it begins, and not where it ends. */
-static void square_is_half_the_box(void **state)
+TEST(square_is_half_the_box)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct settings s;
         const struct prepared p = prepared_of(
@@ -360,9 +350,8 @@ static void square_is_half_the_box(void **state)
 }
 
 /* Equal spacing: a lattice of 4 by 4 cells or multiples, no cell on both sides of an edge. */
-static void squares_share_a_lattice(void **state)
+TEST(squares_share_a_lattice)
 {
-    (void)state;
     /* a few; and so many that one part of 16 or 64 more or less would be a row more or less */
     static const int wanted[][3] = {{0}, {0}, {4, 968, 950}, {4, 1320, 1300}};
     for (int dim = 2; dim <= 3; dim++)
@@ -411,9 +400,8 @@ static void squares_share_a_lattice(void **state)
 }
 
 /* Equal masses: each gas on its own lattice, the thin one without what would lie in the square. */
-static void squares_have_equal_masses(void **state)
+TEST(squares_have_equal_masses)
 {
-    (void)state;
     static const struct {
         int dim;
         const char *keys;
@@ -473,9 +461,8 @@ static void squares_have_equal_masses(void **state)
     }
 }
 
-static void squares_that_cannot_be_laid_are_refused(void **state)
+TEST(squares_that_cannot_be_laid_are_refused)
 {
-    (void)state;
     /* how particles lie, their number, a lattice; either gas may have too few of them for it */
     static const struct {
         const char *keys;
@@ -503,21 +490,4 @@ static void squares_that_cannot_be_laid_are_refused(void **state)
             fail_msg("row %zu: status %d: %s", k, (int)status, error.message);
         free(initial.storage);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(vortices_turn_round_the_middle),
-        cmocka_unit_test(vortex_is_measured),
-        cmocka_unit_test(layers_fill_a_square),
-        cmocka_unit_test(layers_slide_past_each_other),
-        cmocka_unit_test(gas_rests),
-        cmocka_unit_test(nothing_is_known_of_a_file),
-        cmocka_unit_test(square_is_half_the_box),
-        cmocka_unit_test(squares_share_a_lattice),
-        cmocka_unit_test(squares_have_equal_masses),
-        cmocka_unit_test(squares_that_cannot_be_laid_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Where particles start: arrays, lattices, balls, pairs and jitter, each worked out a second time.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include <gsl/gsl_rng.h>
 #include <stdio.h>
@@ -18,9 +14,8 @@
 #include "lattice.h"
 #include "near.h"
 
-static void arrays_lie_apart(void **state)
+TEST(arrays_lie_apart)
 {
-    (void)state;
     for (int dim = 1; dim <= 3; dim++) {
         enum { N = 5 };
         struct initial initial;
@@ -47,9 +42,8 @@ static void arrays_lie_apart(void **state)
     }
 }
 
-static void seeds_matter_to_some(void **state)
+TEST(seeds_matter_to_some)
 {
-    (void)state;
     static const struct {
         char *key;
         bool shaken;
@@ -69,9 +63,8 @@ static bool left_of(const void *context, const double x[3])
 }
 
 /* A lattice behind what is there already, and some of it taken out again. */
-static void lays_and_keeps(void **state)
+TEST(lays_and_keeps)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         const struct prepared p = {.problem = &gas_problem, .domain = {dim, {-1, 0, 2}, {1, 3, 4}}};
         const struct domain box = {dim, {-1, 1, 2}, {0, 2, 3}};
@@ -130,9 +123,8 @@ static void lays_and_keeps(void **state)
 }
 
 /* A ball: about n lattice points of the box around it, those within. */
-static void balls_are_cut_from_lattices(void **state)
+TEST(balls_are_cut_from_lattices)
 {
-    (void)state;
     static const double part[] = {0, 1, 3.14159265358979323846 / 4, 3.14159265358979323846 / 6};
     for (int dim = 1; dim <= 3; dim++) {
         static char *keys[] = {"n=200", "lattice=uniform"};
@@ -212,9 +204,8 @@ static struct initial created(const struct prepared *p, const struct settings *s
 }
 
 /* Pairs of like neighbours, a tenth of their distance apart, or none. */
-static void pairs_of_a_line(void **state)
+TEST(pairs_of_a_line)
 {
-    (void)state;
     const struct prepared p = {.problem = &line, .domain = {1, {0}, {9}}, .boost = {100}};
     static const struct {
         char *key;
@@ -263,9 +254,8 @@ static enum status fill_cloud(const struct prepared *p, const struct settings *s
 
 /* Each place is moved by up to jitter times its spacing; round the box, back from an end that is
  * none, and on a line no further than the end. Flows without a jump are sampled again. */
-static void jitter_moves_all(void **state)
+TEST(jitter_moves_all)
 {
-    (void)state;
     for (int dim = 1; dim <= 3; dim++)
         for (int smooth = 0; smooth < 2; smooth++) {
             static char *keys[] = {"jitter=0.4", "seed=77"};
@@ -319,9 +309,8 @@ static void jitter_moves_all(void **state)
 }
 
 /* A lower end belongs to the box, an upper one is the lower one of the next box. */
-static void ends_of_the_box(void **state)
+TEST(ends_of_the_box)
 {
-    (void)state;
     static char *keys[] = {"jitter=1e-30"};
     const struct problem problem = {.sample = gas_sample, .fill = fill_cloud};
     const struct prepared p = {.problem = &problem,
@@ -341,9 +330,8 @@ static enum status fill_nothing(const struct prepared *p, const struct settings 
     return error_set(error, STATUS_BAD_INPUT, "nothing");
 }
 
-static void failures_are_passed_on(void **state)
+TEST(failures_are_passed_on)
 {
-    (void)state;
     const struct problem problem = {.sample = gas_sample, .fill = fill_nothing};
     const struct prepared p = {.problem = &problem, .domain = {2, {0, 0}, {1, 1}}};
     const struct settings settings = gas_settings(0, NULL);
@@ -372,15 +360,4 @@ static void failures_are_passed_on(void **state)
     assert_int_equal(lattice_plan_make(&plan, &p.domain, LATTICE_FCC, 100, &error),
                      STATUS_BAD_INPUT);
     assert_non_null(strstr(error.message, "lattice=fcc has no form in 2 dimensions"));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(arrays_lie_apart), cmocka_unit_test(seeds_matter_to_some),
-        cmocka_unit_test(lays_and_keeps),   cmocka_unit_test(balls_are_cut_from_lattices),
-        cmocka_unit_test(pairs_of_a_line),  cmocka_unit_test(jitter_moves_all),
-        cmocka_unit_test(ends_of_the_box),  cmocka_unit_test(failures_are_passed_on),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

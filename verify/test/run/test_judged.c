@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What a case is judged by, in which order, and the one error of a run with the signal it is
  * compared with, on results that are made here. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "test.h"
+
 #include <string.h>
-#include <cmocka.h>
 
 #include "judged.h"
 #include "near.h"
@@ -67,14 +64,13 @@ static void names_are(const struct case_file *file, size_t count, const char *co
 
 /* Parts of a circular flow, fields with a gate, fields without one; functionals where no field is
  * known, and then those only that have an exact value. */
-static void names(void **state)
+TEST(names)
 {
     static const char *const functionals[] = {"growth_rate", "mode_noise", "mode_error"};
     static const double exact[] = {1.7, (double)NAN, 0};
     struct run_settings settings;
     struct run_result result;
     struct case_file *file = &settings.file;
-    (void)state;
     make(&settings, &result, "gresho");
     memset(file->fields, 0, sizeof file->fields);
     file->fields[FIELD_DENSITY] = file->fields[FIELD_VELOCITY] = true;
@@ -130,12 +126,11 @@ static void judged_is(const struct run_settings *settings, const struct run_resu
     near_relative(judged.signal, signal, 1e-14);
 }
 
-static void fields(void **state)
+TEST(fields)
 {
     struct run_settings settings;
     struct run_result result;
     double rho[N][3] = {{0}}, v[N][3], P[N][3] = {{0}}, sound = 0, all = 0;
-    (void)state;
     still = false;
     make(&settings, &result, "square");
     memset(settings.file.fields, 0, sizeof settings.file.fields);
@@ -172,12 +167,11 @@ static void fields(void **state)
 }
 
 /* A velocity that is no more than round-off beside the sound speed is uniform. */
-static void faint_signals(void **state)
+TEST(faint_signals)
 {
     static const double places[2][2] = {{0.25, 0.75}, {0.5, 0.5}}, halves[2] = {0.5, 0.5};
     struct run_settings settings;
     struct run_result result;
-    (void)state;
     make(&settings, &result, "square");
     memset(settings.file.fields, 0, sizeof settings.file.fields);
     settings.file.gate_count = 0;
@@ -191,12 +185,11 @@ static void faint_signals(void **state)
     faint = 0;
 }
 
-static void functionals(void **state)
+TEST(functionals)
 {
     struct run_settings settings;
     struct run_result result;
     struct judged judged;
-    (void)state;
     make(&settings, &result, "kelvin_helmholtz_mode");
     result.functionals[0] = (struct run_functional){"mode_noise", 5, (double)NAN};
     result.functionals[1] = (struct run_functional){"growth_rate", 1.5, -2};
@@ -227,15 +220,4 @@ static void functionals(void **state)
         assert_string_equal(got.name, field_family.members[f]->name);
         assert_true(got.error == 0.01 * (f + 1) && got.signal < 100);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(names),
-        cmocka_unit_test(fields),
-        cmocka_unit_test(faint_signals),
-        cmocka_unit_test(functionals),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,16 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The table of keys a second time: what each holds, from where to where, and what it is if nobody
  * says anything. Words have no ends. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "test.h"
+
 #include <string.h>
-#include <cmocka.h>
 
 #include "settings.h"
 
-static void keys_are_as_they_were(void **state)
+TEST(keys_are_as_they_were)
 {
     static const struct {
         const char *name;
@@ -72,7 +69,6 @@ static void keys_are_as_they_were(void **state)
         {"window", SETTING_REALS, 2, false, -1e30, 1e30, "auto"},
         {"window_radius", SETTING_REAL, 1, false, 0, 1e30, "0"},
     };
-    (void)state;
     assert_int_equal(SETTINGS, sizeof rows / sizeof *rows);
     for (int i = 0; i < SETTINGS; i++) {
         const struct setting_key *key = &setting_keys[i];
@@ -82,12 +78,4 @@ static void keys_are_as_they_were(void **state)
             strcmp(key->fallback, rows[i].fallback) != 0)
             fail_msg("%s is not as it was", key->name);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(keys_are_as_they_were),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,10 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Lattices and quasi-random points of the whole box, worked out a second time. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include <gsl/gsl_qrng.h>
 #include <gsl/gsl_rng.h>
@@ -17,9 +13,8 @@
 #include "made_digits.h"
 #include "near.h"
 
-static void the_whole_box_is_laid(void **state)
+TEST(the_whole_box_is_laid)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         static char *keys[] = {"n=64", "lattice=random", "seed=3"};
         const struct prepared p = {.problem = &gas_problem, .domain = {dim, {-1, 0, 1}, {1, 3, 2}}};
@@ -64,9 +59,8 @@ static void the_whole_box_is_laid(void **state)
 
 /* In a box of their own shape each point has as many others at the smallest distance as it should,
  * which the density gives; no cell is another one's. */
-static void crystals(void **state)
+TEST(crystals)
 {
-    (void)state;
     static const struct {
         enum lattice kind;
         int dim, nearest;
@@ -120,9 +114,8 @@ static void crystals(void **state)
 }
 
 /* Asked directly, too: in fewer dimensions there is no such crystal, and no point of it. */
-static void crystals_have_their_dimensions(void **state)
+TEST(crystals_have_their_dimensions)
 {
-    (void)state;
     static const struct {
         enum lattice kind;
         int least;
@@ -141,9 +134,8 @@ static void crystals_have_their_dimensions(void **state)
 }
 
 /* As many cells as fit best: 2.5 of them, and a little more or less. */
-static void cells_that_fit(void **state)
+TEST(cells_that_fit)
 {
-    (void)state;
     for (int more = -1; more <= 1; more += 2) {
         const double fit = 2.5 * (1 + more * 2e-7);
         const struct domain box = {2, {0, 0}, {1, 10 / (fit * fit)}};
@@ -156,9 +148,8 @@ static void cells_that_fit(void **state)
 }
 
 /* So many quasi-random points that some come as near to an end as to a millionth: all are in. */
-static void sobol_points_stay_inside(void **state)
+TEST(sobol_points_stay_inside)
 {
-    (void)state;
     enum { N = (1 << 20) + 1 };
     const struct domain box = {2, {-1, 3}, {1, 4}};
     struct lattice_plan plan;
@@ -179,9 +170,8 @@ static void sobol_points_stay_inside(void **state)
 
 /* The first seed's points are Sobol's, moved as one. Those of another seed are no such image of
  * them, and as even: no two of 255 points are in the same of 256 equal parts of an axis. */
-static void seeds_have_arrangements_of_their_own(void **state)
+TEST(seeds_have_arrangements_of_their_own)
 {
-    (void)state;
     enum { N = 256, SEEDS = 6 };
     static double x[SEEDS][3][N];
     const struct domain box = {3, {0, 0, 0}, {1, 1, 1}};
@@ -224,17 +214,4 @@ static void seeds_have_arrangements_of_their_own(void **state)
                 assert_true(differing > N / 4);
             }
     gsl_qrng_free(sobol);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_whole_box_is_laid),
-        cmocka_unit_test(crystals),
-        cmocka_unit_test(crystals_have_their_dimensions),
-        cmocka_unit_test(cells_that_fit),
-        cmocka_unit_test(sobol_points_stay_inside),
-        cmocka_unit_test(seeds_have_arrangements_of_their_own),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

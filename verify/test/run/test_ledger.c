@@ -2,16 +2,13 @@
  * What a run says of itself, computed again from its particles: spacing, mean h, budgets (also of
  * the mirrored problem), up to when a window is free of the mirrored tube, and how jitter is drawn.
  */
+#include "test.h"
+
 #include <float.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "initial.h"
 #include "initial_create.h"
@@ -54,9 +51,8 @@ static bool in_window(const struct prepared *p, const struct snapshot *s, size_t
     return inside && (!(p->window.radius > 0) || sqrt(square) <= p->window.radius);
 }
 
-static void means(void **state)
+TEST(means)
 {
-    (void)state;
     static const struct {
         const char *name, *words[3];
         double volume; /* of the box */
@@ -94,9 +90,8 @@ static void means(void **state)
 }
 
 /* A mirrored tube has the same error in each of its regions, and gas as still. */
-static void mirrored_budgets(void **state)
+TEST(mirrored_budgets)
 {
-    (void)state;
     static const char *const tubes[][2][2] = {
         {{"left=1,0,1", "right=0.125,0,0.1"}, {"right=1,0,1", "left=0.125,0,0.1"}},
         {{"left=1,0.5,1", "right=0.5,-0.2,0.1"}, {"right=1,-0.5,1", "left=0.5,0.2,0.1"}},
@@ -127,9 +122,8 @@ static void mirrored_budgets(void **state)
 
 /* The window of a tube in [-1, 1] is free until the first wave of the tube that starts at the box's
  * ends is there; on its way it meets only gas as it was, if that is before 1/2 of the box. */
-static void windows(void **state)
+TEST(windows)
 {
-    (void)state;
     static const struct {
         struct riemann_state left, right;
         double lo, hi;
@@ -223,9 +217,8 @@ static void jitter(const char *name, const char *key, const char *lattice, doubl
     for (size_t k = 0; k < 3; k++) initial_free(&start[k]);
 }
 
-static void jitters(void **state)
+TEST(jitters)
 {
-    (void)state;
     jitter("sod", "n=3000", "lattice=uniform", 0.3);
     jitter("rest_2d", "n=50^2", "lattice=square", 0.3);
     jitter("rest_3d", "n=14^3", "lattice=cubic", 0.3);
@@ -239,9 +232,8 @@ static void jitters(void **state)
 
 /* The scale of speeds: sum of m c, c of the state that the particles show; also of those that an
  * end holds. */
-static void sound(void **state)
+TEST(sound)
 {
-    (void)state;
     static const struct {
         const char *name, *words[2];
     } cases[] = {{"sod", {"n=60", "h_method=newton"}},
@@ -284,9 +276,8 @@ static void sound(void **state)
 
 /* Shells round the middle: as thick as particles are apart, or the least that there is room for, to
  * the nearest end. */
-static void rings(void **state)
+TEST(rings)
 {
-    (void)state;
     static const struct {
         const char *name, *words[2];
     } cases[] = {{"rest_2d", {"n=2400", "hi=1.5,1"}},
@@ -342,9 +333,8 @@ static void rings(void **state)
 
 /* What a particle at the centre of a blast has is compared with what the exact gas has in a ball as
  * large as it, as exactly there u is without bound; others with their own place's. */
-static void centres(void **state)
+TEST(centres)
 {
-    (void)state;
     static const struct {
         const char *name, *words[2];
         bool odd;
@@ -385,15 +375,4 @@ static void centres(void **state)
         near_relative(run.errors[FIELD_INTERNAL_ENERGY].l1_whole, error / volume, 1e-12);
         run_free(&run);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(means),   cmocka_unit_test(mirrored_budgets),
-        cmocka_unit_test(windows), cmocka_unit_test(jitters),
-        cmocka_unit_test(sound),   cmocka_unit_test(rings),
-        cmocka_unit_test(centres),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Maps of a state, counted by hand: cells and their edges, slices, means, and what stands in cells
  * that hold nobody. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -26,9 +22,8 @@ static struct map made(const struct domain *domain, const struct snapshot *s, si
 }
 
 /* 4 x 2 cells of width 1; a cell holds its lower edges, the last one also its upper edge. */
-static void cells_of_a_plane(void **state)
+TEST(cells_of_a_plane)
 {
-    (void)state;
     enum { N = 8, NONE = 8 };
     const struct domain domain = {2, {-1, 2}, {3, 4}};
     const double x[N] = {-1, 3, 0, 0.999, 2.5, -1.001, 1, 2},
@@ -65,9 +60,8 @@ static void cells_of_a_plane(void **state)
 }
 
 /* A slice of two spacings: from its lower face on, without its upper one. */
-static void slice_of_a_box(void **state)
+TEST(slice_of_a_box)
 {
-    (void)state;
     enum { N = 32 };
     const struct domain domain = {3, {0, 0, 1}, {4, 2, 5}};
     double x[N], y[N], z[N];
@@ -89,9 +83,8 @@ static void slice_of_a_box(void **state)
 }
 
 /* Empty cells have the mean of the nearest ring that holds somebody, up to MAP_REACH. */
-static void rings(void **state)
+TEST(rings)
 {
-    (void)state;
     enum { SIDE_X = 14, SIDE_Y = 11, CELLS = SIDE_X * SIDE_Y };
     const struct domain domain = {2, {0, 0}, {SIDE_X, SIDE_Y}};
     static const int at[][2] = {{1, 0}, {1, 0}, {0, 5}, {4, 3}, {5, 3}, {4, 4}, {13, 9}, {2, 10}};
@@ -134,9 +127,8 @@ static void rings(void **state)
 }
 
 /* Empty cells that no h reaches are a void: by the distance of their centres, in the plane. */
-static void voids(void **state)
+TEST(voids)
 {
-    (void)state;
     enum { SIDE = 12, N = SIDE * SIDE };
     const struct domain domain = {2, {0, 0}, {SIDE, SIDE}};
     double x[N], y[N], h[N], values[N], z[N];
@@ -158,15 +150,4 @@ static void voids(void **state)
     }
     assert_int_equal(filled, 13 + 7 + 1);
     map_free(&map);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(cells_of_a_plane),
-        cmocka_unit_test(slice_of_a_box),
-        cmocka_unit_test(rings),
-        cmocka_unit_test(voids),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

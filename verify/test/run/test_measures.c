@@ -1,12 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What runs are measured by, on hand-made particles and by hand: windows, shells, growth, means and
  * error budgets. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
+#include "test.h"
 
 #include "near.h"
 
@@ -19,9 +14,8 @@
 #include "shells.h"
 #include "window.h"
 
-static void test_window(void **state)
+TEST(test_window)
 {
-    (void)state;
     const double lo[] = {-1, -2, -3}, hi[] = {1, 2, 3};
     for (int dim = 1; dim <= 3; dim++) {
         struct window window = {.dim = dim, .lo = {-1, -2, -3}, .hi = {1, 2, 3}};
@@ -60,9 +54,8 @@ static void test_window(void **state)
     }
 }
 
-static void test_growth(void **state)
+TEST(test_growth)
 {
-    (void)state;
     struct growth growth = {0};
     const double t[] = {1, 2, 4, 5}, y[] = {0.5, 1.5, 2, 4};
     for (int k = 0; k < 4; k++) {
@@ -135,9 +128,8 @@ static struct prepared prepared_in(int dim)
 }
 
 /* Means over the first four particles: the fifth is not in the window. */
-static void test_functionals(void **state)
+TEST(test_functionals)
 {
-    (void)state;
     const double V = 0.5 + 1 + 2 + 0.25;
     for (int dim = 1; dim <= 3; dim++) {
         const struct prepared p = prepared_in(dim);
@@ -161,9 +153,8 @@ static void test_functionals(void **state)
     near_relative(functional_mean_internal_energy.exact(&p, 0.5), 13.5, 1e-10);
 }
 
-static void test_budget(void **state)
+TEST(test_budget)
 {
-    (void)state;
     struct prepared p = prepared_in(1);
     static const double exact[FIELDS][N] = {
         {2, 2, 2, 2, 2}, {0, 0, 0, 0, 0}, {0, 3, 4, 6, 0}, {4, 4, 4, 4, 4}};
@@ -211,9 +202,8 @@ static void test_budget(void **state)
     json_decref(json);
 }
 
-static void test_shells(void **state)
+TEST(test_shells)
 {
-    (void)state;
     struct prepared p = prepared_in(2);
     p.domain = (struct domain){2, {-1, -2}, {1, 2}};
     p.window = (struct window){.dim = 2, .lo = {-1, -1}, .hi = {1, 1}};
@@ -274,14 +264,4 @@ static void test_shells(void **state)
         else
             near_relative(found, 2 * rows[k].radius, 1e-15);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_window),      cmocka_unit_test(test_growth),
-        cmocka_unit_test(test_functionals), cmocka_unit_test(test_budget),
-        cmocka_unit_test(test_shells),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Problems that start from a growing mode: base state and perturbation in the problem's own units,
  * and what is measured of the mode in states that are made here, by sums written a second time. */
+#include "test.h"
+
 #include <complex.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -56,9 +53,8 @@ static const struct mode_start *start_of(const struct prepared *p)
 }
 
 /* The layer that a problem stands for, in the units in which the box is 1 high. */
-static void layers_are_those_of_the_keys(void **state)
+TEST(layers_are_those_of_the_keys)
 {
-    (void)state;
     const struct prepared shear = made("kelvin_helmholtz_mode", 7, shear_keys),
                           heavy = made("rayleigh_taylor_mode", 7, heavy_keys);
     const struct mode_start *s = start_of(&shear), *h = start_of(&heavy);
@@ -94,9 +90,8 @@ static void layers_are_those_of_the_keys(void **state)
     }
 }
 
-static void samples_are_base_and_mode(void **state)
+TEST(samples_are_base_and_mode)
 {
-    (void)state;
     for (int k = 0; k < 2; k++) {
         const struct prepared p = k ? made("rayleigh_taylor_mode", 7, heavy_keys)
                                     : made("kelvin_helmholtz_mode", 7, shear_keys);
@@ -197,9 +192,8 @@ static void measure(const struct prepared *p, const struct made_state *made, dou
     found[3] = cabs(2 * (up[0] - up[1]) / ff) / sqrt(square);
 }
 
-static void measured_as_defined(void **state)
+TEST(measured_as_defined)
 {
-    (void)state;
     static const struct functional *const f[] = {&mode_amplitude, &mode_error, &mode_noise,
                                                  &mode_other_parity};
     static struct made_state made_state;
@@ -221,9 +215,8 @@ static void measured_as_defined(void **state)
 
 /* On a regular grid waves are orthogonal: nothing but the mode is found where nothing else is, and
  * of a wave of another length all is noise. The other parity is told from the mode's own. */
-static void grid_knows_the_mode_alone(void **state)
+TEST(grid_knows_the_mode_alone)
 {
-    (void)state;
     enum { SIDE = 64 };
     static double x[2][SIDE * SIDE], v[2][SIDE * SIDE], volume[SIDE * SIDE];
     struct prepared p = made("kelvin_helmholtz_mode", 7, shear_keys);
@@ -258,9 +251,8 @@ static void grid_knows_the_mode_alone(void **state)
 }
 
 /* Sides that differ by a millionth of a millionth are alike, by the last bit more they are not. */
-static void boxes_are_square(void **state)
+TEST(boxes_are_square)
 {
-    (void)state;
     const double bit = 0x1p-52;
     int tried = 0;
     for (int k = 4600; k < 4700; k++) {
@@ -280,9 +272,8 @@ static void boxes_are_square(void **state)
     assert_int_equal(tried, 2);
 }
 
-static void what_no_mode_has_is_refused(void **state)
+TEST(what_no_mode_has_is_refused)
 {
-    (void)state;
     static const struct {
         const char *problem, *keys[4], *words;
     } rows[] = {
@@ -313,9 +304,8 @@ static void what_no_mode_has_is_refused(void **state)
 
 /* From twice the start to a tenth of the layer's width: that amplitude is none yet, a last bit less
  * is one. */
-static void amplitudes_leave_room_to_grow(void **state)
+TEST(amplitudes_leave_room_to_grow)
 {
-    (void)state;
     static const char *const names[] = {"kelvin_helmholtz_mode", "rayleigh_taylor_mode"};
     for (int k = 0; k < 2; k++) {
         char kind[64], amplitude[64], *keys[] = {kind, amplitude};
@@ -337,9 +327,8 @@ static void amplitudes_leave_room_to_grow(void **state)
 }
 
 /* Sides of a box that differ by rounding alone are the same. */
-static void layers_need_a_square(void **state)
+TEST(layers_need_a_square)
 {
-    (void)state;
     char side[64], *keys[] = {"kind=kelvin_helmholtz_mode", "lo=0", side};
     for (int part = -3; part <= 3; part += 2) {
         struct prepared p;
@@ -354,9 +343,8 @@ static void layers_need_a_square(void **state)
 }
 
 /* Sinuous and varicose modes are different ones; gravity that nobody gives is that of the layer. */
-static void keys_choose_the_mode(void **state)
+TEST(keys_choose_the_mode)
 {
-    (void)state;
     const struct prepared one = made("kelvin_helmholtz_mode", 2,
                                      (char *[]){"kind=kelvin_helmholtz_mode", "parity=sinuous"}),
                           two = made("kelvin_helmholtz_mode", 2,
@@ -368,20 +356,4 @@ static void keys_choose_the_mode(void **state)
     assert_true(heavy.gravity[1] == -0.125 && heavy.gravity[0] == 0);
     assert_true(start_of(&heavy)->mode.layer.g == 0.5);
     assert_true(heavy.boundary[1] == BOUNDARY_REFLECTING && heavy.boundary[0] == BOUNDARY_PERIODIC);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(layers_are_those_of_the_keys),
-        cmocka_unit_test(samples_are_base_and_mode),
-        cmocka_unit_test(measured_as_defined),
-        cmocka_unit_test(grid_knows_the_mode_alone),
-        cmocka_unit_test(boxes_are_square),
-        cmocka_unit_test(what_no_mode_has_is_refused),
-        cmocka_unit_test(amplitudes_leave_room_to_grow),
-        cmocka_unit_test(layers_need_a_square),
-        cmocka_unit_test(keys_choose_the_mode),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

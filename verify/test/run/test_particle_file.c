@@ -1,10 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Particles from files: what is read of which columns, and of bad files the whole message. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -36,9 +32,8 @@ static void says(const struct error *error, const char *words)
         fail_msg("'%s' is not '%s'", error->message + strlen(path), words);
 }
 
-static void columns(void **state)
+TEST(columns)
 {
-    (void)state;
     static const struct {
         const char *text;
         int dim;
@@ -115,9 +110,8 @@ static void columns(void **state)
 }
 
 /* Names that are too many for the text are left out at its end. */
-static void many_columns_are_ignored(void **state)
+TEST(many_columns_are_ignored)
 {
-    (void)state;
     char head[2048] = "x,vx,m,u", row[2048] = "1,2,3,4", text[8192], want[1024] = "";
     for (int k = 0; k < 20; k++) {
         char name[32];
@@ -135,9 +129,8 @@ static void many_columns_are_ignored(void **state)
     particle_file_free(&file);
 }
 
-static void setups_get_a_box(void **state)
+TEST(setups_get_a_box)
 {
-    (void)state;
     struct particle_file file;
     struct error error = {0};
     const char *text = "x,y,vx,vy,m,u\n-5,7,2,1,3,4\n1,7,6,1,7,8\n3,7,0,0,1,1\n";
@@ -199,9 +192,8 @@ static const struct problem problem = {.sample = sample, .smooth = true};
 
 #define PLANE "x,y,vx,vy,m,u"
 
-static void starts_of_runs(void **state)
+TEST(starts_of_runs)
 {
-    (void)state;
     const struct prepared p = {
         .problem = &problem, .domain = {2, {0, 0}, {2, 4}}, .boost = {0.5, 0.25}};
     struct initial initial;
@@ -248,9 +240,8 @@ static void starts_of_runs(void **state)
     particle_file_free(&file);
 }
 
-static void starts_that_are_refused(void **state)
+TEST(starts_that_are_refused)
 {
-    (void)state;
     static const struct {
         const char *text, *words; /* NULL: allowed */
         enum boundary ends[2];
@@ -314,12 +305,5 @@ static int remove_file(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(columns),
-        cmocka_unit_test(many_columns_are_ignored),
-        cmocka_unit_test(setups_get_a_box),
-        cmocka_unit_test(starts_of_runs),
-        cmocka_unit_test(starts_that_are_refused),
-    };
-    return cmocka_run_group_tests(tests, make_file, remove_file);
+    return test_run(make_file, remove_file);
 }

@@ -1,16 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Files of particles: columns in any order, what is not read by name, boxes put around, and of bad
  * ones the whole message; and what pages show of particles over an exact curve. */
+#include "test.h"
+
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-#include <cmocka.h>
 
 #include "cloud_profile.h"
 #include "initial.h"
@@ -29,9 +26,8 @@ static void written(const char *text)
     fclose(file);
 }
 
-static void good_files(void **state)
+TEST(good_files)
 {
-    (void)state;
     static const struct {
         const char *text, *ignored;
         int dim;
@@ -70,9 +66,8 @@ static void said(const char *message, const char *want)
     if (strcmp(message, whole) != 0) fail_msg("'%s'\n   is not '%s'", message, whole);
 }
 
-static void bad_files(void **state)
+TEST(bad_files)
 {
-    (void)state;
 #define COLUMNS "allowed: x[,y[,z]], vx[,vy[,vz]], m, u, in any order"
     static const struct {
         const char *text, *message;
@@ -100,9 +95,8 @@ static void bad_files(void **state)
 
 /* A setup's box: its own, or where a direction is open and has none, one a hundredth wider than the
  * particles; who is outside is named by line and coordinate. */
-static void boxes(void **state)
+TEST(boxes)
 {
-    (void)state;
     struct particle_file file;
     struct error error;
     written("x,vx,y,vy,m,u\n1,0,5,0,1,1\n3,0,5,0,1,1\n2,0,5,0,1,1\n");
@@ -137,9 +131,8 @@ static struct run resolved(const char *name, int n, const char *const *words)
 }
 
 /* The start of a run: the file's particles; a density that the problem knows, or the file's. */
-static void starts(void **state)
+TEST(starts)
 {
-    (void)state;
     struct initial initial;
     struct error error;
     const struct run run = resolved("gresho", 0, NULL);
@@ -242,9 +235,8 @@ static void curve_is_exact(const struct run_result *run, const json_t *profile, 
     }
 }
 
-static void curves(void **state)
+TEST(curves)
 {
-    (void)state;
     static const struct {
         const char *name, *words[3], *over;
     } cases[] = {
@@ -283,9 +275,8 @@ static void curves(void **state)
 
 /* In 1D: every particle of the window in its place, and the exact curve to both ends of it, with
  * all its bends. */
-static void line(void **state)
+TEST(line)
 {
-    (void)state;
     static const char *const fields[] = {"density", "velocity", "pressure"};
     struct run_result run = ran("sod", 2, (const char *const[]){"n=120", "window=-0.3,0.45"});
     const struct snapshot *s = &run.snapshot;
@@ -331,14 +322,10 @@ static void line(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(good_files), cmocka_unit_test(bad_files), cmocka_unit_test(boxes),
-        cmocka_unit_test(starts),     cmocka_unit_test(curves),    cmocka_unit_test(line),
-    };
     const int file = mkstemp(path);
     if (file < 0) return 1;
     close(file);
-    const int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    const int failed = test_run(NULL, NULL);
     unlink(path);
     return failed;
 }

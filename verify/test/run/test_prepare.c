@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * From keys to a prepared problem: what is refused, with the words that help, and what becomes of
  * the rest; what problems share: boosts, circles, directions, times up to which they hold. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,9 +11,8 @@
 #include "near.h"
 #include "prepared.h"
 
-static void what_cannot_be_is_refused(void **state)
+TEST(what_cannot_be_is_refused)
 {
-    (void)state;
     static const struct {
         int dim;
         const char *keys, *words; /* NULL: allowed */
@@ -143,9 +138,8 @@ static void what_cannot_be_is_refused(void **state)
     }
 }
 
-static void problems_have_their_dimensions(void **state)
+TEST(problems_have_their_dimensions)
 {
-    (void)state;
     static const struct {
         const char *name;
         int least, most;
@@ -163,9 +157,8 @@ static void problems_have_their_dimensions(void **state)
     }
 }
 
-static void what_is_left_open_is_chosen(void **state)
+TEST(what_is_left_open_is_chosen)
 {
-    (void)state;
     struct settings s;
     struct prepared p =
         prepared_of(&s, 2, "kind=rest|lo=-1 2|hi=3 4|boost=0.5 -0.25|window_radius=0.75");
@@ -231,9 +224,8 @@ static void what_is_left_open_is_chosen(void **state)
 }
 
 /* What a problem chooses is written where it was asked for, over what was there. */
-static void choices_are_written_back(void **state)
+TEST(choices_are_written_back)
 {
-    (void)state;
     struct settings s;
     struct error error;
     struct prepared p = prepared_of(&s, 2, "kind=rayleigh_taylor_mode|hi=1 3");
@@ -281,9 +273,8 @@ static enum status refuse(const struct prepared *p, double t, double longest, st
 
 static const struct problem problem = {.sample = sample, .holds = holds, .refuse = refuse};
 
-static void boosts_carry_places(void **state)
+TEST(boosts_carry_places)
 {
-    (void)state;
     const struct prepared p = {.problem = &problem,
                                .domain = {2, {-1, 2.5}, {1, 6.5}},
                                .boost = {0, 3, 0}},
@@ -312,9 +303,8 @@ static void boosts_carry_places(void **state)
                     f + 1);
 }
 
-static void times_that_hold(void **state)
+TEST(times_that_hold)
 {
-    (void)state;
     struct prepared p = {.problem = &problem};
     struct error error = {0};
     assert_int_equal(problem_check_time(&p, 0.625, &error), STATUS_OK);
@@ -335,9 +325,8 @@ static void times_that_hold(void **state)
     assert_int_equal(problem_check_time(&p, 1e9, &error), STATUS_OK);
 }
 
-static void circles(void **state)
+TEST(circles)
 {
-    (void)state;
     struct problem round = problem;
     struct prepared p = {.problem = &round, .domain = {.dim = 2}, .window = {.centre = {1, 2, 3}}};
     double along, out;
@@ -364,9 +353,8 @@ static void circles(void **state)
         }
 }
 
-static void directions(void **state)
+TEST(directions)
 {
-    (void)state;
     const struct prepared p = {.problem = &problem, .domain = {3, {-1, 0, 1}, {1, 3, 5}}};
     struct settings settings;
     struct error error;
@@ -394,9 +382,8 @@ static void directions(void **state)
     assert_non_null(strstr(error.message, "runs nowhere"));
 }
 
-static void states_of_gas(void **state)
+TEST(states_of_gas)
 {
-    (void)state;
     static const struct {
         const char *text, *words;
     } rows[] = {{"background=1 0 1", NULL},
@@ -418,9 +405,8 @@ static void states_of_gas(void **state)
 }
 
 /* Which keys and functionals belong to whom. */
-static void lists(void **state)
+TEST(lists)
 {
-    (void)state;
     const struct problem *rest = (const struct problem *)family_find(&problem_family, "rest"),
                          *mode = (const struct problem *)family_find(&problem_family,
                                                                      "kelvin_helmholtz_mode");
@@ -452,21 +438,4 @@ static void lists(void **state)
     assert_string_equal(problem_functional_name("velocity_rms"), "velocity_rms");
     assert_string_equal(problem_functional_name("shock_position"), "shock_position");
     assert_null(problem_functional_name("no such thing"));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_cannot_be_is_refused),
-        cmocka_unit_test(problems_have_their_dimensions),
-        cmocka_unit_test(what_is_left_open_is_chosen),
-        cmocka_unit_test(choices_are_written_back),
-        cmocka_unit_test(boosts_carry_places),
-        cmocka_unit_test(times_that_hold),
-        cmocka_unit_test(circles),
-        cmocka_unit_test(directions),
-        cmocka_unit_test(states_of_gas),
-        cmocka_unit_test(lists),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,11 +2,7 @@
  * Every problem of the list, with every case that has it, keeps what problem.h promises: one walk
  * over its descriptor, its particles and its exact solution. The same walk accepts a vortex in two
  * dimensions that is not in the list, and rejects copies of descriptors with one planted fault. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -306,7 +302,7 @@ static struct walk walk_case(const char *name, const char *keys, const struct pr
     return walk;
 }
 
-static void every_problem_of_every_case(void **state)
+TEST(every_problem_of_every_case)
 {
     static const char *const variants[] = {"n=400", "n=397|grade=0.5",
                                            "n=402|grade=0.3|mass_ratio=0.6",
@@ -316,7 +312,6 @@ static void every_problem_of_every_case(void **state)
                                  "n=4096", "n=3000|lattice=hexagonal|contrast=2",
                                  "n=4096|lattice=jittered|waves=2|amplitude=0.005|direction=1",
                                  "n=2500|equal_masses=yes|left=1 0.1 1.2|right=0.5 0.1 1"};
-    (void)state;
     for (const struct case_builtin *b = case_builtins; b->name; b++) {
         struct case_file file;
         struct error error;
@@ -332,9 +327,8 @@ static void every_problem_of_every_case(void **state)
 }
 
 /* Also problems that no case has: with all keys at their fallbacks. */
-static void every_problem_by_itself(void **state)
+TEST(every_problem_by_itself)
 {
-    (void)state;
     assert_int_equal(setting_keys[SETTING_kind].family->n, problem_family.n);
     for (size_t i = 0; i < problem_family.n; i++) {
         const struct problem *problem = (const struct problem *)problem_family.members[i];
@@ -458,9 +452,8 @@ static struct walk walk_vortex(const struct problem *problem)
     return walk;
 }
 
-static void two_dimensions(void **state)
+TEST(two_dimensions)
 {
-    (void)state;
     struct walk walk = walk_vortex(&vortex);
     assert_string_equal(walk.fault, "");
     assert_true(window_contains(&walk.p.window, (double[3]){0.5, 0.89}));
@@ -534,13 +527,12 @@ static size_t nowhere(const struct prepared *p, const double x[3], double reach,
     return x[0] > 0.3 ? 5 : 0;
 }
 
-static void planted_faults_are_found(void **state)
+TEST(planted_faults_are_found)
 {
     static const struct problem_key twice[] = {{SETTING_left, ROLE_NEEDED},
                                                {SETTING_left, ROLE_NEEDED}},
                                     scheme[] = {{SETTING_eta, ROLE_OPTIONAL}};
     struct functional wrong = functional_mean_pressure;
-    (void)state;
     tube = (const struct problem *)family_find(&problem_family, "riemann");
     struct regions unnamed = *tube->regions;
     wrong.measure = energy_for_pressure;
@@ -574,11 +566,5 @@ static void planted_faults_are_found(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_problem_of_every_case),
-        cmocka_unit_test(every_problem_by_itself),
-        cmocka_unit_test(two_dimensions),
-        cmocka_unit_test(planted_faults_are_found),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return test_run(NULL, NULL);
 }

@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Profiles of a run on a line, of a gas and particles that are made here: the exact curve bends
  * where one of its fields does, and nowhere else; particles are those of the window. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "test.h"
+
 #include <string.h>
-#include <cmocka.h>
 
 #include "near.h"
 #include "profile.h"
@@ -56,11 +53,10 @@ static double at(const json_t *object, const char *name, size_t i)
     return value_real(json_array_get(json_object_get(object, name), i));
 }
 
-static void bends(void **state)
+TEST(bends)
 {
     static const double want[] = {0, 0.25, 0.375, 0.5, 0.625, 1};
     struct problem problem;
-    (void)state;
     curvature = 0;
     json_t *profile = made(&problem), *exact = json_object_get(profile, "exact");
     assert_int_equal(json_array_size(json_object_get(exact, "x")), 6);
@@ -90,10 +86,9 @@ static void bends(void **state)
 }
 
 /* A curve that bends by a billionth of its values from point to point is straight. */
-static void nearly_straight(void **state)
+TEST(nearly_straight)
 {
     struct problem problem;
-    (void)state;
     for (int side = -1; side <= 1; side += 2) {
         curvature = 1 + 0.01 * side; /* 2 c dx^2 over 2 v, dx = 1/1000 */
         json_t *profile = made(&problem);
@@ -102,13 +97,4 @@ static void nearly_straight(void **state)
                          side > 0);
         json_decref(profile);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bends),
-        cmocka_unit_test(nearly_straight),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,13 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Vortices and shear layers as their papers have them, written a second time; their mode's
  * amplitude and its table. */
+#include "test.h"
+
 #include <math.h>
-#include <setjmp.h>
 #include <stdbool.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
 
 #include "kelvin_helmholtz.h"
 #include "near.h"
@@ -15,9 +12,8 @@
 
 /* McNally, Lyra & Passy 2012, eqs 1 and 3: 1.5 in the middle of a layer, half a unit away from it
  * by one exponential on each side. */
-static void layers(void **state)
+TEST(layers)
 {
-    (void)state;
     for (int i = 0; i <= 1000; i++) {
         const double y = i / 1000., away = fmin(fabs(y - 0.25), fabs(y - 0.75));
         const double part = exp(-40 * away);
@@ -31,9 +27,8 @@ static void layers(void **state)
 }
 
 /* Their eqs 6 to 9, at points that lie anywhere. */
-static void amplitude(void **state)
+TEST(amplitude)
 {
-    (void)state;
     enum { N = 200 };
     double x[N], y[N], v[N], w[N], sums[3] = {0};
     for (int i = 0; i < N; i++) {
@@ -54,9 +49,8 @@ enum { ROWS = 16 };
 
 /* At its times the table itself; between them a natural spline of its logarithms, solved here by
  * elimination; elsewhere nothing. */
-static void table(void **state)
+TEST(table)
 {
-    (void)state;
     const double amplitudes[] = {
 #define ROW(t, M) M,
 #include "kelvin_helmholtz.def"
@@ -92,9 +86,8 @@ static void table(void **state)
 
 /* Gresho & Chan 1990: rho = 1, a triangle of velocity, and the pressure that holds it:
  * P(R) = 5 + integral of v^2/R, here by Simpson's rule between the corners. */
-static void triangle(void **state)
+TEST(triangle)
 {
-    (void)state;
     double held = 5;
     for (int i = 0; i < 60; i++) {
         const double R = i / 100., half = R + 0.005, next = R + 0.01;
@@ -108,15 +101,4 @@ static void triangle(void **state)
     }
     near_relative(vortex_gresho(0.4).P, 3 + 4 * log(2), 1e-14);
     near_relative(vortex_gresho(2).P, 3 + 4 * log(2), 1e-14);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(layers),
-        cmocka_unit_test(amplitude),
-        cmocka_unit_test(table),
-        cmocka_unit_test(triangle),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * How regular points are, from all pairs of images: on a line, in a plane and in space, in boxes
  * that are periodic and open; what lies exactly on a limit. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include <stdlib.h>
 
@@ -71,9 +67,8 @@ static struct regularity directly(const struct regularity_cloud *cloud)
                                sqrt(gradient / whole)};
 }
 
-static void as_defined(void **state)
+TEST(as_defined)
 {
-    (void)state;
     enum { N = 90 };
     const struct kernel kernel = kernel_named("wendland_c4");
     static double x[3][N], volume[N], h[N];
@@ -120,9 +115,8 @@ static void as_defined(void **state)
 
 /* A row in an open box: those whose h ends exactly at an end are whole; a neighbour half a spacing
  * away is none of a pair; one further away than every h counts as if it were there. */
-static void what_lies_on_a_limit(void **state)
+TEST(what_lies_on_a_limit)
 {
-    (void)state;
     const struct kernel kernel = kernel_named("cubic_spline");
     static const double x[] = {0.5, 1, 1.75, 3.5}, volume[] = {1, 1, 1, 1},
                         h[] = {0.5, 1, 0.25, 0.5};
@@ -174,9 +168,8 @@ static void what_lies_on_a_limit(void **state)
 
 /* The widest h stands for neighbours that are further away, whoever has it; h beyond the last is
  * nobody's. */
-static void the_widest_is_looked_for(void **state)
+TEST(the_widest_is_looked_for)
 {
-    (void)state;
     const struct kernel kernel = kernel_named("cubic_spline");
     static const double x[] = {1, 5, 9}, volume[] = {1e-8, 1e-8, 1e-8};
     for (int widest = 0; widest < 3; widest++) {
@@ -193,9 +186,8 @@ static void the_widest_is_looked_for(void **state)
 
 /* On a line points that have left a periodic box come in again at the other end; where the ends are
  * open they are out. */
-static void out_of_the_box(void **state)
+TEST(out_of_the_box)
 {
-    (void)state;
     const struct kernel kernel = kernel_named("cubic_spline");
     static const double inside[] = {1.25, 1.75, 3, 2.25}, out[] = {3.25, 1.75, 3, 0.25},
                         volume[] = {0.5, 0.625, 0.5, 0.75}, h[] = {0.75, 0.8, 0.85, 0.9};
@@ -223,9 +215,8 @@ static void out_of_the_box(void **state)
 }
 
 /* More points than are looked at in one go: a lattice, and some that stand beside one of it. */
-static void blocks_of_points(void **state)
+TEST(blocks_of_points)
 {
-    (void)state;
     enum { SIDE = 256, EXTRA = 64, N = SIDE * SIDE + EXTRA };
     const struct kernel kernel = kernel_named("cubic_spline");
     double *x = malloc(4 * N * sizeof *x), *y = x + N, *volume = y + N, *h = volume + N;
@@ -254,9 +245,8 @@ static void blocks_of_points(void **state)
 
 /* States of runs have the widths and volumes that they have; of none there is nothing to be said.
  */
-static void of_a_run(void **state)
+TEST(of_a_run)
 {
-    (void)state;
     const struct kernel kernel = kernel_named("cubic_spline");
     static const double x[] = {0.25, 0.75, 1.75}, volume[] = {0.5, 0.5, 1}, h[] = {0.8, 0.8, 0.5};
     struct snapshot s = {.n = 3, .x = {x}, .volume = volume, .h = h};
@@ -312,17 +302,4 @@ static void of_a_run(void **state)
                         "\"spread\":2.0}");
     free(text);
     json_decref(json);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(as_defined),
-        cmocka_unit_test(what_lies_on_a_limit),
-        cmocka_unit_test(the_widest_is_looked_for),
-        cmocka_unit_test(out_of_the_box),
-        cmocka_unit_test(blocks_of_points),
-        cmocka_unit_test(of_a_run),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

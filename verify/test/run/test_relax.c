@@ -1,10 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Glasses, pushed apart a second time, and how they are kept. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -76,9 +72,8 @@ static void relax_directly(const struct relax_region *room, size_t n, double *co
     free(width);
 }
 
-static void glasses_are_pushed_apart(void **state)
+TEST(glasses_are_pushed_apart)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         enum { MOST = 250 };
         const size_t n = dim == 2 ? 100 : 250;
@@ -140,9 +135,8 @@ static void glasses_are_pushed_apart(void **state)
 }
 
 /* Measured also in space, of any points. */
-static void quality_of_a_cloud(void **state)
+TEST(quality_of_a_cloud)
 {
-    (void)state;
     enum { N = 500 };
     const struct domain box = {3, {0, 1, 2}, {1, 2, 3}};
     static double x[3][N], volume[N], h[N];
@@ -187,9 +181,8 @@ static double room_of_all(const void *context, const double x[3])
     return *(const double *)context;
 }
 
-static void glasses_of_random_points(void **state)
+TEST(glasses_of_random_points)
 {
-    (void)state;
     enum { N = 300 };
     for (int equal = 0; equal < 2; equal++) {
         static char *keys[] = {"n=300", "lattice=random", "equal_masses=yes"};
@@ -232,9 +225,8 @@ static double plain_room_at(const void *context, const double x[3])
 }
 
 /* Large glasses are kept: read again where all is the same that decides where points end. */
-static void large_glasses_are_kept(void **state)
+TEST(large_glasses_are_kept)
 {
-    (void)state;
     enum { N = 1000 };
     static double x[3][N];
     char folder[] = "sphproof_glass_XXXXXX", command[64];
@@ -284,15 +276,4 @@ static void large_glasses_are_kept(void **state)
     free(before);
     snprintf(command, sizeof command, "rm -r %s", folder);
     assert_int_equal(system(command), 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(glasses_are_pushed_apart),
-        cmocka_unit_test(quality_of_a_cloud),
-        cmocka_unit_test(glasses_of_random_points),
-        cmocka_unit_test(large_glasses_are_kept),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

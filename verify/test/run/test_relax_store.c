@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Glasses that are kept: in which folder, how many points, and that they come back to the last bit.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include <fcntl.h>
 #include <stdio.h>
@@ -38,9 +34,8 @@ static void set(const char *name, const char *value)
 
 static double *const all[] = {points[0], points[1], points[2]};
 
-static void they_come_back(void **state)
+TEST(they_come_back)
 {
-    (void)state;
     double kept[3][N + 1];
     set("XDG_CACHE_HOME", whole_path_of("xdg"));
     set("HOME", whole_path_of("home"));
@@ -69,9 +64,8 @@ static void they_come_back(void **state)
 }
 
 /* The folder for caches, if it is a whole path, else that of the user's own folder, else none. */
-static void folders(void **state)
+TEST(folders)
 {
-    (void)state;
     char home[4500];
     snprintf(home, sizeof home, "%s", whole_path_of("own"));
     static const struct {
@@ -93,9 +87,8 @@ static void folders(void **state)
 }
 
 /* Few are not worth it, and too many take too much: there is no folder for them. */
-static void numbers(void **state)
+TEST(numbers)
 {
-    (void)state;
     static const struct {
         size_t n;
         bool kept;
@@ -111,9 +104,8 @@ static void numbers(void **state)
 }
 
 /* What nobody has used for a month goes when another one comes. */
-static void old_ones_go(void **state)
+TEST(old_ones_go)
 {
-    (void)state;
     static const char old[] = "old/sphproof/glass/00/1.entry";
     const time_t now = time(NULL);
     const struct timespec times[2] = {{.tv_sec = now - 31 * 24 * 3600},
@@ -130,11 +122,5 @@ static void old_ones_go(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(they_come_back),
-        cmocka_unit_test(folders),
-        cmocka_unit_test(numbers),
-        cmocka_unit_test(old_ones_go),
-    };
-    return cmocka_run_group_tests(tests, make_place, remove_place);
+    return test_run(make_place, remove_place);
 }

@@ -1,16 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What a run is given and what it keeps: the setup, the particles at the end in the order in which
  * they have started, what conservation is of, who is told on the way; states of other codes. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "test.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <unistd.h>
-#include <cmocka.h>
 
 #include "initial.h"
 #include "initial_create.h"
@@ -47,12 +44,11 @@ static struct run_result executed(const struct run *run)
 
 /* ---- before ---- */
 
-static void setups(void **state)
+TEST(setups)
 {
     static const char *const cases[] = {"sod", "rayleigh_taylor_mode", "rest_3d"};
     static const char *const keys[] = {"n=40 t_end=0.01 skip=none", "n=16^2 t_end=0.01 skip=auto",
                                        "n=4^3 skip=auto boundary=periodic,periodic,reflecting"};
-    (void)state;
     for (int k = 0; k < 3; k++) {
         struct run run = resolved(cases[k], keys[k]);
         double arrays[9][1];
@@ -96,10 +92,9 @@ static struct run_result explained(const struct run *run)
 }
 
 /* Snapshots on the way take memory, too; a glass says how good it is, where a box is periodic. */
-static void explanations(void **state)
+TEST(explanations)
 {
     struct snapshots snapshots = {.path = "a.csv", .every = 0.1};
-    (void)state;
     for (int dense = 0; dense < 2; dense++) {
         struct run run = resolved("rest_2d", dense ? "n=10^2 lattice=glass background=4,0,1"
                                                    : "n=10^2 lattice=glass");
@@ -137,12 +132,11 @@ static void explanations(void **state)
 }
 
 /* The exact solution shall hold up to the end, unless somebody says that any window will do. */
-static void any_window(void **state)
+TEST(any_window)
 {
     struct run run = resolved("sod", "n=40 t_end=5");
     struct run_result result;
     struct error error = {0};
-    (void)state;
     assert_int_equal(run_explain(&run, &result, &error), STATUS_BAD_INPUT);
     assert_non_null(strstr(error.message, "mirrored tube"));
     run.asked.any_window = true;
@@ -150,12 +144,11 @@ static void any_window(void **state)
 }
 
 /* What is larger than the memory that there is is refused before there is an array of its size. */
-static void too_large(void **state)
+TEST(too_large)
 {
     struct run_result result;
     struct error error = {0};
     struct rlimit usual, few;
-    (void)state;
     const struct run run = resolved("rest_3d", "n=215^3");
     assert_int_equal(getrlimit(RLIMIT_AS, &usual), 0);
     few = usual;
@@ -168,11 +161,10 @@ static void too_large(void **state)
 }
 
 /* Of a file: as many particles as it has, and what of it is not read. */
-static void from_a_file(void **state)
+TEST(from_a_file)
 {
     char folder[] = "run.XXXXXX", path[64], words[192];
     struct run_result result;
-    (void)state;
     assert_non_null(mkdtemp(folder));
     snprintf(path, sizeof path, "%s/p.csv", folder);
     /* beside other warnings, or alone; of a column of one letter */
@@ -212,7 +204,7 @@ enum { N = 8 };
 
 /* On a line the positions rise, whoever was carried through the end; it is said how many neighbours
  * are no longer next to each other. */
-static void a_line_rises(void **state)
+TEST(a_line_rises)
 {
     /* two at one place; the first ones of the order have come through the end */
     static const double rising[N] = {-0.9, -0.7, -0.5, -0.2, 0, 0.3, 0.3, 0.9};
@@ -224,7 +216,6 @@ static void a_line_rises(void **state)
     static double v[N], m[N], rho[N], u[N], P[N], h[N], volume[N];
     const struct run run = resolved("sod", "t_end=0.1");
     struct error error;
-    (void)state;
     for (int i = 0; i < N; i++) {
         v[i] = 1 + i, m[i] = 2 + i, rho[i] = 3 + i, u[i] = 4 + i, P[i] = 5 + i, h[i] = 6 + i;
         volume[i] = 0.25;
@@ -264,11 +255,10 @@ static void a_line_rises(void **state)
 }
 
 /* In 2D and 3D by their numbers; errors are those of the particles in the window, by volume. */
-static void clouds_by_number(void **state)
+TEST(clouds_by_number)
 {
     static const size_t id[N] = {3, 0, 7, 1, 2, 6, 5, 4};
     static double x[3][N], v[3][N], rest[6][N];
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         const struct run run = resolved(dim == 2 ? "gresho" : "rest_3d",
                                         dim == 2 ? "t_end=0.1 boost=0.5" : "t_end=0.1");
@@ -337,7 +327,7 @@ static void clouds_by_number(void **state)
 }
 
 /* A state later than the exact solution holds is none that can be judged. */
-static void too_late(void **state)
+TEST(too_late)
 {
     const struct run run = resolved("sod", "t_end=0.1");
     const double x[2] = {-0.5, 0.5}, one[2] = {1, 1};
@@ -353,7 +343,6 @@ static void too_late(void **state)
                                .time = 5};
     struct run_result result;
     struct error error = {0};
-    (void)state;
     assert_int_equal(run_judge(&run, &s, &result, &error), STATUS_BAD_INPUT);
     assert_true(!result.storage && !result.snapshot.n);
 }
@@ -375,11 +364,10 @@ static bool tell(void *context, double time, uint64_t steps)
     return steps < told->stop;
 }
 
-static void who_is_told(void **state)
+TEST(who_is_told)
 {
     static struct told told;
     struct run run = resolved("sod", "n=400 t_end=0.2");
-    (void)state;
     run.asked.progress = tell;
     run.asked.progress_context = &told;
     for (int each = 0; each < 2; each++) {
@@ -403,7 +391,7 @@ static void who_is_told(void **state)
 
 /* Of every step the sums, and a word about it, also where a snapshot is due; a snapshot at each
  * time before the end. What cannot be written is told, and the run is the same. */
-static void what_is_left_on_the_way(void **state)
+TEST(what_is_left_on_the_way)
 {
     static struct trace trace;
     static struct told told = {.stop = 1000};
@@ -411,7 +399,6 @@ static void what_is_left_on_the_way(void **state)
     struct run run = resolved("sod", "n=40 t_end=0.06");
     struct run_result plain = executed(&run);
     struct snapshots snapshots = {.path = path, .every = 0.001875};
-    (void)state;
     assert_non_null(mkdtemp(folder));
     snprintf(path, sizeof path, "%s/a.csv", folder);
     run.asked.trace = &trace;
@@ -446,10 +433,9 @@ static void what_is_left_on_the_way(void **state)
 }
 
 /* The most memory that the process has had so far. */
-static void peaks(void **state)
+TEST(peaks)
 {
     struct rusage before, after;
-    (void)state;
     const struct run run = resolved("sod", "n=40 t_end=0.01");
     getrusage(RUSAGE_SELF, &before);
     struct run_result result = executed(&run);
@@ -460,7 +446,7 @@ static void peaks(void **state)
 }
 
 /* Momentum is not kept along directions where walls push, and is along others. */
-static void walls_push(void **state)
+TEST(walls_push)
 {
     static const struct {
         const char *boundary;
@@ -469,7 +455,6 @@ static void walls_push(void **state)
                 {"reflecting,periodic", {true, false}},
                 {"periodic,reflecting", {false, true}},
                 {"reflecting", {true, true}}};
-    (void)state;
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         char words[128];
         snprintf(words, sizeof words, "n=10^2 t_end=0.05 jitter=0.2 boundary=%s", rows[k].boundary);
@@ -494,19 +479,5 @@ static void walls_push(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(setups),
-        cmocka_unit_test(explanations),
-        cmocka_unit_test(too_large),
-        cmocka_unit_test(any_window),
-        cmocka_unit_test(from_a_file),
-        cmocka_unit_test(a_line_rises),
-        cmocka_unit_test(clouds_by_number),
-        cmocka_unit_test(too_late),
-        cmocka_unit_test(who_is_told),
-        cmocka_unit_test(walls_push),
-        cmocka_unit_test(what_is_left_on_the_way),
-        cmocka_unit_test(peaks),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return test_run(NULL, NULL);
 }

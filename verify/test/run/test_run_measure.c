@@ -2,13 +2,10 @@
  * What the end of a run is measured by, on gas and particles that are made here: errors of the
  * particles in the window against the exact state where they are, fields that look like another
  * one, budgets and functionals. */
+#include "test.h"
+
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "functional.h"
 #include "near.h"
@@ -88,13 +85,12 @@ static void exact_fields(int dim, double exact[FIELDS][N])
     }
 }
 
-static void on_a_line(void **state)
+TEST(on_a_line)
 {
     struct run_result result;
     struct error error = {0};
     double exact[FIELDS][N], means[NORM_BINS];
     const double window[2] = {-0.35, 0.5};
-    (void)state;
     make(&result, "sod", 1);
     exact_fields(1, exact);
     assert_int_equal(run_measure_errors(&result, &error), STATUS_OK);
@@ -116,10 +112,9 @@ static void on_a_line(void **state)
 }
 
 /* In a plane: those of the vector, of particles in the window; parts of a flow that goes round. */
-static void in_a_plane(void **state)
+TEST(in_a_plane)
 {
     static const char *const cases[] = {"square", "gresho"};
-    (void)state;
     for (int round = 0; round < 2; round++) {
         struct run_result result;
         struct error error = {0};
@@ -176,10 +171,9 @@ static void in_a_plane(void **state)
 }
 
 /* Two fields that have changed places in the window are seen, and nothing that lies beside it. */
-static void changed_places(void **state)
+TEST(changed_places)
 {
     static const int pairs[][2] = {{0, 1}, {0, 2}, {1, 2}, {2, 3}, {0, 3}};
-    (void)state;
     for (size_t k = 0; k < sizeof pairs / sizeof *pairs; k++)
         for (int where = 0; where < 2; where++) {
             struct run_result result;
@@ -205,9 +199,8 @@ static void changed_places(void **state)
 }
 
 /* What lies in a large volume counts for more, also where fields have changed places. */
-static void large_ones_count(void **state)
+TEST(large_ones_count)
 {
-    (void)state;
     for (int large = 0; large < 2; large++) {
         struct run_result result;
         struct error error = {0};
@@ -230,9 +223,8 @@ static double far_more(const struct prepared *p, double r, double t)
 
 /* Where an energy has no bound: a particle whose own ball holds the middle is compared with the
  * mean over that ball; who only touches it is not. */
-static void means_round_the_middle(void **state)
+TEST(means_round_the_middle)
 {
-    (void)state;
     for (int dim = 1; dim <= 2; dim++) {
         struct run_result result;
         struct error error = {0};
@@ -265,11 +257,10 @@ static void means_round_the_middle(void **state)
 }
 
 /* Where no field is known there are no errors. */
-static void nothing(void **state)
+TEST(nothing)
 {
     struct run_result result;
     struct error error = {0};
-    (void)state;
     make(&result, "kelvin_helmholtz_mode", 2);
     result.binned_density_l1 = 1;
     assert_int_equal(run_measure_errors(&result, &error), STATUS_OK);
@@ -311,14 +302,13 @@ static double four(const struct prepared *p)
 }
 
 /* Those that the problem has with these settings, in their order; at last the rate of growth. */
-static void functionals(void **state)
+TEST(functionals)
 {
     static const struct functional known = {"known", present, measure_two, exact_three},
                                    missing = {"missing", absent, measure_two, NULL},
                                    unknown = {"unknown", NULL, measure_two, NULL};
     static const struct growing growing = {.name = "rate", .rate = four};
     struct run_result result;
-    (void)state;
     for (int grows = 0; grows < 2; grows++) {
         make(&result, "sod", 1);
         memset(problem.functionals, 0, sizeof problem.functionals);
@@ -343,18 +333,4 @@ static void functionals(void **state)
                     functional_window_mean(&result.problem, &result.snapshot, result.snapshot.h));
         assert_true(result.h > 0);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(on_a_line),
-        cmocka_unit_test(in_a_plane),
-        cmocka_unit_test(changed_places),
-        cmocka_unit_test(nothing),
-        cmocka_unit_test(functionals),
-        cmocka_unit_test(large_ones_count),
-        cmocka_unit_test(means_round_the_middle),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

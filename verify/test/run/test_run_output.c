@@ -1,15 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * A run's result as a document and as a table, on results that are made here: every figure in its
  * place, and null where there is none. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "test.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-#include <cmocka.h>
 
 #include "run.h"
 
@@ -138,7 +135,7 @@ static void common(const json_t *document, const struct run_result *result)
     assert_int_equal(json_object_size(json_object_get(document, "settings")) > 20, true);
 }
 
-static void documents(void **state)
+TEST(documents)
 {
     static const struct {
         const char *name, *title, *window, *measured;
@@ -148,7 +145,6 @@ static void documents(void **state)
          "[\"azimuthal\", \"radial\", \"velocity\", \"pressure\"]"},
         {"kelvin_helmholtz_mode", "Growing mode of Kelvin & Helmholtz", NULL, "[\"a\"]"},
     };
-    (void)state;
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         struct run_settings settings;
         struct run_result result;
@@ -173,11 +169,10 @@ static void documents(void **state)
 }
 
 /* A glass has a start; what broke down says how; a matrix that nobody uses is none. */
-static void what_may_be_absent(void **state)
+TEST(what_may_be_absent)
 {
     struct run_settings settings;
     struct run_result result;
-    (void)state;
     make(&settings, &result, "gresho");
     result.start.density = (double)NAN;
     result.status = STATUS_BROKE_DOWN;
@@ -199,7 +194,7 @@ static void what_may_be_absent(void **state)
     json_decref(document);
 }
 
-static void tables(void **state)
+TEST(tables)
 {
     static const char *const cases[] = {"sod", "gresho", "rest_3d"};
     static const char *const heads[] = {"x,vx,m,rho,u,P,h\n", "x,y,vx,vy,m,rho,u,P,h\n",
@@ -215,7 +210,6 @@ static void tables(void **state)
         "# boundary = periodic periodic periodic\n# keys = window=0 1\n"};
     char folder[] = "run_output.XXXXXX", path[64], text[4096], want[4096];
     struct error error = {0};
-    (void)state;
     assert_non_null(mkdtemp(folder));
     snprintf(path, sizeof path, "%s/end.csv", folder);
     for (size_t dim = 1; dim <= 3; dim++) {
@@ -253,24 +247,12 @@ static void tables(void **state)
 }
 
 /* One of each kind of norm. */
-static void single_errors(void **state)
+TEST(single_errors)
 {
     struct run_settings settings;
     struct run_result result;
-    (void)state;
     make(&settings, &result, "sod");
     for (int f = 0; f < FIELDS; f++)
         for (int m = 0; m < NORMS; m++)
             assert_true(run_error(&result, (enum field)f, (enum norm)m) == 1 + 5 * f + m);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(documents),
-        cmocka_unit_test(what_may_be_absent),
-        cmocka_unit_test(tables),
-        cmocka_unit_test(single_errors),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,15 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Runs on their way: what they conserve, how they break down, snapshots and checkpoints that change
  * nothing, amplitudes that grow. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "test.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-#include <cmocka.h>
 
 #include "initial.h"
 #include "initial_create.h"
@@ -54,9 +51,8 @@ static struct run_result executed(const struct run *run)
 }
 
 /* Sums of the start and of the end, by hand; errors are measured, and so are functionals. */
-static void what_is_conserved(void **state)
+TEST(what_is_conserved)
 {
-    (void)state;
     for (int plain = 0; plain < 2; plain++) {
         struct run run = resolved("sod", "n=60 t_end=0.1 energy=internal gradient=ia "
                                          "integrator=leapfrog kernel=cubic_spline");
@@ -103,12 +99,11 @@ static void what_is_conserved(void **state)
 }
 
 /* What breaks down says so, in the result and as an error, and leaves its last sound state. */
-static void breakdowns(void **state)
+TEST(breakdowns)
 {
     const struct run run = resolved("two_rarefactions", "n=40 cfl=50");
     struct run_result result = {0};
     struct error error = {0};
-    (void)state;
     assert_int_equal(run_execute(&run, &result, &error), STATUS_BROKE_DOWN);
     assert_int_equal(result.status, STATUS_BROKE_DOWN);
     assert_true(result.message[0] && result.snapshot.n == 40);
@@ -128,14 +123,13 @@ static size_t text_of(const char *path, char *text, size_t most)
 }
 
 /* As many as there are; each is what a run to its time leaves, and the run itself is as without. */
-static void snapshots_change_nothing(void **state)
+TEST(snapshots_change_nothing)
 {
     static char here[1 << 16], there[1 << 16];
     char path[64], alone[64];
     struct snapshots snapshots = {.path = path, .every = 0.025};
     struct run run = resolved("sod", "n=60 t_end=0.1 energy=internal");
     struct error error = {0};
-    (void)state;
     snprintf(path, sizeof path, "%s/s.csv", folder);
     snprintf(alone, sizeof alone, "%s/alone.csv", folder);
     struct run_result usual = executed(&run);
@@ -172,14 +166,13 @@ static void snapshots_change_nothing(void **state)
 }
 
 /* Blocks of local steps do not go over the time of a snapshot. */
-static void snapshots_are_in_time(void **state)
+TEST(snapshots_are_in_time)
 {
     static char text[1024];
     char path[64];
     struct snapshots snapshots = {.path = path, .every = 0.01};
     struct run run =
         resolved("noh_2d", "n=1394 t_end=0.12 steps=local kernel=cubic_spline skip=none");
-    (void)state;
     snprintf(path, sizeof path, "%s/s.csv", folder);
     run.asked.snapshots = &snapshots;
     struct run_result result = executed(&run);
@@ -206,12 +199,11 @@ static bool stop_at_ten(void *context, double time, uint64_t steps)
 
 /* A run that is interrupted goes on from its last checkpoint to the same last bit, also what has
  * grown until then. */
-static void goes_on(void **state)
+TEST(goes_on)
 {
     static const char *const cases[] = {"sod", "kelvin_helmholtz_mode"};
     static const char *const keys[] = {"n=60 t_end=0.1", "n=12^2 t_end=1.2"};
     char path[64];
-    (void)state;
     snprintf(path, sizeof path, "%s/state", folder);
     for (int k = 0; k < 2; k++) {
         struct run run = resolved(cases[k], keys[k]);
@@ -248,9 +240,8 @@ static void goes_on(void **state)
 }
 
 /* While it grows the amplitude is seen 17 times, no more often than the run lasts. */
-static void growth(void **state)
+TEST(growth)
 {
-    (void)state;
     struct run run = resolved("kelvin_helmholtz_mode", "n=12^2 t_end=1.84");
     double times[2];
     run.problem.problem->growing->during(&run.problem, times);
@@ -277,13 +268,5 @@ static void growth(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_conserved),
-        cmocka_unit_test(breakdowns),
-        cmocka_unit_test(snapshots_change_nothing),
-        cmocka_unit_test(snapshots_are_in_time),
-        cmocka_unit_test(goes_on),
-        cmocka_unit_test(growth),
-    };
-    return cmocka_run_group_tests(tests, begin, end);
+    return test_run(begin, end);
 }

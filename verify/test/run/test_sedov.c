@@ -2,13 +2,10 @@
  * The blast of a point-like explosion as a problem: where its energy starts, samples, up to when it
  * holds, and what is measured of it, on states made by hand. Its solution: the check `exact blast`.
  */
+#include "test.h"
+
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-#include <cmocka.h>
 
 #include "made_cloud.h"
 #include "sedov.h"
@@ -47,9 +44,8 @@ static void check_hot_spot(int dim, const char *keys)
     assert_int_equal(p.problem->fill(&p, &s, &none, &error), STATUS_ENVIRONMENT);
 }
 
-static void blasts_start_from_a_hot_spot(void **state)
+TEST(blasts_start_from_a_hot_spot)
 {
-    (void)state;
     check_hot_spot(2, "kind=sedov|gamma=1.6|lo=-1 0|hi=2 2|n=400");
     check_hot_spot(3, "kind=sedov|gamma=1.6|lo=-1 0 0|hi=2 2 2|n=900");
     check_hot_spot(2, "kind=sedov|gamma=1.6|n=4"); /* all of them are hot */
@@ -60,9 +56,8 @@ static void blasts_start_from_a_hot_spot(void **state)
     check_hot_spot(2, keys);
 }
 
-static void blasts_run_outwards(void **state)
+TEST(blasts_run_outwards)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct settings s;
         struct sedov blast;
@@ -103,9 +98,8 @@ static void blasts_run_outwards(void **state)
                      "no exact solution: gamma must be no nearer to 2 than 1e-3");
 }
 
-static void blasts_are_measured(void **state)
+TEST(blasts_are_measured)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++)
         for (int k = 0; k < 3; k++) {
             struct settings s;
@@ -159,9 +153,8 @@ static double of_motion(double r, const struct sedov_state *s)
 
 /* Sums over all gas: energy of motion, momentum outwards, where the heat is, what is not alike in
  * all directions. */
-static void blasts_are_summed(void **state)
+TEST(blasts_are_summed)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct settings s;
         struct cloud cloud;
@@ -226,9 +219,8 @@ static double pressure_alone(double r, const struct sedov_state *s)
 }
 
 /* The energy that a mass has in a ball round the middle: before the blast that of the cold gas. */
-static void energy_of_a_ball(void **state)
+TEST(energy_of_a_ball)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct settings s;
         struct sedov blast;
@@ -244,9 +236,8 @@ static void energy_of_a_ball(void **state)
 
 /* One particle on either side of the middle along every axis, the light one twice as fast: as much
  * momentum flies outwards everywhere, but energy of motion lies more on one side. */
-static void one_side_is_faster(void **state)
+TEST(one_side_is_faster)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct settings s;
         struct cloud cloud = {0};
@@ -276,9 +267,8 @@ static void one_side_is_faster(void **state)
 }
 
 /* Where a start prefers no direction none may come. */
-static void symmetry_is_known(void **state)
+TEST(symmetry_is_known)
 {
-    (void)state;
     static const struct {
         const char *words;
         int dim;
@@ -301,18 +291,4 @@ static void symmetry_is_known(void **state)
         const struct prepared p = prepared_of(&s, rows[k].dim, words);
         same(exactly(&p, "asymmetry", 0.1), rows[k].known ? 0 : (double)NAN);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(blasts_start_from_a_hot_spot),
-        cmocka_unit_test(blasts_run_outwards),
-        cmocka_unit_test(blasts_are_measured),
-        cmocka_unit_test(blasts_are_summed),
-        cmocka_unit_test(one_side_is_faster),
-        cmocka_unit_test(energy_of_a_ball),
-        cmocka_unit_test(symmetry_is_known),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,14 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The table of keys: every key reads what it writes, refuses what is out of range; `auto` stands
  * for what the documentation says; what keys are in words and in documents. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "test.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "plugin_kernel.h"
 #include "certificate.h"
@@ -34,11 +31,10 @@ static void resolve(struct settings *settings, struct scheme *scheme, int n, ...
     assert_int_equal(settings_scheme(settings, 1, scheme, &error), STATUS_OK);
 }
 
-static void defaults_are_the_fastest_scheme(void **state)
+TEST(defaults_are_the_fastest_scheme)
 {
     struct settings settings;
     struct scheme s;
-    (void)state;
     resolve(&settings, &s, 0);
     assert_string_equal(s.kernel.member.name, "quadratic_spline");
     assert_string_equal(s.integrator->member.name, "predicted_midpoint");
@@ -55,11 +51,10 @@ static void defaults_are_the_fastest_scheme(void **state)
     assert_int_equal(s.pair_width, PAIR_WIDTH_MEAN);
 }
 
-static void textbook_scheme_has_no_surprises(void **state)
+TEST(textbook_scheme_has_no_surprises)
 {
     struct settings settings;
     struct scheme s;
-    (void)state;
     resolve(&settings, &s, 3, "integrator=modified_leapfrog", "kernel=cubic_spline", "eta=4.8");
     near_relative(s.cfl, s.integrator->cfl, 1e-15);
     near_relative(s.alpha, 1, 1e-15);
@@ -71,13 +66,12 @@ static void textbook_scheme_has_no_surprises(void **state)
     near_relative(s.beta, 1, 1e-15);
 }
 
-static void keys_read_what_they_write(void **state)
+TEST(keys_read_what_they_write)
 {
     struct settings settings, again;
     struct scheme scheme;
     struct error error;
     char text[SETTING_TEXT_MAX];
-    (void)state;
     resolve(&settings, &scheme, 3, "eta=2.3849999999999998", "gamma=1.6666666666666667", "n=1e5");
     settings_init(&again);
     for (int i = 0; i < SETTINGS; i++) {
@@ -90,10 +84,9 @@ static void keys_read_what_they_write(void **state)
     }
 }
 
-static void keys_refuse_the_rest(void **state)
+TEST(keys_refuse_the_rest)
 {
     static const char *const never[] = {"", " ", "nan", "inf", "1e3x", "0x1", "1e300", "-1e300"};
-    (void)state;
     for (int i = 0; i < SETTINGS; i++)
         for (size_t j = 0; j < sizeof never / sizeof *never; j++) {
             struct settings settings;
@@ -123,9 +116,8 @@ static enum status set(enum setting key, double value, int count, struct setting
 }
 
 /* A key takes both ends of what it says is allowed, unless it says above, and nothing beyond. */
-static void keys_take_their_ends(void **state)
+TEST(keys_take_their_ends)
 {
-    (void)state;
     for (int i = 0; i < SETTINGS; i++) {
         const struct setting_key *key = &setting_keys[i];
         struct settings settings;
@@ -158,7 +150,7 @@ static void keys_take_their_ends(void **state)
 }
 
 /* What a key may be, in words; a list that has no room ends in dots, not in silence. */
-static void keys_say_what_they_allow(void **state)
+TEST(keys_say_what_they_allow)
 {
     static const struct {
         enum setting key;
@@ -180,7 +172,6 @@ static void keys_say_what_they_allow(void **state)
         {SETTING_file, "the path of a file, of up to 255 characters; nothing: no file"},
     };
     char text[300], cut[64];
-    (void)state;
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         setting_allowed(&setting_keys[rows[k].key], text, sizeof text);
         assert_string_equal(text, rows[k].want);
@@ -215,10 +206,9 @@ static void refused(const char *argument, const char *message)
     assert_memory_equal(&before, &settings, sizeof before);
 }
 
-static void messages(void **state)
+TEST(messages)
 {
     char word[400], want[400];
-    (void)state;
     refused("eta=~ }\x7f\x1f\x80", "eta=~ }???: allowed: a number above 0 up to 100, or auto");
     for (int n = 63; n <= 64; n++) { /* of a long word its beginning */
         snprintf(word, sizeof word, "eta=%.*s", n,
@@ -281,7 +271,7 @@ static void messages(void **state)
 }
 
 /* One number or word for all directions, or each its own; who said it. */
-static void directions(void **state)
+TEST(directions)
 {
     char *const one[] = {"gravity=2", "boundary=open"},
                 *const each[] = {"gravity=2,3 4", "boundary=open,fixed reflecting", "lo=5 6"},
@@ -289,7 +279,6 @@ static void directions(void **state)
                 *const any[] = {"gravity=auto", "boundary=auto", "lattice=auto", "window=auto"};
     struct settings settings;
     struct error error;
-    (void)state;
     memset(&settings, 0xff, sizeof settings);
     settings_init(&settings);
     assert_true(settings.dim == 0 && !settings.file[0]);
@@ -337,7 +326,7 @@ static void directions(void **state)
 }
 
 /* Every key of a scheme gets there, and what it leaves open comes back as it is used. */
-static void schemes(void **state)
+TEST(schemes)
 {
     char *const words[] = {"kernel=sinc",
                            "sinc_n=6",
@@ -368,7 +357,6 @@ static void schemes(void **state)
     struct settings settings;
     struct scheme s;
     struct error error;
-    (void)state;
     settings_init(&settings);
     if (settings_apply(&settings, sizeof words / sizeof *words, words, &error) ||
         settings_scheme(&settings, 2, &s, &error))
@@ -416,7 +404,7 @@ static void schemes(void **state)
 }
 
 /* As one types it, and as a document has it. */
-static void written(void **state)
+TEST(written)
 {
     static const struct {
         const char *argument, *text, *json;
@@ -437,7 +425,6 @@ static void written(void **state)
         {"window=1 2", "1 2", "[1.0, 2.0]"},
         {"kernel=sinc", "sinc", "\"sinc\""},
     };
-    (void)state;
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         struct settings settings;
         struct error error;
@@ -458,10 +445,9 @@ static void written(void **state)
 }
 
 /* A document has the keys that say something for the problem in so many dimensions. */
-static void documents_have_what_is_read(void **state)
+TEST(documents_have_what_is_read)
 {
     struct settings settings;
-    (void)state;
     for (int dim = 1; dim <= 2; dim++) {
         settings_init(&settings);
         settings.dim = dim;
@@ -477,19 +463,6 @@ static void documents_have_what_is_read(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(defaults_are_the_fastest_scheme),
-        cmocka_unit_test(textbook_scheme_has_no_surprises),
-        cmocka_unit_test(keys_read_what_they_write),
-        cmocka_unit_test(keys_refuse_the_rest),
-        cmocka_unit_test(keys_take_their_ends),
-        cmocka_unit_test(keys_say_what_they_allow),
-        cmocka_unit_test(messages),
-        cmocka_unit_test(directions),
-        cmocka_unit_test(schemes),
-        cmocka_unit_test(written),
-        cmocka_unit_test(documents_have_what_is_read),
-    };
     plugin_allow(certificate_failing, false);
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return test_run(NULL, NULL);
 }

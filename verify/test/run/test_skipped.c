@@ -1,14 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * How much of a run is skipped, beside what an exact solution leaves in peace. */
-#include <setjmp.h>
-#include <stdarg.h>
+#include "test.h"
+
 #include <math.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "bench_possible.h"
 #include "near.h"
@@ -33,7 +29,7 @@ static struct bench_shares shares_of(const char *name, const char *words)
     return shares;
 }
 
-static void test_shares(void **state)
+TEST(test_shares)
 {
     static const struct {
         const char *name, *keys;
@@ -41,7 +37,6 @@ static void test_shares(void **state)
     } cases[] = {{"sod_2d", "n=22400,t_end=0.03", 0.7},
                  {"sedov_2d", "n=64^2,t_end=0.003", 0.7},
                  {"sedov_3d", "n=32^3,t_end=0.0002", 0.5}};
-    (void)state;
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         const struct bench_shares shares = shares_of(cases[k].name, cases[k].keys);
         near_inside(shares.possible, cases[k].possible, 1);
@@ -51,13 +46,12 @@ static void test_shares(void **state)
 
 /* Without an exact front gas that hardly changes is possible: all of a box at rest, nothing of an
  * inflow that converges. The map has everybody asleep, or nobody. */
-static void test_coarse(void **state)
+TEST(test_coarse)
 {
     static const struct {
         const char *name, *keys;
         double share;
     } cases[] = {{"rest_2d", "n=400,jitter=0,t_end=0.1", 1}, {"noh_2d", "n=400,t_end=0.1", 0}};
-    (void)state;
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         const struct bench_shares shares = shares_of(cases[k].name, cases[k].keys);
         assert_true(shares.coarse && shares.possible == cases[k].share);
@@ -71,11 +65,4 @@ static void test_coarse(void **state)
             }
         assert_true(gas >= BENCH_ROWS * 10);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_shares),
-                                       cmocka_unit_test(test_coarse)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,30 +2,19 @@
  * Runs of the default schemes with and without skips, on random blasts, tubes and pulses in gas at
  * rest or in motion as a whole, in 1D, 2D and 3D: the same figures, momentum and energy kept, and
  * something skipped each time. Times are short: no scheme has amplified anything yet. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
+#include "test.h"
+
 #include <math.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "draw.h"
 #include "near.h"
 #include "settings.h"
 #include "simulation.h"
 
 enum { MOST = 5000, FIELDS_SEEN = 9 };
 enum kind { BLAST, TUBE, PULSE, KINDS };
-
-static uint64_t drawn = 2385;
-
-static double draw(double low, double high)
-{
-    drawn = drawn * 6364136223846793005u + 1442695040888963407u;
-    return low + (high - low) * ldexp((double)((drawn ^ drawn >> 29) >> 11), -53);
-}
 
 /* Of the setup drawn last: how far the hot gas reaches from its middle, in units of the box. */
 static double width;
@@ -143,10 +132,9 @@ static void skip_enough_of_pulse(const struct setup *setup)
     near_inside((double)skipping.cost.skipped_particle_updates / updates, 0.8 * possible, 1);
 }
 
-static void test_same_figures(void **state)
+TEST(test_same_figures)
 {
     static const int draws[] = {24, 6, 4};
-    (void)state;
     for (int dim = 1; dim <= 3; dim++) {
         struct settings settings;
         struct scheme scheme;
@@ -166,9 +154,8 @@ static void test_same_figures(void **state)
 }
 
 /* Gas that moves as one sleeps like gas at rest. */
-static void test_boosted(void **state)
+TEST(test_boosted)
 {
-    (void)state;
     for (int dim = 1; dim <= 3; dim++) {
         struct settings settings;
         struct error error;
@@ -187,12 +174,11 @@ static void test_boosted(void **state)
 
 /* Cold gas whose halves stream apart feels no force, but its density changes where they part: it is
  * awake there, with the same figures. */
-static void test_cold_streams(void **state)
+TEST(test_cold_streams)
 {
     struct settings settings;
     struct error error;
     struct setup setup = draw_setup(1, TUBE, 1, true);
-    (void)state;
     settings_init(&settings);
     if (settings_scheme(&settings, 1, &setup.scheme, &error)) fail_msg("%s", error.message);
     const double boost = v[0][0];
@@ -226,7 +212,7 @@ static void compare_pairs(struct setup *setup, bool slope)
     near_relative(skipping.sums.energy, plain.sums.energy, 1e-14);
 }
 
-static void test_pairs(void **state)
+TEST(test_pairs)
 {
     enum { WORDS = 4 };
     static const struct {
@@ -245,7 +231,6 @@ static void test_pairs(void **state)
         {2, {"viscosity=time_dependent", "volume_element=energy", "balsara=on"}, true, false},
         {3, {"eta=2.4", "viscosity=projected"}, false, false},
         {3, {"eta=2.4", "viscosity=constant", "balsara=on", "gradient=standard"}, true, true}};
-    (void)state;
     for (size_t s = 0; s < sizeof schemes / sizeof *schemes; s++) {
         struct settings settings;
         struct error error;
@@ -272,8 +257,6 @@ static void test_pairs(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_same_figures),
-                                       cmocka_unit_test(test_pairs), cmocka_unit_test(test_boosted),
-                                       cmocka_unit_test(test_cold_streams)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    draw_state = 2385;
+    return test_run(NULL, NULL);
 }

@@ -1,14 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What a run writes as its snapshot in HDF5. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "test.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "output.h"
 #include "run.h"
@@ -128,9 +124,8 @@ static void gas_is_of(hid_t file, const struct run_result *run)
 }
 
 /* In 1D, a plane that is no square, and space. */
-static void runs_are_written(void **state)
+TEST(runs_are_written)
 {
-    (void)state;
     static const struct {
         const char *name, *words[2];
     } cases[] = {{"sod", {"n=30", "t_end=0.01"}},
@@ -157,7 +152,7 @@ static void runs_are_written(void **state)
 }
 
 /* Only a box has periods, along the directions that the boundary does not close or open. */
-static void periods(void **state)
+TEST(periods)
 {
     static const struct {
         const char *boundary;
@@ -167,7 +162,6 @@ static void periods(void **state)
                 {"reflecting", {0, 0, 0}},
                 {"periodic reflecting", {2, 0, 0}},
                 {"open periodic fixed", {0, 3, 0}}};
-    (void)state;
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
         for (int boxed = 0; boxed < 2; boxed++) {
             struct snapshot_file file = {.boxed = boxed, .box = {2, 3, 5}};
@@ -179,14 +173,10 @@ static void periods(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(runs_are_written),
-        cmocka_unit_test(periods),
-    };
     char command[96];
     output_prepare_process(); /* as the program does: no file gets the number of a closed stream */
     if (!mkdtemp(folder)) return 1;
-    const int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    const int failed = test_run(NULL, NULL);
     snprintf(command, sizeof command, "rm -r %s", folder);
     return system(command) || failed;
 }

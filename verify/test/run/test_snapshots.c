@@ -1,19 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Snapshots on the way: how many, when, where; what a run keeps to go on from. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "test.h"
+
 #include <stdio.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "made_simulation.h"
 #include "snapshot_writer.h"
 #include "snapshots.h"
 
 /* From a ten thousandth of the run to all of it, both included. */
-static void intervals(void **state)
+TEST(intervals)
 {
     const double least = 1. / 1024, t_end = SNAPSHOTS_MOST * least;
     const struct {
@@ -23,7 +20,6 @@ static void intervals(void **state)
                 {least, true}, {least * (1 - 1e-12), false},
                 {1, true},     {0, false},
                 {-1, false},   {(double)NAN, false}};
-    (void)state;
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         const struct snapshots snapshots = {.every = rows[k].every};
         struct error error = {0};
@@ -37,11 +33,10 @@ static void intervals(void **state)
 
 /* One at the start and at each multiple before the end, which has its own: no nearer to it than a
  * billionth of the run. */
-static void how_many(void **state)
+TEST(how_many)
 {
     const struct snapshots quarter = {.every = 0.25}, third = {.every = 0.3};
     const double more = 1 + 1e-9;
-    (void)state;
     assert_int_equal(snapshots_count(&quarter, 1), 4);
     assert_int_equal(snapshots_count(&third, 1), 4);
     assert_int_equal(snapshots_count(&quarter, 0.25), 1);
@@ -50,7 +45,7 @@ static void how_many(void **state)
     assert_true(snapshots_time(&quarter, 0) == 0 && snapshots_time(&quarter, 3) == 0.75);
 }
 
-static void files(void **state)
+TEST(files)
 {
     static const struct {
         const char *path;
@@ -63,7 +58,6 @@ static void files(void **state)
                 {".csv", 123, "_0123.csv"},
                 {"a/.csv", 1, "a/_0001.csv"},
                 {"a.d/b.hdf5", 1, "a.d/b_0001.hdf5"}};
-    (void)state;
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         const struct snapshots snapshots = {.path = rows[k].path};
         char *path = snapshots_path(&snapshots, rows[k].number);
@@ -72,10 +66,9 @@ static void files(void **state)
     }
 }
 
-static void memory(void **state)
+TEST(memory)
 {
     static const double bytes[] = {0, 180, 350, 480};
-    (void)state;
     for (int dim = 1; dim <= 3; dim++)
         assert_true(snapshots_memory(dim, 1000) == 1000 * bytes[dim]);
     assert_true(snapshot_writer_memory("a.csv") == 0 && snapshot_writer_memory("a.h5") == 250);
@@ -83,7 +76,7 @@ static void memory(void **state)
 }
 
 /* Those up to now are over, and those that were made before the process began. */
-static void begins(void **state)
+TEST(begins)
 {
     static const struct {
         double time, last;
@@ -92,7 +85,6 @@ static void begins(void **state)
     } rows[] = {{0, -1, 0, -1},      {0.25, -1, 2, 0.25}, {0.24, -1, 1, 0},  {0.5, 0.75, 4, 0.75},
                 {0.5, 0.25, 3, 0.5}, {0.5, 0.8, 4, 0.75}, {1e-300, -1, 1, 0}};
     struct snapshots tenth = {.every = 0.1};
-    (void)state;
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         struct snapshots snapshots = {.every = 0.25};
         snapshots_begin(&snapshots, rows[k].time, rows[k].last, 2);
@@ -119,11 +111,10 @@ static double step_of(const struct simulation *simulation)
 
 /* The state is kept where one is due within four steps and before the stop, and is put back to the
  * last bit, as often as anybody asks. */
-static void aside_and_back(void **state)
+TEST(aside_and_back)
 {
     struct simulation *self = made_simulation(40), *other = made_simulation(40);
     struct snapshots snapshots = {.path = "a.csv", .every = 1};
-    (void)state;
     made_run(self, 0.05);
     made_run(other, 0.05);
     const double reach = 0.05 + 4 * step_of(self);
@@ -155,12 +146,11 @@ static void aside_and_back(void **state)
     simulation_destroy(other);
 }
 
-static void first_trouble(void **state)
+TEST(first_trouble)
 {
     struct snapshots snapshots = {0};
     const struct error errors[] = {{.status = STATUS_ENVIRONMENT, .message = "no space"},
                                    {.status = STATUS_BAD_INPUT, .message = "later"}};
-    (void)state;
     for (int k = 0; k < 2; k++) snapshots_fail(&snapshots, &errors[k]);
     assert_int_equal(snapshots.trouble.status, STATUS_ENVIRONMENT);
     assert_string_equal(snapshots.trouble.message, "no space");
@@ -168,11 +158,5 @@ static void first_trouble(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(intervals),     cmocka_unit_test(how_many),
-        cmocka_unit_test(files),         cmocka_unit_test(memory),
-        cmocka_unit_test(begins),        cmocka_unit_test(aside_and_back),
-        cmocka_unit_test(first_trouble),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return test_run(NULL, NULL);
 }

@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What a run leaves of itself through time ends with what the run says of its end, and knows what
  * jittered particles that come to rest do. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "test.h"
+
 /* after the four that it needs */
-#include <cmocka.h>
 
 #include <math.h>
 
@@ -37,12 +34,11 @@ static double last(const json_t *list)
     return value_real(json_array_get(list, json_array_size(list) - 1));
 }
 
-static void ends_with_the_run(void **state)
+TEST(ends_with_the_run)
 {
     char *const keys[] = {"n=12^2", "t_end=0.5"};
     struct trace trace = {0};
     struct run_result result;
-    (void)state;
     run(&result, &trace, "rest_2d", 2, keys);
     const struct regularity *start = &trace.seen[0], *end = &trace.seen[trace.looks - 1];
     assert_true(trace.looks >= 8 && trace.looks <= TRACE_LOOKS + 2);
@@ -61,12 +57,11 @@ static void ends_with_the_run(void **state)
     run_free(&result);
 }
 
-static void on_a_line(void **state)
+TEST(on_a_line)
 {
     char *const keys[] = {"n=40", "t_end=0.02"};
     struct trace trace = {0};
     struct run_result result;
-    (void)state;
     run(&result, &trace, "sod", 2, keys);
     json_t *through = trace_json(&trace, 1);
     assert_true(json_is_null(json_object_get(through, "angular_momentum")));
@@ -93,10 +88,9 @@ static struct conservation sums_at(double k)
 
 /* Every step at first; then every second one, and so on: what is kept is spaced evenly, and has the
  * start and what came with each time. */
-static void thins_evenly(void **state)
+TEST(thins_evenly)
 {
     static struct trace trace;
-    (void)state;
     trace = (struct trace){0};
     assert_true(trace_wants(&trace, 0) && trace_wants(&trace, 7));
     for (uint64_t step = 0; step <= 5 * TRACE_MAX; step++) {
@@ -122,11 +116,10 @@ static void thins_evenly(void **state)
 }
 
 /* The end replaces an entry of the same time, and no other. */
-static void ends_once(void **state)
+TEST(ends_once)
 {
     static struct trace trace;
     const struct regularity a = {.nearest = 1}, b = {.nearest = 2};
-    (void)state;
     trace = (struct trace){0};
     for (int k = 0; k < 3; k++) {
         const struct conservation sums = sums_at(k);
@@ -144,11 +137,10 @@ static void ends_once(void **state)
 }
 
 /* At the start, at the first time at or after each sixteenth, and no more. */
-static void looks_at_even_times(void **state)
+TEST(looks_at_even_times)
 {
     static struct trace trace;
     const struct regularity any = {0};
-    (void)state;
     trace = (struct trace){0};
     for (size_t k = 0; k <= TRACE_LOOKS; k++) {
         const double due = 2 * (double)k / TRACE_LOOKS;
@@ -161,11 +153,10 @@ static void looks_at_even_times(void **state)
     assert_int_equal(trace.looks, TRACE_LOOKS + 2);
 }
 
-static void drifts(void **state)
+TEST(drifts)
 {
     struct conservation start = sums_at(0), now = sums_at(1), end = sums_at(2);
     struct trace_drift drift;
-    (void)state;
     now.momentum[1] = 4, now.momentum[2] = 5; /* by 1, 2, 2 */
     now.angular_momentum[0] = 2, now.angular_momentum[1] = 4, now.angular_momentum[2] = 4;
     drift = trace_drift(&start, &now, &end);
@@ -197,10 +188,9 @@ static void is(const json_t *lists, const char *name, size_t k, double value)
         fail_msg("%s %zu: %.17g, not %.17g", name, k, got, value);
 }
 
-static void says_it_all(void **state)
+TEST(says_it_all)
 {
     static struct trace trace;
-    (void)state;
     trace = (struct trace){0};
     for (int k = 0; k < 3; k++) {
         const struct conservation sums = sums_at(k);
@@ -244,15 +234,4 @@ static void says_it_all(void **state)
     assert_int_equal(json_array_size(json_object_get(json, "time")), 0);
     assert_int_equal(json_object_size(json_object_get(json, "regularity")), 1);
     json_decref(json);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(ends_with_the_run),   cmocka_unit_test(on_a_line),
-        cmocka_unit_test(thins_evenly),        cmocka_unit_test(ends_once),
-        cmocka_unit_test(looks_at_even_times), cmocka_unit_test(drifts),
-        cmocka_unit_test(says_it_all),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

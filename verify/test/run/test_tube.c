@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Tubes: their gases and how their particles are laid, each worked out a second time. */
+#include "test.h"
+
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-#include <cmocka.h>
 
 #include "gases.h"
 #include "lattice.h"
@@ -14,9 +11,8 @@
 
 /* ---- the gas ---- */
 
-static void gases_meet_in_the_middle(void **state)
+TEST(gases_meet_in_the_middle)
 {
-    (void)state;
     struct settings s;
     static const char *const tubes[] = {"left=1 0.25 1|right=0.5 -0.25 0.75",
                                         "left=1 -5 0.4|right=0.5 5 0.9", "left=2 1 3|right=2 1 3"};
@@ -51,9 +47,8 @@ static void gases_meet_in_the_middle(void **state)
     assert_true(prepared_of(&s, 1, "window=-0.75 0.5").window.lo[0] == -0.75);
 }
 
-static void gases_that_cannot_be_are_refused(void **state)
+TEST(gases_that_cannot_be_are_refused)
 {
-    (void)state;
     prepared_refused(1, "left=0 0 1", "left=\"0 0 1\": rho v P with rho > 0 and P > 0");
     prepared_refused(1, "right=1 0 0", "right=\"1 0 0\": rho v P with rho > 0 and P > 0");
     for (int side = 0; side < 2; side++) { /* no number that a key can have */
@@ -69,9 +64,8 @@ static void gases_that_cannot_be_are_refused(void **state)
 }
 
 /* With graded masses spacings are equal either side of the contact, within 2/3 and 3/2. */
-static void masses_follow_the_contact(void **state)
+TEST(masses_follow_the_contact)
 {
-    (void)state;
     static const struct {
         const char *keys;
         double ratio; /* 0: that of the densities */
@@ -161,9 +155,8 @@ static void check_line(const struct prepared *p, const struct settings *s, doubl
     free(initial.storage);
 }
 
-static void particles_stand_on_a_line(void **state)
+TEST(particles_stand_on_a_line)
 {
-    (void)state;
     static const char *const gases[] = {
         "left=1 0.5 1|right=0.125 0 0.1", "left=1e6 0 1|right=1 0.5 1", "left=1 0 1|right=1e6 0 1",
         "left=1 0.1 2|right=1 0.2 1", "left=0.7 0 1|right=1 0 1|mass_ratio=1.7"};
@@ -198,9 +191,8 @@ static void particles_stand_on_a_line(void **state)
     }
 }
 
-static void no_memory_is_said(void **state)
+TEST(no_memory_is_said)
 {
-    (void)state;
     /* graded masses are counted from the jumps alone, or this would take for ever */
     static const char *const keys[] = {"left=1 0 1|right=1 0 2", "left=1 0 1|right=1 0 2",
                                        "left=1 0 1|right=1 0 2|grade=0.5"};
@@ -259,9 +251,8 @@ static void check_cloud(const struct prepared *p, const struct settings *s)
     free(initial.storage);
 }
 
-static void each_gas_has_a_lattice(void **state)
+TEST(each_gas_has_a_lattice)
 {
-    (void)state;
     static const struct {
         int dim;
         const char *keys;
@@ -281,9 +272,8 @@ static void each_gas_has_a_lattice(void **state)
 }
 
 /* Either gas may be the one whose particles are too few. */
-static void gases_without_a_lattice_are_refused(void **state)
+TEST(gases_without_a_lattice_are_refused)
 {
-    (void)state;
     for (int k = 0; k < 3; k++) {
         struct settings s;
         struct initial initial = {0};
@@ -295,18 +285,4 @@ static void gases_without_a_lattice_are_refused(void **state)
         assert_non_null(strstr(error.message, k ? "glass" : "lattice=fcc"));
         free(initial.storage);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(gases_meet_in_the_middle),
-        cmocka_unit_test(gases_that_cannot_be_are_refused),
-        cmocka_unit_test(masses_follow_the_contact),
-        cmocka_unit_test(particles_stand_on_a_line),
-        cmocka_unit_test(no_memory_is_said),
-        cmocka_unit_test(each_gas_has_a_lattice),
-        cmocka_unit_test(gases_without_a_lattice_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,12 +2,9 @@
  * Tubes in time: how long their window is free, and what is measured of them: shocks, noise,
  * regions, still gas. Each is worked out a second time, on tubes drawn at random or made by hand.
  */
+#include "test.h"
+
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
 
 #include <gsl/gsl_rng.h>
 
@@ -98,9 +95,8 @@ static double free_until(const struct prepared *p, const struct settings *settin
         arrival(p->gamma, &l, &r, length, p->domain.hi[0] - p->window.hi[0]));
 }
 
-static void windows_are_free_until_waves_come(void **state)
+TEST(windows_are_free_until_waves_come)
 {
-    (void)state;
     gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
     int for_ever = 0;
     for (int i = 0; i < 3000; i++) {
@@ -131,9 +127,8 @@ static void windows_are_free_until_waves_come(void **state)
 
 /* A sound wave from the left end runs through the tube's own waves, v + c of the exact solution in
  * small steps: no window is called free that it has come into. */
-static void no_sound_comes_into_free_windows(void **state)
+TEST(no_sound_comes_into_free_windows)
 {
-    (void)state;
     gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
     int vacuums = 0, inside = 0;
     for (int i = 0; i < 100; i++) {
@@ -160,9 +155,8 @@ static void no_sound_comes_into_free_windows(void **state)
     assert_true(inside > 1000 && vacuums > 20);
 }
 
-static void what_is_not_free_is_said(void **state)
+TEST(what_is_not_free_is_said)
 {
-    (void)state;
     struct settings s;
     struct error error = {0};
     const struct prepared p = prepared_of(&s, 1, "window=-0.75 0.5|left=1 0 1|right=1 0 1");
@@ -178,9 +172,8 @@ static void what_is_not_free_is_said(void **state)
 
 /* ---- the shock ---- */
 
-static void shocks_are_found_from_the_right(void **state)
+TEST(shocks_are_found_from_the_right)
 {
-    (void)state;
     struct settings s;
     const struct prepared p =
         prepared_of(&s, 1, "lo=-1|hi=3|window=-0.5 2|left=1 0 1|right=0.125 0 0.1");
@@ -227,9 +220,8 @@ static void shocks_are_found_from_the_right(void **state)
 
 /* ---- what moves across ---- */
 
-static void noise_is_that_of_disturbed_gas(void **state)
+TEST(noise_is_that_of_disturbed_gas)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++)
         for (int shifted = 0; shifted < 2; shifted++) {
             struct settings s;
@@ -289,9 +281,8 @@ static const char *region_of(const struct riemann_solution *tube, double x, doub
     return x < tube->left_head * t || x > tube->right_head * t ? "undisturbed" : "plateau";
 }
 
-static void regions_lie_between_waves(void **state)
+TEST(regions_lie_between_waves)
 {
-    (void)state;
     gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
     int seen[5] = {0};
     for (int i = 0; i < 1000; i++) {
@@ -379,9 +370,8 @@ static double stillness(const struct prepared *p, const struct gases *gases,
     return moved;
 }
 
-static void still_gas_is_far_from_waves(void **state)
+TEST(still_gas_is_far_from_waves)
 {
-    (void)state;
     gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
     int found = 0, none = 0;
     for (int i = 0; i < 1000; i++) {
@@ -414,9 +404,8 @@ static void still_gas_is_far_from_waves(void **state)
 }
 
 /* One particle right at the limit is not far enough, and is a little further on. */
-static void still_gas_begins_at_its_limits(void **state)
+TEST(still_gas_begins_at_its_limits)
 {
-    (void)state;
     struct settings s;
     const struct prepared p = prepared_of(&s, 1, "left=1 0 1|right=0.125 0 0.1");
     const struct gases gases = gases_of(1.4, &s);
@@ -446,19 +435,4 @@ static void still_gas_begins_at_its_limits(void **state)
     const double x[1] = {0}, v[1] = {6}, h[1] = {1e-4};
     const struct snapshot of = {.n = 1, .x = {x}, .v = {v}, .h = h, .time = 0.1};
     near_relative(p.problem->regions->still(&fast, &of), 1 / sqrt(1.4), 1e-14);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(windows_are_free_until_waves_come),
-        cmocka_unit_test(no_sound_comes_into_free_windows),
-        cmocka_unit_test(what_is_not_free_is_said),
-        cmocka_unit_test(shocks_are_found_from_the_right),
-        cmocka_unit_test(noise_is_that_of_disturbed_gas),
-        cmocka_unit_test(regions_lie_between_waves),
-        cmocka_unit_test(still_gas_is_far_from_waves),
-        cmocka_unit_test(still_gas_begins_at_its_limits),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,13 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Sound waves as a problem: which wave the keys mean, particles that carry its mass, its mode, how
  * long it is known. The wave itself: test_simple_wave.c. */
+#include "test.h"
+
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-#include <cmocka.h>
 
 #include "lattice.h"
 #include "near.h"
@@ -56,9 +53,8 @@ static double along(const struct row *row, const struct prepared *p, const doubl
     return s;
 }
 
-static void samples_are_the_wave(void **state)
+TEST(samples_are_the_wave)
 {
-    (void)state;
     for (const struct row *row = rows; row < rows + ROWS; row++) {
         struct settings s;
         const struct prepared p = made(row, &s);
@@ -88,9 +84,8 @@ static void samples_are_the_wave(void **state)
 
 /* Each carries as much mass as all others; from the corner to it along the wave there is what would
  * be there if the gas were uniform and it stood on its point of the lattice. */
-static void particles_carry_the_mass(void **state)
+TEST(particles_carry_the_mass)
 {
-    (void)state;
     for (const struct row *row = rows; row < rows + ROWS; row++) {
         struct settings s;
         const struct prepared p = made(row, &s);
@@ -145,9 +140,8 @@ static void particles_carry_the_mass(void **state)
 
 /* Fifty steps of Newton at most: of some the last ones go to and fro between two numbers, and a run
  * has the bits of that one where they end. */
-static void steps_are_counted(void **state)
+TEST(steps_are_counted)
 {
-    (void)state;
     int restless = 0;
     for (const struct row *row = rows; row < rows + 2; row++) {
         struct settings s;
@@ -174,9 +168,8 @@ static void steps_are_counted(void **state)
 }
 
 /* Without a wave they stand where uniform gas has its mass, to the last bit. */
-static void uniform_gas_is_laid_exactly(void **state)
+TEST(uniform_gas_is_laid_exactly)
 {
-    (void)state;
     struct settings s;
     const struct prepared p =
         prepared_of(&s, 1, "kind=sound_wave|lo=-1|hi=2|background=1.3 0 1|n=37|amplitude=0");
@@ -190,9 +183,8 @@ static void uniform_gas_is_laid_exactly(void **state)
     free(initial.storage);
 }
 
-static void what_cannot_be_laid_is_said(void **state)
+TEST(what_cannot_be_laid_is_said)
 {
-    (void)state;
     for (int dim = 1; dim <= 3; dim++) {
         struct settings s;
         struct error error = {0};
@@ -206,9 +198,8 @@ static void what_cannot_be_laid_is_said(void **state)
     }
 }
 
-static void what_is_no_wave_is_refused(void **state)
+TEST(what_is_no_wave_is_refused)
 {
-    (void)state;
     prepared_refused(1, "kind=sound_wave|background=0 0 1",
                      "background=\"0 0 1\": rho v P with rho > 0 and P > 0 is needed");
     prepared_refused(2, "kind=sound_wave|direction=0 0", "the wave runs nowhere");
@@ -235,9 +226,8 @@ static void what_is_no_wave_is_refused(void **state)
 /* ---- its mode ---- */
 
 /* Of points that lie anywhere, one behind them; the boost is taken off. */
-static void modes_are_sums(void **state)
+TEST(modes_are_sums)
 {
-    (void)state;
     enum { N = 40 };
     for (const struct row *row = rows; row < rows + ROWS; row++) {
         struct settings s;
@@ -268,9 +258,8 @@ static void modes_are_sums(void **state)
 }
 
 /* The first coefficient of the wave's own Fourier series, at the start its amplitude. */
-static void modes_are_those_of_the_wave(void **state)
+TEST(modes_are_those_of_the_wave)
 {
-    (void)state;
     enum { POINTS = 3000 };
     for (const struct row *row = rows; row < rows + ROWS; row++) {
         struct settings s;
@@ -289,19 +278,4 @@ static void modes_are_those_of_the_wave(void **state)
         }
         near_relative(mode->exact(&p, t), hypot(a, b), 1e-12);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(samples_are_the_wave),
-        cmocka_unit_test(particles_carry_the_mass),
-        cmocka_unit_test(steps_are_counted),
-        cmocka_unit_test(uniform_gas_is_laid_exactly),
-        cmocka_unit_test(what_cannot_be_laid_is_said),
-        cmocka_unit_test(what_is_no_wave_is_refused),
-        cmocka_unit_test(modes_are_sums),
-        cmocka_unit_test(modes_are_those_of_the_wave),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Norms, bins and the worst of many, by hand. */
+#include "test.h"
+
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include <gsl/gsl_errno.h>
 
@@ -14,9 +11,8 @@
 #include "norm.h"
 #include "worst.h"
 
-static void test_norms_by_hand(void **state)
+TEST(test_norms_by_hand)
 {
-    (void)state;
     const double x[] = {-0.75, -0.5, 0.125, 0.5, 0.625}, volume[] = {9, 0.5, 2, 1.5, 9};
     const double value[] = {7, 1, 2, 4, 7}, exact[] = {0, 2, 2, 1, 0}, window[] = {-0.5, 0.5};
     const struct norms norms = norm_errors(5, x, window, volume, value, exact);
@@ -27,9 +23,8 @@ static void test_norms_by_hand(void **state)
     near_relative(norms.particle_mean, 4. / 3, 1e-15);
 }
 
-static void test_norms_of_nothing_and_nan(void **state)
+TEST(test_norms_of_nothing_and_nan)
 {
-    (void)state;
     const double x[] = {0, 0.25}, volume[] = {1, 1}, exact[] = {0, 0}, window[] = {-1, 1};
     const double value[] = {NAN, 0.5};
     struct norms norms = norm_errors(2, x, window, volume, value, exact);
@@ -46,9 +41,8 @@ static double step(const void *at, double x)
     return x < *(const double *)at ? 1 : 3;
 }
 
-static void test_bins(void **state)
+TEST(test_bins)
 {
-    (void)state;
     const double window[] = {-0.5, 0.5}, at = 0.0371;
     double means[NORM_BINS + 1] = {[NORM_BINS] = 7};
     norm_bin_means(step, &at, window, NORM_BINS, means);
@@ -71,9 +65,8 @@ static void test_bins(void **state)
     assert_true(isnan(norm_binned_l1(2, lost + 2, window, volume, value, NORM_BINS, means)));
 }
 
-static void test_worst(void **state)
+TEST(test_worst)
 {
-    (void)state;
     double worst = 0;
     worst_keep(&worst, 2);
     worst_keep(&worst, 1);
@@ -85,9 +78,8 @@ static void test_worst(void **state)
 
 /* What is nowhere makes every norm no number, wherever it stands; what is exact has none but 0;
  * what lies outside of the window counts for nothing, even where it has no value. */
-static void test_norms_at_their_limits(void **state)
+TEST(test_norms_at_their_limits)
 {
-    (void)state;
     const double window[] = {0, 2}, volume[] = {0.5, 0.5, 0.5}, exact[] = {3, 4, 5};
     struct norms norms = norm_errors(2, (double[]){0.5, 1}, window, volume, exact, exact);
     assert_true(norms.l1 == 0 && norms.l2 == 0 && norms.linf == 0 && norms.particle_mean == 0);
@@ -114,9 +106,8 @@ static void no_handler(const char *reason, const char *file, int line, int numbe
 }
 
 /* Bins in a window whose length is not 1; what lies on its upper end is in the last one. */
-static void test_bins_of_a_window(void **state)
+TEST(test_bins_of_a_window)
 {
-    (void)state;
     const double window[] = {-1, 3}, at = 0.3, x[] = {-1, 0.5, 1.5, 3}, volume[] = {1, 1, 1, 1};
     double means[4] = {0, 10, 20, 30};
     near_relative(norm_binned_l1(4, x, window, volume, (double[]){1, 12, 24, 38}, 4, means),
@@ -127,24 +118,9 @@ static void test_bins_of_a_window(void **state)
     near_relative(means[1], 1e-15 * (3 - 2 * at), 1e-9);
 }
 
-static void bins_of_what_is_nowhere(void **state)
+TEST(bins_of_what_is_nowhere)
 {
-    (void)state;
     const double volume[] = {0.1, 0.5}, value[] = {1, 7};
     assert_true(isnan(norm_binned_l1(2, (double[]){NAN, 0.5}, (double[]){0, 1}, volume, value, 1,
                                      (double[]){3})));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_norms_by_hand),
-        cmocka_unit_test(test_norms_of_nothing_and_nan),
-        cmocka_unit_test(test_bins),
-        cmocka_unit_test(test_worst),
-        cmocka_unit_test(test_norms_at_their_limits),
-        cmocka_unit_test(test_bins_of_a_window),
-        cmocka_unit_test(bins_of_what_is_nowhere),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

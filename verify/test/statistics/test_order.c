@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Orders, their intervals, classes and gates, and what three values extrapolate to. */
+#include "test.h"
+
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_errno.h>
@@ -21,9 +18,8 @@ static double t_975_2(void)
 }
 
 /* y = 2 + x with residuals +-e in a pattern orthogonal to the line: slope, interval by hand. */
-static void test_order_interval(void **state)
+TEST(test_order_interval)
 {
-    (void)state;
     const double e = 0.02;
     const double spacing[] = {exp(3), exp(2), exp(1), 1};
     const double error[] = {exp(5 + e), exp(4 - e), exp(3 - e), exp(2 + e)};
@@ -62,9 +58,8 @@ static void test_order_interval(void **state)
     near_relative(replicated.high - replicated.low, fit.high - fit.low, 1e-12);
 }
 
-static void test_order_bad_levels(void **state)
+TEST(test_order_bad_levels)
 {
-    (void)state;
     struct order_fit fit;
     struct error failure;
     const double spacing[] = {4, 2, 2, 1}, error[] = {4, 2, 2, 1};
@@ -74,9 +69,8 @@ static void test_order_bad_levels(void **state)
     assert_non_null(strstr(failure.message, "distinct"));
 }
 
-static void test_gate(void **state)
+TEST(test_gate)
 {
-    (void)state;
     char why[ORDER_GATE_TEXT];
     const struct order_gate gate = {0.9, 1.1, 1e-3};
     struct order_fit fit = {.order = 1, .low = 0.9, .high = 1.1, .n = 4, .finest = 1e-3};
@@ -103,9 +97,8 @@ static enum order_class class_of(const double *error)
     return fit.class;
 }
 
-static void test_classes(void **state)
+TEST(test_classes)
 {
-    (void)state;
     assert_int_equal(class_of((double[]){16, 8, 4, 2, 1}), ORDER_ASYMPTOTIC);
     assert_int_equal(class_of((double[]){16, 8, 4, 3.6, 3.5}), ORDER_FLOOR_LIMITED);
     assert_int_equal(class_of((double[]){16, 8, 4, 3.6, 3.7}), ORDER_FLOOR_LIMITED);
@@ -126,9 +119,8 @@ static void test_classes(void **state)
 }
 
 /* NASA Glenn's worked example (Examining Spatial (Grid) Convergence, NPARC Alliance). */
-static void test_richardson_nasa(void **state)
+TEST(test_richardson_nasa)
 {
-    (void)state;
     const struct order_extrapolation e =
         order_extrapolate((double[]){4, 2, 1}, (double[]){0.96178, 0.96854, 0.97050}, NAN);
     assert_int_equal(e.class, ORDER_ASYMPTOTIC);
@@ -138,9 +130,8 @@ static void test_richardson_nasa(void **state)
     near_absolute(100 * e.gci_coarse, 0.356249, 5e-7);
 }
 
-static void test_richardson_unequal_ratios(void **state)
+TEST(test_richardson_unequal_ratios)
 {
-    (void)state;
     const double spacing[] = {0.1, 0.06, 0.025}, p = 1.37;
     double value[3];
     for (int i = 0; i < 3; i++) value[i] = 2.385 - 0.7 * pow(spacing[i], p);
@@ -156,9 +147,8 @@ static void test_richardson_unequal_ratios(void **state)
     near_relative(e.gci_coarse, 1.25 * (2.385 - value[1]) / value[1], 1e-10);
 }
 
-static void test_richardson_classes(void **state)
+TEST(test_richardson_classes)
 {
-    (void)state;
     const double spacing[] = {4, 2, 1};
     struct order_extrapolation e = order_extrapolate(spacing, (double[]){1, 2, 1.5}, NAN);
     assert_true(e.class == ORDER_OSCILLATING && isnan(e.value));
@@ -173,9 +163,8 @@ static void test_richardson_classes(void **state)
 }
 
 /* As many levels as there is room for; pairwise orders are those between levels and no more. */
-static void test_order_room(void **state)
+TEST(test_order_room)
 {
-    (void)state;
     double spacing[ORDER_LEVELS_MAX + 1], error[ORDER_LEVELS_MAX + 1];
     struct order_fit fit;
     struct error failure;
@@ -193,9 +182,8 @@ static void test_order_room(void **state)
 }
 
 /* Errors that grow once, wherever, do not fall from level to level. */
-static void test_one_rise(void **state)
+TEST(test_one_rise)
 {
-    (void)state;
     const double spacing[] = {1, 0.5, 0.25, 0.125, 0.0625, 0.03125};
     for (int rise = 1; rise < 5; rise++) {
         double error[6] = {1};
@@ -209,9 +197,8 @@ static void test_one_rise(void **state)
 
 /* Levels off their line by as much as replicates explain at 1 %, an F test, or just more: then the
  * scatter has the last word. */
-static void test_order_curvature(void **state)
+TEST(test_order_curvature)
 {
-    (void)state;
     const double e = 0.02, limit = gsl_cdf_fdist_Qinv(0.01, 2, 4 * 8);
     const double spacing[] = {exp(3), exp(2), exp(1), 1};
     const double error[] = {exp(5 + e), exp(4 - e), exp(3 - e), exp(2 + e)};
@@ -234,9 +221,8 @@ static void test_order_curvature(void **state)
 /* Noise that differs from level to level: weights, slope and interval by hand. A level that seems
  * quiet is not believed: its variance is drawn towards the mean of all, by 24 to the replicates' 4.
  */
-static void test_order_weights(void **state)
+TEST(test_order_weights)
 {
-    (void)state;
     const double x[] = {3, 2, 1, 0}, y[] = {3.3, 2.1, 0.7, 0.2};
     const double variance[] = {0.04, 0.01, 0.09, 0.02};
     double spacing[4], error[4], w[4], sum = 0, xbar = 0, ybar = 0, xx = 0, xy = 0;
@@ -265,9 +251,8 @@ static void test_order_weights(void **state)
                   gsl_cdf_tdist_Pinv(0.975, total * total / parts) * sqrt(total), 1e-12);
 }
 
-static void test_gate_edges(void **state)
+TEST(test_gate_edges)
 {
-    (void)state;
     const struct order_gate gate = {0, 1, 1};
     struct order_fit fit = {.order = 0, .low = 0, .high = 2 * ORDER_HALF_WIDTH_MAX, .finest = 1};
     assert_true(order_passes(&fit, &gate, NULL));
@@ -279,9 +264,8 @@ static void test_gate_edges(void **state)
 
 /* Flat is what falls by less than a tenth of an order over all levels; a floor shows where the last
  * order is below a third of the best, wherever that was. */
-static void test_class_limits(void **state)
+TEST(test_class_limits)
 {
-    (void)state;
     static const struct {
         double order[4];
         enum order_class class;
@@ -312,9 +296,8 @@ static void own_handler(const char *reason, const char *file, int line, int code
     fail_msg("%s:%d: %s (%d)", file, line, reason, code);
 }
 
-static void test_richardson_range(void **state)
+TEST(test_richardson_range)
 {
-    (void)state;
     gsl_error_handler_t *before = gsl_set_error_handler(own_handler);
     const double orders[] = {2e-3, 0.009, 0.5, 4, 29.9999}, spacing[] = {4, 2, 1};
     for (size_t i = 0; i < sizeof orders / sizeof *orders; i++) {
@@ -335,9 +318,8 @@ static void test_richardson_range(void **state)
 
 /* Values whose exact limit is known: it must lie within the GCI of the finest, or the errors tell.
  */
-static void test_richardson_exact(void **state)
+TEST(test_richardson_exact)
 {
-    (void)state;
     static const struct {
         double value[3], exact;
         enum order_class class;
@@ -367,9 +349,8 @@ static void test_richardson_exact(void **state)
 }
 
 /* The words of the classes, and what decides between them at its limits. */
-static void test_class_words(void **state)
+TEST(test_class_words)
 {
-    (void)state;
     static const char *const words[] = {"asymptotic", "floor-limited", "pre-asymptotic",
                                         "oscillating", "diverging"};
     for (int k = ORDER_ASYMPTOTIC; k <= ORDER_DIVERGING; k++)
@@ -400,9 +381,8 @@ static void test_class_words(void **state)
 
 /* Three values that converge to something else than the exact one, 1, from above or below, by their
  * errors; and what is reached but for round-off. */
-static void test_richardson_against_exact(void **state)
+TEST(test_richardson_against_exact)
 {
-    (void)state;
     const double spacing[] = {0.4, 0.2, 0.1}, wider[] = {2, 1, 0.5};
     const double third = exp2(1. / 3 * (1 - 5e-7)), more = exp2(1. / 3 * (1 + 5e-7));
     const struct {
@@ -441,28 +421,4 @@ static void test_richardson_against_exact(void **state)
     assert_int_equal(e.class, ORDER_ASYMPTOTIC);
     e = order_extrapolate(spacing, (double[]){1 + 3e-12, 1 + 1e-12, 1}, 1 - 1.3e-12);
     assert_int_equal(e.class, ORDER_ASYMPTOTIC); /* 1.25e-12, and 1e-13 */
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_order_interval),
-        cmocka_unit_test(test_order_bad_levels),
-        cmocka_unit_test(test_gate),
-        cmocka_unit_test(test_classes),
-        cmocka_unit_test(test_richardson_nasa),
-        cmocka_unit_test(test_richardson_unequal_ratios),
-        cmocka_unit_test(test_richardson_classes),
-        cmocka_unit_test(test_order_room),
-        cmocka_unit_test(test_one_rise),
-        cmocka_unit_test(test_order_curvature),
-        cmocka_unit_test(test_order_weights),
-        cmocka_unit_test(test_gate_edges),
-        cmocka_unit_test(test_class_limits),
-        cmocka_unit_test(test_richardson_range),
-        cmocka_unit_test(test_richardson_exact),
-        cmocka_unit_test(test_class_words),
-        cmocka_unit_test(test_richardson_against_exact),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

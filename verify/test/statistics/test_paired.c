@@ -1,17 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Errors drawn in pairs: what is better, by how much, and how often chance is taken for it. */
+#include "test.h"
+
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
 
 #include "near.h"
 #include "paired.h"
 
 /* By hand: ratios 0.8, 0.9, 1.0 with t(0.975, 2) = 4.302653; five with t(0.975, 4) = 2.776445. */
-static void by_hand(void **state)
+TEST(by_hand)
 {
     static const struct {
         size_t n;
@@ -35,7 +32,6 @@ static void by_hand(void **state)
         {5, {1, 2, 3, 4, 5}, {1, 2, 3, 4, 5}, 2.7764451, false, 5, PAIRED_NONE},
         {0, {0}, {0}, NAN, false, 0, PAIRED_NONE},
     };
-    (void)state;
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         const struct paired got =
             paired_compare(rows[k].n, rows[k].a, rows[k].b, rows[k].single, 0.05);
@@ -78,10 +74,9 @@ static double normal(void)
 
 /* Of what is alike a part of `level` is taken for a difference, whether one side is a single draw
  * or not; swapping the sides turns every verdict round. */
-static void by_chance(void **state)
+TEST(by_chance)
 {
     enum { TIMES = 4000, DRAWS = 5 };
-    (void)state;
     for (int single = 0; single < 2; single++) {
         int said = 0;
         for (int k = 0; k < TIMES; k++) {
@@ -100,10 +95,4 @@ static void by_chance(void **state)
         }
         near_inside((double)said / TIMES, 0.035, 0.065);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(by_hand), cmocka_unit_test(by_chance)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

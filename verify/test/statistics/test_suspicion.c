@@ -1,21 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What looks as if nothing had been compared. */
+#include "test.h"
+
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "near.h"
 #include "suspicion.h"
 
 /* A field is another one's if it is nearer to that one's exact values than half of what these
  * spread about their mean; exactly as far is not nearer. */
-static void test_limit_of_swapped(void **state)
+TEST(test_limit_of_swapped)
 {
-    (void)state;
     static const char *const names[] = {"one", "two"};
     static const double volumes[] = {1, 0.5, 1e-9}, far[] = {100, 100}, own[] = {1, 3};
     for (size_t k = 0; k < 3; k++)
@@ -30,9 +26,8 @@ static void test_limit_of_swapped(void **state)
 }
 
 /* Messages name what is suspected, and nothing beyond the last element is asked. */
-static void test_suspicions(void **state)
+TEST(test_suspicions)
 {
-    (void)state;
     char why[SUSPICION_TEXT];
     assert_false(suspicion_zero(2, (double[]){2, 1, 0}, why));
     assert_true(suspicion_zero(2, (double[]){2, 0, 1}, why) && strstr(why, "level 1 is"));
@@ -72,13 +67,4 @@ static void test_suspicions(void **state)
     assert_false(suspicion_swapped(2, names, 1, volume, value, exact, why));
     assert_true(suspicion_swapped(2, names, 2, volume, value, exact, why));
     assert_string_equal(why, "v is nearer the exact u than its own exact solution");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_limit_of_swapped),
-        cmocka_unit_test(test_suspicions),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

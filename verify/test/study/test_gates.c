@@ -1,14 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Gates of one run, of made documents: what bounds are at n, what compared schemes are held to,
  * what is conserved and by whom. */
+#include "test.h"
+
 #include <math.h>
 #include <stdio.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "gates.h"
 #include "near.h"
@@ -49,9 +46,8 @@ static void says(const json_t *list, const char *name, double value, double boun
 }
 
 /* At a quarter of the finest number of particles, spacings of twice the length. */
-static void errors(void **state)
+TEST(errors)
 {
-    (void)state;
     static const struct {
         bool compared;
         double velocity, disc_error, peak, bounds[3];
@@ -80,9 +76,8 @@ static void errors(void **state)
 
 /* Beyond the case's own ladder a bound may be another one; a compared scheme's own holds
  * everywhere. */
-static void beyond_the_ladder(void **state)
+TEST(beyond_the_ladder)
 {
-    (void)state;
     static const char more[] = "[finer]\nvelocity_l1 = 0.25\ndisc_error = 0.5\n";
     char whole[sizeof text + sizeof more];
     struct case_file file;
@@ -101,9 +96,8 @@ static void beyond_the_ladder(void **state)
 }
 
 /* What is known is an error of any size, but an error. */
-static void no_number_is_not_known(void **state)
+TEST(no_number_is_not_known)
 {
-    (void)state;
     for (int compared = 0; compared < 2; compared++) {
         const struct case_file file = file_of(compared);
         json_t *run = run_of(0.1, 0.1, 1), *list = json_array();
@@ -120,9 +114,8 @@ static void no_number_is_not_known(void **state)
 }
 
 /* A gate whose figure a run does not have has compared nothing. */
-static void what_is_missing_fails(void **state)
+TEST(what_is_missing_fails)
 {
-    (void)state;
     const struct case_file file = file_of(false);
     json_t *run = run_of(0.1, 0.1, 1), *list = json_array();
     json_object_del(json_object_get(run, "errors"), "velocity");
@@ -137,9 +130,8 @@ static void what_is_missing_fails(void **state)
 }
 
 /* Where a scheme leaves nothing to be measured, an error that is measured must pass. */
-static void absence_is_known(void **state)
+TEST(absence_is_known)
 {
-    (void)state;
     const struct case_weakness absent = {(double)NAN, "no shock"}, any = {(double)INFINITY, "slow"},
                                some = {2, "slow"}, unsaid = {0, ""};
     assert_true(gates_know(&absent, 1, (double)NAN) && !gates_know(&absent, 1, 1e-9));
@@ -149,9 +141,8 @@ static void absence_is_known(void **state)
 }
 
 /* No number fails; what has no exact value is no gate; beyond the ladder a bound is the case's. */
-static void odd(void **state)
+TEST(odd)
 {
-    (void)state;
     const struct case_file file = file_of(false);
     json_t *run = run_of(1, 0.1, 1), *list = json_array();
     json_object_set_new(json_object_get(json_object_get(run, "errors"), "velocity"), "l1",
@@ -168,9 +159,8 @@ static void odd(void **state)
 }
 
 /* Walls push, gravity pulls, and heat that is integrated alone knows nothing of the rest. */
-static void conserved(void **state)
+TEST(conserved)
 {
-    (void)state;
     static const struct {
         const char *boundary, *energy;
         double g, lost;
@@ -194,18 +184,4 @@ static void conserved(void **state)
         json_decref(list);
         json_decref(run);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(errors),
-        cmocka_unit_test(beyond_the_ladder),
-        cmocka_unit_test(no_number_is_not_known),
-        cmocka_unit_test(absence_is_known),
-        cmocka_unit_test(odd),
-        cmocka_unit_test(conserved),
-        cmocka_unit_test(what_is_missing_fails),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,15 +2,12 @@
  * Studies of made-up runs: nothing is simulated, every run says numbers that a formula gives, and
  * all that a study makes of them (means, spreads, orders, gates, functionals, budgets, and each
  * number of its document) is computed here a second time. */
+#include "test.h"
+
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "measure.h"
 #include "near.h"
@@ -550,28 +547,24 @@ static void everything(const char *name, const char *vary, size_t replicates)
     study_free(&study);
 }
 
-static void one_scheme(void **state)
+TEST(one_scheme)
 {
-    (void)state;
     everything("sod", NULL, 1);
 }
 
-static void replicates(void **state)
+TEST(replicates)
 {
-    (void)state;
     everything("sod", NULL, 4);
 }
 
-static void combinations(void **state)
+TEST(combinations)
 {
-    (void)state;
     everything("sod", "alpha=1,1.5,eta=1.5,2,2.5", 2);
 }
 
 /* In 2D: parts of the velocity, orders of functionals that are known, no bins and no budget. */
-static void circular(void **state)
+TEST(circular)
 {
-    (void)state;
     struct study study = made("gresho", "alpha=1,1.5", 2);
     for (size_t c = 0; c < 2; c++) {
         const struct study_result *result = &study.results[c];
@@ -627,7 +620,7 @@ static size_t all_alike(size_t c)
 
 /* A key is suspected where no pair of combinations that differ in it alone differs in its errors.
  */
-static void idle_keys(void **state)
+TEST(idle_keys)
 {
     static const struct {
         size_t (*same)(size_t c);
@@ -657,7 +650,6 @@ static void idle_keys(void **state)
         {all_alike, "seed=1,2", ""},
         {all_alike, "jitter=0.1,seed=1,2", "changing seed "},
     };
-    (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         stands_for = cases[i].same;
         struct study study = made("sod", cases[i].vary, 1);
@@ -674,9 +666,8 @@ static void idle_keys(void **state)
     }
 }
 
-static void not_allowed(void **state)
+TEST(not_allowed)
 {
-    (void)state;
     struct study study = made("sod", "alpha=1,1.5,eta=0.5,2", 2);
     json_t *json = json_object();
     study_add_json(&study, json);
@@ -697,9 +688,8 @@ static void not_allowed(void **state)
 
 /* A lost order is the floor's doing where the finest error is at most 20 times the lattice sums are
  * off; of the standard gradient those of the gradient count, too. */
-static void floors(void **state)
+TEST(floors)
 {
-    (void)state;
     for (int side = -1; side <= 1; side += 2)
         for (int standard = 0; standard < 2; standard++) {
             struct kernel kernel;
@@ -721,11 +711,10 @@ static void floors(void **state)
         }
 }
 
-static void failing_runs(void **state)
+TEST(failing_runs)
 {
     struct study study;
     struct error error = {0};
-    (void)state;
     trouble = STATUS_BROKE_DOWN;
     assert_int_equal(make(&study, "sod", "alpha=1,1.5,2", 2, &error), STATUS_OK);
     json_t *json = json_object();
@@ -747,15 +736,4 @@ static void failing_runs(void **state)
     assert_string_equal(error.message, "trouble");
     study_free(&study);
     trouble = STATUS_OK;
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_scheme),   cmocka_unit_test(replicates),
-        cmocka_unit_test(combinations), cmocka_unit_test(circular),
-        cmocka_unit_test(idle_keys),    cmocka_unit_test(not_allowed),
-        cmocka_unit_test(floors),       cmocka_unit_test(failing_runs),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

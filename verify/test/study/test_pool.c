@@ -2,11 +2,8 @@
  * Computations side by side: the same results with any number of processes and from the cache, in
  * which order, how many at once, in whose share; what is said of those that fail. */
 #define _GNU_SOURCE /* nftw */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
+
 #include <math.h>
 
 #ifdef __linux__
@@ -21,9 +18,8 @@
 #include "near.h"
 #include "output.h"
 
-static void any_number_of_processes(void **state)
+TEST(any_number_of_processes)
 {
-    (void)state;
     struct place place;
     struct pool one, two, kept;
     struct task tasks[3][JOBS] = {0};
@@ -57,9 +53,8 @@ static void any_number_of_processes(void **state)
 }
 
 /* A crash or a failure is one job's own and is not kept. */
-static void crashes(void **state)
+TEST(crashes)
 {
-    (void)state;
     struct place place;
     struct pool pool;
     struct task tasks[4] = {[1] = {.kind = CRASHES}, [2] = {.kind = FAILS}};
@@ -80,14 +75,13 @@ static void crashes(void **state)
 }
 
 /* Every job in one share, the same whatever their order; even by weight. Equal keys are one job. */
-static void shares(void **state)
+TEST(shares)
 {
     enum { MANY = 200 };
     static int divided[MANY], again[MANY];
     struct pool pool = {0}, turned = {0};
     struct error error = {0};
     double load[6] = {0}, least = 1e9, most = 0;
-    (void)state;
     for (size_t i = 0; i < MANY; i++) {
         char key[2][32];
         const size_t numbers[2] = {i, MANY - 1 - i};
@@ -120,13 +114,12 @@ static void shares(void **state)
 }
 
 /* Three processes with a share each, one after the other: then all is there, computed once. */
-static void shares_meet(void **state)
+TEST(shares_meet)
 {
     struct place place;
     struct pool pool, alone;
     struct task tasks[JOBS] = {0}, others[JOBS] = {0};
     struct error error = {0};
-    (void)state;
     place_make(&place);
     for (int s = 1; s <= 3; s++) {
         size_t mine = 0;
@@ -154,9 +147,8 @@ static void shares_meet(void **state)
 }
 
 /* Where nothing can be kept, results are still there, and the pool says why. */
-static void full_disk(void **state)
+TEST(full_disk)
 {
-    (void)state;
     struct place place;
     struct pool pool;
     struct task tasks[2] = {0};
@@ -258,12 +250,11 @@ static size_t bytes_in_use(void)
 }
 
 /* Names, keys and weights as they were given, however many; of a key there is one job. */
-static void many_jobs(void **state)
+TEST(many_jobs)
 {
     static struct told told[SLOTS];
     struct pool pool = {0};
     char name[32] = "none", key[32];
-    (void)state;
     const size_t before = bytes_in_use();
     assert_true(pool_find(&pool, "none") == (size_t)-1);
     for (size_t i = 0; i < SLOTS; i++) {
@@ -298,13 +289,12 @@ static void many_jobs(void **state)
 /* ---- how they are run ---- */
 
 /* Heavy ones first, equal ones in their order; never more at once than are asked for. */
-static void order_and_number(void **state)
+TEST(order_and_number)
 {
     enum { N = 9 };
     static const double weights[N] = {2, 5, 1, 5, 3, 2, 8, 3, 1};
     static const int order[N] = {6, 1, 3, 4, 7, 0, 5, 2, 8};
     struct pool pool;
-    (void)state;
     for (int jobs = 1; jobs <= 3; jobs++) {
         struct told told[N] = {{0}};
         *board = (struct board){0};
@@ -320,14 +310,13 @@ static void order_and_number(void **state)
 }
 
 /* A result is kept whatever it says of the computation; bad input and trouble are none. */
-static void what_is_kept(void **state)
+TEST(what_is_kept)
 {
     static const enum status statuses[] = {STATUS_OK, STATUS_CHECK_FAILED, STATUS_BAD_INPUT,
                                            STATUS_BROKE_DOWN, STATUS_ENVIRONMENT};
     enum { N = 5 };
     struct place place;
     struct pool pool;
-    (void)state;
     place_make(&place);
     for (int round = 0; round < 2; round++) {
         struct told told[N] = {{0}};
@@ -359,14 +348,13 @@ static void what_is_kept(void **state)
 
 /* What has no key is never kept; an entry that is whole but no reply is computed again, and one
  * that is damaged is counted, too. */
-static void what_is_not_there(void **state)
+TEST(what_is_not_there)
 {
     struct place place;
     struct pool pool;
     struct error error = {0};
     struct told told[3] = {{.kind = WITH_DOCUMENT}, {.kind = WITH_DOCUMENT}, {.kind = NOTHING}};
     char path[CACHE_PATH_MAX];
-    (void)state;
     place_make(&place);
     for (int round = 0; round < 3; round++) {
         add(&pool, told, 2, NULL);
@@ -390,13 +378,12 @@ static void what_is_not_there(void **state)
     place_clear(&place);
 }
 
-static void no_result(void **state)
+TEST(no_result)
 {
     struct pool pool;
     struct told told[3] = {{.kind = LEAVES}, {.kind = LEAVES_BADLY}, {.kind = WITH_DOCUMENT}};
     struct task task = {.kind = CRASHES};
     struct place place;
-    (void)state;
     place_make(&place);
     task.place = &place;
     add(&pool, told, 3, NULL);
@@ -419,12 +406,11 @@ static void no_result(void **state)
 }
 
 /* What was written before, and has not left this process yet, leaves it once. */
-static void nothing_twice(void **state)
+TEST(nothing_twice)
 {
     struct pool pool;
     struct told told[2] = {{.kind = FLUSHES}, {.kind = FLUSHES}};
     char folder[] = "pool.XXXXXX", path[64], text[16];
-    (void)state;
     assert_non_null(mkdtemp(folder));
     snprintf(path, sizeof path, "%s/text", folder);
     FILE *file = fopen(path, "w+");
@@ -443,14 +429,13 @@ static void nothing_twice(void **state)
 
 /* What is running is waited for where no more processes can be started, and nothing is left open.
  */
-static void no_pipe(void **state)
+TEST(no_pipe)
 {
     struct pool pool;
     struct told told[4] = {{0}};
     struct rlimit usual, few;
     struct error error = {0};
     const struct pool_settings settings = {.jobs = 4};
-    (void)state;
     output_prepare_process(); /* standard input is open, as in the program */
     const int next = dup(0);
     close(next);
@@ -495,7 +480,7 @@ static void see(void *context, const char *what, size_t done, size_t total, doub
 
 /* One after the other: after each the next one's name, how many are done with those that were kept,
  * and the share by weight of those that were not. */
-static void progress(void **state)
+TEST(progress)
 {
     enum { N = 5 };
     static const double weights[N] = {1, 4, 2, 16, 8};
@@ -504,7 +489,6 @@ static void progress(void **state)
     struct pool pool;
     struct error error = {0};
     struct told told[N] = {{0}};
-    (void)state;
     place_make(&place);
     add(&pool, told, 1, weights);
     assert_int_equal(run(&pool, &place.cache, 1), STATUS_OK); /* job 0 is kept */
@@ -548,14 +532,13 @@ static void progress(void **state)
 }
 
 /* While one job takes its time, a few times a second. */
-static void several_times_a_second(void **state)
+TEST(several_times_a_second)
 {
     static struct seen seen;
     struct pool pool;
     struct error error = {0};
     struct told told = {.ms = 500};
     const struct pool_settings settings = {.jobs = 1, .progress = see, .progress_context = &seen};
-    (void)state;
     add(&pool, &told, 1, NULL);
     seen = (struct seen){0};
     assert_int_equal(pool_run(&pool, &settings, &error), STATUS_OK);
@@ -567,7 +550,7 @@ static void several_times_a_second(void **state)
 /* ---- shares ---- */
 
 /* The heaviest goes where least is, equal ones by their keys, to the first of equal shares. */
-static void shares_by_hand(void **state)
+TEST(shares_by_hand)
 {
     static const struct {
         const char *key;
@@ -577,7 +560,6 @@ static void shares_by_hand(void **state)
     struct pool pool = {0};
     struct error error = {0};
     int got[N];
-    (void)state;
     for (size_t i = 0; i < N; i++)
         assert_int_equal(pool_add(&pool, "job", rows[i].key, rows[i].weight, tell, NULL), i);
     for (int of = 1; of <= 3; of++) {
@@ -599,14 +581,13 @@ static void shares_by_hand(void **state)
 }
 
 /* Each share computes what is in it and leaves the rest as it was. */
-static void a_share_is_its_own(void **state)
+TEST(a_share_is_its_own)
 {
     enum { N = 6 };
     struct pool pool;
     struct error error = {0};
     struct told told[N] = {{0}};
     static const double weights[N] = {6, 5, 4, 3, 2, 1};
-    (void)state;
     for (int number = 1; number <= 2; number++) {
         int of[N + 1];
         *board = (struct board){0};

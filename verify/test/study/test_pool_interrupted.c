@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Computations side by side while signals arrive a thousand times a second, in their processes and
  * in the one that waits for them: long replies come whole, and who has died is known. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include <signal.h>
 #include <stdlib.h>
@@ -73,9 +69,8 @@ static void rest(void *context, const char *what, size_t done, size_t total, dou
     pause_ms(4);
 }
 
-static void replies_come_whole(void **state)
+TEST(replies_come_whole)
 {
-    (void)state;
     struct pool pool = {0};
     struct error error;
     const struct pool_settings settings = {.jobs = 2, .progress = rest};
@@ -98,12 +93,4 @@ static void replies_come_whole(void **state)
     assert_true(pool.jobs[2].done && pool.jobs[2].crashed);
     assert_int_equal(pool.jobs[2].error.status, STATUS_BROKE_DOWN);
     pool_free(&pool);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(replies_come_whole),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

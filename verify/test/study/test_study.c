@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Studies: the same results in any number of processes and from the cache, replicates and what they
  * do to intervals, budgets that add up, still gas, settings without effect, broken levels. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -67,9 +63,8 @@ static json_t *document(const struct study *study)
     return result;
 }
 
-static void any_number_of_processes(void **state)
+TEST(any_number_of_processes)
 {
-    (void)state;
     struct study one = made("sod", "t_end=0.1", "gradient,eta=1.5,2", 1, 1),
                  three = made("sod", "t_end=0.1", "gradient,eta=1.5,2", 1, 3);
     json_t *a = document(&one), *b = document(&three);
@@ -94,9 +89,8 @@ static struct run_result ran(const char *name, int n, char **arguments)
 }
 
 /* Levels of a study are runs like any other. */
-static void levels_are_runs(void **state)
+TEST(levels_are_runs)
 {
-    (void)state;
     struct study study = made("sod", "t_end=0.1", NULL, 1, 2);
     struct run_result run = ran("sod", 2, (char *[]){"t_end=0.1", "n=80"});
     const struct study_level *level = &study.results[0].levels[2];
@@ -110,9 +104,8 @@ static void levels_are_runs(void **state)
     study_free(&study);
 }
 
-static void replicates(void **state)
+TEST(replicates)
 {
-    (void)state;
     struct study study = made("sod", "t_end=0.1 jitter=0.1", NULL, 4, 2);
     const struct study_result *result = &study.results[0];
     const struct study_level *level = &result->levels[1];
@@ -149,9 +142,8 @@ static void replicates(void **state)
 }
 
 /* Where no seed makes a difference, replicates have other n: the same means and orders by hand. */
-static void neighbours(void **state)
+TEST(neighbours)
 {
-    (void)state;
     static const size_t of_60[] = {60, 61, 59}, of_200[] = {200, 205, 195};
     for (size_t r = 0; r < 3; r++) {
         assert_int_equal(study_neighbour(200, 3, r), of_200[r]);
@@ -180,9 +172,9 @@ static void neighbours(void **state)
     }
     near_relative(level->spacing, exp(spacing), 1e-13);
     near_relative(level->errors[FIELD_VELOCITY][NORM_L1], exp(error), 1e-13);
-    const double slope = log(coarsest->errors[FIELD_VELOCITY][NORM_L1] /
-                             finest->errors[FIELD_VELOCITY][NORM_L1]) /
-                         log(coarsest->spacing / finest->spacing);
+    const double slope =
+        log(coarsest->errors[FIELD_VELOCITY][NORM_L1] / finest->errors[FIELD_VELOCITY][NORM_L1]) /
+        log(coarsest->spacing / finest->spacing);
     double squares = 0;
     for (int r = 0; r < 3; r++) squares += pow(y[r] - error - slope * (x[r] - spacing), 2);
     near_relative(level->spread[FIELD_VELOCITY][NORM_L1], sqrt(squares / 2), 1e-6);
@@ -193,9 +185,8 @@ static void neighbours(void **state)
     study_free(&smooth);
 }
 
-static void replicates_by_default(void **state)
+TEST(replicates_by_default)
 {
-    (void)state;
     static const struct {
         const char *name, *key;
         size_t replicates;
@@ -211,9 +202,8 @@ static void replicates_by_default(void **state)
 
 /* A mirrored tube is the same problem, also of graded masses: the particles are those of the tube
  * mirrored, and so is what becomes of them, to round-off and what the steps make of it. */
-static void mirrored(void **state)
+TEST(mirrored)
 {
-    (void)state;
     static const char *const tubes[][2][3] = {
         {{"left=1,0,1", "right=0.125,0,0.1", "t_end=0.1"},
          {"right=1,0,1", "left=0.125,0,0.1", "t_end=0.1"}},
@@ -241,9 +231,8 @@ static void mirrored(void **state)
     }
 }
 
-static void budgets_add_up(void **state)
+TEST(budgets_add_up)
 {
-    (void)state;
     struct study study = made("sod", "", NULL, 1, 2);
     const struct study_result *result = &study.results[0];
     for (size_t l = 0; l < result->level_count; l++)
@@ -267,9 +256,8 @@ static void budgets_add_up(void **state)
 }
 
 /* What a snapshot that has been tampered with shows: particles far ahead of every wave. */
-static void still_gas_that_moves(void **state)
+TEST(still_gas_that_moves)
 {
-    (void)state;
     struct run_result run = ran("sod", 1, (char *[]){"n=800"});
     struct budget budget;
     const double *none[FIELDS] = {run.snapshot.rho, run.snapshot.v[0], run.snapshot.P,
@@ -290,9 +278,8 @@ static void still_gas_that_moves(void **state)
     run_free(&run);
 }
 
-static void settings_without_effect(void **state)
+TEST(settings_without_effect)
 {
-    (void)state;
     /* read, but the scheme cannot tell the values apart: viscous constants of still gas */
     struct study idle = made("sod", "left=1,0,1 right=1,0,0.999999999999999 t_end=0.05",
                              "alpha=1,1.0000000000000002", 1, 2);
@@ -312,9 +299,8 @@ static void settings_without_effect(void **state)
 }
 
 /* An error of 0 is suspicious; a broken level ends the ladder; an excluded combination is none. */
-static void what_is_not_well(void **state)
+TEST(what_is_not_well)
 {
-    (void)state;
     struct study zero = made("sod", "left=1,0,1 right=1,0,1 t_end=0.05", NULL, 1, 2);
     assert_string_not_equal(zero.results[0].suspicion, "");
     assert_int_equal(zero.status, STATUS_CHECK_FAILED);
@@ -397,9 +383,8 @@ static void suspected_run(json_t *run, size_t level)
     if (level == 2) json_object_set_new(run, "suspicion", json_string("a run suspects itself"));
 }
 
-static void judges_see(void **state)
+TEST(judges_see)
 {
-    (void)state;
     static const struct {
         const char *what;
         tamper *tamper;
@@ -455,7 +440,7 @@ static void judges_see(void **state)
 }
 
 /* What every case is judged by: nothing that its flow does not have, and gated fields first. */
-static void judged_by(void **state)
+TEST(judged_by)
 {
     static const struct {
         const char *name, *first;
@@ -465,7 +450,6 @@ static void judged_by(void **state)
                  {"kelvin_helmholtz", "known"}};
     const char *const functionals[] = {"unknown", "known"};
     const double exact[] = {(double)NAN, 0.5};
-    (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct case_file file;
         struct error error;
@@ -478,9 +462,8 @@ static void judged_by(void **state)
 }
 
 /* Lattice sums: what floor there is, and whether it is what has taken the order away. */
-static void floors(void **state)
+TEST(floors)
 {
-    (void)state;
     struct study lost = made("sound_wave", "t_end=0.1 kernel=cubic_spline eta=4.8", NULL, 1, 2);
     const struct study_result *result = &lost.results[0];
     near_inside(result->floor_density, 5.1e-4, 5.2e-4);
@@ -504,9 +487,8 @@ static void floors(void **state)
     study_free(&other);
 }
 
-static void functionals_know_their_exact_values(void **state)
+TEST(functionals_know_their_exact_values)
 {
-    (void)state;
     struct study study = made("sod", "", NULL, 1, 2);
     const struct study_result *result = &study.results[0];
     assert_int_equal(result->functional_count, 3);
@@ -516,25 +498,4 @@ static void functionals_know_their_exact_values(void **state)
             near_relative(result->functional_exact[i], 0.2 * 1.7521557320301779, 1e-12);
     }
     study_free(&study);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(any_number_of_processes),
-        cmocka_unit_test(levels_are_runs),
-        cmocka_unit_test(replicates),
-        cmocka_unit_test(neighbours),
-        cmocka_unit_test(replicates_by_default),
-        cmocka_unit_test(mirrored),
-        cmocka_unit_test(budgets_add_up),
-        cmocka_unit_test(still_gas_that_moves),
-        cmocka_unit_test(settings_without_effect),
-        cmocka_unit_test(what_is_not_well),
-        cmocka_unit_test(judges_see),
-        cmocka_unit_test(judged_by),
-        cmocka_unit_test(floors),
-        cmocka_unit_test(functionals_know_their_exact_values),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The gates of a case on a study: what passes, fails or is known to fail, by how much a bound is
  * raised, and what the lattice-sum floor explains. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include "gates.h"
 #include "made_study.h"
@@ -22,9 +18,8 @@ static void times_factor(json_t *run, size_t c, size_t l, size_t r)
 }
 
 /* A field's gate on order and error; one of the finest error alone; what lattice sums explain. */
-static void gates_are_judged(void **state)
+TEST(gates_are_judged)
 {
-    (void)state;
     static const struct {
         const char *name;
         struct case_gate gate; /* a bound of 0: the finest error itself */
@@ -246,9 +241,8 @@ static void gates_are_judged(void **state)
 
 /* Half the order that is asked for, known up to an error that this one, on a coarser ladder, is
  * beyond: it says up to which. */
-static void beyond_what_is_known(void **state)
+TEST(beyond_what_is_known)
 {
-    (void)state;
     struct study study;
     struct pool pool;
     struct error error;
@@ -276,9 +270,8 @@ static void beyond_what_is_known(void **state)
 }
 
 /* An error that is too small to be believed is one of the case's own ladder and settings. */
-static void small_errors_are_strange(void **state)
+TEST(small_errors_are_strange)
 {
-    (void)state;
     static const struct {
         double least; /* over the finest error */
         size_t coarse;
@@ -342,9 +335,8 @@ static void set_errors(json_t *run, size_t c, size_t l, size_t r)
 
 /* An order that is missed is explained up to twenty floors: of the density, with the standard
  * gradient also of that. */
-static void floors_explain_up_to_a_point(void **state)
+TEST(floors_explain_up_to_a_point)
 {
-    (void)state;
     for (int standard = 0; standard < 2; standard++)
         for (int side = -1; side <= 2; side++) {
             const char *keys = standard ? "kernel=cubic_spline,eta=4.8,gradient=standard"
@@ -382,9 +374,8 @@ static void floors_explain_up_to_a_point(void **state)
 }
 
 /* A floor that is nothing explains nothing, however small the error. */
-static void no_floor(void **state)
+TEST(no_floor)
 {
-    (void)state;
     struct study study;
     struct pool pool;
     struct error error;
@@ -409,9 +400,8 @@ static void no_floor(void **state)
 /* What passes is a pass only where the run is fine enough and the order known well enough: at the
  * coarsest level of the case's ladder a bound that was raised says little, and so does one of more
  * than a quarter of the exact value, and an order whose interval is wider than its gate. */
-static void what_passes_is_weighed(void **state)
+TEST(what_passes_is_weighed)
 {
-    (void)state;
     const double open = (double)INFINITY, none = (double)NAN;
     const struct {
         double low, high, bound, exact, half; /* half: of the order's interval; < 0: one run */
@@ -463,9 +453,8 @@ static void what_passes_is_weighed(void **state)
 
 /* A study, and a run alone, that are too coarse are smoke, with the reason, and fail nothing; an
  * error beyond the bound fails at any n. */
-static void coarse_runs_are_smoke(void **state)
+TEST(coarse_runs_are_smoke)
 {
-    (void)state;
     for (int beyond = 0; beyond < 2; beyond++) {
         struct study study;
         struct pool pool;
@@ -505,18 +494,4 @@ static void coarse_runs_are_smoke(void **state)
         study_free(&study);
         pool_free(&pool);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_passes_is_weighed),
-        cmocka_unit_test(coarse_runs_are_smoke),
-        cmocka_unit_test(gates_are_judged),
-        cmocka_unit_test(beyond_what_is_known),
-        cmocka_unit_test(small_errors_are_strange),
-        cmocka_unit_test(floors_explain_up_to_a_point),
-        cmocka_unit_test(no_floor),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What a study makes of the documents of its runs: means and spreads, orders, runs that broke down
  * or are missing; still gas, errors that are too good and settings without effect. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include "made_study.h"
 #include "measure.h"
@@ -27,9 +23,8 @@ static double mean_log_spacing(size_t l, size_t replicates)
 
 /* Geometric means of errors and spacings, arithmetic ones of the rest, the range of n, and the
  * scatter about a line of the ladder's slope; orders are fitted to these. */
-static void levels_are_means(void **state)
+TEST(levels_are_means)
 {
-    (void)state;
     for (size_t replicates = 1; replicates <= 4; replicates++) {
         struct study study = made("sod", NULL, replicates, NULL);
         const struct study_result *result = &study.results[0];
@@ -121,9 +116,8 @@ static void levels_are_means(void **state)
 }
 
 /* Of a circular flow in 2D: orders of the parts, and of functionals that are known. */
-static void clouds_have_more_orders(void **state)
+TEST(clouds_have_more_orders)
 {
-    (void)state;
     for (size_t replicates = 1; replicates <= 2; replicates++) {
         struct study study = made("gresho", NULL, replicates, NULL);
         const struct study_result *result = &study.results[0];
@@ -156,9 +150,8 @@ static void clouds_have_more_orders(void **state)
     study_free(&line);
 }
 
-static void broken_and_missing_runs(void **state)
+TEST(broken_and_missing_runs)
 {
-    (void)state;
     for (int kind = 0; kind < 3; kind++) {
         struct study study;
         struct pool pool;
@@ -199,9 +192,8 @@ static void set_still(json_t *run, size_t c, size_t l, size_t r)
     json_object_set_new(json_object_get(run, "budget"), "still", json_real(still_of[l]));
 }
 
-static void gas_that_does_not_stay(void **state)
+TEST(gas_that_does_not_stay)
 {
-    (void)state;
     static const struct {
         double still[LEVELS], most;
         enum study_gate outcome;
@@ -235,9 +227,8 @@ static void too_good(json_t *run, size_t c, size_t l, size_t r)
     }
 }
 
-static void errors_that_are_too_good(void **state)
+TEST(errors_that_are_too_good)
 {
-    (void)state;
     static const char *const words[] = {"%s: the error at level 3", "%s: levels 0 and 3"};
     for (fault_kind = 0; fault_kind < 2; fault_kind++)
         for (fault_field = 0; fault_field < FIELDS; fault_field++) {
@@ -274,9 +265,8 @@ static double one_error(size_t l, int f)
 }
 
 /* Alike are results whose errors are at all levels that both have. */
-static void same_at_all_levels(void **state)
+TEST(same_at_all_levels)
 {
-    (void)state;
     static struct study_result a, b;
     char why[SUSPICION_TEXT];
     a.level_count = 3;
@@ -316,9 +306,8 @@ static void differ_by_eta(json_t *run, size_t c, size_t l, size_t r)
 }
 
 /* Of two keys the one whose pairs are all alike; of one that nobody reads nothing is said. */
-static void idle_settings_are_suspected(void **state)
+TEST(idle_settings_are_suspected)
 {
-    (void)state;
     static const struct {
         const char *vary, *words;
         tamper *tampering;
@@ -361,11 +350,10 @@ static void idle_settings_are_suspected(void **state)
 /* ---- as many as there may be ---- */
 
 /* A ladder of the most levels that there may be. */
-static void the_most_levels(void **state)
+TEST(the_most_levels)
 {
     static const char *const cases[] = {"sod", "gresho"};
     size_t kept[LEVELS];
-    (void)state;
     memcpy(kept, ladder, sizeof kept);
     level_count = CASE_LADDER_MAX;
     for (size_t l = 0; l < CASE_LADDER_MAX; l++) ladder[l] = 40 + 5 * l;
@@ -402,9 +390,8 @@ static void many_functionals(json_t *run, size_t c, size_t l, size_t r)
 }
 
 /* Of a document that has more functionals than there is room for the first ones are read. */
-static void too_many_functionals(void **state)
+TEST(too_many_functionals)
 {
-    (void)state;
     struct study study = made("sod", NULL, 1, many_functionals);
     const struct study_result *result = &study.results[0];
     assert_int_equal(result->functional_count, PROBLEM_FUNCTIONALS_MAX);
@@ -422,9 +409,8 @@ static void no_error(json_t *run, size_t c, size_t l, size_t r)
 }
 
 /* Where a ladder has no slope the scatter is that of the errors themselves. */
-static void scatter_without_slope(void **state)
+TEST(scatter_without_slope)
 {
-    (void)state;
     struct study study = made("sod", NULL, 2, no_error);
     const struct study_result *result = &study.results[0];
     for (size_t l = 1; l < LEVELS; l++)
@@ -440,12 +426,11 @@ static void same_spacing(json_t *run, size_t c, size_t l, size_t r)
 }
 
 /* Two levels of one spacing have no order between them. */
-static void levels_that_are_one(void **state)
+TEST(levels_that_are_one)
 {
     struct study study;
     struct pool pool;
     struct error error;
-    (void)state;
     assert_int_equal(make(&study, &pool, "sod", NULL, 1, same_spacing, &error), STATUS_BAD_INPUT);
     assert_non_null(strstr(error.message, "resolutions must be distinct"));
     pool_free(&pool);
@@ -465,9 +450,8 @@ static void same_bins(json_t *run, size_t c, size_t l, size_t r)
 }
 
 /* What a run says of itself comes first; of means over bins nothing is suspected. */
-static void what_is_suspected(void **state)
+TEST(what_is_suspected)
 {
-    (void)state;
     fault_kind = fault_field = 0;
     struct study study = made("sod", NULL, 1, suspected_already);
     assert_string_equal(study.results[0].suspicion, "x");
@@ -476,23 +460,4 @@ static void what_is_suspected(void **state)
     study = made("sod", NULL, 1, same_bins);
     assert_string_equal(study.results[0].suspicion, "");
     study_free(&study);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(levels_are_means),
-        cmocka_unit_test(clouds_have_more_orders),
-        cmocka_unit_test(broken_and_missing_runs),
-        cmocka_unit_test(gas_that_does_not_stay),
-        cmocka_unit_test(errors_that_are_too_good),
-        cmocka_unit_test(same_at_all_levels),
-        cmocka_unit_test(idle_settings_are_suspected),
-        cmocka_unit_test(the_most_levels),
-        cmocka_unit_test(too_many_functionals),
-        cmocka_unit_test(scatter_without_slope),
-        cmocka_unit_test(levels_that_are_one),
-        cmocka_unit_test(what_is_suspected),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

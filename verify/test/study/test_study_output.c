@@ -1,10 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Every line of the document that a study leaves. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include "judged.h"
 #include "made_study.h"
@@ -105,9 +101,8 @@ static void same(const json_t *list, size_t i, json_t *expected)
     json_decref(expected);
 }
 
-static void documents_have_it_all(void **state)
+TEST(documents_have_it_all)
 {
-    (void)state;
     for (int k = 0; k < 3; k++) {
         const size_t replicates = k == 1 ? 1 : k ? 2 : 3;
         struct study study = made(k == 1 ? "gresho" : "sod", NULL, replicates, NULL);
@@ -200,9 +195,8 @@ static void first_combination_stops(json_t *run, size_t c, size_t l, size_t r)
 }
 
 /* Each combination with its own settings; of suspicions the first one counts. */
-static void combinations_are_told_apart(void **state)
+TEST(combinations_are_told_apart)
 {
-    (void)state;
     struct study study = made("sod", "eta=1.5,2", 1, first_combination_stops);
     json_t *document = json_object();
     assert_string_equal(study.results[0].suspicion, "odd");
@@ -238,9 +232,8 @@ static void combinations_are_told_apart(void **state)
 
 /* What a case is judged by is what the first combination has; nothing beyond a list's end is said.
  */
-static void the_first_combination_counts(void **state)
+TEST(the_first_combination_counts)
 {
-    (void)state;
     struct study study = made("kelvin_helmholtz_mode", "eta=2.2,0.5", 1, NULL);
     struct study_result *result = &study.results[0];
     assert_true(!result->excluded && study.results[1].excluded);
@@ -263,14 +256,4 @@ static void the_first_combination_counts(void **state)
     json_decref(want);
     json_decref(document);
     study_free(&study);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(documents_have_it_all),
-        cmocka_unit_test(combinations_are_told_apart),
-        cmocka_unit_test(the_first_combination_counts),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

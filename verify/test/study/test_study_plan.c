@@ -1,15 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The runs of a study before any is made: which numbers of particles and seeds, what decides a
  * run's result and is its key, how long it will take, and what is refused. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "test.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-#include <cmocka.h>
 
 #include "near.h"
 #include "run_job.h"
@@ -43,12 +40,11 @@ static double real_of(const struct run *run, enum setting key)
 }
 
 /* Combination, level, replicate: each run has its own number, and is a job of that name and key. */
-static void every_run(void **state)
+TEST(every_run)
 {
     struct study study;
     struct pool pool;
     struct error error;
-    (void)state;
     static const double etas[] = {1.5, 2, 0};
     if (plan(&study, &pool, "sod", "", "eta=1.5,2,0.5", 3, &error)) fail_msg("%s", error.message);
     assert_int_equal(pool.count, 2 * LEVELS * 3);
@@ -80,12 +76,11 @@ static void every_run(void **state)
 }
 
 /* Where the start is random, replicates have other seeds, and the level's own number. */
-static void seeds(void **state)
+TEST(seeds)
 {
     struct study study;
     struct pool pool;
     struct error error;
-    (void)state;
     if (plan(&study, &pool, "sod", "jitter=0.1 seed=7", NULL, 3, &error))
         fail_msg("%s", error.message);
     for (size_t k = 0; k < LEVELS * 3; k++) {
@@ -98,7 +93,7 @@ static void seeds(void **state)
 
 /* 5 % of n from the lowest to the highest, by turns above and below; all above where 4 particles
  * would not be left. */
-static void numbers(void **state)
+TEST(numbers)
 {
     static const struct {
         size_t n, replicates, of[9];
@@ -112,7 +107,6 @@ static void numbers(void **state)
         {6, 4, {6, 7, 5, 8}},
         {5, 4, {5, 6, 7, 8}},
     };
-    (void)state;
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
         for (size_t r = 0; r < rows[k].replicates; r++)
             assert_int_equal(study_neighbour(rows[k].n, rows[k].replicates, r), rows[k].of[r]);
@@ -122,7 +116,7 @@ static void numbers(void **state)
     assert_int_equal(study_neighbour(200, 1, 5), 200);
 }
 
-static void how_many_replicates(void **state)
+TEST(how_many_replicates)
 {
     static const struct {
         const char *name, *key;
@@ -134,7 +128,6 @@ static void how_many_replicates(void **state)
                 {"gresho", "n=100", 1},
                 {"sod_2d", "lattice=glass", 3},
                 {"sound_wave_2d", "jitter=0.1", 3}};
-    (void)state;
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         struct run_settings settings;
         char key[32], *keys[] = {key};
@@ -174,9 +167,8 @@ static json_t *key_of(const struct run *run, const char *kind)
 }
 
 /* All that decides a result, and nothing else: of a file what it holds. */
-static void keys(void **state)
+TEST(keys)
 {
-    (void)state;
     struct run run = resolved("sod", "eta=2.3849999999999998");
     for (int any = 0; any < 2; any++) {
         run.asked.any_window = any;
@@ -216,9 +208,8 @@ static void keys(void **state)
     rmdir(folder);
 }
 
-static void weights(void **state)
+TEST(weights)
 {
-    (void)state;
     struct run run = resolved("sod", "n=1000");
     near_relative(run_job_weight(&run), 0.052, 1e-14);
     run = resolved("gresho", "n=100^2");
@@ -228,12 +219,11 @@ static void weights(void **state)
 }
 
 /* A run that is there with its profile is not made again; nor is one of the same key. */
-static void once(void **state)
+TEST(once)
 {
     struct error error;
     struct pool pool = {0};
     size_t job[3];
-    (void)state;
     struct run run = resolved("sod", "n=100"), other = resolved("sod", "n=200");
     char *key = run_job_key(&run, RUN_JOB_PROFILE, &error);
     assert_int_equal(pool_add(&pool, "another", "another", 1, NULL, NULL), 0);
@@ -248,13 +238,12 @@ static void once(void **state)
 }
 
 /* A run's document comes out of its process, or why there is none. */
-static void run_elsewhere(void **state)
+TEST(run_elsewhere)
 {
     struct error error;
     struct pool pool = {0};
     const struct pool_settings settings = {.jobs = 1};
     size_t job[2];
-    (void)state;
     struct run run = resolved("sod", "t_end=0.001"), lost = resolved("sod", "t_end=0.002");
     lost.settings.value[SETTING_n].real[0] = 0x1p53; /* more than there is room for */
     assert_int_equal(run_job_add(&pool, &run, &job[0], &error), STATUS_OK);
@@ -270,12 +259,11 @@ static void run_elsewhere(void **state)
 }
 
 /* A value that a key does not take any more. */
-static void changed_values(void **state)
+TEST(changed_values)
 {
     struct study study;
     struct pool pool;
     struct error error;
-    (void)state;
     if (plan(&study, &pool, "sod", "", "eta=1.5,2", 1, &error)) fail_msg("%s", error.message);
     pool_free(&pool);
     study_free(&study);
@@ -298,25 +286,12 @@ static void refused(const char *keys_of, const char *vary, const char *why)
     pool_free(&pool);
 }
 
-static void what_is_refused(void **state)
+TEST(what_is_refused)
 {
-    (void)state;
     refused("eta=0.5", NULL, "eta = 0.5");
     refused("", "eta=0.5,0.6", "no combination of --vary is allowed: eta = 0.5");
     refused("t_end=5", NULL, "t_end=5: ");
     refused("t_end=5", "eta=0.5,1.5", "t_end=5: ");
     /* of one combination what is wrong with it */
     refused("", "eta=0.5", "eta = 0.5: h = eta");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_run),      cmocka_unit_test(seeds),
-        cmocka_unit_test(numbers),        cmocka_unit_test(how_many_replicates),
-        cmocka_unit_test(keys),           cmocka_unit_test(weights),
-        cmocka_unit_test(once),           cmocka_unit_test(what_is_refused),
-        cmocka_unit_test(changed_values), cmocka_unit_test(run_elsewhere),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,13 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Variations: every combination once, the last key fastest, in settings, labels and documents
  * alike; ladders; what is refused. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "test.h"
+
 #include <stdio.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "sweep.h"
 #include "value.h"
@@ -42,9 +39,8 @@ static void says(const struct sweep *sweep, size_t i, size_t n, const char *cons
     json_decref(json);
 }
 
-static void every_combination(void **state)
+TEST(every_combination)
 {
-    (void)state;
     static const char *const keys[] = {"alpha", "gradient", "eta", "skip"};
     static const char *const alphas[] = {"1", "1.5"}, *const etas[] = {"1.5", "2", "2.5"};
     struct sweep sweep;
@@ -67,9 +63,8 @@ static void every_combination(void **state)
 
 /* A family's word after another key's value is a key; a number or a word that is no key is a value.
  */
-static void words_and_keys(void **state)
+TEST(words_and_keys)
 {
-    (void)state;
     struct sweep sweep;
     struct error error = {0};
     static const char *const one[] = {"kernel"}, *const two[] = {"kernel", "energy"};
@@ -86,9 +81,8 @@ static void words_and_keys(void **state)
 }
 
 /* The first key of all, a value of no letters, and one that is kept as it was written. */
-static void any_key(void **state)
+TEST(any_key)
 {
-    (void)state;
     struct sweep sweep;
     struct error error = {0};
     static const char *const lo[] = {"lo"};
@@ -110,9 +104,8 @@ static void refused(const char *text, const char *why)
     if (!strstr(error.message, why)) fail_msg("%s: '%s' lacks '%s'", text, error.message, why);
 }
 
-static void what_is_refused(void **state)
+TEST(what_is_refused)
 {
-    (void)state;
     char text[600] = "alpha=1", longest[2 * SETTING_TEXT_MAX];
     refused("kernle", "did you mean 'kernel'?");
     refused("lo_", "did you mean 'lo'?");
@@ -154,9 +147,8 @@ static void what_is_refused(void **state)
 }
 
 /* A combination that settings refuse says which value it is. */
-static void applied(void **state)
+TEST(applied)
 {
-    (void)state;
     struct run_settings settings = settings_of("sod");
     struct sweep sweep;
     struct error error = {0};
@@ -168,9 +160,8 @@ static void applied(void **state)
 }
 
 /* A label that is too long is cut, not written past its end. */
-static void long_labels(void **state)
+TEST(long_labels)
 {
-    (void)state;
     struct sweep sweep = {.key_count = 3, .count = 1};
     char label[SWEEP_LABEL + 1];
     for (size_t k = 0; k < 3; k++) {
@@ -206,9 +197,8 @@ static void no_ladder(const char *text, size_t least, const char *why)
     no_ladder_in(0, text, least, why);
 }
 
-static void ladders(void **state)
+TEST(ladders)
 {
-    (void)state;
     char text[400] = "4", most[408];
     ladder_is("100,50,200,50,100,100", 3, (const size_t[]){50, 100, 200});
     ladder_is("8^2,65,64,1e2", 3, (const size_t[]){64, 65, 100});
@@ -234,15 +224,4 @@ static void ladders(void **state)
     ladder_is(text, CASE_LADDER_MAX, want);
     snprintf(most, sizeof most, "%s,1000", text);
     no_ladder(most, 1, "at most 64 resolutions");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_combination), cmocka_unit_test(words_and_keys),
-        cmocka_unit_test(any_key),           cmocka_unit_test(what_is_refused),
-        cmocka_unit_test(applied),           cmocka_unit_test(long_labels),
-        cmocka_unit_test(ladders),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What one run of a check collects: figures with the time each took, subjects, series, and whether
  * a mutant is found out already. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -27,9 +23,8 @@ static void clear(struct check_run *run)
     free(run->series);
 }
 
-static void figures(void **state)
+TEST(figures)
 {
-    (void)state;
     struct check_run run = {.check = &check, .began = clock_wall() - 1000};
     check_measure(&run, 1, 1, 1, "of %d", 3); /* on the bound, and the bound on the floor */
     check_measure(&run, 1.5, 1, 0, "above");
@@ -60,9 +55,8 @@ static void figures(void **state)
 }
 
 /* A mutant that has failed once is decided; what is right never is. */
-static void decided(void **state)
+TEST(decided)
 {
-    (void)state;
     for (int mutant = 0; mutant < 2; mutant++) {
         struct check_run run = {.check = &check, .mutant = mutant};
         check_measure(&run, 0, 1, 0, "well");
@@ -77,9 +71,8 @@ static void decided(void **state)
 }
 
 /* As long as somebody wants them. */
-static void series(void **state)
+TEST(series)
 {
-    (void)state;
     enum { N = 5000 };
     static double x[N], y[N];
     struct check_run run = {.check = &check};
@@ -100,9 +93,8 @@ static void series(void **state)
 }
 
 /* Of what has a size a copy is kept, else the pointer alone. */
-static void subjects(void **state)
+TEST(subjects)
 {
-    (void)state;
     struct check_run run = {.check = &check};
     for (int i = 0; i < 100; i++) check_subject(&run, &i, i % 2 ? sizeof i : 0);
     assert_int_equal(run.subject_count, 100);
@@ -113,15 +105,4 @@ static void subjects(void **state)
             assert_true(!run.subjects[i].copy && run.subjects[i].given);
     assert_false(run.no_memory);
     clear(&run);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(figures),
-        cmocka_unit_test(decided),
-        cmocka_unit_test(series),
-        cmocka_unit_test(subjects),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

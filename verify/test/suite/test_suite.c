@@ -1,16 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The harness that runs checks: what fails, what is vacuous, what counts; and that the registry is
  * in order. Arguments: the groups that meson runs, one test each. */
+#include "test.h"
+
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-#include <cmocka.h>
 
 #include "check_registry.h"
 #include "made_checks.h"
@@ -30,9 +27,8 @@ static struct suite run(const struct check *check, bool mutants, enum status exp
     return suite;
 }
 
-static void test_good(void **state)
+TEST(test_good)
 {
-    (void)state;
     struct suite suite = run(&good, true, STATUS_OK);
     assert_int_equal(suite.passed, 1);
     assert_int_equal(suite.failed, 0);
@@ -43,9 +39,8 @@ static void test_good(void **state)
 }
 
 /* What another process kept of a check is joined; kept without a single figure it is refused. */
-static void test_join(void **state)
+TEST(test_join)
 {
-    (void)state;
     const struct check *const checks[] = {&good};
     struct error error;
     struct suite suite = run(&good, false, STATUS_OK);
@@ -62,9 +57,8 @@ static void test_join(void **state)
     json_decref(document);
 }
 
-static void test_failing(void **state)
+TEST(test_failing)
 {
-    (void)state;
     struct suite suite = run(&failing, false, STATUS_CHECK_FAILED);
     assert_int_equal(suite.passed, 1);
     assert_int_equal(suite.failed, 2);
@@ -72,9 +66,8 @@ static void test_failing(void **state)
     suite_free(&suite);
 }
 
-static void test_undetected_mutant(void **state)
+TEST(test_undetected_mutant)
 {
-    (void)state;
     struct suite suite = run(&leaky, true, STATUS_CHECK_FAILED);
     assert_int_equal(suite.failed, 0);
     assert_int_equal(suite.mutants, 2);
@@ -82,9 +75,8 @@ static void test_undetected_mutant(void **state)
     suite_free(&suite);
 }
 
-static void test_vacuous(void **state)
+TEST(test_vacuous)
 {
-    (void)state;
     struct suite suite = run(&vacuous, true, STATUS_CHECK_FAILED);
     assert_int_equal(suite.failed, 1);
     assert_non_null(strstr(suite.figures[1].subject, "vacuous"));
@@ -131,9 +123,8 @@ static void expect_one_failure(const struct check *check, const char *says)
 }
 
 /* A check that has no subject, that is silent on all of them or on one, that skips all. */
-static void test_measures_nothing(void **state)
+TEST(test_measures_nothing)
 {
-    (void)state;
     struct check silent = failing;
     silent.subjects = nothing_subject;
     expect_one_failure(&silent, "nothing at all");
@@ -160,9 +151,8 @@ static void measure_one(struct check_run *run, const void *subject)
     check_measure(run, *(const double *)subject, 1, 0, "%g", *(const double *)subject);
 }
 
-static void test_many_subjects(void **state)
+TEST(test_many_subjects)
 {
-    (void)state;
     struct check many = failing;
     many.subjects = many_subjects;
     many.measure = measure_one;
@@ -172,9 +162,8 @@ static void test_many_subjects(void **state)
     suite_free(&suite);
 }
 
-static void test_worst(void **state)
+TEST(test_worst)
 {
-    (void)state;
     double worst = 0;
     worst_keep(&worst, 2);
     worst_keep(&worst, 1);
@@ -191,9 +180,8 @@ static void below_floor(struct check_run *run, const void *subject)
     check_skip(run, "not %s", "here");
 }
 
-static void test_floor_and_skip(void **state)
+TEST(test_floor_and_skip)
 {
-    (void)state;
     struct check check = good;
     check.measure = below_floor;
     struct suite suite = run(&check, false, STATUS_CHECK_FAILED);
@@ -202,9 +190,8 @@ static void test_floor_and_skip(void **state)
     suite_free(&suite);
 }
 
-static void test_groups_are_chosen(void **state)
+TEST(test_groups_are_chosen)
 {
-    (void)state;
     const struct check *const checks[] = {&good, &bare};
     const char *const groups[] = {"b"};
     const struct suite_choice choice = {.groups = groups, .group_count = 1};
@@ -223,9 +210,8 @@ static void note_progress(void *context, const struct check *check, size_t done,
     snprintf(text + used, 64 - used, "%s %zu/%zu;", check->name, done, total);
 }
 
-static void test_slow_and_progress(void **state)
+TEST(test_slow_and_progress)
 {
-    (void)state;
     struct check slow = bare;
     slow.slow = true;
     const struct check *const checks[] = {&good, &slow, &bare};
@@ -242,9 +228,8 @@ static void test_slow_and_progress(void **state)
 }
 
 /* A mutant of several checks is one, and is caught where all of them catch it. */
-static void test_mutants_are_distinct(void **state)
+TEST(test_mutants_are_distinct)
 {
-    (void)state;
     const struct check *const checks[] = {&good, &leaky};
     const struct suite_choice choice = {.mutants = true};
     struct suite suite;
@@ -268,9 +253,8 @@ static void equally_far(struct check_run *run, const void *subject)
 }
 
 /* Of figures that fail as clearly the first one is told. */
-static void test_mutant_value(void **state)
+TEST(test_mutant_value)
 {
-    (void)state;
     struct check check = good;
     check.measure = equally_far;
     struct suite suite = run(&check, true, STATUS_OK);
@@ -278,9 +262,8 @@ static void test_mutant_value(void **state)
     suite_free(&suite);
 }
 
-static void test_groups_are_listed_once(void **state)
+TEST(test_groups_are_listed_once)
 {
-    (void)state;
     const struct check *const checks[] = {&bare, &good, &leaky, &failing};
     size_t n;
     const char **names = suite_groups(checks, 4, &n);
@@ -306,9 +289,8 @@ static void two_figures(struct check_run *run, const void *subject)
 }
 
 /* Who asks for the first failure gets no later check, but all of this one. */
-static void test_first_failure(void **state)
+TEST(test_first_failure)
 {
-    (void)state;
     struct check both = bare;
     both.measure = two_figures;
     const struct check *const checks[] = {&bare, &both, &bare};
@@ -334,9 +316,8 @@ static void skips_then_measures(struct check_run *run, const void *subject)
 }
 
 /* One figure is enough, wherever it stands; the harness' own are 1 against 0. */
-static void test_harness_figures(void **state)
+TEST(test_harness_figures)
 {
-    (void)state;
     struct check late = bare;
     late.measure = skips_then_measures;
     struct suite suite = run(&late, false, STATUS_OK);
@@ -362,9 +343,8 @@ static const struct check_mutant unharmed[] = {
     {"none", "", &zero}, {"one", "", &values[1]}, {"two", "", &values[2]}, {0}};
 
 /* A mutant that is within the bound has its figure told, however far. */
-static void test_value_of_a_miss(void **state)
+TEST(test_value_of_a_miss)
 {
-    (void)state;
     struct check check = leaky;
     check.mutants = unharmed;
     struct suite suite = run(&check, true, STATUS_CHECK_FAILED);
@@ -373,9 +353,8 @@ static void test_value_of_a_miss(void **state)
     suite_free(&suite);
 }
 
-static void test_names_ratios_and_costs(void **state)
+TEST(test_names_ratios_and_costs)
 {
-    (void)state;
     static const struct {
         const char *name;
         bool is;
@@ -400,9 +379,8 @@ static void test_names_ratios_and_costs(void **state)
 }
 
 /* As many groups as there are checks. */
-static void test_many_groups(void **state)
+TEST(test_many_groups)
 {
-    (void)state;
     enum { N = 5000 };
     static char names[N][16];
     static struct check checks[N];
@@ -421,9 +399,8 @@ static void test_many_groups(void **state)
     free(groups);
 }
 
-static void test_results(void **state)
+TEST(test_results)
 {
-    (void)state;
     struct suite suite = run(&failing, true, STATUS_CHECK_FAILED);
     json_t *document = json_object();
     suite_output_json(&suite, document);
@@ -465,9 +442,8 @@ static void test_results(void **state)
     suite_free(&suite);
 }
 
-static void test_registry(void **state)
+TEST(test_registry)
 {
-    (void)state;
     for (size_t i = 0; i < check_registry_count; i++) {
         const struct check *c = check_registry[i];
         assert_true(c->mutants && c->mutants[0].name && c->property[0]);
@@ -492,28 +468,5 @@ int main(int argc, char **argv)
 {
     group_argument_count = argc - 1;
     group_arguments = argv + 1;
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_slow_and_progress),
-        cmocka_unit_test(test_first_failure),
-        cmocka_unit_test(test_harness_figures),
-        cmocka_unit_test(test_value_of_a_miss),
-        cmocka_unit_test(test_names_ratios_and_costs),
-        cmocka_unit_test(test_many_groups),
-        cmocka_unit_test(test_mutants_are_distinct),
-        cmocka_unit_test(test_mutant_value),
-        cmocka_unit_test(test_groups_are_listed_once),
-        cmocka_unit_test(test_good),
-        cmocka_unit_test(test_join),
-        cmocka_unit_test(test_failing),
-        cmocka_unit_test(test_undetected_mutant),
-        cmocka_unit_test(test_vacuous),
-        cmocka_unit_test(test_measures_nothing),
-        cmocka_unit_test(test_many_subjects),
-        cmocka_unit_test(test_worst),
-        cmocka_unit_test(test_floor_and_skip),
-        cmocka_unit_test(test_groups_are_chosen),
-        cmocka_unit_test(test_results),
-        cmocka_unit_test(test_registry),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return test_run(NULL, NULL);
 }

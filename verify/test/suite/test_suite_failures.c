@@ -1,17 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What is left of checks that fail: the numbers that gnuplot is given to draw (by a program of that
  * name that writes them down), files that come and go; and what a table says of one figure. */
+#include "test.h"
+
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
-#include <cmocka.h>
 
 #include "made_place.h"
 #include "suite_output.h"
@@ -60,9 +57,8 @@ static void numbers_are(const char *expected)
 
 /* The first check has no curves; of nine of the second one eight are drawn. Figures are drawn
  * between 1e-6 and 1e12. */
-static void drawings(void **state)
+TEST(drawings)
 {
-    (void)state;
     enum { CURVES = 9 };
     struct figure figures[] = {
         FIGURE(&first, 0.5, 1, FIGURE_PASS), FIGURE(&first, 1e-7, 1, FIGURE_PASS),
@@ -138,9 +134,8 @@ static void drawings(void **state)
 }
 
 /* Nowhere to write: the folder that cannot be made is named, and what stands in a file's place. */
-static void nowhere_to_write(void **state)
+TEST(nowhere_to_write)
 {
-    (void)state;
     struct figure figures[] = {FIGURE(&first, 2, 1, FIGURE_FAIL),
                                FIGURE(&second, 2, 1, FIGURE_FAIL)};
     const struct suite suite = {.figures = figures, .figure_count = 2, .failed = 2};
@@ -174,9 +169,8 @@ static const char *table_of(size_t n, struct figure *figures)
     return text_of("table");
 }
 
-static void tables(void **state)
+TEST(tables)
 {
-    (void)state;
     struct figure exact[] = {FIGURE(&first, 0, 1, FIGURE_PASS),
                              FIGURE(&first, 0.5, 1, FIGURE_PASS)};
     const char *text = table_of(1, exact); /* the second one is not of this suite */
@@ -192,9 +186,8 @@ static void tables(void **state)
     assert_non_null(strstr(table_of(1, close), "        1x "));
 }
 
-static void words(void **state)
+TEST(words)
 {
-    (void)state;
     assert_int_equal(suite_output_status("pass"), FIGURE_PASS);
     assert_int_equal(suite_output_status("fail"), FIGURE_FAIL);
     assert_int_equal(suite_output_status("skip"), FIGURE_SKIP);
@@ -203,9 +196,8 @@ static void words(void **state)
 }
 
 /* Each group of a JUnit file has its own counts, wherever they stand. */
-static void groups(void **state)
+TEST(groups)
 {
-    (void)state;
     static const enum figure_status kinds[] = {FIGURE_PASS, FIGURE_FAIL, FIGURE_SKIP};
     for (int a = 0; a < 27; a++) {
         struct figure figures[] = {FIGURE(&first, 2, 1, kinds[a % 3]),
@@ -231,9 +223,5 @@ static void groups(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(drawings), cmocka_unit_test(nowhere_to_write), cmocka_unit_test(tables),
-        cmocka_unit_test(words),    cmocka_unit_test(groups),
-    };
-    return cmocka_run_group_tests(tests, make_place, remove_place);
+    return test_run(make_place, remove_place);
 }

@@ -1,10 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Suites that are put together from checks that ran elsewhere. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -22,9 +18,8 @@ static json_t *told(const struct suite *suite)
 }
 
 /* Checks that ran one by one, each elsewhere, say what they say together. */
-static void test_joined(void **state)
+TEST(test_joined)
 {
-    (void)state;
     enum { PARTS = 4 };
     const struct check *const checks[PARTS] = {&good, &failing, &leaky, &vacuous};
     const struct suite_choice choice = {.mutants = true};
@@ -89,12 +84,4 @@ static void test_joined(void **state)
     json_decref(other);
     suite_free(&suite);
     for (size_t i = 0; i < PARTS; i++) json_decref(documents[i]);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_joined),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

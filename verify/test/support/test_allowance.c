@@ -1,13 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What control groups allow, read from folders that look like theirs. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "test.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
-#include <cmocka.h>
 
 #include "allowance.h"
 #include "near.h"
@@ -33,10 +30,9 @@ static void same(double bytes, double expected)
     near_relative(bytes, expected, 1e-15);
 }
 
-static void groups_are_nested(void **state)
+TEST(groups_are_nested)
 {
     const double all = allowance_memory("nowhere");
-    (void)state;
     assert_true(all > 1e8);
     put("proc/self", "cgroup", "0::/jobs/7/step\n");
     same(allowance_memory(root), all); /* nothing there says anything */
@@ -52,10 +48,9 @@ static void groups_are_nested(void **state)
     same(allowance_memory(root), 2e7);
 }
 
-static void first_version(void **state)
+TEST(first_version)
 {
     const double all = allowance_memory("nowhere");
-    (void)state;
     put("proc/self", "cgroup", "9:name=systemd:/\n4:memory:/jobs/8\n3:cpuset:/jobs/7\n");
     put("sys/fs/cgroup/memory/jobs/8", "memory.limit_in_bytes", "9223372036854771712\n");
     same(allowance_memory(root), all);
@@ -69,13 +64,9 @@ static void first_version(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(groups_are_nested),
-        cmocka_unit_test(first_version),
-    };
     char command[64];
     if (!mkdtemp(root)) return 1;
-    const int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    const int failed = test_run(NULL, NULL);
     snprintf(command, sizeof command, "rm -r %s", root);
     return system(command) ? 1 : failed;
 }

@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * What is kept of computations: damaged entries, old ones, kill -9 and two processes at once. */
 #define _GNU_SOURCE /* nftw */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
+
 #include <math.h>
 
 #include <fcntl.h>
@@ -15,13 +12,12 @@
 #include "made_jobs.h"
 
 /* Old entries go when they are asked to, not when somebody else opens the folder. */
-static void pruned(void **state)
+TEST(pruned)
 {
     struct place place;
     struct cache_census census;
     struct error error = {0};
     char path[CACHE_PATH_MAX];
-    (void)state;
     place_make(&place);
     json_t *document = json_pack("{s:i}", "value", 1);
     const struct timespec month[2] = {{.tv_sec = time(NULL) - (time_t)CACHE_MONTH - 60},
@@ -65,9 +61,8 @@ static void write_all(const char *path, const char *bytes, size_t n)
 }
 
 /* Every truncation and every altered byte counts as missing; so does another key's entry. */
-static void damaged_entries(void **state)
+TEST(damaged_entries)
 {
-    (void)state;
     struct place place;
     struct error error = {0};
     char path[CACHE_PATH_MAX], other[CACHE_PATH_MAX], bytes[4096], damaged[4096];
@@ -108,9 +103,8 @@ static void damaged_entries(void **state)
 }
 
 /* The process is killed in the midst of its third job: the first two are there, whole. */
-static void killed(void **state)
+TEST(killed)
 {
-    (void)state;
     struct place place;
     struct pool pool;
     struct task tasks[JOBS] = {0};
@@ -144,9 +138,8 @@ static void killed(void **state)
 
 /* Two processes with the same jobs and the same cache: both get all results, the entries are sound.
  */
-static void two_at_once(void **state)
+TEST(two_at_once)
 {
-    (void)state;
     struct place place;
     struct pool pool, alone;
     struct task tasks[JOBS] = {0}, again[JOBS] = {0};
@@ -186,15 +179,4 @@ static void two_at_once(void **state)
     pool_free(&pool);
     pool_free(&alone);
     place_clear(&place);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pruned),
-        cmocka_unit_test(damaged_entries),
-        cmocka_unit_test(killed),
-        cmocka_unit_test(two_at_once),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Results that are kept: under which names, what an entry must be to be believed, what goes when.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "test.h"
 
 #include <fcntl.h>
 #include <inttypes.h>
@@ -22,9 +18,8 @@
 #include "version.h"
 
 /* Fowler, Noll and Vo's own test vectors. */
-static void hashes(void **state)
+TEST(hashes)
 {
-    (void)state;
     assert_true(cache_hash(CACHE_HASH, "", 0) == UINT64_C(0xcbf29ce484222325));
     assert_true(cache_hash(CACHE_HASH, "a", 1) == UINT64_C(0xaf63dc4c8601ec8c));
     assert_true(cache_hash(CACHE_HASH, "foobar", 6) == UINT64_C(0x85944171f73967e8));
@@ -42,9 +37,8 @@ static struct cache opened(bool force)
 }
 
 /* The build is what the program is made of, to the last byte, and the mathematics it comes by. */
-static void builds(void **state)
+TEST(builds)
 {
-    (void)state;
     uint64_t hash = CACHE_HASH;
     char text[] = VERSION_FLAGS VERSION_GIT, build[CACHE_BUILD_MAX], said[CACHE_BUILD_MAX];
     hash = cache_hash(hash, text, sizeof text);
@@ -72,9 +66,8 @@ static void builds(void **state)
 }
 
 /* FOLDER/xx/xxxxxxxxxxxxxxxx.entry: of build and key, in the folder of its last two digits. */
-static void paths(void **state)
+TEST(paths)
 {
-    (void)state;
     struct cache cache = {.folder = "/a/b", .build = "0123456789abcdef"};
     static const char *const keys[] = {"", "a", "another key"};
     for (int k = 0; k < 3; k++) {
@@ -89,9 +82,8 @@ static void paths(void **state)
 }
 
 /* The longest folder leaves room for the names in it. */
-static void folders(void **state)
+TEST(folders)
 {
-    (void)state;
     struct cache cache;
     struct error error;
     static char folder[2 * CACHE_PATH_MAX];
@@ -127,9 +119,8 @@ static void write_file(const char *path, const void *bytes, size_t n)
 }
 
 /* An entry as it should be, and ways not to be one. */
-static void entries(void **state)
+TEST(entries)
 {
-    (void)state;
     struct cache cache = opened(false), forced = cache;
     struct error error;
     char path[CACHE_PATH_MAX], body[256], text[512];
@@ -255,9 +246,8 @@ static bool is_there(const char *name)
     return access(path, F_OK) == 0;
 }
 
-static void what_is_old_goes(void **state)
+TEST(what_is_old_goes)
 {
-    (void)state;
     struct cache_census census;
     struct error error;
     make_entry("00/0.entry", 1, 1000);
@@ -315,9 +305,5 @@ static void what_is_old_goes(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(hashes),  cmocka_unit_test(builds),  cmocka_unit_test(paths),
-        cmocka_unit_test(folders), cmocka_unit_test(entries), cmocka_unit_test(what_is_old_goes),
-    };
-    return cmocka_run_group_tests(tests, make_place, remove_place);
+    return test_run(make_place, remove_place);
 }

@@ -1,14 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Tables of numbers, made at random in every style that is allowed: what is planted must be read,
  * with the line it stood on. What is spoilt at one place must be refused with that place. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "test.h"
+
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "csv.h"
 #include "made_place.h"
@@ -109,10 +106,9 @@ static void refuses_text(const char *of, const char *says)
     refuses(n, says);
 }
 
-static void every_style(void **state)
+TEST(every_style)
 {
     static const size_t rows[] = {0, 1, 2, 255, 256, 257, 512, 513, 600, 7};
-    (void)state;
     for (int draw = 0; draw < 240; draw++) {
         struct table t = made(draw < 40 ? rows[draw % 10] : drawn(12));
         struct csv csv;
@@ -131,11 +127,10 @@ static void every_style(void **state)
     }
 }
 
-static void spoilt(void **state)
+TEST(spoilt)
 {
     static const char *const words[] = {"hot",  "nan", "inf", "-",     "1e400", "1..2",
                                         "0x10", "1e",  "1;2", "1d5e3", "d"};
-    (void)state;
     for (int draw = 0; draw < 154; draw++) {
         struct table t = made(3 + drawn(6));
         char says[600], *path = path_of("t.csv");
@@ -180,7 +175,7 @@ static void spoilt(void **state)
     }
 }
 
-static void faults(void **state)
+TEST(faults)
 {
     static const struct {
         const char *text, *says;
@@ -199,7 +194,6 @@ static void faults(void **state)
                 {"x,y\n1,\x1f", ":2:3: byte 31: a binary file?"}};
     struct csv csv;
     struct error error;
-    (void)state;
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
         refuses_text(rows[k].text, rows[k].says);
     static const char *const good[] = {"x y \n 1 2 \n", "x\t y\t\n1 \t2\t\r\n", "x,y\n1 , 2",
@@ -257,10 +251,5 @@ static void faults(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_style),
-        cmocka_unit_test(spoilt),
-        cmocka_unit_test(faults),
-    };
-    return cmocka_run_group_tests(tests, make_place, remove_place);
+    return test_run(make_place, remove_place);
 }

@@ -13,6 +13,7 @@
 
 #include "near.h"
 #include "output.h"
+#include "sha256.h"
 #include "text.h"
 
 static void numbers_are_strict(void **state)
@@ -186,6 +187,30 @@ static void temporaries(void **state)
     free(before);
 }
 
+/* Examples of FIPS 180, given in parts that do not fit its blocks. */
+static void sums_are_those_of_the_standard(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *sum;
+        size_t times;
+    } examples[] = {
+        {"", "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855", 1},
+        {"abc", "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad", 1},
+        {"abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq",
+         "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1", 1},
+        {"aaaaaaaaaa", "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0", 100000}};
+    for (size_t k = 0; k < sizeof examples / sizeof *examples; k++) {
+        char sum[SHA256_TEXT];
+        struct sha256 of;
+        sha256_begin(&of);
+        for (size_t i = 0; i < examples[k].times; i++)
+            sha256_add(&of, examples[k].text, strlen(examples[k].text));
+        sha256_end(&of, sum);
+        assert_string_equal(sum, examples[k].sum);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -197,6 +222,7 @@ int main(void)
         cmocka_unit_test(messages_are_printable),
         cmocka_unit_test(files_appear_whole),
         cmocka_unit_test(temporaries),
+        cmocka_unit_test(sums_are_those_of_the_standard),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

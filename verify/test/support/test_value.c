@@ -1,13 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Reading JSON: numbers and words, lenient and needed; and numbers that were written. */
+#include "test.h"
+
 #include <float.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-#include <cmocka.h>
 
 #include "near.h"
 #include "result.h"
@@ -23,9 +20,8 @@ static json_t *document(void)
     return made;
 }
 
-static void numbers(void **state)
+TEST(numbers)
 {
-    (void)state;
     json_t *d = document();
     double values[3] = {0};
     near_absolute(value_member(d, "real"), 2.385, 0);
@@ -49,9 +45,8 @@ static void numbers(void **state)
     json_decref(d);
 }
 
-static void words(void **state)
+TEST(words)
 {
-    (void)state;
     static const char *const allowed[] = {"fail", "pass", NULL};
     static const struct {
         const char *name, *message;
@@ -79,9 +74,8 @@ static void words(void **state)
 
 /* What result_number writes is read again, to the last bit, with the signs of zeros and infinities.
  */
-static void what_is_written_is_read(void **state)
+TEST(what_is_written_is_read)
 {
-    (void)state;
     static const double edges[] = {
         0, 1, 0.1, 1e15, 1e22, DBL_MIN, DBL_MIN / 3, DBL_MAX, (double)INFINITY};
     for (size_t k = 0; k < sizeof edges / sizeof *edges; k++)
@@ -101,11 +95,4 @@ static void what_is_written_is_read(void **state)
     assert_true(value_is_real(none) && isnan(value_real(none)));
     assert_true(json_is_null(null));
     json_decref(none), json_decref(null);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(numbers), cmocka_unit_test(words),
-                                       cmocka_unit_test(what_is_written_is_read)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,216 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Other codes: a matrix of cases and codes with errors, orders and gates, what they conserve, what
+ * was assumed of their files, and what they are. */
+#include <math.h>
+#include <string.h>
+
+#include "case_state.h"
+#include "html.h"
+#include "page_part.h"
+#include "page_study.h"
+#include "value.h"
+
+/* Labels in the order in which they appear. */
+static size_t find_labels(const json_t *list, const char **labels, size_t n)
+{
+    const json_t *entry;
+    size_t i;
+    json_array_foreach(list, i, entry) {
+        const char *label = value_text(entry, "label");
+        size_t k = 0;
+        while (k < n && strcmp(labels[k], label)) k++;
+        if (k == n && n < PAGE_SCHEMES) labels[n++] = label;
+    }
+    return n;
+}
+
+static bool is_code(const json_t *document)
+{
+    return json_is_object(json_object_get(document, "code"));
+}
+
+/* The worst that gates of a document say; "none": it has no gate. */
+static const char *gate_of(const json_t *document, const char *list)
+{
+    static const char *const worse[] = {"fail", "undetermined", "known", "smoke", "pass"};
+    for (size_t k = 0; k < sizeof worse / sizeof *worse; k++) {
+        const json_t *gate;
+        size_t i;
+        json_array_foreach(json_object_get(document, list), i, gate)
+            if (!strcmp(value_text(gate, "status"), worse[k])) return worse[k];
+    }
+    return "none";
+}
+
+static void again(struct buffer *to, const char *command)
+{
+    buffer_add(to, "<details><summary>command</summary>");
+    html_command(to, "", command);
+    buffer_add(to, "</details>");
+}
+
+static void failed_cell(struct buffer *to, const json_t *document)
+{
+    html_status(to, value_text(document, "status"));
+    buffer_add(to, " ");
+    buffer_escape(to, value_text(document, "message"));
+}
+
+/* Error at the finest level, order with its interval, gate, command. */
+static void cell(struct buffer *to, const json_t *study, const json_t *run)
+{
+    const json_t *shown = study ? study : run, *order = study ? page_study_main(study) : NULL;
+    const char *status = value_text(shown, "status"), *what;
+    buffer_add(to, "<td>");
+    if (!shown) {
+        buffer_add(to, "—</td>");
+        return;
+    }
+    if (!strcmp(status, "failed") || !strcmp(status, "broke_down")) {
+        failed_cell(to, shown);
+    } else if (order) {
+        page_study_name(to, order);
+        buffer_add(to, " ");
+        html_number(to, page_study_finest(study));
+        buffer_format(to, "<br/>order %.2f [%.2f, %.2f]", value_member(order, "order"),
+                      value_member(order, "low"), value_member(order, "high"));
+    } else {
+        const double error = case_state_error(run, &what);
+        html_words(to, what);
+        buffer_add(to, " ");
+        html_number(to, error);
+    }
+    const char *gate = gate_of(shown, study ? "orders" : "gates");
+    if (strcmp(gate, "none")) {
+        buffer_add(to, " ");
+        html_status(to, gate);
+    }
+    again(to, value_text(shown, "reproduce"));
+    buffer_add(to, "</td>");
+}
+
+static void heads(struct buffer *to, const char *first, const char *const *labels, size_t count)
+{
+    struct buffer columns = {0};
+    buffer_add(&columns, first);
+    for (size_t k = 0; k < count; k++) {
+        buffer_add(&columns, "|");
+        buffer_escape(&columns, labels[k]);
+    }
+    if (columns.data) html_table(to, "overview", columns.data);
+    buffer_free(&columns);
+}
+
+/* Is it the first run of its case? */
+static bool begins_case(const json_t *runs, size_t i)
+{
+    const char *name = value_text(json_array_get(runs, i), "case");
+    return case_state_find(runs, name, NULL) == json_array_get(runs, i);
+}
+
+static void name_cell(struct buffer *to, const char *name)
+{
+    buffer_add(to, "<tr><td><a href=\"#case-");
+    buffer_escape(to, name);
+    buffer_add(to, "\">");
+    html_words(to, name);
+    buffer_add(to, "</a></td>");
+}
+
+static void matrix(struct buffer *to, const json_t *results, const char *const *labels,
+                   size_t count)
+{
+    const json_t *runs = json_object_get(results, "runs"), *run;
+    size_t i;
+    heads(to, "case", labels, count);
+    json_array_foreach(runs, i, run) {
+        const char *name = value_text(run, "case");
+        if (!begins_case(runs, i)) continue;
+        name_cell(to, name);
+        for (size_t k = 0; k < count; k++)
+            cell(to, case_state_find(json_object_get(results, "studies"), name, labels[k]),
+                 case_state_find(runs, name, labels[k]));
+        buffer_add(to, "</tr>\n");
+    }
+    html_table_end(to);
+    buffer_add(to, "<p class=\"note\">L1 of what a case is about at the finest level, its order "
+                   "with the 95 % interval, and what the gates of the code file say. Our own "
+                   "schemes run on the same ladder, without gates.</p>\n");
+}
+
+static void conservation(struct buffer *to, const json_t *runs)
+{
+    static const char *const kept[] = {"mass", "momentum", "angular_momentum", "energy"};
+    const json_t *run;
+    size_t i;
+    buffer_add(to, "<h3>Conservation</h3>\n");
+    html_table(to, "runs", "case|code|#n|#mass|#momentum|#angular momentum|#energy");
+    json_array_foreach(runs, i, run) {
+        if (strcmp(value_text(run, "status"), "ok")) continue;
+        buffer_add(to, "<tr>");
+        html_cell(to, value_text(run, "case"));
+        html_cell(to, value_text(run, "label"));
+        html_cell_number(to, value_member(run, "n"));
+        for (size_t k = 0; k < sizeof kept / sizeof *kept; k++)
+            html_cell_number(to, value_inner(run, "conservation", kept[k]));
+        buffer_add(to, "</tr>\n");
+    }
+    html_table_end(to);
+}
+
+static void assumptions(struct buffer *to, const json_t *run)
+{
+    const json_t *list = json_object_get(json_object_get(run, "judged"), "assumptions"), *note;
+    size_t i;
+    if (!json_array_size(list)) return;
+    buffer_add(to, "<details><summary>What was assumed of ");
+    buffer_escape(to, value_text(run, "label"));
+    buffer_add(to, ", ");
+    buffer_escape(to, value_text(run, "case"));
+    buffer_add(to, "</summary>\n");
+    html_table(to, "facts", "what|value|evidence");
+    json_array_foreach(list, i, note) {
+        buffer_add(to, "<tr>");
+        html_cell(to, value_text(note, "what"));
+        html_cell(to, value_text(note, "value"));
+        html_cell(to, value_text(note, "evidence"));
+        buffer_add(to, "</tr>\n");
+    }
+    html_table_end(to);
+    buffer_add(to, "</details>\n");
+}
+
+static void programs(struct buffer *to, const json_t *runs)
+{
+    const json_t *run;
+    size_t i;
+    buffer_add(to, "<h3>The codes</h3>\n");
+    html_table(to, "facts", "code|case|command|SHA-256 of the program|initial state");
+    json_array_foreach(runs, i, run) {
+        const json_t *code = json_object_get(run, "code");
+        if (!is_code(run)) continue;
+        buffer_add(to, "<tr>");
+        html_cell(to, value_text(code, "title"));
+        html_cell(to, value_text(run, "case"));
+        html_cell_code(to, value_text(code, "command"));
+        html_cell_code(to, value_text(code, "sha256"));
+        html_cell(to, value_text(code, "ic"));
+        buffer_add(to, "</tr>\n");
+    }
+    html_table_end(to);
+}
+
+void page_codes(struct page_writer *writer, const json_t *results)
+{
+    struct buffer *to = &writer->to;
+    const json_t *runs = json_object_get(results, "runs"), *run;
+    const char *labels[PAGE_SCHEMES];
+    const size_t count = find_labels(runs, labels, 0);
+    size_t i;
+    buffer_add(to, "<section id=\"overview\"><h2>All cases at a glance</h2>\n");
+    matrix(to, results, labels, count);
+    conservation(to, runs);
+    programs(to, runs);
+    json_array_foreach(runs, i, run) assumptions(to, run);
+    buffer_add(to, "</section>\n");
+}

@@ -1,0 +1,165 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "hdf5_image.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "output.h"
+
+#ifdef HAVE_HDF5
+#include <hdf5.h>
+
+enum status hdf5_image_possible(const char *path, struct error *error)
+{
+    (void)path, (void)error;
+    return STATUS_OK;
+}
+
+/* Of an identifier, or of what a call returns. */
+static bool went_well(hid_t code)
+{
+    return code >= 0;
+}
+
+static hid_t type_of(enum hdf5_type type)
+{
+    const hid_t types[] = {[HDF5_CHAR] = H5T_NATIVE_SCHAR,
+                           [HDF5_INT] = H5T_NATIVE_INT,
+                           [HDF5_UINT] = H5T_NATIVE_UINT,
+                           [HDF5_UINT64] = H5T_NATIVE_UINT64,
+                           [HDF5_DOUBLE] = H5T_NATIVE_DOUBLE};
+    return types[type];
+}
+
+void hdf5_image_begin(struct hdf5_image *image)
+{
+    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+    const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+    H5Pset_fapl_core(access, 1 << 20, 0); /* in memory, never on disk */
+    image->file = H5Fcreate("image", H5F_ACC_TRUNC, H5P_DEFAULT, access);
+    image->group = -1;
+    image->good = went_well(image->file);
+    H5Pclose(access);
+}
+
+void hdf5_image_group(struct hdf5_image *image, const char *name)
+{
+    if (went_well(image->group)) H5Gclose(image->group);
+    image->group = H5Gcreate2(image->file, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    image->good &= went_well(image->group);
+}
+
+static void set_attribute(struct hdf5_image *image, const char *name, hid_t type,
+                          const void *values, hsize_t count)
+{
+    const hid_t space = count == 1 ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, &count, NULL);
+    const hid_t attribute = H5Acreate2(image->group, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
+    image->good &= went_well(attribute) && went_well(H5Awrite(attribute, type, values));
+    if (went_well(attribute)) H5Aclose(attribute);
+    H5Sclose(space);
+}
+
+void hdf5_image_attribute(struct hdf5_image *image, const char *name, enum hdf5_type type,
+                          const void *values, size_t count)
+{
+    set_attribute(image, name, type_of(type), values, count);
+}
+
+void hdf5_image_text(struct hdf5_image *image, const char *name, const char *text)
+{
+    const hid_t type = H5Tcopy(H5T_C_S1);
+    H5Tset_size(type, strlen(text) + 1);
+    set_attribute(image, name, type, text, 1);
+    H5Tclose(type);
+}
+
+void hdf5_image_data(struct hdf5_image *image, const char *name, enum hdf5_type type,
+                     const void *values, size_t rows, size_t columns)
+{
+    const hsize_t shape[2] = {rows, columns};
+    const hid_t space = H5Screate_simple(columns > 1 ? 2 : 1, shape, NULL);
+    const hid_t timeless = H5Pcreate(H5P_DATASET_CREATE);
+    H5Pset_obj_track_times(timeless, false);
+    const hid_t data =
+        H5Dcreate2(image->group, name, type_of(type), space, H5P_DEFAULT, timeless, H5P_DEFAULT);
+    image->good &= went_well(data) &&
+                   went_well(H5Dwrite(data, type_of(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, values));
+    if (went_well(data)) H5Dclose(data);
+    H5Pclose(timeless);
+    H5Sclose(space);
+}
+
+/* The bytes of the file; NULL: something has failed. */
+static void *bytes_of(struct hdf5_image *image, size_t *size)
+{
+    if (went_well(image->group)) H5Gclose(image->group);
+    image->good = image->good && went_well(H5Fflush(image->file, H5F_SCOPE_GLOBAL));
+    const ssize_t needed = image->good ? H5Fget_file_image(image->file, NULL, 0) : 0;
+    void *bytes = needed > 0 ? malloc((size_t)needed) : NULL;
+    if (bytes && H5Fget_file_image(image->file, bytes, (size_t)needed) <= 0)
+        free(bytes), bytes = NULL;
+    if (went_well(image->file)) H5Fclose(image->file);
+    *size = (size_t)needed;
+    return bytes;
+}
+
+enum status hdf5_image_end(struct hdf5_image *image, const char *path, struct error *error)
+{
+    struct output output;
+    size_t size;
+    void *bytes = bytes_of(image, &size);
+    if (!bytes)
+        return error_set(error, STATUS_ENVIRONMENT, "%.200s: HDF5 has no memory for it", path);
+    enum status status = output_open(&output, path, error);
+    if (!status) {
+        fwrite(bytes, 1, size, output.stream); /* output_close sees what failed */
+        status = output_close(&output, error);
+    }
+    free(bytes);
+    return status;
+}
+
+#else
+
+enum status hdf5_image_possible(const char *path, struct error *error)
+{
+    return error_set(error, STATUS_ENVIRONMENT,
+                     "%.200s: built without HDF5 (Debian: libhdf5-dev); a snapshot in CSV needs "
+                     "nothing",
+                     path);
+}
+
+void hdf5_image_begin(struct hdf5_image *image)
+{
+    *image = (struct hdf5_image){-1, -1, false};
+}
+
+void hdf5_image_group(struct hdf5_image *image, const char *name)
+{
+    (void)image, (void)name;
+}
+
+void hdf5_image_attribute(struct hdf5_image *image, const char *name, enum hdf5_type type,
+                          const void *values, size_t count)
+{
+    (void)image, (void)name, (void)type, (void)values, (void)count;
+}
+
+void hdf5_image_text(struct hdf5_image *image, const char *name, const char *text)
+{
+    (void)image, (void)name, (void)text;
+}
+
+void hdf5_image_data(struct hdf5_image *image, const char *name, enum hdf5_type type,
+                     const void *values, size_t rows, size_t columns)
+{
+    (void)image, (void)name, (void)type, (void)values, (void)rows, (void)columns;
+}
+
+enum status hdf5_image_end(struct hdf5_image *image, const char *path, struct error *error)
+{
+    (void)image;
+    return hdf5_image_possible(path, error);
+}
+
+#endif

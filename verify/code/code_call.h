@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What a run of a code is called with: the values of @WORDS@, the words of its command, its
+ * templates filled in; and the files that decide its result. */
+#ifndef SPHPROOF_CODE_CALL_H
+#define SPHPROOF_CODE_CALL_H
+
+#include "code_run.h"
+#include "sha256.h"
+
+enum { CODE_TEXT = 160 };
+
+struct code_values {
+    const char *of[CODE_WORDS]; /* NULL: not known yet, stays as it is */
+    char text[CODE_WORDS][CODE_TEXT];
+    char parameters[CODE_PATH];
+};
+
+/* start: of run_start; NULL: what depends on the particles is not known. */
+void code_values(struct code_values *values, const struct code_external *external,
+                 const struct run *run, const struct run_result *start);
+
+/* The command, or that of a fault. */
+const char *code_command(const struct code_external *external);
+
+/* The words of a command, with files beside the code file and words filled in: of sh where the code
+ * file says so. Malloced, ends with NULL; NULL: no memory. */
+char **code_words_of(const struct code_external *external, const char *command,
+                     const struct code_values *values);
+void code_words_free(char **words);
+/* In one line, malloced; NULL: no memory. */
+char *code_words_line(char **words);
+
+/* Writes the templates into a folder, filled in. */
+enum status code_write_templates(const struct code_external *external,
+                                 const struct code_values *values, const char *folder,
+                                 struct error *error);
+
+/* Adds the filled texts and sums of the files that decide what a run of the code computes. */
+enum status code_add_key(const struct run_external *external, const struct run *run, json_t *key,
+                         struct error *error);
+
+/* The sum of the command's program; "" where it cannot be read. */
+void code_program_sum(const struct code_external *external, char sum[SHA256_TEXT]);
+
+#endif

@@ -1,0 +1,158 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "code_check.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "text.h"
+
+bool code_is_file(const char *path)
+{
+    struct stat info;
+    return stat(path, &info) == 0 && S_ISREG(info.st_mode);
+}
+
+static bool can_execute(const char *path)
+{
+    return code_is_file(path) && access(path, X_OK) == 0;
+}
+
+bool code_find_program(const struct code *code, const char *word, size_t length,
+                       char path[CODE_PATH])
+{
+    const char *folders = getenv("PATH");
+    if (code_beside(code, word, length, path) && can_execute(path)) return true;
+    if (memchr(word, '/', length) || !folders) return false;
+    for (const char *at = folders; *at;) {
+        const size_t n = strcspn(at, ":");
+        const int used = snprintf(path, CODE_PATH, "%.*s/%.*s", (int)n, at, (int)length, word);
+        if (n && used < CODE_PATH && can_execute(path)) return true;
+        at += n + (at[n] == ':');
+    }
+    return false;
+}
+
+/* Fails where a word between @ is none of ours; file and line: of a template, else NULL. */
+static bool words_known(struct ini_text *at, const char *text, const char *file, int line)
+{
+    const char *names[CODE_WORDS];
+    char spelled[CODE_WORDS][CODE_NAME], unknown[CODE_NAME], where[CODE_PATH];
+    if (!code_unknown_word(text, unknown)) return true;
+    for (int w = 0; w < CODE_WORDS; w++) {
+        snprintf(spelled[w], CODE_NAME, "@%s@", code_words[w]->name);
+        names[w] = spelled[w];
+    }
+    snprintf(where, sizeof where, "%.200s:%d", file ? file : at->path, file ? line : at->line);
+    text_unknown(at->error, where, "word", unknown, names, CODE_WORDS);
+    at->failed = true;
+    return false;
+}
+
+static bool template_known(struct ini_text *at, const char *path)
+{
+    char *line = NULL;
+    size_t room = 0;
+    bool known = true;
+    FILE *file = fopen(path, "r");
+    if (!file) {
+        ini_text_fail_value(at, "parameters", path, "files that can be read");
+        return false;
+    }
+    for (int number = 1; known && getline(&line, &room, file) >= 0; number++)
+        known = words_known(at, line, path, number);
+    free(line);
+    fclose(file);
+    return known;
+}
+
+static void check_files(const struct code *code, struct ini_text *at, enum code_key key,
+                        const char *value)
+{
+    char path[CODE_PATH];
+    size_t length;
+    const char *rest = value;
+    for (const char *word; !at->failed && (word = code_next_word(&rest, &length));)
+        if (!code_beside(code, word, length, path) || !code_is_file(path))
+            ini_text_fail_value(at, code_keys[key].name, word,
+                                "files that are there, relative to the code file");
+        else if (key == CODE_parameters)
+            template_known(at, path);
+}
+
+static void check_command(const struct code *code, struct ini_text *at, enum code_key key,
+                          const char *value)
+{
+    char path[CODE_PATH];
+    size_t length;
+    const char *rest = value, *word = code_next_word(&rest, &length);
+    if (!word)
+        ini_text_fail_value(at, code_keys[key].name, value, code_keys[key].allowed);
+    else if (words_known(at, value, NULL, 0) && !memchr(word, '@', length) &&
+             !code_find_program(code, word, length, path))
+        ini_text_fail_value(at, code_keys[key].name, value,
+                            "a program beside the code file, or in PATH");
+}
+
+static void check_ic(const struct code *code, struct ini_text *at, const char *value)
+{
+    struct error reason;
+    char where[CODE_PATH];
+    if (strchr(value, '@')) {
+        if (strstr(value, "@IC@"))
+            check_command(code, at, CODE_ic, value);
+        else if (words_known(at, value, NULL, 0))
+            ini_text_fail_value(at, "ic", value, code_keys[CODE_ic].allowed);
+        return;
+    }
+    if (start_format_of(value, &reason)) return;
+    snprintf(where, sizeof where, "%.200s:%d: ic", at->path, at->line);
+    text_unknown_member(at->error, where, "format", value, &start_format_family);
+    at->failed = true;
+}
+
+void code_check_value(const struct code *code, struct ini_text *at, enum code_key key,
+                      const char *value)
+{
+    struct code_way way = {.line[CODE_memory] = 1, .line[CODE_timeout] = 1, .line[CODE_shell] = 1};
+    snprintf(way.value[key], sizeof way.value[key], "%s", value);
+    const char *allowed = code_keys[key].allowed;
+    switch (key) {
+    case CODE_title:
+    case CODE_command:
+    case CODE_snapshot:
+        if (!*value)
+            ini_text_fail_value(at, code_keys[key].name, value, allowed);
+        else
+            words_known(at, value, NULL, 0);
+        return;
+    case CODE_ic:
+        check_ic(code, at, value);
+        return;
+    case CODE_parameters:
+    case CODE_depends:
+        check_files(code, at, key, value);
+        return;
+    case CODE_timeout:
+        if (!(code_timeout(&way) > 0)) ini_text_fail_value(at, "timeout", value, allowed);
+        return;
+    case CODE_memory:
+        if (!(code_memory(&way) > 0)) ini_text_fail_value(at, "memory", value, allowed);
+        return;
+    case CODE_shell:
+        if (!code_shell(&way) && strcmp(value, "no") != 0)
+            ini_text_fail_value(at, "shell", value, allowed);
+        return;
+    default:
+        return;
+    }
+}
+
+void code_check_command(const struct code *code, struct ini_text *at, const struct code_way *way)
+{
+    at->line = way->line[CODE_command];
+    if (!code_shell(way)) check_command(code, at, CODE_command, way->value[CODE_command]);
+}

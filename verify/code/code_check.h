@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * What values of code files may be. */
+#ifndef SPHPROOF_CODE_CHECK_H
+#define SPHPROOF_CODE_CHECK_H
+
+#include "code_file.h"
+
+/* Fails with the line of the key, or with file and line of a template. */
+void code_check_value(const struct code *code, struct ini_text *at, enum code_key key,
+                      const char *value);
+
+/* Is the command's program there? Fails with its line. way: complete. */
+void code_check_command(const struct code *code, struct ini_text *at, const struct code_way *way);
+
+/* The program that a word of a command means, in CODE_PATH bytes: a file beside the code file, else
+ * found by PATH; false: there is none that can be executed. */
+bool code_find_program(const struct code *code, const char *word, size_t length,
+                       char path[CODE_PATH]);
+
+/* Is it a regular file? */
+bool code_is_file(const char *path);
+
+#endif

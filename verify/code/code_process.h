@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * A program in a group of processes of its own, under a process that only watches over it: that one
+ * ends the group when time or memory are used up, when the program has ended, and when this process
+ * does, however it ends. Nothing of it is left running. */
+#ifndef SPHPROOF_CODE_PROCESS_H
+#define SPHPROOF_CODE_PROCESS_H
+
+#include <stdbool.h>
+
+#include "status.h"
+
+struct code_order {
+    const char *const *words; /* the program, a path or found by PATH, and its arguments; ends with
+                               * NULL */
+    const char *folder;       /* it starts there; files stdout and stderr get what it says */
+    double seconds, bytes;    /* limits: of wall time; of the memory of all processes together */
+    bool remove;              /* the folder goes away if this process ends first */
+};
+
+enum code_ending { CODE_ENDED, CODE_LATE, CODE_LARGE };
+
+struct code_outcome {
+    enum code_ending ending;
+    int exit;             /* its exit status; 128 + N: ended by signal N */
+    double wall_s, cpu_s; /* of all of its processes */
+};
+
+/* STATUS_ENVIRONMENT: no process. */
+enum status code_process(const struct code_order *order, struct code_outcome *outcome,
+                         struct error *error);
+
+/* Removes a folder and all that is in it. */
+void code_remove(const char *folder);
+
+#endif

@@ -1,0 +1,461 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "code_run.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "buffer.h"
+#include "cloud_profile.h"
+#include "code_call.h"
+#include "code_process.h"
+#include "code_snapshot.h"
+#include "output.h"
+#include "profile.h"
+#include "result.h"
+
+/* A run on its way. */
+struct course {
+    const struct run *run;
+    const struct code_external *external;
+    struct run_result start; /* of run_start */
+    struct code_values values;
+    char **words;
+    char folder[CODE_PATH], ic[2 * CODE_PATH];
+    char *snapshot;            /* the file that is judged */
+    struct snapshot_file read; /* the initial state as the code's reader may find it */
+    bool readable;             /* and it can be read */
+    struct code_outcome outcome;
+    struct judged judged;
+    bool is_judged;
+    enum code_reason reason; /* why there is no result */
+    char message[400];
+};
+
+/* ---- before the run ---- */
+
+static enum status make_folder(struct course *course, struct error *error)
+{
+    const char *work = course->external->work, *temporary = getenv("TMPDIR");
+    if (work && output_folder(work, error)) return error->status;
+    const int used = work ? snprintf(course->folder, sizeof course->folder, "%s/%s-n%zu-XXXXXX",
+                                     work, course->run->asked.file.name, course->start.n)
+                          : snprintf(course->folder, sizeof course->folder, "%s/sphproof-XXXXXX",
+                                     temporary && *temporary ? temporary : "/tmp");
+    if (used < (int)sizeof course->folder && mkdtemp(course->folder)) {
+        snprintf(course->ic, sizeof course->ic, "%s/%s", course->folder,
+                 course->values.of[CODE_WORD_IC]);
+        return STATUS_OK;
+    }
+    course->folder[0] = '\0';
+    return error_set(error, STATUS_ENVIRONMENT, "no folder for a run in %.200s: %s",
+                     work ? work : "the folder of temporary files", strerror(errno));
+}
+
+/* Runs a command; time and memory are what the code file allows. */
+static enum status call(struct course *course, char **words, struct error *error)
+{
+    const struct code_way *way = &course->external->of->way;
+    const struct code_order order = {.words = (const char *const *)words,
+                                     .folder = course->folder,
+                                     .seconds = code_timeout(way),
+                                     .bytes = code_memory(way),
+                                     .remove = !course->external->work};
+    struct code_outcome *outcome = &course->outcome;
+    if (code_process(&order, outcome, error)) return error->status;
+    if (outcome->ending == CODE_LATE) {
+        course->reason = REASON_timeout;
+        snprintf(course->message, sizeof course->message, "has not ended within %g s",
+                 order.seconds);
+    } else if (outcome->ending == CODE_LARGE) {
+        course->reason = REASON_memory;
+        snprintf(course->message, sizeof course->message, "takes more than %.4g MB of memory",
+                 1e-6 * order.bytes);
+    } else if (outcome->exit) {
+        course->reason = REASON_exit_status;
+        snprintf(course->message, sizeof course->message,
+                 outcome->exit > 128 ? "ended by signal %d" : "exit status %d",
+                 outcome->exit > 128 ? outcome->exit - 128 : outcome->exit);
+    }
+    return STATUS_OK;
+}
+
+/* By a command of the user's. */
+static enum status call_for_start(struct course *course, struct error *error)
+{
+    const char *command = course->external->of->way.value[CODE_ic];
+    char **words = code_words_of(course->external, command, &course->values);
+    if (!words) return error_set(error, STATUS_ENVIRONMENT, "no memory for a command");
+    const enum status status = call(course, words, error);
+    code_words_free(words);
+    if (!status && !course->reason && access(course->ic, R_OK)) {
+        course->reason = REASON_exit_status;
+        snprintf(course->message, sizeof course->message, "the command of ic has made no %s",
+                 course->values.of[CODE_WORD_IC]);
+    }
+    return status;
+}
+
+static enum status write_start(struct course *course, struct error *error)
+{
+    const struct start_format *format = code_format(&course->external->of->way);
+    const struct snapshot_options options = {.here = false};
+    struct error unread;
+    enum status status = format ? start_write(format, &course->start, course->ic, error)
+                                : call_for_start(course, error);
+    if (!status && !course->reason)
+        course->readable = !snapshot_read(course->ic, &options, &course->read, &unread);
+    return status;
+}
+
+static enum status prepare(struct course *course, struct error *error)
+{
+    const struct code_external *external = course->external;
+    const struct start_format *format = code_format(&external->of->way);
+    if ((format && start_possible(format, &course->run->problem, error)) ||
+        run_start(course->run, &course->start, error))
+        return error->status;
+    code_values(&course->values, external, course->run, &course->start);
+    course->words = code_words_of(external, code_command(external), &course->values);
+    if (!course->words) return error_set(error, STATUS_ENVIRONMENT, "no memory for a command");
+    if (make_folder(course, error) || write_start(course, error)) return error->status;
+    return code_write_templates(external, &course->values, course->folder, error);
+}
+
+/* ---- the snapshot ---- */
+
+/* The pattern of its name, in the run's folder unless it is absolute; malloced. */
+static char *pattern_of(const struct course *course)
+{
+    struct buffer pattern = {0};
+    char *name = code_fill(course->external->of->way.value[CODE_snapshot], course->values.of);
+    for (const char *c = course->folder; name && *name != '/' && *c; c++) {
+        if (strchr("\\*?[", *c)) buffer_add(&pattern, "\\");
+        buffer_add_bytes(&pattern, c, 1);
+    }
+    if (name && *name != '/') buffer_add(&pattern, "/");
+    if (name) buffer_add(&pattern, name);
+    free(name);
+    return buffer_take(&pattern);
+}
+
+static bool all_in(const struct snapshot_file *file, const double *lo, const double *hi, int dim)
+{
+    for (int d = 0; d < dim; d++)
+        for (size_t i = 0; file->column[d] && i < file->n; i++)
+            if (!(file->column[d][i] >= lo[d] && file->column[d][i] <= hi[d])) return false;
+    return true;
+}
+
+/* The box where the file does not say it: the case's, or as long from 0 on. */
+static bool box_of(const struct course *course, const struct snapshot_file *file, char *text,
+                   size_t size)
+{
+    const struct domain *box = &course->start.problem.domain;
+    const bool ours = all_in(file, box->lo, box->hi, box->dim);
+    size_t used = 0;
+    if (file->boxed) return false;
+    for (int d = 0; d < box->dim && used < size; d++)
+        used += (size_t)snprintf(text + used, size - used, "%s%.17g:%.17g", d ? "," : "",
+                                 ours ? box->lo[d] : 0, box->hi[d] - (ours ? 0 : box->lo[d]));
+    return true;
+}
+
+/* Of the kernel that was found, else of the case's. */
+static void complete(struct course *course)
+{
+    const struct run *run = course->run;
+    struct run_result *result = &course->judged.result;
+    const struct conventions *found = &course->judged.conventions;
+    const struct domain *ours = &course->start.problem.domain, *theirs = &result->problem.domain;
+    struct conservation start = {0};
+    double shift[3] = {0};
+    for (int d = 0; d < ours->dim; d++) shift[d] = theirs->lo[d] - ours->lo[d];
+    if (code_format(&course->external->of->way))
+        judge_sum(&result->problem, &course->start.snapshot, shift, &start);
+    else
+        start = course->judged.start;
+    const struct trace_drift drift =
+        trace_drift(&start, &course->judged.sums, &course->judged.sums);
+    result->mass = drift.mass;
+    result->momentum = drift.momentum;
+    result->angular_momentum = drift.angular_momentum;
+    result->energy = drift.energy;
+    result->settings = run->settings;
+    result->regularity = regularity_of(
+        &result->problem, found->known ? &found->candidate[0].kernel : &run->scheme.kernel,
+        &result->snapshot);
+    result->cost.wall_s = course->outcome.wall_s;
+    result->cost.cpu_s = course->outcome.cpu_s;
+}
+
+/* What the file holds is a result, or course->reason says why it is none. */
+static enum status judge(struct course *course, const char *path, struct error *error)
+{
+    const double t_end = settings_real(&course->run->settings, SETTING_t_end);
+    struct judge_request request = {.case_name = course->run->asked.file.asked,
+                                    .asked = &course->run->asked,
+                                    .gamma = {true, course->run->problem.gamma},
+                                    .kernel = -1};
+    struct snapshot_file file;
+    struct error said = {0};
+    char box[160];
+    enum status status = snapshot_read(path, &request.options, &file, &said);
+    if (status == STATUS_BAD_INPUT)
+        course->reason = file.impossible ? REASON_not_a_number : REASON_truncated;
+    if (!status)
+        course->reason =
+            code_compare(&file, course->readable ? &course->read : NULL, &course->start.problem,
+                         t_end, course->message, sizeof course->message);
+    if (!status && !file.time.known) request.time = (struct snapshot_value){true, t_end};
+    if (!status && box_of(course, &file, box, sizeof box)) request.box = box;
+    snapshot_file_free(&file);
+    if (!status && !course->reason) {
+        course->is_judged = true;
+        status = judge_as(path, &request, false, &course->judged, &said);
+        if (status == STATUS_BAD_INPUT) course->reason = REASON_wrong_particles;
+    }
+    if (!status && !course->reason) complete(course);
+    if (status == STATUS_BAD_INPUT)
+        snprintf(course->message, sizeof course->message, "%.390s",
+                 said.message + (strncmp(said.message, course->folder, strlen(course->folder))
+                                     ? 0
+                                     : strlen(course->folder) + 1));
+    else if (status)
+        *error = said;
+    return status == STATUS_BAD_INPUT ? STATUS_OK : status;
+}
+
+static enum status execute(struct course *course, struct error *error)
+{
+    struct code_matches before = {0}, now = {0};
+    char *pattern = pattern_of(course);
+    enum status status = STATUS_OK;
+    if (!pattern || !code_match(pattern, &before))
+        status = error_set(error, STATUS_ENVIRONMENT, "no memory for names of snapshots");
+    if (!status) status = call(course, course->words, error);
+    if (!status && !course->reason && !code_match(pattern, &now))
+        status = error_set(error, STATUS_ENVIRONMENT, "no memory for names of snapshots");
+    if (!status && !course->reason) {
+        const char *path = code_last(&now, &before, course->ic, &course->reason);
+        if (path && !(course->snapshot = strdup(path)))
+            status = error_set(error, STATUS_ENVIRONMENT, "no memory for names of snapshots");
+        else if (path)
+            status = judge(course, course->snapshot, error);
+        else
+            snprintf(course->message, sizeof course->message,
+                     course->reason == REASON_old_snapshot
+                         ? "%.200s: all that is there is older than the run"
+                         : "%.200s: there is no such file",
+                     course->external->of->way.value[CODE_snapshot]);
+    }
+    code_matches_free(&before);
+    code_matches_free(&now);
+    free(pattern);
+    return status;
+}
+
+/* ---- what is told ---- */
+
+/* The last lines of what a stream got. */
+static void add_lines(const char *folder, const char *stream, struct buffer *log)
+{
+    enum { LAST = 1500, LINES = 8 };
+    char path[2 * CODE_PATH], bytes[LAST + 1];
+    snprintf(path, sizeof path, "%s/%s", folder, stream);
+    FILE *file = fopen(path, "rb");
+    if (!file) return;
+    if (fseek(file, -LAST, SEEK_END)) rewind(file);
+    size_t n = fread(bytes, 1, LAST, file);
+    fclose(file);
+    while (n && (bytes[n - 1] == '\n' || bytes[n - 1] == ' ')) n--;
+    size_t from = n;
+    for (int lines = 0; from; from--)
+        if (bytes[from - 1] == '\n' && ++lines == LINES) break;
+    for (size_t i = from; i < n; i++)
+        if (!bytes[i]) bytes[i] = '?';
+    bytes[n] = '\0';
+    for (char *rest = bytes + from, *line; (line = strtok_r(rest, "\n", &rest));) {
+        status_clean(line);
+        buffer_format(log, "%s%s", log->size ? "\n" : "", line);
+    }
+}
+
+/* Of standard error, and of the output where that has none; malloced. */
+static char *log_of(const struct course *course)
+{
+    struct buffer log = {0};
+    if (course->folder[0]) add_lines(course->folder, "stderr", &log);
+    if (course->folder[0] && !log.size) add_lines(course->folder, "stdout", &log);
+    buffer_add(&log, "");
+    return buffer_take(&log);
+}
+
+static json_t *code_json(const struct code_external *external, const char *command)
+{
+    char sum[SHA256_TEXT];
+    code_program_sum(external, sum);
+    return json_pack("{s:s, s:s, s:s, s:s}", "title", external->base.title, "command", command,
+                     "sha256", sum, "ic", code_value(&external->of->way, CODE_ic));
+}
+
+static void add_code(const struct course *course, const char *log, json_t *document)
+{
+    char *command = code_words_line(course->words);
+    json_t *code = code_json(course->external, command ? command : "");
+    const struct code_outcome *outcome = &course->outcome;
+    json_object_set_new(code, "log", json_string(log));
+    json_object_set_new(code, "exit_status", json_integer(outcome->exit));
+    json_object_set_new(code, "wall_s", result_number(outcome->wall_s));
+    json_object_set_new(code, "cpu_s", result_number(outcome->cpu_s));
+    if (course->external->work) json_object_set_new(code, "folder", json_string(course->folder));
+    json_object_set_new(document, "code", code);
+    free(command);
+}
+
+static void forget_scheme(json_t *document)
+{
+    json_t *settings = json_object_get(document, "settings");
+    for (int key = 0; settings && key < SETTINGS; key++)
+        if (strcmp(setting_keys[key].section, "scheme") == 0)
+            json_object_del(settings, setting_keys[key].name);
+}
+
+/* Keys of our solver's scheme go out of "settings". */
+static void describe(const struct run_external *base, json_t *document)
+{
+    const struct code_external *external = (const struct code_external *)base;
+    forget_scheme(document);
+    json_object_set_new(document, "code", code_json(external, code_command(external)));
+}
+
+/* What a run of ours has and another program does not tell. */
+static void forget(json_t *document)
+{
+    static const char *const counts[] = {
+        "steps",         "particle_updates",  "pair_interactions", "skipped_particle_updates",
+        "without_slope", "without_viscosity", "peak_rss_bytes"};
+    json_t *cost = json_object_get(document, "cost");
+    json_object_set_new(document, "plan", json_array());
+    json_object_del(document, "estimate");
+    for (size_t k = 0; cost && k < sizeof counts / sizeof *counts; k++)
+        json_object_set_new(cost, counts[k], json_null());
+    forget_scheme(document);
+}
+
+static void add_judged(const struct judged *judged, json_t *document)
+{
+    static const char *const names[] = {"layout", "code", "assumptions", "kernel", "precision"};
+    json_t *one = judge_one_json(judged, false), *found = json_object();
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++)
+        json_object_set(found, names[k], json_object_get(one, names[k]));
+    json_object_set_new(document, "judged", found);
+    json_decref(one);
+}
+
+static enum status tell_sound(const struct course *course, json_t *document)
+{
+    char *log = log_of(course);
+    run_add_json(&course->run->asked, &course->judged.result, document);
+    forget(document);
+    add_judged(&course->judged, document);
+    add_code(course, log ? log : "", document);
+    free(log);
+    return STATUS_OK;
+}
+
+static enum status tell_failed(const struct course *course, json_t *document, struct error *error)
+{
+    char *log = log_of(course);
+    const char *last = log && strrchr(log, '\n') ? strrchr(log, '\n') + 1 : log ? log : "";
+    error_set(error, STATUS_BROKE_DOWN, "%.80s: %s: %.180s%s%.160s%s", course->external->base.title,
+              code_reason_names[course->reason], course->message,
+              *last ? "; its log ends with: " : "", last,
+              course->external->work ? "" : " (--work DIR keeps its files)");
+    run_add_plan(&course->run->asked, &course->start, document);
+    forget(document);
+    json_object_set_new(document, "status", json_string("failed"));
+    json_object_set_new(document, "reason", json_string(code_reason_names[course->reason]));
+    json_object_set_new(document, "message", json_string(error->message));
+    add_code(course, log ? log : "", document);
+    free(log);
+    return STATUS_BROKE_DOWN;
+}
+
+static void course_free(struct course *course)
+{
+    if (course->folder[0] && !course->external->work) code_remove(course->folder);
+    if (course->is_judged) judge_free(&course->judged);
+    snapshot_file_free(&course->read);
+    code_words_free(course->words);
+    free(course->snapshot);
+    run_free(&course->start);
+}
+
+enum status code_run(const struct run *run, struct judged *judged, json_t **document,
+                     struct error *error)
+{
+    struct course *course = calloc(1, sizeof *course);
+    json_t *ignored = json_object();
+    *document = NULL;
+    if (!course || !ignored) {
+        free(course), json_decref(ignored);
+        return error_set(error, STATUS_ENVIRONMENT, "no memory for a run of another code");
+    }
+    course->run = run;
+    course->external = (const struct code_external *)run->asked.external;
+    enum status status = code_add_key(run->asked.external, run, ignored, error);
+    if (!status) status = prepare(course, error);
+    if (!status && !course->reason) status = execute(course, error);
+    if (!status) {
+        *document = result_new("run");
+        status =
+            course->reason ? tell_failed(course, *document, error) : tell_sound(course, *document);
+    }
+    if (!status && judged) {
+        *judged = course->judged;
+        judged->path = run->asked.external->title; /* the file goes away */
+        course->is_judged = false;
+    }
+    course_free(course);
+    free(course);
+    json_decref(ignored);
+    return status;
+}
+
+/* ---- as a pool and a study see it ---- */
+
+static enum status compute(const struct run_external *external, const struct run *run, bool profile,
+                           json_t **document, struct error *error)
+{
+    struct judged judged;
+    (void)external;
+    const enum status status = code_run(run, &judged, document, error);
+    if (status) return status;
+    const struct run_result *result = &judged.result;
+    if (profile)
+        json_object_set_new(*document, "profile",
+                            judged.file.dim > 1 ? cloud_profile_json(result)
+                                                : profile_json(result));
+    judge_free(&judged);
+    return STATUS_OK;
+}
+
+enum status code_prepare(const struct code *code, const char *case_name, const char *work, int n,
+                         char *const *arguments, struct code_external *external,
+                         struct run_settings *settings, struct error *error)
+{
+    const struct code_case *of = code_case_of(code, case_name, error);
+    if (!of) return error->status;
+    *external = (struct code_external){
+        .base = {code->way.value[CODE_title], code_add_key, compute, describe},
+        .code = code,
+        .of = of,
+        .work = work};
+    *settings = (struct run_settings){
+        .file = of->file, .settings = of->file.settings, .threads = 1, .external = &external->base};
+    return settings_apply(&settings->settings, n, arguments, error);
+}

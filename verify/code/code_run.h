@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * One run of another code, in place of one of ours: the initial state is written, templates are
+ * filled in, the command runs in a folder of its own, its last snapshot is judged, and the document
+ * of `sphproof run` comes of it with "code" and "judged" beside. Ladders, orders, gates, pages and
+ * history are made of such documents, whoever has computed. */
+#ifndef SPHPROOF_CODE_RUN_H
+#define SPHPROOF_CODE_RUN_H
+
+#include "code_file.h"
+#include "judge.h"
+#include "run.h"
+
+/* Options of commands that run codes. */
+#define CODE_OPTION_HELP                                                                           \
+    "another program computes: what that file describes (`sphproof list code_keys`)"
+#define CODE_WORK_HELP                                                                             \
+    "with --code: keep each run's folder there: initial state, templates, logs, snapshots"
+
+/* What run_settings.external points to. It may not move while runs use it. */
+struct code_external {
+    struct run_external base;
+    const struct code *code;
+    const struct code_case *of;
+    const char *command; /* of a fault; NULL: the case's */
+    const char *work;    /* folder in which those of the runs stay; NULL: they go away */
+};
+
+/* The settings of a case of the code with KEY=VALUE arguments; settings->external becomes external.
+ * STATUS_BAD_INPUT: the code has no such case, or keys are wrong. */
+enum status code_prepare(const struct code *code, const char *case_name, const char *work, int n,
+                         char *const *arguments, struct code_external *external,
+                         struct run_settings *settings, struct error *error);
+
+/* Runs. Of STATUS_OK the snapshot as judged (judge_free it) is there as well; STATUS_BROKE_DOWN:
+ * the document says "failed" and for what "reason", and error has the last lines of the log.
+ * Anything else leaves nothing. */
+enum status code_run(const struct run *run, struct judged *judged, json_t **document,
+                     struct error *error);
+
+#endif

@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The snapshot that a run of a code leaves: which file it is, and whether it can be a result of the
+ * initial state that the code was given. */
+#ifndef SPHPROOF_CODE_SNAPSHOT_H
+#define SPHPROOF_CODE_SNAPSHOT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <sys/stat.h>
+
+#include "problem.h"
+#include "snapshot_file.h"
+
+/* Why a run has no result; REASON_NONE: it has one. */
+#define CODE_REASON_LIST(REASON)                                                                   \
+    REASON(exit_status)                                                                            \
+    REASON(timeout)                                                                                \
+    REASON(memory)                                                                                 \
+    REASON(no_snapshot)                                                                            \
+    REASON(old_snapshot)                                                                           \
+    REASON(truncated)                                                                              \
+    REASON(not_a_number)                                                                           \
+    REASON(wrong_time)                                                                             \
+    REASON(wrong_particles)                                                                        \
+    REASON(ignored_ic)
+enum code_reason {
+    REASON_NONE,
+#define REASON(name) REASON_##name,
+    CODE_REASON_LIST(REASON)
+#undef REASON
+        REASONS
+};
+extern const char *const code_reason_names[REASONS]; /* as results write them; "" of none */
+
+/* Files whose names fit a pattern; of those that are there before a run, how they were. */
+struct code_matches {
+    size_t n;
+    char **path; /* short names first, else in the order of their bytes */
+    struct stat *was;
+};
+
+/* False: no memory. */
+bool code_match(const char *pattern, struct code_matches *matches);
+void code_matches_free(struct code_matches *matches);
+
+/* The last of those that a run has written which began when `began` was written; NULL and a reason:
+ * there are none, or old ones. */
+const char *code_last(const struct code_matches *now, const struct code_matches *before,
+                      const char *began, enum code_reason *reason);
+
+/* Is it a result at t_end of this initial state (NULL: one that cannot be read)? The message says
+ * what is wrong. t_end is met to a hundredth. */
+enum code_reason code_compare(const struct snapshot_file *file, const struct snapshot_file *ic,
+                              const struct prepared *problem, double t_end, char *message,
+                              size_t size);
+
+#endif

@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "code_cost.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "result.h"
+#include "value.h"
+
+/* Of level l: L1 of a field, or how far a functional is from its exact value. */
+static double error_of(const json_t *study, const char *what, size_t l)
+{
+    const json_t *level = json_array_get(json_object_get(study, "levels"), l);
+    const json_t *functional = value_named(json_object_get(study, "functionals"), what);
+    const double error = value_inner(json_object_get(level, "errors"), what, "l1");
+    if (isfinite(error) || !functional) return error;
+    return fabs(value_real(json_array_get(json_object_get(functional, "values"), l)) -
+                value_member(functional, "exact"));
+}
+
+static void add_points(const json_t *study, const char *what, json_t *points)
+{
+    const json_t *level;
+    size_t l;
+    json_array_foreach(json_object_get(study, "levels"), l, level)
+        json_array_append_new(points, json_pack("{s:s, s:o, s:o, s:o, s:o}", "scheme",
+                                                value_text(study, "label"), "n",
+                                                json_incref(json_object_get(level, "n")), "error",
+                                                result_number(error_of(study, what, l)), "cpu_s",
+                                                result_number(value_member(level, "cpu_s")),
+                                                "on_front", json_false()));
+}
+
+/* The document of the study's case. */
+static json_t *bench_of(json_t *bench, const json_t *study, const char *what)
+{
+    const char *name = value_text(study, "case");
+    json_t *document;
+    size_t i;
+    json_array_foreach(bench, i, document)
+        if (strcmp(value_text(document, "case"), name) == 0) return document;
+    document = json_pack("{s:s, s:s, s:s, s:s, s:s, s:[], s:[]}", "command", "bench", "case", name,
+                         "title", value_text(study, "title"), "error_of", what, "reproduce",
+                         value_text(study, "reproduce"), "schemes", "points");
+    json_array_append_new(bench, document);
+    return document;
+}
+
+void code_cost_add(json_t *results)
+{
+    json_t *bench = json_array(), *study;
+    size_t i;
+    json_array_foreach(json_object_get(results, "studies"), i, study) {
+        const char *measured =
+            json_string_value(json_array_get(json_object_get(study, "measured"), 0));
+        const char *what = measured ? measured : "density";
+        json_t *document = bench_of(bench, study, what);
+        json_array_append_new(json_object_get(document, "schemes"),
+                              json_pack("{s:s}", "scheme", value_text(study, "label")));
+        add_points(study, what, json_object_get(document, "points"));
+    }
+    json_object_set_new(results, "bench", bench);
+}

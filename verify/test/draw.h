@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Numbers drawn at random, the same in every run. Include after test.h. */
+#ifndef DRAW_H
+#define DRAW_H
+
+#include <math.h>
+
+static uint64_t draw_state = 1;
+
+/* From low up to high. */
+static inline double draw(double low, double high)
+{
+    draw_state = draw_state * 6364136223846793005u + 1442695040888963407u;
+    return low + (high - low) * ldexp((double)((draw_state ^ draw_state >> 29) >> 11), -53);
+}
+
+/* From low to high, both included. */
+static inline int draw_count(int low, int high)
+{
+    return low + (int)draw(0, high - low + 1);
+}
+
+#endif

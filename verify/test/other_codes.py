@@ -1,0 +1,352 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""other_codes.py SPHPROOF: runs of other codes. The stand-in is a script that calls SPHPROOF itself, so that errors must be
+those of our own runs; then every way in which a code can fail, by name; nothing that it has started is left behind."""
+import glob
+import hashlib
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import xml.etree.ElementTree
+
+from schema import Validator
+
+program = os.path.abspath(sys.argv[1])
+with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "schema", "sphproof-1.schema.json"), encoding="ascii") as text:
+    validator = Validator(json.load(text))
+
+# The code: MODE CASE N T_END SEED OUT. It reads the initial state's masses, so that they are the file's.
+CODE = """#!%s
+import csv, os, subprocess, sys, time
+mode, case, n, t_end, seed, out = sys.argv[1:7]
+print("the code says: mode", mode)
+def run(t=t_end, n=n, to=out + "_1.csv", *keys):
+    subprocess.run([%r, "run", case, "n=" + n, "t_end=" + t, "seed=" + seed, *keys, "--quiet", "--snapshot", to], check=True)
+if mode == "hang":
+    time.sleep(1000)
+if mode == "eat":
+    eaten = bytearray(400000000)
+    time.sleep(1000)
+if mode == "exit":
+    print("no such table", file=sys.stderr)
+    sys.exit(7)
+if mode == "killed":
+    os.kill(os.getpid(), 9)
+if mode == "early":
+    run(t=repr(0.5 * float(t_end)))
+elif mode == "few":
+    run(n=str(int(n) // 2))
+elif mode == "heavy":
+    run(t_end, n, out + "_1.csv", "left=2 0 2", "right=0.25 0 0.2")
+elif mode == "still":
+    with open("ic.csv") as file, open(out + "_1.csv", "w") as to:
+        to.write(file.read().replace("# time = 0", "# time = " + t_end))
+elif mode not in ("nothing", "old"):
+    run()
+with open(out + "_1.csv") if os.path.exists(out + "_1.csv") else open(os.devnull) as file:
+    text = file.read()
+if mode == "cut":
+    text = text[:len(text) // 2 + 3].rsplit(",", 1)[0]
+if mode == "nan":
+    lines = text.splitlines()
+    lines[-3] = ",".join(["nan"] + lines[-3].split(",")[1:])
+    text = "\\n".join(lines) + "\\n"
+if mode in ("cut", "nan"):
+    with open(out + "_1.csv", "w") as file:
+        file.write(text)
+if mode == "old":
+    run()
+    os.utime(out + "_1.csv", (1e9, 1e9))
+if mode in ("grandchild", "daemon"):
+    subprocess.Popen(["sleep", "9%%d" %% os.getppid()], start_new_session=mode == "daemon")
+    with open(os.path.join(%r, "child"), "w") as file:
+        file.write("9%%d" %% os.getppid())
+"""
+FILE = """[code]
+title = Stand-in
+command = ./code.py %s @N@ @T_END@ @SEED@ @OUT@
+snapshot = @OUT@_*.csv
+timeout = %s
+memory = %s
+[case sod]
+[case gresho]
+command = ./code.py good gresho @N@ @T_END@ @SEED@ @OUT@
+n = 16^2 20^2 24^2 28^2
+velocity_l1 = 0.5 10
+"""
+# mode, reason, what the message says
+FAILURES = (("exit", "exit_status", "no such table"), ("killed", "exit_status", "signal 9"), ("nothing", "no_snapshot", "@OUT@_*.csv"),
+            ("hang", "timeout", "1 s"), ("eat", "memory", "200 MB"), ("cut", "truncated", "out_1.csv"),
+            ("old", "old_snapshot", "older"), ("nan", "not_a_number", "nan"), ("early", "wrong_time", "0.1"),
+            ("few", "wrong_particles", "99"), ("heavy", "ignored_ic", "masses"), ("still", "ignored_ic", "at the start"))
+GOOD = FILE % ("good sod", 60, "none")
+# what is replaced, by what, what the message says
+BAD = ((GOOD, "", "is empty"), ("title", "titel", "did you mean 'title'"), ("[case sod]", "[case sodd]", "did you mean 'sod'"),
+       ("[case sod]", "[casus sod]", "[casus sod]|casus"), ("[case gresho]", "[case sod]", "given twice"),
+       ("@SEED@", "@SEAD@", "did you mean '@SEED@'"), ("./code.py good sod", "./none.py", ":3: command = ./none.py"),
+       ("timeout = 60", "timeout = soon", ":5: timeout = soon"), ("timeout = 60", "timeout = 0", "seconds, above 0"),
+       ("memory = none", "memory = 3", "MB or GB"), ("memory = none", "memory = none\nmemory = none", "first in line 6"),
+       ("memory = none", "shell = perhaps", "yes no"), ("memory = none", "ic = swfit", "did you mean 'swift'"),
+       ("memory = none", "ic = ./code.py @OUT@", "@IC@"), ("memory = none", "parameters = nothing.in", "relative to the code file"),
+       ("memory = none", "parameters = bad.in", "bad.in:2: no word '@WRONG@'"), ("memory = none", "depends = nothing", "relative"),
+       ("n = 16^2", "n = 16^2 12^2", "rising"), ("velocity_l1 = 0.5 10", "velocity_l1 = 3", "least order"),
+       ("velocity_l1", "velocity_l9", "no key in [case gresho]"), ("n = 16^2", "title = x", "title"),
+       ("snapshot = @OUT@_*.csv\n", "", "key snapshot is missing"), ("[code]\n", "", "before the first section"),
+       ("[case gresho]", "[fault slow]\nmemory = 1 GB\n[case gresho]", "key command is missing in [fault slow]"),
+       ("velocity_l1", "shock_radius", "exclude each other"))
+
+
+def write(name, text):
+    with open(name, "w", encoding="ascii") as file:
+        file.write(text)
+
+
+def call(*words, status=0, environment=None):
+    done = subprocess.run([program, *words], capture_output=True, text=True, timeout=100, env=environment)
+    assert done.returncode == status or (status is None and done.returncode < 2), (words, done)
+    return done.stdout, done.stderr
+
+
+def document(*words, status=0):
+    found = json.loads(call(*words, "--json", "-", status=status)[0])
+    faults = list(validator.faults(found, validator.root))
+    assert not faults, (words, faults)
+    return found
+
+
+def running(words):
+    """Processes that were started so."""
+    found = []
+    for path in glob.glob("/proc/[0-9]*/cmdline"):
+        try:
+            with open(path, "rb") as file:
+                if words.encode() in file.read().replace(b"\0", b" "):
+                    found.append(path)
+        except OSError:
+            pass
+    return found
+
+
+def until(condition, what):
+    end = time.monotonic() + 60
+    while not condition():
+        assert time.monotonic() < end, what
+        time.sleep(0.02)
+
+
+def same(ours, theirs, path="", most=1e-12):
+    """To round-off: of what a run has measured."""
+    if isinstance(ours, dict):
+        for key in ours:
+            same(ours[key], theirs[key], path + "/" + key, most)
+    elif isinstance(ours, list):
+        for a, b in zip(ours, theirs):
+            same(a, b, path, most)
+    elif isinstance(ours, (int, float)) and ours != theirs:
+        assert abs(ours - theirs) <= most * abs(ours) + 1e-14, (path, ours, theirs)
+
+
+def test_same(draw):
+    for case, n in (("sod", str(draw.randint(60, 300))), ("gresho", "%d^2" % draw.randint(14, 22))):
+        ours, theirs = document("run", case, "n=" + n), document("run", case, "n=" + n, "--code", "good.ini")
+        for key in ("errors", "functionals", "spacing", "h", "n", "time", "window", "regularity", "budget", "measured"):
+            # h is the file's times a ratio that sums over the kernel tell
+            same(ours[key], theirs[key], case + "/" + key, 1e-9 if key in ("h", "regularity", "budget") else 1e-12)
+        assert theirs["conservation"]["energy"] < 1e-12 and theirs["status"] == "ok", theirs
+        code = theirs["code"]
+        assert code["title"] == "Stand-in" and code["sha256"] == hashlib.sha256(code_bytes).hexdigest() and code["exit_status"] == 0, code
+        assert "mode good" in code["log"] and theirs["cost"]["cpu_s"] > 0 and theirs["cost"]["steps"] is None, theirs
+        assert "kernel" not in theirs["settings"] and theirs["judged"]["assumptions"], theirs
+    said = call("run", "sod", "n=198", "--code", "good.ini")[0]
+    assert "computed by Stand-in" in said and "density " in said, said
+
+
+def test_failures():
+    for mode, reason, told in FAILURES:
+        write("bad.ini", FILE % (mode + " sod", 1 if mode == "hang" else 60, "200 MB" if mode == "eat" else "none"))
+        done = document("run", "sod", "n=198", "--code", "bad.ini", status=3)
+        assert (done["status"], done["reason"]) == ("failed", reason), (mode, done["reason"], done["message"])
+        assert told in done["message"] and reason in done["message"], (mode, done["message"])
+        assert "the code says: mode " + mode in done["code"]["log"] or mode in ("exit", "hang", "eat", "killed"), done["code"]
+    assert not glob.glob("tmp/*"), glob.glob("tmp/*")
+
+
+def test_refused():
+    write("bad.in", "a = @N@\nb = @WRONG@\n")
+    for old, new, told in BAD:
+        assert old in GOOD, old
+        write("bad.ini", GOOD.replace(old, new, 1))
+        out, said = call("run", "sod", "--code", "bad.ini", "--work", "refused", status=2)
+        assert not out and any(part in said for part in told.split("|")), (new, said)
+    for words, told in ((("run", "noh_2d"), "gresho"), (("run", "sod", "kernel=cubic_spline"), "kernel"),
+                        (("run", "sod", "--snapshot", "a.csv"), "--work"), (("run", "sod", "n=2"), "n")):
+        out, said = call(*words, "--code", "good.ini", "--work", "refused", status=2)
+        assert not out and told in said, (words, said)
+    assert "--code" in call("run", "sod", "--work", "refused", status=2)[1]
+    assert not os.path.exists("refused") and not os.path.exists("a.csv")
+
+
+def test_work():
+    """Templates, a starting command of the user's, a shell; what is kept."""
+    write("par.txt.in", "n @N@ dim @DIM@ gamma @GAMMA@ box @LO@ @HI@ end @T_END@ out @OUT@ ic @IC@ seed @SEED@ spacing @SPACING@")
+    write("line.ini", GOOD.replace("[case sod]", "parameters = par.txt.in\nshell = yes\n[case sod]")
+          .replace("./code.py good sod", "test -f @PARAMETERS@ && @HERE@/code.py good sod", 1))
+    done = document("run", "sod", "n=100", "--code", "line.ini", "--work", "kept")
+    with open(os.path.join(done["code"]["folder"], "par.txt"), encoding="ascii") as file:
+        assert file.read() == ("n 100 dim 1 gamma 1.4 box -1 1 end 0.2 out out ic ic.csv seed 1 spacing 0.02"), done
+    assert {"ic.csv", "out_1.csv", "par.txt", "stderr", "stdout"} == set(os.listdir(done["code"]["folder"]))
+    for entry in json.loads(call("list", "formats", "--json", "-")[0])["families"]["formats"]:
+        if entry["name"] == "sph_exa":  # which is for 3D
+            continue
+        write("format.ini", GOOD.replace("[case sod]", "parameters = par.txt.in\nic = %s\n[case sod]" % entry["name"], 1))
+        done = document("run", "sod", "n=100", "--code", "format.ini", "--work", "kept")
+        with open(os.path.join(done["code"]["folder"], "par.txt"), encoding="ascii") as file:
+            words = file.read().split()
+        assert os.path.exists(os.path.join(done["code"]["folder"], words[words.index("ic") + 1])), entry
+        assert ("box 0 2" if "gadget" in entry["name"] or entry["name"] == "swift" else "box -1 1") in " ".join(words), (entry, words)
+    write("start.ini", GOOD.replace("[case sod]", "ic = ./start.sh @IC@ @N@\n[case sod]"))
+    write("start.sh", "#!/bin/sh\nexec %s ic sod n=$2 --format csv --out $1 --quiet\n" % program)
+    os.chmod("start.sh", 0o700)
+    # a command has to find its file's format by itself
+    done = document("run", "sod", "n=100", "--code", "start.ini")
+    same(document("run", "sod", "n=100")["errors"], done["errors"])
+
+
+def test_ladder(draw):
+    """Orders and gates are those of our own runs, whoever computes, and however many at once; what is kept is not
+    computed again unless something has changed that decides it."""
+    ladder = ",".join("%d^2" % n for n in sorted(draw.sample(range(12, 24), 4)))
+    ours = document("converge", "gresho", "--n", ladder, status=None)
+    for more in ((), ("--jobs", "3", "--cache", "cache"), ("--cache", "cache")):
+        theirs = document("converge", "gresho", "--n", ladder, "--code", "good.ini", "--work", "runs", *more)
+        assert [level["n"] for level in theirs["levels"]] == [level["n"] for level in ours["levels"]]
+        for a, b in zip(ours["levels"], theirs["levels"]):
+            same(a["errors"], b["errors"], "errors", 1e-10)
+        for a, b in zip(ours["orders"], theirs["orders"]):
+            same({key: a[key] for key in ("order", "pairwise")}, b, a["field"], 1e-8)
+        gates = {order["field"]: order["gate"] for order in theirs["orders"] if order["gate"]}
+        assert list(gates) == ["velocity"] and gates["velocity"]["bound"] >= 10, gates
+        assert theirs["code"]["title"] == "Stand-in" and not theirs["floors"] and "kernel" not in theirs["settings"], theirs
+    count = len(os.listdir("runs"))
+    assert count == 8, os.listdir("runs")
+    for change in ("# other", "# timeout"):
+        write("other.ini", GOOD.replace("[case sod]", "depends = other.txt\n[case sod]"))
+        write("other.txt", change)
+        document("converge", "gresho", "--n", ladder, "--code", "other.ini", "--work", "runs", "--cache", "cache")
+        count += 4
+        assert len(os.listdir("runs")) == count, change
+    write("bad.ini", GOOD.replace("good gresho", "exit gresho"))
+    done = document("converge", "gresho", "--code", "bad.ini", "--work", "runs", status=3)
+    assert done["status"] == "failed" and "no such table" in done["message"] and "n = 256" in done["message"], done
+    for words, told in (("--vary", "kernel"), "kernel"), (("eta=3",), "eta"):
+        assert told in call("converge", "gresho", *words, "--code", "good.ini", status=2)[1], words
+    write("tight.ini", GOOD.replace("0.5 10", "0.5 1e-9"))
+    document("converge", "gresho", "--n", ladder, "--code", "tight.ini", "--cache", "cache", status=1)
+    # the old bound at the end of the case's own ladder stands for a larger one at the end of a shorter ladder
+    write("short.ini", GOOD.replace("velocity_l1 = 0.5 10\n", ""))
+    bounds = [{order["field"]: order["gate"] for order in document("converge", "gresho", *words, status=None)["orders"]
+               if order["gate"]}["velocity"] for words in (("--n", "16^2,20^2,24^2,28^2"), ("--code", "short.ini"))]
+    assert abs(bounds[0]["bound"] / bounds[1]["bound"] - 1) < 1e-12, bounds
+
+
+def test_shares():
+    """Three shares into one folder, and the plain command that finds everything there."""
+    words = ("converge", "gresho", "--code", "good.ini", "--work", "shared_runs", "--cache", "shared")
+    for share in 1, 2, 3:
+        call(*words, "--shard", "%d/3" % share)
+    assert len(os.listdir("shared_runs")) == 4
+    assert [level["n"] for level in document(*words)["levels"]] == [256, 400, 576, 784]
+    assert len(os.listdir("shared_runs")) == 4
+
+
+def test_report():
+    """Two codes beside our own schemes: a column each; what fails is a red cell, and the history goes on."""
+    both = GOOD.replace("good sod", "good sound_wave").replace("[case sod]", "[case sound_wave]\nn = 16 20 24 28\ndensity_l1 = 0.5 10")
+    write("both.ini", both)
+    write("bad.ini", GOOD.replace("Stand-in", "Broken").replace("good gresho", "exit gresho").replace("[case sod]\n", ""))
+    for night in range(2):
+        found = document("report", "--code", "both.ini", "--code", "bad.ini", "--out", "out", "--jobs", "2", status=1)
+        assert found["mode"] == "code" and len(found["history"]["nights"]) == night + 1, found["history"]
+        assert not night or found["found"] == found["computations"], (found["found"], found["computations"])
+    labels = {(study["case"], study["label"]): study for study in found["studies"]}
+    assert set(labels) == {("sound_wave", "Stand-in"), ("sound_wave", "default"), ("sound_wave", "standard"), ("gresho", "Stand-in"),
+                           ("gresho", "Broken"), ("gresho", "default"), ("gresho", "textbook SPH")}, labels.keys()
+    for case in "sound_wave", "gresho":
+        for ours, theirs in zip(labels[case, "default"]["levels"], labels[case, "Stand-in"]["levels"]):
+            same(ours["errors"], theirs["errors"], case, 1e-10)
+        assert labels[case, "Stand-in"]["reproduce"] == "sphproof converge %s --code both.ini" % case
+        assert not any(order["gate"] for order in labels[case, "default"]["orders"])
+    assert labels["gresho", "Broken"]["status"] == "failed" and "code" in labels["gresho", "Broken"]
+    assert sorted(failure["area"] for failure in found["verdict"]["failures"]) == ["run", "study"], found["verdict"]
+    assert all("no such table" in failure["detail"] for failure in found["verdict"]["failures"]), found["verdict"]
+    assert {len(bench["points"]) for bench in found["bench"]} == {12}, found["bench"]
+    page = xml.etree.ElementTree.fromstring(open("out/index.html", encoding="utf-8").read().replace("<!DOCTYPE html>", ""))
+    text = "".join(page.itertext())
+    for word in "Stand-in", "Broken", "exit_status", "What was assumed of", "sphproof converge gresho --code bad.ini", "textbook SPH":
+        assert word in text, word
+    assert "Broken" in open("out/junit.xml", encoding="utf-8").read()
+    for words, told in ((("--nightly",), "--nightly and --code"), (("--code", "both.ini"), "two codes are called")):
+        assert told in call("report", "--code", "both.ini", *words, "--out", "none", status=2)[1], words
+    assert not os.path.exists("none")
+
+
+def test_bench():
+    """A code's points stand beside ours; errors are those of its runs."""
+    brief = ("--time", "1e-5", "--samples", "1", "--n", "14^2,18^2")
+    for more in (), ("--cache", "costs"):
+        found = document("bench", "gresho", "--code", "good.ini", *brief, *more)
+        points = [point for point in found["points"] if point["scheme"] == "Stand-in"]
+        assert [point["n"] for point in points] == [196, 324] and all(point["cpu_s"] > 0 for point in points), points
+        ours = [point for point in found["points"] if point["scheme"] == "as given"]
+        for a, b in zip(ours, points):
+            same(a["error"], b["error"], "error", 1e-10)
+    write("bad.ini", GOOD.replace("good gresho", "exit gresho"))
+    found = document("bench", "gresho", "--code", "bad.ini", *brief)
+    told = [scheme for scheme in found["excluded"] if scheme["scheme"] == "Broken" or "no such table" in json.dumps(scheme)]
+    assert told and not [point for point in found["points"] if point["scheme"] == "Stand-in"], found["excluded"]
+    assert "exclude each other" in call("bench", "--kernels", "--code", "good.ini", status=2)[1]
+
+
+def test_nothing_left():
+    for mode in ("grandchild", "daemon"):
+        write("bad.ini", FILE % (mode + " sod", 60, "none"))
+        document("run", "sod", "n=60", "--code", "bad.ini")
+        with open("child", encoding="ascii") as file:
+            name = "sleep " + file.read()
+        assert not running(name), (mode, running(name))
+    write("bad.ini", FILE % ("hang sod", 60, "none"))
+    words = "code.py hang sod 61"
+    for number in signal.SIGINT, signal.SIGTERM, signal.SIGKILL:
+        child = subprocess.Popen([program, "run", "sod", "n=61", "--code", "bad.ini"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        until(lambda: running(words), "the code never ran")
+        child.send_signal(number)
+        child.wait()
+        until(lambda: not running(words), "the code goes on after signal %d" % number)
+        until(lambda: not glob.glob("tmp/*"), "files are left after signal %d" % number)
+
+
+seed = random.randrange(10**6)
+print("seed", seed)
+with tempfile.TemporaryDirectory() as work:
+    os.chdir(work)
+    os.mkdir("tmp")
+    os.environ["TMPDIR"] = os.path.abspath("tmp")
+    write("code.py", CODE % (sys.executable, program, work))
+    with open("code.py", "rb") as file:
+        code_bytes = file.read()
+    os.chmod("code.py", 0o700)
+    write("good.ini", GOOD)
+    test_same(random.Random(seed))
+    test_failures()
+    test_refused()
+    test_work()
+    test_ladder(random.Random(seed))
+    test_shares()
+    test_report()
+    test_bench()
+    test_nothing_left()
+    os.chdir("/")

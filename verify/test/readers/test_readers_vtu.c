@@ -1,0 +1,236 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * XML of VTK: documents drawn in every form that the format has (numbers as text, in base64, raw
+ * and appended; both byte orders and sizes of sizes) are read to the bit, and a document that is
+ * wrong at one place is refused with what was found there and what is allowed. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "made_table.h"
+
+enum { ARRAYS = 6, BYTES_MAX = 1 << 14 };
+enum form { TEXT, BASE64, APPENDED, FORMS };
+
+static const struct {
+    const char *name;
+    enum snapshot_column column;
+    size_t components;
+} arrays[ARRAYS] = {{"Points", SNAPSHOT_X, 3},   {"velocity", SNAPSHOT_VX, 3},
+                    {"mass", SNAPSHOT_M, 1},     {"density", SNAPSHOT_RHO, 1},
+                    {"pressure", SNAPSHOT_P, 1}, {"smoothing length", SNAPSHOT_H, 1}};
+
+struct document {
+    enum form form;
+    bool big, wide, single, base64; /* base64: of appended bytes */
+    double value[ARRAYS][3 * ROWS];
+    char text[BYTES_MAX], appended[BYTES_MAX];
+    size_t length, bytes;
+};
+
+static struct document made(void)
+{
+    struct document d = {.form = (enum form)drawn(FORMS)};
+    d.big = drawn(2), d.wide = drawn(2), d.single = drawn(2), d.base64 = drawn(2);
+    for (int a = 0; a < ARRAYS; a++)
+        for (size_t i = 0; i < arrays[a].components * ROWS; i++) {
+            const double value = ldexp(1 + uniform(), (int)drawn(20) - 10);
+            d.value[a][i] = d.single ? (double)(float)value : value;
+        }
+    return d;
+}
+
+__attribute__((format(printf, 2, 3))) static void add(struct document *d, const char *format, ...)
+{
+    va_list values;
+    va_start(values, format);
+    d->length += (size_t)vsnprintf(d->text + d->length, sizeof d->text - d->length, format, values);
+    va_end(values);
+}
+
+static size_t put(const struct document *d, unsigned char *to, const void *number, size_t size)
+{
+    for (size_t k = 0; k < size; k++)
+        to[k] = ((const unsigned char *)number)[d->big ? size - 1 - k : k];
+    return size;
+}
+
+/* The size of the bytes, then the bytes, as they stand in the file. */
+static size_t packed(const struct document *d, int a, bool base64, char *to)
+{
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    unsigned char bytes[BYTES_MAX / 2] = {0};
+    const size_t numbers = arrays[a].components * ROWS;
+    const uint64_t large = numbers * (d->single ? 4 : 8);
+    const uint32_t small = (uint32_t)large;
+    size_t n = d->wide ? put(d, bytes, &large, 8) : put(d, bytes, &small, 4), made = 0;
+    for (size_t i = 0; i < numbers; i++) {
+        const float half = (float)d->value[a][i];
+        n += d->single ? put(d, bytes + n, &half, 4) : put(d, bytes + n, &d->value[a][i], 8);
+    }
+    if (!base64) memcpy(to, bytes, n);
+    for (size_t k = 0; base64 && k < n; k += 3)
+        for (int digit = 0; digit < 4; digit++) {
+            const unsigned word =
+                (unsigned)bytes[k] << 16 | (unsigned)bytes[k + 1] << 8 | bytes[k + 2];
+            to[made++] = k + (size_t)digit > n ? '=' : digits[word >> (18 - 6 * digit) & 63];
+        }
+    return base64 ? made : n;
+}
+
+static void add_array(struct document *d, int a)
+{
+    static const char *const formats[FORMS] = {"ascii", "binary", "appended"};
+    add(d, "<DataArray type=\"%s\" Name=\"%s\" NumberOfComponents=\"%zu\" format=\"%s\"",
+        d->single ? "Float32" : "Float64", arrays[a].name, arrays[a].components, formats[d->form]);
+    if (d->form == APPENDED) {
+        add(d, " offset=\"%zu\"/>\n", d->bytes);
+        d->bytes += packed(d, a, d->base64, d->appended + d->bytes);
+        return;
+    }
+    add(d, ">\n ");
+    if (d->form == BASE64) d->length += packed(d, a, true, d->text + d->length);
+    for (size_t i = 0; d->form == TEXT && i < arrays[a].components * ROWS; i++)
+        add(d, "%.17g ", d->value[a][i]);
+    add(d, "</DataArray>\n");
+}
+
+static void write_out(struct document *d)
+{
+    add(d, "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" byte_order=\"%s\"%s>\n",
+        d->big ? "BigEndian" : "LittleEndian", d->wide ? " header_type=\"UInt64\"" : "");
+    add(d,
+        "<UnstructuredGrid><FieldData>\n"
+        "<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" "
+        "format=\"ascii\">0.25</DataArray>\n"
+        "<DataArray type=\"Float64\" Name=\"gamma\" NumberOfTuples=\"1\" "
+        "format=\"ascii\">1.5</DataArray>\n"
+        "<DataArray type=\"Float64\" Name=\"box\" NumberOfTuples=\"6\" "
+        "format=\"ascii\">-1 4000 -1 4000 -1 4000</DataArray>\n"
+        "</FieldData><Piece NumberOfPoints=\"%d\">\n<Points>",
+        ROWS);
+    add_array(d, 0);
+    add(d, "</Points><PointData>\n");
+    for (int a = 1; a < ARRAYS; a++) add_array(d, a);
+    add(d, "</PointData></Piece></UnstructuredGrid>\n");
+    if (d->form == APPENDED) {
+        add(d, "<AppendedData encoding=\"%s\">\n _", d->base64 ? "base64" : "raw");
+        memcpy(d->text + d->length, d->appended, d->bytes);
+        d->length += d->bytes;
+        add(d, "\n</AppendedData>\n");
+    }
+    add(d, "</VTKFile>\n");
+}
+
+static void every_form(void **state)
+{
+    (void)state;
+    for (int draw = 0; draw < 200; draw++) {
+        struct document d = made();
+        struct snapshot_file file;
+        struct error error = {0};
+        write_out(&d);
+        put_file(d.text, d.length);
+        if (snapshot_read(path_of("a.txt"), &(struct snapshot_options){0}, &file, &error))
+            fail_msg("%s\n%s", error.message, d.text);
+        assert_int_equal(file.n, ROWS);
+        for (int a = 0; a < ARRAYS; a++)
+            for (size_t c = 0; c < arrays[a].components; c++)
+                for (size_t i = 0; i < ROWS; i++)
+                    assert_true(file.column[(size_t)arrays[a].column + c][i] ==
+                                d.value[a][i * arrays[a].components + c]);
+        assert_true(file.time.known && file.time.value == 0.25);
+        assert_true(file.gamma.known && file.gamma.value == 1.5);
+        assert_true(file.boxed && file.placed && file.corner[2] == -1 && file.box[2] == 4001);
+        assert_true((file.precision[1] > 1e-8) == d.single);
+        snapshot_file_free(&file);
+    }
+}
+
+/* ---- wrong at one place ---- */
+
+static const struct {
+    enum form form;
+    const char *old, *new, *says;
+} faults[] = {
+    {TEXT, "NumberOfPoints=\"9\"", "NumberOfPoints=\"1e8\"", "NumberOfPoints = '1e8'; allowed: 1"},
+    {TEXT, "NumberOfPoints=\"9\"", "NumberOfPoints=\"0\"", "NumberOfPoints = '0'; allowed: 1"},
+    {TEXT, "NumberOfPoints=\"9\"", "NumberOfPoints=\"2.5\"", "NumberOfPoints = '2.5'"},
+    {TEXT, "NumberOfPoints=\"9\"", "NumberOfPoints=\"10\"",
+     "'Points' has '' as number 28 of the 30"},
+    {TEXT, "format=\"ascii\">\n ", "format=\"ascii\">\n hot ",
+     "'Points' has 'hot' as number 1 of the 27"},
+    {TEXT, "\"Float64\" Name=\"mass\"", "\"Float16\" Name=\"mass\"",
+     "'mass' has numbers of the type 'Float16'; allowed: Float64"},
+    {TEXT, "Name=\"mass\"", "Name=\"density\"", "'density' is a second one for rho; allowed: one"},
+    {TEXT, "Name=\"mass\"", "Name=\"weight\"", "no m; found"},
+    {TEXT, "format=\"ascii\">\n ", "format=\"octal\">\n ",
+     "'Points' has the format 'octal'; allowed: ascii"},
+    {TEXT, "<Piece ", "<Pieces ", "'Points' stands before any Piece"},
+    {TEXT, "</Piece>", "</Piece><Piece NumberOfPoints=\"9\">", "a second Piece; allowed: one"},
+    {TEXT, "byte_order=", "compressor=\"vtkLZ4DataCompressor\" byte_order=",
+     "'vtkLZ4DataCompressor'; allowed: vtkZLibDataCompressor"},
+    {TEXT, "4000 -1 4000 -1", "-1 -1 4000 -1", "'box' goes from -1 to -1"},
+    {TEXT, "\"box\" NumberOfTuples=\"6\"", "\"box\" NumberOfTuples=\"0\"",
+     "'box' has 0 x 1 numbers; allowed: 1 to"},
+    {TEXT, "\"box\" NumberOfTuples=\"6\"", "\"box\" NumberOfTuples=\"1e9\"", "1e+09 x 1 numbers"},
+    {TEXT, "</VTKFile>", "</VTKFil>", "is cut off: does not end with </VTKFile>"},
+    {BASE64, "NumberOfPoints=\"9\"", "NumberOfPoints=\"8\"",
+     "'Points' has 216 bytes; its points need 192"},
+    {BASE64, "\"Float64\" Name=\"velocity\"", "\"Int8\" Name=\"velocity\"",
+     "has 216 bytes; its points need 27"},
+    {BASE64, "AAAA", "A*AA", "'Points' is cut off or damaged"},
+    {APPENDED, "offset=\"0\"", "offset=\"1000000\"",
+     "'Points' has the offset '1000000'; allowed: 0 to"},
+    {APPENDED, "offset=\"0\"", "offset=\"-1\"", "'Points' has the offset '-1'; allowed: 0 to"},
+    {APPENDED, "offset=\"0\"", "offset=\"4\"", "bytes; its points need 216"},
+    {APPENDED, "\n _", "\n ", "AppendedData has no '_'"},
+};
+
+static void replace(struct document *d, const char *old, const char *new)
+{
+    char *const at = strstr(d->text, old);
+    if (!at) return;
+    const size_t from = strlen(old), to = strlen(new), begin = (size_t)(at - d->text);
+    memmove(at + to, at + from, d->length - begin - from);
+    memcpy(at, new, to);
+    d->length += to - from;
+    d->text[d->length] = '\0';
+}
+
+static void one_fault(void **state)
+{
+    (void)state;
+    for (size_t k = 0; k < sizeof faults / sizeof *faults; k++) {
+        struct document d = made();
+        d.form = faults[k].form, d.single = d.big = d.wide = false, d.base64 = true;
+        write_out(&d);
+        const size_t before = d.length;
+        char old[BYTES_MAX];
+        memcpy(old, d.text, before);
+        replace(&d, faults[k].old, faults[k].new);
+        if (d.length == before && memcmp(old, d.text, before) == 0)
+            fail_msg("fault %zu does not apply", k);
+        refuses(d.text, d.length, NULL, faults[k].says);
+    }
+}
+
+/* A document may end anywhere. */
+static void cut_off(void **state)
+{
+    (void)state;
+    for (int draw = 0; draw < 100; draw++) {
+        struct document d = made();
+        write_out(&d);
+        const size_t length = 300 + drawn((unsigned)d.length - 312);
+        refuses(d.text, length, NULL, "is cut off");
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(every_form), cmocka_unit_test(one_fault),
+                                       cmocka_unit_test(cut_off)};
+    return cmocka_run_group_tests(tests, make_place, remove_place);
+}
