@@ -90,8 +90,8 @@ ALWAYS_INLINE void weigh_body(enum gradient gradient, int count, const double *r
     case symbol:                                                                                   \
         if (gradient_of[symbol].weight > WEIGHT_W) weigh_body(symbol, count, q, dw, w);            \
         break;
-CLONES static void weigh(enum gradient gradient, int count, const double *restrict q,
-                         const double *restrict dw, double *restrict w)
+CLONES static void weigh_pairs(enum gradient gradient, int count, const double *restrict q,
+                               const double *restrict dw, double *restrict w)
 {
     switch (gradient) {
         GRADIENT_LIST(WEIGH, )
@@ -293,8 +293,8 @@ static void matrix_weights(const struct cells *cells, const struct pairs *pairs)
     pair_shapes(cells, pairs, false, dw, dw_j);
     widths(width, pairs->count, lane(lanes, LANE_R), *pairs_own(pairs, RECORD_H_INVERSE),
            pairs_theirs(pairs, RECORD_H_INVERSE), q, q_j);
-    weigh(gradient, pairs->count, q, dw, w);
-    weigh(gradient, pairs->count, width == PAIR_WIDTH_MEAN ? q_j : q, dw_j, w_j);
+    weigh_pairs(gradient, pairs->count, q, dw, w);
+    weigh_pairs(gradient, pairs->count, width == PAIR_WIDTH_MEAN ? q_j : q, dw_j, w_j);
 }
 
 void cells_pair_gradients(const struct cells *cells, const struct pairs *pairs)

@@ -57,8 +57,8 @@ ALWAYS_INLINE void weigh_body(enum gradient gradient, int count, double h,
     case symbol:                                                                                   \
         if (gradient_of[symbol].weight > WEIGHT_W) weigh_body(symbol, count, h, lanes, V);         \
         break;
-CLONES static void weigh(enum gradient gradient, int count, double h, const struct lanes *lanes,
-                         const double *restrict V)
+CLONES static void weigh_matrix(enum gradient gradient, int count, double h,
+                                const struct lanes *lanes, const double *restrict V)
 {
     switch (gradient) {
         GRADIENT_LIST(WEIGH, )
@@ -140,7 +140,7 @@ static void matrix_pass(struct cells *cells, const struct cells_fields *fields, 
         cells->shapes.dw(method->kernel, (size_t)count, q, dw);
         if (gradient->weight == WEIGHT_BOTH)
             cells->shapes.w(method->kernel, (size_t)count, q, lane(lanes, LANE_SPARE));
-        weigh(method->gradient, count, 1 / h_inverse, lanes, V);
+        weigh_matrix(method->gradient, count, 1 / h_inverse, lanes, V);
         sound = moments_invert(method, count, lanes, weight, inverse, &condition);
     }
     fields->condition[i] = condition;

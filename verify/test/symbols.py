@@ -9,6 +9,9 @@
 Who calls whom? No files may take names from each other in a circle: of two that do, one holds a piece that
 belongs below both.
 
+Static functions that are compiled for several instruction sets (CLONES) have different names throughout the
+libraries: clang gives the dispatch of each a global name, and two of the same name cannot be linked.
+
 The test first tries itself on libraries with a name and a circle that break the rules."""
 import functools
 import os
@@ -73,6 +76,17 @@ def symbols(nm, library):
     return names_of(nm, library, os.stat(library).st_mtime_ns)
 
 
+def twice_cloned(nm, libraries):
+    """What is compiled for several instruction sets in more than one object: name, objects."""
+    homes = {}
+    for library in libraries:
+        out = subprocess.run([nm, "-A", library], capture_output=True, text=True, check=True)
+        for member, name in re.findall(r"[:\[/]([^:\[\]/]+\.o(?:bj)?)\]?:\s*[0-9a-fA-F]*\s+i\s+(\S+)$",
+                                       out.stdout, re.M):
+            homes.setdefault(name.split(".")[0], set()).add(member)
+    return {name: members for name, members in homes.items() if len(members) > 1}
+
+
 def circles(source, nm, libraries):
     """Sets of files each of which reaches every other through the names that it takes."""
     files, paths, home, takes = sources(source), {}, {}, {}
@@ -100,6 +114,9 @@ def circles(source, nm, libraries):
 def check(source, nm, libraries):
     files = sources(source)
     troubles, paths, count = set(), {}, 0
+    for name, members in twice_cloned(nm, libraries).items():
+        troubles.add("%s is compiled for several instruction sets in each of %s: clang cannot link two of one name"
+                     % (name, " ".join(sorted(members))))
     for library in libraries:
         before = count
         for member, symbol, defined in symbols(nm, library):
@@ -132,6 +149,21 @@ def try_itself(nm, cc):
                 troubles, count = check(folder, nm, [lib])
                 assert count >= 2, "symbols are not read"
                 assert bool(fault) == bool(troubles), "%s: %s" % (name, troubles or "broke_down passes")
+        clones = "__attribute__((target_clones(\"avx2\", \"default\"))) static int %s(int a){return a + 1;}\n" \
+                 "int %s_used(int a){return %s(a);}\n"
+        for other in ("knead", "roll"):
+            made = []
+            for name, inner in (("pies", "knead"), ("cakes", other)):
+                path = os.path.join(folder, name + ".c")
+                with open(path, "w") as f:
+                    f.write(clones % (inner, name, inner))
+                made.append(path + ".o")
+                if subprocess.run(cc.split() + ["-c", path, "-o", made[-1]], capture_output=True).returncode:
+                    break  # no clones on this processor
+            else:
+                lib = os.path.join(folder, other + ".a")
+                subprocess.run(["ar", "rcs", lib] + made, check=True)
+                assert bool(twice_cloned(nm, [lib])) == (other == "knead"), "clones of one name: %s" % other
         calls = {"low": "", "middle": "low", "top": "middle"}
         for fault in ("", "top"):
             calls["low"] = fault
