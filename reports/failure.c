@@ -1,57 +1,35 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "failure.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "buffer.h"
 #include "value.h"
 
-/* Groups of checks and areas, in the order in which they are shown. */
-static const char *const causes[] = {
-    "kernels", "gradients", "conservation", "riemann",   "exact",     "norms",   "hydro",
-    "clouds",  "stability", "check",        "detection", "suspicion", "harness", "convergence",
-    "gate",    "budget",    "study",        "run",       "stress",    "fault",
-};
-enum { CAUSES = sizeof causes / sizeof *causes };
-
-/* Checks of one formula each: before the others of their group, which follow from several. */
-static const char *const elementary[] = {
-    "normalisation", "radial_derivative", "width_derivative", "brute_force",
-    "antisymmetry",  "star_states",       "error_norms",      "riemann_setup",
-    "rates",         "h_residual",        "time_stepping",
-};
-enum { ELEMENTARY = sizeof elementary / sizeof *elementary };
+/* What is no check, in the order in which it is shown after all checks. */
+static const char *const areas[] = {"detection", "suspicion", "harness", "convergence", "gate",
+                                    "budget",    "study",     "run",     "stress",      "fault"};
+enum { AREAS = sizeof areas / sizeof *areas };
 
 struct failure {
     json_t *entry;
-    size_t cause, check, number; /* of the lists above; in the order of coming */
+    double rank;
+    size_t number; /* in the order of coming */
     double excess;
     size_t more; /* other figures of the same check */
 };
 
-/* Where in a list; at its end where it is not. */
-static size_t place(const char *name, const char *const *list, size_t n)
+static double rank_of(const char *area)
 {
-    size_t k = 0;
-    while (k < n && strcmp(list[k], name)) k++;
-    return k;
-}
-
-static size_t cause_of_check(const char *group)
-{
-    size_t cause = place(group, causes, CAUSES);
-    return cause < CAUSES ? cause : place("check", causes, CAUSES);
-}
-
-size_t failure_rank(const char *group, const char *check)
-{
-    return cause_of_check(group) * (ELEMENTARY + 1) + place(check, elementary, ELEMENTARY);
+    int k = 0;
+    while (k < AREAS && strcmp(areas[k], area)) k++;
+    return FAILURE_RANK_MISSED + k;
 }
 
 /* Takes entry. */
-static void keep(struct failure_list *failures, size_t cause, size_t check, double excess,
-                 json_t *entry)
+static void keep(struct failure_list *failures, double rank, double excess, json_t *entry)
 {
     if (failures->count == failures->room) {
         size_t room = 2 * failures->room + 16;
@@ -63,15 +41,14 @@ static void keep(struct failure_list *failures, size_t cause, size_t check, doub
         json_decref(entry);
         return;
     }
-    failures->list[failures->count] =
-        (struct failure){entry, cause, check, failures->count, excess, 0};
+    failures->list[failures->count] = (struct failure){entry, rank, failures->count, excess, 0};
     failures->count++;
 }
 
 void failure_add(struct failure_list *failures, const char *area, const char *name,
                  const char *detail, const char *command)
 {
-    keep(failures, place(area, causes, CAUSES), 0, 0,
+    keep(failures, rank_of(area), 0,
          json_pack("{s:s, s:s, s:s, s:s}", "area", area, "name", name, "detail", detail, "command",
                    command));
 }
@@ -80,6 +57,7 @@ void failure_add_check(struct failure_list *failures, const json_t *figure, doub
                        const char *detail, const char *command)
 {
     const char *group = value_text(figure, "group"), *check = value_text(figure, "name");
+    const double rank = value_member(figure, "rank");
     json_t *entry =
         json_pack("{s:s, s:s++, s:s, s:s, s:s}", "area", "check", "name", group, ": ", check,
                   "subject", value_text(figure, "subject"), "detail", detail, "command", command);
@@ -97,14 +75,13 @@ void failure_add_check(struct failure_list *failures, const json_t *figure, doub
         json_decref(entry);
         return;
     }
-    keep(failures, cause_of_check(group), place(check, elementary, ELEMENTARY), excess, entry);
+    keep(failures, isnan(rank) ? FAILURE_RANK_MISSED - 1 : rank, excess, entry);
 }
 
 static int most_specific_first(const void *a, const void *b)
 {
     const struct failure *x = a, *y = b;
-    if (x->cause != y->cause) return x->cause < y->cause ? -1 : 1;
-    if (x->check != y->check) return x->check < y->check ? -1 : 1;
+    if (x->rank != y->rank) return x->rank < y->rank ? -1 : 1;
     if (x->excess != y->excess) return x->excess > y->excess ? -1 : 1;
     return x->number < y->number ? -1 : 1;
 }

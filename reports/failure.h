@@ -9,8 +9,9 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Where a check stands in this order: less is shown first. */
-size_t failure_rank(const char *group, const char *check);
+/* Less is shown first. Checks say their own rank, all of which are below that of a mutant that no
+ * check has noticed; what is no check comes behind it. */
+enum { FAILURE_RANK_MISSED = 1000 };
 
 /* Begins as {0}; failure_take ends it. No memory: failed is set, failure_take returns NULL. */
 struct failure_list {

@@ -403,10 +403,7 @@ static const struct check_mutant blast_mutants[] = {
     {0},
 };
 
-const struct check check_exact_blast = {
-    .group = "exact",
-    .name = "blast",
+CHECK_DEFINE(
+    exact, blast, 550,
     .property = "Sedov, Noh, spinning disc: jump conditions, balance of balls, constants, limits",
-    .measure = measure_blast,
-    .mutants = blast_mutants,
-};
+    .measure = measure_blast, .mutants = blast_mutants);

@@ -79,15 +79,11 @@ static const struct check_mutant rates_mutants[] = {
     {0},
 };
 
-const struct check check_conservation_rates = {
-    .group = "conservation",
-    .name = "rates",
+CHECK_DEFINE(
+    conservation, rates, 308,
     .property = "rates of total momentum, energy and (standard) angular momentum, relative to sums "
                 "of absolute values, on disordered states",
-    .subjects = right_subjects,
-    .measure = measure_rates,
-    .mutants = rates_mutants,
-};
+    .subjects = right_subjects, .measure = measure_rates, .mutants = rates_mutants);
 
 /* ---- antisymmetry ---- */
 
@@ -150,14 +146,10 @@ static const struct check_mutant antisymmetry_mutants[] = {
     {0},
 };
 
-const struct check check_conservation_antisymmetry = {
-    .group = "conservation",
-    .name = "antisymmetry",
-    .property = "mean pair gradients: Gbar_ij = -Gbar_ji, in units of the last place",
-    .subjects = right_gradients,
-    .measure = measure_antisymmetry,
-    .mutants = antisymmetry_mutants,
-};
+CHECK_DEFINE(conservation, antisymmetry, 304, .says = "pair gradients are not antisymmetric",
+             .property = "mean pair gradients: Gbar_ij = -Gbar_ji, in units of the last place",
+             .subjects = right_gradients, .measure = measure_antisymmetry,
+             .mutants = antisymmetry_mutants);
 
 /* ---- defects: what is not conserved, and by how much ---- */
 
@@ -189,12 +181,9 @@ static const struct check_mutant defects_mutants[] = {
     {0},
 };
 
-const struct check check_conservation_defects = {
-    .group = "conservation",
-    .name = "defects",
+CHECK_DEFINE(
+    conservation, defects, 350,
     .property =
         "what is not conserved: momentum by linear_exact, angular momentum by ia (1e-5 over "
         "the relative rate)",
-    .measure = measure_defects,
-    .mutants = defects_mutants,
-};
+    .measure = measure_defects, .mutants = defects_mutants);

@@ -96,13 +96,10 @@ static const struct check_mutant balance_mutants[] = {
     {0},
 };
 
-const struct check check_exact_balance = {
-    .group = "exact",
-    .name = "riemann_balance",
+CHECK_DEFINE(
+    exact, riemann_balance, 550,
     .property = "integral of U over x changes by the integral of F over t, across all waves",
-    .measure = measure_balance,
-    .mutants = balance_mutants,
-};
+    .measure = measure_balance, .mutants = balance_mutants);
 
 static void measure_fans(struct check_run *run, const void *subject)
 {
@@ -141,13 +138,10 @@ static const struct check_mutant fans_mutants[] = {
     {0},
 };
 
-const struct check check_exact_fans = {
-    .group = "exact",
-    .name = "riemann_fans",
+CHECK_DEFINE(
+    exact, riemann_fans, 550,
     .property = "inside a fan: characteristics, Riemann invariant, isentrope, dU/dt + dF/dx = 0",
-    .measure = measure_fans,
-    .mutants = fans_mutants,
-};
+    .measure = measure_fans, .mutants = fans_mutants);
 
 /* ---- simple wave ---- */
 
@@ -308,11 +302,6 @@ static const struct check_mutant wave_mutants[] = {
     {0},
 };
 
-const struct check check_exact_wave = {
-    .group = "exact",
-    .name = "simple_wave",
-    .cost = 1,
-    .property = "initial state, conservation laws, dU/dt + dF/dx = 0, time of breaking",
-    .measure = measure_wave,
-    .mutants = wave_mutants,
-};
+CHECK_DEFINE(exact, simple_wave, 550, .cost = 1,
+             .property = "initial state, conservation laws, dU/dt + dF/dx = 0, time of breaking",
+             .measure = measure_wave, .mutants = wave_mutants);

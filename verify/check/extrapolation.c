@@ -133,10 +133,6 @@ static const struct check_mutant richardson_mutants[] = {
     {0},
 };
 
-const struct check check_norms_richardson = {
-    .group = "norms",
-    .name = "richardson_gci",
-    .property = "f0 + c h^p is extrapolated to f0; GCI = 1.25 times the estimated error",
-    .measure = measure_richardson,
-    .mutants = richardson_mutants,
-};
+CHECK_DEFINE(norms, richardson_gci, 650,
+             .property = "f0 + c h^p is extrapolated to f0; GCI = 1.25 times the estimated error",
+             .measure = measure_richardson, .mutants = richardson_mutants);

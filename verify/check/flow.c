@@ -240,14 +240,10 @@ static const struct check_mutant flow_mutants[] = {
     {0},
 };
 
-const struct check check_exact_flow = {
-    .group = "exact",
-    .name = "flow",
+CHECK_DEFINE(
+    exact, flow, 550,
     .property = "dU/dt + div F = 0 at 200 places of the flows in 2D and 3D, at rest and boosted",
-    .subjects = add_flows,
-    .measure = measure_flow,
-    .mutants = flow_mutants,
-};
+    .subjects = add_flows, .measure = measure_flow, .mutants = flow_mutants);
 
 /* ---- Kelvin & Helmholtz's mode ---- */
 
@@ -344,10 +340,6 @@ static const struct check_mutant mode_mutants[] = {
     {0},
 };
 
-const struct check check_exact_mode = {
-    .group = "exact",
-    .name = "kelvin_helmholtz",
-    .property = "amplitude of known modes; start and table of McNally, Lyra & Passy",
-    .measure = measure_mode,
-    .mutants = mode_mutants,
-};
+CHECK_DEFINE(exact, kelvin_helmholtz, 550,
+             .property = "amplitude of known modes; start and table of McNally, Lyra & Passy",
+             .measure = measure_mode, .mutants = mode_mutants);

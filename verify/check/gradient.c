@@ -169,15 +169,10 @@ static const struct check_mutant brute_force_mutants[] = {
     {0},
 };
 
-const struct check check_gradient_brute_force = {
-    .group = "gradients",
-    .name = "brute_force",
-    .cost = 0.9,
-    .property = "|grad f - brute force in long double| h/max|f| (per condition number)",
-    .subjects = gradient_subjects,
-    .measure = measure_brute_force,
-    .mutants = brute_force_mutants,
-};
+CHECK_DEFINE(gradients, brute_force, 203, .cost = 0.9,
+             .property = "|grad f - brute force in long double| h/max|f| (per condition number)",
+             .subjects = gradient_subjects, .measure = measure_brute_force,
+             .mutants = brute_force_mutants);
 
 static const struct check_mutant exactness_mutants[] = {
     {"exactness_transposed", "B transposed", SUBJECT(normalised, TRANSPOSED)},
@@ -201,15 +196,10 @@ static const struct check_mutant exactness_mutants[] = {
     {0},
 };
 
-const struct check check_gradient_exactness = {
-    .group = "gradients",
-    .name = "exactness",
-    .cost = 0.9,
-    .property = "|grad f - exact| h/max|f| where the operator is exact: constant, linear",
-    .subjects = gradient_subjects,
-    .measure = measure_exactness,
-    .mutants = exactness_mutants,
-};
+CHECK_DEFINE(gradients, exactness, 250, .cost = 0.9,
+             .property = "|grad f - exact| h/max|f| where the operator is exact: constant, linear",
+             .subjects = gradient_subjects, .measure = measure_exactness,
+             .mutants = exactness_mutants);
 
 /* ---- the assumption of the Integral Approach ---- */
 
@@ -298,11 +288,7 @@ static const struct check_mutant assumption_mutants[] = {
     {0},
 };
 
-const struct check check_gradient_ia_assumption = {
-    .group = "gradients",
-    .name = "ia_assumption",
-    .cost = 0.2,
+CHECK_DEFINE(
+    gradients, ia_assumption, 250, .cost = 0.2,
     .property = "ia of a linear field = slope + f_i C sum V x W: exact where sum V x W = 0",
-    .measure = measure_assumption,
-    .mutants = assumption_mutants,
-};
+    .measure = measure_assumption, .mutants = assumption_mutants);

@@ -124,12 +124,7 @@ static const struct check_mutant fourier_mutants[] = {
     {0},
 };
 
-const struct check check_gradient_fourier = {
-    .group = "gradients",
-    .name = "fourier",
-    .cost = 0.2,
+CHECK_DEFINE(
+    gradients, fourier, 250, .cost = 0.2,
     .property = "grad sin(k.x): projection on k cos(k.x) equal to the lattice sum, and the noise",
-    .subjects = gradient_subjects,
-    .measure = measure_fourier,
-    .mutants = fourier_mutants,
-};
+    .subjects = gradient_subjects, .measure = measure_fourier, .mutants = fourier_mutants);

@@ -83,14 +83,10 @@ static const struct check_mutant invariance_mutants[] = {
     {0},
 };
 
-const struct check check_gradient_invariance = {
-    .group = "gradients",
-    .name = "invariance",
-    .property = "|grad(Rx + t) - R grad(x)| h/max|f| (per condition number)",
-    .subjects = gradient_subjects,
-    .measure = measure_invariance,
-    .mutants = invariance_mutants,
-};
+CHECK_DEFINE(gradients, invariance, 250,
+             .property = "|grad(Rx + t) - R grad(x)| h/max|f| (per condition number)",
+             .subjects = gradient_subjects, .measure = measure_invariance,
+             .mutants = invariance_mutants);
 
 /* ---- homogeneity and isotropy ---- */
 
@@ -185,12 +181,8 @@ static const struct check_mutant corrections_mutants[] = {
     {0},
 };
 
-const struct check check_gradient_corrections = {
-    .group = "gradients",
-    .name = "corrections",
-    .cost = 0.6,
-    .property = "normalised_corrected: |sum V p| h = 0 (homogeneity), |sum V p (x) x - 1| = 0 "
-                "(isotropy), before and after each correction",
-    .measure = measure_corrections,
-    .mutants = corrections_mutants,
-};
+CHECK_DEFINE(gradients, corrections, 250, .cost = 0.6,
+             .property =
+                 "normalised_corrected: |sum V p| h = 0 (homogeneity), |sum V p (x) x - 1| = 0 "
+                 "(isotropy), before and after each correction",
+             .measure = measure_corrections, .mutants = corrections_mutants);

@@ -164,24 +164,9 @@ static const struct check_mutant order_mutants[] = {
 #define PROPERTY                                                                                   \
     "observed order of |grad f - exact|/max|f| in the spacing and in the jitter, eta = 2"
 
-const struct check check_gradient_order = {
-    .group = "gradients",
-    .name = "order",
-    .cost = 0.2,
-    .property = PROPERTY,
-    .subjects = gradient_subjects,
-    .measure = measure_narrow,
-    .mutants = order_mutants,
-};
+CHECK_DEFINE(gradients, order, 250, .cost = 0.2, .property = PROPERTY,
+             .subjects = gradient_subjects, .measure = measure_narrow, .mutants = order_mutants);
 
 /* Takes longer than all other checks of gradients together. */
-const struct check check_gradient_order_3d = {
-    .group = "gradients",
-    .name = "order_3d",
-    .cost = 2,
-    .property = PROPERTY ", in 3D",
-    .slow = true,
-    .subjects = gradient_subjects,
-    .measure = measure_3d,
-    .mutants = order_mutants,
-};
+CHECK_DEFINE(gradients, order_3d, 250, .cost = 2, .property = PROPERTY ", in 3D", .slow = true,
+             .subjects = gradient_subjects, .measure = measure_3d, .mutants = order_mutants);

@@ -99,13 +99,10 @@ static const struct check_mutant seed_mutants[] = {
     {0},
 };
 
-const struct check check_hydro_seed = {
-    .group = "hydro",
-    .name = "seed_program",
+CHECK_DEFINE(
+    hydro, seed_program, 750,
     .property = "errors of the seed program's method on its tube, as pinned by two other codes",
-    .measure = measure_seed,
-    .mutants = seed_mutants,
-};
+    .measure = measure_seed, .mutants = seed_mutants);
 
 /* --- set-up ----------------------------------------------------------------------------------- */
 
@@ -210,13 +207,10 @@ static const struct check_mutant setup_mutants[] = {
     {0},
 };
 
-const struct check check_hydro_setup = {
-    .group = "hydro",
-    .name = "riemann_setup",
+CHECK_DEFINE(
+    hydro, riemann_setup, 707,
     .property = "N_L = round(n rho_L/(rho_L + rho_R)), equal masses a side, centred, own state",
-    .measure = measure_setup,
-    .mutants = setup_mutants,
-};
+    .measure = measure_setup, .mutants = setup_mutants);
 
 /* --- errors of a run, once more from its particles -------------------------------------------- */
 
@@ -327,13 +321,10 @@ static const struct check_mutant errors_mutants[] = {
     {0},
 };
 
-const struct check check_hydro_errors = {
-    .group = "hydro",
-    .name = "run_errors",
+CHECK_DEFINE(
+    hydro, run_errors, 750,
     .property = "a run's error norms, recomputed from its particles and the exact solution",
-    .measure = measure_errors_again,
-    .mutants = errors_mutants,
-};
+    .measure = measure_errors_again, .mutants = errors_mutants);
 
 /* --- predicted smoothing length --------------------------------------------------------------- */
 
@@ -365,10 +356,7 @@ static const struct check_mutant predicted_mutants[] = {
     {0},
 };
 
-const struct check check_hydro_predicted = {
-    .group = "hydro",
-    .name = "predicted_h",
+CHECK_DEFINE(
+    hydro, predicted_h, 750,
     .property = "L1 with predicted h is no more than a few per cent above that with Newton's h",
-    .measure = measure_predicted,
-    .mutants = predicted_mutants,
-};
+    .measure = measure_predicted, .mutants = predicted_mutants);

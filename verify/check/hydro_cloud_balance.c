@@ -183,15 +183,9 @@ static const struct check_mutant mutants[] = {
     {0},
 };
 
-const struct check check_hydro_cloud_balance = {
-    .group = "clouds",
-    .name = "balance",
-    .cost = 0.4,
-    .property = "sum F = 0, total power = 0, with forces along r_ij sum r x F = 0",
-    .subjects = subjects,
-    .measure = measure,
-    .mutants = mutants,
-};
+CHECK_DEFINE(clouds, balance, 850, .cost = 0.4,
+             .property = "sum F = 0, total power = 0, with forces along r_ij sum r x F = 0",
+             .subjects = subjects, .measure = measure, .mutants = mutants);
 
 /* --- specialised loops
  * ---------------------------------------------------------------------------- */
@@ -256,12 +250,7 @@ static const struct check_mutant specialised_mutants[] = {
     {0},
 };
 
-const struct check check_hydro_cloud_specialised = {
-    .group = "clouds",
-    .name = "specialised",
-    .cost = 0.2,
-    .property = "specialised loops = generic loops in 2D and 3D, for every kernel",
-    .subjects = specialised_subjects,
-    .measure = measure_specialised,
-    .mutants = specialised_mutants,
-};
+CHECK_DEFINE(clouds, specialised, 850, .cost = 0.2,
+             .property = "specialised loops = generic loops in 2D and 3D, for every kernel",
+             .subjects = specialised_subjects, .measure = measure_specialised,
+             .mutants = specialised_mutants);

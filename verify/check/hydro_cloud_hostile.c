@@ -257,23 +257,8 @@ static const struct check_mutant mutants[] = {
 
 #define PROPERTY "rates and a step of hostile clouds equal the oracle's, particle by particle"
 
-const struct check check_hydro_cloud_hostile = {
-    .group = "clouds",
-    .name = "hostile",
-    .cost = 0.6,
-    .property = PROPERTY,
-    .subjects = subjects,
-    .measure = measure,
-    .mutants = mutants,
-};
+CHECK_DEFINE(clouds, hostile, 850, .cost = 0.6, .property = PROPERTY, .subjects = subjects,
+             .measure = measure, .mutants = mutants);
 
-const struct check check_hydro_cloud_hostile_all = {
-    .group = "clouds",
-    .name = "hostile_all",
-    .cost = 4,
-    .property = PROPERTY ", for more schemes",
-    .slow = true,
-    .subjects = all_subjects,
-    .measure = measure,
-    .mutants = mutants,
-};
+CHECK_DEFINE(clouds, hostile_all, 850, .cost = 4, .property = PROPERTY ", for more schemes",
+             .slow = true, .subjects = all_subjects, .measure = measure, .mutants = mutants);

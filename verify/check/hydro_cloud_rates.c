@@ -214,23 +214,9 @@ static struct cloud_subject of_mutant(const struct cloud_subject *mutant)
 
 #define PROPERTY "rho, h, P, dp/dt, de/dt, dalpha/dt, dt in 2D and 3D equal the oracle's"
 
-const struct check check_hydro_cloud_rates = {
-    .group = "clouds",
-    .name = "rates",
-    .cost = 3,
-    .property = PROPERTY,
-    .subjects = subjects,
-    .measure = measure,
-    .mutants = mutants,
-};
+CHECK_DEFINE(clouds, rates, 808, .cost = 3, .property = PROPERTY, .subjects = subjects,
+             .measure = measure, .mutants = mutants);
 
-const struct check check_hydro_cloud_rates_all = {
-    .group = "clouds",
-    .name = "rates_all",
-    .cost = 33,
-    .property = PROPERTY ", for every combination in 2D and every choice in 3D",
-    .slow = true,
-    .subjects = all_subjects,
-    .measure = measure,
-    .mutants = mutants,
-};
+CHECK_DEFINE(clouds, rates_all, 850, .cost = 33,
+             .property = PROPERTY ", for every combination in 2D and every choice in 3D",
+             .slow = true, .subjects = all_subjects, .measure = measure, .mutants = mutants);

@@ -108,12 +108,7 @@ static const struct check_mutant mutants[] = {
     {0},
 };
 
-const struct check check_hydro_cloud_steps = {
-    .group = "clouds",
-    .name = "time_stepping",
-    .cost = 2,
+CHECK_DEFINE(
+    clouds, time_stepping, 810, .cost = 2,
     .property = "the state at t_end and the number of steps in 2D and 3D equal the oracle's",
-    .subjects = subjects,
-    .measure = measure,
-    .mutants = mutants,
-};
+    .subjects = subjects, .measure = measure, .mutants = mutants);

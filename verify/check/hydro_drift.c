@@ -102,14 +102,10 @@ static const struct check_mutant drift_mutants[] = {
     {0},
 };
 
-const struct check check_hydro_drift = {
-    .group = "hydro",
-    .name = "conservation",
-    .cost = 0.3,
+CHECK_DEFINE(
+    hydro, conservation, 750, .cost = 0.3,
     .property = "momentum and mass to round-off, energy to round-off (total) or the order in dt",
-    .measure = measure_drift,
-    .mutants = drift_mutants,
-};
+    .measure = measure_drift, .mutants = drift_mutants);
 
 /* --- order against dt ------------------------------------------------------------------------- */
 
@@ -203,10 +199,6 @@ static const struct check_mutant order_mutants[] = {
     {0},
 };
 
-const struct check check_hydro_order = {
-    .group = "hydro",
-    .name = "integrator_order",
-    .property = "error at a fixed time falls as dt^order on a smooth wave",
-    .measure = measure_order,
-    .mutants = order_mutants,
-};
+CHECK_DEFINE(hydro, integrator_order, 750,
+             .property = "error at a fixed time falls as dt^order on a smooth wave",
+             .measure = measure_order, .mutants = order_mutants);

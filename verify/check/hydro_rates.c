@@ -145,15 +145,10 @@ static const struct check_mutant mutants[] = {
     {0},
 };
 
-const struct check check_hydro_rates = {
-    .group = "hydro",
-    .name = "rates",
-    .cost = 0.8,
+CHECK_DEFINE(
+    hydro, rates, 708, .cost = 0.8,
     .property = "rho, h, P, dp/dt, de/dt, dalpha/dt, dt equal the oracle's, all pairs, long double",
-    .subjects = subjects,
-    .measure = measure,
-    .mutants = mutants,
-};
+    .subjects = subjects, .measure = measure, .mutants = mutants);
 
 /* --- residual of the smoothing length --------------------------------------------------------- */
 
@@ -204,10 +199,7 @@ static const struct check_mutant residual_mutants[] = {
     {0},
 };
 
-const struct check check_hydro_residual = {
-    .group = "hydro",
-    .name = "h_residual",
+CHECK_DEFINE(
+    hydro, h_residual, 709,
     .property = "|eta m/rho(h) - h| <= h_tolerance h for every particle, whatever the tolerance",
-    .measure = measure_residual,
-    .mutants = residual_mutants,
-};
+    .measure = measure_residual, .mutants = residual_mutants);

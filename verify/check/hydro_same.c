@@ -172,14 +172,8 @@ static const struct check_mutant threads_mutants[] = {
     {0},
 };
 
-const struct check check_hydro_threads = {
-    .group = "hydro",
-    .name = "threads",
-    .cost = 0.9,
-    .property = "the same bits with 1, 2 and 7 threads",
-    .measure = measure_threads,
-    .mutants = threads_mutants,
-};
+CHECK_DEFINE(hydro, threads, 750, .cost = 0.9, .property = "the same bits with 1, 2 and 7 threads",
+             .measure = measure_threads, .mutants = threads_mutants);
 
 /* A run with skips: some work must have been left out, and momentum must still be conserved. */
 static void measure_skipped_run(struct check_run *run, const struct hydro_state *state,
@@ -252,14 +246,10 @@ static const struct check_mutant skip_mutants[] = {
     {0},
 };
 
-const struct check check_hydro_skip = {
-    .group = "hydro",
-    .name = "skip",
-    .cost = 0.2,
+CHECK_DEFINE(
+    hydro, skip, 750, .cost = 0.2,
     .property = "the same answer, to round-off, with and without leaving out idle particles",
-    .measure = measure_skip,
-    .mutants = skip_mutants,
-};
+    .measure = measure_skip, .mutants = skip_mutants);
 
 /* A stop solves for h once more, so bits may differ. */
 static void measure_stops(struct check_run *run, const void *subject)
@@ -287,14 +277,11 @@ static const struct check_mutant stops_mutants[] = {
     {0},
 };
 
-const struct check check_hydro_stops = {
-    .group = "hydro",
-    .name = "stops",
+CHECK_DEFINE(
+    hydro, stops, 750,
     .property =
         "the same answer, to the tolerance of h, whether a run is stopped in between or not",
-    .measure = measure_stops,
-    .mutants = stops_mutants,
-};
+    .measure = measure_stops, .mutants = stops_mutants);
 
 /* Every entry of the tables of specialised loops: kernel x gradient x form, formulation x viscosity
  * x energy, and what the volume element adds to the density sum. */
@@ -342,11 +329,6 @@ static const struct check_mutant specialised_mutants[] = {
     {0},
 };
 
-const struct check check_hydro_specialised = {
-    .group = "hydro",
-    .name = "specialised",
-    .cost = 0.7,
-    .property = "specialised loops = generic loops, for every entry of every table",
-    .measure = measure_specialised,
-    .mutants = specialised_mutants,
-};
+CHECK_DEFINE(hydro, specialised, 750, .cost = 0.7,
+             .property = "specialised loops = generic loops, for every entry of every table",
+             .measure = measure_specialised, .mutants = specialised_mutants);

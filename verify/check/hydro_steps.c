@@ -173,12 +173,6 @@ static const struct check_mutant mutants[] = {
     {0},
 };
 
-const struct check check_hydro_steps = {
-    .group = "hydro",
-    .name = "time_stepping",
-    .cost = 0.8,
-    .property = "the state at t_end and the number of steps equal the oracle's",
-    .subjects = subjects,
-    .measure = measure,
-    .mutants = mutants,
-};
+CHECK_DEFINE(hydro, time_stepping, 710, .cost = 0.8,
+             .property = "the state at t_end and the number of steps equal the oracle's",
+             .subjects = subjects, .measure = measure, .mutants = mutants);

@@ -177,22 +177,12 @@ static const struct check_mutant fine_mutants[] = {
     {0},
 };
 
-const struct check check_hydro_wave = {
-    .group = "hydro",
-    .name = "waves_of_clouds",
-    .cost = 0.4,
+CHECK_DEFINE(
+    hydro, waves_of_clouds, 750, .cost = 0.4,
     .property =
         "sound along, across and along the diagonal of lattices: order 2, no axis preferred",
-    .measure = measure_quick,
-    .mutants = quick_mutants,
-};
+    .measure = measure_quick, .mutants = quick_mutants);
 
-const struct check check_hydro_wave_fine = {
-    .group = "hydro",
-    .name = "waves_of_clouds_fine",
-    .cost = 3,
-    .property = "sound along, diagonal and oblique to lattices in 2D and 3D: order 2",
-    .slow = true,
-    .measure = measure_fine,
-    .mutants = fine_mutants,
-};
+CHECK_DEFINE(hydro, waves_of_clouds_fine, 750, .cost = 3,
+             .property = "sound along, diagonal and oblique to lattices in 2D and 3D: order 2",
+             .slow = true, .measure = measure_fine, .mutants = fine_mutants);

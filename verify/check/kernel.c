@@ -119,16 +119,12 @@ static void measure(struct check_run *run, const void *subject_, const char *nam
     }
 }
 
-#define PROPERTY(name_, formula)                                                                   \
+#define PROPERTY(name_, rank_, says_, formula_)                                                    \
     static void measure_##name_(struct check_run *run, const void *kernel)                         \
     {                                                                                              \
         measure(run, kernel, #name_, property_##name_);                                            \
     }                                                                                              \
-    const struct check check_kernel_##name_ = {.group = "kernels",                                 \
-                                               .name = #name_,                                     \
-                                               .property = formula,                                \
-                                               .subjects = subjects,                               \
-                                               .measure = measure_##name_,                         \
-                                               .mutants = kernel_mutants_##name_};
+    CHECK_DEFINE(kernels, name_, rank_, .says = says_, .property = formula_, .subjects = subjects, \
+                 .measure = measure_##name_, .mutants = kernel_mutants_##name_);
 #include "properties.def"
 #undef PROPERTY

@@ -5,7 +5,8 @@
 
 #include "check.h"
 
-#define PROPERTY(name, formula) extern const struct check_mutant kernel_mutants_##name[];
+#define PROPERTY(name, rank, says, formula)                                                        \
+    extern const struct check_mutant kernel_mutants_##name[];
 #include "properties.def"
 #undef PROPERTY
 

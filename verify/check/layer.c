@@ -276,11 +276,7 @@ static const struct check_mutant layer_mutants[] = {
     {0},
 };
 
-const struct check check_exact_layer = {
-    .group = "exact",
-    .name = "layer_modes",
-    .cost = 0.5,
+CHECK_DEFINE(
+    exact, layer_modes, 550, .cost = 0.5,
     .property = "growing modes of shear and stratified layers: two methods, the linear equations",
-    .measure = measure_layer,
-    .mutants = layer_mutants,
-};
+    .measure = measure_layer, .mutants = layer_mutants);

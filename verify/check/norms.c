@@ -190,13 +190,10 @@ static const struct check_mutant fields_mutants[] = {
     {0},
 };
 
-const struct check check_norms_fields = {
-    .group = "norms",
-    .name = "error_norms",
+CHECK_DEFINE(
+    norms, error_norms, 606,
     .property = "L1 = sum V|e| / sum V, L2 = sqrt(sum V e^2 / sum V), Linf = max|e| in the window",
-    .measure = measure_fields,
-    .mutants = fields_mutants,
-};
+    .measure = measure_fields, .mutants = fields_mutants);
 
 typedef double binned_function(size_t n, const double *x, const double window[2],
                                const double *volume, const double *value, size_t bins,
@@ -315,10 +312,6 @@ static const struct check_mutant bins_mutants[] = {
     {0},
 };
 
-const struct check check_norms_bins = {
-    .group = "norms",
-    .name = "binned_density",
-    .property = "mean over the non-empty bins of |exact mean - sum V q / sum V|",
-    .measure = measure_bins,
-    .mutants = bins_mutants,
-};
+CHECK_DEFINE(norms, binned_density, 650,
+             .property = "mean over the non-empty bins of |exact mean - sum V q / sum V|",
+             .measure = measure_bins, .mutants = bins_mutants);

@@ -256,10 +256,6 @@ static const struct check_mutant part_mutants[] = {
     {0},
 };
 
-const struct check check_norms_window = {
-    .group = "norms",
-    .name = "window_parts",
-    .property = "L1 with volumes cut at the window's edge is continuous in all positions",
-    .measure = measure_parts,
-    .mutants = part_mutants,
-};
+CHECK_DEFINE(norms, window_parts, 650,
+             .property = "L1 with volumes cut at the window's edge is continuous in all positions",
+             .measure = measure_parts, .mutants = part_mutants);

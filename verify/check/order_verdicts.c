@@ -89,13 +89,9 @@ static const struct check_mutant gate_mutants[] = {
     {0},
 };
 
-const struct check check_norms_gate = {
-    .group = "norms",
-    .name = "gate",
-    .property = "order inside AND half-width <= 0.15 AND finest error <= bound; NaN fails",
-    .measure = measure_gate,
-    .mutants = gate_mutants,
-};
+CHECK_DEFINE(norms, gate, 650,
+             .property = "order inside AND half-width <= 0.15 AND finest error <= bound; NaN fails",
+             .measure = measure_gate, .mutants = gate_mutants);
 
 typedef enum status fit_function(size_t n, const double *spacing, const double *error,
                                  const struct order_noise *noise, struct order_fit *fit,
@@ -175,10 +171,6 @@ static const struct check_mutant class_mutants[] = {
     {0},
 };
 
-const struct check check_norms_class = {
-    .group = "norms",
-    .name = "order_class",
-    .property = "errors that fall are asymptotic, those on a floor or NaN are not",
-    .measure = measure_class,
-    .mutants = class_mutants,
-};
+CHECK_DEFINE(norms, order_class, 650,
+             .property = "errors that fall are asymptotic, those on a floor or NaN are not",
+             .measure = measure_class, .mutants = class_mutants);

@@ -260,11 +260,7 @@ static const struct check_mutant order_mutants[] = {
     {0},
 };
 
-const struct check check_norms_order = {
-    .group = "norms",
-    .name = "order",
-    .cost = 0.7,
+CHECK_DEFINE(
+    norms, order, 650, .cost = 0.7,
     .property = "slope of log error against log spacing; its 95 % interval covers in 95 % of cases",
-    .measure = measure_order,
-    .mutants = order_mutants,
-};
+    .measure = measure_order, .mutants = order_mutants);

@@ -102,13 +102,9 @@ static const struct check_mutant table_mutants[] = {
     {0},
 };
 
-const struct check check_riemann_table = {
-    .group = "riemann",
-    .name = "star_states",
-    .property = "p*, v*, rho*_L, rho*_R of eight problems as from multiple precision",
-    .measure = measure_table,
-    .mutants = table_mutants,
-};
+CHECK_DEFINE(riemann, star_states, 405,
+             .property = "p*, v*, rho*_L, rho*_R of eight problems as from multiple precision",
+             .measure = measure_table, .mutants = table_mutants);
 
 /* ---- waves ---- */
 
@@ -163,13 +159,10 @@ static const struct check_mutant waves_mutants[] = {
     {0},
 };
 
-const struct check check_riemann_waves = {
-    .group = "riemann",
-    .name = "jump_conditions",
+CHECK_DEFINE(
+    riemann, jump_conditions, 450,
     .property = "Rankine-Hugoniot across shocks; P/rho^gamma and v +- 2c/(gamma-1) across fans",
-    .measure = measure_waves,
-    .mutants = waves_mutants,
-};
+    .measure = measure_waves, .mutants = waves_mutants);
 
 /* ---- vacuum ---- */
 
@@ -218,13 +211,10 @@ static const struct check_mutant vacuum_mutants[] = {
     {0},
 };
 
-const struct check check_riemann_vacuum = {
-    .group = "riemann",
-    .name = "vacuum",
+CHECK_DEFINE(
+    riemann, vacuum, 450,
     .property = "vacuum where the gases part faster than both can expand; its edges' speeds",
-    .measure = measure_vacuum,
-    .mutants = vacuum_mutants,
-};
+    .measure = measure_vacuum, .mutants = vacuum_mutants);
 
 /* ---- symmetries ---- */
 
@@ -268,10 +258,5 @@ static const struct check_mutant symmetries_mutants[] = {
     {0},
 };
 
-const struct check check_riemann_symmetries = {
-    .group = "riemann",
-    .name = "symmetries",
-    .property = "mirror image (bit for bit) and Galilean frame",
-    .measure = measure_symmetries,
-    .mutants = symmetries_mutants,
-};
+CHECK_DEFINE(riemann, symmetries, 450, .property = "mirror image (bit for bit) and Galilean frame",
+             .measure = measure_symmetries, .mutants = symmetries_mutants);

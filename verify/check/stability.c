@@ -188,14 +188,9 @@ static const struct check_mutant rates_mutants[] = {
     {0},
 };
 
-const struct check check_stability_rates = {
-    .group = "stability",
-    .name = "rates",
-    .property = "linearised rates of a wave equal differences of the solver's, c/dx = 1",
-    .subjects = subjects,
-    .measure = measure_rates,
-    .mutants = rates_mutants,
-};
+CHECK_DEFINE(stability, rates, 908,
+             .property = "linearised rates of a wave equal differences of the solver's, c/dx = 1",
+             .subjects = subjects, .measure = measure_rates, .mutants = rates_mutants);
 
 /* --- time steps --------------------------------------------------------------------------------
  */
@@ -284,13 +279,9 @@ static const struct check_mutant steps_mutants[] = {
     {0},
 };
 
-const struct check check_stability_steps = {
-    .group = "stability",
-    .name = "steps",
-    .property = "a wave after 32 steps is where the amplification matrix puts it",
-    .measure = measure_steps,
-    .mutants = steps_mutants,
-};
+CHECK_DEFINE(stability, steps, 950,
+             .property = "a wave after 32 steps is where the amplification matrix puts it",
+             .measure = measure_steps, .mutants = steps_mutants);
 
 /* --- limits of eta -----------------------------------------------------------------------------
  */
@@ -344,11 +335,6 @@ static const struct check_mutant limit_mutants[] = {
     {0},
 };
 
-const struct check check_stability_limits = {
-    .group = "stability",
-    .name = "limits",
-    .cost = 0.9,
-    .property = "first unstable eta of a lattice, gamma 1.4, no viscosity",
-    .measure = measure_limits,
-    .mutants = limit_mutants,
-};
+CHECK_DEFINE(stability, limits, 950, .cost = 0.9,
+             .property = "first unstable eta of a lattice, gamma 1.4, no viscosity",
+             .measure = measure_limits, .mutants = limit_mutants);

@@ -82,10 +82,6 @@ static const struct check_mutant mutants[] = {
     {0},
 };
 
-const struct check check_stability_lattice = {
-    .group = "stability",
-    .name = "lattice",
-    .property = "on lattices in 2D and 3D long waves run as fast as sound",
-    .measure = measure,
-    .mutants = mutants,
-};
+CHECK_DEFINE(stability, lattice, 950,
+             .property = "on lattices in 2D and 3D long waves run as fast as sound",
+             .measure = measure, .mutants = mutants);

@@ -145,11 +145,8 @@ static const struct check_mutant mutants[] = {
     {0},
 };
 
-const struct check check_stability_start = {
-    .group = "stability",
-    .name = "start",
+CHECK_DEFINE(
+    stability, start, 950,
     .property =
         "coincident particles get an h; the first step is at most cfl sqrt(h/a); h stays a root",
-    .measure = measure,
-    .mutants = mutants,
-};
+    .measure = measure, .mutants = mutants);

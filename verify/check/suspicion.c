@@ -196,10 +196,7 @@ static const struct check_mutant mutants[] = {
     {0},
 };
 
-const struct check check_norms_suspicion = {
-    .group = "norms",
-    .name = "suspicion",
+CHECK_DEFINE(
+    norms, suspicion, 650,
     .property = "an error of 0, a repeated error, an idle setting, an exchanged field are noticed",
-    .measure = measure,
-    .mutants = mutants,
-};
+    .measure = measure, .mutants = mutants);

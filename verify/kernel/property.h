@@ -22,7 +22,7 @@ struct property {
     void (*measure)(const struct pieces *pieces, struct property_sink *sink);
 };
 
-#define PROPERTY(name, formula)                                                                    \
+#define PROPERTY(name, rank, says, formula)                                                        \
     void property_##name(const struct pieces *pieces, struct property_sink *sink);
 #include "properties.def"
 #undef PROPERTY

@@ -2,7 +2,7 @@
 #include "property.h"
 
 const struct property property_list[] = {
-#define PROPERTY(name, formula) {#name, formula, property_##name},
+#define PROPERTY(name, rank, says, formula) {#name, formula, property_##name},
 #include "properties.def"
 #undef PROPERTY
 };

@@ -7,7 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "failure.h"
 #include "problem.h"
 #include "problem_list.h"
 #include "value.h"
@@ -91,14 +90,11 @@ static bool is_timing(const struct difference *d)
     return d->new && d->new->kind == READING_TIMING;
 }
 
-/* Of a path with "checks[GROUP, NAME, ...]": its place in a report's list of failures; last
- * without. A check names the cause, what breaks down in a run is its consequence. */
-static size_t cause_of(const char *path)
+/* The rank of the check that it is a figure of; last without. A check names the cause, what breaks
+ * down in a run is its consequence. */
+static double rank_of(const struct difference *d)
 {
-    char group[64], check[64];
-    const char *entry = strstr(path, "checks[");
-    if (!entry || sscanf(entry, "checks[%63[^,], %63[^],]", group, check) != 2) return SIZE_MAX;
-    return failure_rank(group, check);
+    return (d->new ? d->new : d->old)->rank;
 }
 
 static int worst_first(const void *a, const void *b)
@@ -106,8 +102,8 @@ static int worst_first(const void *a, const void *b)
     const struct difference *x = a, *y = b;
     const int i = severity(x), j = severity(y);
     if (i != j) return i - j;
-    const size_t a_cause = cause_of(path_of(x)), b_cause = cause_of(path_of(y));
-    if (i == 0 && a_cause != b_cause) return a_cause < b_cause ? -1 : 1;
+    const double a_rank = rank_of(x), b_rank = rank_of(y);
+    if (i == 0 && a_rank != b_rank) return a_rank < b_rank ? -1 : 1;
     const bool a_time = is_timing(x), b_time = is_timing(y);
     if (a_time != b_time) return a_time ? 1 : -1;
     const bool a_head = x->new && x->new->headline, b_head = y->new && y->new->headline;

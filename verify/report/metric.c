@@ -61,6 +61,7 @@ struct place {
     char path[PATH_MAX_LENGTH];
     const json_t *level;
     const char *field;
+    double rank; /* of the entry of "checks" that encloses it; infinite: none does */
 };
 
 static double exact_of(const json_t *parent, const char *name)
@@ -130,8 +131,11 @@ static void take(struct metrics *metrics, const struct place *at, const json_t *
         if (number || truth) nobody_knows(metrics, path, "a figure of a kind that is not known");
         return;
     }
-    struct metric metric = {
-        .kind = rule->kind, .value = NAN, .noise = rule->noise, .floor = rule->floor};
+    struct metric metric = {.kind = rule->kind,
+                            .value = NAN,
+                            .noise = rule->noise,
+                            .floor = rule->floor,
+                            .rank = at->rank};
     if (rule->kind == READING_STATUS) {
         if (truth) word = json_is_true(value) ? "true" : "false";
         if (!word) return;
@@ -277,6 +281,8 @@ static void walk_list(struct metrics *metrics, const struct place *at, const cha
             continue;
         }
         if (strcmp(key, "levels") == 0) inside.level = entry;
+        if (strcmp(key, "checks") == 0)
+            inside.rank = fmin(value_member(entry, "rank"), HUGE_VAL); /* NaN: infinite */
         walk(metrics, &inside, entry);
     }
 }
@@ -353,7 +359,7 @@ static void join_alike(struct metrics *metrics)
 
 enum status metric_collect(const json_t *document, struct metrics *metrics, struct error *error)
 {
-    const struct place top = {.path = ""};
+    const struct place top = {.path = "", .rank = HUGE_VAL};
     *metrics = (struct metrics){0};
     walk(metrics, &top, document);
     if (!metrics->failed && metrics->count) {

@@ -30,6 +30,7 @@ struct metric {
     double value;               /* NaN for a word */
     double noise, floor, exact; /* up to the floor all values are the same */
     char *word;                 /* of a STATUS, else NULL */
+    double rank;                /* of the check that it is a figure of; infinite: of none */
     size_t number;              /* in the document */
     bool headline;              /* goes into the history */
 };

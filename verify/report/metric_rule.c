@@ -156,6 +156,7 @@ static const struct metric_rule rules[] = {
     {"", "computations", OUT},
     {"", "found", OUT},
     {"", "failures", OUT},
+    {"", "rank", OUT},
 };
 
 static bool fits(const char *pattern, const char *name)

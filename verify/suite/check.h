@@ -44,6 +44,12 @@ struct check_mutant {
 struct check {
     const char *group; /* kernels gradients conservation riemann exact hydro norms ... */
     const char *name;
+    /* Of several checks that fail the one of least rank names the cause, and is told first: 100 and
+     * more for kernels, 200 gradients, 300 conservation, 400 riemann, 500 exact, 600 norms, 700
+     * hydro, 800 clouds, 900 stability; in each group +0 to +49 for checks of one formula, +50 for
+     * those that follow from several. From 1000 on stands what is no check (see failure.h). */
+    int rank;
+    const char *says;     /* of what fails it; NULL: that its name is off, and by how much */
     const char *property; /* one line, a formula where it helps */
     bool slow;            /* not in the quick suite */
     double cost; /* seconds that it takes with its mutants, about: shares are even by it; 0: few */
@@ -55,5 +61,11 @@ struct check {
     void (*measure)(struct check_run *run, const void *subject);
     const struct check_mutant *mutants; /* ends with a NULL name; must not be empty */
 };
+
+/* CHECK_DEFINE(group, name, rank, .property = ..., ...): the check is called as its symbol,
+ * check_GROUP_NAME. */
+#define CHECK_DEFINE(group_, name_, rank_, ...)                                                    \
+    const struct check check_##group_##_##name_ = {                                                \
+        .group = #group_, .name = #name_, .rank = rank_, __VA_ARGS__}
 
 #endif

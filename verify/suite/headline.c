@@ -11,25 +11,12 @@
 
 enum { MEMBER_LENGTH = 64, TEXT_LENGTH = 512, ALSO_SHOWN = 6 };
 
-/* What a failing check says about a member; the others are said to be off. */
-static const struct {
-    const char *group, *check, *words;
-} phrases[] = {
-    {"kernels", "radial_derivative", "dw is not the derivative of w"},
-    {"kernels", "width_derivative", "dW/dh is not the derivative of W in h"},
-    {"kernels", "fundamental", "w and dw do not belong together"},
-    {"kernels", "support", "does not end where it should"},
-    {"kernels", "sign", "is negative or rises"},
-    {"kernels", "continuity", "is less smooth than declared"},
-    {"conservation", "antisymmetry", "pair gradients are not antisymmetric"},
-};
-
 /* The failing figures of one check on one member. */
 struct cause {
     const struct check *check;
     const struct figure *worst;
     double ratio;
-    size_t figures, rank, number;
+    size_t figures, number;
     char member[MEMBER_LENGTH];
 };
 
@@ -59,7 +46,6 @@ static void take(struct cause *causes, size_t *count, const struct figure *figur
     struct cause *cause = &causes[i];
     if (i == *count) {
         *cause = (struct cause){.check = figure->check, .number = (*count)++, .ratio = -1};
-        cause->rank = failure_rank(figure->check->group, figure->check->name);
         memcpy(cause->member, member, sizeof member);
     }
     const double ratio = suite_ratio(figure->value, figure->bound);
@@ -70,25 +56,17 @@ static void take(struct cause *causes, size_t *count, const struct figure *figur
 static int most_specific_first(const void *a, const void *b)
 {
     const struct cause *x = a, *y = b;
-    if (x->rank != y->rank) return x->rank < y->rank ? -1 : 1;
+    const int rank = x->check->rank - y->check->rank;
+    if (rank) return rank;
     if (x->ratio != y->ratio) return x->ratio > y->ratio ? -1 : 1;
     return x->number < y->number ? -1 : 1;
-}
-
-static const char *phrase_of(const struct check *check)
-{
-    for (size_t i = 0; i < sizeof phrases / sizeof *phrases; i++)
-        if (!strcmp(phrases[i].group, check->group) && !strcmp(phrases[i].check, check->name))
-            return phrases[i].words;
-    return NULL;
 }
 
 /* "dw is not the derivative of w" or "normalisation off by 2e-05". */
 static void say(const struct cause *cause, char *text, size_t size)
 {
-    const char *phrase = phrase_of(cause->check);
-    if (phrase)
-        snprintf(text, size, "%s", phrase);
+    if (cause->check->says)
+        snprintf(text, size, "%s", cause->check->says);
     else
         snprintf(text, size, "%s off by %.2g", cause->check->name, cause->worst->value);
 }
@@ -119,7 +97,7 @@ static json_t *headline(const struct cause *causes, size_t count, size_t first)
              check->slow ? " --slow" : "");
     snprintf(data, sizeof data, "%s-%s", check->group, check->name);
     return json_pack("{s:I, s:s, s:s, s:s, s:s, s:s, s:s, s:o, s:o, s:o, s:I, s:o, s:s, s:s}",
-                     "rank", (json_int_t)main->rank, "group", check->group, "check", check->name,
+                     "rank", (json_int_t)check->rank, "group", check->group, "check", check->name,
                      "member", main->member, "headline", text, "property", check->property, "place",
                      place_of(worst->subject), "value", result_number(worst->value), "bound",
                      result_number(worst->bound), "ratio", result_number(main->ratio), "figures",
@@ -134,11 +112,10 @@ static json_t *missed(const struct mutant_outcome *outcome)
              outcome->mutant->name, outcome->mutant->fault);
     snprintf(command, sizeof command, "sphproof verify %s --mutants", check->group);
     return json_pack("{s:I, s:s, s:s, s:s, s:s, s:s, s:s, s:o, s:o, s:s}", "rank",
-                     (json_int_t)failure_rank("detection", check->name), "group", check->group,
-                     "check", check->name, "member", outcome->mutant->name, "headline", text,
-                     "property", check->property, "place", "", "value",
-                     result_number(outcome->value), "bound", result_number(outcome->bound),
-                     "command", command);
+                     (json_int_t)FAILURE_RANK_MISSED, "group", check->group, "check", check->name,
+                     "member", outcome->mutant->name, "headline", text, "property", check->property,
+                     "place", "", "value", result_number(outcome->value), "bound",
+                     result_number(outcome->bound), "command", command);
 }
 
 json_t *headline_list(const struct suite *suite)

@@ -158,11 +158,12 @@ void suite_output_table(const struct suite *suite, FILE *stream, bool color, boo
 
 static json_t *figure_json(const struct figure *figure)
 {
-    return json_pack("{s:s, s:s, s:s, s:s, s:o, s:o, s:o, s:s, s:o}", "group", figure->check->group,
-                     "name", figure->check->name, "subject", figure->subject, "property",
-                     figure->check->property, "value", result_number(figure->value), "bound",
-                     result_number(figure->bound), "floor", result_number(figure->floor), "status",
-                     status_names[figure->status], "seconds", result_number(figure->seconds));
+    return json_pack("{s:s, s:s, s:i, s:s, s:s, s:o, s:o, s:o, s:s, s:o}", "group",
+                     figure->check->group, "name", figure->check->name, "rank", figure->check->rank,
+                     "subject", figure->subject, "property", figure->check->property, "value",
+                     result_number(figure->value), "bound", result_number(figure->bound), "floor",
+                     result_number(figure->floor), "status", status_names[figure->status],
+                     "seconds", result_number(figure->seconds));
 }
 
 void suite_output_json(const struct suite *suite, json_t *document)

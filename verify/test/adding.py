@@ -551,13 +551,7 @@ static const struct check_mutant mutants[] = {
     {0},
 };
 
-const struct check check_norms_halves = {
-    .group = "norms",
-    .name = "halves",
-    .property = "2 (x/2) = x",
-    .measure = measure,
-    .mutants = mutants,
-};
+CHECK_DEFINE(norms, halves, 640, .property = "2 (x/2) = x", .measure = measure, .mutants = mutants);
 """
 
 

@@ -10,7 +10,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "failure.h"
 #include "made_diff.h"
 
 /* ---- figures, both ways round ---- */
@@ -103,20 +102,28 @@ static const char *path_of(const struct difference *d)
     return d->new ? d->new->path : d->old->path;
 }
 
+/* Two of one rank, and one that says none (0). */
+static const struct {
+    const char *group, *name, *path;
+    int rank;
+} checks[] = {{"kernels", "derivative", "checks[kernels, derivative,", 150},
+              {"kernels", "support", "checks[kernels, support,", 101},
+              {"norms", "sum", "checks[norms, sum,", 650},
+              {"hydro", "rates", "checks[hydro, rates,", 101},
+              {"gradients", "order", "checks[gradients, order,", 250},
+              {"none", "such", "checks[none, such,", 0}};
+enum { CHECKS = sizeof checks / sizeof *checks };
+
 /* What counts, the most first: of two differences the first number that differs decides. */
 static void weights_of(const struct difference *d, double weights[5])
 {
     static const int verdicts[] = {
         [VERDICT_VANISHED] = 1, [VERDICT_INCOMPARABLE] = 2, [VERDICT_WORSE] = 3,
         [VERDICT_BETTER] = 4,   [VERDICT_NEW] = 5,          [VERDICT_SAME] = 6};
-    char group[64], check[64];
-    const char *entry = strstr(path_of(d), "checks[");
     weights[0] = d->regression ? 0 : verdicts[d->verdict];
-    weights[1] = 0;
-    if (d->regression)
-        weights[1] = entry && sscanf(entry, "checks[%63[^,], %63[^],]", group, check) == 2
-                         ? (double)failure_rank(group, check)
-                         : 1e30;
+    weights[1] = d->regression ? 1e30 : 0;
+    for (size_t c = 0; d->regression && c < CHECKS; c++)
+        if (checks[c].rank && strstr(path_of(d), checks[c].path)) weights[1] = checks[c].rank;
     weights[2] = d->new && d->new->kind == READING_TIMING;
     weights[3] = !(d->new && d->new->headline);
     weights[4] = -d->amount;
@@ -125,25 +132,23 @@ static void weights_of(const struct difference *d, double weights[5])
 /* Lists of checks and figures of all kinds, drawn: good or bad, there or not, before and after. */
 static void drawn(json_t *document)
 {
-    static const char *const checks[][2] = {{"kernels", "derivative"}, {"kernels", "support"},
-                                            {"norms", "sum"},          {"hydro", "rates"},
-                                            {"gradients", "order"},    {"none", "such"}};
     json_t *list = json_array(), *studies = json_array();
     for (size_t f = 0; f < KINDS; f++) {
         const int draw = rand() % 5;
         if (draw) add_figure(document, &kinds[f], draw < 3 ? kinds[f].good : kinds[f].bad);
     }
-    for (int c = 0; c < 6; c++)
+    for (size_t c = 0; c < CHECKS; c++)
         for (int subject = 0; subject < 2; subject++) {
             char name[] = "a";
             name[0] = (char)('a' + subject);
             if (rand() % 6 == 0) continue;
             const bool fails = rand() % 3 == 0;
-            json_array_append_new(
-                list, json_pack("{s:s, s:s, s:s, s:f, s:f, s:f, s:s}", "group", checks[c][0],
-                                "name", checks[c][1], "subject", name, "value",
-                                (fails ? 10. : 0.1) * (double)(1 << rand() % 4), "bound", 1.,
-                                "floor", 0., "status", fails ? "fail" : "pass"));
+            json_t *entry = json_pack("{s:s, s:s, s:s, s:f, s:f, s:f, s:s}", "group",
+                                      checks[c].group, "name", checks[c].name, "subject", name,
+                                      "value", (fails ? 10. : 0.1) * (double)(1 << rand() % 4),
+                                      "bound", 1., "floor", 0., "status", fails ? "fail" : "pass");
+            if (checks[c].rank) json_object_set_new(entry, "rank", json_integer(checks[c].rank));
+            json_array_append_new(list, entry);
         }
     for (int s = 0; s < 6; s++) {
         char label[32];

@@ -493,13 +493,13 @@ static void summary(void **state)
     json_decref(bad);
 }
 
-static void add_figure(json_t *checks, const char *group, const char *name, const char *subject,
-                       double value)
+static void add_figure(json_t *checks, const char *group, const char *name, int rank,
+                       const char *subject, double value)
 {
     json_array_append_new(checks,
-                          json_pack("{s:s, s:s, s:s, s:f, s:f, s:s}", "group", group, "name", name,
-                                    "subject", subject, "value", value, "bound", 0.5, "status",
-                                    value <= 0.5 ? "pass" : "fail"));
+                          json_pack("{s:s, s:s, s:i, s:s, s:f, s:f, s:s}", "group", group, "name",
+                                    name, "rank", rank, "subject", subject, "value", value, "bound",
+                                    0.5, "status", value <= 0.5 ? "pass" : "fail"));
 }
 
 /* A wrong kernel: its own check leads, by its worst figure; what follows from it comes after. */
@@ -512,13 +512,13 @@ static void cause_first(void **state)
     json_object_set_new(run, "status", json_string("broke_down"));
     json_object_set_new(study, "suspicion", json_string("the same error twice"));
     json_object_set_new(first(study, "orders"), "status", json_string("fail"));
-    add_figure(checks, "hydro", "rates", "cubic", 5e9);
-    add_figure(checks, "kernels", "sign", "well", 0.1);
-    add_figure(checks, "kernels", "sign", "mild", 1);
-    add_figure(checks, "kernels", "slope", "steep", 40);
-    add_figure(checks, "kernels", "sign", "worst", 20);
-    add_figure(checks, "kernels", "sign", "middle", 2);
-    add_figure(checks, "kernels", "normalisation", "one formula", 2);
+    add_figure(checks, "hydro", "rates", 708, "cubic", 5e9);
+    add_figure(checks, "kernels", "sign", 150, "well", 0.1);
+    add_figure(checks, "kernels", "sign", 150, "mild", 1);
+    add_figure(checks, "kernels", "slope", 150, "steep", 40);
+    add_figure(checks, "kernels", "sign", 150, "worst", 20);
+    add_figure(checks, "kernels", "sign", 150, "middle", 2);
+    add_figure(checks, "kernels", "normalisation", 100, "one formula", 2);
     static const struct {
         const char *name, *detail;
     } expected[] = {{"kernels: normalisation", "one formula"},

@@ -15,12 +15,10 @@
 
 enum { MOST = 9 };
 
-static const struct check slope = {.group = "kernels",
-                                   .name = "radial_derivative",
-                                   .property = "p"},
-                          width = {.group = "kernels", .name = "width_derivative", .property = "p"},
-                          one = {.group = "hydro", .name = "one", .property = "p"},
-                          two = {.group = "hydro", .name = "two", .property = "p"};
+static const struct check slope = {"kernels", "slope", 7, .says = "is too steep", .property = "p"},
+                          width = {"kernels", "width", 8, .property = "p"},
+                          one = {"hydro", "one", 9, .property = "p"},
+                          two = {"hydro", "two", 9, .property = "p"};
 
 struct row {
     const struct check *check;
@@ -113,9 +111,7 @@ static void the_order(void **state)
     assert_int_equal(json_array_size(list), 5);
     for (size_t i = 0; i < 5; i++) assert_string_equal(text_of(list, i, "member"), members[i]);
     assert_int_equal(json_array_size(json_object_get(json_array_get(list, 0), "also")), 1);
-    assert_string_equal(
-        text_of(list, 0, "headline"),
-        "kernel: dw is not the derivative of w; dW/dh is not the derivative of W in h");
+    assert_string_equal(text_of(list, 0, "headline"), "kernel: is too steep; width off by 2");
     json_decref(list);
     /* each member once, also one that is not the first */
     list = told(
@@ -123,7 +119,7 @@ static void the_order(void **state)
                {&slope, "a", 2, 1}, {&one, "b", 3, 1}, {&two, "b", 2, 1}, {&width, "b", 2, 1}});
     assert_int_equal(json_array_size(list), 2);
     assert_string_equal(text_of(list, 0, "member"), "a");
-    assert_string_equal(text_of(list, 1, "check"), "width_derivative");
+    assert_string_equal(text_of(list, 1, "check"), "width");
     json_decref(list);
     list = told(0, NULL); /* nothing failed */
     assert_int_equal(json_array_size(list), 0);

@@ -21,12 +21,20 @@ static bool writing; /* the files anew, to be read before they are believed */
 static const struct check_mutant minus = {"minus", "a sign", NULL},
                                  plus = {"plus", "<no> sign", NULL};
 static const struct check
-    sign = {.group = "kernels", .name = "sign", .property = "W >= 0"},
-    moments = {.group = "kernels", .name = "moments", .property = "sums", .slow = true},
-    normalisation = {.group = "kernels", .name = "normalisation", .property = "one"},
-    continuity = {.group = "kernels", .name = "continuity", .property = "smooth"},
-    rates = {.group = "hydro", .name = "rates", .property = "equal \"rates\""},
-    idle = {.group = "hydro", .name = "idle", .property = "none"};
+    sign = {.group = "kernels",
+            .rank = 150,
+            .says = "is negative or rises",
+            .name = "sign",
+            .property = "W >= 0"},
+    moments = {.group = "kernels",
+               .rank = 150,
+               .name = "moments",
+               .property = "sums",
+               .slow = true},
+    normalisation = {.group = "kernels", .rank = 100, .name = "normalisation", .property = "one"},
+    continuity = {.group = "kernels", .rank = 150, .name = "continuity", .property = "smooth"},
+    rates = {.group = "hydro", .rank = 708, .name = "rates", .property = "equal \"rates\""},
+    idle = {.group = "hydro", .rank = 750, .name = "idle", .property = "none"};
 
 #define FIGURE(check, subject, value, bound, floor, seconds, status)                               \
     {                                                                                              \
