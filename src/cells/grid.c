@@ -71,15 +71,19 @@ static int compare_doubles(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Three quarters of the points reach no further than this: cells of that size are searched with
- * their next neighbours only, wider points look through more of them. */
+/* A cell as large as the widest radius is searched with its next neighbours only, where that is
+ * little more than three quarters of the points need: if cells were slightly smaller than the
+ * radius of a few points, all around these would look through 5^d cells in place of 3^d. Where few
+ * points are much wider, cells follow the others. */
 static double usual_radius(size_t n, const double *radius)
 {
-    double sample[SAMPLE];
+    double sample[SAMPLE], widest = 0;
     const size_t count = n < SAMPLE ? n : SAMPLE;
     for (size_t k = 0; k < count; k++) sample[k] = radius[k * n / count];
     qsort(sample, count, sizeof *sample, compare_doubles);
-    return sample[count * 3 / 4];
+    const double usual = sample[count * 3 / 4];
+    for (size_t i = 0; i < n; i++) widest = radius[i] > widest ? radius[i] : widest;
+    return widest <= 1.2 * usual ? widest : usual;
 }
 
 static enum status find_extent(struct grid *grid, size_t n, const double *const x[],
