@@ -107,11 +107,12 @@ void cells_destroy(struct cells *cells);
 /* What that comes to with lists of so many neighbours each, in bytes. */
 double cells_bytes(const struct cells_method *method, double n, double neighbours);
 
-/* So many threads, no more than the method's, do the work from here on. */
+/* Sets how many threads work from now on; at most the method's number. */
 void cells_team(struct cells *cells, int size);
 
-/* Finds who is near whom, to max(radius_i, radius_j); parts: an enum cells_part of each, or NULL
- * where all are active; kept until the next call. Errors as grid_search. */
+/* Finds the neighbours of every particle within max(radius_i, radius_j). parts: an enum cells_part
+ * for each particle, or NULL if all are active; it must stay valid until the next call. Errors as
+ * grid_search. */
 enum status cells_arrange(struct cells *cells, const struct cells_fields *fields,
                           const double *radius, const unsigned char *parts, struct error *error);
 
@@ -148,8 +149,8 @@ size_t cells_matrix(struct cells *cells, const struct cells_fields *fields);
 /* F, de, div_v, signal. Returns the number of pairs within max(h_i, h_j). */
 uint64_t cells_forces(struct cells *cells, const struct cells_fields *fields);
 
-/* alpha_local, what alpha jumps up to and decays to, and decay, the rate of that, from slope and
- * the forces of this evaluation; alpha_min and 0 of those who sleep. */
+/* Computes alpha_local, the value that alpha jumps up to and decays to, and decay, its rate, from
+ * slope and the forces of this evaluation. Inactive particles get alpha_min and 0. */
 void cells_switch(struct cells *cells, const struct cells_fields *fields);
 
 /* signal alone, from velocities that have changed since the forces. */

@@ -23,9 +23,8 @@ struct grid_box {
     bool periodic[3];
 };
 
-/* Lists are kept as slots in 2D; in 3D, where they are what takes the most memory, as marks of
- * those who are near among the points of the cells around: a bit each, and six of them for a
- * neighbour. */
+/* Neighbour lists are stored as slots in 2D. In 3D, where they take most of the memory, they are
+ * bit masks over the points of the surrounding cells: about six bits for each neighbour. */
 struct grid_list {
     const void *kept; /* NULL: not active */
     int32_t count;

@@ -84,7 +84,7 @@ struct lanes {
     int64_t pairs;
     struct cells_left_out left_out;
     struct grid_reader reader;
-    int32_t *slots; /* a list without those who take no part, in place of the grid's */
+    int32_t *slots; /* a list without inactive particles, used instead of the grid's */
     ptrdiff_t room; /* entries */
 };
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Who is near whom, in 1, 2 or 3 dimensions, in an open or a periodic domain. Points are sorted
+ * Neighbour search in 1, 2 or 3 dimensions, in an open or a periodic domain. Points are sorted
  * along a Hilbert curve and cut into blocks of NEIGHBOURS_BLOCK; bounding boxes of blocks, of eight
- * blocks, and so on make a tree. Unlike a grid of cells it has no cell width to choose: clustered
+ * blocks, and so on form a tree. Unlike a grid of cells it has no cell width to choose: clustered
  * clouds, coincident points, any support radius and coordinates far from the origin need no special
  * case. */
 #ifndef SPHPROOF_NEIGHBOURS_H

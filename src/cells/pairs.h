@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Inside of the pair forces in 2D and 3D: what a stage hands on to the next. */
+ * Private to the pair forces in 2D and 3D: the arrays that one stage passes to the next. */
 #ifndef SPHPROOF_PAIRS_H
 #define SPHPROOF_PAIRS_H
 

@@ -105,7 +105,7 @@ static void sort_memory(struct simulation *simulation)
     ptrdiff_t place = 0;
     for (size_t slot = 0; slot < slots; slot++) /* images own no storage */
         if (order[slot] < (size_t)a->n) a->order[place++] = order[slot];
-    /* those who sleep keep what the last sums over them left */
+    /* inactive particles keep the values of the last sums over them */
     for (size_t k = 0; k < workspace->arrays; k++)
         permute(a, workspace->block + k * workspace->stride);
     if (workspace->asleep) {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Families whose members are choices in the equations. The list of a family is read for its enum
- * (here), its descriptors (scheme.c) and its axis in the tables of specialised loops: a member
- * cannot be forgotten in one of them, nor stand at another's place. Gradients and viscosities have
- * a file each, and their lists are generated (family_names.h).
+ * Families whose members are choices in the equations. One list per family defines its enum (here),
+ * its descriptors (scheme.c) and its axis in the tables of specialised loops, so that these always
+ * agree. Each gradient and viscosity has a file of its own; their lists are generated
+ * (family_names.h).
  *
  * A member: CHOICE(symbol, name, label, paper); a list hands on what follows the first argument, so
  * that lists nest: FORMULATION_LIST(F, a) makes F(symbol, name, label, paper, a) of each member. */

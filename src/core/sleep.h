@@ -49,9 +49,9 @@ struct sleep {
     ptrdiff_t span_count, awake_count;
 };
 
-/* In tolerances: below it whoever is awake may fall asleep; above 1 neighbours wake; above the
- * last neighbours of neighbours do, as what comes so far within one step is no more than 1e-4 of
- * it. */
+/* In units of the tolerance. An active particle below SLEEP_CALM may become inactive. A particle
+ * above 1 activates its neighbours, and one above SLEEP_VIOLENT their neighbours as well: within
+ * one step no more than 1e-4 of a disturbance travels that far. */
 #define SLEEP_CALM    0.25
 #define SLEEP_VIOLENT 1e5
 

@@ -18,10 +18,9 @@ struct gas {
     double gamma, constant, eta, follow;
 };
 
-/* Equation of state of len <= BATCH_MAX particles, from their sums at h_inverse: P, c, V, rho
- * (CONVENTIONS eqs. 1.1, 3.1 to 3.3); h as the sum of mass asks for it, and h_inverse_found, a
- * Newton step nearer to the root (eq. 3.11); with them g, b and grad_h where the plan wants them.
- */
+/* Computes the equation of state of len <= BATCH_MAX particles from their sums at h_inverse: P, c,
+ * V, rho (CONVENTIONS eqs. 1.1, 3.1 to 3.3), h of the sum of mass, h_inverse_found, which is one
+ * Newton step nearer to the root (eq. 3.11), and g, b and grad_h if the plan needs them. */
 void state_close(const struct particles *particles, ptrdiff_t first, int len,
                  const struct plan *plan, const struct gas *gas, const struct density_sums *sums);
 

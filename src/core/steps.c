@@ -68,7 +68,7 @@ static double work_of(const struct simulation *simulation, double dt, int depth)
     return work / (double)a->n;
 }
 
-/* Does a block of that depth pay, against single steps of those who are awake? */
+/* Is a block of this depth cheaper than single steps of the active particles? */
 static bool pays(const struct simulation *simulation, double dt, int depth)
 {
     const double awake = (double)simulation->sleep.awake_count / (double)simulation->particles.n;

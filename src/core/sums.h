@@ -35,28 +35,31 @@ struct sums {
     /* After the first rates: sets memory aside for what a run may come to. */
     enum status (*reserve)(struct simulation *simulation, struct error *error);
 
-    /* Positions have changed: restores the order, finds neighbours. STATUS_BROKE_DOWN: a position
-     * is not finite. */
+    /* Call it after positions have changed: restores the order and finds neighbours.
+     * STATUS_BROKE_DOWN: a position is not finite. */
     enum status (*arrange)(struct simulation *simulation, struct error *error);
-    /* Density, smoothing length and equation of state (h, h_inverse, h_inverse_found, V, rho, P,
-     * c; g, b and grad_h where the plan wants them) from x, m, U. newton: h by Newton; else
-     * predicted, 1/h extrapolated by ratio times its last change. */
+    /* Computes density, smoothing length and equation of state (h, h_inverse, h_inverse_found, V,
+     * rho, P, c; g, b and grad_h if the plan needs them) from x, m, U. newton: solves for h by
+     * Newton's method; otherwise 1/h is extrapolated by ratio times its last change. */
     enum status (*widths)(struct simulation *simulation, bool newton, double ratio,
                           struct error *error);
-    /* Moment matrices and velocity gradients; called where the plan wants either. */
+    /* Computes moment matrices and velocity gradients; called if the plan needs either. */
     void (*matrix)(struct simulation *simulation);
-    /* F, de, and dalpha where the plan wants it; *rate: at least the largest signal speed / h. */
+    /* Computes F, de and, if the plan needs it, dalpha. *rate becomes at least the largest signal
+     * speed / h. */
     enum status (*forces)(struct simulation *simulation, double *rate, struct error *error);
     /* signal of every awake particle from v, c, h; returns the largest signal speed / h. */
     double (*signal)(struct simulation *simulation);
-    /* The switch of viscosity=cullen_dehnen, called where the plan wants it: after the rates, what
-     * alpha jumps up to and decays to; after the step, alpha. */
+    /* The switch of viscosity=cullen_dehnen, called if the plan needs it. find_switch, after the
+     * rates, computes the values that alpha jumps up to and decays to; apply_switch, after the
+     * step, sets alpha. */
     void (*find_switch)(struct simulation *simulation);
     void (*apply_switch)(struct simulation *simulation, double dt);
-    /* Of each particle, after the matrices; see description_each. */
+    /* Visits each particle after the matrices are known; see description_each. */
     void (*describe)(const struct simulation *simulation, description_visit *visit, void *context);
 
-    /* Who sleeps: from the first rates, and after every step. Fill simulation->sleep. */
+    /* Choose the inactive particles, from the first rates and after every step. They fill
+     * simulation->sleep. */
     enum status (*sleep_begin)(struct simulation *simulation, struct error *error);
     void (*sleep_update)(struct simulation *simulation);
     /* Whether particle i sleeps. */

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * How many of a run's threads work. Where other programs want the same processors, threads wait for
- * each other at the end of every pass for longer than they share out, and one thread alone is
- * faster: several times, in short steps. Results do not depend on it, so both are tried: now and
- * then for a few milliseconds, the less often the longer the answer has been the same. */
+ * Chooses how many of a run's threads work. If other programs use the same processors, threads wait
+ * for each other at the end of every pass for longer than sharing the work saves, and one thread
+ * alone can be several times faster. Results do not depend on the number of threads, so both are
+ * timed now and then for a few milliseconds, and less often the longer the answer has been the
+ * same. */
 #ifndef SPHPROOF_TEAM_H
 #define SPHPROOF_TEAM_H
 

@@ -77,10 +77,8 @@ struct loops {
     struct pair_numbers numbers;
 };
 
-/* Chooses through the tables what the plan asks for, once per simulation; specialised loops where
- * the plan wants them and the kernel is a built-in one. The loops keep a pointer to the scheme's
- * kernel.
- */
+/* Chooses the loops of a plan from the tables, once per simulation. The loops are specialised ones
+ * if the plan allows it and the kernel is built in. They keep a pointer to the scheme's kernel. */
 void loops_choose(const struct plan *plan, const struct scheme *scheme, struct loops *loops);
 
 /* The tables, one in each of the four files; kernel: position in kernels.def, -1: generic. The

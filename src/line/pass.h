@@ -22,7 +22,7 @@ struct tally {
     uint64_t pairs, without_viscosity, without_slope;
 };
 
-/* The work on one range; tally: of the thread that does it, to be added to. */
+/* The work on one range. It adds its counts to tally, which belongs to the calling thread. */
 typedef void range_pass(struct simulation *simulation, struct range *range, struct tally *tally);
 
 /* A pass over all ranges of a simulation. Returns what all threads have found together. */

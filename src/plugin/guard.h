@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Work on foreign code in a process of its own, which may crash, never return, end itself, print,
- * or eat all memory: whatever happens there is told, and nothing of it is left behind. It is no
- * prison: code that means harm can do what its user can do. */
+ * Runs foreign code in a process of its own. If the code crashes, does not return, exits, prints or
+ * uses up its memory, the caller gets a message and nothing of the process remains. This is not a
+ * sandbox: malicious code has all rights of the user who runs it. */
 #ifndef SPHPROOF_GUARD_H
 #define SPHPROOF_GUARD_H
 

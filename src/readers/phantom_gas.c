@@ -21,7 +21,7 @@ static enum status check_header(const char *path, const struct phantom_header *h
                      path, mass, hfact);
 }
 
-/* Rows in the order in which they are kept: living gas, then what else lives. */
+/* Orders the rows as they are stored: gas that is alive first, then all other live particles. */
 static void sort_rows(struct snapshot_file *file, const double *type, size_t *row)
 {
     const double *h = file->column[SNAPSHOT_H];

@@ -12,7 +12,8 @@
 const char *const snapshot_column_names[SNAPSHOT_COLUMNS] = {
     "x", "y", "z", "vx", "vy", "vz", "m", "rho", "u", "P", "h", "ax", "ay", "az", "du"};
 
-/* What people call them, in small letters, and without what is neither letter nor digit. */
+/* Usual names of each column in lower case, without characters that are neither letter nor digit.
+ */
 static const char *const called[SNAPSHOT_COLUMNS] = {
     "x pos posx position positionx positions coordinates coordinatesx",
     "y posy positiony coordinatesy",

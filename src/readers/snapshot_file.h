@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Snapshots of any code: what a file holds, as it says it, in its own units. Readers are a family:
- * one file in reader/ and one line in readers.def each. Nothing is taken for granted that a file
- * does not say; what a reader assumed, it notes with its evidence. */
+ * Snapshots of any code: the contents of a file in the file's own units. Readers are a family: each
+ * is one file in reader/ and one line in readers.def. Where a file does not state something, the
+ * reader records what it assumed and the evidence for it. */
 #ifndef SPHPROOF_SNAPSHOT_FILE_H
 #define SPHPROOF_SNAPSHOT_FILE_H
 
@@ -103,7 +103,7 @@ bool snapshot_take_box(const char *text, struct snapshot_file *file);
 /* The length of the box along d where it is known and periodic, else 0. */
 double snapshot_period(const struct snapshot_file *file, int d);
 
-/* The column that people call name ("density", "v_x", "particle mass"), or -1. */
+/* The column that a usual name stands for ("density", "v_x", "particle mass"), or -1. */
 int snapshot_column_of(const char *name);
 
 #endif

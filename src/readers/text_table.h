@@ -17,11 +17,12 @@ struct text_table {
 };
 enum { TABLE_TYPE = SNAPSHOT_COLUMNS };
 
-/* Is there nothing in it but text, as far as its first bytes tell? */
+/* Are its first bytes all text? */
 bool text_table_is_text(const struct snapshot_source *source);
 
-/* Sets what the columns mean: by the user's map, "rho=Density,u=Energy" (NULL: none), else by what
- * people call them. STATUS_BAD_INPUT: a map that names no column, a quantity twice. */
+/* Sets the meaning of each column from the user's map, "rho=Density,u=Energy" (NULL: no map), or
+ * from the usual names. STATUS_BAD_INPUT: the map names a column that is not there, or two columns
+ * mean the same quantity. */
 enum status text_table_name(struct text_table *table, const char *map, struct error *error);
 
 /* As text_real; Fortran's exponent D counts as E. */

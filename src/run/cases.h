@@ -46,8 +46,9 @@ struct case_file {
     char title[128];
     int dimension;
     struct settings settings; /* fallbacks and what the file says */
-    bool fields[FIELDS];      /* those that a person wants to see */
-    bool exact[FIELDS];       /* those that every scheme gets exactly: an error of 0 is no wonder */
+    bool fields[FIELDS];      /* the fields that tables for readers show */
+    bool exact[FIELDS]; /* the fields that every scheme computes exactly, so that an error of 0 is
+                           expected */
     size_t ladder[CASE_LADDER_MAX], ladder_count;
     /* What a quick report has in place of the ladder (a single n: one run, no study), and what a
      * nightly one has on top of it. */

@@ -27,8 +27,8 @@ static inline double domain_length(const struct domain *domain, int direction)
     return domain->hi[direction] - domain->lo[direction];
 }
 
-/* A position from the lower corner of the box, as codes want it: below the length of the box where
- * x is in it, also where rounding would make it that. */
+/* The position measured from the lower corner of the box, as most codes expect it. For x inside of
+ * the box the result is smaller than the length of the box even after rounding. */
 static inline double domain_offset(const struct domain *domain, int direction, double x)
 {
     const double from = x - domain->lo[direction], length = domain_length(domain, direction);

@@ -149,7 +149,8 @@ static enum status check_places(const struct particle_file *file, const char *pa
     return STATUS_OK;
 }
 
-/* A guess where nothing says it: widths are found from it. */
+/* Estimates densities where neither problem nor file gives them; smoothing lengths are solved for
+ * from there. */
 static void guess_densities(const struct particle_file *file, const struct prepared *p,
                             struct initial *initial)
 {

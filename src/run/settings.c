@@ -293,7 +293,7 @@ int settings_choice_along(const struct settings *settings, enum setting key, int
     return value->choices[value->given > 1 ? direction : 0];
 }
 
-/* What the scheme's keys say; what they leave open is told apart. */
+/* Reads the keys of the scheme; open receives the choices that they leave to the case. */
 static enum status read_scheme(const struct settings *settings, int dim, struct scheme *scheme,
                                struct scheme_open *open, struct error *error)
 {

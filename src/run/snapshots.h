@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Snapshots on the way: of F.csv, which has the particles at the end, F_0000.csv at the start and
- * F_0001.csv, F_0002.csv ... at the multiples of an interval before the end. The run itself knows
- * nothing of them: a few steps before each, its state is kept in memory; it goes on to exactly that
- * time, as if it ended there, and afterwards from what was kept, to the same last bit. */
+ * Intermediate snapshots. For --snapshot F.csv, which holds the particles at the end, these are
+ * F_0000.csv at the start and F_0001.csv, F_0002.csv ... at the multiples of an interval. They do
+ * not change the run: a few steps before each, the state is saved in memory, the run goes on to
+ * exactly the snapshot's time as if it ended there, and then continues from the saved state, equal
+ * to the last bit. */
 #ifndef SPHPROOF_SNAPSHOTS_H
 #define SPHPROOF_SNAPSHOTS_H
 

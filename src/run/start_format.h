@@ -10,7 +10,8 @@
 struct start_format {
     struct member member;
     const struct snapshot_writer *writer;
-    /* Where the code's user sets these, in the code's own words; NULL: the file says it. */
+    /* Where the user of the code must set these, in the code's own terms; NULL: the file contains
+     * it. */
     const char *gamma, *dimension, *box, *boundary, *t_end;
     const char *precision; /* NULL: as ours, float64 */
     int dim;               /* the code's; 0: any */

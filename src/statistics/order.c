@@ -88,8 +88,8 @@ static struct line fit_line(size_t n, const double *x, const double *y,
     gsl_fit_wlinear(x, 1, weight, 1, y, 1, n, &c0, &c1, &cov00, &cov01, &cov11, &chi2);
     const double scatter = half_by_scatter(n, cov11 * chi2);
     if (!noisy) return (struct line){c1, scatter};
-    /* Levels that lie farther off the line than their noise can explain (an F test at 1 %): what
-     * is left is curvature, of which replicates know nothing. */
+    /* If levels lie farther off the line than their noise explains (an F test at 1 %), the rest is
+     * curvature, which the scatter of replicates does not contain. */
     const double freedom = (double)(n - 2), known = (double)(n * (noise->replicates - 1));
     const bool curved = gsl_cdf_fdist_Q(chi2 / freedom, freedom, known) < 0.01;
     const double half = half_by_replicates(n, x, weight, noise);

@@ -27,7 +27,7 @@ void hydro_cloud_sheared(struct hydro_cloud *cloud, int dim, size_t side);
 struct setup hydro_cloud_setup(const struct hydro_cloud *cloud, const struct scheme *scheme);
 
 /* cubic_spline standard vanilla_ice mass, constant viscosity, mean width, modified leapfrog, h to
- * 1e-15, with numbers that are nobody's defaults. */
+ * 1e-15, with parameters that differ from all defaults. */
 struct scheme hydro_cloud_scheme(int dim);
 
 /* Choices: the gradient, formulation, volume element and width of a pair; those of its viscosity

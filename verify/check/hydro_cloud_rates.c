@@ -28,8 +28,8 @@ static void add(struct check_run *run, int dim, struct scheme scheme)
     check_subject(run, &subject, sizeof subject);
 }
 
-/* Every step-th geometry for each kernel. The steps here and below have no factor in common with
- * the sizes of the families, so that each member has its turn. */
+/* Adds every step-th geometry for each kernel. The steps here and below have no factor in common
+ * with the sizes of the families, so that every member is used. */
 static void add_kernels(struct check_run *run, int dim, size_t step)
 {
     for (size_t k = 0; k < kernel_family.n; k++)

@@ -284,7 +284,7 @@ static double bumpy_w(const struct kernel *kernel, double q, int dim)
 }
 static const struct kernel bump_narrow = {.w = bumpy_w, .dw = cubic_spline_dw, CUBIC};
 
-/* w' jumps by 1e-7, and dw agrees; nobody declares knots. */
+/* w' jumps by 1e-7 and dw agrees with it; no knots are declared. */
 static double slip_w(const struct kernel *kernel, double q, int dim)
 {
     return cubic_spline_w(kernel, q, dim) + (q < 0.37 ? 1e-7 * (0.37 - q) : 0);

@@ -86,7 +86,8 @@ static void measure_weights(struct check_run *run, fit_function *fit)
     check_measure(run, fabs(got.order - 1), 0.05, 0.005, "a level whose error may be off by half");
 }
 
-/* Replicates know nothing of curvature: levels off the line by far more than their noise. */
+/* Levels that lie off the line by far more than their noise: the scatter of replicates does not
+ * contain curvature. */
 static void measure_curved(struct check_run *run, fit_function *fit)
 {
     double spacing[LEVELS], error[LEVELS], variance[LEVELS];

@@ -95,7 +95,7 @@ static void add(struct check_run *run, const char *kernel, enum viscosity viscos
             }
 }
 
-/* Viscosity knows nothing of the kernel. */
+/* Viscosity does not depend on the kernel. */
 static void subjects(struct check_run *run)
 {
     for (size_t k = 0; k < kernel_family.n; k++) {
@@ -286,7 +286,8 @@ CHECK_DEFINE(stability, steps, 950,
 /* --- limits of eta -----------------------------------------------------------------------------
  */
 
-/* Where a wave first grows, as a kernel's descriptor says it: the plan warns from there on. */
+/* The eta at which a wave first grows, as the kernel's descriptor states it; the plan warns from
+ * there on. */
 struct limit {
     const char *kernel;
     enum gradient gradient;

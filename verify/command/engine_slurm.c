@@ -301,7 +301,7 @@ static bool due(struct array *array, struct share *share, int number)
     /* one that ended well has written everything, which other machines may see a little later */
     if (strcmp(share->state, "COMPLETED") == 0 && now < share->ended + visible) return false;
     if (share->tries >= TRIES || strcmp(share->state, "CANCELLED") == 0) {
-        share->failed = true; /* who cancels a task does not want it again */
+        share->failed = true; /* a task that its user cancelled is not submitted again */
         return false;
     }
     if (!array->work->options->quiet)

@@ -112,7 +112,7 @@ static enum status take_box(struct request *r, int n, char **arguments, char **r
     return STATUS_OK;
 }
 
-/* Rates are to be compared: h is found to round-off, unless somebody says otherwise. */
+/* Solves for h to round-off, since rates are compared, unless the user sets h_tolerance. */
 static enum status sharpen(struct settings *settings, struct error *error)
 {
     if (settings->value[SETTING_h_tolerance].source != SOURCE_FALLBACK) return STATUS_OK;

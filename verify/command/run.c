@@ -330,7 +330,7 @@ static enum status present(const struct options *options, const struct run_setti
         if (snapshots && !snapshots->trouble.status)
             print_snapshots(snapshots, settings_real(&result->settings, SETTING_t_end));
     }
-    /* what cannot be written takes nothing else with it; the first trouble is told */
+    /* all other files are written even if one cannot be; the first error is reported */
     struct error trouble[5] = {0};
     if (snapshots) trouble[0] = snapshots->trouble;
     write_json(options, settings, result, &trouble[1]);
@@ -374,7 +374,7 @@ struct kept {
     char build[CACHE_BUILD_MAX], *run;
 };
 
-/* run: of whoever calls, to be freed. */
+/* run belongs to the caller, who frees it. */
 static enum status take_checkpoint(struct kept *kept, const struct options *options,
                                    const struct run *run, struct error *error)
 {

@@ -17,7 +17,8 @@ void fuzz_one(const uint8_t *bytes, size_t size);
 /* The path of a file that holds bytes; the same file each time. */
 const char *fuzz_file(const uint8_t *bytes, size_t size);
 
-/* The same for libraries that want a name in a folder; removed when the process ends. */
+/* The same for libraries that need a path in a folder; the file is removed when the process ends.
+ */
 const char *fuzz_named_file(const uint8_t *bytes, size_t size);
 
 /* A NUL-terminated copy; free it. */

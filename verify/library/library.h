@@ -32,8 +32,8 @@ struct library_figures {
 };
 void library_figure(struct library_figures *figures, const struct sphproof_figure *figure);
 
-/* The setup as the solver wants it, with arrays of the caller. rest: room for n zeros, for
- * velocities that are not given. */
+/* Fills the solver's setup with the caller's arrays. rest: an array of n zeros, used for velocities
+ * that are not given. */
 enum sphproof_status library_setup(const struct sphproof_setup *theirs, bool sharp,
                                    const double *rest, struct setup *setup,
                                    struct sphproof_error *error);

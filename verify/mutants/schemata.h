@@ -6,7 +6,8 @@
 #ifndef SPHPROOF_SCHEMATA_H
 #define SPHPROOF_SCHEMATA_H
 
-/* No headers: a source may yet have to say which of their functions it wants. */
+/* No headers are included here, because a source may define feature macros before it includes them.
+ */
 char *getenv(const char *name);
 int atoi(const char *text);
 int open(const char *name, int flags, ...);
@@ -18,7 +19,7 @@ void *mmap(void *at, unsigned long size, int protection, int flags, int file, lo
 SCHEMATA_GLOBAL int sphproof_mutant; /* -1: watching */
 SCHEMATA_GLOBAL char *sphproof_reach;
 
-/* Shared memory: also what is told by a process that is killed arrives. */
+/* Uses shared memory, so that the marks of a process that is killed are kept. */
 SCHEMATA_GLOBAL __attribute__((constructor(101))) void sphproof_schemata(void)
 {
     const char *number = getenv("SPHPROOF_MUTANT"), *name = getenv("SPHPROOF_REACH");

@@ -59,7 +59,7 @@ void oracle_free(struct oracle *oracle);
 /* Density, h, pressure, rates of the present state. STATUS_BROKE_DOWN: no sound state. */
 enum status oracle_evaluate(struct oracle *oracle, struct error *error);
 
-/* The signal speeds of the present momenta; oracle_evaluate does it too. */
+/* Computes the signal speeds of the present momenta; oracle_evaluate does this as well. */
 void oracle_signals(struct oracle *oracle);
 
 /* The time step of the present signal speeds. */

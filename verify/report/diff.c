@@ -11,8 +11,8 @@
 #include "problem_list.h"
 #include "value.h"
 
-/* Settings that make another problem of a case, beside a problem's own; the others are what one
- * wants to compare. */
+/* Settings that change the problem that is solved, in addition to the problem's own keys; results
+ * that differ in other settings are compared. */
 static const enum setting problem_keys[] = {
     SETTING_kind,   SETTING_gamma, SETTING_t_end, SETTING_lo,       SETTING_hi,     SETTING_window,
     SETTING_jitter, SETTING_seed,  SETTING_n,     SETTING_boundary, SETTING_gravity};

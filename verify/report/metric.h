@@ -61,9 +61,10 @@ enum metric_verdict {
 enum { READING_VERDICTS = VERDICT_NEW + 1 };
 extern const char *const metric_verdicts[READING_VERDICTS];
 
-/* What became of a reading (either may be NULL: it is there on one side only). *amount: how much
- * worse, relative (an order: absolute), infinite where a word or a finite number got lost; 0 unless
- * it is worse. fault: does it count where amounts beyond a threshold fail? */
+/* Judges how a metric has changed; either may be NULL if it is there on one side only. *amount: how
+ * much worse it is, relative to the old value (for an order: absolute); infinite if a word or a
+ * finite number got lost; 0 unless it is worse. *fault: can this change fail a comparison with a
+ * threshold? */
 enum metric_verdict metric_judge(const struct metric *old, const struct metric *new, double *amount,
                                  bool *fault);
 

@@ -292,8 +292,9 @@ static const char *outcome_of(const json_t *entry)
     return json_string_value(json_object_get(entry, "outcome"));
 }
 
-/* Something that no cell may be: a prediction that fails, a fault nobody noticed, a breakdown where
- * all have to survive, or round-off that the default scheme lets grow where it is not known to. */
+/* Is this an outcome that fails the map? That is a prediction that fails, an undetected fault, a
+ * breakdown where every scheme must survive, or round-off that the default scheme amplifies where
+ * it is not known to. */
 static bool is_wrong(const struct stress_cell *cell, const json_t *entry)
 {
     const char *outcome = outcome_of(entry),

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Numerical stability mapped: groups of cells, each a hard problem for a scheme or a prediction of
+ * Maps of numerical stability: groups of cells, each a hard problem for a scheme or a prediction of
  * linear theory that short runs confirm. Every cell ends as ok, inaccurate or broke_down with a
- * reason, within a budget of steps; every cell names the command that does it again. */
+ * reason, within a budget of steps, and names the command that repeats it. */
 #ifndef SPHPROOF_STRESS_H
 #define SPHPROOF_STRESS_H
 

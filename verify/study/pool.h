@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Independent computations side by side, each in a process of its own: what one does to its memory
- * is nobody else's, one that crashes takes only itself down, and the results do not depend on how
- * many run at once. What a cache already has is not computed; what is computed is kept at once, so
- * that an interruption loses only what was not finished. */
+ * Runs independent computations side by side, each in a process of its own: they share no memory, a
+ * crash ends only its own computation, and results do not depend on how many run at once. Results
+ * that the cache already holds are not computed again, and each new result is cached at once, so
+ * that an interruption loses only unfinished ones. */
 #ifndef SPHPROOF_POOL_H
 #define SPHPROOF_POOL_H
 

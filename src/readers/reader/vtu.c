@@ -194,7 +194,7 @@ static bool unpack(const struct vtk *vtk, struct array array, size_t blocks, uns
 }
 #endif
 
-/* to: room for `want` bytes and a size; they begin behind that size. */
+/* to has space for a size and `want` bytes; the bytes begin after the size. */
 static bool take_bytes(const struct vtk *vtk, const struct array *array, unsigned char *to,
                        size_t want)
 {

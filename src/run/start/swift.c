@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * HDF5 for SWIFT: as GADGET's, but SmoothingLength is twice the kernel's standard deviation.
- * SWIFT wants one unit system, periodic boxes and InternalEnergy, not entropy. */
+ * HDF5 for SWIFT: GADGET's layout, but SmoothingLength is twice the kernel's standard deviation.
+ * SWIFT expects one unit system, periodic boxes, and InternalEnergy instead of entropy. */
 #include <math.h>
 
 #include "measure.h"
