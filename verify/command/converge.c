@@ -15,22 +15,33 @@
 #include "table.h"
 #include "text.h"
 
+/* Is there an exact solution to compare this field of the case with? */
+static bool measured(const struct case_file *file, const struct study_result *result, int field)
+{
+    bool found = false;
+    for (size_t i = 0; i < result->level_count; i++)
+        found = found || isfinite(result->levels[i].errors[field][NORM_L1]);
+    return file->fields[field] && found;
+}
+
 static void print_ladder(const struct study *study, const struct study_result *result,
                          const struct table_style *style)
 {
     const struct case_file *file = &study->settings.file;
     printf("%s%10s %12s", style->bold, "n", "h");
     for (int field = 0; field < FIELDS; field++)
-        if (file->fields[field]) printf(" %17s", field_family.members[field]->name);
+        if (measured(file, result, field)) printf(" %17s", field_family.members[field]->name);
     printf(" %10s%s\n", "CPU s", style->end);
     for (size_t i = 0; i < result->level_count; i++) {
         const struct study_level *level = &result->levels[i];
         printf("%10zu %12.4e", level->n, level->h);
         for (int field = 0; field < FIELDS; field++)
-            if (file->fields[field] && study->replicates > 1)
+            if (!measured(file, result, field))
+                continue;
+            else if (study->replicates > 1)
                 printf(" %11.4e +-%2.0f%%", level->errors[field][NORM_L1],
                        100 * level->spread[field][NORM_L1]);
-            else if (file->fields[field])
+            else
                 printf(" %17.4e", level->errors[field][NORM_L1]);
         printf(" %10.3g\n", level->cpu_s);
     }
@@ -62,7 +73,8 @@ static void print_orders(const struct case_file *file, const struct study_result
     for (int field = 0; field < FIELDS; field++)
         for (int norm = 0; norm < NORMS; norm++) {
             const struct study_order *order = &result->orders[field][norm];
-            if (order->status == GATE_NONE && (norm != NORM_L1 || !file->fields[field])) continue;
+            if (order->status == GATE_NONE && (norm != NORM_L1 || !measured(file, result, field)))
+                continue;
             char name[40];
             snprintf(name, sizeof name, "%s_%s", field_family.members[field]->name,
                      field_norm_family.members[norm]->name);
@@ -138,25 +150,38 @@ static void print_budget(const struct study_result *result, const struct table_s
            style->end);
 }
 
+static void print_errors(const struct study *study, const struct study_result *result,
+                         const struct table_style *style)
+{
+    const struct case_file *file = &study->settings.file;
+    const bool random = study_is_random(&result->settings), many = study->replicates > 1;
+    bool any = false;
+    for (int field = 0; field < FIELDS; field++) any = any || measured(file, result, field);
+    if (any)
+        printf("%serrors: L1 = sum V|q - exact|/sum V over the measure window, volumes cut at its "
+               "edge, code units; h: mean there%s\n",
+               style->faint, style->end);
+    else
+        printf("%sno errors of fields: after the start nothing is exact%s\n", style->faint,
+               style->end);
+    if (many)
+        printf("%sgeometric means of %zu runs, %s, and their standard deviation%s\n", style->faint,
+               study->replicates, random ? "each with another seed" : "n within 2.5 %", style->end);
+    if (!any) return;
+    print_orders(file, result, style);
+    printf("%sorder: least squares of log(error) against log(box/n), Student t%s%s\n", style->faint,
+           many ? ", weights and intervals from the deviations" : "", style->end);
+}
+
 static void print_study(const struct study *study, const struct study_result *result,
                         const char *label, const struct options *options)
 {
     const struct table_style style = table_style(options->color);
     const struct case_file *file = &study->settings.file;
-    const bool random = study_is_random(&result->settings);
     printf("%s%s%s: %s%s%s\n", style.bold, file->name, style.end, file->title, *label ? ", " : "",
            label);
     print_ladder(study, result, &style);
-    printf(
-        "%serrors: L1 = sum V|q - exact|/sum V over the measure window, volumes cut at its edge, "
-        "code units; h: mean there%s\n",
-        style.faint, style.end);
-    if (study->replicates > 1)
-        printf("%sgeometric means of %zu runs, %s, and their standard deviation%s\n", style.faint,
-               study->replicates, random ? "each with another seed" : "n within 2.5 %", style.end);
-    print_orders(file, result, &style);
-    printf("%sorder: least squares of log(error) against log(box/n), Student t%s%s\n", style.faint,
-           study->replicates > 1 ? ", weights and intervals from the deviations" : "", style.end);
+    print_errors(study, result, &style);
     if (!study->settings.external) print_floor(result, &style);
     print_functionals(result, &style);
     print_budget(result, &style);

@@ -1,14 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""codes.py SPHPROOF: the small codes of verify/examples/codes solve Sod's tube and Gresho's vortex as well as their
-schemes can, by judge's verdict on their snapshots, and each planted fault is told by an error or by conservation."""
+"""codes.py SPHPROOF SPH: the small codes of verify/examples/codes (SPH: the one in C, compiled) solve Sod's tube and
+Gresho's vortex as well as their schemes can, by judge's verdict and the gates of their files, and each planted fault is told."""
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
 
 PROGRAM = os.path.abspath(sys.argv[1])
-CODE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "examples", "codes", "sph.py")
+C_PROGRAM = os.path.abspath(sys.argv[2])
+CODES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "examples", "codes")
+CODE = os.path.join(CODES, "sph.py")
 SOD = 0.0105  # L1 of density of 396 particles: the scheme has 0.0089, the smallest fault 0.0110
 
 
@@ -43,22 +46,52 @@ def test_gresho():
     assert 0.01 < got["errors"]["velocity"]["l1"] < 0.1 and got["conservation"]["momentum"] < 1e-14, got
 
 
+def ladder(case, code_file, status):
+    """Of the gate and of nothing else: pass, fail."""
+    done = subprocess.run([PROGRAM, "converge", case, "--code", code_file, "--replicates", "1", "--json", "-"],
+                          capture_output=True, text=True, timeout=300)
+    assert done.returncode == (status != "pass"), done
+    gates = [order["status"] for order in json.loads(done.stdout)["orders"] if order["gate"]]
+    assert gates == [status], (case, code_file, gates)
+
+
 def test_ladder():
     """The code file beside it: gates hold."""
-    done = subprocess.run([PROGRAM, "converge", "sod", "--code", CODE.replace(".py", ".ini"), "--replicates", "1", "--json", "-"],
-                          capture_output=True, text=True, timeout=300)
-    assert done.returncode == 0, done
-    gates = [order["status"] for order in json.loads(done.stdout)["orders"] if order["gate"]]
-    assert gates == ["pass"], gates
+    ladder("sod", CODE.replace(".py", ".ini"), "pass")
 
 
-if subprocess.run(["/usr/bin/python3", "-c", "import numpy"], capture_output=True).returncode:
-    print("no numpy: skipped")
-    sys.exit(77)
+def test_c():
+    """The code in C: gates of its file hold, judge finds its kernel, and each fault that the file plants fails a gate."""
+    shutil.copy(C_PROGRAM, "sph")
+    with open(os.path.join(CODES, "sph_c.ini"), encoding="ascii") as file:
+        text = file.read()
+    right = "command = sph @IC@ @OUT@ @T_END@\n"
+    faults = [part.split("]")[0] for part in text.split("[fault ")[1:]]
+    assert text.count(right) == 1 and faults == ["gamma", "viscosity"], faults
+    for fault in [""] + faults:
+        with open("sph_c.ini", "w", encoding="ascii") as file:
+            file.write(text.replace(right, right.replace("\n", " %s\n" % fault)))
+        ladder("sod", "sph_c.ini", "fail" if fault else "pass")
+    with open("sph_c.ini", "w", encoding="ascii") as file:
+        file.write(text)
+    ladder("gresho", "sph_c.ini", "pass")
+    found = json.loads(call(PROGRAM, "run", "sod", "--code", "sph_c.ini", "--json", "-"))
+    assert found["judged"]["kernel"]["name"] == "cubic_spline" and found["conservation"]["momentum"] < 1e-14, found
+
+
+def there(module):
+    return not subprocess.run(["/usr/bin/python3", "-c", "import " + module], capture_output=True).returncode
+
+
 with tempfile.TemporaryDirectory() as work:
     os.chdir(work)
-    test_sod()
-    test_ladder()
-    if not subprocess.run(["/usr/bin/python3", "-c", "import h5py"], capture_output=True).returncode:
+    test_c()
+    if there("numpy"):
+        test_sod()
+        test_ladder()
+    if there("h5py"):
         test_gresho()
     os.chdir("/")
+if not there("numpy"):
+    print("no numpy: the code in Python is skipped")
+    sys.exit(77)

@@ -216,6 +216,12 @@ def test_work():
     same(document("run", "sod", "n=100")["errors"], done["errors"])
 
 
+def test_no_errors():
+    """A case without an exact solution has no errors and orders to print."""
+    said = call("converge", "kelvin_helmholtz", "--n", "12^2,14^2,16^2,18^2", "--replicates", "1", status=None)[0]
+    assert "nan" not in said and "mode_amplitude" in said and "no errors of fields" in said, said
+
+
 def test_ladder(draw):
     """Orders and gates are those of our own runs, whoever computes, and however many at once; what is kept is not
     computed again unless something has changed that decides it."""
@@ -344,6 +350,7 @@ with tempfile.TemporaryDirectory() as work:
     test_failures()
     test_refused()
     test_work()
+    test_no_errors()
     test_ladder(random.Random(seed))
     test_shares()
     test_report()
