@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The verdict over a report's results: is it well, and if not, what, by how much, and how to see it
- * again. The one place where it is decided; page, summary and JUnit show it.
+ * again. It follows from the findings (findings.h), and page, summary and JUnit show it.
  *
  * results.json, a document of command "report" (each entry below is also what its own command
  * writes, see verify/schema; what a report has not is left out):

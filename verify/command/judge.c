@@ -6,9 +6,9 @@
 #include <string.h>
 
 #include "command.h"
+#include "findings.h"
 #include "gates.h"
 #include "judge.h"
-#include "junit.h"
 #include "output.h"
 #include "page.h"
 #include "picture.h"
@@ -234,7 +234,7 @@ static enum status write_page(const char *path, const json_t *document, struct e
 
 static enum status write_junit(const char *path, const json_t *document, struct error *error)
 {
-    char *text = junit_judge_text(document);
+    char *text = findings_junit(findings_of_judge, document);
     if (!text) return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", path);
     const enum status status = output_text(path, text, error);
     free(text);
@@ -335,13 +335,15 @@ const struct command command_judge = {
     .help =
         "errors of ANY code's snapshots against the exact solution of a case\n"
         "Reads HDF5 of GADGET, AREPO, GIZMO, SWIFT, SPH-EXA and Phantom, binaries of GADGET\n"
-        "(formats 1 and 2, either byte order), XML of VTK, SPLASH's ASCII and CSV, also compressed\n"
+        "(formats 1 and 2, either byte order), XML of VTK, SPLASH's ASCII and CSV, also "
+        "compressed\n"
         "(`sphproof list snapshots`). The kernel and the meaning of h are found by summing the\n"
         "density again. Everything that had to be assumed is said, with the evidence for it.\n"
         "Snapshots of `sphproof run` name their case, and need no option.\n"
         "Several snapshots: orders where numbers of particles differ, conservation where only\n"
         "times do; gates look at the one of most particles.\n"
-        "Exit status 1: a gate failed, a snapshot is far from the case's solution or of another gas, "
+        "Exit status 1: a gate failed, a snapshot is far from the case's solution or of another "
+        "gas, "
         "or\nnothing is known at its time that it could be compared with.",
     .run = run,
     .options = own_options,

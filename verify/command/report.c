@@ -10,8 +10,8 @@
 
 #include "code_run.h"
 #include "command.h"
+#include "findings.h"
 #include "history.h"
-#include "junit.h"
 #include "output.h"
 #include "page.h"
 #include "result.h"
@@ -64,7 +64,7 @@ static enum status write_report(const char *folder, const json_t *results, struc
                                 char *summary, struct error *error)
 {
     char path[PATH_LENGTH];
-    char *junit = junit_text(results);
+    char *junit = findings_junit(findings_of_report, results);
     snprintf(path, sizeof path, "%s/results.json", folder);
     enum status status = result_write(results, path, error);
     if (!status) status = write_text(folder, "junit.xml", junit, error);
@@ -113,17 +113,20 @@ static enum status take_paths(const struct options *options, struct paths *paths
     return STATUS_OK;
 }
 
-/* All results, with what the nights before tell; the caller owns them. */
+/* All results, with what the nights before tell and the verdict, which depends on it; the caller
+ * owns them. */
 static enum status judge(struct report *report, const struct paths *paths, json_t **results,
                          struct error *error)
 {
     json_t *told;
     enum status status = report_judge(report, paths->folder, results, error);
     if (status) return status;
-    if ((status = history_tell(*results, paths->history, &told, error)))
-        json_decref(*results);
-    else
+    if (!(status = history_tell(*results, paths->history, &told, error))) {
         json_object_set_new(*results, "history", told);
+        if (json_object_set_new(*results, "verdict", verdict_make(*results)))
+            status = error_set(error, STATUS_ENVIRONMENT, "no memory for the verdict");
+    }
+    if (status) json_decref(*results);
     return status;
 }
 

@@ -108,8 +108,9 @@ json_t *judge_one_json(const struct judged *judged, bool profiles);
 
 /* The document of the command, without its head, and what terminal, page, JUnit and exit status
  * show. "findings": [{"name", "status", "message"}], one of each snapshot (is it the case's
- * solution?) and of each gate; "status" and "headline" follow from them. With profiles it is what
- * page.h draws. New reference; NULL: no memory. */
+ * solution?) and of each gate, of which one that was asked for and cannot be told fails, and one
+ * that fails where nothing could be compared; "status" and "headline" follow from them. With
+ * profiles it is what page.h draws. New reference; NULL: no memory. */
 json_t *judge_json(const struct judged *judged, size_t n, json_t *gates, bool profiles);
 
 #endif

@@ -65,18 +65,37 @@ json_t *judge_one_json(const struct judged *judged, bool profiles)
     return one;
 }
 
-/* Adds what was found: {"name", "status", "message"}; "undetermined" fails where it was asked for.
- */
+/* Adds what was found: {"name", "status", "message"}. */
 static void add_finding(json_t *findings, const char *name, const char *status, const char *message)
 {
     json_array_append_new(
         findings, json_pack("{s:s, s:s, s:s}", "name", name, "status", status, "message", message));
 }
 
+/* Of a gate: what was asked for and cannot be told fails, too. */
+static void add_gate(json_t *findings, const json_t *gate)
+{
+    const char *name = value_text(gate, "name"), *why = value_text(gate, "why"),
+               *relation = value_text(gate, "relation"), *status = value_text(gate, "status");
+    const bool untold = !strcmp(status, gate_names[GATE_UNDETERMINED]),
+               asked = !strcmp(value_text(gate, "source"), JUDGE_ASKED);
+    char text[400];
+    if (untold)
+        snprintf(text, sizeof text, "%s %s %.3g: %s", name, relation, value_member(gate, "bound"),
+                 why);
+    else
+        snprintf(text, sizeof text, "%s %.3g is %s%s %.3g%s%s", name, value_member(gate, "value"),
+                 strcmp(status, gate_names[GATE_FAIL]) ? "" : "not ", relation,
+                 value_member(gate, "bound"), *why ? "; " : "", why);
+    add_finding(findings, name, untold && asked ? gate_names[GATE_FAIL] : status, text);
+}
+
+/* One of each snapshot and of each gate; and a judgement that compared nothing is not well. */
 static json_t *findings_json(const struct judged *judged, size_t n, const json_t *gates)
 {
     json_t *findings = json_array();
-    const json_t *gate;
+    const json_t *gate, *finding;
+    bool told = false;
     size_t i;
     for (i = 0; i < n; i++)
         add_finding(findings, judged[i].path,
@@ -84,61 +103,41 @@ static json_t *findings_json(const struct judged *judged, size_t n, const json_t
                                : judged[i].silent ? GATE_UNDETERMINED
                                                   : GATE_PASS],
                     judged[i].verdict);
-    json_array_foreach(gates, i, gate) {
-        const char *name = value_text(gate, "name"), *why = value_text(gate, "why"),
-                   *relation = value_text(gate, "relation"), *status = value_text(gate, "status");
-        char text[400];
-        snprintf(text, sizeof text, "%s %.3g is %s%s %.3g%s%s", name, value_member(gate, "value"),
-                 strcmp(status, gate_names[GATE_FAIL]) ? "" : "not ", relation,
-                 value_member(gate, "bound"), *why ? "; " : "", why);
-        if (!strcmp(status, gate_names[GATE_UNDETERMINED]))
-            snprintf(text, sizeof text, "%s %s %.3g: %s", name, relation,
-                     value_member(gate, "bound"), why);
-        add_finding(findings, name, status, text);
-    }
+    json_array_foreach(gates, i, gate) add_gate(findings, gate);
+    json_array_foreach(findings, i, finding)
+        told |= strcmp(value_text(finding, "status"), gate_names[GATE_UNDETERMINED]) != 0;
+    if (!told)
+        add_finding(findings, "comparison", gate_names[GATE_FAIL], "nothing could be compared");
     return findings;
 }
 
-/* Does a finding fail? What was asked for and cannot be told does, too. */
-static bool fails(const char *status, const json_t *gate)
-{
-    return !strcmp(status, gate_names[GATE_FAIL]) ||
-           (!strcmp(status, gate_names[GATE_UNDETERMINED]) &&
-            !strcmp(value_text(gate, "source"), JUDGE_ASKED));
-}
-
 /* Status and headline: gates that fail first; then how many say nothing. */
-static void add_conclusion(json_t *document, const json_t *findings, const json_t *gates,
+static void add_conclusion(json_t *document, const json_t *findings, size_t snapshots, size_t gates,
                            const struct judged *main)
 {
-    const size_t all = json_array_size(gates), snapshots = json_array_size(findings) - all;
     char failing[700] = "", text[1600];
-    size_t failed = 0, silent = 0, told = 0, used = 0, i;
+    size_t failed = 0, silent = 0, used = 0, i;
     bool good = true;
     const json_t *finding;
     json_array_foreach(findings, i, finding) {
         const char *status = value_text(finding, "status");
-        const json_t *gate = i < snapshots ? NULL : json_array_get(gates, i - snapshots);
-        if (!fails(status, gate)) {
-            silent += gate && strcmp(status, gate_names[GATE_PASS]) != 0;
-            told += strcmp(status, gate_names[GATE_UNDETERMINED]) != 0;
-            continue;
-        }
-        good = false;
-        if (gate && used < sizeof failing)
+        const bool gate = i >= snapshots && i < snapshots + gates,
+                   fails = !strcmp(status, gate_names[GATE_FAIL]);
+        good &= !fails;
+        silent += gate && !fails && strcmp(status, gate_names[GATE_PASS]) != 0;
+        if (gate && fails && used < sizeof failing)
             used += (size_t)snprintf(failing + used, sizeof failing - used, "%s%s",
                                      failed ? ", " : "", value_text(finding, "message"));
-        failed += gate != NULL;
+        failed += gate && fails;
     }
     used = 0;
     if (failed)
-        used = (size_t)snprintf(text, sizeof text, "%zu of %zu gate%s failed: %s; ", failed, all,
-                                all == 1 ? "" : "s", failing);
+        used = (size_t)snprintf(text, sizeof text, "%zu of %zu gate%s failed: %s; ", failed, gates,
+                                gates == 1 ? "" : "s", failing);
     else if (silent)
         used = (size_t)snprintf(text, sizeof text, "%zu of %zu gates pass, %zu cannot tell; ",
-                                all - silent, all, silent);
+                                gates - silent, gates, silent);
     snprintf(text + used, sizeof text - used, "%s", main->verdict);
-    good &= told > 0; /* a judgement that compared nothing is not well */
     json_object_set_new(document, "status", json_string(gate_names[good ? GATE_PASS : GATE_FAIL]));
     json_object_set_new(document, "headline", json_string(text));
 }
@@ -156,7 +155,7 @@ json_t *judge_json(const struct judged *judged, size_t n, json_t *gates, bool pr
         json_object_set(document, "gates", gates);
     else
         json_object_set_new(document, "gates", json_array());
-    add_conclusion(document, findings, gates, main);
+    add_conclusion(document, findings, n, json_array_size(gates), main);
     json_object_set_new(document, "findings", findings);
     if (n > 1) {
         json_t *all = json_array();

@@ -22,7 +22,6 @@
 #include "study.h"
 #include "suite.h"
 #include "value.h"
-#include "verdict.h"
 
 /* The default scheme, and in 1D the two gradients with all else equal; in 2D and 3D the default
  * with the other gradient, and SPH as textbooks have it. */
@@ -475,7 +474,6 @@ static json_t *collect(struct report *report, const char *folder, double seconds
         code_cost_add(results);
     else
         add_own(report, folder, results);
-    json_object_set_new(results, "verdict", verdict_make(results));
     return results;
 }
 

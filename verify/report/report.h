@@ -34,11 +34,12 @@ enum status report_create_codes(const struct report_code *codes, size_t count,
 /* To be run; the report's own. */
 struct pool *report_pool(struct report *report);
 
-/* After pool_run of all of it: judges it. *results is a document of command "report" with its
- * verdict (see reports/verdict.h), owned by the caller. A gate that fails, or a run that breaks
- * down, is part of the results; anything else that goes wrong is returned, and *results is then
- * NULL. folder: faults.json and score.json, which verify/test/faults.py and verify/mutants/score
- * write, are shown if they are there; NULL: nowhere. */
+/* After pool_run of all of it: judges it. *results is a document of command "report" as
+ * reports/verdict.h describes it, owned by the caller; it has no history and no verdict yet. A gate
+ * that fails, or a run that breaks down, is part of the results; anything else that goes wrong is
+ * returned, and *results is then NULL. folder: faults.json and score.json, which
+ * verify/test/faults.py and verify/mutants/score write, are shown if they are there; NULL: nowhere.
+ */
 enum status report_judge(struct report *report, const char *folder, json_t **results,
                          struct error *error);
 

@@ -24,7 +24,7 @@ static void add_figure(struct check_run *run, struct figure figure)
         free(figure.subject);
         return;
     }
-    run->rejected = run->rejected || (run->mutant && figure.status == FIGURE_FAIL);
+    run->rejected = run->rejected || (run->mutant && figure.status == FINDING_FAIL);
     run->figures[run->figure_count++] = figure;
 }
 
@@ -42,12 +42,11 @@ void check_measure(struct check_run *run, double value, double bound, double flo
     va_start(arguments, subject);
     char *text = format_text(subject, arguments);
     va_end(arguments);
-    const bool pass = value <= bound && floor <= bound;
     add_figure(run, (struct figure){.subject = text,
                                     .value = value,
                                     .bound = bound,
                                     .floor = floor,
-                                    .status = pass ? FIGURE_PASS : FIGURE_FAIL});
+                                    .status = finding_judge(value, bound, floor)});
 }
 
 void check_subject(struct check_run *run, const void *subject, size_t size)
@@ -75,8 +74,9 @@ void check_skip(struct check_run *run, const char *why, ...)
     char *text = format_text(why, arguments);
     va_end(arguments);
     add_figure(
-        run, (struct figure){
-                 .subject = text, .value = nan, .bound = nan, .floor = nan, .status = FIGURE_SKIP});
+        run,
+        (struct figure){
+            .subject = text, .value = nan, .bound = nan, .floor = nan, .status = FINDING_SKIP});
 }
 
 /* NULL: no memory, or no values. */

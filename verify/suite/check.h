@@ -47,7 +47,7 @@ struct check {
     /* Of several checks that fail the one of least rank names the cause, and is told first: 100 and
      * more for kernels, 200 gradients, 300 conservation, 400 riemann, 500 exact, 600 norms, 700
      * hydro, 800 clouds, 900 stability; in each group +0 to +49 for checks of one formula, +50 for
-     * those that follow from several. From 1000 on stands what is no check (see failure.h). */
+     * those that follow from several. From 1000 on stands what is no check (see findings.h). */
     int rank;
     const char *says;     /* of what fails it; NULL: that its name is off, and by how much */
     const char *property; /* one line, a formula where it helps */

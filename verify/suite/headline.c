@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "failure.h"
+#include "findings.h"
 #include "result.h"
 #include "value.h"
 
@@ -48,7 +48,7 @@ static void take(struct cause *causes, size_t *count, const struct figure *figur
         *cause = (struct cause){.check = figure->check, .number = (*count)++, .ratio = -1};
         memcpy(cause->member, member, sizeof member);
     }
-    const double ratio = suite_ratio(figure->value, figure->bound);
+    const double ratio = finding_ratio(figure->value, figure->bound);
     if (ratio > cause->ratio) cause->ratio = ratio, cause->worst = figure;
     cause->figures++;
 }
@@ -112,7 +112,7 @@ static json_t *missed(const struct mutant_outcome *outcome)
              outcome->mutant->name, outcome->mutant->fault);
     snprintf(command, sizeof command, "sphproof verify %s --mutants", check->group);
     return json_pack("{s:I, s:s, s:s, s:s, s:s, s:s, s:s, s:o, s:o, s:s}", "rank",
-                     (json_int_t)FAILURE_RANK_MISSED, "group", check->group, "check", check->name,
+                     (json_int_t)AREA_DETECTION, "group", check->group, "check", check->name,
                      "member", outcome->mutant->name, "headline", text, "property", check->property,
                      "place", "", "value", result_number(outcome->value), "bound",
                      result_number(outcome->bound), "command", command);
@@ -124,7 +124,7 @@ json_t *headline_list(const struct suite *suite)
     size_t count = 0;
     if (!causes) return NULL;
     for (size_t i = 0; i < suite->figure_count; i++)
-        if (suite->figures[i].status == FIGURE_FAIL) take(causes, &count, &suite->figures[i]);
+        if (suite->figures[i].status == FINDING_FAIL) take(causes, &count, &suite->figures[i]);
     if (count) qsort(causes, count, sizeof *causes, most_specific_first);
     json_t *list = json_array();
     for (size_t i = 0; i < count; i++) {

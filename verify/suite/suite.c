@@ -10,12 +10,6 @@
 #include "clock.h"
 #include "list.h"
 
-double suite_ratio(double value, double bound)
-{
-    if (value <= bound) return value <= 0 ? 0 : value / bound;
-    return bound > 0 && value > 0 ? value / bound : (double)INFINITY;
-}
-
 static void free_figures(struct figure *figures, size_t n)
 {
     for (size_t i = 0; i < n; i++) free(figures[i].subject);
@@ -43,7 +37,7 @@ static bool take_figures(struct suite *suite, struct check_run *run)
     for (size_t i = 0; i < run->figure_count; i++) {
         if (!list_grow(&suite->figures, suite->figure_count, sizeof *suite->figures)) return false;
         suite->figures[suite->figure_count++] = run->figures[i];
-        failed += run->figures[i].status == FIGURE_FAIL;
+        failed += run->figures[i].status == FINDING_FAIL;
         run->figures[i].subject = NULL;
     }
     suite->failed += failed; /* for those who stop at the first */
@@ -68,7 +62,7 @@ static void refuse_silence(struct check_run *run)
 {
     size_t measured = 0;
     for (size_t i = 0; i < run->figure_count; i++)
-        measured += run->figures[i].status != FIGURE_SKIP;
+        measured += run->figures[i].status != FINDING_SKIP;
     if (run->figure_count == 0)
         check_measure(run, 1, 0, 0, "harness: the check measured nothing at all");
     else if (measured == 0)
@@ -107,9 +101,9 @@ static struct mutant_outcome judge_mutant(const struct check_run *run,
     double worst = -1;
     for (size_t i = 0; i < run->figure_count; i++) {
         const struct figure *figure = &run->figures[i];
-        const double ratio = suite_ratio(figure->value, figure->bound);
-        outcome.detected = outcome.detected || figure->status == FIGURE_FAIL;
-        if (figure->status == FIGURE_SKIP || !(ratio > worst)) continue;
+        const double ratio = finding_ratio(figure->value, figure->bound);
+        outcome.detected = outcome.detected || figure->status == FINDING_FAIL;
+        if (figure->status == FINDING_SKIP || !(ratio > worst)) continue;
         worst = ratio;
         outcome.value = figure->value;
         outcome.bound = figure->bound;
@@ -159,9 +153,9 @@ enum status suite_count(struct suite *suite)
 {
     suite->passed = suite->failed = suite->skipped = suite->mutants = suite->mutants_detected = 0;
     for (size_t i = 0; i < suite->figure_count; i++) {
-        suite->passed += suite->figures[i].status == FIGURE_PASS;
-        suite->failed += suite->figures[i].status == FIGURE_FAIL;
-        suite->skipped += suite->figures[i].status == FIGURE_SKIP;
+        suite->passed += suite->figures[i].status == FINDING_PASS;
+        suite->failed += suite->figures[i].status == FINDING_FAIL;
+        suite->skipped += suite->figures[i].status == FINDING_SKIP;
     }
     count_mutants(suite);
     return suite->failed || suite->mutants_detected < suite->mutants ? STATUS_CHECK_FAILED

@@ -7,15 +7,14 @@
 #include <jansson.h>
 
 #include "check.h"
+#include "finding.h"
 #include "status.h"
-
-enum figure_status { FIGURE_PASS, FIGURE_FAIL, FIGURE_SKIP };
 
 struct figure {
     const struct check *check;
     char *subject; /* of a skipped figure: why */
     double value, bound, floor, seconds;
-    enum figure_status status;
+    enum finding_status status; /* PASS, FAIL or SKIP */
 };
 
 struct series {
@@ -64,9 +63,6 @@ void suite_free(struct suite *suite);
 json_t *suite_keep(const struct suite *suite);
 enum status suite_join(struct suite *suite, const struct check *const *checks,
                        const json_t *const *documents, size_t count, struct error *error);
-
-/* value/bound of a figure, the measure of how near it is to failing; infinite for a NaN. */
-double suite_ratio(double value, double bound);
 
 /* Seconds that a check takes with its mutants, about; > 0. */
 double suite_cost(const struct check *check);

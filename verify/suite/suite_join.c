@@ -38,14 +38,16 @@ static bool is_of(const json_t *entry, const char *name, const struct check *che
 
 static bool join_figure(struct suite *suite, const struct check *check, const json_t *entry)
 {
-    const int status = suite_output_status(value_text(entry, "status"));
+    char message[VALUE_MESSAGE];
+    const int status = value_need_word(entry, "status", finding_words, message);
     struct figure figure = {.check = check,
                             .value = value_member(entry, "value"),
                             .bound = value_member(entry, "bound"),
                             .floor = value_member(entry, "floor"),
                             .seconds = value_member(entry, "seconds"),
-                            .status = (enum figure_status)status};
-    if (status < 0 || !is_of(entry, "name", check) ||
+                            .status = (enum finding_status)status};
+    if ((status != FINDING_PASS && status != FINDING_FAIL && status != FINDING_SKIP) ||
+        !is_of(entry, "name", check) ||
         !list_grow(&suite->figures, suite->figure_count, sizeof figure) ||
         !(figure.subject = strdup(value_text(entry, "subject"))))
         return false;

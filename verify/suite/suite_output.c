@@ -8,22 +8,13 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "findings.h"
 #include "headline.h"
-#include "junit.h"
 #include "output.h"
 #include "plot.h"
 #include "result.h"
 
-enum { SERIES_SHOWN = 8, PATH_LENGTH = 1024, CLASS_LENGTH = 128, MESSAGE_LENGTH = 512 };
-
-static const char *const status_names[] = {"pass", "fail", "skip"};
-
-int suite_output_status(const char *word)
-{
-    for (int s = 0; s < (int)(sizeof status_names / sizeof *status_names); s++)
-        if (strcmp(status_names[s], word) == 0) return s;
-    return -1;
-}
+enum { SERIES_SHOWN = 8, PATH_LENGTH = 1024 };
 
 /* The figures of one check stand together, in suite->figures[begin..end-1]. */
 struct tally {
@@ -39,11 +30,11 @@ static struct tally tally_next(const struct suite *suite, size_t begin)
     double worst = -1;
     for (; t.end < suite->figure_count && suite->figures[t.end].check == t.check; t.end++) {
         const struct figure *figure = &suite->figures[t.end];
-        const double ratio = suite_ratio(figure->value, figure->bound);
+        const double ratio = finding_ratio(figure->value, figure->bound);
         t.seconds += figure->seconds;
-        t.failed += figure->status == FIGURE_FAIL;
-        t.skipped += figure->status == FIGURE_SKIP;
-        if (figure->status == FIGURE_SKIP || !(ratio > worst)) continue;
+        t.failed += figure->status == FINDING_FAIL;
+        t.skipped += figure->status == FINDING_SKIP;
+        if (figure->status == FINDING_SKIP || !(ratio > worst)) continue;
         worst = ratio;
         t.worst = figure;
     }
@@ -58,7 +49,7 @@ static const char *paint(bool color, const char *code)
 /* How far within the bound, as people say it. */
 static void print_margin(const struct figure *figure, FILE *stream)
 {
-    const double ratio = suite_ratio(figure->value, figure->bound);
+    const double ratio = finding_ratio(figure->value, figure->bound);
     if (ratio == 0)
         fprintf(stream, "%10s", "exact");
     else
@@ -69,7 +60,7 @@ static void print_failures(const struct suite *suite, const struct tally *t, FIL
 {
     for (size_t i = t->begin; i < t->end; i++) {
         const struct figure *figure = &suite->figures[i];
-        if (figure->status != FIGURE_FAIL) continue;
+        if (figure->status != FINDING_FAIL) continue;
         fprintf(stream, "        %s: got %.6g, bound %.3g, floor %.2g\n", figure->subject,
                 figure->value, figure->bound, figure->floor);
     }
@@ -101,7 +92,8 @@ static double faintest_rejected(const struct suite *suite, const struct check *c
     double least = HUGE_VAL;
     for (size_t i = 0; i < suite->outcome_count; i++) {
         const struct mutant_outcome *o = &suite->outcomes[i];
-        if (o->check == check && o->detected) least = fmin(least, suite_ratio(o->value, o->bound));
+        if (o->check == check && o->detected)
+            least = fmin(least, finding_ratio(o->value, o->bound));
     }
     return least;
 }
@@ -162,7 +154,7 @@ static json_t *figure_json(const struct figure *figure)
                      figure->check->group, "name", figure->check->name, "rank", figure->check->rank,
                      "subject", figure->subject, "property", figure->check->property, "value",
                      result_number(figure->value), "bound", result_number(figure->bound), "floor",
-                     result_number(figure->floor), "status", status_names[figure->status],
+                     result_number(figure->floor), "status", finding_words[figure->status],
                      "seconds", result_number(figure->seconds));
 }
 
@@ -188,49 +180,12 @@ void suite_output_json(const struct suite *suite, json_t *document)
                                   "detected", (json_int_t)suite->mutants_detected));
 }
 
-static void junit_one(struct junit_suite *suite, const struct check *check, const char *subject,
-                      double seconds, const char *status, const char *message)
-{
-    char class[CLASS_LENGTH];
-    snprintf(class, sizeof class, "%s.%s", check->group, check->name);
-    junit_case(suite, class, subject, seconds, status, message);
-}
-
-static void junit_group(const struct suite *suite, const char *group, struct buffer *to)
-{
-    struct junit_suite cases = {0};
-    for (size_t i = 0; i < suite->figure_count; i++) {
-        const struct figure *figure = &suite->figures[i];
-        char message[CLASS_LENGTH];
-        if (strcmp(figure->check->group, group) != 0) continue;
-        snprintf(message, sizeof message, "got %.6g, bound %.3g, floor %.2g", figure->value,
-                 figure->bound, figure->floor);
-        junit_one(&cases, figure->check, figure->subject, figure->seconds,
-                  status_names[figure->status],
-                  figure->status == FIGURE_SKIP ? figure->subject : message);
-    }
-    for (size_t i = 0; i < suite->outcome_count; i++) {
-        const struct mutant_outcome *o = &suite->outcomes[i];
-        char message[MESSAGE_LENGTH];
-        if (strcmp(o->check->group, group) != 0) continue;
-        snprintf(message, sizeof message, "the mutant slipped through: %s", o->mutant->fault);
-        junit_one(&cases, o->check, o->mutant->name, 0, o->detected ? "pass" : "fail", message);
-    }
-    junit_suite_end(to, group, &cases);
-}
-
 enum status suite_output_junit(const struct suite *suite, const char *path, struct error *error)
 {
-    struct buffer to = {0};
-    junit_begin(&to);
-    for (size_t i = 0; i < suite->figure_count; i++) {
-        const char *group = suite->figures[i].check->group;
-        bool first = true;
-        for (size_t j = 0; j < i; j++)
-            first = first && strcmp(suite->figures[j].check->group, group) != 0;
-        if (first) junit_group(suite, group, &to);
-    }
-    char *text = junit_take(&to);
+    json_t *document = json_object();
+    suite_output_json(suite, document);
+    char *text = findings_junit(findings_of_verify, document);
+    json_decref(document);
     if (!text) return error_set(error, STATUS_ENVIRONMENT, "no memory for %.200s", path);
     const enum status status = output_text(path, text, error);
     free(text);
@@ -285,11 +240,11 @@ static size_t figures_of(const struct suite *suite, const struct tally *t,
     const size_t n = t->end - t->begin;
     for (size_t i = 0; i < n; i++) {
         const struct figure *figure = &suite->figures[t->begin + i];
-        const double ratio = suite_ratio(figure->value, figure->bound);
+        const double ratio = finding_ratio(figure->value, figure->bound);
         const double shown = fmin(fmax(ratio, least), most);
         x[i] = (double)i + 1;
-        low[i] = figure->status == FIGURE_PASS ? shown : (double)NAN;
-        high[i] = figure->status == FIGURE_FAIL ? shown : (double)NAN;
+        low[i] = figure->status == FINDING_PASS ? shown : (double)NAN;
+        high[i] = figure->status == FINDING_FAIL ? shown : (double)NAN;
     }
     curves[0] =
         (struct plot_series){.label = "pass", .kind = PLOT_POINTS, .n = n, .x = x, .y = low};

@@ -16,10 +16,7 @@ void suite_output_table(const struct suite *suite, FILE *stream, bool color, boo
 /* Adds checks, mutants and summary to document. */
 void suite_output_json(const struct suite *suite, json_t *document);
 
-/* The status that a figure's word stands for; -1: none. */
-int suite_output_status(const char *word);
-
-/* JUnit XML: a test suite for each group, a test case for each figure and each mutant. */
+/* JUnit XML, as of a report: a test suite for each group and one for the mutants. */
 enum status suite_output_junit(const struct suite *suite, const char *path, struct error *error);
 
 /* Writes folder/GROUP-NAME.json for each failing check (figures, series) and, where gnuplot is

@@ -176,5 +176,19 @@ for arguments, status in ((["--jobs", "0"], 2), (["--quick", "--nightly"], 2), (
     expect("exit status of %s:" % arguments, done.returncode == status and done.stderr
            and not done.stdout, done)
 
+# what survived the night before and breaks down now fails the report, its page, its JUnit file and its exit status
+night = json.loads(read("history.jsonl").splitlines()[-1])
+lost = next(path for path, value in night["figures"].items() if path.startswith("stress") and value == "broke_down")
+night["figures"][lost] = "ok"
+with open(os.path.join(folder, "nights.jsonl"), "w", encoding="utf-8") as file:
+    file.write(json.dumps(night) + "\n")
+done = report("--quick", "--out", folder, "--jobs", "2", "--history", os.path.join(folder, "nights.jsonl"))
+verdict = json.loads(read("results.json"))["verdict"]
+expect("lost since the night before:", done.returncode == 1 and verdict["status"] == "fail"
+       and [failure["name"] for failure in verdict["failures"]] == [lost], (done.returncode, verdict, done.stderr))
+failing = [case.get("name") for case in xml.fromstring(read("junit.xml")).iter("testcase") if case.find("failure") is not None]
+expect("lost, in the JUnit file:", failing == [lost], failing)
+expect("lost, on the page:", "<h1>%s</h1>" % verdict["headline"] in read("index.html") and lost in verdict["headline"])
+
 print("\n".join(faults) or "the report is sound")
 sys.exit(bool(faults))

@@ -12,11 +12,11 @@
 
 #include "cases.h"
 #include "checkpoint.h"
+#include "findings.h"
 #include "gas.h"
 #include "headline.h"
 #include "initial_create.h"
 #include "initial_fill.h"
-#include "junit.h"
 #include "line/line.h"
 #include "made_no_memory.h"
 #include "map.h"
@@ -260,7 +260,7 @@ static enum status as_junit(struct error *error)
         results = json_pack("{s:[{s:s, s:s, s:s}, {s:s, s:s, s:s, s:s}]}", "runs", "status", "ok",
                             "case", "a", "reproduce", "b", "status", "broke_down", "case", "c",
                             "reproduce", "d", "message", "e");
-    char *text = junit_text(results);
+    char *text = findings_junit(findings_of_report, results);
     if (!text) return error_set(error, STATUS_ENVIRONMENT, "no memory");
     assert_non_null(strstr(text, "tests=\"2\" failures=\"1\""));
     free(text);

@@ -7,7 +7,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "junit.h"
+#include "findings.h"
 #include "markup.h"
 #include "page.h"
 #include "summary.h"
@@ -466,7 +466,8 @@ static void junit(void **state)
     (void)state;
     char fault[256];
     json_t *good = sound(), *bad = unsound();
-    char *passes = junit_text(good), *fails = junit_text(bad);
+    char *passes = findings_junit(findings_of_report, good),
+         *fails = findings_junit(findings_of_report, bad);
     if (!markup_well_formed(passes, fault, sizeof fault)) fail_msg("%s", fault);
     if (!markup_well_formed(fails, fault, sizeof fault)) fail_msg("%s", fault);
     assert_int_equal(occurrences(passes, "<testcase "), 6);
@@ -525,9 +526,9 @@ static void cause_first(void **state)
                     {"kernels: slope", "steep: "},
                     {"kernels: sign", "worst: "},
                     {"hydro: rates", "cubic: "},
-                    {"sod", "too good to be true: the same error twice"},
+                    {"sod, ia", "too good to be true: the same error twice"},
                     {"sod, ia: order of l1(density)", "1"},
-                    {"sod", "broke down: "}};
+                    {"sod, ia", "broke down: "}};
     const json_t *failures =
         json_object_get(json_object_get(judged(results), "verdict"), "failures");
     assert_int_equal(json_array_size(failures), sizeof expected / sizeof *expected);
@@ -538,7 +539,7 @@ static void cause_first(void **state)
         if (strncmp(detail, expected[k].detail, strlen(expected[k].detail))) fail_msg("%s", detail);
         assert_int_equal(strstr(detail, "2 more figures") != NULL, k == 2);
     }
-    char *xml = junit_text(results);
+    char *xml = findings_junit(findings_of_report, results);
     assert_non_null(strstr(xml, "the same error twice"));
     free(xml);
     json_decref(results);

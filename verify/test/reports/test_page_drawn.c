@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "junit.h"
+#include "findings.h"
 #include "made_document.h"
 #include "markup.h"
 #include "page.h"
@@ -50,7 +50,7 @@ static char *verdict_in_words(const json_t *results)
 {
     struct buffer text = {0};
     char *parts[] = {json_dumps(json_object_get(results, "verdict"), JSON_INDENT(1)),
-                     junit_text(results), summary_text(results)};
+                     findings_junit(findings_of_report, results), summary_text(results)};
     for (int k = 0; k < 3; k++) {
         assert_non_null(parts[k]);
         buffer_add(&text, parts[k]);
@@ -84,6 +84,49 @@ TEST(pages)
     free(path);
     json_decref(template);
     made_close(&kept);
+}
+
+/* Verdict, list of failures and JUnit file are of one mind, whatever is found; failures come by
+ * rank, and each check once. */
+TEST(one_verdict)
+{
+    json_t *template = made_template(folder, "report.json");
+    size_t well = 0, bad = 0;
+    for (size_t k = 0; k < 4 * PAGES; k++) {
+        struct made_draw draw = {1000 + k, template};
+        json_t *results = made_document(&draw, json_object_get(template, "report"));
+        static const char *const words[] = {"none",  "pass",         "fail", "known",
+                                            "smoke", "undetermined", "skip", "odd"};
+        if (k % 2) { /* so little that it may be well */
+            json_decref(results);
+            results = json_pack("{s:[{s:s, s:s, s:[{s:s}]}]}", "runs", "case", "a", "status",
+                                k % 3 ? "ok" : "broke_down", "gates", "status",
+                                words[made_below(&draw, 8)]);
+        }
+        json_t *verdict = verdict_make(results);
+        const json_t *failures = json_object_get(verdict, "failures");
+        char *junit = findings_junit(findings_of_report, results);
+        const bool fails = strstr(junit, "<failure ") != NULL;
+        assert_true(fails == (json_array_size(failures) > 0));
+        assert_string_equal(json_string_value(json_object_get(verdict, "status")),
+                            fails ? "fail" : "pass");
+        *(fails ? &bad : &well) += 1;
+        for (size_t i = 0; i < json_array_size(failures); i++)
+            for (size_t j = 0; j < i; j++) {
+                const json_t *a = json_array_get(failures, j), *b = json_array_get(failures, i);
+                const json_t *one = json_object_get(a, "area"), *other = json_object_get(b, "area");
+                const bool check = !strcmp(json_string_value(other), "check");
+                /* checks come first, and each name of theirs once */
+                assert_true(!check || json_equal(one, other));
+                assert_false(check &&
+                             json_equal(json_object_get(a, "name"), json_object_get(b, "name")));
+            }
+        free(junit);
+        json_decref(verdict);
+        json_decref(results);
+    }
+    assert_true(well > 10 && bad > 10);
+    json_decref(template);
 }
 
 int main(int argc, char **argv)

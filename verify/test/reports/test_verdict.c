@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "junit.h"
+#include "findings.h"
 #include "summary.h"
 #include "verdict.h"
 
@@ -62,7 +62,7 @@ TEST(verdict)
 TEST(junit)
 {
     json_t *results = judged();
-    char *text = junit_text(results);
+    char *text = findings_junit(findings_of_report, results);
     compare(text, "junit.xml");
     free(text);
     json_decref(results);
@@ -87,9 +87,10 @@ TEST(gates_in_junit)
                   "status", "fail", "value", 0.25, "bound", 0.125, "name", "energy", "status",
                   "pass", "value", 0., "bound", 1.);
     json_object_set_new(results, "verdict", verdict_make(results));
-    char *text = junit_text(results);
-    assert_non_null(strstr(text, "<testsuite name=\"runs\" tests=\"3\" failures=\"1\""));
-    assert_non_null(strstr(text, "name=\"mine: density_l1\"><failure message=\"0.25, bound 0.125"));
+    char *text = findings_junit(findings_of_report, results);
+    assert_non_null(strstr(text, "<testsuite name=\"gate\" tests=\"2\" failures=\"1\""));
+    assert_non_null(
+        strstr(text, "name=\"mine: density_l1\"><failure message=\"the error of the run, 0.25,"));
     free(text);
     json_decref(results);
     /* one that breaks down says less than the bound that another exceeds */

@@ -35,12 +35,12 @@ TEST(figures)
     static const struct {
         const char *subject;
         double value, bound, floor;
-        enum figure_status status;
-    } rows[] = {{"of 3", 1, 1, 1, FIGURE_PASS},
-                {"above", 1.5, 1, 0, FIGURE_FAIL},
-                {"floor above", 0, 1, 1.5, FIGURE_FAIL},
-                {"no number", (double)NAN, 1, 0, FIGURE_FAIL},
-                {"not here", (double)NAN, (double)NAN, (double)NAN, FIGURE_SKIP}};
+        enum finding_status status;
+    } rows[] = {{"of 3", 1, 1, 1, FINDING_PASS},
+                {"above", 1.5, 1, 0, FINDING_FAIL},
+                {"floor above", 0, 1, 1.5, FINDING_FAIL},
+                {"no number", (double)NAN, 1, 0, FINDING_FAIL},
+                {"not here", (double)NAN, (double)NAN, (double)NAN, FINDING_SKIP}};
     for (int k = 0; k < 5; k++) {
         const struct figure *f = &run.figures[k];
         assert_true(f->check == &check && f->status == rows[k].status);

@@ -35,7 +35,7 @@ static json_t *told(size_t n, const struct row *rows)
         figures[i] = (struct figure){rows[i].check, (char *)(uintptr_t)rows[i].subject,
                                      rows[i].value, rows[i].bound,
                                      1e-3,          0,
-                                     FIGURE_FAIL};
+                                     FINDING_FAIL};
     json_t *list = headline_list(&suite);
     assert_non_null(list);
     return list;
@@ -133,7 +133,7 @@ static void missed_mutants(void **state)
     static const struct check_mutant sign = {"sign", "a sign", NULL}, power = {"power", "", NULL};
     struct mutant_outcome outcomes[] = {
         {&one, &sign, 0.5, 1, false}, {&one, &power, 2, 1, true}, {&two, &power, 0.25, 1, false}};
-    struct figure figure = {&two, (char *)(uintptr_t) "a", 2, 1, 0, 0, FIGURE_FAIL};
+    struct figure figure = {&two, (char *)(uintptr_t) "a", 2, 1, 0, 0, FINDING_FAIL};
     const struct suite suite = {.figures = &figure,
                                 .figure_count = 1,
                                 .failed = 1,

@@ -117,7 +117,7 @@ static void expect_one_failure(const struct check *check, const char *says)
     struct suite suite = run(check, false, STATUS_CHECK_FAILED);
     assert_int_equal(suite.failed, 1);
     const struct figure *last = &suite.figures[suite.figure_count - 1];
-    assert_int_equal(last->status, FIGURE_FAIL);
+    assert_int_equal(last->status, FINDING_FAIL);
     assert_non_null(strstr(last->subject, says));
     suite_free(&suite);
 }
@@ -366,10 +366,6 @@ TEST(test_names_ratios_and_costs)
     const char *const groups[] = {"c", "a/other", "a/good", "d"};
     assert_true(suite_chosen(&good, &(struct suite_choice){.groups = groups, .group_count = 4}));
     assert_false(suite_chosen(&good, &(struct suite_choice){.groups = groups, .group_count = 2}));
-    assert_true(suite_ratio(0, 0) == 0 && suite_ratio(-1, 0) == 0 && suite_ratio(-1, -1) == 0);
-    assert_true(suite_ratio(1e-7, 1) == 1e-7 && suite_ratio(2, 2) == 1 && suite_ratio(3, 2) == 1.5);
-    assert_true(isinf(suite_ratio(1, 0)) && isinf(suite_ratio(0, -1)) &&
-                isinf(suite_ratio((double)NAN, 1)));
     struct check costly = good;
     near_relative(suite_cost(&good), 0.03, 1e-15);
     costly.cost = 0.001;
@@ -433,7 +429,7 @@ TEST(test_results)
     assert_non_null(file);
     text[fread(text, 1, sizeof text - 1, file)] = '\0';
     fclose(file);
-    assert_non_null(strstr(text, "tests=\"5\" failures=\"2\""));
+    assert_non_null(strstr(text, "tests=\"3\" failures=\"2\""));
     assert_non_null(strstr(text, "value &lt;2&gt;"));
     unlink(path);
     snprintf(path, sizeof path, "%s/a-failing.svg", folder);

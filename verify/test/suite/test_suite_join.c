@@ -43,7 +43,7 @@ TEST(test_joined)
     assert_int_equal(joined.failed, 3);
     assert_int_equal(joined.series_count, suite.series_count);
     assert_true(joined.series_count > 0 && joined.series[0].check == &failing);
-    assert_true(isnan(joined.figures[3].value) && joined.figures[3].status == FIGURE_FAIL);
+    assert_true(isnan(joined.figures[3].value) && joined.figures[3].status == FINDING_FAIL);
     suite_free(&joined);
     assert_int_equal(suite_join(&joined, checks, from, 1, &error), STATUS_OK);
     suite_free(&joined);
@@ -63,12 +63,14 @@ TEST(test_joined)
     assert_int_equal(json_array_size(json_object_get(curve, "x")), 2);
     assert_true(json_real_value(json_array_get(json_object_get(curve, "y"), 0)) == 3);
     /* words that are none of this program's */
-    static const char *const lists[] = {"checks", "checks", "checks", "mutants", "mutants"},
-                             *const keys[] = {"status", "name", "group", "mutant", "check"};
-    for (size_t k = 0; k < 5; k++) {
+    static const char *const lists[] = {"checks",  "checks",  "checks",
+                                        "mutants", "mutants", "checks"},
+                             *const keys[] = {"status", "name",  "group",
+                                              "mutant", "check", "status"};
+    for (size_t k = 0; k < 6; k++) {
         json_t *entry = json_array_get(json_object_get(documents[0], lists[k]), 0);
         json_t *right = json_incref(json_object_get(entry, keys[k]));
-        json_object_set_new(entry, keys[k], json_string("other"));
+        json_object_set_new(entry, keys[k], json_string(k < 5 ? "other" : "known"));
         assert_int_equal(suite_join(&joined, checks, from, 1, &error), STATUS_ENVIRONMENT);
         assert_string_equal(error.message, "verify: what is kept of a/good is not of this program, "
                                            "or there is no memory for it");

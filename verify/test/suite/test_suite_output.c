@@ -41,19 +41,19 @@ static const struct check
         &check, (char *)(uintptr_t)subject, value, bound, floor, seconds, status                   \
     }
 static struct figure figures[] = {
-    FIGURE(sign, "cubic, 1D: q < 1", 0.5, 1, 0.01, 0.25, FIGURE_PASS),
-    FIGURE(sign, "cubic, 2D: q > 1", 3, 1, 0.02, 0.5, FIGURE_FAIL),
-    FIGURE(sign, "cubic, 3D: q = 1", 2, 1, 0.03, 1, FIGURE_FAIL),
-    FIGURE(sign, "not here", 0, 0, 0, 2, FIGURE_SKIP),
-    FIGURE(sign, "other: all", 5, 4, 0.04, 4, FIGURE_FAIL),
-    FIGURE(moments, "cubic, 1D", 1, 0.125, 0.05, 8, FIGURE_FAIL),
-    FIGURE(moments, "other, 2D", (double)NAN, 0.5, 0.06, 16, FIGURE_FAIL),
-    FIGURE(normalisation, "cubic, 1D", 0.75, 0.25, 0.07, 32, FIGURE_FAIL),
-    FIGURE(continuity, "cubic", 7, 2, 0, 64, FIGURE_FAIL),
-    FIGURE(rates, "all\tof it", 0, 1, 0, 128, FIGURE_PASS),
-    FIGURE(rates, "some", 0.125, 0.5, 0.1, 256, FIGURE_PASS),
-    FIGURE(rates, "a & b", 0.25, 4, 0.1, 512, FIGURE_PASS),
-    FIGURE(idle, "why not", 0, 0, 0, 1024, FIGURE_SKIP),
+    FIGURE(sign, "cubic, 1D: q < 1", 0.5, 1, 0.01, 0.25, FINDING_PASS),
+    FIGURE(sign, "cubic, 2D: q > 1", 3, 1, 0.02, 0.5, FINDING_FAIL),
+    FIGURE(sign, "cubic, 3D: q = 1", 2, 1, 0.03, 1, FINDING_FAIL),
+    FIGURE(sign, "not here", 0, 0, 0, 2, FINDING_SKIP),
+    FIGURE(sign, "other: all", 5, 4, 0.04, 4, FINDING_FAIL),
+    FIGURE(moments, "cubic, 1D", 1, 0.125, 0.05, 8, FINDING_FAIL),
+    FIGURE(moments, "other, 2D", (double)NAN, 0.5, 0.06, 16, FINDING_FAIL),
+    FIGURE(normalisation, "cubic, 1D", 0.75, 0.25, 0.07, 32, FINDING_FAIL),
+    FIGURE(continuity, "cubic", 7, 2, 0, 64, FINDING_FAIL),
+    FIGURE(rates, "all\tof it", 0, 1, 0, 128, FINDING_PASS),
+    FIGURE(rates, "some", 0.125, 0.5, 0.1, 256, FINDING_PASS),
+    FIGURE(rates, "a & b", 0.25, 4, 0.1, 512, FINDING_PASS),
+    FIGURE(idle, "why not", 0, 0, 0, 1024, FINDING_SKIP),
 };
 static struct mutant_outcome outcomes[] = {
     {&sign, &minus, 8, 2, true},
@@ -218,7 +218,7 @@ static void many(void **state)
     for (int i = 0; i < 9; i++) {
         snprintf(names[i], sizeof names[i], "c%d", i);
         checks[i] = (struct check){.group = "kernels", .name = names[i], .property = "p"};
-        fails[i] = (struct figure){&checks[i], subject, 20 - i, 1, 0, 0, FIGURE_FAIL};
+        fails[i] = (struct figure){&checks[i], subject, 20 - i, 1, 0, 0, FINDING_FAIL};
     }
     for (int others = 6; others <= 8; others++) {
         char *text = NULL;
