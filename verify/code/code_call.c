@@ -68,6 +68,7 @@ void code_values(struct code_values *values, const struct code_external *externa
     values->of[CODE_WORD_IC] = values->text[CODE_WORD_IC];
     const char *word = code_next_word(&rest, &length);
     if (word) template_name(word, length, values->parameters);
+    values->of[CODE_WORD_CASE] = run->asked.file.name;
     set_real(values, CODE_WORD_T_END, settings_real(&run->settings, SETTING_t_end));
     set_real(values, CODE_WORD_DIM, run->asked.file.dimension);
     set_real(values, CODE_WORD_GAMMA, run->problem.gamma);
@@ -258,10 +259,10 @@ enum status code_add_key(const struct run_external *base, const struct run *run,
     add_files(external, way->value[CODE_depends], false, files);
     if (!code_shell(way)) add_files(external, command, true, files);
     if (!code_format(way)) add_files(external, way->value[CODE_ic], true, files);
-    json_t *code =
-        json_pack("{s:s*, s:s, s:s, s:b, s:o, s:o}", "command", filled, "ic",
-                  code_value(way, CODE_ic), "snapshot", way->value[CODE_snapshot], "shell",
-                  code_shell(way), "files", files, "templates", template_sums(external, &values));
+    json_t *code = json_pack("{s:s*, s:s, s:s, s:s, s:b, s:o, s:o}", "command", filled, "ic",
+                             code_value(way, CODE_ic), "snapshot", way->value[CODE_snapshot],
+                             "elements", code_value(way, CODE_elements), "shell", code_shell(way),
+                             "files", files, "templates", template_sums(external, &values));
     free(filled);
     if (code && !json_object_set_new(key, "code", code)) return STATUS_OK;
     return error_set(error, STATUS_ENVIRONMENT, "no memory for a run's key");

@@ -117,7 +117,10 @@ static void check_ic(const struct code *code, struct ini_text *at, const char *v
 void code_check_value(const struct code *code, struct ini_text *at, enum code_key key,
                       const char *value)
 {
-    struct code_way way = {.line[CODE_memory] = 1, .line[CODE_timeout] = 1, .line[CODE_shell] = 1};
+    struct code_way way = {.line[CODE_memory] = 1,
+                           .line[CODE_timeout] = 1,
+                           .line[CODE_shell] = 1,
+                           .line[CODE_elements] = 1};
     snprintf(way.value[key], sizeof way.value[key], "%s", value);
     const char *allowed = code_keys[key].allowed;
     switch (key) {
@@ -141,6 +144,10 @@ void code_check_value(const struct code *code, struct ini_text *at, enum code_ke
         return;
     case CODE_memory:
         if (!(code_memory(&way) > 0)) ini_text_fail_value(at, "memory", value, allowed);
+        return;
+    case CODE_elements:
+        if (!code_cells(&way) && strcmp(value, "particles") != 0)
+            ini_text_fail_value(at, "elements", value, allowed);
         return;
     case CODE_shell:
         if (!code_shell(&way) && strcmp(value, "no") != 0)

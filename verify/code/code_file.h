@@ -41,6 +41,9 @@
         "what all processes of a run may have in memory at once")                                  \
     KEY(depends, "", "files, separated by blanks",                                                 \
         "what decides results beside command and templates: a change of them makes runs new")      \
+    KEY(elements, "particles", "particles cells",                                                  \
+        "what the gas is made of: cells of a grid exchange mass, so a snapshot need not have the " \
+        "particles of the initial state")                                                          \
     KEY(shell, "no", "yes no", "the command is a line for sh, in which no word is a file")
 
 enum code_key {
@@ -57,6 +60,7 @@ extern const struct code_key_text code_keys[CODE_KEYS];
 /* @NAME@ in commands, templates and the snapshot's name. */
 #define CODE_WORD_LIST(WORD)                                                                       \
     WORD(IC, "the file of the initial state")                                                      \
+    WORD(CASE, "the name of the case")                                                             \
     WORD(OUT, "how names of snapshots begin")                                                      \
     WORD(PARAMETERS, "the first template, filled in")                                              \
     WORD(T_END, "the time at which the run ends")                                                  \
@@ -118,6 +122,7 @@ const char *code_value(const struct code_way *way, enum code_key key);
 double code_timeout(const struct code_way *way);
 double code_memory(const struct code_way *way); /* bytes; INFINITY: no limit */
 bool code_shell(const struct code_way *way);
+bool code_cells(const struct code_way *way);
 /* The format of initial states; NULL: ic is a command. */
 const struct start_format *code_format(const struct code_way *way);
 

@@ -26,6 +26,7 @@ struct course {
     char **words;
     char folder[CODE_PATH], ic[2 * CODE_PATH];
     char *snapshot;            /* the file that is judged */
+    char *first;               /* one that may be of the start; NULL: there is no other */
     struct snapshot_file read; /* the initial state as the code's reader may find it */
     bool readable;             /* and it can be read */
     struct code_outcome outcome;
@@ -192,10 +193,31 @@ static void complete(struct course *course)
     result->cost.cpu_s = course->outcome.cpu_s;
 }
 
+/* A snapshot of the start, where the code writes one, is the initial state, or course->reason. */
+static void check_start(struct course *course, const struct code_origin *origin)
+{
+    const struct snapshot_options options = {.here = false};
+    struct snapshot_file file;
+    struct error ignored;
+    char what[200];
+    if (!course->first || snapshot_read(course->first, &options, &file, &ignored)) return;
+    if (!code_is_start(&file, origin, what, sizeof what)) {
+        course->reason = REASON_ignored_ic;
+        snprintf(course->message, sizeof course->message,
+                 "%.100s: %.200s of the initial state: the code starts from particles of its own",
+                 strrchr(course->first, '/') + 1, what);
+    }
+    snapshot_file_free(&file);
+}
+
 /* What the file holds is a result, or course->reason says why it is none. */
 static enum status judge(struct course *course, const char *path, struct error *error)
 {
-    const double t_end = settings_real(&course->run->settings, SETTING_t_end);
+    const struct code_origin origin = {.ic = course->readable ? &course->read : NULL,
+                                       .problem = &course->start.problem,
+                                       .t_end =
+                                           settings_real(&course->run->settings, SETTING_t_end),
+                                       .cells = code_cells(&course->external->of->way)};
     struct judge_request request = {.case_name = course->run->asked.file.asked,
                                     .asked = &course->run->asked,
                                     .gamma = {true, course->run->problem.gamma},
@@ -207,10 +229,9 @@ static enum status judge(struct course *course, const char *path, struct error *
     if (status == STATUS_BAD_INPUT)
         course->reason = file.impossible ? REASON_not_a_number : REASON_truncated;
     if (!status)
-        course->reason =
-            code_compare(&file, course->readable ? &course->read : NULL, &course->start.problem,
-                         t_end, course->message, sizeof course->message);
-    if (!status && !file.time.known) request.time = (struct snapshot_value){true, t_end};
+        course->reason = code_compare(&file, &origin, course->message, sizeof course->message);
+    if (!status && !course->reason) check_start(course, &origin);
+    if (!status && !file.time.known) request.time = (struct snapshot_value){true, origin.t_end};
     if (!status && box_of(course, &file, box, sizeof box)) request.box = box;
     snapshot_file_free(&file);
     if (!status && !course->reason) {
@@ -232,16 +253,21 @@ static enum status judge(struct course *course, const char *path, struct error *
 static enum status execute(struct course *course, struct error *error)
 {
     struct code_matches before = {0}, now = {0};
+    struct stat start = {0}; /* by the clock of the file system */
     char *pattern = pattern_of(course);
     enum status status = STATUS_OK;
-    if (!pattern || !code_match(pattern, &before))
+    if (stat(course->ic, &start))
+        status = error_set(error, STATUS_ENVIRONMENT, "%.300s: %s", course->ic, strerror(errno));
+    else if (!pattern || !code_match(pattern, &before))
         status = error_set(error, STATUS_ENVIRONMENT, "no memory for names of snapshots");
     if (!status) status = call(course, course->words, error);
     if (!status && !course->reason && !code_match(pattern, &now))
         status = error_set(error, STATUS_ENVIRONMENT, "no memory for names of snapshots");
     if (!status && !course->reason) {
-        const char *path = code_last(&now, &before, course->ic, &course->reason);
-        if (path && !(course->snapshot = strdup(path)))
+        const char *path = code_last(&now, &before, start.st_mtime, &course->reason);
+        const char *first = path ? code_first(&now, &before, start.st_mtime, path) : NULL;
+        if (first) course->first = strdup(first);
+        if (path && (!(course->snapshot = strdup(path)) || (first && !course->first)))
             status = error_set(error, STATUS_ENVIRONMENT, "no memory for names of snapshots");
         else if (path)
             status = judge(course, course->snapshot, error);
@@ -392,6 +418,7 @@ static void course_free(struct course *course)
     snapshot_file_free(&course->read);
     code_words_free(course->words);
     free(course->snapshot);
+    free(course->first);
     run_free(&course->start);
 }
 

@@ -55,11 +55,11 @@ void code_matches_free(struct code_matches *matches)
 /* A file is old if it is as it was before, or from well before the run: clocks of file systems
  * differ by little. */
 static bool is_old(const struct code_matches *now, size_t i, const struct code_matches *before,
-                   const struct stat *began)
+                   time_t began)
 {
     enum { SECONDS = 2 };
     const struct stat *is = &now->was[i];
-    if (is->st_mtime < began->st_mtime - SECONDS) return true;
+    if (is->st_mtime < began - SECONDS) return true;
     for (size_t k = 0; k < before->n; k++) {
         const struct stat *was = &before->was[k];
         if (was->st_ino == is->st_ino && was->st_dev == is->st_dev && was->st_size == is->st_size &&
@@ -71,16 +71,22 @@ static bool is_old(const struct code_matches *now, size_t i, const struct code_m
 }
 
 const char *code_last(const struct code_matches *now, const struct code_matches *before,
-                      const char *began, enum code_reason *reason)
+                      time_t began, enum code_reason *reason)
 {
-    struct stat start = {0};
     *reason = now->n ? REASON_old_snapshot : REASON_no_snapshot;
-    if (stat(began, &start)) return NULL;
     for (size_t i = now->n; i-- > 0;)
-        if (!is_old(now, i, before, &start)) {
+        if (!is_old(now, i, before, began)) {
             *reason = REASON_NONE;
             return now->path[i];
         }
+    return NULL;
+}
+
+const char *code_first(const struct code_matches *now, const struct code_matches *before,
+                       time_t began, const char *last)
+{
+    for (size_t i = 0; i < now->n && strcmp(now->path[i], last) != 0; i++)
+        if (!is_old(now, i, before, began)) return now->path[i];
     return NULL;
 }
 
@@ -126,22 +132,24 @@ static double way_along_x(const struct snapshot_file *ic, const struct prepared 
 }
 
 static enum code_reason compare_start(const struct snapshot_file *file,
-                                      const struct snapshot_file *ic, const struct prepared *p,
-                                      double t_end, char *message, size_t size)
+                                      const struct code_origin *origin, char *message, size_t size)
 {
     enum { PER_CENT = 100 };
+    const struct snapshot_file *ic = origin->ic;
+    const struct prepared *p = origin->problem;
     const size_t n = file->gas;
     if (n != ic->gas) {
         snprintf(message, size, "%zu particles of gas; the initial state has %zu", n, ic->gas);
         return REASON_wrong_particles;
     }
+    if (origin->cells) return REASON_NONE;
     if (differ(ic->column[SNAPSHOT_M], file->column[SNAPSHOT_M], n, 0) > 1e-5) {
         snprintf(message, size,
                  "masses are not those of the initial state: the code has not read it");
         return REASON_ignored_ic;
     }
     const double length = p->domain.hi[0] - p->domain.lo[0];
-    if (!p->problem->fieldless && way_along_x(ic, p, t_end) * PER_CENT > 1 &&
+    if (!p->problem->fieldless && way_along_x(ic, p, origin->t_end) * PER_CENT > 1 &&
         differ(ic->column[SNAPSHOT_X], file->column[SNAPSHOT_X], n, length) < 1e-7) {
         snprintf(message, size, "all particles are where they were at the start");
         return REASON_ignored_ic;
@@ -149,14 +157,93 @@ static enum code_reason compare_start(const struct snapshot_file *file,
     return REASON_NONE;
 }
 
-enum code_reason code_compare(const struct snapshot_file *file, const struct snapshot_file *ic,
-                              const struct prepared *problem, double t_end, char *message,
-                              size_t size)
+enum code_reason code_compare(const struct snapshot_file *file, const struct code_origin *origin,
+                              char *message, size_t size)
 {
-    if (file->time.known && !(fabs(file->time.value - t_end) <= 0.01 * t_end)) {
-        snprintf(message, size, "its time is %.6g; allowed: %.6g to a hundredth", file->time.value,
+    const double t_end = origin->t_end, gamma = origin->problem->gamma;
+    if (file->time.known && !(fabs(file->time.value - t_end) <= 1e-3 * t_end)) {
+        snprintf(message, size, "its time is %.6g; allowed: %.6g to a thousandth", file->time.value,
                  t_end);
         return REASON_wrong_time;
     }
-    return ic ? compare_start(file, ic, problem, t_end, message, size) : REASON_NONE;
+    if (file->gamma.known && !(fabs(file->gamma.value - gamma) <= 1e-4)) {
+        snprintf(message, size, "its gamma is %.6g; the case has %.6g", file->gamma.value, gamma);
+        return REASON_wrong_gamma;
+    }
+    return origin->ic ? compare_start(file, origin, message, size) : REASON_NONE;
+}
+
+/* ---- the start ---- */
+
+/* Positions from a corner of the box on, into [0, length) but for round-off below its ends. */
+static double *wrapped(const double *x, size_t n, double corner, double length)
+{
+    double *moved = malloc(n * sizeof *moved);
+    for (size_t i = 0; moved && i < n; i++) {
+        const double at = (x[i] - corner) / length + 1e-6;
+        moved[i] = at - floor(at);
+    }
+    return moved;
+}
+
+/* The greatest difference of positions along d, in box lengths: each file may count them from 0 or
+ * from the case's corner. */
+static double apart(const struct snapshot_file *a, const struct snapshot_file *b,
+                    const struct domain *box, int d)
+{
+    const double length = box->hi[d] - box->lo[d];
+    double least = INFINITY;
+    double *x = wrapped(a->column[d], a->gas, 0, length);
+    for (int k = -1; k <= 1; k++) {
+        double *y = wrapped(b->column[d], b->gas, k * box->lo[d], length);
+        if (x && y) least = fmin(least, differ(x, y, a->gas, 1));
+        free(y);
+    }
+    free(x);
+    return least;
+}
+
+/* Of values that the particles have, over the greatest of those of the start. */
+static double unlike(const struct snapshot_file *ic, const struct snapshot_file *file, int column,
+                     double scale)
+{
+    const double *a = ic->column[column], *b = file->column[column];
+    for (size_t i = 0; a && i < ic->gas; i++) scale = fmax(scale, fabs(a[i]));
+    return a && b && scale > 0 ? differ(a, b, ic->gas, scale) : 0;
+}
+
+bool code_is_start(const struct snapshot_file *file, const struct code_origin *origin,
+                   char *message, size_t size)
+{
+    const struct snapshot_file *ic = origin->ic;
+    const struct domain *box = &origin->problem->domain;
+    double speed = 0;
+    if (!ic || origin->cells || !file->time.known || fabs(file->time.value) > 1e-6 * origin->t_end)
+        return true;
+    if (file->gas != ic->gas) {
+        snprintf(message, size, "%zu particles of gas, not the %zu", file->gas, ic->gas);
+        return false;
+    }
+    const double spacing = pow((double)ic->gas, -1. / box->dim); /* in box lengths, about */
+    for (int d = 0; d < box->dim; d++) {
+        const double way = apart(ic, file, box, d);
+        if (!(way <= 1e-3 * spacing + 1e-6)) {
+            snprintf(message, size, "positions along %c are up to %.2g of the box from those",
+                     'x' + d, way);
+            return false;
+        }
+    }
+    for (size_t i = 0; ic->column[SNAPSHOT_U] && i < ic->gas; i++)
+        speed = fmax(speed, sqrt(fabs(ic->column[SNAPSHOT_U][i])));
+    for (int column = SNAPSHOT_VX; column <= SNAPSHOT_U; column++) {
+        const bool velocity = column < SNAPSHOT_VX + box->dim;
+        if (!velocity && column != SNAPSHOT_U) continue;
+        const double off = unlike(ic, file, column, velocity ? speed : 0);
+        if (!(off <= 1e-3)) {
+            snprintf(message, size, "%s differs by up to %.2g from that",
+                     snapshot_column_names[column], off);
+            return false;
+        }
+    }
+    return true;
 }

@@ -21,6 +21,7 @@
     REASON(truncated)                                                                              \
     REASON(not_a_number)                                                                           \
     REASON(wrong_time)                                                                             \
+    REASON(wrong_gamma)                                                                            \
     REASON(wrong_particles)                                                                        \
     REASON(ignored_ic)
 enum code_reason {
@@ -43,15 +44,31 @@ struct code_matches {
 bool code_match(const char *pattern, struct code_matches *matches);
 void code_matches_free(struct code_matches *matches);
 
-/* The last of those that a run has written which began when `began` was written; NULL and a reason:
+/* The last of those that a run has written which began at that time; NULL and a reason:
  * there are none, or old ones. */
 const char *code_last(const struct code_matches *now, const struct code_matches *before,
-                      const char *began, enum code_reason *reason);
+                      time_t began, enum code_reason *reason);
 
-/* Is it a result at t_end of this initial state (NULL: one that cannot be read)? The message says
- * what is wrong. t_end is met to a hundredth. */
-enum code_reason code_compare(const struct snapshot_file *file, const struct snapshot_file *ic,
-                              const struct prepared *problem, double t_end, char *message,
-                              size_t size);
+/* The first of those that a run has written, which may be of its start; NULL: there is none but
+ * `last`. */
+const char *code_first(const struct code_matches *now, const struct code_matches *before,
+                       time_t began, const char *last);
+
+/* What a snapshot is compared with. */
+struct code_origin {
+    const struct snapshot_file *ic; /* the initial state; NULL: it cannot be read */
+    const struct prepared *problem;
+    double t_end;
+    bool cells; /* the code has cells, not particles of the initial state */
+};
+
+/* Is it a result at t_end? The message says what is wrong. t_end is met to a thousandth. */
+enum code_reason code_compare(const struct snapshot_file *file, const struct code_origin *origin,
+                              char *message, size_t size);
+
+/* Is a snapshot of the time 0 that initial state? True also of another time, and where one of the
+ * two does not have what could be compared. */
+bool code_is_start(const struct snapshot_file *file, const struct code_origin *origin,
+                   char *message, size_t size);
 
 #endif

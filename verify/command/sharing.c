@@ -90,6 +90,7 @@ enum status sharing_take(struct sharing *sharing, const struct options *options,
     if (folder && sharing->list && access(folder, R_OK)) folder = NULL; /* and none is made */
     if (folder && cache_open(&sharing->cache, folder, force, error)) return error->status;
     if (folder) sharing->pool.cache = &sharing->cache;
+    sharing->pool.again = !sharing->engine->compute && !sharing->pool.share.of;
     return check_build(sharing, options, error);
 }
 

@@ -52,7 +52,7 @@ static enum status take_gamma(const struct judge_request *request, struct judged
     const double case_gamma = gamma;
     const char *evidence = "the file has none: the case's";
     if (request->gamma.known)
-        gamma = request->gamma.value, evidence = "--gamma";
+        gamma = request->gamma.value, evidence = request->asked ? "the case's" : "--gamma";
     else if (file->gamma.known)
         gamma = unrounded(file->gamma.value), evidence = "the file says so";
     else if (proved)

@@ -195,6 +195,7 @@ enum status report_piece_add(struct pool *pool, struct report_piece *piece, stru
         return error->status;
     const double weight = run ? run_job_weight(&piece->run) : weight_of(piece);
     piece->job = pool_add(pool, name, key, weight, compute, piece);
+    if (piece->job != (size_t)-1) pool->jobs[piece->job].fickle = piece->run.asked.external != NULL;
     free(run);
     return piece->job == (size_t)-1
                ? error_set(error, STATUS_ENVIRONMENT, "no memory for a piece of the report")

@@ -104,6 +104,12 @@ static _Noreturn void work(const struct pool_job *job, const struct cache *cache
 
 /* ---- in the parent ---- */
 
+/* Is it worth another attempt? */
+static bool failed(const struct pool_job *job, const json_t *reply)
+{
+    return job->fickle && json_integer_value(json_object_get(reply, "status")) == STATUS_BROKE_DOWN;
+}
+
 static bool take_reply(struct pool *pool, struct pool_job *job, json_t *reply)
 {
     json_t *status = json_object_get(reply, "status"), *document;
@@ -246,7 +252,8 @@ static size_t look_up(struct pool *pool, const struct pool_settings *settings,
         json_t *reply =
             settings->cache && job->key ? cache_load(settings->cache, job->key, &damaged) : NULL;
         pool->damaged += damaged;
-        job->cached = reply && take_reply(pool, job, reply);
+        job->cached =
+            reply && !(settings->again && failed(job, reply)) && take_reply(pool, job, reply);
         json_decref(reply);
         pool->found += job->cached;
         course->ready += job->cached;

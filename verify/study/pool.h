@@ -23,6 +23,7 @@ struct pool_job {
     double weight; /* about how long it takes, in any unit; heavy ones start first */
     pool_compute *compute;
     const void *context; /* not owned */
+    bool fickle;         /* what breaks down may not do so the next time */
     /* after pool_run: */
     bool done, cached;
     bool elsewhere;     /* it is in another share, or in none: nothing was done about it */
@@ -55,7 +56,8 @@ struct pool_settings {
     int jobs; /* processes at once, >= 1 */
     struct pool_share share;
     const struct cache *cache; /* NULL: none */
-    pool_progress *progress;   /* may be NULL */
+    bool again;              /* what is kept and broke down is computed once more if it is fickle */
+    pool_progress *progress; /* may be NULL */
     void *progress_context;
 };
 

@@ -85,6 +85,7 @@ enum status run_job_add(struct pool *pool, const struct run *run, size_t *job, s
              settings_real(&run->settings, SETTING_n));
     *job = pool_add(pool, name, key, run_job_weight(run), compute, run);
     free(key);
+    if (*job != (size_t)-1) pool->jobs[*job].fickle = run->asked.external != NULL;
     return *job == (size_t)-1 ? error_set(error, STATUS_ENVIRONMENT, "no memory for a run")
                               : STATUS_OK;
 }

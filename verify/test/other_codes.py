@@ -37,7 +37,26 @@ if mode == "exit":
 if mode == "killed":
     os.kill(os.getpid(), 9)
 if mode == "early":
-    run(t=repr(0.5 * float(t_end)))
+    run(t=repr(0.998 * float(t_end)))
+elif mode == "late":
+    run(t=repr(1.0005 * float(t_end)))
+elif mode == "gas":
+    run(t_end, n, out + "_1.csv", "gamma=1.5")
+elif mode == "starts":
+    os.rename("ic.csv", out + "_0.csv")
+    run()
+elif mode == "own":
+    subprocess.run([%r, "ic", case, "n=" + n, "jitter=0.02", "--format", "csv", "--out", out + "_0.csv"], check=True)
+    run()
+elif mode == "fast":
+    with open("ic.csv") as file, open(out + "_0.csv", "w") as to:
+        to.write(file.read().replace(",0,", ",0.01,"))
+    run()
+elif mode == "once":
+    if not os.path.exists(os.path.join(%r, "tried")):
+        open(os.path.join(%r, "tried"), "w").close()
+        sys.exit(1)
+    run()
 elif mode == "few":
     run(n=str(int(n) // 2))
 elif mode == "heavy":
@@ -81,7 +100,9 @@ velocity_l1 = 0.5 10
 # mode, reason, what the message says
 FAILURES = (("exit", "exit_status", "no such table"), ("killed", "exit_status", "signal 9"), ("nothing", "no_snapshot", "@OUT@_*.csv"),
             ("hang", "timeout", "1 s"), ("eat", "memory", "200 MB"), ("cut", "truncated", "out_1.csv"),
-            ("old", "old_snapshot", "older"), ("nan", "not_a_number", "nan"), ("early", "wrong_time", "0.1"),
+            ("old", "old_snapshot", "older"), ("nan", "not_a_number", "nan"), ("early", "wrong_time", "0.1996"),
+            ("gas", "wrong_gamma", "1.5"), ("own", "ignored_ic", "out_0.csv: positions along x"),
+            ("fast", "ignored_ic", "out_0.csv: vx differs"),
             ("few", "wrong_particles", "99"), ("heavy", "ignored_ic", "masses"), ("still", "ignored_ic", "at the start"))
 GOOD = FILE % ("good sod", 60, "none")
 # what is replaced, by what, what the message says
@@ -90,7 +111,7 @@ BAD = ((GOOD, "", "is empty"), ("title", "titel", "did you mean 'title'"), ("[ca
        ("@SEED@", "@SEAD@", "did you mean '@SEED@'"), ("./code.py good sod", "./none.py", ":3: command = ./none.py"),
        ("timeout = 60", "timeout = soon", ":5: timeout = soon"), ("timeout = 60", "timeout = 0", "seconds, above 0"),
        ("memory = none", "memory = 3", "MB or GB"), ("memory = none", "memory = none\nmemory = none", "first in line 6"),
-       ("memory = none", "shell = perhaps", "yes no"), ("memory = none", "ic = swfit", "did you mean 'swift'"),
+       ("memory = none", "shell = perhaps", "yes no"), ("memory = none", "elements = grid", "particles cells"), ("memory = none", "ic = swfit", "did you mean 'swift'"),
        ("memory = none", "ic = ./code.py @OUT@", "@IC@"), ("memory = none", "parameters = nothing.in", "relative to the code file"),
        ("memory = none", "parameters = bad.in", "bad.in:2: no word '@WRONG@'"), ("memory = none", "depends = nothing", "relative"),
        ("n = 16^2", "n = 16^2 12^2", "rising"), ("velocity_l1 = 0.5 10", "velocity_l1 = 3", "least order"),
@@ -173,6 +194,24 @@ def test_failures():
         assert told in done["message"] and reason in done["message"], (mode, done["message"])
         assert "the code says: mode " + mode in done["code"]["log"] or mode in ("exit", "hang", "eat", "killed"), done["code"]
     assert not glob.glob("tmp/*"), glob.glob("tmp/*")
+
+
+def test_starts(draw):
+    """What is no failure: a snapshot of the start, a time that is off by less than is allowed, cells of a grid."""
+    for mode, more in ("starts", ""), ("late", ""), ("still", "elements = cells"), ("heavy", "elements = cells"):
+        write("start.ini", (FILE % (mode + " @CASE@", 60, "none")).replace("[case sod]", more + "\n[case sod]"))
+        document("run", "sod", "n=%d" % draw.randint(60, 200), "--code", "start.ini")
+
+
+def test_again():
+    """A run that failed is not kept for good: the next command tries it again, a share does not."""
+    write("once.ini", FILE % ("once sod", 60, "none"))
+    ladder = ("converge", "sod", "--n", "60,61,62,63", "--replicates", "1", "--code", "once.ini", "--cache", "again")
+    call(*ladder, status=3)
+    call(*ladder, "--shard", "1/1", status=0)
+    for name in ("first", "second"):
+        found = document(*ladder, status=None)
+        assert found["status"] != "failed", (name, found)
 
 
 def test_refused():
@@ -277,7 +316,8 @@ def test_report():
     for night in range(2):
         found = document("report", "--code", "both.ini", "--code", "bad.ini", "--out", "out", "--jobs", "2", status=1)
         assert found["mode"] == "code" and len(found["history"]["nights"]) == night + 1, found["history"]
-        assert not night or found["found"] == found["computations"], (found["found"], found["computations"])
+        tried_again = 4  # levels of what failed
+        assert not night or found["found"] == found["computations"] - tried_again, (found["found"], found["computations"])
     labels = {(study["case"], study["label"]): study for study in found["studies"]}
     assert set(labels) == {("sound_wave", "Stand-in"), ("sound_wave", "default"), ("sound_wave", "standard"), ("gresho", "Stand-in"),
                            ("gresho", "Broken"), ("gresho", "default"), ("gresho", "textbook SPH")}, labels.keys()
@@ -341,13 +381,15 @@ with tempfile.TemporaryDirectory() as work:
     os.chdir(work)
     os.mkdir("tmp")
     os.environ["TMPDIR"] = os.path.abspath("tmp")
-    write("code.py", CODE % (sys.executable, program, work))
+    write("code.py", CODE % (sys.executable, program, program, work, work, work))
     with open("code.py", "rb") as file:
         code_bytes = file.read()
     os.chmod("code.py", 0o700)
     write("good.ini", GOOD)
     test_same(random.Random(seed))
     test_failures()
+    test_starts(random.Random(seed))
+    test_again()
     test_refused()
     test_work()
     test_no_errors()

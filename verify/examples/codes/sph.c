@@ -200,8 +200,7 @@ static void write_snapshot(const char *out, int number, double time)
     FILE *file = fopen(path, "w");
     if (!file) fail("cannot be written: ", path);
     fprintf(file, "x%s,vx%s,m,rho,u,h\n", dim > 1 ? ",y" : "", dim > 1 ? ",vy" : "");
-    fprintf(file, "# time = %.17g\n# gamma = %.17g\n# box = %.17g:%.17g", time, gas_gamma, lo[0],
-            lo[0] + side[0]);
+    fprintf(file, "# time = %.17g\n# box = %.17g:%.17g", time, lo[0], lo[0] + side[0]);
     fprintf(file, dim > 1 ? " %.17g:%.17g\n" : "\n", lo[1], lo[1] + side[1]);
     for (int i = 0; i < n; i++) {
         for (int d = 0; d < dim; d++) fprintf(file, "%.17g,", p[i].x[d]);
