@@ -69,6 +69,9 @@ setup_libclang() {
 # numpy and h5py, for the Python of the system: that of the package meson.
 setup_numpy() { /usr/bin/python3 -c 'import numpy, h5py' 2>/dev/null; }
 
+# PySPH, for the same Python: a code that is run by `sphproof run --code`.
+setup_pysph() { /usr/bin/python3 -c 'import pysph.solver.application' 2>/dev/null; }
+
 # Slurm's daemons and the one that they trust.
 setup_cluster() { (PATH=$PATH:/usr/sbin; setup_has slurmctld && setup_has slurmd && setup_has munged); }
 
@@ -89,7 +92,8 @@ setup_missing() {
         setup_compiles clang -fopenmp || echo libomp-dev
         setup_libclang || echo python3-clang
         setup_numpy || echo python3-numpy python3-h5py
-        # elsewhere than with apt a test is skipped where there is no cluster
+        # elsewhere than with apt tests are skipped where there is no cluster and no PySPH
+        setup_pysph || ! setup_has apt-get || echo python3-pysph
         setup_cluster || ! setup_has apt-get || echo slurm-wlm munge ;;
     esac
     case $1 in nightly)
