@@ -113,8 +113,8 @@ const char *const page_styles[] = {
     ".note{color:var(--dim);font-size:.9rem}"
     "@media(max-width:600px){body{font-size:15px}header,nav,main{padding-left:14px;"
     "padding-right:14px}h1{font-size:1.35rem}.tiles{grid-template-columns:1fr 1fr;gap:8px}"
-    ".strip{grid-template-columns:repeat(auto-fill,minmax(112px,1fr));gap:6px}.card{font-size:"
-    ".72rem}"
+    ".strip{grid-template-columns:repeat(auto-fill,minmax(118px,1fr));gap:6px}.card{font-size:"
+    ".7rem;padding:4px 6px 6px}"
     ".tile{padding:8px 10px}.margin{width:60px}}"
     "@media print{nav{display:none}body{font-size:10pt}figure,tr,li{break-inside:avoid}"
     "h2,h3{break-after:avoid}.figures{grid-template-columns:1fr 1fr}.scroll{overflow:visible}}\n",

@@ -12,8 +12,8 @@
 const char *const snapshot_column_names[SNAPSHOT_COLUMNS] = {
     "x", "y", "z", "vx", "vy", "vz", "m", "rho", "u", "P", "h", "ax", "ay", "az", "du"};
 
-/* Usual names of each column in lower case, without characters that are neither letter nor digit.
- */
+/* Usual names of each column in lower case, without characters that are neither letter nor digit,
+ * and without a unit in brackets. */
 static const char *const called[SNAPSHOT_COLUMNS] = {
     "x pos posx position positionx positions coordinates coordinatesx",
     "y posy positiony coordinatesy",
@@ -36,10 +36,13 @@ int snapshot_column_of(const char *name)
 {
     char plain[48];
     size_t n = 0;
-    for (; *name && n + 1 < sizeof plain; name++)
+    const char *unit = strpbrk(name, "[(");
+    const bool is_unit = unit && (unit[0] == '[' ? !isdigit((unsigned char)unit[1])
+                                                 : unit > name && unit[-1] == ' ');
+    for (; *name && (!is_unit || name < unit) && n + 1 < sizeof plain; name++)
         if (isalnum((unsigned char)*name)) plain[n++] = (char)tolower((unsigned char)*name);
     plain[n] = '\0';
-    for (int c = 0; n && !*name && c < SNAPSHOT_COLUMNS; c++)
+    for (int c = 0; n && (!*name || (is_unit && name == unit)) && c < SNAPSHOT_COLUMNS; c++)
         for (const char *word = called[c]; *word; word += strspn(word, " ")) {
             const size_t length = strcspn(word, " ");
             if (length == n && strncmp(word, plain, n) == 0) return c;

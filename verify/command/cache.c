@@ -40,8 +40,10 @@ static const struct command_option own_options[] = {
 const struct command command_cache = {
     .name = "cache",
     .synopsis = "DIR",
-    .help = "kept results of a folder (--cache DIR, or cache in a report's folder): how many, how "
-            "large;\nroom for new ones. `sphproof report --nightly` removes what is a month old.",
+    .help =
+        "how many results a folder keeps, how large they are, and room for new ones\nThe folder is "
+        "that of --cache DIR, or cache in a report's folder. `sphproof report --nightly` removes "
+        "what is a month old.",
     .run = run,
     .options = own_options,
     .examples = "sphproof cache reports/out/cache\nsphproof cache shared --prune 30",

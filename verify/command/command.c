@@ -63,7 +63,8 @@ static const struct command_option *find(const struct command_option *list, cons
     return NULL;
 }
 
-static enum status unknown_option(const struct options *options, const char *word,
+/* next: the word behind it, or NULL. */
+static enum status unknown_option(const struct options *options, const char *word, const char *next,
                                   struct error *error)
 {
     const int length = (int)strcspn(word + 2, "=");
@@ -72,8 +73,11 @@ static enum status unknown_option(const struct options *options, const char *wor
     if (options->command && strstr(options->command->synopsis, "KEY=VALUE") &&
         setting_find(key) >= 0)
         return error_set(error, STATUS_BAD_INPUT,
-                         "%s: '--%s' is a key, not an option; write it as %s=VALUE",
-                         options->command->name, key, key);
+                         "%s: '--%s' is a key, not an option; write it as %s=%.80s",
+                         options->command->name, key, key,
+                         word[2 + length]                      ? word + 3 + length
+                         : next && strncmp(next, "--", 2) != 0 ? next
+                                                               : "VALUE");
     const struct command_option *const lists[] = {
         options->command ? options->command->options : NULL, command_common};
     const size_t most = count(lists[0]) + count(lists[1]);
@@ -151,12 +155,13 @@ static enum status take_option(struct line *line, int argc, char **argv, int *i,
                                struct error *error)
 {
     const char *word = strcmp(argv[*i], "-h") == 0 ? "--help" : argv[*i];
-    if (word[1] != '-') return unknown_option(&line->options, word, error);
+    const char *next = *i + 1 < argc ? argv[*i + 1] : NULL;
+    if (word[1] != '-') return unknown_option(&line->options, word, next, error);
     const size_t length = strcspn(word + 2, "=");
     const struct command *command = line->options.command;
     const struct command_option *own = command ? find(command->options, word + 2, length) : NULL;
     const struct command_option *option = own ? own : find(command_common, word + 2, length);
-    if (!option) return unknown_option(&line->options, word, error);
+    if (!option) return unknown_option(&line->options, word, next, error);
     const char *value = word[2 + length] == '=' ? word + 3 + length : NULL;
     if (!option->argument) {
         if (value)

@@ -12,12 +12,13 @@
 enum { SINC_ORDER = 5 };
 
 /* A median error above this part of the range of the exact values is no error at jumps. */
-#define JUDGE_FOREIGN       0.06
-#define JUDGE_FOREIGN_MEAN  0.2  /* and an L1 above this none of jumps that are a few h wide */
-#define JUDGE_FOREIGN_PART  0.5  /* and a functional that is off by more than this of its value */
-#define JUDGE_FOREIGN_AHEAD 0.03 /* and motion in this part of the window, where no wave has been  \
-                                  */
-#define JUDGE_FOREIGN_MASS 0.3   /* and gas whose mass is off by this of what fills its box */
+#define JUDGE_FOREIGN      0.06
+#define JUDGE_FOREIGN_MEAN 0.2 /* and an L1 above this none of jumps that are a few h wide */
+#define JUDGE_FOREIGN_PART 0.5 /* and a functional that is off by more than this of its value */
+#define JUDGE_FOREIGN_AHEAD                                                                        \
+    0.03                       /* and motion in this part of the window, where no wave has been    \
+                                */
+#define JUDGE_FOREIGN_MASS 0.3 /* and gas whose mass is off by this of what fills its box */
 
 /* A stored pressure that is that of the gas law to the file's precision is taken from it: it has
  * been rounded once more. */
@@ -497,8 +498,11 @@ enum status judge_as(const char *path, const struct judge_request *request, bool
         struct error reason = {0};
         status = run_judge(&judged->run, &gas.snapshot, &judged->result, &reason);
         if (status)
-            error_set(error, status, "%.200s: %.280s%s", path, reason.message,
-                      status == STATUS_BAD_INPUT ? " (t_end: the snapshot's time)" : "");
+            error_set(error, status, "%.200s: %.280s%s%s", path, reason.message,
+                      status == STATUS_BAD_INPUT ? " (t_end: the snapshot's time)" : "",
+                      !request->boundary && strstr(reason.message, "mirrored tube")
+                          ? "; --boundary open if the tube has ends"
+                          : "");
     }
     if (!status && judged->result.problem.problem->fieldless == false &&
         isnan(judged->result.errors[FIELD_DENSITY].l1))

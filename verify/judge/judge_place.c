@@ -104,6 +104,25 @@ static void extent(const struct snapshot_file *file, size_t n, int d, double *lo
     }
 }
 
+/* The same of a line of gas whose volumes fill it, with the halves that lie beyond the outermost
+ * particles. False, and nothing done, for any other. */
+static bool extent_of_volumes(const struct snapshot_file *file, double *lo, double *hi)
+{
+    const double *x = file->column[SNAPSHOT_X], *m = file->column[SNAPSHOT_M],
+                 *rho = file->column[SNAPSHOT_RHO];
+    double from = INFINITY, to = -INFINITY, sum = 0;
+    if (file->dim > 1 || file->gas < file->n || !rho) return false;
+    for (size_t i = 0; i < file->n; i++) {
+        const double volume = m[i] / rho[i];
+        from = fmin(from, x[i] - 0.5 * volume);
+        to = fmax(to, x[i] + 0.5 * volume);
+        sum += volume;
+    }
+    if (!(fabs(sum - (to - from)) <= 0.1 * (to - from))) return false;
+    *lo = from, *hi = to;
+    return true;
+}
+
 /* Positions all lie in the case's own box and, unless its ends are the user's word, nearly fill it.
  */
 static bool fits_case(const struct snapshot_file *file, const struct settings *settings, bool ends)
@@ -166,9 +185,12 @@ static enum status take_box(const struct judge_request *request, struct judged *
                       ends ? "the file says none; all positions lie in the case's"
                            : "the file says none; all positions lie in the case's and fill it");
     } else {
+        const bool filled = !file->boxed && extent_of_volumes(file, &box->lo[0], &box->hi[0]);
         snprintf(value, sizeof value, "%.6g to %.6g along x", box->lo[0], box->hi[0]);
         snapshot_note(&file->notes, "box", value, "%s",
-                      !file->boxed   ? "the file says none: as far as particles reach; not periodic"
+                      filled         ? "the file says none: as far as volumes of particles reach; "
+                                       "not periodic"
+                      : !file->boxed ? "the file says none: as far as particles reach; not periodic"
                       : request->box ? "--box"
                       : file->placed ? "the file says so"
                       : inside ? "the header's length, from 0; positions lie in it; taken for "
@@ -365,6 +387,11 @@ enum status judge_place(const struct judge_request *given, struct judged *judged
         take_time(request, judged, settings, error) ||
         take_box(request, judged, settings, ends != NULL, &box, error))
         return error->status;
+    if (judged->file.dim == 1 && request->radius > 0) {
+        const double middle = 0.5 * (box.lo[0] + box.hi[0]);
+        with_ends.window = true, with_ends.radius = 0;
+        with_ends.ends[0] = middle - given->radius, with_ends.ends[1] = middle + given->radius;
+    }
     if (request->boundary && !tube)
         snprintf(judged->file.boundary, sizeof judged->file.boundary, "%s", request->boundary);
     for (int d = 0; d < 3; d++) period[d] = snapshot_period(&judged->file, d);

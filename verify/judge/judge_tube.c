@@ -56,7 +56,8 @@ static bool solve(const struct settings *settings, struct tube *tube)
     return true;
 }
 
-/* Is the gas near one end as it was? False where hardly anything is there. */
+/* Is the gas near one end as it was, but for noise of its particles? False where hardly anything is
+ * there. */
 static bool still_there(const struct judged *judged, const struct tube *tube, const double ends[2],
                         int side)
 {
@@ -65,16 +66,15 @@ static bool still_there(const struct judged *judged, const struct tube *tube, co
                  *rho = file->column[SNAPSHOT_RHO];
     const struct riemann_state *gas = side ? &tube->main.right : &tube->main.left;
     const double reach = near_end * (ends[1] - ends[0]), c = sound(&tube->main, gas);
-    size_t there = 0;
+    double there = 0, of_v = 0, of_rho = 0;
     for (size_t i = 0; i < file->n; i++) {
         /* density is often lower at an end, where a code sums over half a neighbourhood */
         const double from = fabs(x[i] - ends[side]);
         if (!(from <= 2 * reach && from >= reach / 2)) continue;
-        if (!(fabs(v[i] - gas->v) <= undisturbed * c)) return false;
-        if (rho && !(fabs(rho[i] - gas->rho) <= undisturbed * gas->rho)) return false;
-        there++;
+        there++, of_v += v[i] - gas->v, of_rho += rho ? rho[i] - gas->rho : 0;
     }
-    return there >= 2;
+    return there >= 2 && fabs(of_v) <= undisturbed * c * there &&
+           fabs(of_rho) <= undisturbed * gas->rho * there;
 }
 
 bool judge_tube_ends(const struct judge_request *request, struct judged *judged,

@@ -729,6 +729,11 @@ def tubes_with_ends(folder):
         placed = file.read().replace("\n", "\n# box = -0.5:1.5\n", 1)
     got = judge(write(folder, "placed.csv", placed), *asked, "0.2", "--box", "1", "--boundary", "open", status=0)
     assert got["window"] == [0, 1], got["window"]
+    # half a tube has no end at which the gas of the other side is: how ends are told
+    with open(late, encoding="ascii") as file:
+        rows = file.readlines()
+    half = write(folder, "half.csv", "".join(rows[:len(rows) // 2]))
+    refused(half, *asked, "0.2", says="--boundary open if the tube has ends")
     # a case file of one's own says box, ends and window
     words = {"lo": "0", "hi": "1", "boundary": "reflecting"}
     for more, window in ({}, [0, 1]), ({"window": "0.1 0.9"}, [0.1, 0.9]), ({"lo": "-1"}, [-1, 1]):
@@ -744,6 +749,7 @@ def tubes_with_ends(folder):
     done = subprocess.run([PROGRAM, "run", case], capture_output=True, text=True)
     assert done.returncode == 0 and "density" in done.stdout, done
     refused(late, *asked, "0.2", "--boundary", "periodic", says="mirrored tube")
+    assert "--boundary open" not in call(late, *asked, "0.2", "--boundary", "periodic")[2]
     refused(late, *asked, "0.2", "--boundary", "wall", says=("--boundary 'wall'", "reflecting"))
     refused(late, *asked, "0.2", "--box", "1:x", says=("--box '1:x'", "LO:HI"))
     refused(late, *asked, "0.2", "--box", "0:0.5", says="positions")

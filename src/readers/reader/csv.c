@@ -3,13 +3,78 @@
  * separated by commas or, where the first line has none, by blanks. Where numbers come first, the
  * names are the last comment before them, as numpy.savetxt writes it. Lines before the particles
  * say what columns do not: "# time = 0.2", "# gamma = 1.4", "# box = 2", "# box = 2 1 1" or
- * "# box = -1:1 0:0.5"; our own snapshots also have "case", "boundary" and "keys". */
+ * "# box = -1:1 0:0.5"; our own snapshots also have "case", "boundary" and "keys". Time (or t) and
+ * gamma are also found within a comment: "# Sod at t = 0.2, gamma: 5/3". */
+#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 #include "text.h"
 #include "text_table.h"
+
+static bool in_word(char c)
+{
+    return isalnum((unsigned char)c) || c == '_';
+}
+
+/* A word, and '=' or ':' behind it. */
+static bool assigns(const char *at)
+{
+    const char *behind = at;
+    while (in_word(*behind)) behind++;
+    const size_t blanks = strspn(behind, " \t");
+    return behind > at && (behind[blanks] == '=' || behind[blanks] == ':');
+}
+
+/* A number, or a fraction such as 5/3. */
+static bool take_ratio(const char *text, size_t length, double *value)
+{
+    char word[48];
+    double below = 1;
+    if (!length || length >= sizeof word) return false;
+    memcpy(word, text, length);
+    word[length] = '\0';
+    char *slash = strchr(word, '/');
+    if (slash) *slash = '\0';
+    if (!text_real(word, value) || (slash && !text_real(slash + 1, &below))) return false;
+    *value /= below;
+    return isfinite(*value);
+}
+
+static bool is_word(const char *text, size_t length, const char *word)
+{
+    return strlen(word) == length && strncasecmp(text, word, length) == 0;
+}
+
+static void take_number(const char *key, size_t length, double number, const char *line,
+                        struct snapshot_file *file)
+{
+    if (is_word(key, length, "time") || is_word(key, length, "t"))
+        file->time = (struct snapshot_value){true, number};
+    if (is_word(key, length, "gamma")) {
+        file->gamma = (struct snapshot_value){true, number};
+        snapshot_note(&file->notes, "gamma", "in the file", "its line '%.100s'", line);
+    }
+}
+
+/* Every "KEY = NUMBER" and "KEY: NUMBER" of a comment. A number with anything but a comma, a
+ * semicolon or the next key behind it may have a unit, and is left alone. */
+static void take_numbers(const char *line, struct snapshot_file *file)
+{
+    double number;
+    for (const char *at = line; (at = strpbrk(at, "=:")); at++) {
+        const char *end = at, *value = at + 1 + strspn(at + 1, " \t");
+        while (end > line && strchr(" \t", end[-1])) end--;
+        const char *begin = end;
+        while (begin > line && in_word(begin[-1])) begin--;
+        const size_t size = strcspn(value, " \t,;");
+        const char *rest = value + size + strspn(value + size, " \t");
+        if ((!*rest || strchr(",;#", *rest) || assigns(rest)) && take_ratio(value, size, &number))
+            take_number(begin, (size_t)(end - begin), number, line, file);
+    }
+}
 
 static void take_remark(const char *line, size_t length, struct snapshot_file *file)
 {
@@ -21,22 +86,21 @@ static void take_remark(const char *line, size_t length, struct snapshot_file *f
     const size_t value = begin + size + strspn(text + begin + size, " \t=:");
     char *end = text + strlen(text);
     while (end > text && strchr(" \t\r", end[-1])) *--end = '\0';
-    if (size == 0 || size >= sizeof key || value >= (size_t)(end - text)) return;
-    memcpy(key, text + begin, size);
-    key[size] = '\0';
+    if (size == 0 || value >= (size_t)(end - text)) return;
+    snprintf(key, sizeof key, "%.*s", (int)size, text + begin);
     double number;
-    if (strcmp(key, "box") == 0) file->boxed = snapshot_take_box(text + value, file);
-    if (strcmp(key, "case") == 0)
+    if (strcmp(key, "box") == 0)
+        file->boxed = snapshot_take_box(text + value, file);
+    else if (strcmp(key, "case") == 0)
         snprintf(file->case_name, sizeof file->case_name, "%s", text + value);
-    if (strcmp(key, "boundary") == 0)
+    else if (strcmp(key, "boundary") == 0)
         snprintf(file->boundary, sizeof file->boundary, "%s", text + value);
-    if (strcmp(key, "keys") == 0) snprintf(file->keys, sizeof file->keys, "%s", text + value);
-    if (!text_real(text + value, &number)) return;
-    if (strcmp(key, "time") == 0) file->time = (struct snapshot_value){true, number};
-    if (strcmp(key, "gamma") == 0) {
-        file->gamma = (struct snapshot_value){true, number};
-        snapshot_note(&file->notes, "gamma", "in the file", "its line '%.100s'", text);
-    }
+    else if (strcmp(key, "keys") == 0)
+        snprintf(file->keys, sizeof file->keys, "%s", text + value);
+    else if (text_real(text + value, &number)) /* "time 0.2" as well */
+        take_number(text + begin, size, number, text, file);
+    else
+        take_numbers(text, file);
 }
 
 /* Commas, else semicolons, else blanks. */
@@ -54,6 +118,10 @@ static enum status take_names(struct text_table *table, const char *line, size_t
     for (size_t at = 0; at < length;) {
         size_t n = 0;
         while (at < length && (line[at] == ' ' || line[at] == '\t')) at++;
+        if (blanks && table->columns && at < length && strchr("[(", line[at])) { /* a unit */
+            at += strcspn(line + at, line[at] == '[' ? "]\n" : ")\n") + 1;
+            continue;
+        }
         while (at + n < length && !strchr(stops, line[at + n])) n++;
         const size_t next = at + n + (at + n < length);
         size_t size = n;

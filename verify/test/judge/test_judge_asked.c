@@ -195,6 +195,22 @@ TEST(windows)
     }
 }
 
+/* On a line a radius is half of a window about the middle of the box, whatever its ends are. */
+TEST(radius_of_a_line)
+{
+    for (int open = 0; open < 2; open++) {
+        struct judge_request request = uniform_gas();
+        struct judged judged;
+        request.radius = 0.25, request.x0 = (struct snapshot_value){true, 1.125};
+        request.boundary = open ? "open" : NULL;
+        plant(1, 0, "# box = 2\n");
+        judges(&request, &judged);
+        near_absolute(judged.run.problem.window.lo[0], 0.75, 1e-15);
+        near_absolute(judged.run.problem.window.hi[0], 1.25, 1e-15);
+        judge_free(&judged);
+    }
+}
+
 /* A disc or a ball; the size of the box is said where it is not the case's. */
 TEST(sizes)
 {
@@ -293,12 +309,15 @@ TEST(found_ends)
         {USUAL, 0.1, {0.0101, 0.0399}, 0, 0, true},
         {USUAL, 0.1, {0.0099, 0.0399}, 0, 0, false},
         {USUAL, 0.1, {0.0101, 0.0401}, 0, 0, false},
-        {USUAL, 0.1, {0.02, 0.03}, 0.0299, 0, true},
-        {USUAL, 0.1, {0.02, 0.03}, 0.0301, 0, false},
-        {USUAL, 0.1, {0.02, 0.03}, -0.0301, 0, false},
-        {USUAL, 0.1, {0.02, 0.03}, 0, 0.0299, true},
-        {USUAL, 0.1, {0.02, 0.03}, 0, 0.0301, false},
-        {USUAL, 0.1, {0.02, 0.03}, 0, -0.0301, false},
+        /* half of what one of the two is off */
+        {USUAL, 0.1, {0.02, 0.03}, 0.0599, 0, true},
+        {USUAL, 0.1, {0.02, 0.03}, 0.0601, 0, false},
+        {USUAL, 0.1, {0.02, 0.03}, -0.0599, 0, true},
+        {USUAL, 0.1, {0.02, 0.03}, -0.0601, 0, false},
+        {USUAL, 0.1, {0.02, 0.03}, 0, 0.0599, true},
+        {USUAL, 0.1, {0.02, 0.03}, 0, 0.0601, false},
+        {USUAL, 0.1, {0.02, 0.03}, 0, -0.0599, true},
+        {USUAL, 0.1, {0.02, 0.03}, 0, -0.0601, false},
         /* the slower sound has to come 0.05 of the length */
         {USUAL, 0.0946, {0.02, 0.03}, 0, 0, true},
         {USUAL, 0.0944, {0.02, 0.03}, 0, 0, false},

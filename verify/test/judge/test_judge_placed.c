@@ -122,6 +122,7 @@ TEST(places)
         struct judge_request request = uniform_gas();
         struct judged judged;
         plant(1, 0, rows[k].head);
+        for (int i = 0; i < N; i++) gas.m[i] /= 8; /* volumes fill no line */
         for (int i = 0; i < N; i++)
             gas.x[0][i] = i == 0   ? rows[k].lo
                           : i == 1 ? rows[k].hi
@@ -161,6 +162,35 @@ TEST(places)
 }
 
 /* ---- what is not there, what is asked for in vain ---- */
+
+/* A line that volumes fill reaches half a volume beyond its outermost particles, also where these
+ * are not the first and the last in the file; one that they do not fill ends at its particles. */
+TEST(ends_of_volumes)
+{
+    for (int draw = 0; draw < 40; draw++) {
+        const bool fills = draw % 4;
+        const double lo = uniform(1.5, 3);
+        struct judge_request request = uniform_gas();
+        struct judged judged;
+        double at = lo, first = 0, last = 0;
+        plant(1, 0, "");
+        for (int k = 0; k < N; k++) {
+            const int i = (k + 7 * draw) % N;
+            const double volume = uniform(0.2, 3) / N;
+            gas.rho[i] = uniform(0.5, 2), gas.m[i] = volume * gas.rho[i] * (fills ? 1 : 0.8);
+            gas.x[0][i] = at + 0.5 * volume, at += volume;
+            if (k == 0) first = gas.x[0][i];
+            last = gas.x[0][i];
+        }
+        judges(&request, &judged);
+        const struct prepared *p = &judged.run.problem;
+        near_absolute(p->domain.lo[0] - (fills ? lo : first), 0, 1e-13);
+        near_absolute(p->domain.hi[0] - (fills ? at : last), 0, 1e-13);
+        assert_non_null(
+            strstr(note(&judged, "box")->evidence, fills ? "volumes of particles" : "as far as p"));
+        judge_free(&judged);
+    }
+}
 
 TEST(completed)
 {

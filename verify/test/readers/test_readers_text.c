@@ -38,14 +38,48 @@ TEST(spellings)
             reads(&t, NULL, &file);
             snapshot_file_free(&file);
         }
-    static const char *const nobody[] = {"xx",   "rhoo",     "rh", "",   "velocity_w",
-                                         "vxyz", "internal", "_",  "mas"};
+    static const char *const nobody[] = {"xx",   "rhoo",     "rh",      "",    "velocity_w",
+                                         "vxyz", "internal", "_",       "mas", "[x]",
+                                         "v[0]", "rho(x)",   "rhoo [g]"};
+    static const struct {
+        const char *name;
+        int column;
+    } units[] = {{"x [cm]", SNAPSHOT_X},
+                 {"rho[g/cm^3]", SNAPSHOT_RHO},
+                 {"v(x)", SNAPSHOT_VX},
+                 {"P (erg)", SNAPSHOT_P},
+                 {"vel (km/s)", SNAPSHOT_VX}};
+    for (size_t k = 0; k < sizeof units / sizeof *units; k++)
+        assert_int_equal(snapshot_column_of(units[k].name), units[k].column);
     for (size_t k = 0; k < sizeof nobody / sizeof *nobody; k++)
         assert_int_equal(snapshot_column_of(nobody[k]), -1);
     char word[80] = "internalenergyinternalenergyinternalenergyinternalenergy";
     assert_int_equal(snapshot_column_of(word), -1);
     memset(word, ' ', 70), strcpy(word + 70, "u"); /* blanks take no room */
     assert_int_equal(snapshot_column_of(word), SNAPSHOT_U);
+}
+
+/* Units beside the names are no columns. */
+TEST(units)
+{
+    static const char *const heads[] = {"# x [kpc] rho [g cm^-3]  v (km/s) m P\n",
+                                        "# x (pc),rho [g],v [km/s],m,P\n", "x [] rho v () m P\n"};
+    for (size_t k = 0; k < 3; k++) {
+        char text[400], mark = k == 1 ? ',' : ' ';
+        struct snapshot_file file;
+        int n = snprintf(text, sizeof text, "%s", heads[k]);
+        for (int i = 0; i < 5; i++)
+            n += snprintf(text + n, sizeof text - (size_t)n, "%d%c2%c3%c4%c5\n", i, mark, mark,
+                          mark, mark);
+        const struct snapshot_options plain = {0};
+        struct error error = {0};
+        put_file(text, (size_t)n);
+        if (snapshot_read(path_of("a.txt"), &plain, &file, &error)) fail_msg("%s", error.message);
+        assert_true(file.n == 5 && file.column[SNAPSHOT_X][4] == 4 &&
+                    file.column[SNAPSHOT_RHO][4] == 2 && file.column[SNAPSHOT_VX][4] == 3 &&
+                    file.column[SNAPSHOT_M][4] == 4 && file.column[SNAPSHOT_P][4] == 5);
+        snapshot_file_free(&file);
+    }
 }
 
 /* ---- lines that say what columns do not ---- */
@@ -75,6 +109,18 @@ TEST(remarks)
         {"# time = 0.25\n# time = 0.5\n", true, false, false, 0.5, 0, {0}},
         {"# time = 0.25 s\n# gammas = 2\n# Box = 2\n# box = a\n", false, false, false, 0, 0, {0}},
         {"# box = 1 2 3 4\n# times = 2\n# gamma =\n# =\n#\n# 7\n", false, false, false, 0, 0, {0}},
+        /* within a comment, as people write headers */
+        {"# Sod at t = 0.25, Gamma: 3/2\n", true, true, false, 0.25, 1.5, {0}},
+        {"#Time: 0.25  gamma=1.5 #\n# dt = 3; my_t = 4\n", true, true, false, 0.25, 1.5, {0}},
+        {"# n = 7,TIME=0.5;T=0.25\n# t_end = 9\n", true, false, false, 0.25, 0, {0}},
+        {"# at t = 0.25 s, gamma = 5/0\n# time = 1/2/3, gamma = /2\n",
+         false,
+         false,
+         false,
+         0,
+         0,
+         {0}},
+        {"# keys = gamma=1.5;t=3\n", false, false, false, 0, 0, {0}},
         {"# gamma = 1e400\n# time = nan\n# a_very_long_key_indeed = 3\n",
          false,
          false,
