@@ -66,23 +66,25 @@ static enum status apply_map(struct text_table *table, const char *map, struct e
 
 enum status text_table_name(struct text_table *table, const char *map, struct error *error)
 {
-    for (size_t c = 0; c < table->columns; c++) {
+    for (size_t c = 0; c < table->columns; c++)
         table->meaning[c] = strcmp(table->names[c], "itype") == 0
                                 ? TABLE_TYPE
                                 : snapshot_column_of(table->names[c]);
-        for (size_t k = 0; k < c; k++)
-            if (table->meaning[c] >= 0 && table->meaning[k] == table->meaning[c])
-                return error_set(
-                    error, STATUS_BAD_INPUT,
-                    "%.200s: columns '%s' and '%s' both look like %s: which one is "
-                    "it? --map %s=NAME says so after the other has been renamed",
-                    table->source->path, table->names[k], table->names[c],
-                    table->meaning[c] < SNAPSHOT_COLUMNS ? snapshot_column_names[table->meaning[c]]
-                                                         : "itype",
-                    table->meaning[c] < SNAPSHOT_COLUMNS ? snapshot_column_names[table->meaning[c]]
-                                                         : "itype");
-    }
-    return apply_map(table, map, error);
+    if (apply_map(table, map, error)) return error->status;
+    for (size_t c = 0; c < table->columns; c++)
+        for (size_t k = 0; k < c; k++) {
+            const int meaning = table->meaning[c];
+            if (meaning < 0 || table->meaning[k] != meaning) continue;
+            if (meaning == TABLE_TYPE)
+                return error_set(error, STATUS_BAD_INPUT, "%.200s: two columns are called 'itype'",
+                                 table->source->path);
+            const char *ours = snapshot_column_names[meaning];
+            return error_set(error, STATUS_BAD_INPUT,
+                             "%.200s: columns '%s' and '%s' both look like %s: which one is it? "
+                             "--map %s=NAME says so",
+                             table->source->path, table->names[k], table->names[c], ours, ours);
+        }
+    return STATUS_OK;
 }
 
 /* ---- rows ---- */

@@ -177,8 +177,11 @@ static enum status take_option(struct line *line, int argc, char **argv, int *i,
     if (!own) return apply_common(line, option->name, value, error);
     const char **slot = &line->options.values[own - command->options];
     const char *more = option->argument ? strstr(option->argument, " ...") : NULL;
-    if (*slot && !(more && !more[4]))
-        return error_set(error, STATUS_BAD_INPUT, "--%s is given twice", option->name);
+    if (*slot && !(more && !more[4])) {
+        const bool list = option->argument && strstr(option->argument, ",...");
+        return error_set(error, STATUS_BAD_INPUT, "--%s is given twice%s%s", option->name,
+                         list ? "; allowed: once, as " : "", list ? option->argument : "");
+    }
     if (*slot) return join(line, slot, value, error);
     *slot = value;
     return STATUS_OK;
