@@ -177,6 +177,46 @@ static void propose(struct rate_check *check, const double *const theirs[RATE_CO
     }
 }
 
+/* The eta that their widths and densities have in common; ours where these say nothing. */
+static double their_eta(const double *const theirs[RATE_COLUMNS], const struct setup *setup)
+{
+    const double *h = theirs[0], *rho = theirs[1];
+    double least = INFINITY, most = -INFINITY;
+    if (!h || !rho) return setup->scheme.eta;
+    for (size_t i = 0; i < setup->n; i++) {
+        const double eta = h[i] * pow(rho[i] / setup->m[i], 1. / setup->dim);
+        least = fmin(least, eta), most = fmax(most, eta);
+    }
+    const double eta = 0.5 * (least + most);
+    return eta > 0 && most - least <= 1e-6 * eta ? eta : setup->scheme.eta;
+}
+
+/* Another kernel, with our eta or theirs, or that eta alone. */
+static void propose_kernels(struct rate_check *check, const double *const theirs[RATE_COLUMNS],
+                            const struct setup *setup, double tolerance)
+{
+    const double found = their_eta(theirs, setup), ours = setup->scheme.eta;
+    const bool other = fabs(found - ours) > 1e-6 * ours;
+    for (int k = -1; k < (int)kernel_family.n; k++) {
+        struct setup changed = *setup;
+        struct rate_table table;
+        char cause[RATE_CAUSE];
+        const char *name = k < 0 ? "" : kernel_family.members[k]->name;
+        if (k < 0 && !other) continue;
+        if (k >= 0 && kernel_select(&changed.scheme.kernel, name, 5, NULL)) continue;
+        if (other) changed.scheme.eta = found;
+        if (k < 0)
+            snprintf(cause, sizeof cause, "eta: theirs is %.6g", found);
+        else if (other)
+            snprintf(cause, sizeof cause, "kernel: theirs is %s, with eta %.6g", name, found);
+        else
+            snprintf(cause, sizeof cause, "kernel: theirs is %s", name);
+        if (!rate_table_make(&table, &changed, NULL))
+            propose(check, theirs, &table, setup->m, tolerance, cause);
+        rate_table_free(&table);
+    }
+}
+
 /* Rates without grad-h factors: the solver has no such choice, the oracle has. */
 static void propose_no_grad_h(struct rate_check *check, const double *const theirs[RATE_COLUMNS],
                               const struct setup *setup, const struct rate_table *ours,
@@ -253,6 +293,7 @@ static void find_causes(struct rate_check *check, const double *const theirs[RAT
         rate_table_free(&table);
     }
     propose_no_grad_h(check, theirs, setup, ours, tolerance);
+    propose_kernels(check, theirs, setup, tolerance);
     const char *first = NULL; /* that is wrong; what comes after it follows from it */
     for (size_t k = 0; k < check->count; k++) {
         struct rate_comparison *c = &check->columns[k];
